@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "planning_io/types/point_cloud.h"
+#include "planning_io/types/triangle_mesh.h"
+
+namespace planlight {
+
+/// Binary PLY with "comment SPACE=LPS"; vertex normals and flags included.
+void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file);
+
+/// PLY as written above, or another program's PLY with SPACE=LPS or SPACE=RAS (converted); without a SPACE it is refused.
+TriangleMesh read_mesh(const std::filesystem::path& file);
+
+/// Binary PLY of a scan in rig, with "comment FRAME=rig"; columns x y z nx ny nz sigma projector_x projector_y.
+void write_cloud(const PointCloud& cloud, const std::filesystem::path& file);
+PointCloud read_cloud(const std::filesystem::path& file);
+
+/// XXH3-128 of vertices and triangles, hex.
+std::string hash_of(const TriangleMesh& mesh);
+
+}  // namespace planlight

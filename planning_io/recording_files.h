@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "planning_io/types/image.h"
+#include "planning_io/types/registration_result.h"
+#include "planning_io/types/tracked_pose.h"
+
+namespace planlight {
+
+/// A capture folder: capture.json and left/NAME.png, right/NAME.png, one per pattern (format in the room's README).
+struct CaptureFolder {
+    int projector_width = 0, projector_height = 0;
+    int phase_steps = 8;
+    double phase_period_px = 16;
+    bool rows = true, inverse = true;
+    std::vector<std::string> names;       ///< of the patterns, in order
+    std::vector<GrayImage> left, right;   ///< one per name
+    Instant began{}, ended{};
+};
+void write_capture(const CaptureFolder& capture, const std::filesystem::path& folder);
+CaptureFolder read_capture(const std::filesystem::path& folder);
+
+/// A recorded run of stereo frames for tracking: frames.json (times, numbers) and left/NNNNNN.png, right/NNNNNN.png.
+struct RecordedFrame {
+    GrayImage left, right;
+    Instant at{}, exposure{};
+    std::uint64_t number = 0;
+};
+void write_frames(const std::vector<RecordedFrame>& frames, const std::filesystem::path& folder);
+std::vector<RecordedFrame> read_frames(const std::filesystem::path& folder);
+
+/// registration.json, as `register` writes it and `project` reads it.
+void write_registration(const RegistrationResult& result, const std::filesystem::path& file);
+RegistrationResult read_registration(const std::filesystem::path& file);
+
+/// poses.json, as `track` writes it: one entry a frame, with or without a pose.
+void write_poses(const std::vector<TrackedPose>& poses, const std::filesystem::path& file);
+std::vector<TrackedPose> read_poses(const std::filesystem::path& file);
+
+}  // namespace planlight

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "planning_io/types/rigid_transform.h"
+
+namespace planlight {
+
+enum class Verdict {
+    yes,  ///< may be used
+    ask,  ///< needs a person's look at the overlay on landmarks before it is used
+    no,   ///< there is no pose
+};
+
+/// Where the patient lies: the paper's T_ini, with what it was judged by.
+struct RegistrationResult {
+    Verdict verdict = Verdict::no;
+    std::vector<std::string> reasons;  ///< in words, one sentence each, why it is not `yes`; empty when it is
+    RigidTransform patient_from_ct = RigidTransform::Identity();  ///< T_ini; meaningless when the verdict is `no`
+
+    double residual_rms_mm = 0;        ///< of the inliers, point to surface
+    double residual_median_mm = 0;     ///< of all points, absolute
+    double inlier_fraction = 0;        ///< of all points, nearer than `inlier_distance_mm` to the skin
+    double inlier_distance_mm = 0;
+    std::size_t points = 0;
+    double runner_up_ratio = 0;        ///< cost of the best distinct other pose / cost of this one; > 1 is good
+    int agreeing_bases = 0;            ///< independent contact triplets that led to this pose
+    double weakest_sigma_mm = 0;       ///< how far the patient could slide along the least determined way
+    double initial_match_s = 0, refine_s = 0;
+    RigidTransform initial_patient_from_ct = RigidTransform::Identity();  ///< before the ICP (Fig. 3 left)
+};
+
+}  // namespace planlight

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <chrono>
+
+namespace planlight {
+
+/// A moment on the one monotonic clock of a session (its epoch is arbitrary). Never wall-clock time.
+using Instant = std::chrono::nanoseconds;
+
+inline double seconds(Instant t) { return std::chrono::duration<double>(t).count(); }
+inline Instant from_seconds(double s) {
+    return std::chrono::duration_cast<Instant>(std::chrono::duration<double>(s));
+}
+
+/// The injected clock: real, simulated or replayed.
+class Clock {
+public:
+    virtual ~Clock() = default;
+    virtual Instant now() const = 0;
+};
+
+}  // namespace planlight

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "planning_io/types/rigid_transform.h"
+#include "planning_io/types/time.h"
+
+namespace planlight {
+
+/// The patient at one moment: the paper's T_cur(t), or why there is none.
+struct TrackedPose {
+    std::optional<RigidTransform> rig_from_patient;  ///< T_cur; identity at the scan instant; empty when not known
+    Instant at{};                                    ///< mid-exposure of the frames it was measured in
+    int markers_left = 0, markers_right = 0;         ///< used, per camera
+    double residual_px = 0;                          ///< rms reprojection over both pictures
+    double predicted_error_mm = 0;                   ///< one sigma, at the markers' centroid
+    std::string reason;                              ///< why there is no pose; empty when there is one
+};
+
+}  // namespace planlight

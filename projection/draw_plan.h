@@ -1,0 +1,58 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "planning_io/types/image.h"
+#include "planning_io/types/plan.h"
+#include "projection/skin_surface.h"
+
+namespace planlight {
+
+/// What a stroke belongs to.
+enum class StrokeKind { osteotomy_line, borehole, trajectory, cut_plane, tick, label };
+
+/// A line on the skin of constant width, measured along the skin.
+struct Stroke {
+    StrokeKind kind = StrokeKind::osteotomy_line;
+    int item = -1;                                ///< index into PlanDrawing::items
+    Rgb colour{255, 255, 255};
+    double width_mm = 0.8;
+    bool closed = false;
+    std::vector<Eigen::Vector3d> points_in_ct;    ///< on the skin, at most `max_segment_mm` apart
+    std::vector<Eigen::Vector3d> normals_in_ct;   ///< outward, one per point
+};
+
+/// One plan item as drawn: where it was wanted and what is said about it.
+struct DrawnItem {
+    StrokeKind kind;
+    std::string name;
+    std::string label;                     ///< the text beside it, e.g. "B1  ⌀7  6 mm deep"
+    Eigen::Vector3d anchor_in_ct;          ///< its place on the skin
+    double distance_to_skin_mm = 0;        ///< of the plan's point(s) to the skin, largest
+    std::vector<std::string> warnings;     ///< in words, with the item's name
+};
+
+/// The plan in the skin's own metric: what is light on the skin, independent of projector and pose.
+struct PlanDrawing {
+    std::vector<DrawnItem> items;
+    std::vector<Stroke> strokes;
+};
+
+struct DrawingSettings {
+    double line_width_mm = 0.8;
+    double max_segment_mm = 0.5;
+    double text_height_mm = 5;
+    double tick_every_mm = 10, tick_length_mm = 2;  ///< along osteotomy lines; 0 = none
+    Eigen::Vector3d up_in_ct{0, 0, 1};              ///< which way text stands up
+    double max_distance_to_skin_mm = 10;            ///< a plan point farther from skin is warned of, by name
+    bool labels = true;
+};
+
+/// Draws every item of the plan on the skin: lengths along geodesics, circles of their diameter, labels upright.
+PlanDrawing draw_plan(const Plan& plan, const SkinSurface& skin, const DrawingSettings& settings = {});
+
+/// The plan's own faults, one sentence each, by name: entry far from skin, target outside the body, zero length, not finite.
+std::vector<std::string> check_plan(const Plan& plan, const SkinSurface& skin, const DrawingSettings& settings = {});
+
+}  // namespace planlight

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "planning_io/types/registration_result.h"
+#include "planning_io/types/tracked_pose.h"
+#include "projection/render_drawing.h"
+#include "registration/devices/projector.h"
+#include "registration/tracking/predict_pose.h"
+
+namespace planlight {
+
+struct OverlaySettings {
+    Instant max_pose_age = std::chrono::milliseconds(75);   ///< an older pose is not drawn
+    Instant picture_validity = std::chrono::milliseconds(75);
+    Instant light_delay = std::chrono::milliseconds(25);    ///< from show to light, for the prediction
+    double max_predicted_error_mm = 1.0;                    ///< above: dark
+    bool predict = true;
+    RenderSettings render;
+};
+
+/// What the overlay did with one pose.
+struct OverlayStep {
+    bool lit = false;
+    std::string reason;              ///< why it is dark, in words; empty when lit
+    RgbImage picture;                ///< what was shown (black when dark)
+    Instant lit_from{};              ///< when it is light on the skin
+    RigidTransform rig_from_ct = RigidTransform::Identity();  ///< T_global it was drawn for
+};
+
+/// DRAW: T_global = T_cur T_ini -> bitmap -> projector, or darkness. Nothing is drawn without a fresh, good pose.
+class OverlayLoop {
+public:
+    OverlayLoop(Projector& projector, const Clock& clock, const DrawingRenderer& renderer, const PlanDrawing& drawing,
+                const RegistrationResult& registration, const OverlaySettings& settings = {});
+    ~OverlayLoop();  ///< dark
+
+    OverlayStep step(const TrackedPose& pose);
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace planlight

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "registration/devices/projector.h"
+
+namespace planlight {
+
+/// A monitor as the window system names it.
+struct Monitor {
+    std::string name;
+    int x = 0, y = 0, width = 0, height = 0;  ///< virtual desktop pixels
+    bool primary = false;
+};
+
+/// The monitors there are now. Throws DeviceError when there is no display at all.
+std::vector<Monitor> list_monitors();
+
+/// The projector as an undecorated window that covers exactly one monitor. Black by itself when a picture has expired.
+class ProjectorWindow final : public Projector {
+public:
+    /// Opens on the monitor of that name (or index as text). Throws DeviceError when there is no such monitor, when it is
+    /// the only one and `allow_only_monitor` is false, or when the window does not land exactly on it.
+    ProjectorWindow(const std::string& monitor, const Clock& clock, bool allow_only_monitor = false);
+    ~ProjectorWindow() override;
+
+    int width() const override;
+    int height() const override;
+    Instant show(const RgbImage& picture, Instant valid_until) override;
+    void go_dark() noexcept override;
+
+    /// To be called often: darkens an expired picture, checks that the window still covers its monitor and nothing else.
+    void refresh();
+    bool dark() const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace planlight

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "planning_io/types/camera_model.h"
+#include "planning_io/types/triangle_mesh.h"
+
+namespace planlight {
+
+/// The skin mesh as something that can be hit by rays and walked on. CGAL and OpenMesh live in the .cpp.
+class SkinSurface {
+public:
+    explicit SkinSurface(TriangleMesh mesh);
+    ~SkinSurface();
+    SkinSurface(SkinSurface&&) noexcept;
+    SkinSurface& operator=(SkinSurface&&) noexcept;
+
+    /// A point on the surface: position and smooth outward normal in ct, mm; the triangle it lies in.
+    struct Point {
+        Eigen::Vector3d p_in_ct, normal_in_ct;
+        int triangle = -1;
+    };
+    /// The first hit of a ray in ct. Empty when it misses.
+    std::optional<Point> first_hit(const Ray& ray_in_ct) const;
+    Point nearest(const Eigen::Vector3d& p_in_ct) const;
+    /// True when the point is under the skin.
+    bool inside(const Eigen::Vector3d& p_in_ct) const;
+
+    /// The point reached by walking straight (geodesic) from `start` by `tangent_in_ct` (its length is the way, mm).
+    /// Empty when the way leaves the mesh.
+    std::optional<Point> walk(const Point& start, const Eigen::Vector3d& tangent_in_ct) const;
+
+    const TriangleMesh& mesh() const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace planlight

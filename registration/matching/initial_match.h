@@ -1,0 +1,39 @@
+#pragma once
+
+#include <vector>
+
+#include "planning_io/types/point_cloud.h"
+#include "planning_io/types/skin_lut.h"
+
+namespace planlight {
+
+struct InitialMatchSettings {
+    double model_spacing_mm = 10;     ///< of the skin samples that the contact points are tried on
+    int scoring_points = 96;          ///< scan points in the failure function
+    double truncation_mm = 10;        ///< a point farther from the skin than this counts as this far
+    int candidates = 40;              ///< distinct poses that are refined
+    int min_bases = 4, max_bases = 20;
+    unsigned seed = 1;
+};
+
+/// One distinct pose and its cost.
+struct MatchCandidate {
+    RigidTransform ct_from_rig = RigidTransform::Identity();
+    double cost_mm = 0;     ///< mean truncated distance of the scoring points after refinement
+    int agreeing_bases = 0; ///< independent contact triplets that led to it
+};
+
+/// The best distinct poses, best first. Empty when the cloud is too small to hold three contact points.
+struct InitialMatch {
+    std::vector<MatchCandidate> candidates;
+    int bases_tried = 0;
+    std::size_t poses_scored = 0;
+    double runner_up_ratio = 0;  ///< cost of the second / cost of the first distinct pose; 0 when there is no second
+};
+
+/// The paper's search (Hoppe 2001, 2.2): three scan points are kept in contact with the skin; the table sums the
+/// distances of the rest; the global minimum over all such poses wins. From any pose, without a start value.
+/// The cloud needs normals (towards the devices): a contact must face the same way on both surfaces.
+InitialMatch find_initial_match(const PointCloud& cloud, const SkinLut& lut, const InitialMatchSettings& settings = {});
+
+}  // namespace planlight

@@ -1,0 +1,26 @@
+#pragma once
+
+#include "planning_io/types/registration_result.h"
+#include "registration/matching/initial_match.h"
+#include "registration/matching/refine_icp.h"
+
+namespace planlight {
+
+struct RegistrationSettings {
+    InitialMatchSettings initial;
+    IcpSettings icp;
+    int min_points = 1000;
+    double min_extent_mm = 60;          ///< second largest extent of the cloud
+    double min_runner_up_ratio = 1.15;  ///< below: ask; below 1.05: no
+    double inlier_distance_mm = 1.5;
+    double min_inlier_fraction = 0.7;   ///< below: ask; below 0.5: no
+    double max_residual_rms_mm = 1.0;   ///< of the inliers; above: no
+    int min_agreeing_bases = 2;
+    double max_weakest_sigma_mm = 0.5;  ///< above: ask
+};
+
+/// Finds the patient without help: initial match, ICP, verdict with evidence. `patient` equals `rig` at the scan instant,
+/// so the result is `patient_from_ct` = T_ini. Never throws for "not found": the verdict says so, with reasons in words.
+RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut, const RegistrationSettings& settings = {});
+
+}  // namespace planlight

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "planning_io/types/image.h"
+#include "registration/scan/stripe_patterns.h"
+
+namespace planlight {
+
+struct DecodeSettings {
+    double min_modulation = 4;     ///< grey values: fringe amplitude below which a pixel is dark
+    int saturated_at = 254;        ///< grey value
+    double max_phase_sigma_px = 0.6;
+};
+
+/// Per camera pixel the projector pixel that lit it; NaN where it is not known. An uncertain pixel is dropped, never guessed.
+struct DecodedView {
+    int width = 0, height = 0;       ///< of the camera
+    std::vector<float> column, row;  ///< projector pixels (sub-pixel); `row` empty when only columns were coded
+    std::vector<float> sigma_px;     ///< one standard deviation of `column`, projector pixels
+    std::size_t decoded = 0, dark = 0, saturated = 0, uncertain = 0;  ///< pixels, by what became of them
+};
+
+/// Decodes one camera's frames, in the order of `stripe_sequence(settings)`. Throws std::invalid_argument when their
+/// number or sizes do not fit.
+DecodedView decode_stripes(std::span<const GrayImage> frames, const StripeSettings& stripes,
+                           const DecodeSettings& settings = {});
+
+}  // namespace planlight

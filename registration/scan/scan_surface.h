@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "planning_io/types/rig_calibration.h"
+#include "registration/devices/projector.h"
+#include "registration/devices/stereo_camera.h"
+#include "registration/scan/decode_stripes.h"
+#include "registration/scan/remove_outliers.h"
+#include "registration/scan/triangulate.h"
+
+namespace planlight {
+
+/// The frames of one scan: one per pattern, in the order of the sequence.
+struct ScanCapture {
+    StripeSettings stripes;
+    std::vector<GrayImage> left, right;
+    Instant began{}, ended{};  ///< mid-exposure of the first and last frame
+};
+
+/// Shows every pattern and keeps the frame that saw it. The projector is dark afterwards, however it ends.
+/// `progress(done, of)` is called after every picture and may be empty. Throws DeviceError when a device fails.
+ScanCapture capture_scan(Projector& projector, StereoCamera& cameras, const Clock& clock, const StripeSettings& stripes,
+                         const std::function<void(int, int)>& progress = {});
+
+struct ScanSettings {
+    DecodeSettings decode;
+    TriangulationSettings triangulation;
+    OutlierSettings outliers;
+};
+
+/// A scan from pictures to clean cloud, with everything in between for the report (Fig. 2).
+struct ScanResult {
+    DecodedView left, right;
+    Triangulation raw;
+    OutlierReport clean;
+    double decode_s = 0, triangulate_s = 0, outliers_s = 0;
+};
+
+/// The cloud of a capture. An empty cloud is a value (nothing was lit); the counts say why.
+ScanResult scan_from_capture(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings = {});
+
+}  // namespace planlight

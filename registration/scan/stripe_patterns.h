@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "planning_io/types/image.h"
+
+namespace planlight {
+
+/// The coded light of a scan: Gray code for the order, phase shift for the sub-pixel (research: Gray code unwrapping has
+/// better noise immunity than two frequencies; 8 steps reject the harmonics of an uncalibrated gamma).
+struct StripeSettings {
+    int width = 0, height = 0;     ///< of the projector, pixels
+    int phase_steps = 8;           ///< shifts per direction, >= 3
+    double phase_period_px = 16;   ///< projector pixels per fringe
+    bool rows = true;              ///< both directions; false: columns only
+    bool inverse = true;           ///< each Gray picture also inverted, so that a bit is decided against its opposite
+    int brightness = 255;          ///< of white
+};
+
+/// What a picture of the sequence is.
+struct StripePattern {
+    enum class Kind { white, black, gray_bit, gray_bit_inverse, phase } kind;
+    bool along_rows = false;  ///< true: codes the projector row (horizontal stripes); false: the column
+    int index = 0;            ///< bit (0 = coarsest) or phase step
+    std::string name;         ///< e.g. "column-gray-3", "row-phase-0"; also the file name in a capture folder
+};
+
+/// The sequence in the order it is projected: white, black, then per direction Gray bits (with inverses) and phases.
+std::vector<StripePattern> stripe_sequence(const StripeSettings& settings);
+
+/// One picture of the sequence as the projector shows it. Throws std::invalid_argument on settings that make no code.
+RgbImage draw_stripes(const StripeSettings& settings, const StripePattern& pattern);
+
+}  // namespace planlight

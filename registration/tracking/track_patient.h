@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "planning_io/types/rig_calibration.h"
+#include "planning_io/types/tracked_pose.h"
+#include "registration/devices/stereo_camera.h"
+#include "registration/tracking/find_markers.h"
+
+namespace planlight {
+
+struct TrackingSettings {
+    MarkerSettings markers;
+    MarkerDesign design;
+    int min_markers = 3;                 ///< seen by both cameras together; fewer give no pose
+    double max_residual_px = 0.5;        ///< rms above which there is no pose
+    double max_epipolar_px = 1.5;        ///< when the markers of both pictures are paired
+    double search_px = 40;               ///< around the predicted place
+};
+
+/// A marker in the patient frame, as measured at the scan instant.
+struct PatientMarker {
+    Eigen::Vector3d centre_in_patient;
+    double sigma_mm = 0;
+};
+
+/// Follows the pasted markers in both cameras: T_cur(t) (Hoppe 2001, 2.2).
+class PatientTracker {
+public:
+    PatientTracker(const RigCalibration& rig, const TrackingSettings& settings = {});
+
+    /// Takes the markers of this frame as the reference: `patient` equals `rig` here. Gives the markers found in both
+    /// pictures; fewer than `min_markers` leave the tracker without a reference (and `update` without a pose).
+    const std::vector<PatientMarker>& set_reference(const StereoFrame& frame);
+
+    /// As above, from markers of an earlier session or a file.
+    void set_reference(std::vector<PatientMarker> markers);
+
+    /// The pose in this frame, by minimising the reprojection in both pictures at once. A lost marker is survived; too few
+    /// give no pose, and the next frame is searched whole.
+    TrackedPose update(const StereoFrame& frame);
+
+    const std::vector<PatientMarker>& markers() const { return markers_; }
+    /// What was found in the last frame, for the screen; index into `markers()` or -1 for a disc that is none of them.
+    struct Seen {
+        MarkerObservation left_or_right;
+        int marker = -1;
+    };
+    const std::vector<Seen>& seen_left() const { return seen_left_; }
+    const std::vector<Seen>& seen_right() const { return seen_right_; }
+
+private:
+    RigCalibration rig_;
+    TrackingSettings settings_;
+    std::vector<PatientMarker> markers_;
+    std::vector<Seen> seen_left_, seen_right_;
+    std::optional<TrackedPose> last_, before_last_;
+};
+
+}  // namespace planlight
