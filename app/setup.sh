@@ -1,0 +1,32 @@
+# Sourced by app/demo and tests/run: installs the packages of app/packages.txt that are missing, configures, builds.
+# `planlight_build TARGET...` builds into $PLANLIGHT_BUILD (default: build/ in the checkout).
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+PLANLIGHT_BUILD=${PLANLIGHT_BUILD:-$root/build}
+
+planlight_packages() {
+    local wanted missing
+    wanted=$(sed 's/#.*//' "$root/app/packages.txt" | xargs)
+    missing=$(for package in $wanted; do
+        [ "$(dpkg-query -W -f '${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || echo "$package"
+    done | xargs)
+    [ -n "$missing" ] || return 0
+    local as_root=
+    if [ "$(id -u)" -ne 0 ]; then
+        command -v sudo >/dev/null || {
+            echo "Missing packages: $missing. Install them as root, or install sudo." >&2
+            return 1
+        }
+        as_root=sudo
+    fi
+    echo "Installing: $missing" >&2
+    $as_root apt-get update -qq
+    $as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends $missing >&2
+}
+
+planlight_build() {
+    planlight_packages || return 1
+    [ -f "$PLANLIGHT_BUILD/build.ninja" ] ||
+        cmake -S "$root" -B "$PLANLIGHT_BUILD" -G Ninja -DCMAKE_BUILD_TYPE=Release >&2 || return 1
+    ninja -C "$PLANLIGHT_BUILD" "$@" >&2
+}
