@@ -1,0 +1,234 @@
+#include "app/evaluation/measure_overlay.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/QR>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+namespace planlight {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The true skin points that one stroke lights, with the brightness of their pixels as weight.
+struct Light {
+    std::vector<Vector3d> points_in_ct, normals_in_ct;
+    std::vector<double> weights;
+
+    bool empty() const { return points_in_ct.empty(); }
+    Vector3d mean() const {
+        Vector3d sum = Vector3d::Zero();
+        double weight = 0;
+        for (std::size_t i = 0; i < weights.size(); ++i) {
+            sum += weights[i] * points_in_ct[i];
+            weight += weights[i];
+        }
+        return sum / weight;
+    }
+};
+
+Light light_of(const Stroke& stroke, const simulation::SimulatedRig& rig, const DrawingRenderer& renderer,
+               RenderSettings render, const DrawnPicture& picture) {
+    PlanDrawing alone;
+    alone.strokes = {stroke};
+    alone.strokes.front().colour = {255, 255, 255};
+    render.only_item = -1;
+    render.brightness = 1;
+    const RgbImage image = renderer.render(alone, picture.rig_from_ct, picture.rig_from_patient, render);
+    Light light;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            const auto value = image.at(x, y)[1];
+            if (value < 8) continue;
+            const auto lit = rig.true_light({x, y}, picture.lit_at);
+            if (!lit) continue;
+            light.points_in_ct.push_back(lit->p_in_ct);
+            light.normals_in_ct.push_back(lit->normal_in_ct);
+            light.weights.push_back(value / 255.0);
+        }
+    return light;
+}
+
+/// A line as the plan wants it, on the true skin: dense points with arc length.
+struct WantedLine {
+    std::vector<Vector3d> points_in_ct;
+    std::vector<double> arc_mm;
+
+    WantedLine(const std::vector<Vector3d>& planned, bool closed, const simulation::SimulatedRig& rig) {
+        const std::size_t segments = closed ? planned.size() : planned.size() - 1;
+        for (std::size_t i = 0; i < segments; ++i) {
+            const Vector3d a = rig.nearest_true_skin(planned[i]), b = rig.nearest_true_skin(planned[(i + 1) % planned.size()]);
+            const int steps = std::max(1, static_cast<int>(std::ceil((b - a).norm() / 0.5)));
+            for (int s = 0; s < steps; ++s) add(rig.nearest_true_skin(a + (b - a) * s / steps));
+        }
+        add(rig.nearest_true_skin(closed ? planned.front() : planned.back()));
+    }
+    void add(const Vector3d& p) {
+        arc_mm.push_back(points_in_ct.empty() ? 0 : arc_mm.back() + (p - points_in_ct.back()).norm());
+        points_in_ct.push_back(p);
+    }
+    struct Foot {
+        double arc_mm, sideways_mm;
+    };
+    /// Where along the line a lit point lies, and how far beside it (left of the line positive).
+    Foot foot_of(const Vector3d& p, const Vector3d& normal) const {
+        double best = std::numeric_limits<double>::max();
+        Foot foot{0, 0};
+        for (std::size_t i = 0; i + 1 < points_in_ct.size(); ++i) {
+            const Vector3d along = points_in_ct[i + 1] - points_in_ct[i];
+            const double length = along.norm();
+            if (length < 1e-9) continue;
+            const double t = std::clamp((p - points_in_ct[i]).dot(along) / (length * length), 0.0, 1.0);
+            const Vector3d off = p - (points_in_ct[i] + t * along);
+            if (off.squaredNorm() >= best) continue;
+            best = off.squaredNorm();
+            foot = {arc_mm[i] + t * length, off.dot(normal.cross(along / length))};
+        }
+        return foot;
+    }
+};
+
+void measure_line(const Light& light, const WantedLine& wanted, OverlayErrors& errors) {
+    constexpr double kBin_mm = 2, kFullWeight = 2;
+    std::map<int, std::pair<double, double>> bins;  // sum of weighted sideways, sum of weights
+    for (std::size_t i = 0; i < light.weights.size(); ++i) {
+        const auto foot = wanted.foot_of(light.points_in_ct[i], light.normals_in_ct[i]);
+        auto& bin = bins[static_cast<int>(foot.arc_mm / kBin_mm)];
+        bin.first += light.weights[i] * foot.sideways_mm;
+        bin.second += light.weights[i];
+    }
+    for (const auto& [place, bin] : bins)
+        if (bin.second >= kFullWeight) errors.position_mm.push_back(std::abs(bin.first / bin.second));
+}
+
+/// Centre and radius of a lit ring, by a least-squares circle in its mean tangent plane (Kasa 1976).
+struct Ring {
+    Vector3d centre_in_ct;
+    double radius_mm;
+};
+std::optional<Ring> fit_ring(const Light& light) {
+    if (light.points_in_ct.size() < 12) return std::nullopt;
+    const Vector3d mean = light.mean();
+    Vector3d normal = Vector3d::Zero();
+    for (const auto& n : light.normals_in_ct) normal += n;
+    normal.normalize();
+    const Vector3d e1 = normal.unitOrthogonal(), e2 = normal.cross(e1);
+    const auto n = static_cast<Eigen::Index>(light.points_in_ct.size());
+    Eigen::MatrixX3d A(n, 3);
+    Eigen::VectorXd b(n);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const Vector3d q = light.points_in_ct[k] - mean;
+        const double x = q.dot(e1), y = q.dot(e2), w = std::sqrt(light.weights[k]);
+        A.row(i) << w * x, w * y, w;
+        b[i] = w * (x * x + y * y);
+    }
+    const Vector3d s = A.colPivHouseholderQr().solve(b);
+    const double cx = s.x() / 2, cy = s.y() / 2;
+    return Ring{mean + cx * e1 + cy * e2, std::sqrt(std::max(0.0, s.z() + cx * cx + cy * cy))};
+}
+
+void measure_ring(const Light& light, const Vector3d& planned, double diameter_mm, bool shapes,
+                  const simulation::SimulatedRig& rig, OverlayErrors& errors) {
+    const auto ring = fit_ring(light);
+    if (!ring) return;
+    Vector3d normal = Vector3d::Zero();
+    for (const auto& n : light.normals_in_ct) normal += n;
+    normal.normalize();
+    const Vector3d off = ring->centre_in_ct - rig.nearest_true_skin(planned);
+    errors.position_mm.push_back((off - off.dot(normal) * normal).norm());
+    if (shapes && diameter_mm > 0) errors.diameter_percent.push_back(std::abs(200 * ring->radius_mm / diameter_mm - 100));
+}
+
+/// The direction of a lit straight stroke: the longest principal axis.
+Vector3d direction_of(const Light& light) {
+    const Vector3d mean = light.mean();
+    Eigen::Matrix3d scatter = Eigen::Matrix3d::Zero();
+    for (std::size_t i = 0; i < light.weights.size(); ++i) {
+        const Vector3d q = light.points_in_ct[i] - mean;
+        scatter += light.weights[i] * q * q.transpose();
+    }
+    return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(2);
+}
+
+void measure_right_angles(const std::vector<Vector3d>& arms, OverlayErrors& errors) {
+    for (std::size_t i = 0; i < arms.size(); ++i)
+        for (std::size_t j = i + 1; j < arms.size(); ++j) {
+            const double angle_deg = std::acos(std::min(1.0, std::abs(arms[i].dot(arms[j])))) * 180 / std::numbers::pi;
+            if (angle_deg > 45) errors.angle_deg.push_back(90 - angle_deg);
+        }
+}
+
+void measure_ticks(const std::vector<Light>& ticks, const WantedLine& wanted, double every_mm, OverlayErrors& errors) {
+    std::vector<double> arcs;
+    for (const auto& tick : ticks) arcs.push_back(wanted.foot_of(tick.mean(), tick.normals_in_ct.front()).arc_mm);
+    std::sort(arcs.begin(), arcs.end());
+    for (std::size_t i = 0; i + 1 < arcs.size(); ++i) {
+        const double gap = arcs[i + 1] - arcs[i];
+        if (gap < 1.5 * every_mm && gap > 0.5 * every_mm) errors.tick_mm.push_back(std::abs(gap - every_mm));
+    }
+}
+
+template <class Items>
+auto named(const Items& items, const std::string& name) {
+    return std::find_if(items.begin(), items.end(), [&](const auto& item) { return item.name == name; });
+}
+
+}  // namespace
+
+void OverlayErrors::append(const OverlayErrors& more) {
+    position_mm.insert(position_mm.end(), more.position_mm.begin(), more.position_mm.end());
+    diameter_percent.insert(diameter_percent.end(), more.diameter_percent.begin(), more.diameter_percent.end());
+    tick_mm.insert(tick_mm.end(), more.tick_mm.begin(), more.tick_mm.end());
+    angle_deg.insert(angle_deg.end(), more.angle_deg.begin(), more.angle_deg.end());
+    unseen_strokes += more.unseen_strokes;
+}
+
+OverlayErrors measure_overlay(const simulation::SimulatedRig& rig, const Plan& plan, const PlanDrawing& drawing,
+                              const DrawingRenderer& renderer, const RenderSettings& render, const DrawnPicture& picture,
+                              bool shapes) {
+    constexpr double kTickEvery_mm = 10;
+    OverlayErrors errors;
+    for (std::size_t index = 0; index < drawing.items.size(); ++index) {
+        const DrawnItem& item = drawing.items[index];
+        std::vector<Light> ticks;
+        std::vector<Vector3d> arms;
+        std::optional<WantedLine> line;
+        if (const auto osteotomy = named(plan.osteotomy_lines, item.name);
+            item.kind == StrokeKind::osteotomy_line && osteotomy != plan.osteotomy_lines.end())
+            line.emplace(osteotomy->points_in_ct, osteotomy->closed, rig);
+        for (const Stroke& stroke : drawing.strokes) {
+            const bool wanted = stroke.item == static_cast<int>(index) && stroke.kind != StrokeKind::label &&
+                                (shapes || (stroke.kind != StrokeKind::tick));
+            if (!wanted) continue;
+            const Light light = light_of(stroke, rig, renderer, render, picture);
+            if (light.empty()) {
+                ++errors.unseen_strokes;
+                continue;
+            }
+            if (stroke.kind == StrokeKind::tick) {
+                ticks.push_back(light);
+            } else if (stroke.kind == StrokeKind::osteotomy_line && line) {
+                measure_line(light, *line, errors);
+            } else if (stroke.kind == StrokeKind::borehole) {
+                const auto hole = named(plan.boreholes, item.name);
+                if (hole == plan.boreholes.end()) continue;
+                if (stroke.closed) measure_ring(light, hole->position_in_ct, hole->diameter_mm, shapes, rig, errors);
+                else if (shapes) arms.push_back(direction_of(light));
+            } else if (stroke.kind == StrokeKind::trajectory && stroke.closed) {
+                const auto trajectory = named(plan.trajectories, item.name);
+                if (trajectory != plan.trajectories.end())
+                    measure_ring(light, trajectory->entry_in_ct, 0, shapes, rig, errors);
+            }
+        }
+        if (line) measure_ticks(ticks, *line, kTickEvery_mm, errors);
+        measure_right_angles(arms, errors);
+    }
+    return errors;
+}
+
+}  // namespace planlight

@@ -1,0 +1,61 @@
+#include "app/prepare_case.h"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include <chrono>
+#include <ctime>
+
+#include "planning_io/mesh_file.h"
+#include "planning_io/read_volume.h"
+#include "projection/draw_plan.h"
+
+namespace planlight {
+namespace {
+
+/// Runs one step, with its name in the progress, and gives its time.
+double timed(const std::string& name, const std::function<void(const std::string&, double)>& progress,
+             const std::function<void(const std::function<void(double)>&)>& step) {
+    const auto began = std::chrono::steady_clock::now();
+    step([&](double share) {
+        if (progress) progress(name, share);
+    });
+    if (progress) progress(name, 1);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+}
+
+}  // namespace
+
+std::string iso_date_now() {
+    return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
+}
+
+Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSettings& skin, const LutSettings& lut,
+                         const std::string& created, const std::function<void(const std::string&, double)>& progress) {
+    Preparation done;
+    Case& the_case = done.prepared;
+    SkinMask mask;
+    done.segment_s = timed("skin", progress, [&](const auto& share) { mask = segment_skin(volume, skin, share); });
+    done.triangulate_s =
+        timed("surface", progress, [&](const auto& share) { the_case.skin = triangulate_skin(volume, mask, skin, share); });
+    done.lut_s = timed("table", progress, [&](const auto& share) { the_case.lut = build_skin_lut(the_case.skin, lut, share); });
+
+    done.threshold = mask.threshold;
+    done.body_ml = mask.volume_ml;
+    done.removed_ml = mask.removed_ml;
+    done.pieces_removed = mask.pieces_removed;
+    the_case.volume_hash = hash_of(volume);
+    the_case.lut.volume_hash = the_case.volume_hash;
+    the_case.lut.mesh_hash = hash_of(the_case.skin);
+    the_case.code = the_case.volume_hash.substr(0, 8);
+    the_case.created = created;
+    the_case.source = volume.source;
+    the_case.skin_threshold = mask.threshold;
+    the_case.plan = plan;
+    the_case.warnings = mask.warnings;
+    const auto of_plan = check_plan(plan, SkinSurface(the_case.skin));
+    the_case.warnings.insert(the_case.warnings.end(), of_plan.begin(), of_plan.end());
+    return done;
+}
+
+}  // namespace planlight

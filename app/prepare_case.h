@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+
+#include "planning_io/case_folder.h"
+#include "planning_io/types/volume.h"
+#include "segmentation/build_skin_lut.h"
+#include "segmentation/segment_skin.h"
+
+namespace planlight {
+
+/// What the preparation did and how long each step took, for the report.
+struct Preparation {
+    Case prepared;
+    double threshold = 0, body_ml = 0, removed_ml = 0;
+    int pieces_removed = 0;
+    double segment_s = 0, triangulate_s = 0, lut_s = 0;
+};
+
+/// PREPARE: volume -> outer skin -> mesh -> LUT, plan checked against the skin (its warnings go into the case).
+/// `progress(step, share)` names the step and how far it is, 0..1; may be empty. `created` is an ISO 8601 date.
+Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSettings& skin, const LutSettings& lut,
+                         const std::string& created, const std::function<void(const std::string&, double)>& progress = {});
+
+/// Now, as ISO 8601 in UTC.
+std::string iso_date_now();
+
+}  // namespace planlight

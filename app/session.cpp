@@ -1,0 +1,117 @@
+#include "app/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+double elapsed_s(std::chrono::steady_clock::time_point since) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
+}
+
+}  // namespace
+
+CaseDrawing::CaseDrawing(const Case& the_case, const DrawingSettings& settings)
+    : skin(the_case.skin), drawing(draw_plan(the_case.plan, skin, settings)) {}
+
+Session::Session(const Case& the_case, const CaseDrawing& drawing, const RigCalibration& rig, Projector& projector,
+                 StereoCamera& cameras, const Clock& clock, SessionSettings settings)
+    : case_(the_case),
+      drawing_(drawing),
+      rig_(rig),
+      projector_(projector),
+      cameras_(cameras),
+      clock_(clock),
+      settings_(std::move(settings)),
+      tracker_(rig_, settings_.tracking),
+      renderer_(drawing.skin, rig_.projector) {
+    projector_.go_dark();
+}
+
+Session::~Session() { go_dark(); }
+
+void Session::go_dark() noexcept {
+    overlay_.reset();
+    projector_.go_dark();
+}
+
+const ScanResult& Session::scan(const std::function<void(int, int)>& progress) {
+    go_dark();
+    registration_.reset();
+    scanned_.reset();
+    StripeSettings stripes;
+    stripes.width = projector_.width();
+    stripes.height = projector_.height();
+    capture_ = capture_scan(projector_, cameras_, clock_, stripes, progress);
+    take_reference(*capture_);
+    check_still_there();
+    scanned_ = scan_from_capture(*capture_, rig_, settings_.scan);
+    return *scanned_;
+}
+
+/// The markers of the white picture, the first of the scan: `patient` equals `rig` there.
+void Session::take_reference(const ScanCapture& capture) {
+    const StereoFrame white{capture.left.front(), capture.right.front(), capture.began, Instant{}, 0};
+    const auto found = tracker_.set_reference(white).size();
+    if (static_cast<int>(found) < settings_.min_reference_markers)
+        throw CheckFailedError(
+            fmt::format("only {} markers were found by both cameras; {} are needed", found, settings_.min_reference_markers),
+            "Paste markers where both cameras see them, or turn the light up, and scan again.");
+}
+
+/// The paper's patient must not move during the scan; ours is asked once more under white light after the last picture.
+void Session::check_still_there() {
+    const DarkOnExit dark(projector_);
+    const RgbImage white(projector_.width(), projector_.height(), {255, 255, 255});
+    const Instant lit_from = projector_.show(white, clock_.now() + settings_.patience);
+    const TrackedPose pose = tracker_.update(cameras_.grab(lit_from, settings_.patience));
+    if (!pose.rig_from_patient)
+        throw CheckFailedError("the markers were lost during the scan: " + pose.reason, "Free the markers and scan again.");
+    motion_in_scan_mm_ = 0;
+    for (const auto& marker : tracker_.markers()) {
+        const Eigen::Vector3d& p_in_patient = marker.centre_in_patient;
+        motion_in_scan_mm_ = std::max(motion_in_scan_mm_, (*pose.rig_from_patient * p_in_patient - p_in_patient).norm());
+    }
+    if (motion_in_scan_mm_ > settings_.max_motion_in_scan_mm)
+        throw CheckFailedError(fmt::format("the patient moved {:.1f} mm during the scan", motion_in_scan_mm_), "Scan again.");
+}
+
+const RegistrationResult& Session::find_patient() {
+    if (!scanned_) throw CheckFailedError("there is no scan to find the patient in", "Scan first.");
+    registration_ = register_patient(scanned_->clean.kept, case_.lut, settings_.registration);
+    start_overlay();
+    return *registration_;
+}
+
+void Session::confirm() {
+    settings_.overlay.operator_confirmed = true;
+    if (registration_) start_overlay();
+}
+
+void Session::start_overlay() {
+    auto& keep_dark = settings_.overlay.render.keep_dark_in_patient;
+    keep_dark.clear();
+    for (const auto& marker : tracker_.markers()) keep_dark.push_back(marker.centre_in_patient);
+    overlay_ = std::make_unique<OverlayLoop>(projector_, clock_, renderer_, drawing_.drawing, *registration_, settings_.overlay);
+}
+
+Session::Update Session::update() {
+    if (!registration_) throw CheckFailedError("the patient has not been found", "Scan and register first.");
+    if (!overlay_) start_overlay();
+    Update update;
+    update.frame = cameras_.grab(clock_.now(), settings_.patience);
+    const auto began = std::chrono::steady_clock::now();
+    update.pose = tracker_.update(update.frame);
+    update.times.track_s = elapsed_s(began);
+    if (settings_.while_computing) settings_.while_computing();
+    const auto drawing_began = std::chrono::steady_clock::now();
+    update.overlay = overlay_->step(update.pose);
+    update.times.draw_s = elapsed_s(drawing_began);
+    return update;
+}
+
+}  // namespace planlight

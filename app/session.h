@@ -1,0 +1,104 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning_io/case_folder.h"
+#include "planning_io/types/registration_result.h"
+#include "planning_io/types/rig_calibration.h"
+#include "projection/overlay_loop.h"
+#include "registration/matching/register_patient.h"
+#include "registration/scan/scan_surface.h"
+#include "registration/tracking/track_patient.h"
+
+namespace planlight {
+
+struct SessionSettings {
+    ScanSettings scan;
+    RegistrationSettings registration;
+    TrackingSettings tracking;
+    OverlaySettings overlay;
+    double max_motion_in_scan_mm = 0.3;  ///< of any marker between the first and last picture of a scan; above: scan again
+    int min_reference_markers = 5;       ///< found in both pictures at the scan
+    std::chrono::milliseconds patience{1000};
+    /// Called between seeing and showing, so that a simulated clock can be told how long the computing took. May be empty.
+    std::function<void()> while_computing;
+};
+
+/// The drawing machinery of one case: made once, used by every picture.
+struct CaseDrawing {
+    SkinSurface skin;
+    PlanDrawing drawing;
+    explicit CaseDrawing(const Case& the_case, const DrawingSettings& settings = {});
+};
+
+/// The times of one tracked update: the product's own work.
+struct UpdateTimes {
+    double track_s = 0, draw_s = 0;
+    double total_s() const { return track_s + draw_s; }
+};
+
+/// One session with one patient: scan, find, follow, draw (Hoppe 2001, 2.2). Devices and clock are real, recorded or
+/// simulated; the projector is dark whenever nothing else is asked of it, and on every way out.
+class Session {
+public:
+    Session(const Case& the_case, const CaseDrawing& drawing, const RigCalibration& rig, Projector& projector,
+            StereoCamera& cameras, const Clock& clock, SessionSettings settings = {});
+    ~Session();
+
+    /// SCAN: shows the stripes, makes the cloud, takes the markers of the first picture as reference.
+    /// Throws CheckFailedError when the patient moved during the scan or too few markers were found.
+    const ScanResult& scan(const std::function<void(int, int)>& progress = {});
+
+    /// MATCH: T_ini from the last scan. Throws CheckFailedError without one.
+    const RegistrationResult& find_patient();
+
+    /// The operator's word that the overlay was looked at on landmarks (needed for the verdict `ask`).
+    void confirm();
+
+    /// TRACK and DRAW once: a frame, its pose T_cur, the picture for T_global = T_cur T_ini or darkness.
+    /// Throws CheckFailedError when the patient was not found yet.
+    struct Update {
+        StereoFrame frame;
+        TrackedPose pose;
+        OverlayStep overlay;
+        UpdateTimes times;
+    };
+    Update update();
+
+    /// Dark now, and no more light until the next `update`.
+    void go_dark() noexcept;
+
+    const ScanCapture* capture() const { return capture_ ? &*capture_ : nullptr; }
+    const ScanResult* scanned() const { return scanned_ ? &*scanned_ : nullptr; }
+    const RegistrationResult* registration() const { return registration_ ? &*registration_ : nullptr; }
+    const PatientTracker& tracker() const { return tracker_; }
+    const DrawingRenderer& renderer() const { return renderer_; }
+    const RenderSettings& render_settings() const { return settings_.overlay.render; }
+    double motion_in_scan_mm() const { return motion_in_scan_mm_; }
+
+private:
+    void take_reference(const ScanCapture& capture);
+    void check_still_there();
+    void start_overlay();
+
+    const Case& case_;
+    const CaseDrawing& drawing_;
+    RigCalibration rig_;
+    Projector& projector_;
+    StereoCamera& cameras_;
+    const Clock& clock_;
+    SessionSettings settings_;
+    PatientTracker tracker_;
+    DrawingRenderer renderer_;
+    std::optional<ScanCapture> capture_;
+    std::optional<ScanResult> scanned_;
+    std::optional<RegistrationResult> registration_;
+    std::unique_ptr<OverlayLoop> overlay_;
+    double motion_in_scan_mm_ = 0;
+};
+
+}  // namespace planlight
