@@ -1,1 +1,191 @@
-int main() { return 0; }
+#include <CLI/CLI.hpp>
+
+#include "app/commands/commands.h"
+#include "app/console.h"
+#include "planning_io/types/error.h"
+
+namespace {
+
+using namespace planlight;
+
+constexpr const char* kExitCodes =
+    "Exit codes: 0 done, 2 usage, 3 input refused, 4 file damaged or of another version, 5 device, 6 a check failed, 7 disk,\n"
+    "70 a fault of ours.";
+
+CLI::App* command(CLI::App& app, const std::string& name, const std::string& what, const std::string& example) {
+    CLI::App* sub = app.add_subcommand(name, what);
+    sub->footer("Example:\n  planlight " + example);
+    return sub;
+}
+
+void json_flag(CLI::App* sub, bool& json) { sub->add_flag("--json", json, "Print the result as JSON on standard output"); }
+
+CLI::Option* preset_option(CLI::App* sub, std::string& preset) {
+    return sub->add_option("--preset", preset, "Simulated room: modern (1920x1080, two 1920x1200) or paper (800x600, two 744x576)")
+        ->check(CLI::IsMember({"modern", "paper"}))
+        ->capture_default_str();
+}
+
+void add_prepare(CLI::App& app, PrepareOptions& o) {
+    auto* sub = command(app, "prepare", "CT or MR volume and plan -> case folder (skin, LUT, plan, checksums)",
+                        "prepare Cranium.inv3 --plan frontal_defect.mrk.json --out case");
+    sub->add_option("volume", o.volume, "DICOM folder or file, or InVesalius project (.inv3)")->required();
+    sub->add_option("--plan", o.plan, "3D Slicer markups file (.mrk.json), or a folder of them")->required();
+    sub->add_option("--out", o.out, "Case folder to write")->required();
+    sub->add_option("--series", o.series_uid, "UID of the DICOM series, where the folder holds several");
+    sub->add_option("--threshold", o.threshold, "Skin threshold, HU (default: found from the histogram)");
+    sub->add_option("--voxel-mm", o.voxel_mm, "Edge of the LUT's cubic voxels")->capture_default_str()->check(CLI::Range(0.25, 10.0));
+    sub->add_flag("--replace", o.replace, "Replace an existing case folder");
+    json_flag(sub, o.json);
+}
+
+void add_patterns(CLI::App& app, PatternsOptions& o) {
+    auto* sub = command(app, "patterns", "Write the coded-light sequence as pictures to project",
+                        "patterns --width 1920 --height 1080 --out patterns");
+    sub->add_option("--width", o.width, "Of the projector, pixels")->capture_default_str()->check(CLI::Range(64, 8192));
+    sub->add_option("--height", o.height, "Of the projector, pixels")->capture_default_str()->check(CLI::Range(64, 8192));
+    sub->add_option("--phase-steps", o.phase_steps, "Shifts a direction")->capture_default_str()->check(CLI::Range(3, 32));
+    sub->add_option("--phase-period-px", o.phase_period_px, "Projector pixels a fringe")->capture_default_str()->check(CLI::Range(4.0, 256.0));
+    sub->add_option("--out", o.out, "Folder to write")->required();
+    json_flag(sub, o.json);
+}
+
+void add_simulate(CLI::App& app, SimulateOptions& o) {
+    auto* sub = command(app, "simulate", "Captures of a simulated room, with ground truth in a file of its own",
+                        "simulate Cranium.inv3 --plan frontal_defect.mrk.json --preset paper --seed 3 --out room");
+    sub->add_option("volume", o.volume, "The patient: DICOM folder or file, or InVesalius project")->required();
+    sub->add_option("--plan", o.plan, "Plan, so that markers keep clear of it");
+    preset_option(sub, o.preset);
+    sub->add_option("--seed", o.seed, "Of everything random")->capture_default_str();
+    sub->add_option("--frames", o.frames, "Tracking frames after the scan")->capture_default_str()->check(CLI::Range(0, 10000));
+    sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head in the tracking frames")->capture_default_str()->check(CLI::Range(0.0, 500.0));
+    sub->add_option("--out", o.out, "Folder to write: rig.json, capture/, frames/, truth.json")->required();
+    json_flag(sub, o.json);
+}
+
+void add_scan(CLI::App& app, ScanOptions& o) {
+    auto* sub = command(app, "scan", "Captured stripe pictures -> cloud of skin points in rig",
+                        "scan room/capture --rig room/rig.json --out cloud.ply");
+    sub->add_option("capture", o.capture, "Capture folder")->required();
+    sub->add_option("--rig", o.rig, "rig.json")->required();
+    sub->add_option("--out", o.out, "Clean cloud (.ply)")->required();
+    sub->add_option("--raw", o.raw_out, "Also the cloud before the outliers were removed (.ply)");
+    json_flag(sub, o.json);
+}
+
+void add_register(CLI::App& app, RegisterOptions& o) {
+    auto* sub = command(app, "register", "Cloud and case -> where the patient lies (T_ini), or a refusal (exit 6)",
+                        "register case --cloud cloud.ply --out registration.json");
+    sub->add_option("case", o.case_folder, "Case folder")->required();
+    sub->add_option("--cloud", o.cloud, "Clean cloud (.ply)")->required();
+    sub->add_option("--out", o.out, "registration.json to write")->required();
+    sub->add_option("--icp", o.icp, "Fine match: signed-distance, or closest-point as in the paper")
+        ->check(CLI::IsMember({"signed-distance", "closest-point"}))->capture_default_str();
+    sub->add_option("--seed", o.seed, "Of the search")->capture_default_str();
+    json_flag(sub, o.json);
+}
+
+void add_track(CLI::App& app, TrackOptions& o) {
+    auto* sub = command(app, "track", "Recorded frames -> poses of the patient (T_cur)",
+                        "track room/frames --rig room/rig.json --capture room/capture --out poses.json");
+    sub->add_option("frames", o.frames, "Folder of recorded frames")->required();
+    sub->add_option("--rig", o.rig, "rig.json")->required();
+    sub->add_option("--capture", o.capture, "Capture folder of the scan: its white picture holds the reference markers (default: the first frame)");
+    sub->add_option("--out", o.out, "poses.json to write")->required();
+    json_flag(sub, o.json);
+}
+
+void add_project(CLI::App& app, ProjectOptions& o) {
+    auto* sub = command(app, "project", "Case, registration and pose -> the projector's picture",
+                        "project case --rig room/rig.json --registration registration.json --out light.png");
+    sub->add_option("case", o.case_folder, "Case folder")->required();
+    sub->add_option("--rig", o.rig, "rig.json")->required();
+    sub->add_option("--registration", o.registration, "registration.json")->required();
+    sub->add_option("--poses", o.poses, "poses.json (default: the patient has not moved since the scan)");
+    sub->add_option("--frame", o.frame, "Which pose (default: the last)");
+    sub->add_flag("--confirmed", o.confirmed, "The overlay was looked at on landmarks (for the verdict `ask`)");
+    sub->add_option("--out", o.out, "Picture to write (.png)")->required();
+    json_flag(sub, o.json);
+}
+
+void add_review(CLI::App& app, ReviewOptions& o) {
+    auto* sub = command(app, "review", "Look at a prepared case: skin and plan in the operator window", "review case");
+    sub->add_option("case", o.case_folder, "Case folder")->required();
+    sub->add_option("--picture", o.picture, "Write a picture (.png) instead of opening a window; needs no display");
+    json_flag(sub, o.json);
+}
+
+void add_session(CLI::App& app, SessionOptions& o) {
+    auto* sub = command(app, "session", "Live: operator window and projector window, on the simulated room, the head moving",
+                        "session case --volume Cranium.inv3 --projector HDMI-2");
+    sub->add_option("case", o.case_folder, "Case folder")->required();
+    sub->add_option("--volume", o.volume, "The simulated patient: the volume that the case was made from")->required();
+    preset_option(sub, o.preset);
+    sub->add_option("--projector", o.projector_monitor, "Monitor (name or number) that is the projector; without it the light is shown in the operator window only");
+    sub->add_option("--operator", o.operator_monitor, "Monitor of the operator window (default: the primary one)");
+    sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str();
+    sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")->capture_default_str()->check(CLI::Range(0.0, 500.0));
+    sub->add_flag("--autoplay", o.autoplay, "Scan, register and track by itself");
+    sub->add_option("--end-after-s", o.end_after_s, "Close after this many seconds of tracking");
+    sub->add_option("--screenshots", o.screenshots, "Folder for screenshots of every step");
+}
+
+void add_demo(CLI::App& app, DemoOptions& o) {
+    auto* sub = command(app, "demo", "The whole chain on the example patient, with a report of how true the light was",
+                        "demo --headless --seed 3 --out demo-3");
+    sub->add_option("--volume", o.volume, "Patient")->capture_default_str();
+    sub->add_option("--plan", o.plan, "Plan (default: the example plan)");
+    sub->add_option("--preset", o.preset, "modern, paper or both")->check(CLI::IsMember({"modern", "paper", "both"}))->capture_default_str();
+    sub->add_option("--seed", o.seed, "First seed of the simulated rooms")->capture_default_str();
+    sub->add_option("--seeds", o.seeds, "Rooms a preset")->capture_default_str()->check(CLI::Range(1, 10000));
+    sub->add_flag("--headless", o.headless, "No windows, even where there is a display");
+    sub->add_option("--out", o.out, "Folder of report.html and report.json")->capture_default_str();
+    json_flag(sub, o.json);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Planlight shows a surgical plan as light on the patient.\n", "planlight"};
+    app.footer(std::string("planlight COMMAND --help shows a command's options and an example.\n") + kExitCodes);
+    app.require_subcommand(1);
+    app.set_version_flag("--version", "planlight 0.1.0");
+    PrepareOptions prepare;
+    PatternsOptions patterns;
+    SimulateOptions simulate;
+    ScanOptions scan;
+    RegisterOptions registration;
+    TrackOptions track;
+    ProjectOptions project;
+    ReviewOptions review;
+    SessionOptions session;
+    DemoOptions demo;
+    add_demo(app, demo);
+    add_prepare(app, prepare);
+    add_patterns(app, patterns);
+    add_scan(app, scan);
+    add_register(app, registration);
+    add_track(app, track);
+    add_project(app, project);
+    add_session(app, session);
+    add_review(app, review);
+    add_simulate(app, simulate);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+    }
+    return run_and_explain([&] {
+        const std::string name = app.get_subcommands().front()->get_name();
+        if (name == "demo") return run_demo(demo);
+        if (name == "prepare") return run_prepare(prepare);
+        if (name == "patterns") return run_patterns(patterns);
+        if (name == "scan") return run_scan(scan);
+        if (name == "register") return run_register(registration);
+        if (name == "track") return run_track(track);
+        if (name == "project") return run_project(project);
+        if (name == "session") return run_session(session);
+        if (name == "review") return run_review(review);
+        return run_simulate(simulate);
+    });
+}

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+/// One struct of options and one function a command; each function gives the exit code of a run that was not refused.
+namespace planlight {
+
+using Path = std::filesystem::path;
+
+struct PrepareOptions {
+    Path volume, plan, out;
+    std::string series_uid;
+    double threshold = 0;  ///< HU; 0 = found from the histogram
+    double voxel_mm = 1;
+    bool replace = false, json = false;
+};
+int run_prepare(const PrepareOptions& options);
+
+struct PatternsOptions {
+    Path out;
+    int width = 1920, height = 1080, phase_steps = 8;
+    double phase_period_px = 16;
+    bool json = false;
+};
+int run_patterns(const PatternsOptions& options);
+
+struct SimulateOptions {
+    Path volume, plan, out;
+    std::string preset = "modern";
+    unsigned seed = 1;
+    int frames = 20;
+    double speed_mm_s = 20;
+    bool json = false;
+};
+int run_simulate(const SimulateOptions& options);
+
+struct ScanOptions {
+    Path capture, rig, out, raw_out;
+    bool json = false;
+};
+int run_scan(const ScanOptions& options);
+
+struct RegisterOptions {
+    Path case_folder, cloud, out;
+    std::string icp = "signed-distance";
+    unsigned seed = 1;
+    bool json = false;
+};
+int run_register(const RegisterOptions& options);
+
+struct TrackOptions {
+    Path frames, rig, capture, out;
+    bool json = false;
+};
+int run_track(const TrackOptions& options);
+
+struct ProjectOptions {
+    Path case_folder, rig, registration, poses, out;
+    int frame = -1;  ///< of the poses; -1: the last
+    bool confirmed = false, json = false;
+};
+int run_project(const ProjectOptions& options);
+
+struct ReviewOptions {
+    Path case_folder, picture;
+    bool json = false;
+};
+int run_review(const ReviewOptions& options);
+
+struct SessionOptions {
+    Path case_folder, volume;
+    std::string preset = "paper", projector_monitor, operator_monitor;
+    unsigned seed = 1;
+    double speed_mm_s = 20;
+    bool autoplay = false;
+    double end_after_s = 0;  ///< wall time; 0 = until the window is closed
+    Path screenshots;
+};
+int run_session(const SessionOptions& options);
+
+struct DemoOptions {
+    Path volume = "/usr/share/doc/invesalius-examples/examples/Cranium.inv3";
+    Path plan, out = "planlight-demo";
+    std::string preset = "both";
+    unsigned seed = 1;
+    int seeds = 1;
+    bool headless = false, json = false;
+};
+int run_demo(const DemoOptions& options);
+
+}  // namespace planlight

@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/commands.h"
+#include "planning_io/case_folder.h"
+#include "planning_io/mesh_file.h"
+#include "planning_io/recording_files.h"
+#include "planning_io/types/error.h"
+#include "registration/matching/register_patient.h"
+
+namespace planlight {
+namespace {
+
+const char* name_of(Verdict verdict) {
+    return verdict == Verdict::yes ? "yes" : verdict == Verdict::ask ? "ask" : "no";
+}
+
+}  // namespace
+
+int run_register(const RegisterOptions& options) {
+    const Case the_case = read_case(options.case_folder);
+    const PointCloud cloud = read_cloud(options.cloud);
+    RegistrationSettings settings;
+    settings.initial.seed = options.seed;
+    if (options.icp == "closest-point") settings.icp.mode = IcpSettings::Mode::closest_point;
+    const RegistrationResult result = register_patient(cloud, the_case.lut, settings);
+    write_registration(result, options.out);
+    if (options.json) {
+        const Eigen::Matrix4d m = result.patient_from_ct.matrix();
+        nlohmann::json matrix = nlohmann::json::array();
+        for (int r = 0; r < 4; ++r) matrix.push_back({m(r, 0), m(r, 1), m(r, 2), m(r, 3)});
+        const nlohmann::json out = {{"verdict", name_of(result.verdict)},
+                                    {"reasons", result.reasons},
+                                    {"patient_from_ct", matrix},
+                                    {"points", result.points},
+                                    {"residual_rms_mm", result.residual_rms_mm},
+                                    {"residual_median_mm", result.residual_median_mm},
+                                    {"inlier_fraction", result.inlier_fraction},
+                                    {"runner_up_ratio", result.runner_up_ratio},
+                                    {"agreeing_bases", result.agreeing_bases},
+                                    {"weakest_sigma_mm", result.weakest_sigma_mm},
+                                    {"seconds", {{"initial", result.initial_match_s}, {"fine", result.refine_s}}}};
+        std::cout << out.dump(2) << '\n';
+    } else {
+        fmt::print("{}: residual {:.2f} mm rms, {:.0f} % of {} points on the skin, runner-up {:.2f} times worse.\n",
+                   name_of(result.verdict), result.residual_rms_mm, 100 * result.inlier_fraction, result.points,
+                   result.runner_up_ratio);
+        for (const auto& reason : result.reasons) fmt::print("  {}\n", reason);
+    }
+    if (result.verdict == Verdict::no)
+        throw CheckFailedError("the patient was not found: " + fmt::format("{}", fmt::join(result.reasons, "; ")),
+                               "Scan again from a side that shows more of the head, and check that this is the patient of the case.");
+    return 0;
+}
+
+}  // namespace planlight

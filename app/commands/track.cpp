@@ -1,0 +1,57 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/capture_conversion.h"
+#include "app/commands/commands.h"
+#include "app/console.h"
+#include "planning_io/recording_files.h"
+#include "planning_io/rig_file.h"
+#include "planning_io/types/error.h"
+#include "registration/tracking/track_patient.h"
+
+namespace planlight {
+namespace {
+
+StereoFrame stereo_frame(const RecordedFrame& recorded) {
+    return {recorded.left, recorded.right, recorded.at, recorded.exposure, recorded.number};
+}
+
+StereoFrame reference_frame(const TrackOptions& options, const std::vector<RecordedFrame>& frames) {
+    if (options.capture.empty()) return stereo_frame(frames.front());
+    const ScanCapture capture = scan_capture_from(read_capture(options.capture), options.capture);
+    return {capture.left.front(), capture.right.front(), capture.began, Instant{}, 0};
+}
+
+}  // namespace
+
+int run_track(const TrackOptions& options) {
+    PatientTracker tracker(read_rig(options.rig));
+    const auto frames = read_frames(options.frames);
+    if (frames.empty()) throw InputError(options.frames, "there is no frame in the folder", "Record at least one frame.");
+    const auto markers = tracker.set_reference(reference_frame(options, frames)).size();
+    if (markers < 3)
+        throw CheckFailedError(fmt::format("only {} markers were found by both cameras in the reference picture", markers),
+                               "Paste at least five markers where both cameras see them.");
+    std::vector<TrackedPose> poses;
+    ProgressBar bar;
+    for (const auto& frame : frames) {
+        poses.push_back(tracker.update(stereo_frame(frame)));
+        bar.show("track", static_cast<double>(poses.size()) / static_cast<double>(frames.size()));
+    }
+    write_poses(poses, options.out);
+    const auto found = std::count_if(poses.begin(), poses.end(), [](const auto& p) { return p.rig_from_patient.has_value(); });
+    double worst_px = 0;
+    for (const auto& pose : poses) worst_px = std::max(worst_px, pose.residual_px);
+    if (options.json) {
+        const nlohmann::json result = {{"frames", frames.size()}, {"poses", found}, {"markers", markers}, {"worst_residual_px", worst_px}};
+        std::cout << result.dump(2) << '\n';
+    } else {
+        fmt::print("{} of {} frames have a pose ({} markers, worst residual {:.3f} px).\n", found, frames.size(), markers, worst_px);
+    }
+    return 0;
+}
+
+}  // namespace planlight

@@ -1,0 +1,59 @@
+#include "app/console.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include "planning_io/types/error.h"
+
+namespace planlight {
+
+ProgressBar::ProgressBar() : terminal_(isatty(STDERR_FILENO) == 1) {}
+
+ProgressBar::~ProgressBar() { end_line(); }
+
+void ProgressBar::show(const std::string& step, double share) {
+    if (!terminal_) return;
+    if (step != step_) end_line();
+    const int percent = static_cast<int>(100 * std::clamp(share, 0.0, 1.0));
+    if (step == step_ && percent == percent_) return;
+    step_ = step;
+    percent_ = percent;
+    constexpr int kWidth = 40;
+    const int done = kWidth * percent / 100;
+    fmt::print(stderr, "\r{:<18} [{}{}] {:3d} %", step, std::string(static_cast<std::size_t>(done), '#'),
+               std::string(static_cast<std::size_t>(kWidth - done), ' '), percent);
+    std::fflush(stderr);
+}
+
+void ProgressBar::end_line() {
+    if (terminal_ && !step_.empty()) fmt::print(stderr, "\n");
+    step_.clear();
+    percent_ = -1;
+}
+
+std::function<void(const std::string&, double)> ProgressBar::callback() {
+    return [this](const std::string& step, double share) { show(step, share); };
+}
+
+void warn(const std::string& text) { fmt::print(stderr, "warning: {}\n", text); }
+
+int run_and_explain(const std::function<int()>& command) {
+    try {
+        return command();
+    } catch (const Error& error) {
+        fmt::print(stderr, "planlight: {}. {}\n", error.what(), error.remedy);
+        return static_cast<int>(error.exit_code);
+    } catch (const std::bad_alloc&) {
+        fmt::print(stderr, "planlight: there is not enough memory. Close other programs, or use larger voxels.\n");
+    } catch (const std::exception& fault) {
+        fmt::print(stderr, "planlight: a fault of ours: {}. Please report it with the command that you gave.\n", fault.what());
+    }
+    return static_cast<int>(ExitCode::our_fault);
+}
+
+}  // namespace planlight
