@@ -1,0 +1,80 @@
+#include <fmt/format.h>
+
+#include <iostream>
+
+#include "app/commands/commands.h"
+#include "app/commands/example_plan.h"
+#include "app/console.h"
+#include "app/evaluation/chain_pictures.h"
+#include "app/evaluation/chain_report.h"
+#include "app/live/live_window.h"
+#include "planning_io/plan_file.h"
+#include "planning_io/read_volume.h"
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+std::vector<simulation::Preset> presets_of(const DemoOptions& options) {
+    using simulation::Preset;
+    if (options.preset == "paper") return {Preset::paper};
+    if (options.preset == "modern") return {Preset::modern};
+    return {Preset::paper, Preset::modern};
+}
+
+void print_summary(const PresetSummary& s) {
+    fmt::print("\n{} room: {} of {} patients found, {} refused, {:.0f} updates a second{}\n", s.preset, s.matched_right, s.rooms,
+               s.refused, s.updates_per_s, s.reached() ? "" : "   (a goal was missed)");
+    fmt::print("  {:<36}{:>9}{:>9}{:>9}\n", "", "median", "95 %", "worst");
+    for (const auto& r : s.rows)
+        fmt::print("  {:<36}{:>9.3f}{:>9.3f}{:>9.3f} {:<4}{}\n", r.name, r.found.median, r.found.p95, r.found.worst, r.unit,
+                   r.goal.empty() ? "" : r.reached ? "  reached: " + r.goal : "  MISSED: " + r.goal);
+    for (const auto& refusal : s.refusals) fmt::print("  refused: {}\n", refusal);
+}
+
+}  // namespace
+
+int run_demo(const DemoOptions& options) {
+    if (!std::filesystem::exists(options.volume))
+        throw InputError(options.volume, "the patient is not there", "Install the package invesalius-examples, or give --volume.");
+    ProgressBar bar;
+    const Plan plan = options.plan.empty() ? example_plan() : read_plan(options.plan);
+    bar.show("volume", 0);
+    const Volume volume = read_volume(options.volume);
+    bar.show("volume", 1);
+    const Preparation prepared = prepare_case(volume, plan, {}, {}, iso_date_now(), bar.callback());
+    std::filesystem::create_directories(options.out);
+    write_case(prepared.prepared, options.out / "case", true);
+    const CaseDrawing drawing(prepared.prepared);
+
+    std::vector<ChainFigures> rooms;
+    ChainPictures pictures(prepared.prepared, drawing);
+    for (const auto preset : presets_of(options))
+        for (int i = 0; i < options.seeds; ++i) {
+            ChainSettings settings;
+            settings.preset = preset;
+            settings.seed = options.seed + static_cast<unsigned>(i);
+            ChainWatcher watcher;
+            watcher.progress = [&](const std::string& stage, double share) {
+                bar.show(fmt::format("{} {}: {}", name_of(preset), settings.seed, stage), share);
+            };
+            if (i == 0 && preset == presets_of(options).back()) pictures.watch(watcher);
+            rooms.push_back(run_chain(volume, prepared.prepared, drawing, settings, watcher));
+        }
+    const std::string json = write_report_json(options.out / "report.json", prepared, rooms);
+    write_report_html(options.out / "report.html", prepared, rooms, pictures.pictures());
+    if (options.json) std::cout << json;
+    for (const auto* preset : {"paper", "modern"})
+        if (const auto s = summarise(rooms, preset); s.rooms > 0 && !options.json) print_summary(s);
+    if (!options.json) fmt::print("\nReport: {}\n", (options.out / "report.html").string());
+    if (!options.headless && display_is_there()) {
+        LiveOptions live;
+        live.preset = presets_of(options).front();
+        live.seed = options.seed;
+        live.autoplay = true;
+        return run_live(volume, prepared.prepared, drawing, live);
+    }
+    return 0;
+}
+
+}  // namespace planlight

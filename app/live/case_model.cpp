@@ -1,0 +1,66 @@
+#include "app/live/case_model.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace planlight {
+namespace {
+
+std::optional<double> depth_of(const Plan& plan, const DrawnItem& item) {
+    for (const auto& t : plan.trajectories)
+        if (item.kind == StrokeKind::trajectory && t.name == item.name) return t.length_mm();
+    for (const auto& b : plan.boreholes)
+        if (item.kind == StrokeKind::borehole && b.name == item.name && b.depth_mm > 0) return b.depth_mm;
+    return std::nullopt;
+}
+
+std::vector<PlanRow> rows_of(const Plan& plan, const PlanDrawing& drawing) {
+    std::vector<PlanRow> rows;
+    for (std::size_t i = 0; i < drawing.items.size(); ++i) {
+        const DrawnItem& item = drawing.items[i];
+        PlanRow row;
+        row.name = item.label.empty() ? item.name : item.label;
+        row.depth_mm = depth_of(plan, item);
+        for (const auto& stroke : drawing.strokes)
+            if (stroke.item == static_cast<int>(i) && stroke.kind == item.kind) {
+                row.colour = stroke.colour;
+                break;
+            }
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+}  // namespace
+
+OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing) {
+    OperatorModel model;
+    const Plan& plan = the_case.plan;
+    model.case_title = "Case " + the_case.code;
+    model.case_subtitle = fmt::format("{} \u00b7 {} osteotomy, {} boreholes, {} trajectories", the_case.created.substr(0, 10),
+                                      plan.osteotomy_lines.size() + plan.cut_planes.size(), plan.boreholes.size(),
+                                      plan.trajectories.size());
+    model.steps.fill(StepState::waiting);
+    model.steps[0] = StepState::done;
+    model.scene.skin = std::make_shared<TriangleMesh>(the_case.skin);
+    model.scene.plan = std::make_shared<PlanDrawing>(drawing.drawing);
+    model.rows = rows_of(plan, drawing.drawing);
+    for (const auto& warning : the_case.warnings) model.evidence.push_back("Warning: " + warning);
+    model.status = {StatusKind::dark, "Nothing is projected.", {}};
+    for (auto* button : {&model.scan, &model.do_register, &model.track, &model.stop}) *button = {false, "no rig"};
+    return model;
+}
+
+std::vector<std::string> evidence_of(const RegistrationResult& result) {
+    std::vector<std::string> lines;
+    lines.push_back(fmt::format("Residual {:.2f} mm rms; {:.0f} % of {} points within {:.1f} mm of the skin.", result.residual_rms_mm,
+                                100 * result.inlier_fraction, result.points, result.inlier_distance_mm));
+    lines.push_back(fmt::format("Next best other pose fits {:.1f} times worse; {} independent bases agree.", result.runner_up_ratio,
+                                result.agreeing_bases));
+    lines.push_back(fmt::format("Found in {:.2f} s, refined in {:.0f} ms.", result.initial_match_s, 1000 * result.refine_s));
+    lines.insert(lines.end(), result.reasons.begin(), result.reasons.end());
+    return lines;
+}
+
+}  // namespace planlight

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "app/session.h"
+#include "app/windows/operator_model.h"
+#include "app/windows/operator_window.h"
+#include "planning_io/types/volume.h"
+#include "registration/simulation/simulated_rig.h"
+
+namespace planlight {
+
+struct LiveSettings {
+    simulation::Preset preset = simulation::Preset::paper;
+    unsigned seed = 1;
+    double speed_mm_s = 20;  ///< peak speed of the head while it is tracked
+};
+
+/// A session on the simulated room that runs in a thread of its own, so that the windows answer while it computes.
+///
+/// The window thread posts what the person wants and takes the newest model and the newest light. Simulated time runs as
+/// fast as the room can be computed, not as fast as the wall clock.
+class LiveSession {
+public:
+    LiveSession(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, const LiveSettings& settings);
+    ~LiveSession();
+
+    /// Queued; `dark` and `stop` overtake everything that waits.
+    void post(OperatorAction action);
+
+    OperatorModel model() const;
+
+    /// The newest light, and a number that changes with it. An empty picture is darkness.
+    struct Light {
+        std::shared_ptr<const RgbImage> picture;
+        std::uint64_t number = 0;
+    };
+    Light light() const;
+
+    /// True once the patient is followed and light is on the skin.
+    bool projecting() const;
+    /// Why the thread ended, if it did; empty while it runs.
+    std::string fault() const;
+
+private:
+    class LightTap;
+    void run(const Volume& volume, const LiveSettings& settings);
+    void act(OperatorAction action, Session& session, simulation::SimulatedRig& rig);
+    void scan(Session& session);
+    void find_patient(Session& session);
+    void follow(Session& session, simulation::SimulatedRig& rig);
+    void show_update(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update);
+    void set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details = {});
+    void set_steps(int active, StepState state = StepState::active);
+    OperatorAction next_action(bool wait);
+    template <class Change>
+    void change_model(Change change);
+
+    const Case& case_;
+    const CaseDrawing& drawing_;
+    LiveSettings settings_;
+    mutable std::mutex mutex_;
+    std::condition_variable wake_;
+    std::deque<OperatorAction> actions_;
+    OperatorModel model_;
+    Light light_;
+    std::string fault_;
+    bool ending_ = false, following_ = false, moving_ = false;
+    std::atomic<bool> projecting_{false}, dark_wanted_{false};
+    std::thread thread_;
+};
+
+}  // namespace planlight

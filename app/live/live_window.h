@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "app/session.h"
+#include "planning_io/types/volume.h"
+#include "registration/simulation/simulated_rig.h"
+
+namespace planlight {
+
+struct LiveOptions {
+    simulation::Preset preset = simulation::Preset::paper;
+    unsigned seed = 1;
+    double speed_mm_s = 20;
+    std::string projector_monitor;  ///< name or number; empty: the first monitor that is not the primary one, if there is one
+    std::string operator_monitor;   ///< empty: the primary one
+    bool autoplay = false;          ///< scan, register and track without a person
+    double end_after_s = 0;         ///< of projecting, wall time; 0 = until the window is closed
+    std::filesystem::path screenshots;  ///< folder for a picture of the operator window a step; empty = none
+};
+
+/// True when a window could be opened.
+bool display_is_there();
+
+/// Both windows on a live session in the simulated room, until the operator window is closed. Gives the exit code.
+/// Throws DeviceError when a monitor is missing or a window does not land where it should.
+int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, const LiveOptions& options);
+
+}  // namespace planlight

@@ -1,0 +1,54 @@
+#include "app/live/scene_of_session.h"
+
+#include <cmath>
+#include <limits>
+
+namespace planlight {
+
+std::shared_ptr<const std::vector<float>> distances_to_skin_mm(const PointCloud& cloud, const RigidTransform& ct_from_rig,
+                                                               const SkinLut& lut) {
+    auto distances = std::make_shared<std::vector<float>>();
+    distances->reserve(cloud.size());
+    for (const auto& p_in_rig : cloud.points_in_rig) {
+        const auto distance = lut.signed_distance(ct_from_rig * p_in_rig);
+        distances->push_back(distance ? static_cast<float>(std::abs(distance->mm)) : std::numeric_limits<float>::infinity());
+    }
+    return distances;
+}
+
+std::shared_ptr<const std::vector<SceneMarker>> markers_in_ct(const PatientTracker& tracker,
+                                                              const RigidTransform& ct_from_patient) {
+    auto markers = std::make_shared<std::vector<SceneMarker>>();
+    for (const auto& marker : tracker.markers()) {
+        SceneMarker shown;
+        shown.p_in_ct = ct_from_patient * marker.centre_in_patient;
+        markers->push_back(shown);
+    }
+    return markers;
+}
+
+std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing& drawing, const RigCalibration& calibration,
+                                                               const OverlayStep& overlay, const simulation::SimulatedRig& rig) {
+    auto lines = std::make_shared<std::vector<LightLine>>();
+    if (!overlay.lit) return lines;
+    for (const auto& stroke : drawing.strokes) {
+        LightLine line;
+        line.closed = stroke.closed;
+        for (const auto& p_in_ct : stroke.points_in_ct) {
+            const auto pixel = project(calibration.projector, overlay.rig_from_ct * p_in_ct);
+            const auto lit = pixel ? rig.true_light(*pixel, overlay.lit_from) : std::nullopt;
+            if (lit) line.points_in_ct.push_back(lit->p_in_ct);
+        }
+        if (line.points_in_ct.size() > 1) lines->push_back(std::move(line));
+    }
+    return lines;
+}
+
+std::vector<FoundMarker> found_markers(const std::vector<PatientTracker::Seen>& seen) {
+    std::vector<FoundMarker> found;
+    for (const auto& one : seen)
+        if (one.marker >= 0) found.push_back({one.left_or_right.pixel, one.left_or_right.radius_px});
+    return found;
+}
+
+}  // namespace planlight

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "app/session.h"
+#include "app/windows/operator_model.h"
+#include "registration/simulation/simulated_rig.h"
+
+namespace planlight {
+
+/// The parts of the 3-D view that a session gives; all in ct.
+std::shared_ptr<const std::vector<float>> distances_to_skin_mm(const PointCloud& cloud, const RigidTransform& ct_from_rig,
+                                                               const SkinLut& lut);
+
+/// The markers where the scan found them.
+std::shared_ptr<const std::vector<SceneMarker>> markers_in_ct(const PatientTracker& tracker, const RigidTransform& ct_from_patient);
+
+/// The light of a simulated room as it truly falls: every stroke through the product's projector model to its pixel, and
+/// from there by the room's own optics to the true skin.
+std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing& drawing, const RigCalibration& calibration,
+                                                               const OverlayStep& overlay, const simulation::SimulatedRig& rig);
+
+/// The discs that the tracker found, for the camera pictures.
+std::vector<FoundMarker> found_markers(const std::vector<PatientTracker::Seen>& seen);
+
+}  // namespace planlight
