@@ -27,7 +27,7 @@ public:
           watcher_(watcher),
           plan_points_in_ct_(points_of(the_case.plan)),
           rig_(volume, plan_points_in_ct_, room(settings)),
-          session_(the_case, drawing, rig_.calibration(),
+          session_(the_case, drawing, calibration(),
                    watcher.wrap_projector ? watcher.wrap_projector(rig_.projector()) : rig_.projector(), rig_.cameras(),
                    rig_.clock(), session_settings()),
           random_(settings.seed) {
@@ -66,6 +66,12 @@ private:
         room.seed = settings.seed;
         room.ambient = 0.2;  // dimmed lamps: the markers must be seen beside a mostly dark projector picture
         return room;
+    }
+
+    RigCalibration calibration() const {
+        RigCalibration given = rig_.calibration();
+        if (settings_.spoil_calibration) settings_.spoil_calibration(given);
+        return given;
     }
 
     SessionSettings session_settings() {

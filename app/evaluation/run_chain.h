@@ -21,6 +21,7 @@ struct ChainSettings {
     int measured_updates = 12;         ///< of the moving ones, evenly spread, whose light is measured
     double speed_mm_s = 20;            ///< peak speed of the moving head
     Instant computing = std::chrono::milliseconds(10);  ///< simulated time from seeing to showing
+    std::function<void(RigCalibration&)> spoil_calibration;  ///< for tests: a wrong rig file; empty leaves it right
 };
 
 /// What a watcher (windows, pictures for the report) is shown while the chain runs. Any may be empty.

@@ -1,0 +1,228 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "tests/app/run_command.h"
+#include "tests/support/test_data.h"
+
+namespace planlight::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+const std::string kPlan = std::string(PLANLIGHT_EXAMPLE_FOLDER) + "/frontal_defect.mrk.json";
+
+/// One case and one simulated room on disk, made by the commands themselves, for all tests.
+class CommandsTest : public ::testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        if (!example_patient()) return;
+        folder_ = std::make_unique<TemporaryFolder>();
+        prepared_ = run_planlight("prepare " + example_patient()->string() + " --plan " + kPlan + " --out case --json", root());
+        simulated_ = run_planlight("simulate " + example_patient()->string() + " --plan " + kPlan +
+                                       " --preset paper --seed 4 --frames 4 --out room --json", root());
+    }
+    static void TearDownTestSuite() { folder_.reset(); }
+    void SetUp() override {
+        if (!example_patient()) GTEST_SKIP() << "the package invesalius-examples is not installed";
+    }
+    static const fs::path& root() { return folder_->path(); }
+
+    static std::unique_ptr<TemporaryFolder> folder_;
+    static CommandRun prepared_, simulated_;
+};
+std::unique_ptr<TemporaryFolder> CommandsTest::folder_;
+CommandRun CommandsTest::prepared_, CommandsTest::simulated_;
+
+json read_json(const fs::path& file) {
+    std::ifstream in(file);
+    return json::parse(in);
+}
+
+Eigen::Matrix4d matrix_of(const json& rows) {
+    Eigen::Matrix4d m;
+    for (int r = 0; r < 4; ++r)
+        for (int c = 0; c < 4; ++c) m(r, c) = rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)].get<double>();
+    return m;
+}
+
+/// One sentence that says the problem and the remedy, and nothing else: no stack, no second line.
+void expect_one_clear_sentence(const CommandRun& run, int exit_code, const std::string& about) {
+    EXPECT_EQ(run.exit_code, exit_code) << run.err;
+    EXPECT_NE(run.err.find("planlight: "), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find(about), std::string::npos) << run.err;
+    EXPECT_EQ(run.err.find("fault of ours"), std::string::npos) << run.err;
+    std::istringstream lines(run.err);
+    int said = 0;
+    for (std::string line; std::getline(lines, line);) said += line.starts_with("planlight: ");
+    EXPECT_EQ(said, 1) << run.err;
+}
+
+TEST_F(CommandsTest, PrepareMakesACaseThatSaysWhatItHolds) {
+    ASSERT_EQ(prepared_.exit_code, 0) << prepared_.err;
+    const json result = json::parse(prepared_.out);
+    EXPECT_EQ(result["plan_items"], 6);
+    // An adult head down to the upper lip: 2 to 5 litres.
+    EXPECT_GT(result["body_ml"].get<double>(), 2000);
+    EXPECT_LT(result["body_ml"].get<double>(), 5000);
+    EXPECT_TRUE(fs::exists(root() / "case" / "case.json"));
+}
+
+TEST_F(CommandsTest, TheExamplePlanRaisesNoWarningOnItsPatient) {
+    ASSERT_EQ(prepared_.exit_code, 0) << prepared_.err;
+    for (const auto& warning : json::parse(prepared_.out)["warnings"])
+        for (const char* item : {"Osteotomy", "B1", "B2", "B3", "B4", "T1"})
+            EXPECT_EQ(warning.get<std::string>().find(item), std::string::npos) << warning;
+}
+
+TEST_F(CommandsTest, StagesOnFilesFindThePatientWithinAMillimetreOfTheTruth) {
+    ASSERT_EQ(simulated_.exit_code, 0) << simulated_.err;
+    const auto scan = run_planlight("scan room/capture --rig room/rig.json --out cloud.ply --json", root());
+    ASSERT_EQ(scan.exit_code, 0) << scan.err;
+    const auto found = run_planlight("register case --cloud cloud.ply --out registration.json --json", root());
+    ASSERT_EQ(found.exit_code, 0) << found.err;
+    const auto track = run_planlight("track room/frames --rig room/rig.json --capture room/capture --out poses.json --json", root());
+    ASSERT_EQ(track.exit_code, 0) << track.err;
+    EXPECT_EQ(json::parse(track.out)["poses"], 4);
+    const auto picture = run_planlight("project case --rig room/rig.json --registration registration.json --poses poses.json --out light.png --json", root());
+    ASSERT_EQ(picture.exit_code, 0) << picture.err;
+    EXPECT_GT(json::parse(picture.out)["lit_pixels"].get<int>(), 500);
+
+    const Eigen::Matrix4d truth = matrix_of(read_json(root() / "room" / "truth.json")["scan_rig_from_ct"]);
+    const Eigen::Matrix4d measured = matrix_of(json::parse(found.out)["patient_from_ct"]);
+    for (const auto& markup : read_json(kPlan)["markups"])
+        for (const auto& point : markup["controlPoints"]) {
+            const auto p = point["position"].get<std::array<double, 3>>();
+            const Eigen::Vector4d h(p[0], p[1], p[2], 1);
+            EXPECT_LT((truth * h - measured * h).norm(), 1.0) << point["label"];  // the goal of the whole chain
+        }
+}
+
+TEST_F(CommandsTest, PatternsWritesTheWholeSequence) {
+    const auto run = run_planlight("patterns --width 320 --height 240 --out patterns --json", root());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const json result = json::parse(run.out);
+    for (const auto& name : result["patterns"]) EXPECT_TRUE(fs::exists(root() / "patterns" / (name.get<std::string>() + ".png")));
+    EXPECT_GE(result["patterns"].size(), 2u + 2u * 8u);
+}
+
+TEST_F(CommandsTest, AMissingFileIsSaidSo) {
+    expect_one_clear_sentence(run_planlight("prepare nowhere.inv3 --plan " + kPlan + " --out new", root()), 3, "nowhere.inv3");
+    EXPECT_FALSE(fs::exists(root() / "new"));
+}
+
+TEST_F(CommandsTest, ATruncatedVolumeIsDamagedAndLeavesNothing) {
+    fs::copy_file(*example_patient(), root() / "short.inv3", fs::copy_options::overwrite_existing);
+    fs::resize_file(root() / "short.inv3", 3'000'000);
+    expect_one_clear_sentence(run_planlight("prepare short.inv3 --plan " + kPlan + " --out new", root()), 4, "short.inv3");
+    for (const auto& entry : fs::directory_iterator(root()))
+        EXPECT_FALSE(entry.path().filename().string().starts_with("new")) << entry.path();
+}
+
+TEST_F(CommandsTest, APlanInAnUnknownFrameIsRefusedNotGuessed) {
+    json plan = read_json(kPlan);
+    plan["markups"][0]["coordinateSystem"] = "lps";  // 3D Slicer reads a mistyped frame as RAS without a word
+    std::ofstream(root() / "odd.mrk.json") << plan;
+    expect_one_clear_sentence(run_planlight("prepare " + example_patient()->string() + " --plan odd.mrk.json --out new", root()), 3, "lps");
+}
+
+TEST_F(CommandsTest, APlanReadInTheWrongFrameIsWarnedOfByName) {
+    json plan = read_json(kPlan);
+    for (auto& markup : plan["markups"]) markup["coordinateSystem"] = "RAS";  // turned by 180 degrees about z
+    std::ofstream(root() / "turned.mrk.json") << plan;
+    const auto run = run_planlight("prepare " + example_patient()->string() + " --plan turned.mrk.json --out turned --json", root());
+    if (run.exit_code == 0) {
+        std::string warnings = json::parse(run.out)["warnings"].dump();
+        for (const char* item : {"Osteotomy", "B1", "T1"}) EXPECT_NE(warnings.find(item), std::string::npos) << warnings;
+    } else {
+        EXPECT_EQ(run.exit_code, 3) << run.err;
+    }
+}
+
+TEST_F(CommandsTest, ALutOfAnotherCaseIsRefused) {
+    ASSERT_EQ(run_planlight("prepare " + example_patient()->string() + " --plan " + kPlan + " --threshold -200 --voxel-mm 2 --out other", root()).exit_code, 0);
+    fs::copy_file(root() / "other" / "skin.lut", root() / "mixed.lut", fs::copy_options::overwrite_existing);
+    fs::remove_all(root() / "mixed");
+    fs::copy(root() / "case", root() / "mixed", fs::copy_options::recursive);
+    fs::rename(root() / "mixed.lut", root() / "mixed" / "skin.lut");
+    const auto run = run_planlight("review mixed --picture x.png", root());
+    EXPECT_TRUE(run.exit_code == 3 || run.exit_code == 4) << run.err;
+    expect_one_clear_sentence(run, run.exit_code, "mixed");
+    EXPECT_FALSE(fs::exists(root() / "x.png"));
+}
+
+TEST_F(CommandsTest, ASingleFlippedByteInTheLutIsNoticed) {
+    fs::remove_all(root() / "flipped");
+    fs::copy(root() / "case", root() / "flipped", fs::copy_options::recursive);
+    const auto file = root() / "flipped" / "skin.lut";
+    std::fstream lut(file, std::ios::in | std::ios::out | std::ios::binary);
+    lut.seekg(static_cast<std::streamoff>(fs::file_size(file) / 2));
+    const char byte = static_cast<char>(lut.get());
+    lut.seekp(static_cast<std::streamoff>(fs::file_size(file) / 2));
+    lut.put(static_cast<char>(byte ^ 1));
+    lut.close();
+    expect_one_clear_sentence(run_planlight("review flipped --picture x.png", root()), 4, "skin.lut");
+}
+
+TEST_F(CommandsTest, ARigFileWithNonsenseIsRefused) {
+    const json good = read_json(root() / "room" / "rig.json");
+    const auto refused = [&](const std::string& what, json bad) {
+        std::ofstream(root() / "bad.json") << bad;
+        const auto run = run_planlight("scan room/capture --rig bad.json --out never.ply", root());
+        EXPECT_EQ(run.exit_code, 3) << what << ": " << run.err;
+        EXPECT_FALSE(fs::exists(root() / "never.ply")) << what;
+    };
+    // Every number of the file made NaN-like or zero one at a time would be long; the ones that hurt most:
+    json flat = good.flatten();
+    for (auto& [path, value] : flat.items()) {
+        if (!value.is_number() || path.find("focal") == std::string::npos) continue;
+        json bad = flat;
+        bad[path] = -100.0;
+        refused(path, bad.unflatten());
+    }
+    json sheared = good.flatten();
+    for (auto& [path, value] : sheared.items())
+        if (value.is_number_float() && path.find("from_rig") != std::string::npos) value = value.get<double>() * 1.5;
+    refused("a rotation that is none", sheared.unflatten());
+}
+
+TEST_F(CommandsTest, AnotherHeadOrNoHeadGivesExitSixAndAReason) {
+    std::ofstream ply(root() / "plane.ply");
+    ply << "ply\nformat ascii 1.0\ncomment FRAME=rig\nelement vertex 2500\nproperty double x\nproperty double y\nproperty double z\n"
+           "property double nx\nproperty double ny\nproperty double nz\nend_header\n";
+    for (int i = 0; i < 50; ++i)
+        for (int j = 0; j < 50; ++j) ply << 4 * i << ' ' << 4 * j << " 900 0 0 -1\n";
+    ply.close();
+    const auto run = run_planlight("register case --cloud plane.ply --out plane.json", root());
+    EXPECT_TRUE(run.exit_code == 6 || run.exit_code == 3) << run.exit_code << run.err;
+}
+
+TEST_F(CommandsTest, WrongUsageGivesExitTwo) {
+    EXPECT_EQ(run_planlight("prepare", root()).exit_code, 2);
+    EXPECT_EQ(run_planlight("nonsense", root()).exit_code, 2);
+    EXPECT_EQ(run_planlight("demo --preset both --seeds -3", root()).exit_code, 2);
+}
+
+TEST_F(CommandsTest, EveryCommandExplainsItselfWithAnExample) {
+    for (const char* name : {"demo", "prepare", "patterns", "scan", "register", "track", "project", "session", "review", "simulate"}) {
+        const auto run = run_planlight(std::string(name) + " --help", root());
+        EXPECT_EQ(run.exit_code, 0) << name;
+        EXPECT_NE(run.out.find("Example:"), std::string::npos) << name;
+    }
+}
+
+TEST_F(CommandsTest, AWindowWithoutADisplayIsADeviceError) {
+    const auto run = run_planlight("review case", root());
+    if (std::getenv("DISPLAY")) GTEST_SKIP() << "there is a display";
+    expect_one_clear_sentence(run, 5, "display");
+}
+
+}  // namespace
+}  // namespace planlight::test

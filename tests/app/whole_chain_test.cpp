@@ -1,0 +1,103 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "app/evaluation/chain_report.h"
+#include "app/evaluation/run_chain.h"
+#include "app/prepare_case.h"
+#include "planning_io/plan_file.h"
+#include "planning_io/read_volume.h"
+#include "tests/support/test_data.h"
+
+namespace planlight {
+namespace {
+
+/// The example patient, prepared once.
+class WholeChain : public ::testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        if (!test::example_patient()) return;
+        volume_ = read_volume(*test::example_patient());
+        prepared_ = prepare_case(*volume_, read_plan(std::string(PLANLIGHT_EXAMPLE_FOLDER) + "/frontal_defect.mrk.json"), {}, {}, "2001-10-14").prepared;
+    }
+    void SetUp() override {
+        if (!volume_) GTEST_SKIP() << "the package invesalius-examples is not installed";
+    }
+    static ChainFigures run(const Case& the_case, const ChainSettings& settings) {
+        return run_chain(*volume_, the_case, CaseDrawing(the_case), settings);
+    }
+    static ChainSettings short_run(unsigned seed) {
+        ChainSettings settings;
+        settings.preset = simulation::Preset::paper;
+        settings.seed = seed;
+        settings.rest_updates = 4;
+        settings.moving_updates = 8;
+        settings.measured_updates = 3;
+        return settings;
+    }
+    /// What the demo promises of every room.
+    static bool good(const ChainFigures& f) {
+        return f.refused.empty() && f.initial_match_right && distribution_of(f.tre_mm).p95 <= 1 &&
+               f.at_rest.position_mm.size() > 20 && distribution_of(f.at_rest.position_mm).p95 <= 1 &&
+               distribution_of(f.moving.position_mm).p95 <= 2;
+    }
+    static std::optional<Volume> volume_;
+    static Case prepared_;
+};
+std::optional<Volume> WholeChain::volume_;
+Case WholeChain::prepared_;
+
+TEST_F(WholeChain, PutsThePlanOnTheSkinInThePapersRoom) {
+    const ChainFigures figures = run(prepared_, short_run(1));
+    EXPECT_EQ(figures.refused, "");
+    EXPECT_TRUE(good(figures)) << "TRE " << distribution_of(figures.tre_mm).p95 << ", at rest "
+                               << distribution_of(figures.at_rest.position_mm).p95 << ", moving "
+                               << distribution_of(figures.moving.position_mm).p95;
+    EXPECT_EQ(figures.lost_marker_lit, figures.lost_marker_updates) << "a lost marker is survived";
+    EXPECT_EQ(figures.too_few_lit, 0) << "too few markers give no light";
+}
+
+TEST_F(WholeChain, AMirroredPatientIsNeverProjectedOn) {
+    Case mirrored = prepared_;
+    Volume volume = *volume_;  // left and right exchanged, as a reader that forgets the rows' direction would give
+    for (int k = 0; k < volume.size[2]; ++k)
+        for (int j = 0; j < volume.size[1]; ++j)
+            std::reverse(volume.values.begin() + static_cast<std::ptrdiff_t>(volume.index(0, j, k)),
+                         volume.values.begin() + static_cast<std::ptrdiff_t>(volume.index(0, j, k)) + volume.size[0]);
+    mirrored = prepare_case(volume, prepared_.plan, {}, {}, "2001-10-14").prepared;
+    const ChainFigures figures = run(mirrored, short_run(1));
+    EXPECT_FALSE(good(figures));
+    EXPECT_NE(figures.registration ? figures.registration->verdict : Verdict::no, Verdict::yes)
+        << "residual " << figures.registration->residual_rms_mm;
+}
+
+/// The calibration that the product is given is spoiled on purpose; the chain must not come out good.
+class SpoiledCalibration : public WholeChain {
+protected:
+    static bool good_with(const std::function<void(RigCalibration&)>& spoil) {
+        ChainSettings settings = short_run(1);
+        settings.spoil_calibration = spoil;
+        return good(run(prepared_, settings));
+    }
+};
+
+TEST_F(SpoiledCalibration, FlippedDistortionIsNotGood) {
+    EXPECT_FALSE(good_with([](RigCalibration& rig) {
+        for (auto* device : {&rig.left_camera, &rig.right_camera, &rig.projector}) device->k1 = -device->k1, device->k2 = -device->k2;
+    }));
+}
+
+TEST_F(SpoiledCalibration, TransposedRotationIsNotGood) {
+    EXPECT_FALSE(good_with([](RigCalibration& rig) {
+        for (auto* device : {&rig.left_camera, &rig.right_camera, &rig.projector})
+            device->device_from_rig.linear() = device->device_from_rig.linear().transpose().eval();
+    }));
+}
+
+TEST_F(SpoiledCalibration, SwappedCamerasAreNotGood) {
+    EXPECT_FALSE(good_with([](RigCalibration& rig) { std::swap(rig.left_camera, rig.right_camera); }));
+}
+
+}  // namespace
+}  // namespace planlight
