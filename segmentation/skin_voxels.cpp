@@ -1,5 +1,6 @@
 #include "segmentation/skin_voxels.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
