@@ -29,6 +29,13 @@ struct StripePattern {
 /// The sequence in the order it is projected: white, black, then per direction Gray bits (with inverses) and phases.
 std::vector<StripePattern> stripe_sequence(const StripeSettings& settings);
 
+/// Bits of the Gray code of one direction. It counts half periods of the fringe, not periods: a code wrong by one
+/// half period at its own border still unwraps the phase to the right period.
+int gray_bits(const StripeSettings& settings, bool along_rows);
+
+/// Throws std::invalid_argument, naming the setting, when no code can be made of the settings.
+void check_stripes(const StripeSettings& settings);
+
 /// One picture of the sequence as the projector shows it. Throws std::invalid_argument on settings that make no code.
 RgbImage draw_stripes(const StripeSettings& settings, const StripePattern& pattern);
 

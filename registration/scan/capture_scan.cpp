@@ -1,0 +1,64 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <stdexcept>
+
+#include "planning_io/types/error.h"
+#include "registration/scan/scan_surface.h"
+
+namespace planlight {
+namespace {
+
+using namespace std::chrono_literals;
+constexpr auto kPatience = 2000ms;            // for a frame once the picture is lit
+constexpr Instant kDisplayDelayAtMost = 1s;   // from show() to the light, for the picture's expiry
+
+/// The frame must have seen this picture and nothing else, or a code would be wrong without a sign of it.
+void check_frame(const StereoFrame& frame, const StereoFrame& first, Instant lit_from, Instant valid_until, const std::string& name) {
+    constexpr Instant kRounding = 2us;
+    const Instant opened = frame.at - frame.exposure / 2, closed = frame.at + frame.exposure / 2;
+    if (opened + kRounding < lit_from)
+        throw DeviceError("stereo camera", fmt::format("the frame for \"{}\" was exposed {:.1f} ms before the picture was lit", name,
+                                                       1e3 * seconds(lit_from - opened)),
+                          "Check the camera's time stamps against the session's clock.");
+    if (closed > valid_until)
+        throw DeviceError("stereo camera", fmt::format("the frame for \"{}\" was exposed after the picture had expired", name),
+                          "Check the camera's frame rate and connection, then scan again.");
+    const auto same = [](const GrayImage& a, const GrayImage& b) { return a.width == b.width && a.height == b.height; };
+    if (frame.left.empty() || frame.right.empty() || !same(frame.left, first.left) || !same(frame.right, first.right))
+        throw DeviceError("stereo camera", fmt::format("the frame for \"{}\" is empty or has another size than the first", name),
+                          "Check both cameras' connections and settings, then scan again.");
+}
+
+}  // namespace
+
+ScanCapture capture_scan(Projector& projector, StereoCamera& cameras, const Clock& clock, const StripeSettings& stripes,
+                         const std::function<void(int, int)>& progress) {
+    const DarkOnExit dark(projector);
+    if (stripes.width != projector.width() || stripes.height != projector.height())
+        throw std::invalid_argument(fmt::format("capture_scan: stripes of {} x {} for a projector of {} x {}", stripes.width,
+                                                stripes.height, projector.width(), projector.height()));
+    const auto sequence = stripe_sequence(stripes);
+    ScanCapture capture;
+    capture.stripes = stripes;
+    StereoFrame first;
+    for (std::size_t i = 0; i < sequence.size(); ++i) {
+        const RgbImage picture = draw_stripes(stripes, sequence[i]);
+        const Instant valid_until = clock.now() + kDisplayDelayAtMost + kPatience;
+        const Instant lit_from = projector.show(picture, valid_until);
+        StereoFrame frame = cameras.grab(lit_from, kPatience);
+        if (i == 0) {
+            first.left = GrayImage(frame.left.width, frame.left.height);
+            first.right = GrayImage(frame.right.width, frame.right.height);
+            capture.began = frame.at;
+        }
+        check_frame(frame, first, lit_from, valid_until, sequence[i].name);
+        capture.ended = frame.at;
+        capture.left.push_back(std::move(frame.left));
+        capture.right.push_back(std::move(frame.right));
+        if (progress) progress(static_cast<int>(i) + 1, static_cast<int>(sequence.size()));
+    }
+    return capture;
+}
+
+}  // namespace planlight

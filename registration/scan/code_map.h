@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "registration/scan/decode_stripes.h"
+
+namespace planlight {
+
+/// The code around a camera pixel as an affine map, fitted to its neighbours (5 x 5).
+struct LocalCode {
+    Eigen::Vector2d code;         ///< projector pixel (column, row) at the centre pixel; row 0 when rows are not coded
+    Eigen::Matrix2d by_pixel;     ///< its derivative by the camera pixel; second row zero when rows are not coded
+    double sigma_px = 0;          ///< one standard deviation of `code`, projector pixels, from the noise alone
+};
+
+/// Fits the code around camera pixel (x, y). Empty where the pixel itself is not decoded, or has too few neighbours, or
+/// where the neighbours do not lie on one smooth map (a depth edge, a hair, a glint).
+std::optional<LocalCode> local_code(const DecodedView& view, int x, int y);
+
+/// Where in a view a projector pixel is seen: the inverse of the view's code, by rounded projector pixel.
+class CodeIndex {
+public:
+    CodeIndex(const DecodedView& view, int projector_width, int projector_height);
+
+    struct Match {
+        Eigen::Vector2d pixel;  ///< sub-pixel
+        LocalCode local;        ///< around the nearest whole pixel
+    };
+    /// The sub-pixel place in the view that has this code; empty when no smooth piece of code there contains it.
+    std::optional<Match> find(const Eigen::Vector2d& code) const;
+
+private:
+    std::int32_t candidate(const Eigen::Vector2d& code) const;
+
+    const DecodedView& view_;
+    int width_, height_;
+    std::vector<std::int32_t> pixel_of_;  ///< index of a camera pixel, -1 where none
+};
+
+}  // namespace planlight

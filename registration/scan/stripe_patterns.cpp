@@ -1,0 +1,104 @@
+#include "registration/scan/stripe_patterns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace planlight {
+namespace {
+
+constexpr int kMaxGrayBits = 15;  // the decoder keeps a code in 16 bits
+
+int cells(const StripeSettings& s, bool along_rows) {
+    return static_cast<int>(std::ceil((along_rows ? s.height : s.width) / (s.phase_period_px / 2)));
+}
+
+std::uint8_t gray_value(const StripeSettings& s, int pixel, int bit, int bits, bool inverse) {
+    const int cell = static_cast<int>(std::floor((pixel + 0.5) / (s.phase_period_px / 2)));
+    const int code = cell ^ (cell >> 1);
+    const bool lit = ((code >> (bits - 1 - bit)) & 1) != 0;
+    return static_cast<std::uint8_t>(lit != inverse ? s.brightness : 0);
+}
+
+/// An even function of the pixel about every crest, so that no gamma shifts it; from dark to full brightness.
+std::uint8_t phase_value(const StripeSettings& s, int pixel, int step) {
+    const double turns = pixel / s.phase_period_px - static_cast<double>(step) / s.phase_steps;
+    return static_cast<std::uint8_t>(std::lround(s.brightness * (0.5 + 0.5 * std::cos(2 * std::numbers::pi * turns))));
+}
+
+std::uint8_t value_at(const StripeSettings& s, const StripePattern& pattern, int pixel, int bits) {
+    switch (pattern.kind) {
+        case StripePattern::Kind::white: return static_cast<std::uint8_t>(s.brightness);
+        case StripePattern::Kind::black: return 0;
+        case StripePattern::Kind::gray_bit: return gray_value(s, pixel, pattern.index, bits, false);
+        case StripePattern::Kind::gray_bit_inverse: return gray_value(s, pixel, pattern.index, bits, true);
+        case StripePattern::Kind::phase: return phase_value(s, pixel, pattern.index);
+    }
+    throw std::invalid_argument("draw_stripes: a kind of picture that is not in the sequence");
+}
+
+void add_direction(const StripeSettings& s, bool along_rows, std::vector<StripePattern>& sequence) {
+    const std::string direction = along_rows ? "row" : "column";
+    for (int bit = 0; bit < gray_bits(s, along_rows); ++bit) {
+        sequence.push_back({StripePattern::Kind::gray_bit, along_rows, bit, fmt::format("{}-gray-{}", direction, bit)});
+        if (s.inverse)
+            sequence.push_back({StripePattern::Kind::gray_bit_inverse, along_rows, bit,
+                                fmt::format("{}-gray-{}-inverse", direction, bit)});
+    }
+    for (int step = 0; step < s.phase_steps; ++step)
+        sequence.push_back({StripePattern::Kind::phase, along_rows, step, fmt::format("{}-phase-{}", direction, step)});
+}
+
+}  // namespace
+
+void check_stripes(const StripeSettings& s) {
+    const auto refuse = [](const std::string& why) { throw std::invalid_argument("stripes: " + why); };
+    if (s.width < 1 || s.height < 1) refuse(fmt::format("the projector has {} x {} pixels", s.width, s.height));
+    if (s.phase_steps < 3) refuse(fmt::format("{} phase steps; at least 3 are needed", s.phase_steps));
+    if (!(s.phase_period_px >= 4)) refuse(fmt::format("a phase period of {} pixels; at least 4 are needed", s.phase_period_px));
+    if (s.brightness < 1 || s.brightness > 255) refuse(fmt::format("a brightness of {}; 1 to 255", s.brightness));
+    if (gray_bits(s, false) > kMaxGrayBits || gray_bits(s, true) > kMaxGrayBits)
+        refuse(fmt::format("more than {} Gray bits; a longer phase period needs fewer", kMaxGrayBits));
+}
+
+int gray_bits(const StripeSettings& settings, bool along_rows) {
+    int bits = 1;
+    while (bits < 30 && (1 << bits) < cells(settings, along_rows)) ++bits;
+    return bits;
+}
+
+std::vector<StripePattern> stripe_sequence(const StripeSettings& settings) {
+    check_stripes(settings);
+    std::vector<StripePattern> sequence{{StripePattern::Kind::white, false, 0, "white"},
+                                        {StripePattern::Kind::black, false, 0, "black"}};
+    add_direction(settings, false, sequence);
+    if (settings.rows) add_direction(settings, true, sequence);
+    return sequence;
+}
+
+RgbImage draw_stripes(const StripeSettings& settings, const StripePattern& pattern) {
+    check_stripes(settings);
+    const int bits = gray_bits(settings, pattern.along_rows);
+    const bool is_gray = pattern.kind == StripePattern::Kind::gray_bit || pattern.kind == StripePattern::Kind::gray_bit_inverse;
+    const bool is_phase = pattern.kind == StripePattern::Kind::phase;
+    if (pattern.index < 0 || (is_gray && pattern.index >= bits) || (is_phase && pattern.index >= settings.phase_steps))
+        throw std::invalid_argument(fmt::format("draw_stripes: no picture {} in this sequence", pattern.name));
+    RgbImage picture(settings.width, settings.height);
+    if (pattern.along_rows) {
+        for (int y = 0; y < settings.height; ++y) {
+            const std::uint8_t v = value_at(settings, pattern, y, bits);
+            for (int x = 0; x < settings.width; ++x) picture.at(x, y) = {v, v, v};
+        }
+        return picture;
+    }
+    std::vector<Rgb> line(static_cast<std::size_t>(settings.width));
+    for (int x = 0; x < settings.width; ++x) line[static_cast<std::size_t>(x)].fill(value_at(settings, pattern, x, bits));
+    for (int y = 0; y < settings.height; ++y)
+        std::copy(line.begin(), line.end(), picture.pixels.begin() + static_cast<std::ptrdiff_t>(picture.index(0, y)));
+    return picture;
+}
+
+}  // namespace planlight

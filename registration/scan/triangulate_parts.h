@@ -1,0 +1,43 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "registration/scan/triangulate.h"
+
+// What triangulation with rows and with columns only have in common. Private to registration/scan.
+namespace planlight {
+
+/// What became of one camera pixel.
+struct PointOutcome {
+    enum class Kind : unsigned char { nothing, point, no_partner, ragged, disagree, outside_volume } kind = Kind::nothing;
+    Triangulation::Seen seen = Triangulation::Seen::both;
+    Eigen::Vector3d p_in_rig = Eigen::Vector3d::Zero();
+    Eigen::Vector2d pixel_in_projector = Eigen::Vector2d::Zero();
+    double sigma_mm = 0;
+    bool placed_by_cameras = false;                                   ///< then the next two are set
+    Eigen::Vector2d projector_offset_px = Eigen::Vector2d::Zero();    ///< decoded - expected
+    double epipolar_px = 0;
+};
+
+/// One standard deviation along the worst direction of a covariance.
+double worst_sigma(const Eigen::Matrix3d& covariance);
+
+/// The point halfway between two rays, and the distance between them; empty when they are almost parallel or the
+/// point lies behind a device. Midpoint method (Hartley & Zisserman, 12.2).
+std::optional<Eigen::Vector3d> between_rays(const Ray& a, const Ray& b);
+
+bool in_volume(const CameraModel& projector, const Eigen::Vector3d& p_in_rig, const TriangulationSettings& settings);
+
+/// The stride of settings, or the one that makes at most 150,000 points of this many pixels.
+int stride_for(std::size_t decoded, const TriangulationSettings& settings);
+
+/// Adds the outcomes to the result: points, counts and the evidence about the calibration.
+void collect(const std::vector<PointOutcome>& outcomes, Triangulation& result);
+
+/// The views code columns only: along the epipolar lines (see triangulate).
+Triangulation triangulate_columns(const DecodedView& left, const DecodedView& right, const RigCalibration& rig,
+                                  const TriangulationSettings& settings);
+
+}  // namespace planlight
