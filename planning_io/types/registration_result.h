@@ -27,6 +27,8 @@ struct RegistrationResult {
     double runner_up_ratio = 0;        ///< cost of the best distinct other pose / cost of this one; > 1 is good
     int agreeing_bases = 0;            ///< independent contact triplets that led to this pose
     double weakest_sigma_mm = 0;       ///< how far the patient could slide along the least determined way
+    double mirror_ratio = 0;           ///< cost of the mirrored scan's best pose / cost of this one; > 1 is good; 0: not tried
+    double scale = 1;                  ///< by which the scan would have to grow to fit best; 1 is good
     double initial_match_s = 0, refine_s = 0;
     RigidTransform initial_patient_from_ct = RigidTransform::Identity();  ///< before the ICP (Fig. 3 left)
 };

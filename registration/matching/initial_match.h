@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "planning_io/types/point_cloud.h"
+#include "planning_io/types/rigid_transform.h"
 #include "planning_io/types/skin_lut.h"
 
 namespace planlight {

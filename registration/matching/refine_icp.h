@@ -1,6 +1,7 @@
 #pragma once
 
 #include "planning_io/types/point_cloud.h"
+#include "planning_io/types/rigid_transform.h"
 #include "planning_io/types/skin_lut.h"
 
 namespace planlight {

@@ -1,0 +1,155 @@
+#include "registration/matching/refine_icp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "planning_io/types/triangle_mesh.h"
+#include "registration/matching/gauss_newton.h"
+
+namespace planlight {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Whether the skin nearest to the point is not skin: a seal, the end of the volume, or outside the table.
+bool off_the_skin(const SkinLut& lut, const Vector3d& p_in_ct) {
+    const SkinPoint* s = lut.nearest_skin(p_in_ct);
+    return !s || s->flags != kSkin;
+}
+
+std::vector<std::uint8_t> mark_off_the_skin(std::span<const Vector3d> points_in_rig, const SkinLut& lut,
+                                            const RigidTransform& ct_from_rig) {
+    std::vector<std::uint8_t> marks(points_in_rig.size());
+    for (std::size_t i = 0; i < marks.size(); ++i) marks[i] = off_the_skin(lut, ct_from_rig * points_in_rig[i]);
+    return marks;
+}
+
+Vector3d mean_of_unmarked(std::span<const Vector3d> points, std::span<const std::uint8_t> marks) {
+    Vector3d sum = Vector3d::Zero();
+    double count = 0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (marks[i]) continue;
+        sum += points[i];
+        ++count;
+    }
+    return sum / std::max(count, 1.0);
+}
+
+/// Up to `max_points` of the finite points in a random, fixed order, so that any first few are an even sample.
+std::vector<Vector3d> shuffled_points(const PointCloud& cloud, int max_points) {
+    std::vector<Vector3d> points;
+    points.reserve(cloud.size());
+    for (const Vector3d& p : cloud.points_in_rig)
+        if (p.allFinite()) points.push_back(p);
+    std::mt19937 random(1);
+    const std::size_t keep = std::min(points.size(), static_cast<std::size_t>(std::max(max_points, 0)));
+    for (std::size_t i = 0; i < keep; ++i) std::swap(points[i], points[i + random() % (points.size() - i)]);
+    points.resize(keep);
+    return points;
+}
+
+/// The paper's equations: point to the skin point behind the table's pointer.
+NormalEquations point_to_point_equations(std::span<const Vector3d> points_in_rig, const SkinLut& lut, const RigidTransform& ct_from_rig,
+                                         const Vector3d& centre_in_ct, double scale_mm, double max_pair_mm) {
+    NormalEquations result;
+    for (const Vector3d& p : points_in_rig) {
+        const Vector3d x = ct_from_rig * p;
+        const SkinPoint* s = lut.nearest_skin(x);
+        if (!s || s->flags != kSkin) continue;
+        const Vector3d residual = x - s->position_in_ct.cast<double>();
+        const double distance_mm = residual.norm();
+        if (distance_mm > max_pair_mm) continue;
+        ++result.used;
+        const double w = tukey_weight(distance_mm, scale_mm);
+        const Vector3d r = x - centre_in_ct;
+        Eigen::Matrix<double, 3, 6> J;  // of x by (rotation vector, translation): -[r]x, I
+        J << 0, r.z(), -r.y(), 1, 0, 0, -r.z(), 0, r.x(), 0, 1, 0, r.y(), -r.x(), 0, 0, 0, 1;
+        result.H.noalias() += w * J.transpose() * J;
+        result.g.noalias() += w * J.transpose() * residual;
+    }
+    return result;
+}
+
+double distance_to_skin(const SkinLut& lut, const DistanceField& field, IcpSettings::Mode mode, const Vector3d& p_in_ct) {
+    if (mode == IcpSettings::Mode::closest_point)
+        return (lut.nearest_skin(p_in_ct)->position_in_ct.cast<double>() - p_in_ct).norm();
+    double d;
+    Vector3d unused;
+    return field.sample(p_in_ct, d, unused) ? std::abs(d) : std::numeric_limits<double>::infinity();
+}
+
+void measure_residuals(std::span<const Vector3d> points, const SkinLut& lut, const DistanceField& field, const IcpSettings& settings,
+                       IcpResult& result) {
+    std::vector<double> all;
+    double sum = 0;
+    result.used = result.inliers = 0;
+    for (const Vector3d& p : points) {
+        const Vector3d x = result.ct_from_rig * p;
+        if (off_the_skin(lut, x)) continue;
+        const double d = distance_to_skin(lut, field, settings.mode, x);
+        all.push_back(d);
+        if (d <= settings.max_pair_mm) ++result.used;
+        if (d > 3 * settings.last_scale_mm) continue;
+        ++result.inliers;
+        sum += d * d;
+    }
+    if (result.inliers > 0) result.residual_rms_mm = std::sqrt(sum / static_cast<double>(result.inliers));
+    if (all.empty()) return;
+    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
+    std::nth_element(all.begin(), middle, all.end());
+    result.residual_median_mm = *middle;
+}
+
+/// How many points take part in an iteration: few while the pose is far, all at the end.
+struct Stage {
+    std::size_t points;
+    double first_scale_mm, last_scale_mm;
+    int max_iterations;
+    double stop_mm;
+};
+
+std::vector<Stage> stages_of(const IcpSettings& settings, std::size_t points) {
+    const double middle_mm = std::sqrt(settings.first_scale_mm * settings.last_scale_mm);
+    const int third = std::max(settings.max_iterations / 3, 1);
+    return {{std::min<std::size_t>(points, 1500), settings.first_scale_mm, middle_mm, third, 0.02},
+            {std::min<std::size_t>(points, 5000), middle_mm, settings.last_scale_mm, third, 0.005},
+            {points, settings.last_scale_mm, settings.last_scale_mm, std::max(settings.max_iterations - 2 * third, 1), settings.stop_mm}};
+}
+
+}  // namespace
+
+IcpResult refine_icp(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig, const IcpSettings& settings) {
+    IcpResult result;
+    result.ct_from_rig = ct_from_rig;
+    const std::vector<Vector3d> points = shuffled_points(cloud, settings.max_points);
+    if (points.size() < 6 || lut.skin.empty() || lut.distance_mm.empty()) return result;
+    const DistanceField field(lut);
+    for (const Stage& stage : stages_of(settings, points.size())) {
+        const std::span<const Vector3d> some(points.data(), stage.points);
+        const auto skip = mark_off_the_skin(some, lut, result.ct_from_rig);
+        const Vector3d centre_in_rig = mean_of_unmarked(some, skip);
+        double scale_mm = stage.first_scale_mm;
+        for (int i = 0; i < stage.max_iterations; ++i) {
+            result.centre_in_ct = result.ct_from_rig * centre_in_rig;
+            const NormalEquations equations =
+                settings.mode == IcpSettings::Mode::signed_distance
+                    ? point_to_plane_equations(some, skip, field, result.ct_from_rig, result.centre_in_ct, scale_mm, settings.max_pair_mm)
+                    : point_to_point_equations(some, lut, result.ct_from_rig, result.centre_in_ct, scale_mm, settings.max_pair_mm);
+            if (equations.used < 6) return result;
+            double moved_mm;
+            result.ct_from_rig = after_step(equations, result.ct_from_rig, result.centre_in_ct, 30, moved_mm);
+            result.information = equations.H;
+            ++result.iterations;
+            result.converged = moved_mm < settings.stop_mm;
+            if (moved_mm < stage.stop_mm && scale_mm <= stage.last_scale_mm) break;
+            scale_mm = std::max(stage.last_scale_mm, 0.7 * scale_mm);
+        }
+    }
+    result.ct_from_rig.linear() = Eigen::Quaterniond(result.ct_from_rig.linear()).normalized().toRotationMatrix();
+    measure_residuals(points, lut, field, settings, result);
+    return result;
+}
+
+}  // namespace planlight

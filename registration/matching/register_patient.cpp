@@ -1,0 +1,142 @@
+#include "registration/matching/register_patient.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "registration/matching/match_evidence.h"
+
+namespace planlight {
+namespace {
+
+/// The verdict as it grows worse, with a sentence for each step.
+class Judgement {
+public:
+    explicit Judgement(RegistrationResult& result) : result_(result) { result_.verdict = Verdict::yes; }
+    void ask_if(bool doubtful, const std::string& reason) { lower_if(doubtful, Verdict::ask, reason); }
+    void no_if(bool wrong, const std::string& reason) { lower_if(wrong, Verdict::no, reason); }
+
+private:
+    void lower_if(bool condition, Verdict verdict, const std::string& reason) {
+        if (!condition) return;
+        if (result_.verdict != Verdict::no) result_.verdict = verdict;
+        result_.reasons.push_back(reason);
+    }
+    RegistrationResult& result_;
+};
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+std::size_t finite_points(const PointCloud& cloud) {
+    return static_cast<std::size_t>(std::count_if(cloud.points_in_rig.begin(), cloud.points_in_rig.end(),
+                                                  [](const Eigen::Vector3d& p) { return p.allFinite(); }));
+}
+
+/// Why the cloud cannot be registered at all; empty when it can be tried.
+std::string unfit(const PointCloud& cloud, const RegistrationSettings& settings, std::size_t points) {
+    if (points < static_cast<std::size_t>(std::max(settings.min_points, 12)))
+        return fmt::format("the scan has only {} points; at least {} are needed", points, settings.min_points);
+    if (cloud.normals_in_rig.size() != cloud.size())
+        return "the scan has no normals; it must tell which side of the skin the cameras saw";
+    const Eigen::Vector3d extents = extents_mm(cloud);
+    if (extents[1] < settings.min_extent_mm)
+        return fmt::format("the scan covers only {:.0f} mm x {:.0f} mm; at least {:.0f} mm both ways are needed", extents[0], extents[1],
+                           settings.min_extent_mm);
+    return {};
+}
+
+/// Cost of the best pose of the mirrored scan / cost of this pose, over the same points; below 1 the mirror image fits better.
+double mirror_ratio(const PointCloud& cloud, const SkinLut& lut, const InitialMatch& match, const RegistrationSettings& settings) {
+    constexpr double kNoise_mm = 0.05;
+    InitialMatchSettings search = settings.initial;
+    search.max_bases = search.min_bases;
+    const InitialMatch image = find_initial_match(mirrored(cloud), lut, search);
+    if (image.candidates.empty()) return 0;
+    return (image.candidates[0].cost_mm + kNoise_mm) / (match.candidates[0].cost_mm + kNoise_mm);
+}
+
+void judge_fit(const RegistrationSettings& settings, const CloudOnSkin& fit, Judgement& judgement) {
+    const double share = fit.inlier_fraction();
+    const std::string on_skin = fmt::format("only {:.0f} % of the scan lies on the skin (within {:.1f} mm)", 100 * share,
+                                            settings.inlier_distance_mm);
+    judgement.no_if(share < 0.5, on_skin);
+    judgement.ask_if(share >= 0.5 && share < settings.min_inlier_fraction, on_skin);
+    judgement.no_if(fit.inlier_rms_mm > settings.max_residual_rms_mm,
+                    fmt::format("the scan lies {:.2f} mm (rms) from the skin; at most {:.2f} mm is good enough", fit.inlier_rms_mm,
+                                settings.max_residual_rms_mm));
+    judgement.no_if(fit.known_fraction() < 0.5,
+                    fmt::format("only {:.0f} % of the scan lies where the CT shows skin; the rest is beyond its ends",
+                                100 * fit.known_fraction()));
+}
+
+void judge_uniqueness(const RegistrationSettings& settings, const RegistrationResult& result, Judgement& judgement) {
+    const double ratio = result.runner_up_ratio;
+    const std::string rival = fmt::format("another pose fits nearly as well (ratio {:.2f})", ratio);
+    judgement.no_if(ratio > 0 && ratio < 1.05, rival);
+    judgement.ask_if(ratio >= 1.05 && ratio < settings.min_runner_up_ratio, rival);
+    judgement.ask_if(result.agreeing_bases < settings.min_agreeing_bases,
+                     fmt::format("only {} contact triplet led to this pose; {} must agree", result.agreeing_bases,
+                                 settings.min_agreeing_bases));
+}
+
+void judge_mirror_and_scale(const RegistrationSettings& settings, const RegistrationResult& result, Judgement& judgement) {
+    const double mirror = result.mirror_ratio;
+    judgement.no_if(mirror > 0 && mirror < settings.mirror_fits_better,
+                    fmt::format("the mirror image of the scan fits better (ratio {:.2f}): left and right are exchanged", mirror));
+    judgement.ask_if(mirror >= settings.mirror_fits_better && mirror < settings.min_mirror_ratio,
+                     fmt::format("the mirror image of the scan fits nearly as well (ratio {:.2f})", mirror));
+    judgement.ask_if(std::abs(result.scale - 1) > settings.max_scale_error,
+                     fmt::format("the head of the scan is {:.1f} % {} than that of the CT: another patient, or a wrong calibration",
+                                 100 * std::abs(1 / result.scale - 1), result.scale < 1 ? "larger" : "smaller"));
+}
+
+}  // namespace
+
+RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut, const RegistrationSettings& settings) {
+    RegistrationResult result;
+    result.points = finite_points(cloud);
+    result.inlier_distance_mm = settings.inlier_distance_mm;
+    if (const std::string problem = unfit(cloud, settings, result.points); !problem.empty()) {
+        result.reasons.push_back(problem);
+        return result;
+    }
+    const auto start = std::chrono::steady_clock::now();
+    const InitialMatch match = find_initial_match(cloud, lut, settings.initial);
+    result.initial_match_s = seconds_since(start);
+    if (match.candidates.empty()) {
+        result.reasons.push_back("no three points of the scan fit the skin together: this is not the surface that the CT shows");
+        return result;
+    }
+    const MatchCandidate& best = match.candidates[0];
+    result.initial_patient_from_ct = best.ct_from_rig.inverse();
+    result.runner_up_ratio = match.runner_up_ratio;
+    result.agreeing_bases = best.agreeing_bases;
+
+    const auto refine_start = std::chrono::steady_clock::now();
+    const IcpResult icp = refine_icp(cloud, lut, best.ct_from_rig, settings.icp);
+    result.refine_s = seconds_since(refine_start);
+    result.patient_from_ct = icp.ct_from_rig.inverse();
+
+    const CloudOnSkin fit = lay_on_skin(cloud, lut, icp.ct_from_rig, settings.inlier_distance_mm);
+    result.inlier_fraction = fit.inlier_fraction();
+    result.residual_rms_mm = fit.inlier_rms_mm;
+    result.residual_median_mm = fit.median_mm;
+    const WeakestWay weakest = weakest_way(cloud, lut, icp, settings.skin_movement_mm, settings.skin_correlation_mm);
+    result.weakest_sigma_mm = weakest.sigma_mm;
+    result.scale = best_scale(cloud, lut, icp);
+    if (settings.mirror_test) result.mirror_ratio = mirror_ratio(cloud, lut, match, settings);
+
+    Judgement judgement(result);
+    judge_fit(settings, fit, judgement);
+    judge_uniqueness(settings, result, judgement);
+    judge_mirror_and_scale(settings, result, judgement);
+    judgement.ask_if(weakest.sigma_mm > settings.max_weakest_sigma_mm,
+                     fmt::format("the patient could {} by {:.1f} mm unnoticed; scan more of the head", weakest.in_words, weakest.sigma_mm));
+    return result;
+}
+
+}  // namespace planlight
