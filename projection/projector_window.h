@@ -18,12 +18,20 @@ struct Monitor {
 /// The monitors there are now. Throws DeviceError when there is no display at all.
 std::vector<Monitor> list_monitors();
 
-/// The projector as an undecorated window that covers exactly one monitor. Black by itself when a picture has expired.
+struct ProjectorWindowSettings {
+    Instant light_delay = std::chrono::milliseconds(25);  ///< from the swap to light on the skin: display and lamp
+};
+
+/// The projector as an undecorated window that covers exactly one monitor. Black by itself when a picture has expired,
+/// also when the program hangs: a thread of its own owns the picture (and reads the clock, which must allow that).
+///
+/// All members are called from the main thread.
 class ProjectorWindow final : public Projector {
 public:
     /// Opens on the monitor of that name (or index as text). Throws DeviceError when there is no such monitor, when it is
-    /// the only one and `allow_only_monitor` is false, or when the window does not land exactly on it.
-    ProjectorWindow(const std::string& monitor, const Clock& clock, bool allow_only_monitor = false);
+    /// the only one or the primary one and `allow_only_monitor` is false, or when the window does not land exactly on it.
+    ProjectorWindow(const std::string& monitor, const Clock& clock, bool allow_only_monitor = false,
+                    const ProjectorWindowSettings& settings = {});
     ~ProjectorWindow() override;
 
     int width() const override;
@@ -32,6 +40,7 @@ public:
     void go_dark() noexcept override;
 
     /// To be called often: darkens an expired picture, checks that the window still covers its monitor and nothing else.
+    /// Throws DeviceError when it does not (monitor unplugged, window moved); the window is dark and hidden then.
     void refresh();
     bool dark() const;
 

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "planning_io/types/image.h"
+
+namespace planlight {
+
+/// The colour of a point's distance to the skin: teal at 0, green, yellow, orange, red at `largest_mm` and beyond; grey
+/// when it is not finite. The sign does not matter.
+Rgb distance_colour(double distance_mm, double largest_mm);
+
+}  // namespace planlight

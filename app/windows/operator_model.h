@@ -1,0 +1,109 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning_io/types/image.h"
+#include "planning_io/types/point_cloud.h"
+#include "planning_io/types/rigid_transform.h"
+#include "planning_io/types/triangle_mesh.h"
+#include "projection/draw_plan.h"
+
+namespace planlight {
+
+/// A marker's disc on the skin, as the 3-D view shows it.
+struct SceneMarker {
+    Eigen::Vector3d p_in_ct;
+    Eigen::Vector3d normal_in_ct = Eigen::Vector3d::Zero();  ///< outward, unit; zero: facing the viewer
+    bool seen = true;                                        ///< false is drawn grey
+};
+
+/// Light as it falls on the skin: a stroke cast again for the pose it was drawn for.
+struct LightLine {
+    std::vector<Eigen::Vector3d> points_in_ct;
+    bool closed = false;
+};
+
+/// What the 3-D view shows, all of it in ct (LPS, mm). Every part may be null.
+///
+/// The shared parts are taken as unchanging: to show another one, hand over another pointer. What has the same pointer as
+/// in the last frame is not built again.
+struct SceneModel {
+    std::shared_ptr<const TriangleMesh> skin;
+    std::shared_ptr<const PointCloud> cloud;
+    std::shared_ptr<const std::vector<float>> cloud_distance_mm;  ///< per point, to the skin; null: one colour
+    RigidTransform ct_from_rig = RigidTransform::Identity();      ///< where the cloud is shown
+    std::shared_ptr<const std::vector<SceneMarker>> markers;
+    std::shared_ptr<const PlanDrawing> plan;
+    std::shared_ptr<const std::vector<LightLine>> light;          ///< drawn white, above the plan
+    double largest_distance_mm = 1.5;                             ///< the red end of the colour scale
+};
+
+/// From where the head is looked at. Turning never tilts it: S stays up.
+struct SceneView {
+    double azimuth = 0.44;    ///< radians; 0 = from the front (anterior), positive = from the patient's right
+    double elevation = 0.28;  ///< radians, positive = from above; at most 1.5
+    double zoom = 1;          ///< 1 = the skin fills the view
+    Eigen::Vector2d shift_mm = Eigen::Vector2d::Zero();  ///< of the picture's middle, along the view's right and up
+};
+
+enum class StepState { waiting, active, done, attention };
+
+/// A found disc in a camera picture, pixels of that picture.
+struct FoundMarker {
+    Eigen::Vector2d pixel;
+    double radius_px = 0;
+};
+
+struct CameraPicture {
+    std::string title;                         ///< "Left camera"
+    std::shared_ptr<const GrayImage> picture;  ///< another pointer = another picture; null = none yet
+    std::vector<FoundMarker> found;
+    std::string note;                          ///< in place of a picture that is not there: why
+};
+
+/// A plan item in the table. Values in mm; empty is shown as a dash.
+struct PlanRow {
+    Rgb colour{255, 255, 255};
+    std::string name;                               ///< "Borehole 1, ⌀7.0 mm"
+    std::optional<double> depth_mm, predicted_error_mm, light_off_mm;
+};
+
+enum class StatusKind { ready, scanning, matching, aligned, check, refused, dark };
+
+struct Status {
+    StatusKind kind = StatusKind::dark;
+    std::string headline;             ///< one sentence: may the light be trusted, or why not
+    std::vector<std::string> details; ///< further sentences
+};
+
+/// Shown beside the status; empty is shown as a dash.
+struct Figures {
+    std::optional<double> overlay_error_mm, updates_per_s, head_moved_mm, head_turned_deg, delay_to_light_ms;
+};
+
+struct ButtonState {
+    bool enabled = false;
+    std::string why_not;  ///< a few words, shown in the button while it is not enabled: "scan first"
+};
+
+struct OperatorModel {
+    std::string case_title, case_subtitle;
+    std::array<StepState, 6> steps{};       ///< Case, Rig, Scan, Match, Verify, Project
+    SceneModel scene;
+    CameraPicture left{"Left camera", nullptr, {}, "no picture yet"};
+    CameraPicture right{"Right camera", nullptr, {}, "no picture yet"};
+    std::vector<PlanRow> rows;
+    double warn_above_mm = 1;               ///< a larger error in the table is amber and marked
+    double stop_above_mm = 2;               ///< a larger one red and marked
+    std::vector<std::string> evidence;      ///< what the registration was judged by, in words
+    Status status;
+    Figures figures;
+    ButtonState scan, do_register, track, stop;  ///< DARK is always enabled
+};
+
+}  // namespace planlight

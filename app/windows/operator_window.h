@@ -1,0 +1,47 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "app/windows/operator_model.h"
+
+namespace planlight {
+
+enum class OperatorAction { none, scan, do_register, track, stop, dark, quit };
+
+struct OperatorWindowSettings {
+    std::string title = "Planlight";
+    int width = 1920, height = 1080;     ///< pixels; at least 1280 x 800
+    std::optional<std::string> monitor;  ///< name or index as text; the primary one when not given
+    bool fill_monitor = false;           ///< borderless over that whole monitor
+};
+
+/// The window for the person at the trolley. All members are called from the main thread.
+class OperatorWindow {
+public:
+    /// Throws DeviceError when there is no display, no such monitor, no OpenGL 3.3, or no font.
+    explicit OperatorWindow(const OperatorWindowSettings& settings = {});
+    ~OperatorWindow();
+
+    /// Takes in what was pressed, draws the model, and says what the person wants; `dark` comes before all else.
+    ///
+    /// DARK acts when it is pressed, not when released, and by the keys Space, B and Escape. Closing the window is `quit`.
+    OperatorAction frame(const OperatorModel& model);
+
+    /// What the last frame showed.
+    RgbImage screenshot();
+
+    /// From where the head is looked at; the person turns it with the mouse.
+    SceneView view() const;
+    void set_view(const SceneView& view);
+
+    /// Where a control is, in window pixels (x, y, width, height), as the last frame drew it; for tests by mouse.
+    std::array<int, 4> place_of(OperatorAction control) const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace planlight

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <functional>
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkSmartPointer.h>
+
+#include "planning_io/types/image.h"
+
+namespace planlight {
+
+/// A VTK render window inside the graphics context that is current now; `make_current` makes it so again.
+/// Throws DeviceError when VTK cannot use the context.
+vtkSmartPointer<vtkGenericOpenGLRenderWindow> render_target(int width, int height, std::function<void()> make_current);
+
+/// What it rendered last, top row first.
+RgbImage picture_of(vtkGenericOpenGLRenderWindow& window);
+
+}  // namespace planlight

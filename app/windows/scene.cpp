@@ -1,0 +1,179 @@
+#include "app/windows/scene.h"
+
+#include <vtkActor.h>
+#include <vtkCamera.h>
+#include <vtkLightKit.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNew.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper.h>
+#include <vtkProperty.h>
+#include <vtkRenderWindow.h>
+#include <vtkRenderer.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/windows/orientation.h"
+#include "app/windows/scene_overlay.h"
+#include "app/windows/scene_shapes.h"
+
+namespace planlight {
+namespace {
+
+constexpr double kHalfAngle = 0.21;  ///< radians, of the camera's field
+
+/// A thing in the view. It stands `lift_mm` nearer to the viewer than it is, so that the skin under it does not hide it.
+struct Thing {
+    vtkNew<vtkPolyDataMapper> mapper;
+    vtkNew<vtkActor> actor;
+    double lift_mm;
+
+    Thing(vtkRenderer& renderer, double lift, bool lit) : lift_mm(lift) {
+        actor->SetMapper(mapper);
+        actor->SetVisibility(0);
+        actor->GetProperty()->SetLighting(lit);
+        renderer.AddActor(actor);
+    }
+    void show(vtkPolyData* data) {
+        mapper->SetInputData(data);
+        actor->SetVisibility(data != nullptr && data->GetNumberOfPoints() > 0);
+    }
+    void lift(const Eigen::Vector3d& towards_viewer, const RigidTransform& ct_from_shape = RigidTransform::Identity()) {
+        Eigen::Matrix4d matrix = ct_from_shape.matrix();
+        matrix.block<3, 1>(0, 3) += lift_mm * towards_viewer;
+        vtkNew<vtkMatrix4x4> placed;
+        for (int row = 0; row < 4; ++row)
+            for (int column = 0; column < 4; ++column) placed->SetElement(row, column, matrix(row, column));
+        actor->SetUserMatrix(placed);
+    }
+};
+
+template <typename T>
+bool replace(T& old, const T& now) {
+    if (old == now) return false;
+    old = now;
+    return true;
+}
+
+bool same_view(const SceneView& a, const SceneView& b) {
+    return a.azimuth == b.azimuth && a.elevation == b.elevation && a.zoom == b.zoom && a.shift_mm == b.shift_mm;
+}
+
+}  // namespace
+
+struct Scene::Parts {
+    vtkRenderWindow& window;
+    vtkNew<vtkRenderer> renderer;
+    vtkNew<vtkLightKit> lights;
+    Thing skin{*renderer, 0, true}, cloud{*renderer, 0.9, false}, markers{*renderer, 1.0, false}, plan{*renderer, 1.4, false},
+        light{*renderer, 2.0, false};
+    SceneOverlay overlay;
+    SceneModel shown;
+    SceneView shown_view;
+    int width = 0, height = 0;
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    double reach_mm = 120;  ///< half the picture's smaller side at zoom 1
+
+    Parts(vtkRenderWindow& w, const FontFiles& fonts) : window(w), overlay(*renderer, fonts) {
+        window.AddRenderer(renderer);
+        renderer->SetBackground(0.055, 0.067, 0.086);
+        renderer->SetBackgroundAlpha(1);
+        renderer->AutomaticLightCreationOff();
+        lights->SetKeyLightIntensity(0.85);
+        lights->SetKeyLightAngle(40, -25);
+        lights->SetKeyToFillRatio(3.5);
+        lights->SetKeyToHeadRatio(3.5);
+        lights->SetKeyToBackRatio(5);
+        lights->AddLightsToRenderer(renderer);
+        vtkProperty* const property = skin.actor->GetProperty();
+        property->SetAmbient(0.05);
+        property->SetDiffuse(0.95);
+        property->SetSpecular(0.10);
+        property->SetSpecularPower(18);
+        cloud.actor->GetProperty()->SetPointSize(2);
+    }
+
+    void measure() {
+        if (!shown.skin || shown.skin->vertices_in_ct.empty()) return;
+        Eigen::Vector3d low = shown.skin->vertices_in_ct.front(), high = low;
+        for (const Eigen::Vector3d& p : shown.skin->vertices_in_ct) {
+            low = low.cwiseMin(p);
+            high = high.cwiseMax(p);
+        }
+        middle = 0.5 * (low + high);
+        reach_mm = 0.56 * std::max({high.x() - low.x(), high.y() - low.y(), high.z() - low.z(), 1.0});
+    }
+
+    bool take_skin_and_markers(const SceneModel& scene) {
+        const bool new_skin = replace(shown.skin, scene.skin);
+        if (new_skin) {
+            measure();
+            skin.show(shown.skin ? skin_shape(*shown.skin) : nullptr);
+        }
+        if (!replace(shown.markers, scene.markers) && !new_skin) return false;
+        markers.show(shown.markers ? marker_shape(*shown.markers, middle) : nullptr);
+        return true;
+    }
+
+    bool take_cloud(const SceneModel& scene) {
+        const bool other = replace(shown.cloud, scene.cloud) | replace(shown.cloud_distance_mm, scene.cloud_distance_mm) |
+                           replace(shown.largest_distance_mm, scene.largest_distance_mm);
+        if (other)
+            cloud.show(shown.cloud ? cloud_shape(*shown.cloud, shown.cloud_distance_mm.get(), shown.largest_distance_mm)
+                                   : nullptr);
+        const bool moved = !shown.ct_from_rig.matrix().isApprox(scene.ct_from_rig.matrix(), 0);
+        shown.ct_from_rig = scene.ct_from_rig;
+        return other || (moved && shown.cloud);
+    }
+
+    bool take_lines(const SceneModel& scene) {
+        const bool new_plan = replace(shown.plan, scene.plan), new_light = replace(shown.light, scene.light);
+        if (new_plan) plan.show(shown.plan ? plan_shape(*shown.plan) : nullptr);
+        if (new_light) light.show(shown.light ? light_shape(*shown.light) : nullptr);
+        return new_plan || new_light;
+    }
+
+    double distance_mm() const {
+        const double narrow = std::min(1.0, static_cast<double>(width) / std::max(1, height));
+        return reach_mm / (std::tan(kHalfAngle) * narrow * shown_view.zoom);
+    }
+
+    void place_camera() {
+        const ViewAxes axes = axes_of(shown_view);
+        const Eigen::Vector3d focus =
+            middle - shown_view.shift_mm.x() * axes.right_in_ct - shown_view.shift_mm.y() * axes.up_in_ct;
+        const Eigen::Vector3d eye = focus + distance_mm() * axes.backward_in_ct;
+        vtkCamera* const camera = renderer->GetActiveCamera();
+        camera->SetViewAngle(2 * kHalfAngle * 180 / M_PI);
+        camera->SetFocalPoint(focus.data());
+        camera->SetPosition(eye.data());
+        camera->SetViewUp(axes.up_in_ct.data());
+        cloud.lift(axes.backward_in_ct, shown.ct_from_rig);
+        for (Thing* thing : {&markers, &plan, &light}) thing->lift(axes.backward_in_ct);
+        renderer->ResetCameraClippingRange();
+    }
+};
+
+Scene::Scene(vtkRenderWindow& window, const FontFiles& fonts) : parts_(std::make_unique<Parts>(window, fonts)) {}
+Scene::~Scene() = default;
+
+bool Scene::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale) {
+    Parts& parts = *parts_;
+    const bool changed = static_cast<int>(parts.take_skin_and_markers(scene)) | static_cast<int>(parts.take_cloud(scene)) |
+                         static_cast<int>(parts.take_lines(scene));
+    if (!changed && same_view(view, parts.shown_view) && width == parts.width && height == parts.height) return false;
+    parts.shown_view = view;
+    parts.width = width;
+    parts.height = height;
+    parts.cloud.actor->GetProperty()->SetPointSize(static_cast<float>(std::max(2.0, 2.2 * scale)));
+    parts.place_camera();
+    parts.overlay.update(scene, view, width, height, scale);
+    return true;
+}
+
+double Scene::mm_per_pixel() const {
+    return 2 * parts_->distance_mm() * std::tan(kHalfAngle) / std::max(1, parts_->height);
+}
+
+}  // namespace planlight

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+
+#include "app/windows/fonts.h"
+#include "app/windows/operator_model.h"
+
+class vtkRenderWindow;
+
+namespace planlight {
+
+/// The 3-D view in a VTK render window that somebody else owns.
+class Scene {
+public:
+    Scene(vtkRenderWindow& window, const FontFiles& fonts);
+    ~Scene();
+
+    /// Takes over what has changed; true when the picture must be rendered again.
+    bool update(const SceneModel& scene, const SceneView& view, int width, int height, double scale);
+
+    /// Millimetres of the head that a pixel in the middle of the last picture covers.
+    double mm_per_pixel() const;
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace planlight

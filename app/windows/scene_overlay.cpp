@@ -1,0 +1,137 @@
+#include "app/windows/scene_overlay.h"
+
+#include <fmt/format.h>
+#include <vtkActor2D.h>
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkNew.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkPolyDataMapper2D.h>
+#include <vtkProperty2D.h>
+#include <vtkRenderer.h>
+#include <vtkTextActor.h>
+#include <vtkTextProperty.h>
+#include <vtkUnsignedCharArray.h>
+
+#include <array>
+
+#include "app/windows/distance_colours.h"
+#include "app/windows/orientation.h"
+
+namespace planlight {
+namespace {
+
+struct Text {
+    vtkNew<vtkTextActor> actor;
+
+    void set_up(vtkRenderer& renderer, const std::filesystem::path& font, bool shadow) {
+        vtkTextProperty* const property = actor->GetTextProperty();
+        property->SetFontFamily(VTK_FONT_FILE);
+        property->SetFontFile(font.c_str());
+        property->SetColor(0.94, 0.95, 0.97);
+        property->SetShadow(shadow ? 1 : 0);
+        property->SetShadowOffset(2, -2);
+        property->SetJustificationToCentered();
+        property->SetVerticalJustificationToCentered();
+        renderer.AddActor2D(actor);
+    }
+    void place(const std::string& text, double x, double y, int pixels) {
+        actor->SetInput(text.c_str());
+        actor->GetTextProperty()->SetFontSize(pixels);
+        actor->SetPosition(x, y);
+    }
+};
+
+/// Filled rectangles in pixels from the lower left corner.
+struct Boxes {
+    vtkNew<vtkPoints> points;
+    vtkNew<vtkCellArray> cells;
+    vtkNew<vtkUnsignedCharArray> colours;
+    vtkNew<vtkPolyData> data;
+    vtkNew<vtkPolyDataMapper2D> mapper;
+    vtkNew<vtkActor2D> actor;
+
+    void set_up(vtkRenderer& renderer) {
+        colours->SetNumberOfComponents(4);
+        data->SetPoints(points);
+        data->SetPolys(cells);
+        data->GetCellData()->SetScalars(colours);
+        mapper->SetInputData(data);
+        actor->SetMapper(mapper);
+        renderer.AddActor2D(actor);
+    }
+    void clear() {
+        points->Reset();
+        cells->Reset();
+        colours->Reset();
+    }
+    void add(double x, double y, double width, double height, const Rgb& colour, std::uint8_t alpha) {
+        const vtkIdType ids[4] = {points->InsertNextPoint(x, y, 0), points->InsertNextPoint(x + width, y, 0),
+                                  points->InsertNextPoint(x + width, y + height, 0), points->InsertNextPoint(x, y + height, 0)};
+        cells->InsertNextCell(4, ids);
+        const std::uint8_t rgba[4] = {colour[0], colour[1], colour[2], alpha};
+        colours->InsertNextTypedTuple(rgba);
+    }
+    void done() {
+        points->Modified();
+        cells->Modified();
+        colours->Modified();
+        data->Modified();
+    }
+};
+
+}  // namespace
+
+struct SceneOverlay::Parts {
+    Boxes boxes;
+    std::array<Text, 4> letters;  ///< left, right, top, bottom
+    Text title;
+    std::array<Text, 4> values;
+
+    void letters_at_edges(const SceneView& view, int width, int height, double scale) {
+        const ViewAxes axes = axes_of(view);
+        const int size = static_cast<int>(32 * scale);
+        const double gap = 34 * scale;
+        letters[0].place(direction_letters(-axes.right_in_ct), gap, 0.5 * height, size);
+        letters[1].place(direction_letters(axes.right_in_ct), width - gap, 0.5 * height, size);
+        letters[2].place(direction_letters(axes.up_in_ct), 0.5 * width, height - gap, size);
+        letters[3].place(direction_letters(-axes.up_in_ct), 0.5 * width, gap, size);
+    }
+
+    void legend(const SceneModel& scene, int width, double scale) {
+        const bool shown = scene.cloud != nullptr && scene.cloud_distance_mm != nullptr;
+        title.actor->SetVisibility(shown);
+        for (Text& value : values) value.actor->SetVisibility(shown);
+        if (!shown) return;
+        const double w = 320 * scale, h = 92 * scale, x = width - w - 16 * scale, y = 16 * scale, bar = w - 48 * scale;
+        boxes.add(x, y, w, h, {12, 14, 18}, 215);
+        constexpr int kSteps = 64;
+        for (int i = 0; i < kSteps; ++i)
+            boxes.add(x + 24 * scale + bar * i / kSteps, y + 36 * scale, bar / kSteps + 0.5, 14 * scale,
+                      distance_colour(i + 0.5, kSteps), 255);
+        title.place("Distance of the scan to the skin, mm", x + w / 2, y + 72 * scale, static_cast<int>(16 * scale));
+        for (int i = 0; i < 4; ++i)
+            values[static_cast<std::size_t>(i)].place(
+                fmt::format("{}{:.1f}", i == 3 ? "≥ " : "", scene.largest_distance_mm * i / 3), x + 24 * scale + bar * i / 3,
+                y + 18 * scale, static_cast<int>(16 * scale));
+    }
+};
+
+SceneOverlay::SceneOverlay(vtkRenderer& renderer, const FontFiles& fonts) : parts_(std::make_unique<Parts>()) {
+    parts_->boxes.set_up(renderer);
+    for (Text& letter : parts_->letters) letter.set_up(renderer, fonts.bold, true);
+    parts_->title.set_up(renderer, fonts.regular, false);
+    for (Text& value : parts_->values) value.set_up(renderer, fonts.regular, false);
+}
+
+SceneOverlay::~SceneOverlay() = default;
+
+void SceneOverlay::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale) {
+    parts_->boxes.clear();
+    parts_->letters_at_edges(view, width, height, scale);
+    parts_->legend(scene, width, scale);
+    parts_->boxes.done();
+}
+
+}  // namespace planlight

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <memory>
+
+#include "app/windows/fonts.h"
+#include "app/windows/operator_model.h"
+
+class vtkRenderer;
+
+namespace planlight {
+
+/// The letters R L A P S I at the edges of the 3-D view, and the legend of the cloud's colours.
+class SceneOverlay {
+public:
+    SceneOverlay(vtkRenderer& renderer, const FontFiles& fonts);
+    ~SceneOverlay();
+
+    /// For a picture of that many pixels; `scale` 1 is for a 1080-line screen.
+    void update(const SceneModel& scene, const SceneView& view, int width, int height, double scale);
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace planlight

@@ -1,0 +1,196 @@
+#define GLFW_INCLUDE_GLCOREARB
+#define GL_GLEXT_PROTOTYPES
+#include "projection/picture_thread.h"
+
+#include <GLFW/glfw3.h>
+
+#include <chrono>
+
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+constexpr auto kPatience = std::chrono::seconds(1);
+constexpr auto kExpiryPoll = std::chrono::milliseconds(3);  ///< the injected clock can only be asked, not waited for
+
+const char* const kVertexShader =
+    "#version 330 core\n"
+    "void main() {\n"
+    "  vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);\n"
+    "  gl_Position = vec4(corner, 0.0, 1.0);\n"
+    "}\n";
+
+// One texel per pixel without any sampler; the picture's first row is the top one, GL counts from the bottom.
+const char* const kFragmentShader =
+    "#version 330 core\n"
+    "uniform sampler2D picture;\n"
+    "out vec4 light;\n"
+    "void main() {\n"
+    "  ivec2 pixel = ivec2(gl_FragCoord.xy);\n"
+    "  pixel.y = textureSize(picture, 0).y - 1 - pixel.y;\n"
+    "  light = vec4(texelFetch(picture, pixel, 0).rgb, 1.0);\n"
+    "}\n";
+
+GLuint compile(GLenum kind, const char* source) {
+    const GLuint shader = glCreateShader(kind);
+    glShaderSource(shader, 1, &source, nullptr);
+    glCompileShader(shader);
+    return shader;
+}
+
+DeviceError failed(const std::string& problem) {
+    return {"projector window", problem, "update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1"};
+}
+
+}  // namespace
+
+/// The GL objects; lives on the thread.
+struct PictureThread::Painter {
+    Painter(GLFWwindow* w, int width, int height) : window(w) {
+        glfwMakeContextCurrent(window);
+        glfwSwapInterval(1);
+        glViewport(0, 0, width, height);
+        glDisable(GL_DITHER);
+        glDisable(GL_FRAMEBUFFER_SRGB);
+        glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+        glGenVertexArrays(1, &vertices);
+        glBindVertexArray(vertices);
+        glGenTextures(1, &texture);
+        glBindTexture(GL_TEXTURE_2D, texture);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+        glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+        program = glCreateProgram();
+        glAttachShader(program, compile(GL_VERTEX_SHADER, kVertexShader));
+        glAttachShader(program, compile(GL_FRAGMENT_SHADER, kFragmentShader));
+        glLinkProgram(program);
+        GLint linked = 0;
+        glGetProgramiv(program, GL_LINK_STATUS, &linked);
+        if (linked == 0) throw failed("the graphics driver refused the picture's shader");
+        glUseProgram(program);
+    }
+    Painter(const Painter&) = delete;
+    Painter& operator=(const Painter&) = delete;
+    ~Painter() { glfwMakeContextCurrent(nullptr); }
+
+    void draw(const RgbImage& picture) {
+        glClearColor(0, 0, 0, 1);
+        glClear(GL_COLOR_BUFFER_BIT);
+        if (!picture.empty()) {
+            glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, picture.width, picture.height, 0, GL_RGB, GL_UNSIGNED_BYTE,
+                         picture.pixels.data());
+            glDrawArrays(GL_TRIANGLES, 0, 3);
+        }
+        const GLenum error = glGetError();
+        glfwSwapBuffers(window);
+        glFinish();
+        if (error != GL_NO_ERROR) throw failed("the graphics driver reports error " + std::to_string(error));
+    }
+
+    GLFWwindow* window;
+    GLuint vertices = 0, texture = 0, program = 0;
+};
+
+PictureThread::PictureThread(GLFWwindow* window, int width, int height, const Clock& clock)
+    : window_(window), width_(width), height_(height), clock_(clock) {
+    wanted_ = 1;
+    thread_ = std::thread([this] { run(); });
+    std::unique_lock lock(mutex_);
+    if (drawn_changed_.wait_for(lock, 5 * kPatience, [&] { return drawn_ >= 1 || !failure_.empty(); }) && failure_.empty())
+        return;
+    const std::string problem = failure_.empty() ? "the graphics driver does not answer" : failure_;
+    stop_ = true;
+    wanted_changed_.notify_all();
+    lock.unlock();
+    thread_.join();
+    throw failed(problem);
+}
+
+PictureThread::~PictureThread() {
+    go_dark();
+    {
+        const std::lock_guard lock(mutex_);
+        stop_ = true;
+    }
+    wanted_changed_.notify_all();
+    thread_.join();
+}
+
+void PictureThread::show(const RgbImage& picture, Instant valid_until) {
+    std::unique_lock lock(mutex_);
+    picture_ = picture;
+    valid_until_ = valid_until;
+    lit_ = true;
+    const std::uint64_t number = ++wanted_;
+    wanted_changed_.notify_all();
+    if (drawn_within_a_second(lock, number)) return;
+    lit_ = false;
+    picture_ = {};
+    ++wanted_;
+    wanted_changed_.notify_all();
+    throw failed(failure_.empty() ? "the picture was not drawn within a second" : failure_);
+}
+
+void PictureThread::go_dark() noexcept {
+    std::unique_lock lock(mutex_);
+    lit_ = false;
+    picture_ = {};
+    const std::uint64_t number = ++wanted_;
+    wanted_changed_.notify_all();
+    drawn_within_a_second(lock, number);
+}
+
+void PictureThread::redraw() {
+    const std::lock_guard lock(mutex_);
+    ++wanted_;
+    wanted_changed_.notify_all();
+}
+
+bool PictureThread::dark() const {
+    const std::lock_guard lock(mutex_);
+    return !lit_ || clock_.now() >= valid_until_;
+}
+
+bool PictureThread::drawn_within_a_second(std::unique_lock<std::mutex>& lock, std::uint64_t number) {
+    return drawn_changed_.wait_for(lock, kPatience, [&] { return drawn_ >= number || !failure_.empty(); }) &&
+           failure_.empty();
+}
+
+/// Waits for a request or for the expiry of what is lit, whichever comes first.
+void PictureThread::wait_and_take(std::unique_lock<std::mutex>& lock) {
+    while (!stop_ && wanted_ == drawn_) {
+        if (lit_)
+            wanted_changed_.wait_for(lock, kExpiryPoll);
+        else
+            wanted_changed_.wait(lock);
+        if (lit_ && clock_.now() >= valid_until_) ++wanted_;
+    }
+    if (lit_ && clock_.now() >= valid_until_) lit_ = false;
+    if (!lit_) picture_ = {};
+}
+
+void PictureThread::run() {
+    try {
+        Painter painter(window_, width_, height_);
+        std::unique_lock lock(mutex_);
+        while (true) {
+            wait_and_take(lock);
+            if (stop_) break;
+            const std::uint64_t number = wanted_;
+            const RgbImage picture = picture_;
+            lock.unlock();
+            painter.draw(picture);
+            lock.lock();
+            drawn_ = number;
+            drawn_changed_.notify_all();
+        }
+        lock.unlock();
+        painter.draw({});
+    } catch (const std::exception& error) {
+        const std::lock_guard lock(mutex_);
+        failure_ = error.what();
+        drawn_changed_.notify_all();
+    }
+}
+
+}  // namespace planlight

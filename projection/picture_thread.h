@@ -1,0 +1,54 @@
+#pragma once
+
+#include <condition_variable>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "planning_io/types/image.h"
+#include "planning_io/types/time.h"
+
+struct GLFWwindow;
+
+namespace planlight {
+
+/// Owns the graphics context of the projector window and draws its picture 1:1, or black, from a thread of its own, so
+/// that the picture expires even while the rest of the program hangs.
+class PictureThread {
+public:
+    /// Draws black at once. Throws DeviceError when the graphics driver refuses.
+    PictureThread(GLFWwindow* window, int width, int height, const Clock& clock);
+    ~PictureThread();  ///< black, then done
+    PictureThread(const PictureThread&) = delete;
+    PictureThread& operator=(const PictureThread&) = delete;
+
+    /// Returns when the picture has been handed to the display. Throws DeviceError when that fails or takes over a second.
+    void show(const RgbImage& picture, Instant valid_until);
+    /// Returns when black has been handed to the display, after a second at most.
+    void go_dark() noexcept;
+    /// Draws again what should be seen (the window system lost it).
+    void redraw();
+    bool dark() const;
+
+private:
+    struct Painter;
+    void run();
+    void wait_and_take(std::unique_lock<std::mutex>& lock);
+    bool drawn_within_a_second(std::unique_lock<std::mutex>& lock, std::uint64_t number);
+
+    GLFWwindow* window_;
+    int width_, height_;
+    const Clock& clock_;
+
+    mutable std::mutex mutex_;
+    std::condition_variable wanted_changed_, drawn_changed_;
+    RgbImage picture_;                     ///< empty: black
+    Instant valid_until_{};
+    bool lit_ = false, stop_ = false;
+    std::uint64_t wanted_ = 0, drawn_ = 0; ///< counts of requests
+    std::string failure_;
+    std::thread thread_;
+};
+
+}  // namespace planlight

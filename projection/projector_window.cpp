@@ -1,0 +1,227 @@
+#define GLFW_INCLUDE_NONE
+#include "projection/projector_window.h"
+
+#include <GLFW/glfw3.h>
+
+#include <algorithm>
+#include <chrono>
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "planning_io/types/error.h"
+#include "projection/glfw_session.h"
+#include "projection/picture_thread.h"
+
+namespace planlight {
+namespace {
+
+constexpr auto kLandingPatience = std::chrono::milliseconds(1500);
+constexpr auto kSettled = std::chrono::milliseconds(150);  ///< a window manager may still move a window that just landed
+
+std::vector<GLFWmonitor*> monitors_now() {
+    int count = 0;
+    GLFWmonitor** const monitors = glfwGetMonitors(&count);
+    return {monitors, monitors + count};
+}
+
+Monitor describe(GLFWmonitor* monitor) {
+    Monitor result;
+    result.name = glfwGetMonitorName(monitor);
+    glfwGetMonitorPos(monitor, &result.x, &result.y);
+    if (const GLFWvidmode* mode = glfwGetVideoMode(monitor)) {
+        result.width = mode->width;
+        result.height = mode->height;
+    }
+    result.primary = monitor == glfwGetPrimaryMonitor();
+    return result;
+}
+
+std::string names_of(const std::vector<Monitor>& monitors) {
+    std::string names;
+    for (const Monitor& m : monitors)
+        names += (names.empty() ? "" : ", ") + m.name + " (" + std::to_string(m.width) + "x" + std::to_string(m.height) +
+                 (m.primary ? ", primary)" : ")");
+    return names.empty() ? "none" : names;
+}
+
+std::string rectangle(int x, int y, int width, int height) {
+    return std::to_string(width) + "x" + std::to_string(height) + " at " + std::to_string(x) + "," + std::to_string(y);
+}
+
+/// The index of the monitor of that name, or of that index as text.
+std::size_t choose(const std::vector<Monitor>& monitors, const std::string& wanted, bool allow_only_monitor) {
+    auto found = std::find_if(monitors.begin(), monitors.end(), [&](const Monitor& m) { return m.name == wanted; });
+    for (std::size_t i = 0; found == monitors.end() && i < monitors.size(); ++i)
+        if (std::to_string(i) == wanted) found = monitors.begin() + static_cast<std::ptrdiff_t>(i);
+    if (found == monitors.end())
+        throw DeviceError("projector window", "there is no monitor \"" + wanted + "\"; there is: " + names_of(monitors),
+                          "connect the projector, or name one of these");
+    if (!allow_only_monitor && (found->primary || monitors.size() == 1))
+        throw DeviceError("projector window",
+                          "monitor " + found->name + (monitors.size() == 1 ? " is the only one" : " is the primary one") +
+                              ": the light would cover the operator's screen; there is: " + names_of(monitors),
+                          "choose the projector's monitor, or make the operator's screen the primary one");
+    return static_cast<std::size_t>(found - monitors.begin());
+}
+
+/// Undecorated, above all, not yet seen. Full-screen mode is not used: under some window managers it lands on another
+/// monitor than the one asked for.
+GLFWwindow* hidden_window(const Monitor& monitor) {
+    glfwDefaultWindowHints();
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
+    glfwWindowHint(GLFW_DECORATED, GLFW_FALSE);
+    glfwWindowHint(GLFW_RESIZABLE, GLFW_FALSE);
+    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+    glfwWindowHint(GLFW_FLOATING, GLFW_TRUE);
+    glfwWindowHint(GLFW_FOCUS_ON_SHOW, GLFW_FALSE);
+    glfwWindowHint(GLFW_FOCUSED, GLFW_FALSE);
+    glfwWindowHint(GLFW_ALPHA_BITS, 0);
+    GLFWwindow* const window = glfwCreateWindow(monitor.width, monitor.height, "Planlight projector", nullptr, nullptr);
+    if (window == nullptr)
+        throw DeviceError("projector window", "it could not be opened (" + last_window_error() + ")",
+                          "install an OpenGL 3.3 driver, or set LIBGL_ALWAYS_SOFTWARE=1");
+    glfwSetInputMode(window, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
+    return window;
+}
+
+}  // namespace
+
+std::vector<Monitor> list_monitors() {
+    const auto session = glfw_session();
+    std::vector<Monitor> result;
+    for (GLFWmonitor* monitor : monitors_now()) result.push_back(describe(monitor));
+    return result;
+}
+
+struct ProjectorWindow::Parts {
+    std::shared_ptr<void> session = glfw_session();
+    ProjectorWindowSettings settings;
+    const Clock& clock;
+    GLFWmonitor* handle = nullptr;
+    Monitor monitor;
+    GLFWwindow* window = nullptr;
+    std::optional<PictureThread> picture;
+    bool damaged = false;
+
+    Parts(const std::string& wanted, const Clock& c, bool allow_only_monitor, const ProjectorWindowSettings& s)
+        : settings(s), clock(c) {
+        glfwPollEvents();
+        const std::vector<GLFWmonitor*> handles = monitors_now();
+        const std::size_t index = choose(list_monitors(), wanted, allow_only_monitor);
+        handle = handles.at(index);
+        monitor = describe(handle);
+        window = hidden_window(monitor);
+        glfwSetWindowUserPointer(window, this);
+        glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) {
+            static_cast<Parts*>(glfwGetWindowUserPointer(w))->damaged = true;
+        });
+        try {
+            picture.emplace(window, monitor.width, monitor.height, clock);
+            land();
+        } catch (...) {
+            close();
+            throw;
+        }
+    }
+    Parts(const Parts&) = delete;
+    Parts& operator=(const Parts&) = delete;
+    ~Parts() { close(); }
+
+    void close() noexcept {
+        picture.reset();
+        if (window != nullptr) glfwDestroyWindow(window);
+        window = nullptr;
+    }
+
+    /// Onto the monitor, then seen, then checked until it has stayed there for a while.
+    void land() {
+        glfwSetWindowPos(window, monitor.x, monitor.y);
+        glfwShowWindow(window);
+        const auto start = std::chrono::steady_clock::now();
+        auto wrong_at = start;
+        while (true) {
+            glfwPollEvents();
+            const auto now = std::chrono::steady_clock::now();
+            const std::string problem = misplacement();
+            if (!problem.empty()) {
+                wrong_at = now;
+                glfwSetWindowPos(window, monitor.x, monitor.y);
+            }
+            if (problem.empty() && now - wrong_at > kSettled) break;
+            if (now - start > kLandingPatience) refuse(problem.empty() ? "the window does not stay on its monitor" : problem);
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        picture->redraw();
+    }
+
+    /// Why the window does not cover exactly its monitor; empty when it does.
+    std::string misplacement() const {
+        const std::vector<GLFWmonitor*> handles = monitors_now();
+        if (std::find(handles.begin(), handles.end(), handle) == handles.end())
+            return "monitor " + monitor.name + " is no longer connected";
+        const Monitor now = describe(handle);
+        if (now.x != monitor.x || now.y != monitor.y || now.width != monitor.width || now.height != monitor.height)
+            return "monitor " + monitor.name + " is now " + rectangle(now.x, now.y, now.width, now.height) + ", was " +
+                   rectangle(monitor.x, monitor.y, monitor.width, monitor.height);
+        if (glfwGetWindowAttrib(window, GLFW_ICONIFIED) == GLFW_TRUE || glfwGetWindowAttrib(window, GLFW_VISIBLE) == GLFW_FALSE)
+            return "the window is not seen";
+        int x = 0, y = 0, width = 0, height = 0;
+        glfwGetWindowPos(window, &x, &y);
+        glfwGetFramebufferSize(window, &width, &height);
+        if (x == monitor.x && y == monitor.y && width == monitor.width && height == monitor.height) return {};
+        return "the window is " + rectangle(x, y, width, height) + " and should be " +
+               rectangle(monitor.x, monitor.y, monitor.width, monitor.height);
+    }
+
+    /// Dark, and off whatever screen it covers.
+    [[noreturn]] void refuse(const std::string& problem) {
+        picture->go_dark();
+        glfwHideWindow(window);
+        glfwPollEvents();
+        throw DeviceError("projector window", problem,
+                          "connect the projector, check the monitor arrangement, and open the projector again");
+    }
+
+    void check_place() {
+        const std::string problem = misplacement();
+        if (!problem.empty()) refuse(problem);
+    }
+};
+
+ProjectorWindow::ProjectorWindow(const std::string& monitor, const Clock& clock, bool allow_only_monitor,
+                                 const ProjectorWindowSettings& settings)
+    : parts_(std::make_unique<Parts>(monitor, clock, allow_only_monitor, settings)) {}
+ProjectorWindow::~ProjectorWindow() = default;
+
+int ProjectorWindow::width() const { return parts_->monitor.width; }
+int ProjectorWindow::height() const { return parts_->monitor.height; }
+bool ProjectorWindow::dark() const { return parts_->picture->dark(); }
+void ProjectorWindow::go_dark() noexcept { parts_->picture->go_dark(); }
+
+Instant ProjectorWindow::show(const RgbImage& picture, Instant valid_until) {
+    if (picture.width != width() || picture.height != height()) {
+        go_dark();
+        throw DeviceError("projector window",
+                          "a picture of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
+                              " does not fit the monitor's " + std::to_string(width()) + "x" + std::to_string(height()),
+                          "calibrate the rig at the projector's own resolution, or set the monitor to it");
+    }
+    parts_->check_place();
+    if (parts_->clock.now() >= valid_until)
+        go_dark();
+    else
+        parts_->picture->show(picture, valid_until);
+    return parts_->clock.now() + parts_->settings.light_delay;
+}
+
+void ProjectorWindow::refresh() {
+    glfwPollEvents();
+    parts_->check_place();
+    if (std::exchange(parts_->damaged, false)) parts_->picture->redraw();
+}
+
+}  // namespace planlight
