@@ -1,10 +1,12 @@
 #include "planning_io/safe_write.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <fstream>
 #include <random>
@@ -23,15 +25,15 @@ constexpr const char* kDiskRemedy = "Check the free space and the permissions of
     throw DiskError(file, doing + (code ? std::string(": ") + std::strerror(code) : std::string()), kDiskRemedy);
 }
 
-/// A new empty file beside `file`, with the permissions that the user's umask gives.
-fs::path make_temporary_beside(const fs::path& file) {
+/// A new empty file (or folder) beside `file`, with the permissions that the user's umask gives.
+fs::path make_temporary_beside(const fs::path& file, bool folder = false) {
     std::random_device random;
     for (int attempt = 0; attempt < 100; ++attempt) {
         fs::path temporary = file;
         temporary += ".part-" + std::to_string(random());
-        const int fd = ::open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
-        if (fd >= 0) {
-            ::close(fd);
+        const int made = folder ? ::mkdir(temporary.c_str(), 0777) : ::open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+        if (made >= 0) {
+            if (!folder) ::close(made);
             return temporary;
         }
         if (errno != EEXIST) refuse(file, "cannot be written");
@@ -57,6 +59,15 @@ struct RemoveUnlessKept {
     }
 };
 
+/// Removes what is left there: the half-written folder, or the old one after an exchange.
+struct RemoveFolder {
+    fs::path path;
+    ~RemoveFolder() {
+        std::error_code ignored;
+        fs::remove_all(path, ignored);
+    }
+};
+
 }  // namespace
 
 void write_safely(const fs::path& file, const std::function<void(std::ostream&)>& write) {
@@ -76,6 +87,21 @@ void write_safely(const fs::path& file, const std::function<void(std::ostream&)>
 
 void write_safely(const fs::path& file, const std::string& content) {
     write_safely(file, [&](std::ostream& out) { out.write(content.data(), static_cast<std::streamsize>(content.size())); });
+}
+
+void write_folder_safely(const fs::path& folder, bool replace, const std::function<void(const fs::path&)>& fill) {
+    fs::path target = folder;
+    if (!target.has_filename()) target = target.parent_path();  // "case/" means "case"
+    const bool there = fs::exists(target), empty = there && fs::is_directory(target) && fs::is_empty(target);
+    if (there && !fs::is_directory(target)) throw InputError(target, "is a file, not a folder", "Name another folder.");
+    if (there && !empty && !replace) throw InputError(target, "exists already and is not empty", "Name a new folder, or remove this one first.");
+    RemoveFolder temporary{make_temporary_beside(target, true)};
+    fill(temporary.path);
+    sync(temporary.path, target);
+    const bool exchange = there && !empty;
+    if (::renameat2(AT_FDCWD, temporary.path.c_str(), AT_FDCWD, target.c_str(), exchange ? RENAME_EXCHANGE : 0) != 0)
+        refuse(target, "cannot be put in place");
+    sync(target.has_parent_path() ? target.parent_path() : fs::path("."), target);
 }
 
 std::string read_whole(const fs::path& file) {

@@ -1,0 +1,225 @@
+#include "planning_io/recording_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "planning_io/image_file.h"
+#include "planning_io/json_value.h"
+#include "planning_io/safe_write.h"
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kVersion = 1;
+constexpr std::int64_t kAny = std::numeric_limits<std::int64_t>::max();
+
+/// A name that is a file name and nothing more.
+void check_name(const std::string& name, const fs::path& file) {
+    const bool plain = !name.empty() && name.size() <= 100 && std::all_of(name.begin(), name.end(), [](unsigned char c) {
+        return std::isalnum(c) || c == '_' || c == '-';
+    });
+    if (!plain) throw InputError(file, "names a pattern \"" + name + "\"", "Use letters, digits, _ and - in names of patterns only.");
+}
+
+void check_picture(const GrayImage& picture, const GrayImage& first, const fs::path& file) {
+    if (picture.width != first.width || picture.height != first.height)
+        throw InputError(file, fmt::format("is {} x {} pixels, the first picture of this camera is {} x {}", picture.width, picture.height, first.width, first.height),
+                         "Capture all pictures with the same settings.");
+}
+
+/// The picture at left/ or right/ of a recording; one size for all.
+void read_picture(std::vector<GrayImage>& pictures, const fs::path& file) {
+    pictures.push_back(read_gray(file));
+    check_picture(pictures.back(), pictures.front(), file);
+}
+
+Json parse_file(const fs::path& file, const char* format) {
+    Json json = parse_json(read_whole(file), file);
+    check_format(JsonValue(json, file), format, kVersion, file);
+    return json;
+}
+
+Instant instant_of(const JsonValue& value) { return Instant(value.integer(-kAny, kAny)); }
+
+const char* const kVerdicts[] = {"yes", "ask", "no"};
+
+Verdict verdict_of(const JsonValue& value) {
+    const std::string text = value.text();
+    for (std::size_t i = 0; i < 3; ++i)
+        if (text == kVerdicts[i]) return static_cast<Verdict>(i);
+    value.refuse("is \"" + text + "\", none of yes, ask, no");
+}
+
+}  // namespace
+
+void write_capture(const CaptureFolder& capture, const fs::path& folder) {
+    if (capture.left.size() != capture.names.size() || capture.right.size() != capture.names.size())
+        throw InputError(folder, "the capture does not have one left and one right picture for each pattern", "Capture the sequence again.");
+    for (const std::string& name : capture.names) check_name(name, folder);
+    write_folder_safely(folder, false, [&](const fs::path& into) {
+        fs::create_directories(into / "left");
+        fs::create_directories(into / "right");
+        for (std::size_t i = 0; i < capture.names.size(); ++i) {
+            write_png(capture.left[i], into / "left" / (capture.names[i] + ".png"));
+            write_png(capture.right[i], into / "right" / (capture.names[i] + ".png"));
+        }
+        write_safely(into / "capture.json", dump(Json{{"format", "planlight capture"},
+                                                      {"version", kVersion},
+                                                      {"projector_width", capture.projector_width},
+                                                      {"projector_height", capture.projector_height},
+                                                      {"phase_steps", capture.phase_steps},
+                                                      {"phase_period_px", capture.phase_period_px},
+                                                      {"rows", capture.rows},
+                                                      {"inverse", capture.inverse},
+                                                      {"began_ns", capture.began.count()},
+                                                      {"ended_ns", capture.ended.count()},
+                                                      {"names", capture.names}}));
+    });
+}
+
+CaptureFolder read_capture(const fs::path& folder) {
+    const fs::path file = folder / "capture.json";
+    const Json json = parse_file(file, "planlight capture");
+    const JsonValue root(json, file);
+    CaptureFolder capture;
+    capture.projector_width = static_cast<int>(root.at("projector_width").integer(1, 65535));
+    capture.projector_height = static_cast<int>(root.at("projector_height").integer(1, 65535));
+    capture.phase_steps = static_cast<int>(root.at("phase_steps").integer(0, 1000));
+    capture.phase_period_px = root.at("phase_period_px").number(0, 1e5);
+    capture.rows = root.at("rows").flag();
+    capture.inverse = root.at("inverse").flag();
+    if (const auto began = root.find("began_ns")) capture.began = instant_of(*began);
+    if (const auto ended = root.find("ended_ns")) capture.ended = instant_of(*ended);
+    const JsonValue names = root.at("names");
+    if (names.size() == 0 || names.size() > 10000) names.refuse("must be a list of 1 to 10000 names");
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        capture.names.push_back(names[i].text());
+        const std::string& name = capture.names.back();
+        check_name(name, file);
+        if (std::count(capture.names.begin(), capture.names.end(), name) > 1) names[i].refuse("is named twice");
+        read_picture(capture.left, folder / "left" / (name + ".png"));
+        read_picture(capture.right, folder / "right" / (name + ".png"));
+    }
+    return capture;
+}
+
+void write_frames(const std::vector<RecordedFrame>& frames, const fs::path& folder) {
+    write_folder_safely(folder, false, [&](const fs::path& into) {
+        fs::create_directories(into / "left");
+        fs::create_directories(into / "right");
+        Json list = Json::array();
+        for (std::size_t i = 0; i < frames.size(); ++i) {
+            const std::string name = fmt::format("{:06}.png", i);
+            write_png(frames[i].left, into / "left" / name);
+            write_png(frames[i].right, into / "right" / name);
+            list.push_back(Json{{"picture", name}, {"number", frames[i].number}, {"at_ns", frames[i].at.count()}, {"exposure_ns", frames[i].exposure.count()}});
+        }
+        write_safely(into / "frames.json", dump(Json{{"format", "planlight frames"}, {"version", kVersion}, {"frames", std::move(list)}}));
+    });
+}
+
+std::vector<RecordedFrame> read_frames(const fs::path& folder) {
+    const fs::path file = folder / "frames.json";
+    const Json json = parse_file(file, "planlight frames");
+    const JsonValue list = JsonValue(json, file).at("frames");
+    std::vector<RecordedFrame> frames(list.size());
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        RecordedFrame& frame = frames[i];
+        const std::string name = list[i].at("picture").text();
+        if (!name.ends_with(".png")) list[i].refuse("has a picture that is not a PNG file");
+        check_name(name.substr(0, name.size() - 4), file);
+        frame.number = static_cast<std::uint64_t>(list[i].at("number").integer(0, kAny));
+        frame.at = instant_of(list[i].at("at_ns"));
+        frame.exposure = Instant(list[i].at("exposure_ns").integer(0, kAny));
+        if (i > 0 && frame.at <= frames[i - 1].at) list[i].at("at_ns").refuse("is not later than the frame before it");
+        frame.left = read_gray(folder / "left" / name);
+        frame.right = read_gray(folder / "right" / name);
+        check_picture(frame.left, frames.front().left, folder / "left" / name);
+        check_picture(frame.right, frames.front().right, folder / "right" / name);
+    }
+    return frames;
+}
+
+void write_registration(const RegistrationResult& result, const fs::path& file) {
+    write_safely(file, dump(Json{{"format", "planlight registration"},
+                                 {"version", kVersion},
+                                 {"verdict", kVerdicts[static_cast<std::size_t>(result.verdict)]},
+                                 {"reasons", result.reasons},
+                                 {"patient_from_ct", to_json(result.patient_from_ct)},
+                                 {"residual_rms_mm", result.residual_rms_mm},
+                                 {"residual_median_mm", result.residual_median_mm},
+                                 {"inlier_fraction", result.inlier_fraction},
+                                 {"inlier_distance_mm", result.inlier_distance_mm},
+                                 {"points", result.points},
+                                 {"runner_up_ratio", std::min(result.runner_up_ratio, std::numeric_limits<double>::max())},
+                                 {"agreeing_bases", result.agreeing_bases},
+                                 {"weakest_sigma_mm", result.weakest_sigma_mm},
+                                 {"initial_match_s", result.initial_match_s},
+                                 {"refine_s", result.refine_s},
+                                 {"initial_patient_from_ct", to_json(result.initial_patient_from_ct)}}));
+}
+
+RegistrationResult read_registration(const fs::path& file) {
+    const Json json = parse_file(file, "planlight registration");
+    const JsonValue root(json, file);
+    const auto number = [&](const char* key) {  // evidence may be absent or, where it was not finite, null
+        const auto value = root.find(key);
+        return value ? value->number() : 0.0;
+    };
+    RegistrationResult result;
+    result.verdict = verdict_of(root.at("verdict"));
+    const JsonValue reasons = root.at("reasons");
+    for (std::size_t i = 0; i < reasons.size(); ++i) result.reasons.push_back(reasons[i].text());
+    result.patient_from_ct = root.at("patient_from_ct").transform();
+    if (const auto initial = root.find("initial_patient_from_ct")) result.initial_patient_from_ct = initial->transform();
+    result.residual_rms_mm = number("residual_rms_mm");
+    result.residual_median_mm = number("residual_median_mm");
+    result.inlier_fraction = number("inlier_fraction");
+    result.inlier_distance_mm = number("inlier_distance_mm");
+    result.runner_up_ratio = number("runner_up_ratio");
+    result.weakest_sigma_mm = number("weakest_sigma_mm");
+    result.initial_match_s = number("initial_match_s");
+    result.refine_s = number("refine_s");
+    if (const auto points = root.find("points")) result.points = static_cast<std::size_t>(points->integer(0, kAny));
+    if (const auto bases = root.find("agreeing_bases")) result.agreeing_bases = static_cast<int>(bases->integer(0, 1000000000));
+    return result;
+}
+
+void write_poses(const std::vector<TrackedPose>& poses, const fs::path& file) {
+    Json list = Json::array();
+    for (const TrackedPose& pose : poses)
+        list.push_back(Json{{"at_ns", pose.at.count()},
+                            {"rig_from_patient", pose.rig_from_patient ? to_json(*pose.rig_from_patient) : Json(nullptr)},
+                            {"markers_left", pose.markers_left},
+                            {"markers_right", pose.markers_right},
+                            {"residual_px", pose.residual_px},
+                            {"predicted_error_mm", pose.predicted_error_mm},
+                            {"reason", pose.reason}});
+    write_safely(file, dump(Json{{"format", "planlight poses"}, {"version", kVersion}, {"poses", std::move(list)}}));
+}
+
+std::vector<TrackedPose> read_poses(const fs::path& file) {
+    const Json json = parse_file(file, "planlight poses");
+    const JsonValue list = JsonValue(json, file).at("poses");
+    std::vector<TrackedPose> poses(list.size());
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        const JsonValue entry = list[i];
+        TrackedPose& pose = poses[i];
+        pose.at = instant_of(entry.at("at_ns"));
+        if (const auto transform = entry.find("rig_from_patient")) pose.rig_from_patient = transform->transform();
+        pose.markers_left = static_cast<int>(entry.at("markers_left").integer(0, 10000));
+        pose.markers_right = static_cast<int>(entry.at("markers_right").integer(0, 10000));
+        if (const auto residual = entry.find("residual_px")) pose.residual_px = residual->number();
+        if (const auto error = entry.find("predicted_error_mm")) pose.predicted_error_mm = error->number();
+        if (const auto reason = entry.find("reason")) pose.reason = reason->text();
+        if (!pose.rig_from_patient && pose.reason.empty()) entry.refuse("has neither a pose nor a reason why there is none");
+    }
+    return poses;
+}
+
+}  // namespace planlight
