@@ -31,6 +31,37 @@ void add_face_seeds(const Mask& solid, const VoxelGrid& grid, int axis, bool las
     for (const std::size_t f : reached) seeds.push_back(volume_index(f));
 }
 
+/// Spreads `outside` (1) through the free voxels of `near`.
+void spread(Mask& outside, const Mask& body, const Mask& near, const VoxelGrid& grid) {
+    std::vector<std::size_t> seeds;
+    for (std::size_t i = 0; i < outside.size(); ++i) {
+        if (outside[i]) seeds.push_back(i);
+        outside[i] = outside[i] || (!body[i] && near[i]) ? 3 : 0;
+    }
+    flood(outside, grid, std::move(seeds), 3, 1);
+    for (auto& v : outside) v = v == 1;
+}
+
+/// Gives pockets to the outside that touch it and lie wholly within `reach_mm` of it.
+void take_back_pockets(Mask& outside, const Mask& body, const VoxelGrid& grid, double reach_mm) {
+    constexpr std::uint8_t kPocket = 2, kSeen = 3;
+    const Mask near = dilate(outside, grid, reach_mm);
+    Mask state(outside.size());
+    for (std::size_t i = 0; i < state.size(); ++i) state[i] = outside[i] ? 1 : body[i] ? 0 : kPocket;
+    for (std::size_t i = 0; i < state.size(); ++i) {
+        if (state[i] != kPocket) continue;
+        std::vector<std::size_t> pocket;
+        flood(state, grid, {i}, kPocket, kSeen, &pocket);
+        bool open = false, shallow = true;
+        for (const std::size_t v : pocket) {
+            shallow = shallow && near[v];
+            for_face_neighbours(grid, v, [&](std::size_t n) { open = open || state[n] == 1; });
+        }
+        if (open && shallow)
+            for (const std::size_t v : pocket) outside[v] = 1;
+    }
+}
+
 }  // namespace
 
 Mask outside_air(const Mask& solid, const VoxelGrid& grid) {
@@ -44,16 +75,9 @@ Mask outside_air(const Mask& solid, const VoxelGrid& grid) {
 }
 
 Mask outside_air_sealed(const Mask& body, const VoxelGrid& grid, double seal_radius_mm) {
-    const Mask closed = erode(dilate(body, grid, seal_radius_mm), grid, seal_radius_mm);
-    Mask outside = outside_air(closed, grid);
-    const Mask near = dilate(outside, grid, seal_radius_mm / 2);
-    std::vector<std::size_t> seeds;
-    for (std::size_t i = 0; i < outside.size(); ++i) {
-        if (outside[i]) seeds.push_back(i);
-        outside[i] = outside[i] || (!body[i] && near[i]) ? 3 : 0;
-    }
-    flood(outside, grid, std::move(seeds), 3, 1);
-    for (auto& v : outside) v = v == 1;
+    Mask outside = outside_air(close(body, grid, seal_radius_mm), grid);
+    spread(outside, body, dilate(outside, grid, seal_radius_mm / 2), grid);
+    take_back_pockets(outside, body, grid, seal_radius_mm);
     return outside;
 }
 

@@ -76,6 +76,28 @@ Mask erode(const Mask& mask, const VoxelGrid& grid, double radius_mm) {
 
 Mask dilate(const Mask& mask, const VoxelGrid& grid, double radius_mm) { return within(mask, 1, grid, radius_mm); }
 
+Mask close(const Mask& mask, const VoxelGrid& grid, double radius_mm) {
+    VoxelGrid padded = grid;
+    std::array<std::size_t, 3> pad{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        pad[a] = static_cast<std::size_t>(std::ceil(radius_mm / grid.spacing_mm[static_cast<int>(a)])) + 1;
+        padded.size[a] += 2 * static_cast<int>(pad[a]);
+    }
+    const auto for_rows = [&](auto&& visit) {
+        for (int k = 0; k < grid.size[2]; ++k)
+            for (int j = 0; j < grid.size[1]; ++j)
+                visit(static_cast<std::size_t>(k) * grid.slab() + static_cast<std::size_t>(j) * grid.row(),
+                      (static_cast<std::size_t>(k) + pad[2]) * padded.slab() +
+                          (static_cast<std::size_t>(j) + pad[1]) * padded.row() + pad[0]);
+    };
+    Mask space(padded.count(), 0);
+    for_rows([&](std::size_t in, std::size_t out) { std::copy_n(mask.data() + in, grid.row(), space.data() + out); });
+    space = erode(dilate(space, padded, radius_mm), padded, radius_mm);
+    Mask result(mask.size());
+    for_rows([&](std::size_t in, std::size_t out) { std::copy_n(space.data() + out, grid.row(), result.data() + in); });
+    return result;
+}
+
 std::size_t flood(Mask& mask, const VoxelGrid& grid, std::vector<std::size_t> seeds, std::uint8_t from, std::uint8_t to,
                   std::vector<std::size_t>* reached) {
     std::size_t changed = 0;

@@ -32,6 +32,9 @@ Mask within(const Mask& mask, std::uint8_t target, const VoxelGrid& grid, double
 Mask erode(const Mask& mask, const VoxelGrid& grid, double radius_mm);
 Mask dilate(const Mask& mask, const VoxelGrid& grid, double radius_mm);
 
+/// Dilation, then erosion, in a space that is empty beyond the array: the dome of a head cut by the last slice stays itself.
+Mask close(const Mask& mask, const VoxelGrid& grid, double radius_mm);
+
 /// Calls `visit(neighbour_index)` for the up to six face neighbours.
 template <class Visit>
 void for_face_neighbours(const VoxelGrid& grid, std::size_t index, Visit&& visit) {

@@ -1,0 +1,210 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "planning_io/types/error.h"
+#include "segmentation/segment_skin.h"
+#include "tests/segmentation/mesh_facts.h"
+#include "tests/segmentation/synthetic_scan.h"
+#include "tests/support/analytic_head.h"
+
+namespace planlight::test {
+namespace {
+
+using Eigen::Vector3d;
+
+struct Errors {
+    double rms = 0, p99 = 0, worst = 0;
+    std::size_t count = 0;
+};
+
+/// Distances of skin vertices from where the scan crosses the threshold on the analytic head.
+Errors errors_of(const TriangleMesh& mesh, double threshold, const Eigen::Matrix3d& scan_from_ct = Eigen::Matrix3d::Identity()) {
+    std::vector<double> errors;
+    const double offset = crossing_distance_mm(threshold);
+    for (std::size_t v = 0; v < mesh.vertices_in_ct.size(); ++v)
+        if (mesh.flags[v] == kSkin)
+            errors.push_back(std::abs(analytic_head_distance(scan_from_ct * mesh.vertices_in_ct[v]) - offset));
+    std::sort(errors.begin(), errors.end());
+    Errors result;
+    for (const double e : errors) result.rms += e * e;
+    result.count = errors.size();
+    result.rms = std::sqrt(result.rms / static_cast<double>(result.count));
+    result.p99 = errors[result.count * 99 / 100];
+    result.worst = errors.back();
+    return result;
+}
+
+TEST(SegmentSkin, FindsTheThresholdBetweenAirAndSoftTissue) {
+    const SkinMask mask = segment_skin(synthetic_scan());
+    EXPECT_NEAR(mask.threshold, -480, 15);  // peaks -1000 and 40; bins of 10 HU, noise of 15 HU
+    Volume stored = synthetic_scan();       // the same scan in a scanner's own numbers
+    for (auto& v : stored.values) v = 2 * (v + 1024);
+    stored.is_hu = false;
+    EXPECT_NEAR(segment_skin(stored).threshold, 2 * (1024 - 480), 60);
+}
+
+TEST(TriangulateSkin, LiesOnTheCrossingOfABareHead) {
+    ScanOptions options;
+    options.objects = options.openings = false;
+    const Volume scan = synthetic_scan(options);
+    const SkinMask mask = segment_skin(scan);
+    const TriangleMesh skin = triangulate_skin(scan, mask);
+    const Errors errors = errors_of(skin, mask.threshold);
+    RecordProperty("rms_um", static_cast<int>(1000 * errors.rms));
+    EXPECT_GT(errors.count, 20000U);
+    EXPECT_LT(errors.rms, 0.06);
+    EXPECT_LT(errors.p99, 0.2 * 1.3);  // 0.2 voxel; noise of 15 HU over 500 HU/mm is 0.03 mm
+    EXPECT_EQ(mask.pieces_removed, 0);
+    EXPECT_TRUE(mask.warnings.empty());
+}
+
+TEST(TriangulateSkin, IsOneClosedOutwardSurfaceWithoutHandles) {
+    const Volume scan = synthetic_scan();
+    const SkinMask mask = segment_skin(scan);
+    const TriangleMesh skin = triangulate_skin(scan, mask);
+    const MeshFacts facts = facts_of(skin);
+    EXPECT_EQ(facts.bad_edges, 0U);
+    EXPECT_EQ(facts.pieces, 1U);
+    EXPECT_EQ(facts.euler, 2);
+    EXPECT_NEAR(facts.volume_ml, mask.volume_ml, 0.01 * mask.volume_ml);
+    EXPECT_LE(facts.longest_edge_mm, 2.7);  // never longer than a voxel's diagonal (2.44) or the setting (2)
+    ASSERT_EQ(skin.normals_in_ct.size(), skin.vertices_in_ct.size());
+    std::size_t turned = 0;
+    for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v)
+        if (skin.flags[v] == kSkin) turned += skin.normals_in_ct[v].dot(analytic_head_normal(skin.vertices_in_ct[v])) < 0.97;
+    EXPECT_LT(turned, skin.vertices_in_ct.size() / 100);
+}
+
+TEST(SegmentSkin, CutsOffTablePlatesAndWireAndKeepsTheEars) {
+    const Volume scan = synthetic_scan();
+    const SkinMask mask = segment_skin(scan);
+    const TriangleMesh skin = triangulate_skin(scan, mask);
+    EXPECT_GE(mask.pieces_removed, 3);
+    EXPECT_GT(mask.removed_ml, 500);  // table alone: 208 x 8 x 197 mm = 328 ml; plates 60 ml each and more
+    double furthest = 0, left_ear = 0, right_ear = 0;
+    std::size_t off = 0, count = 0;
+    for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
+        const Vector3d& p = skin.vertices_in_ct[v];
+        const double d = analytic_head_distance(p);
+        furthest = std::max(furthest, d);
+        left_ear = std::max(left_ear, p.x());
+        right_ear = std::min(right_ear, p.x());
+        if (skin.flags[v] != kSkin) continue;
+        ++count;
+        off += std::abs(d - crossing_distance_mm(mask.threshold)) > 0.26;
+    }
+    EXPECT_LT(furthest, 4);            // a stub where the wire or the plate touched, no longer than the detach radius and a voxel
+    EXPECT_GT(left_ear, 86);           // the ear's edge is at 89
+    EXPECT_LT(right_ear, -84);         // at -86
+    EXPECT_LT(off, count / 50);        // unflagged and off the skin: at the contacts and openings only
+}
+
+TEST(SegmentSkin, LidsNostrilsEarCanalsAndThroat) {
+    const Volume scan = synthetic_scan();
+    const SkinMask mask = segment_skin(scan);
+    const TriangleMesh skin = triangulate_skin(scan, mask);
+    std::size_t lids = 0;
+    double deepest = 0;
+    for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
+        lids += skin.flags[v] == kSeal;
+        if (skin.flags[v] != kCutPlane) deepest = std::min(deepest, analytic_head_distance(skin.vertices_in_ct[v]));
+    }
+    EXPECT_GT(lids, 20U);
+    EXPECT_GT(deepest, -8);  // the canals go 40 mm deep, the cave lies 30 mm deep; lids sit within the seal radius and its half
+    const Eigen::Vector3i cave = (scan.ct_from_voxel.inverse() * Vector3d(1, -55, -30)).array().round().cast<int>();
+    ASSERT_LT(scan.at(cave.x(), cave.y(), cave.z()), -900);
+    EXPECT_EQ(mask.body[scan.index(cave.x(), cave.y(), cave.z())], 1);
+}
+
+TEST(TriangulateSkin, ClosesTheEndOfTheVolumeByAFlatPlane) {
+    const Volume scan = synthetic_scan();
+    const TriangleMesh skin = triangulate_skin(scan, segment_skin(scan));
+    std::size_t cut = 0;
+    for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
+        EXPECT_EQ(skin.flags[v] == kCutPlane, skin.vertices_in_ct[v].z() < kCutZ_mm - 0.01);
+        if (skin.flags[v] != kCutPlane) continue;
+        ++cut;
+        EXPECT_NEAR(skin.vertices_in_ct[v].z(), kCutZ_mm - 0.8, 0.81);  // half a slice beyond the last centres
+    }
+    EXPECT_GT(cut, 500U);
+}
+
+TEST(TriangulateSkin, FollowsTurnedVoxelAxes) {
+    ScanOptions options;
+    options.objects = options.openings = false;
+    options.spacing_mm = {1.6, 1.6, 1.6};
+    options.ct_from_scan = Eigen::AngleAxisd(2.1, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
+    const Volume scan = synthetic_scan(options);
+    const SkinMask mask = segment_skin(scan);
+    const TriangleMesh skin = triangulate_skin(scan, mask);
+    EXPECT_LT(errors_of(skin, mask.threshold, options.ct_from_scan.transpose()).p99, 0.2 * 1.6);
+    EXPECT_GT(facts_of(skin).volume_ml, 1000);
+}
+
+TEST(TriangulateSkin, DecimatesWithinTheBound) {
+    ScanOptions options;
+    options.objects = options.openings = false;
+    const Volume scan = synthetic_scan(options);
+    const SkinMask mask = segment_skin(scan);
+    SkinSettings fine, coarse;
+    fine.max_decimation_error_mm = 0;
+    coarse.max_edge_mm = 6;
+    const TriangleMesh full = triangulate_skin(scan, mask, fine), few = triangulate_skin(scan, mask, coarse);
+    EXPECT_LT(few.triangles.size(), full.triangles.size() / 2);
+    const Errors before = errors_of(full, mask.threshold), after = errors_of(few, mask.threshold);
+    EXPECT_LT(after.worst, before.worst + 1e-9);  // vertices stay where they were
+    double worst = 0;  // and triangles cut corners by no more than the bound, plus what the noise did before
+    for (const auto& t : few.triangles) {
+        Vector3d centre = Vector3d::Zero();
+        for (const auto c : t) centre += few.vertices_in_ct[static_cast<std::size_t>(c)] / 3;
+        if (centre.z() > kCutZ_mm + 3) worst = std::max(worst, std::abs(analytic_head_distance(centre) - crossing_distance_mm(mask.threshold)));
+    }
+    EXPECT_LT(worst, 0.15 + before.worst);
+}
+
+TEST(SegmentSkin, RefusesVolumesWithoutSkin) {
+    Volume air;
+    air.size = {40, 40, 40};
+    air.is_hu = true;
+    air.values.assign(64000, -1000);
+    EXPECT_THROW(segment_skin(air), InputError);
+    Volume body = air;
+    body.values.assign(64000, 40);
+    EXPECT_THROW(segment_skin(body), InputError);
+    SkinSettings given;
+    given.threshold = -300;
+    EXPECT_THROW(segment_skin(air, given), InputError);
+    EXPECT_THROW(segment_skin(body, given), InputError);
+    EXPECT_THROW(segment_skin(Volume{}), InputError);
+    Volume flat = air;
+    flat.is_hu = false;
+    EXPECT_THROW(segment_skin(flat), InputError);
+    Volume pea = air;  // 20 mm wide: no head
+    for (int k = 10; k < 30; ++k)
+        for (int j = 10; j < 30; ++j)
+            for (int i = 10; i < 30; ++i) pea.values[pea.index(i, j, k)] = 40;
+    EXPECT_THROW(segment_skin(pea), InputError);
+}
+
+TEST(SegmentSkin, ReportsProgressToTheEnd) {
+    ScanOptions options;
+    options.spacing_mm = {3, 3, 3};
+    const Volume scan = synthetic_scan(options);
+    double last = 0;
+    bool rises = true;
+    const auto watch = [&](double done) {
+        rises = rises && done >= last;
+        last = done;
+    };
+    const SkinMask mask = segment_skin(scan, {}, watch);
+    EXPECT_EQ(last, 1);
+    last = 0;
+    triangulate_skin(scan, mask, {}, watch);
+    EXPECT_EQ(last, 1);
+    EXPECT_TRUE(rises);
+}
+
+}  // namespace
+}  // namespace planlight::test
