@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "registration/simulation/ct_field.h"
 
