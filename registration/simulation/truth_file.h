@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "registration/simulation/simulated_rig.h"
+
+namespace planlight::simulation {
+
+struct TruthNumbers {
+    RoomSettings settings;
+    Instant at{};
+    RigidTransform rig_from_ct;
+    std::vector<Eigen::Vector3d> markers_in_ct, marker_normals_in_ct;
+    std::vector<bool> markers_covered;
+    RigCalibration true_rig, calibration;
+    double left_blur_px = 0, right_blur_px = 0, gain = 0;
+};
+
+/// The truth file's text (README.md of this room).
+std::string as_json(const TruthNumbers& truth);
+
+}  // namespace planlight::simulation
