@@ -1,0 +1,76 @@
+#include "segmentation/segment_skin.h"
+
+#include <fmt/format.h>
+
+#include "planning_io/types/error.h"
+#include "segmentation/detach_objects.h"
+#include "segmentation/outside_air.h"
+#include "segmentation/skin_threshold.h"
+
+namespace planlight {
+namespace {
+
+constexpr double kLeastBody_ml = 50;
+
+[[noreturn]] void refuse(const std::string& what) {
+    throw InputError({}, "There is no skin in the volume: " + what,
+                     "Check that the series shows the head with air round it, or give another threshold.");
+}
+
+void check(const Volume& volume, const SkinSettings& settings) {
+    const VoxelGrid grid = grid_of(volume);
+    for (const int n : volume.size)
+        if (n < 3) refuse("it has fewer than three voxels along an axis");
+    if (volume.values.size() != grid.count()) refuse("its values do not fill it");
+    if (!(grid.spacing_mm.minCoeff() > 0) || !grid.spacing_mm.allFinite()) refuse("its voxels have no size");
+    if (!(settings.seal_radius_mm >= 0) || !(settings.detach_radius_mm >= 0))
+        throw InputError({}, "a radius of the skin settings is negative", "Give radii of 0 mm or more.");
+}
+
+void warn_of_cut_sides(const Mask& body, const VoxelGrid& grid, std::vector<std::string>& warnings) {
+    std::size_t at_side = 0;
+    const std::size_t ni = grid.row(), nj = static_cast<std::size_t>(grid.size[1]);
+    for (std::size_t v = 0; v < body.size(); ++v) {
+        const std::size_t i = v % ni, j = v / ni % nj;
+        at_side += body[v] && (i == 0 || j == 0 || i + 1 == ni || j + 1 == nj);
+    }
+    const double area_cm2 = static_cast<double>(at_side) * grid.spacing_mm.prod() / grid.spacing_mm.head<2>().mean() / 100;
+    if (area_cm2 > 1)
+        warnings.push_back(fmt::format("The head is cut by the sides of the volume over about {:.0f} square cm.", area_cm2));
+}
+
+}  // namespace
+
+SkinMask segment_skin(const Volume& volume, const SkinSettings& settings, const std::function<void(double)>& progress) {
+    const auto report = [&](double done) {
+        if (progress) progress(done);
+    };
+    check(volume, settings);
+    const VoxelGrid grid = grid_of(volume);
+    SkinMask result;
+    result.threshold = settings.threshold != 0 ? settings.threshold : skin_threshold(volume);
+    Mask dense(grid.count());
+    for (std::size_t i = 0; i < dense.size(); ++i) dense[i] = volume.values[i] >= static_cast<float>(result.threshold);
+    report(0.1);
+
+    DetachedBody detached = detach_objects(dense, volume.values, result.threshold, grid, settings.detach_radius_mm);
+    if (detached.body.empty()) refuse(fmt::format("nothing thick is denser than {:.0f}", result.threshold));
+    report(0.6);
+
+    result.body = outside_air_sealed(detached.body, grid, settings.seal_radius_mm);
+    std::size_t voxels = 0;
+    for (auto& v : result.body) voxels += v = !v;
+    result.volume_ml = static_cast<double>(voxels) * grid.voxel_ml();
+    if (voxels == result.body.size()) refuse("no air round the body");
+    if (result.volume_ml < kLeastBody_ml)
+        refuse(fmt::format("the largest piece denser than {:.0f} has {:.1f} ml", result.threshold, result.volume_ml));
+
+    result.pieces_removed = detached.pieces_removed;
+    result.removed_ml = detached.removed_ml;
+    result.warnings = std::move(detached.warnings);
+    warn_of_cut_sides(result.body, grid, result.warnings);
+    report(1);
+    return result;
+}
+
+}  // namespace planlight
