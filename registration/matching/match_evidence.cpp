@@ -88,7 +88,8 @@ CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const Rigid
     return result;
 }
 
-WeakestWay weakest_way(const PointCloud& cloud, const SkinLut& lut, const IcpResult& icp, double deformation_mm, double correlation_mm) {
+WeakestWay weakest_way(const PointCloud& cloud, const SkinLut& lut, const IcpResult& icp, double least_deformation_mm,
+                       double correlation_mm) {
     WeakestWay way;
     way.sigma_mm = std::numeric_limits<double>::infinity();
     const std::vector<Contact> on_skin = contacts(cloud, lut, icp, 500);
@@ -98,19 +99,27 @@ WeakestWay weakest_way(const PointCloud& cloud, const SkinLut& lut, const IcpRes
     }
     const Vector6d scale = (Vector6d() << Vector3d::Constant(1 / kLever_mm), Vector3d::Ones()).finished();
     Matrix6d H = Matrix6d::Zero(), S = Matrix6d::Zero();
+    double smooth_squares = 0;
     for (const Contact& a : on_skin) {
         const Vector6d Ja = a.J.cwiseProduct(scale);
         H += Ja * Ja.transpose();
         Vector6d alike = Vector6d::Zero();
+        double weights = 0, smooth = 0;
         for (const Contact& b : on_skin) {
             const double squared = (a.x_in_ct - b.x_in_ct).squaredNorm() / (2 * correlation_mm * correlation_mm);
-            if (squared < 9) alike += std::exp(-squared) * b.J;
+            if (squared > 9) continue;
+            const double k = std::exp(-squared);
+            alike += k * b.J;
+            weights += k;
+            smooth += k * b.distance_mm;
         }
+        smooth_squares += smooth * smooth / (weights * weights);
         S += Ja * alike.cwiseProduct(scale).transpose();
     }
     H.diagonal().array() += 1e-9 * H.trace();
     const Matrix6d inverse = H.inverse();
-    const Matrix6d covariance = deformation_mm * deformation_mm * inverse * (0.5 * (S + S.transpose())) * inverse;
+    way.deformation_mm = std::max(least_deformation_mm, std::sqrt(smooth_squares / static_cast<double>(on_skin.size())));
+    const Matrix6d covariance = way.deformation_mm * way.deformation_mm * inverse * (0.5 * (S + S.transpose())) * inverse;
     const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(covariance);
     way.sigma_mm = std::sqrt(std::max(solver.eigenvalues()(5), 0.0));
     way.in_words = in_words(solver.eigenvectors().col(5));

@@ -24,14 +24,17 @@ CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const Rigid
 /// The way in which the patient could move with the least change of the residuals.
 struct WeakestWay {
     double sigma_mm = 0;      ///< one standard deviation of a point 80 mm from the scan's centre
+    double deformation_mm = 0; ///< the movement of the skin that it was predicted from
     std::string in_words;     ///< "turn about the head-foot axis"
     Eigen::Matrix<double, 6, 6> covariance = Eigen::Matrix<double, 6, 6>::Zero();  ///< of (rotation, translation of the centre)
 };
 
 /// Predicted from the skin's own movement since the CT: a field normal to the skin of `deformation_mm` that is alike within
 /// `correlation_mm`, instead of independent noise, which is over-confident by an order (the sums then divide by the
-/// number of points). H^-1 [sum_ij w_i w_j J_i J_j^T k(x_i, x_j)] H^-1.
-WeakestWay weakest_way(const PointCloud& cloud, const SkinLut& lut, const IcpResult& icp, double deformation_mm, double correlation_mm);
+/// number of points). H^-1 [sum_ij w_i w_j J_i J_j^T k(x_i, x_j)] H^-1. When the residuals, averaged over that distance,
+/// show more movement than `least_deformation_mm`, that is taken.
+WeakestWay weakest_way(const PointCloud& cloud, const SkinLut& lut, const IcpResult& icp, double least_deformation_mm,
+                       double correlation_mm);
 
 /// The factor by which the scan should shrink or grow to fit best (1 when it fits as it is): another patient, or a rig
 /// whose calibration has the wrong scale.

@@ -17,12 +17,12 @@ struct RegistrationSettings {
     double max_residual_rms_mm = 1.0;   ///< of the inliers; above: no
     int min_agreeing_bases = 2;
     double max_weakest_sigma_mm = 0.5;  ///< above: ask
-    double skin_movement_mm = 0.4;      ///< of the skin since the CT, rms, for the predicted error
+    double skin_movement_mm = 0.3;      ///< of the skin since the CT, rms, at least; more when the residuals show more
     double skin_correlation_mm = 25;    ///< over which that movement is alike
     bool mirror_test = true;            ///< match the mirrored scan too
     double min_mirror_ratio = 1.15;     ///< of the mirrored scan's cost; below: ask
     double mirror_fits_better = 0.87;   ///< below: no
-    double max_scale_error = 0.025;     ///< of the scan against the CT; above: ask
+    double max_scale_error = 0.015;     ///< of the scan against the CT; above: ask
 };
 
 /// Finds the patient without help: initial match, ICP, verdict with evidence. `patient` equals `rig` at the scan instant,
