@@ -1,5 +1,6 @@
 #include "registration/tracking/find_markers.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

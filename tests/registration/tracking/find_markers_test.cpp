@@ -186,7 +186,7 @@ TEST(FindMarkers, FindsNothingInNoiseAndInAnEmptyPicture) {
 TEST(MeasureMarker, MeasuresNearThePredictedPlaceAndNotBeyondTheSearch) {
     const Grid grid = grid_picture(paper_camera(), 40, {}, 3);
     const Eigen::Vector2d truth = grid.centres[7];
-    for (const Eigen::Vector2d off : {Eigen::Vector2d(0, 0), Eigen::Vector2d(3, -4), Eigen::Vector2d(18, 12)}) {
+    for (const Eigen::Vector2d& off : {Eigen::Vector2d(0, 0), Eigen::Vector2d(3, -4), Eigen::Vector2d(18, 12)}) {
         const auto marker = measure_marker(grid.picture, truth + off, 8, 30);
         ASSERT_TRUE(marker) << off.transpose();
         EXPECT_LT((marker->pixel - truth).norm(), 0.1);

@@ -16,7 +16,7 @@ struct Outcome {
 
 Outcome track_with(const RigCalibration& mutant, const RigCalibration& truth) {
     std::mt19937 random(2);
-    const RigidTransform rig_from_head(Eigen::Translation3d(head_centre()));
+    const RigidTransform rig_from_head{Eigen::Translation3d(head_centre())};
     PatientTracker tracker(mutant);
     Outcome outcome;
     // Reference with the head at the edge of the view, then turned and moved across it: the lens' distortion differs.
