@@ -130,12 +130,12 @@ std::optional<Ellipse> fit_ellipse_to_points(const std::vector<Eigen::Vector2d>&
     return result;
 }
 
-std::optional<GradientFit> fit_ellipse_to_gradients(const GrayImage& picture, const Ellipse& start, double half_width_px) {
+std::optional<Ellipse> fit_ellipse_to_gradients(const GrayImage& picture, const Ellipse& start, double half_width_px) {
     const Eigen::Vector2d axes = start.half_axes();
     const double scale = 0.5 * axes.sum();
     std::vector<EdgeLine> lines = collect_lines(picture, start, half_width_px, scale);
     if (lines.size() < 24) return std::nullopt;
-    GradientFit result;
+    Ellipse result;
     for (int pass = 0; pass < 3; ++pass) {
         // With C* = [A B D; B C E; D E 1] and l = (n, -h): A nx^2 + 2B nx ny + C ny^2 - 2D nx h - 2E ny h = -h^2.
         Matrix5 N = Matrix5::Zero();
@@ -172,18 +172,8 @@ std::optional<GradientFit> fit_ellipse_to_gradients(const GrayImage& picture, co
             }
             continue;
         }
-        // Sandwich covariance; neighbouring gradients share their pixels, so the lines are worth about a third of their number.
-        Matrix5 meat = Matrix5::Zero();
-        for (const EdgeLine& l : lines) {
-            const Vector5 row = row_of(l);
-            const double r = row.dot(p) + l.offset * l.offset;
-            meat.noalias() += (l.weight * l.weight * r * r) * row * row.transpose();
-        }
-        const Matrix5 inverse = solver.solve(Matrix5::Identity());
-        const Matrix5 covariance = 3 * inverse * meat * inverse.transpose();
-        result.sigma_px = scale * std::sqrt(std::max(0.0, 0.5 * (covariance(3, 3) + covariance(4, 4))));
-        result.ellipse.centre = start.centre + scale * e.centre;
-        result.ellipse.shape = scale * scale * e.shape;
+        result.centre = start.centre + scale * e.centre;
+        result.shape = scale * scale * e.shape;
     }
     return result;
 }

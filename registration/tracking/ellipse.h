@@ -27,14 +27,9 @@ Ellipse circle(const Eigen::Vector2d& centre, double radius_px);
 /// Empty with fewer than 8 points, or when the conic is no ellipse.
 std::optional<Ellipse> fit_ellipse_to_points(const std::vector<Eigen::Vector2d>& points, std::vector<bool>& used);
 
-struct GradientFit {
-    Ellipse ellipse;
-    double sigma_px = 0;  ///< one standard deviation of the centre, per axis
-};
-
 /// The ellipse to which the lines of equal brightness near `start` are tangent: the dual conic of the gradients
 /// (Ouellet & Hebert 2009), two robust passes. `half_width_px` is the width of the band of pixels to either side.
 /// Only gradients that point outwards (dark inside) count. Empty when the band leaves the picture or there is no ellipse.
-std::optional<GradientFit> fit_ellipse_to_gradients(const GrayImage& picture, const Ellipse& start, double half_width_px);
+std::optional<Ellipse> fit_ellipse_to_gradients(const GrayImage& picture, const Ellipse& start, double half_width_px);
 
 }  // namespace planlight

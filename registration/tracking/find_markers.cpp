@@ -38,7 +38,7 @@ Window make_window(const GrayImage& picture, const cv::Rect& part, int scale) {
 /// Circles by the Hough transform on the gradients.
 void add_hough_circles(const Window& window, const MarkerSettings& settings, std::vector<Ellipse>& rough) {
     constexpr double kCannyThreshold = 60, kVotes = 14;
-    constexpr std::size_t kMost = 120;
+    constexpr std::size_t kMost = 60;
     const int least = std::max(3, static_cast<int>(settings.min_radius_px / window.scale));
     const int largest = std::max(least + 1, std::min(30, static_cast<int>(settings.max_radius_px / window.scale)));
     std::vector<cv::Vec3f> circles;

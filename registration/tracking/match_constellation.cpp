@@ -9,7 +9,7 @@
 namespace planlight {
 namespace {
 
-constexpr double kDistanceToleranceMm = 1.0;  // skin between two markers stretches
+constexpr double kDistanceToleranceMm = 0.8;  // skin between two markers stretches
 constexpr double kNearPx = 4;                 // of a disc to where a proposed pose puts its marker
 constexpr double kSameAngle = 0.1;            // radians; and
 constexpr double kSameShiftMm = 5;            // up to which two poses are the same one
@@ -137,13 +137,17 @@ ConstellationMatch match_constellation(const RigCalibration& rig, const std::vec
     auto points = possible_pairs(rig, left, right, settings.design, settings.max_epipolar_px);
     std::sort(points.begin(), points.end(), [](const MarkerPair& a, const MarkerPair& b) { return a.cost < b.cost; });
     auto proposals = Search(rig, markers, left, right, settings).run(points);
+    const int seen = static_cast<int>(
+        consistent_pairs(points, static_cast<int>(left.size()), static_cast<int>(right.size())).size());
+    // Three markers out of many fit somewhere by chance, and in a mirrored arrangement always: a triangle has no handedness.
+    const int expected = std::min(seen, static_cast<int>(markers.size()));
+    const int needed = std::max(settings.min_markers, expected >= 4 ? std::max(4, (2 * expected + 2) / 3) : 0);
+    std::erase_if(proposals, [&](const Proposal& p) { return p.markers < needed; });
     if (proposals.empty()) {
-        const int seen = static_cast<int>(
-            consistent_pairs(points, static_cast<int>(left.size()), static_cast<int>(right.size())).size());
         result.reason = seen < settings.min_markers
                             ? fmt::format("only {} of {} markers seen; {} are needed", std::min<int>(seen, static_cast<int>(markers.size())),
                                           markers.size(), settings.min_markers)
-                            : fmt::format("{} discs seen, but not {} in the arrangement of the markers", seen, settings.min_markers);
+                            : fmt::format("{} discs seen, but not {} in the arrangement of the markers", seen, needed);
         return result;
     }
     std::sort(proposals.begin(), proposals.end(), [](const Proposal& a, const Proposal& b) { return a.better_than(b); });

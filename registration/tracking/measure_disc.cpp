@@ -92,6 +92,29 @@ double median(std::array<double, kRays> values) {
     return values[kRays / 2];
 }
 
+/// Standard deviation of the noise inside the disc, grey values, from second differences (which shading does not reach).
+double noise_inside(const GrayImage& picture, const Ellipse& disc) {
+    const double reach = 0.5 * disc.half_axes().y();
+    const int x0 = static_cast<int>(disc.centre.x() - reach), x1 = static_cast<int>(disc.centre.x() + reach);
+    const int y0 = static_cast<int>(disc.centre.y() - reach), y1 = static_cast<int>(disc.centre.y() + reach);
+    double sum = 0;
+    int count = 0;
+    for (int y = std::max(0, y0); y <= std::min(y1, picture.height - 1); ++y)
+        for (int x = std::max(1, x0); x <= std::min(x1, picture.width - 2); ++x, ++count)
+            sum += std::pow(picture.at(x - 1, y) - 2 * picture.at(x, y) + picture.at(x + 1, y), 2);
+    return count > 0 ? std::sqrt(sum / (6 * count)) : 0;
+}
+
+/// One standard deviation of the centre: the noise over the slope of the edge, averaged round it, and the shift of a tilted
+/// circle's centre under perspective (r^2 sin cos / depth, for a disc of 4 mm radius at 0.9 m).
+double centre_sigma_px(double radius_px, double axis_ratio, double noise, double contrast) {
+    constexpr double kEdgeWidthPx = 2;  // contrast / slope of an edge blurred by 0.8 px
+    const double edge_sigma_px = kEdgeWidthPx * std::max(0.5, noise) / contrast;
+    const double from_noise = 1.2 * edge_sigma_px / std::sqrt(std::numbers::pi * radius_px * axis_ratio);
+    const double from_perspective = 4 / 900. * radius_px * axis_ratio * std::sqrt(1 - axis_ratio * axis_ratio);
+    return std::hypot(from_noise, from_perspective, 0.004);
+}
+
 /// Grey values from the disc to its ring, when both look like a marker's all round; empty otherwise.
 std::optional<double> ring_contrast(const GrayImage& picture, const Ellipse& disc, const MarkerSettings& settings) {
     const Eigen::Matrix2d L = disc.from_unit_circle();
@@ -106,14 +129,17 @@ std::optional<double> ring_contrast(const GrayImage& picture, const Ellipse& dis
     }
     const double dark = median(inside), contrast = median(ring) - dark;
     if (contrast < settings.min_contrast) return std::nullopt;
-    int dark_inside = 0, bright_ring = 0, darker_outside = 0, outside_seen = 0;
+    int dark_inside = 0, bright_ring = 0, darker_outside = 0, skin_outside = 0, outside_seen = 0;
     for (std::size_t k = 0; k < kRays; ++k) {
         dark_inside += inside[k] < dark + 0.4 * contrast;
-        bright_ring += ring[k] > dark + 0.45 * contrast;
+        bright_ring += ring[k] > dark + 0.6 * contrast;
         if (outside[k] < 0) continue;
         ++outside_seen;
         darker_outside += outside[k] < ring[k] - settings.min_ring_step * contrast;
+        skin_outside += outside[k] > dark + 0.08 * contrast;
     }
+    // A circle of light on the skin is as dark inside as outside; round a marker at most a part is the dark background.
+    if (skin_outside < 0.4 * outside_seen) return std::nullopt;
     if (dark_inside < 0.9 * kRays || bright_ring < 0.9 * kRays || darker_outside < 0.6 * outside_seen) return std::nullopt;
     return contrast;
 }
@@ -132,12 +158,14 @@ std::optional<MarkerObservation> measure_disc(const GrayImage& picture, const El
         return std::nullopt;
     const double half_width = std::clamp(0.45 * axes.y(), 1.5, 3.0);
     const auto fit = fit_ellipse_to_gradients(picture, *ellipse, half_width);
-    if (!fit || (fit->ellipse.centre - ellipse->centre).norm() > 0.5 + 0.02 * axes.x()) return std::nullopt;
-    if (trimmed_residual(fit->ellipse, edge) > settings.max_fit_residual_px) return std::nullopt;
-    const auto contrast = ring_contrast(picture, fit->ellipse, settings);
+    if (!fit || (fit->centre - ellipse->centre).norm() > 0.5 + 0.02 * axes.x()) return std::nullopt;
+    if (trimmed_residual(*fit, edge) > settings.max_fit_residual_px) return std::nullopt;
+    const auto contrast = ring_contrast(picture, *fit, settings);
     if (!contrast) return std::nullopt;
-    const Eigen::Vector2d fitted = fit->ellipse.half_axes();
-    return MarkerObservation{fit->ellipse.centre, fitted.mean(), fitted.y() / fitted.x(), fit->sigma_px, *contrast};
+    const Eigen::Vector2d fitted = fit->half_axes();
+    const double ratio = fitted.y() / fitted.x();
+    const double sigma = centre_sigma_px(fitted.mean(), ratio, noise_inside(picture, *fit), *contrast);
+    return MarkerObservation{fit->centre, fitted.mean(), ratio, sigma, *contrast};
 }
 
 }  // namespace planlight

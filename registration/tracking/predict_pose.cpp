@@ -46,10 +46,12 @@ struct PosePredictor::Filter {
     Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();      // rig_from_patient
     Eigen::Vector3d turn_rad_s = Eigen::Vector3d::Zero();        // in rig axes
     AxisFilter place_axis, turn_axis;
+    double liveliness = 1;                                       // of the process noise, (0, 1]
 
     void start(const TrackedPose& pose, const Eigen::Vector3d& about) {
         constexpr double kFirstSpeedMmS = 100;  // of a head about which nothing is known yet
         started = true;
+        liveliness = 1;
         at = pose.at;
         centre_in_patient = about;
         centre = *pose.rig_from_patient * about;
@@ -68,21 +70,40 @@ struct PosePredictor::Filter {
         centre_in_patient = about;
     }
 
+    /// The process noise follows the head: small while it lies still or moves evenly, `acceleration_sigma_mm_s2` at once when
+    /// the measurements leave what a quiet head would do (mean normalised innovation of the six axes above `kSurprise`).
+    void advance_axes(double dt_s, const Eigen::Vector3d& off, const Eigen::Vector3d& off_rad) {
+        constexpr double kSurprise = 2, kQuietest = 0.06, kCalming = 0.96;
+        const double variance = std::pow(settings.measurement_sigma_mm, 2);
+        while (true) {
+            AxisFilter place = place_axis, turn = turn_axis;
+            place.advance(dt_s, liveliness * settings.acceleration_sigma_mm_s2);
+            turn.advance(dt_s, liveliness * settings.acceleration_sigma_mm_s2 / kLeverMm);
+            const double surprise = (off.squaredNorm() / (place.P(0, 0) + variance) +
+                                     off_rad.squaredNorm() / (turn.P(0, 0) + variance / (kLeverMm * kLeverMm))) / 6;
+            if (surprise < kSurprise || liveliness >= 1) {
+                place_axis = place, turn_axis = turn;
+                liveliness = std::max(kQuietest, kCalming * liveliness);
+                return;
+            }
+            liveliness = std::min(1.0, 1.5 * liveliness);
+        }
+    }
+
     void measure(const TrackedPose& pose) {
         const double dt_s = seconds(pose.at - at);
         at = pose.at;
         centre += dt_s * velocity_mm_s;
         rotation = turned(dt_s * turn_rad_s) * rotation;
-        place_axis.advance(dt_s, settings.acceleration_sigma_mm_s2);
-        turn_axis.advance(dt_s, settings.acceleration_sigma_mm_s2 / kLeverMm);
+        const Eigen::Vector3d off = *pose.rig_from_patient * centre_in_patient - centre;
+        const Eigen::Vector3d off_rad = rotation_vector(pose.rig_from_patient->linear() * rotation.transpose());
+        advance_axes(dt_s, off, off_rad);
 
         const Eigen::Vector2d place_gain = place_axis.correct(settings.measurement_sigma_mm);
-        const Eigen::Vector3d off = *pose.rig_from_patient * centre_in_patient - centre;
         centre += place_gain[0] * off;
         velocity_mm_s += place_gain[1] * off;
 
         const Eigen::Vector2d turn_gain = turn_axis.correct(settings.measurement_sigma_mm / kLeverMm);
-        const Eigen::Vector3d off_rad = rotation_vector(pose.rig_from_patient->linear() * rotation.transpose());
         rotation = turned(turn_gain[0] * off_rad) * rotation;
         turn_rad_s += turn_gain[1] * off_rad;
     }

