@@ -32,6 +32,10 @@ struct Text {
         property->SetColor(0.94, 0.95, 0.97);
         property->SetShadow(shadow ? 1 : 0);
         property->SetShadowOffset(2, -2);
+        if (!shadow) {  // readable over the skin too; a box behind the text would win against it in the depth test
+            property->SetBackgroundColor(0.055, 0.067, 0.086);
+            property->SetBackgroundOpacity(0.75);
+        }
         property->SetJustificationToCentered();
         property->SetVerticalJustificationToCentered();
         renderer.AddActor2D(actor);
@@ -104,8 +108,7 @@ struct SceneOverlay::Parts {
         title.actor->SetVisibility(shown);
         for (Text& value : values) value.actor->SetVisibility(shown);
         if (!shown) return;
-        const double w = 320 * scale, h = 92 * scale, x = width - w - 16 * scale, y = 16 * scale, bar = w - 48 * scale;
-        boxes.add(x, y, w, h, {12, 14, 18}, 215);
+        const double w = 320 * scale, x = width - w - 16 * scale, y = 16 * scale, bar = w - 48 * scale;
         constexpr int kSteps = 64;
         for (int i = 0; i < kSteps; ++i)
             boxes.add(x + 24 * scale + bar * i / kSteps, y + 36 * scale, bar / kSteps + 0.5, 14 * scale,
