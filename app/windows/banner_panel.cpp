@@ -66,16 +66,17 @@ void draw_shape(const Pen& pen, StatusKind kind, ImVec2 middle, float radius, co
 }
 
 std::array<std::pair<const char*, std::string>, 4> figures_of(const Figures& f) {
+    const bool moved = f.head_moved_mm || f.head_turned_deg;
     return {{{"Overlay error now", number_text(f.overlay_error_mm, "mm")},
              {"Updates", number_text(f.updates_per_s, "/ s")},
-             {"Head moved since scan", number_text(f.head_moved_mm, "mm") + " · " + number_text(f.head_turned_deg, "°")},
+             {"Head moved since scan", moved ? number_text(f.head_moved_mm, "mm") + " · " + number_text(f.head_turned_deg, "°") : "–"},
              {"Delay to light, predicted", number_text(f.delay_to_light_ms, "ms")}}};
 }
 
 void draw_figures(const Pen& pen, const Box& box, const Figures& figures, const Look& look) {
     const auto rows = figures_of(figures);
     const float step = box.height / static_cast<float>(rows.size());
-    float widest = 0;
+    float widest = 150 * pen.scale;
     for (const auto& [label, value] : rows) widest = std::max(widest, text_width(pen.fonts.number, value));
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const float y = box.y + step * (static_cast<float>(i) + 0.5F);

@@ -36,10 +36,13 @@ void draw_step(const Pen& pen, const Box& chip, std::size_t index, StepState sta
 
 void draw_header(const Pen& pen, const WindowLayout& place, const OperatorModel& model) {
     const Box& title = place.title;
-    const float first = title.y + title.height / 2 - line_height(pen.fonts.title) / 2;
+    const bool two_lines = broken(pen.fonts.small, model.case_subtitle, title.width, 2).size() > 1;
+    const float title_height = line_height(pen.fonts.title);
+    const float first = two_lines ? title.y + title_height / 2 - 2 * pen.scale : title.y + (title.height - title_height) / 2;
     pen.line(pen.fonts.title, model.case_title, title.x, first, title.width, theme::kText);
-    const float top = first + line_height(pen.fonts.title) / 2;
-    pen.paragraph(pen.fonts.small, model.case_subtitle, {title.x, top, title.width, title.bottom() - top}, theme::kQuiet);
+    const float top = first + title_height / 2;
+    pen.paragraph(pen.fonts.small, model.case_subtitle, {title.x, top, title.width, title.bottom() + 4 * pen.scale - top},
+                  theme::kQuiet);
 
     const Box& steps = place.steps;
     const float gap = 8 * pen.scale, chip_height = std::min(steps.height, std::round(60 * pen.scale));

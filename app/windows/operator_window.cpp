@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 #include <utility>
 
 #include "app/windows/camera_texture.h"
@@ -181,9 +182,11 @@ struct OperatorWindow::Parts {
         if (model.cloud) title += model.cloud_distance_mm ? " · scan coloured by distance" : " · scan";
         if (model.plan) title += " · plan";
         if (model.light) title += " · light as it falls (white)";
-        const float height_px = line_height(pen.fonts.small) + 12 * pen.scale;
-        pen.line(pen.fonts.small, title, place.scene.x + 18 * pen.scale, place.scene.y + 8 * pen.scale + height_px / 2,
-                 0.44F * place.scene.width, theme::kText);
+        const float indent = 18 * pen.scale;
+        pen.paragraph(pen.fonts.small, title,
+                      {place.scene.x + indent, place.scene.y + 14 * pen.scale, 0.44F * place.scene.width - indent,
+                       2.2F * line_height(pen.fonts.small)},
+                      theme::kText);
     }
 
     bool button(OperatorAction action, const Box& box, const std::string& label, const ButtonState& state) {
@@ -220,7 +223,13 @@ struct OperatorWindow::Parts {
         const int spare = static_cast<int>(model.rows.size()) - rows_shown;
         if (inside(place.table, mouse.x, mouse.y)) rows_scrolled -= ImGui::GetIO().MouseWheel;
         rows_scrolled = std::clamp(rows_scrolled, 0.0F, static_cast<float>(std::max(0, spare)));
-        rows_shown = draw_table(pen, place.table, model, static_cast<int>(rows_scrolled));
+        const TableShown shown = draw_table(pen, place.table, model, static_cast<int>(rows_scrolled));
+        rows_shown = shown.rows;
+        if (!shown.all_evidence && inside(place.table, mouse.x, mouse.y)) {
+            std::string all;
+            for (const std::string& sentence : model.evidence) all += (all.empty() ? "" : "\n") + sentence;
+            ImGui::SetTooltip("%s", all.c_str());
+        }
     }
 
     OperatorAction draw(const OperatorModel& model) {

@@ -13,8 +13,13 @@ void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model);
 /// A camera's picture with the found markers drawn over; `texture` is null when there is no picture.
 void draw_camera(const Pen& pen, const Box& box, const CameraPicture& camera, ImTextureID texture);
 
-/// The plan items from row `first_row` on, then the evidence. Returns how many rows there was room for.
-int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int first_row);
+struct TableShown {
+    int rows = 1;              ///< there was room for
+    bool all_evidence = true;  ///< false: some sentences were cut for want of room
+};
+
+/// The plan items from row `first_row` on, then the evidence.
+TableShown draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int first_row);
 
 /// A button of the action row, and the DARK button.
 void draw_button(const Pen& pen, const Box& box, const std::string& label, const ButtonState& state, bool hovered, bool held);

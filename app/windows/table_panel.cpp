@@ -25,7 +25,7 @@ void draw_heading(const Pen& pen, const Columns& c, float top) {
     pen.line(pen.fonts.small, "Plan item", c.name_x, top + height, c.name_width, theme::kQuiet);
     right("depth", c.depth_x, 0.75F * c.width, 0);
     right("mm", c.depth_x, 0.75F * c.width, 1);
-    right("error", c.predicted_x, c.width, 0);
+    right("predicted", c.predicted_x, c.width, 0);
     right("95 % mm", c.predicted_x, c.width, 1);
     right("light seen", c.light_x, c.width, 0);
     right("off by mm", c.light_x, c.width, 1);
@@ -63,7 +63,7 @@ float evidence_height(const Pen& pen, const OperatorModel& model, float width) {
 
 }  // namespace
 
-int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int first_row) {
+TableShown draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int first_row) {
     pen.panel(box);
     const float pad = 14 * pen.scale, line = line_height(pen.fonts.small);
     const Columns columns = columns_of(pen, box);
@@ -73,15 +73,17 @@ int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int f
 
     const float row_height = std::round(line_height(pen.fonts.body) + 4 * pen.scale);
     const float text_width_px = box.width - 36 * pen.scale;
-    const float evidence = std::min(evidence_height(pen, model, text_width_px), 0.45F * box.height);
     const int count = static_cast<int>(model.rows.size());
-    const float room = box.bottom() - pad - evidence - rule - pad;
+    const float both = box.bottom() - pad - rule - pad, wanted = evidence_height(pen, model, text_width_px);
+    const float left_over = std::max(both - static_cast<float>(count) * row_height, std::min(3 * line, 0.4F * both));
+    const float evidence = std::min(wanted, std::floor(left_over / line) * line);
+    const float room = both - evidence;
     int rows = std::max(1, static_cast<int>(room / row_height));
     if (rows < count) rows = std::max(1, static_cast<int>((room - line) / row_height));
     const int shown = std::min(rows, count - first_row);
     float y = rule + 4 * pen.scale;
     for (int i = 0; i < shown; ++i, y += row_height)
-        draw_row(pen, model, model.rows[static_cast<std::size_t>(first_row + i)], columns, y + row_height / 2);
+        draw_row(pen, model, model.rows[static_cast<std::size_t>(first_row + i)], columns, std::round(y + row_height / 2));
     if (rows < count)
         pen.line(pen.fonts.small,
                  "rows " + std::to_string(first_row + 1) + "–" + std::to_string(first_row + shown) + " of " +
@@ -90,9 +92,9 @@ int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int f
 
     float at = box.bottom() - pad - evidence;
     for (const std::string& sentence : model.evidence)
-        at += pen.paragraph(pen.fonts.small, sentence, {columns.name_x, at, text_width_px, box.bottom() - pad / 2 - at},
+        at += pen.paragraph(pen.fonts.small, sentence, {columns.name_x, at, text_width_px, box.bottom() - pad - at + 1},
                             theme::kQuiet);
-    return rows;
+    return {rows, evidence >= wanted};
 }
 
 }  // namespace planlight
