@@ -21,7 +21,7 @@
 namespace planlight {
 namespace {
 
-constexpr double kHalfAngle = 0.21;  ///< radians, of the camera's field
+constexpr double kHalfAngle = 0.15;  ///< radians, of the camera's field
 
 /// A thing in the view. It stands `lift_mm` nearer to the viewer than it is, so that the skin under it does not hide it.
 struct Thing {
@@ -102,7 +102,7 @@ struct Scene::Parts {
             high = high.cwiseMax(p);
         }
         middle = 0.5 * (low + high);
-        reach_mm = 0.56 * std::max({high.x() - low.x(), high.y() - low.y(), high.z() - low.z(), 1.0});
+        reach_mm = 0.60 * std::max({high.x() - low.x(), high.y() - low.y(), high.z() - low.z(), 1.0});
     }
 
     bool take_skin_and_markers(const SceneModel& scene) {

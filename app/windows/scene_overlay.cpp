@@ -14,6 +14,7 @@
 #include <vtkTextProperty.h>
 #include <vtkUnsignedCharArray.h>
 
+#include <algorithm>
 #include <array>
 
 #include "app/windows/distance_colours.h"
@@ -25,13 +26,14 @@ namespace {
 struct Text {
     vtkNew<vtkTextActor> actor;
 
-    void set_up(vtkRenderer& renderer, const std::filesystem::path& font, bool shadow) {
+    void set_up(vtkRenderer& renderer, const std::filesystem::path& font) {
         vtkTextProperty* const property = actor->GetTextProperty();
         property->SetFontFamily(VTK_FONT_FILE);
         property->SetFontFile(font.c_str());
         property->SetColor(0.94, 0.95, 0.97);
-        property->SetShadow(shadow ? 1 : 0);
-        property->SetShadowOffset(2, -2);
+        // Readable over the skin too; a box of its own behind the text would win against it in the depth test.
+        property->SetBackgroundColor(0.055, 0.067, 0.086);
+        property->SetBackgroundOpacity(0.7);
         property->SetJustificationToCentered();
         property->SetVerticalJustificationToCentered();
         renderer.AddActor2D(actor);
@@ -104,8 +106,7 @@ struct SceneOverlay::Parts {
         title.actor->SetVisibility(shown);
         for (Text& value : values) value.actor->SetVisibility(shown);
         if (!shown) return;
-        const double w = 320 * scale, h = 92 * scale, x = width - w - 16 * scale, y = 16 * scale, bar = w - 48 * scale;
-        boxes.add(x, y, w, h, {12, 14, 18}, 215);
+        const double w = 320 * scale, x = width - w - 16 * scale, y = 16 * scale, bar = w - 48 * scale;
         constexpr int kSteps = 64;
         for (int i = 0; i < kSteps; ++i)
             boxes.add(x + 24 * scale + bar * i / kSteps, y + 36 * scale, bar / kSteps + 0.5, 14 * scale,
@@ -120,14 +121,15 @@ struct SceneOverlay::Parts {
 
 SceneOverlay::SceneOverlay(vtkRenderer& renderer, const FontFiles& fonts) : parts_(std::make_unique<Parts>()) {
     parts_->boxes.set_up(renderer);
-    for (Text& letter : parts_->letters) letter.set_up(renderer, fonts.bold, true);
-    parts_->title.set_up(renderer, fonts.regular, false);
-    for (Text& value : parts_->values) value.set_up(renderer, fonts.regular, false);
+    for (Text& letter : parts_->letters) letter.set_up(renderer, fonts.bold);
+    parts_->title.set_up(renderer, fonts.regular);
+    for (Text& value : parts_->values) value.set_up(renderer, fonts.regular);
 }
 
 SceneOverlay::~SceneOverlay() = default;
 
 void SceneOverlay::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale) {
+    scale = std::max(scale, 0.85);  // smaller letters are not readable
     parts_->boxes.clear();
     parts_->letters_at_edges(view, width, height, scale);
     parts_->legend(scene, width, scale);

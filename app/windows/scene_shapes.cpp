@@ -23,7 +23,7 @@ namespace planlight {
 namespace {
 
 constexpr Rgb kSkinColour{232, 190, 165}, kLidColour{150, 140, 135};
-constexpr double kPlanRadiusMm = 0.6, kTextRadiusMm = 0.3, kLightRadiusMm = 0.35;
+constexpr double kPlanRadiusMm = 0.9, kTextRadiusMm = 0.3, kLightRadiusMm = 0.3;
 constexpr double kAboveSkinMm = 0.4;
 constexpr std::size_t kMostPoints = 60000;
 

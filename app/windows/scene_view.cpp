@@ -20,7 +20,9 @@ RgbImage render(const SceneModel& model, const SceneView& view, int width, int h
     {
         Scene scene(*window, fonts);
         scene.update(model, view, width, height, std::max(0.6, height / 960.0));
+        vtkObject::GlobalWarningDisplayOff();  // GLEW complains once more at the first rendering
         window->Render();
+        vtkObject::GlobalWarningDisplayOn();
         picture = picture_of(*window);
     }
     window->Finalize();

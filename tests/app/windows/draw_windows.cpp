@@ -1,14 +1,25 @@
 #include <string>
 
+#include "app/windows/operator_window.h"
 #include "app/windows/scene_view.h"
 #include "fake_model.h"
 #include "write_picture.h"
 
-/// draw_windows scene FILE [azimuth elevation]
+/// draw_windows scene FILE [azimuth elevation], or draw_windows window FILE [width height status]
 int main(int argc, char** argv) {
     using namespace planlight;
-    const OperatorModel model = test::fake_model();
+    OperatorModel model = test::fake_model();
     SceneView view = view_of_plan(*model.scene.plan);
-    if (argc > 4) view.azimuth = std::stod(argv[3]), view.elevation = std::stod(argv[4]);
-    test::write_picture(argv[2], render_scene(model.scene, view, 1280, 960));
+    if (std::string(argv[1]) == "scene") {
+        if (argc > 4) view.azimuth = std::stod(argv[3]), view.elevation = std::stod(argv[4]);
+        test::write_picture(argv[2], render_scene(model.scene, view, 1280, 960));
+        return 0;
+    }
+    OperatorWindowSettings settings;
+    if (argc > 4) settings.width = std::stoi(argv[3]), settings.height = std::stoi(argv[4]);
+    if (argc > 5) model = test::fake_model_with(static_cast<StatusKind>(std::stoi(argv[5])));
+    OperatorWindow window(settings);
+    window.set_view(view);
+    for (int i = 0; i < 3; ++i) window.frame(model);
+    test::write_picture(argv[2], window.screenshot());
 }

@@ -111,4 +111,39 @@ OperatorModel fake_model() {
     return model;
 }
 
+OperatorModel fake_model_with(StatusKind kind) {
+    OperatorModel model = fake_model();
+    model.status = {kind, "", {}};
+    if (kind == StatusKind::check) {
+        model.status.headline = "Look at the light on two landmarks before the plan is used.";
+        model.status.details = {"Surface is nearly round: the head could turn by 1.9° unseen.",
+                                "Marker 3 is hidden: five of six are seen."};
+        model.steps[4] = StepState::attention;
+        model.steps[5] = StepState::waiting;
+        model.rows[2].predicted_error_mm = 2.4;
+    } else if (kind == StatusKind::dark) {
+        model.status.headline = "The projector is dark: no fresh pose for 82.0 ms.";
+        model.status.details = {"Only two markers are seen by the left camera: take away what hides them."};
+        model.figures = {};
+    } else if (kind == StatusKind::scanning || kind == StatusKind::ready) {
+        model.status.headline = kind == StatusKind::ready ? "Ready to scan." : "Pattern 12 of 44. Keep the head still.";
+        model.steps = {StepState::done, StepState::done, StepState::active, StepState::waiting, StepState::waiting,
+                       StepState::waiting};
+        model.scan = {false, "is running"};
+        model.do_register = {false, "scan first"};
+        model.track = {false, "register first"};
+        model.scene.cloud_distance_mm = nullptr;
+        model.scene.light = nullptr;
+        for (PlanRow& row : model.rows) row.predicted_error_mm = row.light_off_mm = std::nullopt;
+        model.figures = {};
+        model.left.picture = nullptr;
+        model.left.found.clear();
+        model.evidence.clear();
+    } else if (kind == StatusKind::refused) {
+        model.status.headline = "This is not the patient of the plan, or too little skin is seen.";
+        model.status.details = {"The best pose explains 61.0 % of the scan; a mirrored one explains 60.0 %."};
+    }
+    return model;
+}
+
 }  // namespace planlight::test

@@ -7,4 +7,7 @@ namespace planlight::test {
 /// An operator model on the analytic head, with a plan on its right forehead; figures are invented.
 OperatorModel fake_model();
 
+/// The same in another state, with buttons, steps and sentences that fit it.
+OperatorModel fake_model_with(StatusKind kind);
+
 }  // namespace planlight::test

@@ -1,0 +1,35 @@
+#include "app/windows/layout.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace planlight {
+
+WindowLayout layout_of(int width, int height) {
+    WindowLayout place;
+    const auto w = static_cast<float>(width), h = static_cast<float>(height);
+    const float s = place.scale = std::clamp(std::min(w / 1920, h / 1080), 0.6F, 3.0F);
+    const float gap = place.gap = std::round(16 * s);
+    const float button = std::max(76.0F, std::round(84 * s));
+    const float banner = std::max(152.0F, std::round(196 * s));
+    const float top = button + 2 * std::round(10 * s);
+
+    place.dark = {w - gap - 250 * s, std::round(10 * s), 250 * s, button};
+    place.title = {gap + 8 * s, std::round(10 * s), std::round(0.27F * w), button};
+    place.steps = {place.title.right() + gap, std::round(10 * s), place.dark.x - place.title.right() - 2 * gap, button};
+    place.banner = {gap, h - gap - banner, w - 2 * gap, banner};
+
+    const float main_height = place.banner.y - gap - top;
+    const float column = std::round(std::clamp(0.362F * w, 460.0F, 900.0F * s));
+    const float column_x = w - gap - column;
+    place.scene = {gap, top, column_x - 2 * gap, main_height};
+    const float camera_width = std::floor((column - gap) / 2), camera_height = std::round(0.64F * camera_width);
+    place.left_camera = {column_x, top, camera_width, camera_height};
+    place.right_camera = {column_x + column - camera_width, top, camera_width, camera_height};
+    place.buttons = {column_x, place.banner.y - gap - button, column, button};
+    const float table_y = place.left_camera.bottom() + gap;
+    place.table = {column_x, table_y, column, place.buttons.y - gap - table_y};
+    return place;
+}
+
+}  // namespace planlight

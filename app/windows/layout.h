@@ -1,0 +1,22 @@
+#pragma once
+
+namespace planlight {
+
+/// A rectangle in window pixels, from the top left.
+struct Box {
+    float x = 0, y = 0, width = 0, height = 0;
+    float right() const { return x + width; }
+    float bottom() const { return y + height; }
+};
+
+/// Where everything stands in the operator window.
+struct WindowLayout {
+    float scale = 1;  ///< 1 at 1920 x 1080
+    float gap = 16;
+    Box title, steps, dark, scene, left_camera, right_camera, table, buttons, banner;
+};
+
+/// For a window of that size, at least 1280 x 800. Buttons are never lower than 72 pixels (20 mm on a 24 inch screen).
+WindowLayout layout_of(int width, int height);
+
+}  // namespace planlight

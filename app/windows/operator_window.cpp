@@ -1,0 +1,324 @@
+#define GLFW_INCLUDE_GLCOREARB
+#define GL_GLEXT_PROTOTYPES
+#include "app/windows/operator_window.h"
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+#include <vtkOpenGLFramebufferObject.h>
+#include <vtkOpenGLState.h>
+#include <vtkTextureObject.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include "app/windows/camera_texture.h"
+#include "app/windows/panels.h"
+#include "app/windows/render_target.h"
+#include "app/windows/scene.h"
+#include "planning_io/types/error.h"
+#include "projection/glfw_session.h"
+#include "projection/projector_window.h"
+
+namespace planlight {
+namespace {
+
+constexpr int kLeastWidth = 1280, kLeastHeight = 800;
+
+Monitor monitor_for(const OperatorWindowSettings& settings) {
+    const std::vector<Monitor> monitors = list_monitors();
+    for (std::size_t i = 0; i < monitors.size(); ++i)
+        if (settings.monitor ? monitors[i].name == *settings.monitor || std::to_string(i) == *settings.monitor
+                             : monitors[i].primary)
+            return monitors[i];
+    if (settings.monitor || monitors.empty())
+        throw DeviceError("operator window", "there is no monitor \"" + settings.monitor.value_or("primary") + "\"",
+                          "name one of those that xrandr lists");
+    return monitors.front();
+}
+
+GLFWwindow* open_window(const OperatorWindowSettings& settings) {
+    const Monitor monitor = monitor_for(settings);
+    glfwDefaultWindowHints();
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
+    glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
+    glfwWindowHint(GLFW_DECORATED, settings.fill_monitor ? GLFW_FALSE : GLFW_TRUE);
+    const int width = settings.fill_monitor ? monitor.width : std::max(settings.width, kLeastWidth);
+    const int height = settings.fill_monitor ? monitor.height : std::max(settings.height, kLeastHeight);
+    GLFWwindow* const window = glfwCreateWindow(width, height, settings.title.c_str(), nullptr, nullptr);
+    if (window == nullptr)
+        throw DeviceError("operator window", "it could not be opened (" + last_window_error() + ")",
+                          "install an OpenGL 3.3 driver, or set LIBGL_ALWAYS_SOFTWARE=1");
+    glfwSetWindowPos(window, monitor.x + std::max(0, (monitor.width - width) / 2),
+                     monitor.y + std::max(0, (monitor.height - height) / 2));
+    glfwShowWindow(window);
+    return window;
+}
+
+bool inside(const Box& box, double x, double y) {
+    return x >= box.x && x < box.right() && y >= box.y && y < box.bottom();
+}
+
+}  // namespace
+
+struct OperatorWindow::Parts {
+    std::shared_ptr<void> session = glfw_session();
+    FontFiles font_files = find_fonts();
+    GLFWwindow* window = nullptr;
+    ImGuiContext* gui = nullptr;
+    vtkSmartPointer<vtkGenericOpenGLRenderWindow> target;
+    std::unique_ptr<Scene> scene;
+    CameraTexture left, right;
+    Pen pen{};
+    WindowLayout place;
+    SceneView view, first_view;
+    bool dark_pressed = false;
+    float rows_scrolled = 0;
+    int rows_shown = 1;
+    std::map<OperatorAction, Box> controls;
+
+    explicit Parts(const OperatorWindowSettings& settings) : window(open_window(settings)) {
+        glfwSetWindowSizeLimits(window, kLeastWidth, kLeastHeight, GLFW_DONT_CARE, GLFW_DONT_CARE);
+        glfwMakeContextCurrent(window);
+        glfwSwapInterval(0);  // the loop that follows the patient must not wait for this screen
+        listen();
+        target = render_target(640, 480, [w = window] { glfwMakeContextCurrent(w); });
+        scene = std::make_unique<Scene>(*target, font_files);
+        gui = ImGui::CreateContext();
+        ImGui::SetCurrentContext(gui);
+        ImGui::GetIO().IniFilename = nullptr;
+        ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NoMouseCursorChange;
+        ImGui_ImplGlfw_InitForOpenGL(window, true);
+        ImGui_ImplOpenGL3_Init("#version 330 core");
+    }
+    Parts(const Parts&) = delete;
+    Parts& operator=(const Parts&) = delete;
+    ~Parts() {
+        glfwMakeContextCurrent(window);
+        ImGui::SetCurrentContext(gui);
+        ImGui_ImplOpenGL3_Shutdown();
+        ImGui_ImplGlfw_Shutdown();
+        ImGui::DestroyContext(gui);
+        left = {};
+        right = {};
+        scene.reset();
+        target->Finalize();
+        target = nullptr;
+        glfwDestroyWindow(window);
+    }
+
+    /// DARK is taken from the events themselves, so that a press shorter than a frame is not lost.
+    void listen() {
+        glfwSetWindowUserPointer(window, this);
+        glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
+            if (action == GLFW_PRESS && (key == GLFW_KEY_SPACE || key == GLFW_KEY_B || key == GLFW_KEY_ESCAPE))
+                static_cast<Parts*>(glfwGetWindowUserPointer(w))->dark_pressed = true;
+        });
+        glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int action, int) {
+            Parts& parts = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
+            double x = 0, y = 0;
+            glfwGetCursorPos(w, &x, &y);
+            if (action == GLFW_PRESS && inside(parts.place.dark, x, y)) parts.dark_pressed = true;
+        });
+    }
+
+    void fit_to(int width, int height) {
+        place = layout_of(width, height);
+        if (pen.scale == place.scale && pen.fonts.body != nullptr) return;
+        ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
+        atlas.Clear();
+        pen.fonts = load_fonts(atlas, font_files, place.scale);
+        ImGui_ImplOpenGL3_DestroyFontsTexture();
+        ImGui_ImplOpenGL3_CreateFontsTexture();
+        pen.scale = place.scale;
+    }
+
+    /// The mouse over the 3-D view: left turns, right or middle shifts, wheel zooms, a double click goes back.
+    void turn_view() {
+        constexpr double kRadiansPerPixel = 0.007;
+        const ImGuiIO& io = ImGui::GetIO();
+        ImGui::SetCursorScreenPos({place.scene.x, place.scene.y});
+        ImGui::InvisibleButton("scene", {place.scene.width, place.scene.height},
+                               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                                   ImGuiButtonFlags_MouseButtonMiddle);
+        if (ImGui::IsItemHovered()) {
+            view.zoom = std::clamp(view.zoom * std::pow(1.12, static_cast<double>(io.MouseWheel)), 0.3, 12.0);
+            if (ImGui::IsMouseDoubleClicked(0)) view = first_view;
+        }
+        if (!ImGui::IsItemActive()) return;
+        if (io.MouseDown[0]) {
+            view.azimuth = std::remainder(view.azimuth + kRadiansPerPixel * static_cast<double>(io.MouseDelta.x), 2 * M_PI);
+            view.elevation =
+                std::clamp(view.elevation + kRadiansPerPixel * static_cast<double>(io.MouseDelta.y), -1.5, 1.5);
+        } else {
+            view.shift_mm += scene->mm_per_pixel() * Eigen::Vector2d(io.MouseDelta.x, -io.MouseDelta.y);
+        }
+    }
+
+    void draw_scene(const SceneModel& model) {
+        pen.panel(place.scene);
+        turn_view();
+        const int width = static_cast<int>(place.scene.width) - 4, height = static_cast<int>(place.scene.height) - 4;
+        if (scene->update(model, view, width, height, place.scale)) {
+            target->SetSize(width, height);
+            target->GetState()->Reset();
+            target->GetState()->ResetFramebufferBindings();
+            target->Render();
+            glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        }
+        const auto texture = target->GetDisplayFramebuffer()->GetColorAttachmentAsTextureObject(0)->GetHandle();
+        const ImVec2 low(place.scene.x + 2, place.scene.y + 2);
+        pen.list->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), low,
+                                  {low.x + static_cast<float>(width), low.y + static_cast<float>(height)}, {0, 1}, {1, 0},
+                                  IM_COL32_WHITE, 10 * pen.scale);
+        std::string title = "Skin from CT";
+        if (model.cloud) title += model.cloud_distance_mm ? " · scan coloured by distance" : " · scan";
+        if (model.plan) title += " · plan";
+        if (model.light) title += " · light as it falls (white)";
+        const float indent = 18 * pen.scale;
+        pen.paragraph(pen.fonts.small, title,
+                      {place.scene.x + indent, place.scene.y + 14 * pen.scale, 0.44F * place.scene.width - indent,
+                       2.2F * line_height(pen.fonts.small)},
+                      theme::kText);
+    }
+
+    bool button(OperatorAction action, const Box& box, const std::string& label, const ButtonState& state) {
+        controls[action] = box;
+        ImGui::SetCursorScreenPos({box.x, box.y});
+        const bool pressed = ImGui::InvisibleButton(label.c_str(), {box.width, box.height});
+        draw_button(pen, box, label, state, ImGui::IsItemHovered(), ImGui::IsItemActive());
+        return pressed && state.enabled;
+    }
+
+    OperatorAction draw_buttons(const OperatorModel& model) {
+        const std::array<std::tuple<OperatorAction, const char*, const ButtonState*>, 4> row{
+            {{OperatorAction::scan, "Scan", &model.scan},
+             {OperatorAction::do_register, "Register", &model.do_register},
+             {OperatorAction::track, "Track", &model.track},
+             {OperatorAction::stop, "Stop", &model.stop}}};
+        const float gap = place.gap, width = (place.buttons.width - 3 * gap) / 4;
+        OperatorAction wanted = OperatorAction::none;
+        Box box = place.buttons;
+        box.width = width;
+        for (const auto& [action, label, state] : row) {
+            if (button(action, box, label, *state)) wanted = action;
+            box.x += width + gap;
+        }
+        controls[OperatorAction::dark] = place.dark;
+        const ImVec2 mouse = ImGui::GetIO().MousePos;
+        const bool hovered = inside(place.dark, mouse.x, mouse.y);
+        draw_dark_button(pen, place.dark, hovered, hovered && ImGui::GetIO().MouseDown[0]);
+        return wanted;
+    }
+
+    void draw_plan_table(const OperatorModel& model) {
+        const ImVec2 mouse = ImGui::GetIO().MousePos;
+        const int spare = static_cast<int>(model.rows.size()) - rows_shown;
+        if (inside(place.table, mouse.x, mouse.y)) rows_scrolled -= ImGui::GetIO().MouseWheel;
+        rows_scrolled = std::clamp(rows_scrolled, 0.0F, static_cast<float>(std::max(0, spare)));
+        const TableShown shown = draw_table(pen, place.table, model, static_cast<int>(rows_scrolled));
+        rows_shown = shown.rows;
+        if (!shown.all_evidence && inside(place.table, mouse.x, mouse.y)) {
+            std::string all;
+            for (const std::string& sentence : model.evidence) all += (all.empty() ? "" : "\n") + sentence;
+            ImGui::SetTooltip("%s", all.c_str());
+        }
+    }
+
+    OperatorAction draw(const OperatorModel& model) {
+        const ImGuiIO& io = ImGui::GetIO();
+        ImGui::SetNextWindowPos({0, 0});
+        ImGui::SetNextWindowSize(io.DisplaySize);
+        ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
+        ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);
+        ImGui::Begin("all", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                                         ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus);
+        pen.list = ImGui::GetWindowDrawList();
+        const auto texture = [](unsigned name) { return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(name)); };
+        draw_header(pen, place, model);
+        draw_scene(model.scene);
+        draw_camera(pen, place.left_camera, model.left, texture(left.take(model.left.picture)));
+        draw_camera(pen, place.right_camera, model.right, texture(right.take(model.right.picture)));
+        draw_plan_table(model);
+        const OperatorAction wanted = draw_buttons(model);
+        draw_banner(pen, place.banner, model);
+        ImGui::End();
+        ImGui::PopStyleVar(2);
+        return wanted;
+    }
+
+    void paint() {
+        int width = 0, height = 0;
+        glfwGetFramebufferSize(window, &width, &height);
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        glViewport(0, 0, width, height);
+        glDisable(GL_SCISSOR_TEST);
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+        glClearColor(11 / 255.0F, 13 / 255.0F, 17 / 255.0F, 1);
+        glClear(GL_COLOR_BUFFER_BIT);
+        ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    }
+};
+
+OperatorWindow::OperatorWindow(const OperatorWindowSettings& settings) : parts_(std::make_unique<Parts>(settings)) {}
+OperatorWindow::~OperatorWindow() = default;
+
+OperatorAction OperatorWindow::frame(const OperatorModel& model) {
+    Parts& parts = *parts_;
+    glfwMakeContextCurrent(parts.window);
+    ImGui::SetCurrentContext(parts.gui);
+    glfwPollEvents();
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(parts.window, &width, &height);
+    OperatorAction wanted = OperatorAction::none;
+    if (width > 0 && height > 0) {
+        parts.fit_to(width, height);
+        ImGui_ImplOpenGL3_NewFrame();
+        ImGui_ImplGlfw_NewFrame();
+        ImGui::NewFrame();
+        wanted = parts.draw(model);
+        ImGui::Render();
+        parts.paint();
+        glfwSwapBuffers(parts.window);
+    }
+    if (std::exchange(parts.dark_pressed, false)) return OperatorAction::dark;
+    if (glfwWindowShouldClose(parts.window) == GLFW_TRUE) return OperatorAction::quit;
+    return wanted;
+}
+
+RgbImage OperatorWindow::screenshot() {
+    Parts& parts = *parts_;
+    glfwMakeContextCurrent(parts.window);
+    ImGui::SetCurrentContext(parts.gui);
+    int width = 0, height = 0;
+    glfwGetFramebufferSize(parts.window, &width, &height);
+    if (ImGui::GetDrawData() == nullptr) return RgbImage(width, height);
+    parts.paint();
+    RgbImage upside_down(width, height), picture(width, height);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadBuffer(GL_BACK);
+    glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, upside_down.pixels.data());
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) picture.at(x, y) = upside_down.at(x, height - 1 - y);
+    return picture;
+}
+
+SceneView OperatorWindow::view() const { return parts_->view; }
+
+void OperatorWindow::set_view(const SceneView& view) { parts_->view = parts_->first_view = view; }
+
+std::array<int, 4> OperatorWindow::place_of(OperatorAction control) const {
+    const auto found = parts_->controls.find(control);
+    if (found == parts_->controls.end()) return {0, 0, 0, 0};
+    const Box& box = found->second;
+    return {static_cast<int>(box.x), static_cast<int>(box.y), static_cast<int>(box.width), static_cast<int>(box.height)};
+}
+
+}  // namespace planlight

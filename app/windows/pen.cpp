@@ -1,0 +1,105 @@
+#include "app/windows/pen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+namespace planlight {
+namespace {
+
+const std::string kMore = "…";
+
+/// Without its last character (UTF-8).
+void drop_last(std::string& text) {
+    while (!text.empty() && (static_cast<unsigned char>(text.back()) & 0xC0U) == 0x80U) text.pop_back();
+    if (!text.empty()) text.pop_back();
+}
+
+std::string shortened(const ImFont* font, std::string text, float width) {
+    if (text_width(font, text) <= width) return text;
+    while (!text.empty() && text_width(font, text + kMore) > width) drop_last(text);
+    return text + kMore;
+}
+
+}  // namespace
+
+float text_width(const ImFont* font, const std::string& text) {
+    return font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str(), text.c_str() + text.size()).x;
+}
+
+float line_height(const ImFont* font) { return std::round(font->FontSize * 1.12F); }
+
+ImU32 colour_of(const Rgb& colour) { return IM_COL32(colour[0], colour[1], colour[2], 255); }
+
+std::vector<std::string> broken(const ImFont* font, const std::string& text, float width, std::size_t most) {
+    std::vector<std::string> lines;
+    std::istringstream words(text);
+    std::string line, word;
+    while (words >> word) {
+        const std::string longer = line.empty() ? word : line + " " + word;
+        if (line.empty() || text_width(font, longer) <= width) {
+            line = longer;
+            continue;
+        }
+        if (lines.size() + 1 == most) {
+            std::string rest;
+            std::getline(words, rest, '\0');
+            line = longer + rest;
+            break;
+        }
+        lines.push_back(shortened(font, line, width));
+        line = word;
+    }
+    if (!line.empty() && lines.size() < most) lines.push_back(shortened(font, line, width));
+    return lines;
+}
+
+void Pen::panel(const Box& box, ImU32 fill, ImU32 edge, float edge_width) const {
+    const ImVec2 low(box.x, box.y), high(box.right(), box.bottom());
+    list->AddRectFilled(low, high, fill, 12 * scale);
+    if (edge_width > 0) list->AddRect(low, high, edge, 12 * scale, 0, edge_width);
+}
+
+void Pen::line(const ImFont* font, const std::string& text, float x, float middle_y, float width, ImU32 colour, Side side) const {
+    const std::string shown = width > 0 ? shortened(font, text, width) : text;
+    const float spare = (width > 0 ? width : 0) - text_width(font, shown);
+    if (side == Side::right) x += spare;
+    if (side == Side::centre) x += spare / 2;
+    list->AddText(font, font->FontSize, ImVec2(std::round(x), std::round(middle_y - font->FontSize / 2)), colour, shown.c_str());
+}
+
+float Pen::paragraph(const ImFont* font, const std::string& text, const Box& box, ImU32 colour, Side side) const {
+    const float height = line_height(font);
+    const auto most = static_cast<std::size_t>(std::max(0.0F, std::floor(box.height / height)));
+    if (most == 0) return 0;
+    float y = box.y;
+    for (const std::string& part : broken(font, text, box.width, most)) {
+        line(font, part, box.x, y + height / 2, box.width, colour, side);
+        y += height;
+    }
+    return y - box.y;
+}
+
+void Pen::tick(ImVec2 middle, float size, ImU32 colour) const {
+    const ImVec2 points[3] = {{middle.x - 0.5F * size, middle.y + 0.02F * size},
+                              {middle.x - 0.12F * size, middle.y + 0.4F * size},
+                              {middle.x + 0.55F * size, middle.y - 0.4F * size}};
+    list->AddPolyline(points, 3, colour, 0, std::max(2.0F, 0.22F * size));
+}
+
+void Pen::triangle(ImVec2 middle, float radius, ImU32 colour) const {
+    list->AddTriangleFilled({middle.x, middle.y - radius}, {middle.x + radius, middle.y + 0.8F * radius},
+                            {middle.x - radius, middle.y + 0.8F * radius}, colour);
+}
+
+void Pen::polygon(ImVec2 middle, float radius, int corners, float turn, ImU32 colour) const {
+    std::vector<ImVec2> points;
+    for (int i = 0; i < corners; ++i) {
+        const float angle = turn + 2 * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(corners);
+        points.emplace_back(middle.x + radius * std::cos(angle), middle.y + radius * std::sin(angle));
+    }
+    list->AddConvexPolyFilled(points.data(), corners, colour);
+}
+
+}  // namespace planlight

@@ -1,0 +1,100 @@
+#include <algorithm>
+#include <cmath>
+
+#include "app/windows/number_text.h"
+#include "app/windows/panels.h"
+
+namespace planlight {
+namespace {
+
+struct Columns {
+    float name_x, name_width, depth_x, predicted_x, light_x, width;
+};
+
+Columns columns_of(const Pen& pen, const Box& box) {
+    const float pad = 18 * pen.scale, width = std::round(0.20F * box.width), name_x = box.x + pad;
+    const float light_x = box.right() - pad - width, predicted_x = light_x - width, depth_x = predicted_x - 0.75F * width;
+    return {name_x, depth_x - name_x - 4 * pen.scale, depth_x, predicted_x, light_x, width};
+}
+
+void draw_heading(const Pen& pen, const Columns& c, float top) {
+    const float height = line_height(pen.fonts.small);
+    const auto right = [&](const char* text, float x, float width, float row) {
+        pen.line(pen.fonts.small, text, x, top + height * (row + 0.5F), width, theme::kQuiet, Pen::Side::right);
+    };
+    pen.line(pen.fonts.small, "Plan item", c.name_x, top + height, c.name_width, theme::kQuiet);
+    right("depth", c.depth_x, 0.75F * c.width, 0);
+    right("mm", c.depth_x, 0.75F * c.width, 1);
+    right("predicted", c.predicted_x, c.width, 0);
+    right("95 % mm", c.predicted_x, c.width, 1);
+    right("light seen", c.light_x, c.width, 0);
+    right("off by mm", c.light_x, c.width, 1);
+}
+
+/// An error value; beyond its limits it has a shape beside it, not only a colour.
+void draw_error(const Pen& pen, const OperatorModel& model, const std::optional<double>& value, float x, float width, float y) {
+    const std::string text = number_text(value, "");
+    const bool known = value && std::isfinite(*value);
+    const bool stop = known && std::abs(*value) > model.stop_above_mm, warn = known && std::abs(*value) > model.warn_above_mm;
+    const ImU32 colour = !known ? theme::kQuiet : stop ? theme::kRed : warn ? theme::kAmber : theme::kGreen;
+    pen.line(pen.fonts.body, text, x, y, width, colour, Pen::Side::right);
+    const float radius = 8 * pen.scale;
+    const ImVec2 mark(x + width - text_width(pen.fonts.body, text) - 2.2F * radius, y);
+    if (stop)
+        pen.polygon(mark, radius * 1.1F, 8, 0.3927F, theme::kRed);
+    else if (warn)
+        pen.triangle(mark, radius, theme::kAmber);
+}
+
+void draw_row(const Pen& pen, const OperatorModel& model, const PlanRow& row, const Columns& c, float y) {
+    const float size = 7 * pen.scale, swatch = 22 * pen.scale;
+    pen.list->AddRectFilled({c.name_x, y - size}, {c.name_x + 2 * size, y + size}, colour_of(row.colour), 3 * pen.scale);
+    pen.line(pen.fonts.body, row.name, c.name_x + swatch, y, c.name_width - swatch, theme::kText);
+    pen.line(pen.fonts.body, number_text(row.depth_mm, ""), c.depth_x, y, 0.75F * c.width, theme::kText, Pen::Side::right);
+    draw_error(pen, model, row.predicted_error_mm, c.predicted_x, c.width, y);
+    draw_error(pen, model, row.light_off_mm, c.light_x, c.width, y);
+}
+
+float evidence_height(const Pen& pen, const OperatorModel& model, float width) {
+    std::size_t lines = 0;
+    for (const std::string& sentence : model.evidence) lines += broken(pen.fonts.small, sentence, width, 9).size();
+    return line_height(pen.fonts.small) * static_cast<float>(lines);
+}
+
+}  // namespace
+
+TableShown draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int first_row) {
+    pen.panel(box);
+    const float pad = 14 * pen.scale, line = line_height(pen.fonts.small);
+    const Columns columns = columns_of(pen, box);
+    draw_heading(pen, columns, box.y + pad / 2);
+    const float rule = box.y + pad / 2 + 2 * line + 4 * pen.scale;
+    pen.list->AddLine({box.x + pad, rule}, {box.right() - pad, rule}, theme::kEdge, 1);
+
+    const float row_height = std::round(line_height(pen.fonts.body) + 4 * pen.scale);
+    const float text_width_px = box.width - 36 * pen.scale;
+    const int count = static_cast<int>(model.rows.size());
+    const float both = box.bottom() - pad - rule - pad, wanted = evidence_height(pen, model, text_width_px);
+    const float left_over = std::max(both - static_cast<float>(count) * row_height, std::min(3 * line, 0.4F * both));
+    const float evidence = std::min(wanted, std::floor(left_over / line) * line);
+    const float room = both - evidence;
+    int rows = std::max(1, static_cast<int>(room / row_height));
+    if (rows < count) rows = std::max(1, static_cast<int>((room - line) / row_height));
+    const int shown = std::min(rows, count - first_row);
+    float y = rule + 4 * pen.scale;
+    for (int i = 0; i < shown; ++i, y += row_height)
+        draw_row(pen, model, model.rows[static_cast<std::size_t>(first_row + i)], columns, std::round(y + row_height / 2));
+    if (rows < count)
+        pen.line(pen.fonts.small,
+                 "rows " + std::to_string(first_row + 1) + "–" + std::to_string(first_row + shown) + " of " +
+                     std::to_string(count) + " · turn the mouse wheel for the others",
+                 columns.name_x, y + line / 2, text_width_px, theme::kAmber);
+
+    float at = box.bottom() - pad - evidence;
+    for (const std::string& sentence : model.evidence)
+        at += pen.paragraph(pen.fonts.small, sentence, {columns.name_x, at, text_width_px, box.bottom() - pad - at + 1},
+                            theme::kQuiet);
+    return {rows, evidence >= wanted};
+}
+
+}  // namespace planlight

@@ -1,0 +1,29 @@
+#!/bin/bash
+# two_monitors.sh PROGRAM CONF FOLDER none|openbox: runs PROGRAM on an X server of its own with two monitors.
+# Exit code 77: the X server with the dummy driver cannot be started here.
+program=$1 conf=$2 folder=$3 manager=$4
+for needed in Xorg xrandr import; do command -v $needed >/dev/null || { echo "skipped: $needed is not installed"; exit 77; }; done
+[ "$manager" = none ] || command -v "$manager" >/dev/null || { echo "skipped: $manager is not installed"; exit 77; }
+mkdir -p "$folder"
+server= wm=
+trap '[ -z "$wm" ] || kill "$wm" 2>/dev/null; [ -z "$server" ] || { kill "$server" 2>/dev/null; wait "$server" 2>/dev/null; }' EXIT
+for number in $(seq 70 99 | shuf); do
+  [ -e /tmp/.X$number-lock ] && continue
+  Xorg :$number -config "$conf" -noreset -nolisten tcp +extension GLX +extension RANDR -logfile "$folder/xorg.log" >/dev/null 2>&1 &
+  server=$!
+  export DISPLAY=:$number
+  for i in $(seq 50); do
+    kill -0 $server 2>/dev/null || break
+    xrandr >/dev/null 2>&1 && break
+    sleep 0.2
+  done
+  kill -0 $server 2>/dev/null && xrandr >/dev/null 2>&1 && break
+  kill $server 2>/dev/null; server=
+  tries=$((tries + 1)); [ $tries -ge 3 ] && break
+done
+[ -n "$server" ] || { echo "skipped: Xorg with the dummy driver does not start here (it needs root)"; exit 77; }
+xrandr --output DUMMY0 --mode 1920x1080 --primary || exit 77
+xrandr --addmode DUMMY1 1024x768 && xrandr --output DUMMY1 --mode 1024x768 --right-of DUMMY0 || exit 77
+if [ "$manager" != none ]; then "$manager" >/dev/null 2>&1 & wm=$!; sleep 1; fi
+export LIBGL_ALWAYS_SOFTWARE=1
+timeout 120 "$program" "$folder"

@@ -1,0 +1,134 @@
+// Run by two_monitors.sh on an X server with two monitors: opens both windows, lights the second monitor, and at each step
+// looks at the root window as a person would see it. Argument: folder for the pictures. Exit code 0 when all holds.
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <thread>
+
+#include "app/windows/operator_window.h"
+#include "fake_model.h"
+#include "planning_io/types/error.h"
+#include "projection/projector_window.h"
+#include "projector_picture.h"
+#include "write_picture.h"
+
+namespace {
+
+using namespace planlight;
+int failures = 0;
+
+void expect(bool fact, const std::string& what) {
+    fmt::print("{} {}\n", fact ? "ok  " : "FAIL", what);
+    std::fflush(stdout);
+    if (!fact) ++failures;
+}
+
+void expect_refusal(const std::string& what, const std::string& word, const std::function<void()>& act) {
+    try {
+        act();
+        expect(false, what + " (nothing was thrown)");
+    } catch (const DeviceError& error) {
+        expect(std::string(error.what()).find(word) != std::string::npos && !error.remedy.empty(), what + ": " + error.what());
+    }
+}
+
+class SteadyClock final : public Clock {
+public:
+    Instant now() const override { return std::chrono::steady_clock::now().time_since_epoch(); }
+};
+
+RgbImage screen(const std::string& folder, const std::string& name) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    const std::string file = folder + "/" + name + ".ppm";
+    if (std::system(("import -window root -depth 8 " + file).c_str()) != 0) throw std::runtime_error("import failed");
+    return test::read_picture(file);
+}
+
+/// How many pixels of the monitor differ from `wanted`.
+long different(const RgbImage& root, const Monitor& monitor, const RgbImage& wanted) {
+    long count = 0;
+    for (int y = 0; y < monitor.height; ++y)
+        for (int x = 0; x < monitor.width; ++x)
+            if (root.at(monitor.x + x, monitor.y + y) != wanted.at(x, y)) ++count;
+    return count;
+}
+
+void run(const std::string& folder) {
+    using std::chrono::seconds;
+    const std::vector<Monitor> monitors = list_monitors();
+    expect(monitors.size() == 2, fmt::format("two monitors ({})", monitors.size()));
+    const Monitor first = monitors.at(0), second = monitors.at(1);
+    expect(first.primary && !second.primary, "the first is the primary one");
+    const SteadyClock clock;
+    expect_refusal("the primary monitor is refused", "primary", [&] { ProjectorWindow window(first.name, clock); });
+    expect_refusal("an unknown monitor is refused by name", "HDMI-9", [&] { ProjectorWindow window("HDMI-9", clock); });
+
+    const OperatorModel model = test::fake_model();
+    OperatorWindow operator_window({"Planlight", 1280, 800, first.name, true});
+    ProjectorWindow projector(second.name, clock);
+    expect(projector.width() == second.width && projector.height() == second.height, "the projector has the monitor's size");
+    const RgbImage black(second.width, second.height), picture = test::projector_picture(second.width, second.height);
+
+    for (int i = 0; i < 3; ++i) operator_window.frame(model), projector.refresh();
+    const RgbImage before = screen(folder, "1_before");
+    expect(different(before, second, black) == 0, "the second monitor is black at first");
+
+    const Instant asked = clock.now(), lit = projector.show(picture, clock.now() + seconds(60));
+    expect(lit >= asked + std::chrono::milliseconds(25), "the light is said to come 25 ms or more after it was asked for");
+    const RgbImage shown = screen(folder, "2_shown");
+    expect(different(shown, second, picture) == 0, "the second monitor shows the picture, pixel by pixel");
+    RgbImage operator_before(first.width, first.height);
+    for (int y = 0; y < first.height; ++y)
+        for (int x = 0; x < first.width; ++x) operator_before.at(x, y) = before.at(first.x + x, first.y + y);
+    expect(different(shown, first, operator_before) == 0, "the first monitor has not changed by one pixel");
+    operator_window.frame(model);
+    projector.refresh();
+    expect(different(screen(folder, "3_operator_drew"), second, picture) == 0, "it stays while the operator window draws");
+
+    projector.go_dark();
+    expect(projector.dark() && different(screen(folder, "4_go_dark"), second, black) == 0, "go_dark is black");
+
+    projector.show(picture, clock.now() + std::chrono::milliseconds(400));
+    expect(!projector.dark(), "lit before the expiry");
+    std::this_thread::sleep_for(std::chrono::milliseconds(450));  // no call into the window: as if the program hung
+    expect(different(screen(folder, "5_expired"), second, black) == 0, "black after the expiry with no call at all");
+    expect(projector.dark(), "and says so");
+    projector.show(picture, clock.now() - seconds(1));
+    expect(different(screen(folder, "6_stale"), second, black) == 0, "a picture that has expired already is not shown");
+
+    projector.show(picture, clock.now() + seconds(60));
+    expect_refusal("a picture of another size is refused", "fit",
+                   [&] { projector.show(RgbImage(800, 601, {255, 255, 255}), clock.now() + seconds(60)); });
+    expect(different(screen(folder, "7_wrong_size"), second, black) == 0, "and it is dark then");
+
+    projector.show(picture, clock.now() + seconds(60));
+    expect(std::system(("xrandr --output " + second.name + " --off").c_str()) == 0, "(monitor unplugged)");
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+    expect_refusal("an unplugged monitor is noticed", second.name, [&] {
+        for (int i = 0; i < 20; ++i) projector.refresh(), std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    });
+    expect(projector.dark(), "and it is dark then");
+    const RgbImage after = screen(folder, "8_unplugged");
+    expect(different(after, first, operator_before) == 0, "the operator's monitor still shows the operator window alone");
+    expect_refusal("the only monitor is refused", "only", [&] { ProjectorWindow window("0", clock); });
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const std::string folder = argc > 1 ? argv[1] : ".";
+    std::filesystem::create_directories(folder);
+    try {
+        run(folder);
+    } catch (const Error& error) {
+        expect(false, std::string("thrown: ") + error.what() + "; " + error.remedy);
+    } catch (const std::exception& error) {
+        expect(false, std::string("thrown: ") + error.what());
+    }
+    return failures == 0 ? 0 : 1;
+}
