@@ -17,6 +17,13 @@ struct TrackingSettings {
     double max_residual_px = 0.5;        ///< rms above which there is no pose
     double max_epipolar_px = 1.5;        ///< when the markers of both pictures are paired
     double search_px = 40;               ///< around the predicted place
+    double max_predicted_error_mm = 1;   ///< one sigma at the markers' centroid above which there is no pose
+};
+
+/// A marker that does not stand where it stood against the others: it slipped, or something else was taken for it.
+struct MarkerDoubt {
+    int marker = -1;           ///< index into the reference markers
+    double deviation_mm = 0;   ///< from where the others say it is, across the line of sight
 };
 
 /// A marker in the patient frame, as measured at the scan instant.
@@ -50,12 +57,25 @@ public:
     const std::vector<Seen>& seen_left() const { return seen_left_; }
     const std::vector<Seen>& seen_right() const { return seen_right_; }
 
+    /// The markers that the last pose was made without because they have moved against the others.
+    const std::vector<MarkerDoubt>& doubts() const { return doubts_; }
+
 private:
+    struct Attempt;
+    Attempt follow(const StereoFrame& frame);
+    Attempt search(const StereoFrame& frame);
+    RigidTransform predicted_pose(Instant at) const;
+    Eigen::Vector3d centroid() const;
+    void note_seen(const Attempt& attempt);
+
     RigCalibration rig_;
     TrackingSettings settings_;
     std::vector<PatientMarker> markers_;
     std::vector<Seen> seen_left_, seen_right_;
+    std::vector<MarkerDoubt> doubts_;
+    std::vector<double> radius_left_px_, radius_right_px_;  ///< per marker, as last seen; 0 when never
     std::optional<TrackedPose> last_, before_last_;
+    std::optional<RigidTransform> last_known_;              ///< survives a loss, to choose between ambiguous arrangements
 };
 
 }  // namespace planlight

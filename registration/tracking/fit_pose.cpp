@@ -1,0 +1,226 @@
+#include "registration/tracking/fit_pose.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+namespace planlight {
+namespace {
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+
+constexpr double kHuber = 3;          // sigmas
+constexpr double kAgreement = 3.5;    // reduced chi-square up to which the markers agree
+constexpr double kCalibrationPx = 0.07;
+
+struct Linearised {
+    Matrix6 N = Matrix6::Zero();
+    Vector6 g = Vector6::Zero();
+    double cost = 0, chi_square = 0, squared_px = 0;
+};
+
+Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
+    Eigen::Matrix3d m;
+    m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+    return m;
+}
+
+Eigen::Vector3d centroid(const std::vector<PatientMarker>& markers, const std::vector<Sighting>& sightings) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const Sighting& s : sightings) sum += markers[static_cast<std::size_t>(s.marker)].centre_in_patient;
+    return sum / static_cast<double>(sightings.size());
+}
+
+/// Normal equations of the twist (rotation about `pivot_in_rig`, then translation), in rig.
+std::optional<Linearised> linearise(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
+                                    const std::vector<Sighting>& sightings, const RigidTransform& rig_from_patient,
+                                    const Eigen::Vector3d& pivot_in_rig) {
+    Linearised result;
+    for (const Sighting& s : sightings) {
+        const Eigen::Vector3d p = rig_from_patient * markers[static_cast<std::size_t>(s.marker)].centre_in_patient;
+        Eigen::Matrix<double, 2, 3> by_point;
+        const auto pixel = project(s.left ? rig.left_camera : rig.right_camera, p, by_point);
+        if (!pixel) return std::nullopt;
+        const Eigen::Vector2d error = s.seen.pixel - *pixel;
+        const double sigma = sighting_sigma_px(s.seen);
+        const double distance = error.norm() / sigma;
+        const double robust = distance > kHuber ? kHuber / distance : 1;
+        Eigen::Matrix<double, 2, 6> J;
+        J << by_point * -cross_matrix(p - pivot_in_rig), by_point;
+        result.N += robust / (sigma * sigma) * J.transpose() * J;
+        result.g += robust / (sigma * sigma) * J.transpose() * error;
+        result.cost += distance > kHuber ? kHuber * (2 * distance - kHuber) : distance * distance;
+        result.chi_square += distance * distance;
+        result.squared_px += error.squaredNorm();
+    }
+    return result;
+}
+
+RigidTransform moved(const RigidTransform& rig_from_patient, const Vector6& twist, const Eigen::Vector3d& pivot_in_rig) {
+    return Eigen::Translation3d(pivot_in_rig) * transform_from_twist(twist) * Eigen::Translation3d(-pivot_in_rig) *
+           rig_from_patient;
+}
+
+/// One sigma of the centroid: of the measured pose, and of the reference markers' own places (averaged over them).
+double centroid_error_mm(const Matrix6& N, const std::vector<PatientMarker>& markers,
+                         const std::vector<Sighting>& sightings, double inflation) {
+    const Matrix6 covariance = N.inverse();
+    std::set<int> seen;
+    double reference = 0;
+    for (const Sighting& s : sightings)
+        if (seen.insert(s.marker).second) reference += 3 * std::pow(markers[static_cast<std::size_t>(s.marker)].sigma_mm, 2);
+    const double count = static_cast<double>(seen.size());
+    return std::sqrt(inflation * covariance.bottomRightCorner<3, 3>().trace() + reference / (count * count));
+}
+
+std::vector<Sighting> without(const std::vector<Sighting>& sightings, int marker) {
+    std::vector<Sighting> rest;
+    std::copy_if(sightings.begin(), sightings.end(), std::back_inserter(rest),
+                 [&](const Sighting& s) { return s.marker != marker; });
+    return rest;
+}
+
+double reduced_chi_square(const PoseFit& fit, std::size_t sightings) {
+    return fit.chi_square / std::max(1.0, 2.0 * static_cast<double>(sightings) - 6);
+}
+
+/// How far a left-out marker is seen from where the others say it is, mm at its depth.
+double deviation_mm(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
+                    const std::vector<Sighting>& sightings, int marker, const RigidTransform& rig_from_patient) {
+    double worst = 0;
+    for (const Sighting& s : sightings) {
+        if (s.marker != marker) continue;
+        const CameraModel& camera = s.left ? rig.left_camera : rig.right_camera;
+        const Eigen::Vector3d p = rig_from_patient * markers[static_cast<std::size_t>(marker)].centre_in_patient;
+        const auto pixel = project(camera, p);
+        if (!pixel) continue;
+        const double mm_per_px = (camera.device_from_rig * p).z() / camera.focal_x;
+        worst = std::max(worst, mm_per_px * (*pixel - s.seen.pixel).norm());
+    }
+    return worst;
+}
+
+struct LeftOut {
+    int marker = -1;
+    PoseFit fit;
+    double chi = 0;
+};
+
+/// The fits with each marker left out, the best first.
+std::vector<LeftOut> leave_one_out(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
+                                   const std::vector<Sighting>& sightings, const RigidTransform& start) {
+    std::set<int> seen;
+    for (const Sighting& s : sightings) seen.insert(s.marker);
+    std::vector<LeftOut> fits;
+    for (const int marker : seen) {
+        const auto rest = without(sightings, marker);
+        if (rest.size() < 4) continue;
+        if (const auto fit = fit_pose(rig, markers, rest, start))
+            fits.push_back({marker, *fit, reduced_chi_square(*fit, rest.size())});
+    }
+    std::sort(fits.begin(), fits.end(), [](const LeftOut& a, const LeftOut& b) { return a.chi < b.chi; });
+    return fits;
+}
+
+}  // namespace
+
+double sighting_sigma_px(const MarkerObservation& seen) { return std::hypot(seen.sigma_px, kCalibrationPx); }
+
+int distinct_markers(const std::vector<Sighting>& sightings) {
+    std::set<int> seen;
+    for (const Sighting& s : sightings) seen.insert(s.marker);
+    return static_cast<int>(seen.size());
+}
+
+std::optional<PoseFit> fit_pose(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
+                                const std::vector<Sighting>& sightings, const RigidTransform& start) {
+    if (sightings.size() < 3) return std::nullopt;
+    const Eigen::Vector3d centre = centroid(markers, sightings);
+    RigidTransform pose = start;
+    auto now = linearise(rig, markers, sightings, pose, pose * centre);
+    if (!now) return std::nullopt;
+    double damping = 1e-6;
+    for (int iteration = 0; iteration < 25 && damping < 1e6; ++iteration) {
+        Matrix6 A = now->N;
+        A.diagonal() *= 1 + damping;
+        const Eigen::LDLT<Matrix6> solver(A);
+        if (solver.info() != Eigen::Success || !solver.isPositive()) return std::nullopt;
+        const Vector6 twist = solver.solve(now->g);
+        if (!twist.allFinite()) return std::nullopt;
+        const RigidTransform next = moved(pose, twist, pose * centre);
+        const auto then = linearise(rig, markers, sightings, next, next * centre);
+        if (!then || then->cost > now->cost * (1 + 1e-12)) {
+            damping = std::max(1e-4, damping * 10);
+            continue;
+        }
+        pose = next;
+        now = then;
+        damping = std::max(1e-9, damping * 0.1);
+        if (twist.head<3>().norm() < 1e-8 && twist.tail<3>().norm() < 1e-6) break;
+    }
+    PoseFit fit{pose};
+    fit.residual_px = std::sqrt(now->squared_px / static_cast<double>(sightings.size()));
+    fit.chi_square = now->chi_square;
+    fit.error_mm = centroid_error_mm(now->N, markers, sightings, std::max(1.0, reduced_chi_square(fit, sightings.size())));
+    if (!std::isfinite(fit.error_mm)) return std::nullopt;
+    return fit;
+}
+
+CheckedPose fit_pose_checked(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
+                             std::vector<Sighting> sightings, const RigidTransform& start, const TrackingSettings& settings) {
+    CheckedPose result;
+    const int all = static_cast<int>(markers.size());
+    while (true) {
+        const int seen = distinct_markers(sightings);
+        if (seen < settings.min_markers) {
+            result.reason = fmt::format("only {} of {} markers seen{}; {} are needed", seen, all,
+                                        result.doubts.empty() ? "" : " in their place", settings.min_markers);
+            return result;
+        }
+        if (sightings.size() < 4) {
+            result.reason = fmt::format("{} markers, each seen by one camera only: nothing to check the pose by", seen);
+            return result;
+        }
+        const auto fit = fit_pose(rig, markers, sightings, start);
+        if (!fit) {
+            result.reason = "the markers seen do not determine a pose";
+            return result;
+        }
+        const bool agree = reduced_chi_square(*fit, sightings.size()) < kAgreement;
+        if (!agree && seen > settings.min_markers) {
+            const auto fits = leave_one_out(rig, markers, sightings, fit->rig_from_patient);
+            const bool explained = !fits.empty() && fits[0].chi < 0.5 * reduced_chi_square(*fit, sightings.size());
+            const bool rival = fits.size() > 1 && fits[1].chi < std::max(kAgreement, 1.5 * fits[0].chi);
+            if (explained && rival && fit->residual_px > settings.max_residual_px) {
+                result.reason = fmt::format("a marker has moved, but it cannot be told whether {} or {}", fits[0].marker + 1,
+                                            fits[1].marker + 1);
+                return result;
+            }
+            if (explained) {
+                const double mm = deviation_mm(rig, markers, sightings, fits[0].marker, fits[0].fit.rig_from_patient);
+                result.doubts.push_back({fits[0].marker, mm});
+                sightings = without(sightings, fits[0].marker);
+                continue;
+            }
+        }
+        if (fit->residual_px > settings.max_residual_px) {
+            result.reason = fmt::format("the markers do not fit their places: {:.2f} px rms, at most {:.2f} is allowed",
+                                        fit->residual_px, settings.max_residual_px);
+            return result;
+        }
+        if (fit->error_mm > settings.max_predicted_error_mm) {
+            result.reason = fmt::format("the markers seen leave the pose uncertain by {:.2f} mm; at most {:.2f} is allowed",
+                                        fit->error_mm, settings.max_predicted_error_mm);
+            return result;
+        }
+        result.fit = fit;
+        result.used = sightings;
+        return result;
+    }
+}
+
+}  // namespace planlight

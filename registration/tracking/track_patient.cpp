@@ -1,0 +1,190 @@
+#include "registration/tracking/track_patient.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "planning_io/types/error.h"
+#include "registration/tracking/fit_pose.h"
+#include "registration/tracking/match_constellation.h"
+#include "registration/tracking/pair_markers.h"
+
+namespace planlight {
+namespace {
+
+void check_size(const GrayImage& picture, const CameraModel& camera, const char* side) {
+    if (picture.width == camera.width && picture.height == camera.height) return;
+    throw InputError({},
+                     fmt::format("the {} picture is {}x{}, but the rig was calibrated with {}x{}", side, picture.width,
+                                 picture.height, camera.width, camera.height),
+                     "Use the camera mode the rig was calibrated in, or calibrate again.");
+}
+
+/// Radius at which a marker is to be expected that was not seen before: between facing (1) and tilted by 60 degrees (0.75).
+double expected_radius_px(const CameraModel& camera, const Eigen::Vector3d& p_in_rig, const MarkerDesign& design) {
+    return 0.9 * 0.5 * design.disc_diameter_mm * camera.focal_x / (camera.device_from_rig * p_in_rig).z();
+}
+
+/// Of several measurements of one disc for different markers the nearest to its marker's predicted place stays.
+std::vector<Sighting> one_disc_one_marker(std::vector<std::pair<double, Sighting>> found) {
+    std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::vector<Sighting> sightings;
+    for (const auto& [distance, sighting] : found) {
+        const bool taken = std::any_of(sightings.begin(), sightings.end(), [&s = sighting](const Sighting& other) {
+            return (other.seen.pixel - s.seen.pixel).norm() < 0.5 * s.seen.radius_px;
+        });
+        if (!taken) sightings.push_back(sighting);
+    }
+    return sightings;
+}
+
+}  // namespace
+
+/// A way to the pose of one frame, and all discs seen on it.
+struct PatientTracker::Attempt {
+    CheckedPose checked;
+    std::vector<Seen> left, right;
+};
+
+PatientTracker::PatientTracker(const RigCalibration& rig, const TrackingSettings& settings) : rig_(rig), settings_(settings) {
+    settings_.markers.sticker_ratio = settings.design.sticker_diameter_mm / settings.design.disc_diameter_mm;
+}
+
+const std::vector<PatientMarker>& PatientTracker::set_reference(const StereoFrame& frame) {
+    check_size(frame.left, rig_.left_camera, "left");
+    check_size(frame.right, rig_.right_camera, "right");
+    const auto left = find_markers(frame.left, settings_.markers), right = find_markers(frame.right, settings_.markers);
+    const auto possible = possible_pairs(rig_, left, right, settings_.design, settings_.max_epipolar_px);
+    const auto pairs = consistent_pairs(possible, static_cast<int>(left.size()), static_cast<int>(right.size()));
+    std::vector<PatientMarker> markers;
+    for (const MarkerPair& p : pairs) markers.push_back({p.centre_in_rig, p.sigma_mm});
+    set_reference(markers);
+    for (const auto& m : left) seen_left_.push_back({m, -1});
+    for (const auto& m : right) seen_right_.push_back({m, -1});
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+        Seen& in_left = seen_left_[static_cast<std::size_t>(pairs[k].left)];
+        Seen& in_right = seen_right_[static_cast<std::size_t>(pairs[k].right)];
+        in_left.marker = in_right.marker = static_cast<int>(k);
+        radius_left_px_[k] = in_left.left_or_right.radius_px;
+        radius_right_px_[k] = in_right.left_or_right.radius_px;
+    }
+    if (static_cast<int>(pairs.size()) >= settings_.min_markers) {
+        last_ = TrackedPose{};
+        last_->rig_from_patient = last_known_ = RigidTransform::Identity();
+        last_->at = frame.at;
+    }
+    return markers_;
+}
+
+void PatientTracker::set_reference(std::vector<PatientMarker> markers) {
+    markers_ = std::move(markers);
+    seen_left_.clear();
+    seen_right_.clear();
+    doubts_.clear();
+    radius_left_px_.assign(markers_.size(), 0);
+    radius_right_px_.assign(markers_.size(), 0);
+    last_.reset();
+    before_last_.reset();
+    last_known_.reset();
+}
+
+Eigen::Vector3d PatientTracker::centroid() const {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (const PatientMarker& m : markers_) sum += m.centre_in_patient;
+    return sum / static_cast<double>(markers_.size());
+}
+
+/// Constant velocity from the last two poses; the last pose when they lie too far apart in time to tell one.
+RigidTransform PatientTracker::predicted_pose(Instant at) const {
+    const RigidTransform& last = *last_->rig_from_patient;
+    if (!before_last_) return last;
+    const double before_s = seconds(last_->at - before_last_->at), ahead_s = seconds(at - last_->at);
+    if (before_s <= 0 || ahead_s <= 0 || ahead_s > 3 * before_s || ahead_s > 0.2) return last;
+    const RigidTransform& earlier = *before_last_->rig_from_patient;
+    const double ahead = ahead_s / before_s;
+    const Eigen::Vector3d c = centroid(), c_now = last * c;
+    Eigen::Matrix<double, 6, 1> twist;
+    twist << ahead * rotation_vector(last.linear() * earlier.linear().transpose()), ahead * (c_now - earlier * c);
+    return Eigen::Translation3d(c_now) * transform_from_twist(twist) * Eigen::Translation3d(-c_now) * last;
+}
+
+PatientTracker::Attempt PatientTracker::follow(const StereoFrame& frame) {
+    Attempt attempt;
+    const RigidTransform expected = predicted_pose(frame.at);
+    std::vector<Sighting> sightings;
+    for (const bool is_left : {true, false}) {
+        const CameraModel& camera = is_left ? rig_.left_camera : rig_.right_camera;
+        const std::vector<double>& radius = is_left ? radius_left_px_ : radius_right_px_;
+        std::vector<std::pair<double, Sighting>> found;
+        for (std::size_t k = 0; k < markers_.size(); ++k) {
+            const Eigen::Vector3d p = expected * markers_[k].centre_in_patient;
+            const auto pixel = project(camera, p);
+            if (!pixel || !in_picture(camera, *pixel)) continue;
+            const double r = radius[k] > 0 ? radius[k] : expected_radius_px(camera, p, settings_.design);
+            const auto seen = measure_marker(is_left ? frame.left : frame.right, *pixel, r, settings_.search_px, settings_.markers);
+            if (seen) found.push_back({(seen->pixel - *pixel).norm(), {static_cast<int>(k), is_left, *seen}});
+        }
+        for (const Sighting& s : one_disc_one_marker(found)) {
+            sightings.push_back(s);
+            (is_left ? attempt.left : attempt.right).push_back({s.seen, s.marker});
+        }
+    }
+    attempt.checked = fit_pose_checked(rig_, markers_, sightings, expected, settings_);
+    return attempt;
+}
+
+PatientTracker::Attempt PatientTracker::search(const StereoFrame& frame) {
+    Attempt attempt;
+    const auto left = find_markers(frame.left, settings_.markers), right = find_markers(frame.right, settings_.markers);
+    const auto match = match_constellation(rig_, markers_, left, right, last_known_, settings_);
+    attempt.checked.reason = match.reason;
+    if (match.rig_from_patient)
+        attempt.checked = fit_pose_checked(rig_, markers_, match.sightings, *match.rig_from_patient, settings_);
+    for (const auto& m : left) attempt.left.push_back({m, -1});
+    for (const auto& m : right) attempt.right.push_back({m, -1});
+    for (const Sighting& s : match.sightings)
+        for (Seen& seen : s.left ? attempt.left : attempt.right)
+            if (seen.left_or_right.pixel == s.seen.pixel) seen.marker = s.marker;
+    return attempt;
+}
+
+void PatientTracker::note_seen(const Attempt& attempt) {
+    seen_left_ = attempt.left;
+    seen_right_ = attempt.right;
+    doubts_ = attempt.checked.doubts;
+    for (const Sighting& s : attempt.checked.used)
+        (s.left ? radius_left_px_ : radius_right_px_)[static_cast<std::size_t>(s.marker)] = s.seen.radius_px;
+}
+
+TrackedPose PatientTracker::update(const StereoFrame& frame) {
+    check_size(frame.left, rig_.left_camera, "left");
+    check_size(frame.right, rig_.right_camera, "right");
+    TrackedPose pose;
+    pose.at = frame.at;
+    if (static_cast<int>(markers_.size()) < settings_.min_markers) {
+        pose.reason = fmt::format("the reference has {} markers; {} are needed", markers_.size(), settings_.min_markers);
+        return pose;
+    }
+    Attempt attempt;
+    if (last_) attempt = follow(frame);
+    const bool followed = attempt.checked.fit.has_value();
+    if (!followed) attempt = search(frame);
+    note_seen(attempt);
+    if (!attempt.checked.fit) {
+        pose.reason = attempt.checked.reason;
+        last_.reset();
+        before_last_.reset();
+        return pose;
+    }
+    const PoseFit& fit = *attempt.checked.fit;
+    pose.rig_from_patient = last_known_ = fit.rig_from_patient;
+    pose.residual_px = fit.residual_px;
+    pose.predicted_error_mm = fit.error_mm;
+    for (const Sighting& s : attempt.checked.used) ++(s.left ? pose.markers_left : pose.markers_right);
+    before_last_ = followed ? last_ : std::nullopt;
+    last_ = pose;
+    return pose;
+}
+
+}  // namespace planlight
