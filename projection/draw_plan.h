@@ -47,9 +47,14 @@ struct DrawingSettings {
     Eigen::Vector3d up_in_ct{0, 0, 1};              ///< which way text stands up
     double max_distance_to_skin_mm = 10;            ///< a plan point farther from skin is warned of, by name
     bool labels = true;
+    std::vector<Eigen::Vector3d> keep_clear_in_ct;  ///< marker centres: labels are not put within `keep_clear_radius_mm`
+    double keep_clear_radius_mm = 11;
 };
 
 /// Draws every item of the plan on the skin: lengths along geodesics, circles of their diameter, labels upright.
+///
+/// Items come in the order osteotomy lines, boreholes, trajectories, cut planes. One that is not finite, or lies more than
+/// three times `max_distance_to_skin_mm` from the skin, has no strokes, and a warning.
 PlanDrawing draw_plan(const Plan& plan, const SkinSurface& skin, const DrawingSettings& settings = {});
 
 /// The plan's own faults, one sentence each, by name: entry far from skin, target outside the body, zero length, not finite.

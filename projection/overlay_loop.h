@@ -1,6 +1,6 @@
 #pragma once
 
-#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -18,6 +18,7 @@ struct OverlaySettings {
     Instant light_delay = std::chrono::milliseconds(25);    ///< from show to light, for the prediction
     double max_predicted_error_mm = 1.0;                    ///< above: dark
     bool predict = true;
+    bool operator_confirmed = false;  ///< a person has looked at the overlay on landmarks: a verdict `ask` is drawn
     RenderSettings render;
 };
 
@@ -26,18 +27,25 @@ struct OverlayStep {
     bool lit = false;
     std::string reason;              ///< why it is dark, in words; empty when lit
     RgbImage picture;                ///< what was shown (black when dark)
+    RenderCounts counts;
     Instant lit_from{};              ///< when it is light on the skin
     RigidTransform rig_from_ct = RigidTransform::Identity();  ///< T_global it was drawn for
 };
 
 /// DRAW: T_global = T_cur T_ini -> bitmap -> projector, or darkness. Nothing is drawn without a fresh, good pose.
+///
+/// Keeps references to projector, clock, renderer and drawing; copies the rest.
 class OverlayLoop {
 public:
     OverlayLoop(Projector& projector, const Clock& clock, const DrawingRenderer& renderer, const PlanDrawing& drawing,
                 const RegistrationResult& registration, const OverlaySettings& settings = {});
     ~OverlayLoop();  ///< dark
 
+    /// One pose, one picture or darkness. Whatever is thrown on the way, the projector is dark before it leaves.
     OverlayStep step(const TrackedPose& pose);
+
+    /// The operator's word on the overlay (`OverlaySettings::operator_confirmed`) while the loop runs.
+    void set_operator_confirmed(bool confirmed);
 
 private:
     struct Parts;

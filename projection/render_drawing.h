@@ -17,8 +17,18 @@ struct RenderSettings {
     int only_item = -1;                   ///< draw one item alone (for measuring); -1 draws all
 };
 
+/// What became of the drawing's points in one picture.
+struct RenderCounts {
+    std::size_t points = 0;
+    std::size_t lit = 0;
+    std::size_t too_steep = 0;  ///< the light would graze the skin, or it faces away
+    std::size_t hidden = 0;     ///< other skin stands in the light's way
+    std::size_t outside = 0;    ///< out of the projector's picture
+};
+
 /// Renders drawings for the projector's view: true occlusion by the skin, lens distortion, anti-aliased strokes.
-/// Holds the depth mesh, so that a picture a frame costs only the strokes.
+/// Holds the depth mesh, so that a picture a frame costs only the strokes. Keeps a reference to `skin`. May be called from
+/// several threads (one waits for the other).
 class DrawingRenderer {
 public:
     DrawingRenderer(const SkinSurface& skin, const CameraModel& projector);
@@ -28,6 +38,14 @@ public:
     RgbImage render(const PlanDrawing& drawing, const RigidTransform& rig_from_ct,
                     const RigidTransform& rig_from_patient = RigidTransform::Identity(),
                     const RenderSettings& settings = {}) const;
+
+    /// As above, into a picture that is kept from frame to frame (resized and blackened first).
+    RenderCounts render_into(RgbImage& picture, const PlanDrawing& drawing, const RigidTransform& rig_from_ct,
+                             const RigidTransform& rig_from_patient = RigidTransform::Identity(),
+                             const RenderSettings& settings = {}) const;
+
+    int width() const;   ///< of the projector, pixels
+    int height() const;
 
 private:
     struct Parts;

@@ -2,13 +2,16 @@
 
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "planning_io/types/camera_model.h"
 #include "planning_io/types/triangle_mesh.h"
 
 namespace planlight {
 
-/// The skin mesh as something that can be hit by rays and walked on. CGAL and OpenMesh live in the .cpp.
+/// The skin mesh as something that can be hit by rays and walked on. CGAL lives in the .cpp.
+///
+/// The constructor throws InputError when the mesh is empty, not finite or names vertices it does not have.
 class SkinSurface {
 public:
     explicit SkinSurface(TriangleMesh mesh);
@@ -30,6 +33,16 @@ public:
     /// The point reached by walking straight (geodesic) from `start` by `tangent_in_ct` (its length is the way, mm).
     /// Empty when the way leaves the mesh.
     std::optional<Point> walk(const Point& start, const Eigen::Vector3d& tangent_in_ct) const;
+
+    /// A straight way with points at most `max_segment_mm` apart, its two ends among them, and where it heads at its end.
+    struct Way {
+        std::vector<Point> points;
+        Eigen::Vector3d direction_at_end_in_ct;  ///< unit, tangent to the skin
+    };
+    std::optional<Way> walk_way(const Point& start, const Eigen::Vector3d& tangent_in_ct, double max_segment_mm) const;
+
+    /// False on lids over openings and on the end of the volume.
+    bool real_skin(const Point& point) const;
 
     const TriangleMesh& mesh() const;
 

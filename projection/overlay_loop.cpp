@@ -1,0 +1,109 @@
+#include "projection/overlay_loop.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace planlight {
+namespace {
+
+double ms(Instant t) { return 1e3 * seconds(t); }
+
+/// Why this registration must not be drawn; empty when it may.
+std::string registration_refusal(const RegistrationResult& registration, bool confirmed) {
+    const std::string first = registration.reasons.empty() ? "" : ": " + registration.reasons.front();
+    if (registration.verdict == Verdict::no) return "the patient is not registered" + first;
+    if (registration.verdict == Verdict::ask && !confirmed) return "the registration awaits a person's confirmation" + first;
+    if (!is_rigid(registration.patient_from_ct.matrix())) return "the registration is not a rigid transform";
+    return "";
+}
+
+/// Why this pose must not be drawn now; empty when it may.
+std::string pose_refusal(const TrackedPose& pose, Instant now, const OverlaySettings& s) {
+    if (!pose.rig_from_patient) return pose.reason.empty() ? "the patient is not tracked" : "the patient is not tracked: " + pose.reason;
+    if (!is_rigid(pose.rig_from_patient->matrix())) return "the tracked pose is not a rigid transform";
+    const Instant age = now - pose.at;
+    if (age > s.max_pose_age) return fmt::format("the last pose is {:.0f} ms old (at most {:.0f} ms)", ms(age), ms(s.max_pose_age));
+    if (age < -s.max_pose_age) return fmt::format("the pose is dated {:.0f} ms in the future: the clocks disagree", -ms(age));
+    if (!(pose.predicted_error_mm <= s.max_predicted_error_mm))
+        return fmt::format("the pose is uncertain by {:.2f} mm (at most {:.2f} mm)", pose.predicted_error_mm, s.max_predicted_error_mm);
+    return "";
+}
+
+/// The middle of what is drawn: the prediction turns the head about it.
+Eigen::Vector3d middle_in_ct(const PlanDrawing& drawing) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    double count = 0;
+    for (const Stroke& stroke : drawing.strokes)
+        for (const auto& p : stroke.points_in_ct) {
+            sum += p;
+            ++count;
+        }
+    return count > 0 ? Eigen::Vector3d(sum / count) : sum;
+}
+
+}  // namespace
+
+struct OverlayLoop::Parts {
+    Projector& projector;
+    const Clock& clock;
+    const DrawingRenderer& renderer;
+    const PlanDrawing& drawing;
+    RegistrationResult registration;
+    OverlaySettings settings;
+    PosePredictor predictor;
+    Eigen::Vector3d centre_in_patient;
+
+    OverlayStep dark(std::string reason) {
+        projector.go_dark();
+        OverlayStep step;
+        step.reason = std::move(reason);
+        step.picture = RgbImage(renderer.width(), renderer.height());
+        return step;
+    }
+    std::optional<RigidTransform> pose_at_light(const TrackedPose& pose, Instant now) {
+        if (!settings.predict) return pose.rig_from_patient;
+        predictor.add(pose, centre_in_patient);
+        return predictor.rig_from_patient_at(now + settings.light_delay);
+    }
+    OverlayStep draw(const TrackedPose& pose);
+};
+
+OverlayStep OverlayLoop::Parts::draw(const TrackedPose& pose) {
+    if (auto reason = registration_refusal(registration, settings.operator_confirmed); !reason.empty()) return dark(std::move(reason));
+    const Instant now = clock.now();
+    if (auto reason = pose_refusal(pose, now, settings); !reason.empty()) return dark(std::move(reason));
+    const auto rig_from_patient = pose_at_light(pose, now);
+    if (!rig_from_patient || !is_rigid(rig_from_patient->matrix())) return dark("where the patient will be when the light arrives is not known");
+    OverlayStep step;
+    step.rig_from_ct = *rig_from_patient * registration.patient_from_ct;  // T_global = T_cur T_ini
+    step.counts = renderer.render_into(step.picture, drawing, step.rig_from_ct, *rig_from_patient, settings.render);
+    if (step.counts.lit == 0) return dark("nothing of the plan lies in the projector's light");
+    const Instant shown = clock.now();
+    if (auto reason = pose_refusal(pose, shown, settings); !reason.empty()) return dark(std::move(reason));  // rendering took too long
+    step.lit_from = projector.show(step.picture, shown + settings.picture_validity);
+    step.lit = true;
+    return step;
+}
+
+OverlayLoop::OverlayLoop(Projector& projector, const Clock& clock, const DrawingRenderer& renderer, const PlanDrawing& drawing,
+                         const RegistrationResult& registration, const OverlaySettings& settings)
+    : parts_(new Parts{projector, clock, renderer, drawing, registration, settings, PosePredictor(),
+                       registration.patient_from_ct * middle_in_ct(drawing)}) {
+    projector.go_dark();
+}
+
+OverlayLoop::~OverlayLoop() { parts_->projector.go_dark(); }
+
+void OverlayLoop::set_operator_confirmed(bool confirmed) { parts_->settings.operator_confirmed = confirmed; }
+
+OverlayStep OverlayLoop::step(const TrackedPose& pose) {
+    try {
+        return parts_->draw(pose);
+    } catch (...) {
+        parts_->projector.go_dark();
+        throw;
+    }
+}
+
+}  // namespace planlight

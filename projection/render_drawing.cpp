@@ -1,0 +1,187 @@
+#include "projection/render_drawing.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <mutex>
+
+#include "planning_io/types/error.h"
+#include "projection/depth_picture.h"
+#include "projection/stroke_raster.h"
+
+namespace planlight {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kMin_width_px = 1.5;
+constexpr double kSmooth_turn = 0.85;  // cosine: a sharper turn is drawn as a corner
+
+/// A stroke's point as the projector sees it.
+struct LitPoint {
+    bool lit = false;
+    Vector2d pixel;
+    Eigen::Matrix<double, 2, 3> pixel_by_ct;
+};
+
+Rgb dimmed(Rgb colour, double brightness) {
+    for (auto& channel : colour)
+        channel = static_cast<std::uint8_t>(std::lround(std::clamp(channel * brightness, 0.0, 255.0)));
+    return colour;
+}
+
+/// The discs that no light may touch, black. A disc faces the projector, so that a sticker at any slant is covered.
+void darken_markers(const CameraModel& projector, const RigidTransform& rig_from_patient, const RenderSettings& s, RgbImage& picture) {
+    const double radius_mm = s.keep_dark_radius_mm + s.halo_mm;
+    for (const Vector3d& marker : s.keep_dark_in_patient) {
+        const Vector3d p = rig_from_patient * marker;
+        Eigen::Matrix<double, 2, 3> pixel_by_rig;
+        const auto centre = project(projector, p, pixel_by_rig);
+        if (!centre) continue;
+        const Vector3d towards = (projector.centre_in_rig() - p).normalized(), first = towards.unitOrthogonal();
+        Eigen::Matrix2d pixel_by_disc;
+        pixel_by_disc << pixel_by_rig * first * radius_mm, pixel_by_rig * towards.cross(first) * radius_mm;
+        const Eigen::Matrix2d disc_by_pixel = pixel_by_disc.inverse();
+        const double reach = pixel_by_disc.norm() + 1;
+        if (!disc_by_pixel.allFinite() || !(centre->norm() + reach < 1e6)) continue;
+        const int x0 = std::max(0, static_cast<int>(centre->x() - reach)), x1 = std::min(picture.width - 1, static_cast<int>(centre->x() + reach) + 1);
+        const int y0 = std::max(0, static_cast<int>(centre->y() - reach)), y1 = std::min(picture.height - 1, static_cast<int>(centre->y() + reach) + 1);
+        for (int y = y0; y <= y1; ++y)
+            for (int x = x0; x <= x1; ++x)
+                if ((disc_by_pixel * (Vector2d(x, y) - *centre)).squaredNorm() < 1) picture.at(x, y) = {0, 0, 0};
+    }
+}
+
+}  // namespace
+
+struct DrawingRenderer::Parts {
+    Parts(const SkinSurface& s, const CameraModel& p) : skin(s), projector(p), depth(s.mesh()), raster(p.width, p.height) {}
+
+    void light_points(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts);
+    LitPoint light_point(const Vector3d& p_in_ct, const Vector3d& normal_in_ct, double steepest_cosine, RenderCounts& counts) const;
+    void add_ribbon(const Stroke& stroke);
+    /// The two edge points of the ribbon at one end of a segment.
+    std::array<Vector2d, 2> edges(const Stroke& stroke, std::size_t at, const Vector3d& own, const Vector3d* other, double outwards) const;
+
+    const SkinSurface& skin;
+    CameraModel projector;
+    std::mutex in_use;
+    CameraModel projector_from_ct;
+    Vector3d light_in_ct;
+    DepthPicture depth;
+    StrokeRaster raster;
+    std::vector<LitPoint> points;
+};
+
+LitPoint DrawingRenderer::Parts::light_point(const Vector3d& p, const Vector3d& normal, double steepest_cosine, RenderCounts& counts) const {
+    LitPoint point;
+    ++counts.points;
+    const Vector3d to_light = light_in_ct - p;
+    const double distance_mm = to_light.norm();
+    if (!(normal.dot(to_light) > steepest_cosine * distance_mm)) {
+        ++counts.too_steep;
+        return point;
+    }
+    const auto pixel = project(projector_from_ct, p, point.pixel_by_ct);
+    if (!pixel || !in_picture(projector_from_ct, *pixel)) {
+        ++counts.outside;
+        return point;
+    }
+    point.pixel = *pixel;
+    const auto answer = depth.ask(*pixel, (projector_from_ct.device_from_rig * p).z());
+    bool hidden = answer == DepthPicture::Answer::hidden;
+    if (answer == DepthPicture::Answer::near_an_edge) {
+        constexpr double kOff_skin_mm = 0.8;  // clear of the point's own triangles
+        const auto hit = skin.first_hit({p + kOff_skin_mm * normal, to_light / distance_mm});
+        hidden = hit && (hit->p_in_ct - p).norm() < distance_mm;
+    }
+    counts.hidden += hidden ? 1 : 0;
+    counts.lit += hidden ? 0 : 1;
+    point.lit = !hidden;
+    return point;
+}
+
+void DrawingRenderer::Parts::light_points(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts) {
+    points.clear();
+    const double steepest_cosine = std::cos(std::clamp(settings.steepest, 0.0, 1.55));
+    for (std::size_t i = 0; i < stroke.points_in_ct.size(); ++i)
+        points.push_back(light_point(stroke.points_in_ct[i], stroke.normals_in_ct[i], steepest_cosine, counts));
+}
+
+std::array<Vector2d, 2> DrawingRenderer::Parts::edges(const Stroke& stroke, std::size_t at, const Vector3d& own, const Vector3d* other,
+                                                      double outwards) const {
+    const LitPoint& point = points[at];
+    const bool smooth = other != nullptr && own.dot(*other) > kSmooth_turn;
+    const Vector3d along = smooth ? Vector3d((own + *other).normalized()) : own;
+    const Vector3d side = stroke.normals_in_ct[at].cross(along).normalized();
+    Vector2d half = point.pixel_by_ct * side * (stroke.width_mm / 2);
+    const Vector2d along_px = point.pixel_by_ct * along;
+    const double width_px = 2 * std::abs(half.x() * along_px.y() - half.y() * along_px.x()) / std::max(1e-12, along_px.norm());
+    if (width_px < kMin_width_px) half *= std::min(4.0, kMin_width_px / std::max(1e-12, width_px));
+    Vector2d centre = point.pixel;
+    if (other != nullptr && !smooth) centre += point.pixel_by_ct * own * (outwards * stroke.width_mm / 2);  // fills the corner
+    return {centre + half, centre - half};
+}
+
+void DrawingRenderer::Parts::add_ribbon(const Stroke& stroke) {
+    const std::size_t count = points.size(), segments = stroke.closed ? count : count - 1;
+    const auto direction = [&](std::size_t segment) {
+        return Vector3d((stroke.points_in_ct[(segment + 1) % count] - stroke.points_in_ct[segment % count]).normalized());
+    };
+    for (std::size_t i = 0; i < segments; ++i) {
+        const std::size_t j = (i + 1) % count;
+        if (!points[i].lit || !points[j].lit) continue;
+        const Vector3d own = direction(i);
+        if (!own.allFinite() || own.isZero()) continue;
+        const Vector3d before = i > 0 || stroke.closed ? direction(i + count - 1) : own;
+        const Vector3d after = i + 1 < segments || stroke.closed ? direction(i + 1) : own;
+        const auto start = edges(stroke, i, own, i > 0 || stroke.closed ? &before : nullptr, -1);
+        const auto end = edges(stroke, j, own, i + 1 < segments || stroke.closed ? &after : nullptr, 1);
+        raster.add_quad({start[0], end[0], end[1], start[1]});
+    }
+}
+
+DrawingRenderer::DrawingRenderer(const SkinSurface& skin, const CameraModel& projector)
+    : parts_(std::make_unique<Parts>(skin, projector)) {
+    if (projector.width <= 0 || projector.height <= 0 || !(projector.focal_x > 0) || !(projector.focal_y > 0))
+        throw InputError("", "the projector's calibration has no picture size or focal length", "calibrate the rig again");
+}
+DrawingRenderer::~DrawingRenderer() = default;
+
+int DrawingRenderer::width() const { return parts_->projector.width; }
+int DrawingRenderer::height() const { return parts_->projector.height; }
+
+RgbImage DrawingRenderer::render(const PlanDrawing& drawing, const RigidTransform& rig_from_ct, const RigidTransform& rig_from_patient,
+                                 const RenderSettings& settings) const {
+    RgbImage picture;
+    render_into(picture, drawing, rig_from_ct, rig_from_patient, settings);
+    return picture;
+}
+
+RenderCounts DrawingRenderer::render_into(RgbImage& picture, const PlanDrawing& drawing, const RigidTransform& rig_from_ct,
+                                          const RigidTransform& rig_from_patient, const RenderSettings& settings) const {
+    Parts& parts = *parts_;
+    const std::lock_guard lock(parts.in_use);
+    picture.width = width();
+    picture.height = height();
+    picture.pixels.assign(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()), Rgb{0, 0, 0});
+    parts.projector_from_ct = parts.projector;
+    parts.projector_from_ct.device_from_rig = parts.projector.device_from_rig * rig_from_ct;
+    parts.light_in_ct = parts.projector_from_ct.centre_in_rig();
+    parts.depth.draw(parts.projector_from_ct);
+    RenderCounts counts;
+    for (const Stroke& stroke : drawing.strokes) {
+        if (settings.only_item >= 0 && stroke.item != settings.only_item) continue;
+        if (stroke.normals_in_ct.size() != stroke.points_in_ct.size())
+            throw InputError("", "a stroke of the drawing has not one normal per point", "draw the plan again");
+        if (stroke.points_in_ct.size() < 2 || !(stroke.width_mm > 0)) continue;
+        parts.light_points(stroke, settings, counts);
+        parts.add_ribbon(stroke);
+        parts.raster.flush(dimmed(stroke.colour, settings.brightness), picture);
+    }
+    darken_markers(parts.projector, rig_from_patient, settings, picture);
+    return counts;
+}
+
+}  // namespace planlight

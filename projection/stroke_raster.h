@@ -1,0 +1,33 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <vector>
+
+#include "planning_io/types/image.h"
+
+namespace planlight {
+
+/// Fills small four-sided shapes with exact pixel coverage. Shapes of one stroke add up (shared edges leave no seam), and
+/// are then laid on the picture as one.
+///
+/// Pixel (0,0) is the centre of the top-left pixel: a pixel covers half a pixel to each side of its centre.
+class StrokeRaster {
+public:
+    StrokeRaster(int width, int height);
+
+    void add_quad(const std::array<Eigen::Vector2d, 4>& corners);
+    /// Lays what was added on `picture` (brighter channel wins) and starts anew. Returns how many pixels it touched.
+    std::size_t flush(Rgb colour, RgbImage& picture);
+
+private:
+    void add_edge(Eigen::Vector2d from, Eigen::Vector2d to);
+
+    int width_, height_;
+    std::vector<float> coverage_;
+    std::vector<std::size_t> touched_;
+    std::vector<float> area_;  ///< of one shape: signed area, to be summed along rows
+    int area_width_ = 0, area_height_ = 0;
+};
+
+}  // namespace planlight
