@@ -35,7 +35,13 @@ std::string trimmed(std::string text) {
     return text;
 }
 
-std::string text_at(vtkDICOMMetaData* meta, int file, vtkDICOMTag tag) { return trimmed(meta->Get(file, tag).AsString()); }
+/// For people to read: what is not printable ASCII becomes "?", for a damaged file may say anything.
+std::string text_at(vtkDICOMMetaData* meta, int file, vtkDICOMTag tag) {
+    std::string text = trimmed(meta->Get(file, tag).AsString());
+    for (char& c : text)
+        if (c < ' ' || c > '~') c = '?';
+    return text;
+}
 
 /// A DICOMDIR by any name: its storage class stands in the file's first group.
 bool is_directory_file(const std::string& head) { return head.find("1.2.840.10008.1.3.10") != std::string::npos; }
@@ -125,7 +131,7 @@ DicomSlice slice_of(vtkDICOMMetaData* meta, int file, int frame, const std::stri
     slice.rows = meta->Get(file, DC::Rows).AsInt();
     slice.columns = meta->Get(file, DC::Columns).AsInt();
     slice.frame_of_reference_uid = text_at(meta, file, DC::FrameOfReferenceUID);
-    slice.patient = text_at(meta, file, DC::PatientID) + "\\" + text_at(meta, file, DC::PatientName);
+    slice.patient = trimmed(meta->Get(file, DC::PatientID).AsString()) + "\\" + trimmed(meta->Get(file, DC::PatientName).AsString());
     return slice;
 }
 
