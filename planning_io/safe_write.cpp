@@ -107,8 +107,15 @@ void write_folder_safely(const fs::path& folder, bool replace, const std::functi
     fill(temporary.path);
     sync(temporary.path, target);
     const bool exchange = there && !empty;
-    if (::renameat2(AT_FDCWD, temporary.path.c_str(), AT_FDCWD, target.c_str(), exchange ? RENAME_EXCHANGE : 0) != 0)
-        refuse(target, "cannot be put in place");
+    if (::renameat2(AT_FDCWD, temporary.path.c_str(), AT_FDCWD, target.c_str(), exchange ? RENAME_EXCHANGE : 0) != 0) {
+        if (!exchange || (errno != EINVAL && errno != ENOSYS)) refuse(target, "cannot be put in place");
+        RemoveFolder old{make_temporary_beside(target, true)};  // a file system that cannot exchange: two steps
+        if (::rename(target.c_str(), old.path.c_str()) != 0) refuse(target, "cannot be put in place");
+        if (::rename(temporary.path.c_str(), target.c_str()) != 0) {
+            ::rename(old.path.c_str(), target.c_str());
+            refuse(target, "cannot be put in place");
+        }
+    }
     sync(target.has_parent_path() ? target.parent_path() : fs::path("."), target);
 }
 
