@@ -35,21 +35,32 @@ std::string trimmed(std::string text) {
     return text;
 }
 
-std::string text_at(vtkDICOMMetaData* meta, int file, vtkDICOMTag tag) { return trimmed(meta->Get(file, tag).AsString()); }
+/// For people to read: what is not printable ASCII becomes "?", for a damaged file may say anything.
+std::string text_at(vtkDICOMMetaData* meta, int file, vtkDICOMTag tag) {
+    std::string text = trimmed(meta->Get(file, tag).AsString());
+    for (char& c : text)
+        if (c < ' ' || c > '~') c = '?';
+    return text;
+}
+
+/// A DICOMDIR by any name: its storage class stands in the file's first group.
+bool is_directory_file(const std::string& head) { return head.find("1.2.840.10008.1.3.10") != std::string::npos; }
 
 /// DICOM files that the directory left out because it could not read them: a series must not lose slices in silence.
-void check_nothing_was_skipped(vtkDICOMDirectory* directory, const fs::path& folder) {
+void check_nothing_was_skipped(vtkDICOMDirectory* directory, const fs::path& folder, int depth) {
     std::set<fs::path> known;
     for (int s = 0; s < directory->GetNumberOfSeries(); ++s) {
         vtkStringArray* names = directory->GetFileNamesForSeries(s);
         for (vtkIdType i = 0; i < names->GetNumberOfValues(); ++i) known.insert(fs::weakly_canonical(std::string(names->GetValue(i))));
     }
     for (auto entry = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied); entry != fs::recursive_directory_iterator(); ++entry) {
-        if (entry.depth() >= kScanDepth - 1) entry.disable_recursion_pending();
-        if (!entry->is_regular_file() || entry->path().filename() == "DICOMDIR" || known.contains(fs::weakly_canonical(entry->path()))) continue;
-        std::array<char, 132> head{};
+        if (entry.depth() >= depth - 1) entry.disable_recursion_pending();
+        if (!entry->is_regular_file() || known.contains(fs::weakly_canonical(entry->path()))) continue;
+        std::string head(1024, '\0');
         std::ifstream in(entry->path(), std::ios::binary);
-        if (in.read(head.data(), head.size()) && std::string(head.data() + 128, 4) == "DICM" && fs::file_size(entry->path()) < (1 << 24))
+        in.read(head.data(), static_cast<std::streamsize>(head.size()));
+        head.resize(static_cast<std::size_t>(in.gcount()));
+        if (head.size() >= 132 && head.compare(128, 4, "DICM") == 0 && !is_directory_file(head))
             throw DamagedFileError(entry->path(), "is a DICOM file that cannot be read", kCopyAgain);
     }
 }
@@ -120,7 +131,7 @@ DicomSlice slice_of(vtkDICOMMetaData* meta, int file, int frame, const std::stri
     slice.rows = meta->Get(file, DC::Rows).AsInt();
     slice.columns = meta->Get(file, DC::Columns).AsInt();
     slice.frame_of_reference_uid = text_at(meta, file, DC::FrameOfReferenceUID);
-    slice.patient = text_at(meta, file, DC::PatientID) + "\\" + text_at(meta, file, DC::PatientName);
+    slice.patient = trimmed(meta->Get(file, DC::PatientID).AsString()) + "\\" + trimmed(meta->Get(file, DC::PatientName).AsString());
     return slice;
 }
 
@@ -208,9 +219,10 @@ Volume parse_dicom_series(const fs::path& path, const std::string& series_uid) {
     const fs::path folder = is_folder ? path : path.has_parent_path() ? path.parent_path() : fs::path(".");
     vtkNew<vtkDICOMDirectory> directory;
     directory->SetDirectoryName(folder.c_str());
-    directory->SetScanDepth(is_folder ? kScanDepth : 1);
+    const int depth = is_folder ? kScanDepth : 1;
+    directory->SetScanDepth(depth);
     directory->Update();
-    if (is_folder) check_nothing_was_skipped(directory, folder);
+    check_nothing_was_skipped(directory, folder, depth);
     const Series series = choose_series(directory, path, series_uid);
 
     vtkNew<vtkDICOMReader> reader;

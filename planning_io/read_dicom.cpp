@@ -167,8 +167,9 @@ Volume read_dicom_series(const fs::path& path, const std::string& series_uid) {
     if (outcome != Outcome::volume) {
         const std::string problem = channel.get_text(), remedy = channel.get_text();
         if (outcome == Outcome::refused) throw InputError({}, problem, remedy);
-        const std::string before = path.string() + ": ";  // the sentence may name the folder already
-        throw DamagedFileError(path, problem.starts_with(before) ? problem.substr(before.size()) : problem, remedy);
+        const auto colon = problem.find(": ");  // the sentence begins with the file at fault
+        if (colon == std::string::npos) throw DamagedFileError(path, problem, remedy);
+        throw DamagedFileError(problem.substr(0, colon), problem.substr(colon + 2), remedy);
     }
     Volume volume = get_volume(channel);
     if (!channel.good()) throw DamagedFileError(path, "could not be read to its end", kCopyAgain);

@@ -51,6 +51,14 @@ void sync(const fs::path& path, const fs::path& file) {
     if (failed && code != EINVAL) refuse(file, "cannot be synced to the disk");
 }
 
+void write_into(const fs::path& path, const fs::path& file, const std::function<void(std::ostream&)>& write) {
+    std::ofstream out(path, std::ios::binary | std::ios::trunc);
+    errno = 0;
+    if (out) write(out);
+    out.close();
+    if (!out) refuse(file, "cannot be written");
+}
+
 struct RemoveUnlessKept {
     fs::path path;
     bool kept = false;
@@ -70,15 +78,15 @@ struct RemoveFolder {
 
 }  // namespace
 
-void write_safely(const fs::path& file, const std::function<void(std::ostream&)>& write) {
-    RemoveUnlessKept temporary{make_temporary_beside(file)};
-    {
-        std::ofstream out(temporary.path, std::ios::binary | std::ios::trunc);
-        errno = 0;
-        if (out) write(out);
-        out.close();
-        if (!out) refuse(file, "cannot be written");
+void write_safely(const fs::path& file_or_link, const std::function<void(std::ostream&)>& write) {
+    std::error_code ignored;
+    const fs::path file = fs::is_symlink(file_or_link, ignored) ? fs::weakly_canonical(file_or_link, ignored) : file_or_link;
+    if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored)) {
+        if (fs::is_directory(file, ignored)) throw DiskError(file, "is a folder, not a file", "Name a file.");
+        return write_into(file, file, write);  // a pipe or a device is written to, never replaced
     }
+    RemoveUnlessKept temporary{make_temporary_beside(file)};
+    write_into(temporary.path, file, write);
     sync(temporary.path, file);
     if (::rename(temporary.path.c_str(), file.c_str()) != 0) refuse(file, "cannot be put in place");
     temporary.kept = true;
@@ -99,8 +107,15 @@ void write_folder_safely(const fs::path& folder, bool replace, const std::functi
     fill(temporary.path);
     sync(temporary.path, target);
     const bool exchange = there && !empty;
-    if (::renameat2(AT_FDCWD, temporary.path.c_str(), AT_FDCWD, target.c_str(), exchange ? RENAME_EXCHANGE : 0) != 0)
-        refuse(target, "cannot be put in place");
+    if (::renameat2(AT_FDCWD, temporary.path.c_str(), AT_FDCWD, target.c_str(), exchange ? RENAME_EXCHANGE : 0) != 0) {
+        if (!exchange || (errno != EINVAL && errno != ENOSYS)) refuse(target, "cannot be put in place");
+        RemoveFolder old{make_temporary_beside(target, true)};  // a file system that cannot exchange: two steps
+        if (::rename(target.c_str(), old.path.c_str()) != 0) refuse(target, "cannot be put in place");
+        if (::rename(temporary.path.c_str(), target.c_str()) != 0) {
+            ::rename(old.path.c_str(), target.c_str());
+            refuse(target, "cannot be put in place");
+        }
+    }
     sync(target.has_parent_path() ? target.parent_path() : fs::path("."), target);
 }
 

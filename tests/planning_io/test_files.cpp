@@ -32,7 +32,15 @@ TEST(SafeWrite, AFailedWriteLeavesTheOldFileAndNothingElse) {
     EXPECT_EQ(read_whole(file), "old");
     EXPECT_EQ(files_in(folder.path()), 1u);
     EXPECT_THROW(write_safely(folder.path() / "no" / "folder.txt", "x"), DiskError);
-    EXPECT_THROW(write_safely("/dev/full", "x"), DiskError);
+    if (fs::is_character_file("/dev/full")) {
+        EXPECT_THROW(write_safely("/dev/full", "x"), DiskError) << "a full disk is told";
+        EXPECT_TRUE(fs::is_character_file("/dev/full")) << "a device is never replaced by a file";
+    }
+    EXPECT_THROW(write_safely(folder.path(), "x"), DiskError);
+    fs::create_symlink(file, folder.path() / "link");
+    write_safely(folder.path() / "link", "new");
+    EXPECT_EQ(read_whole(file), "new");
+    EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
     EXPECT_THROW(read_whole(folder.path()), InputError);
     EXPECT_THROW(read_whole(folder.path() / "none"), InputError);
 }

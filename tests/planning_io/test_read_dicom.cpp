@@ -106,7 +106,7 @@ TEST_F(DicomFolder, AMissingADoubleAndACutSliceAreRefused) {
     write_safely(folder_.path() / "again", whole);
     EXPECT_THROW(read_volume(folder_.path()), InputError);
     fs::remove(folder_.path() / "again");
-    for (const double part : {0.001, 0.3, 0.95}) {
+    for (const double part : {0.004, 0.3, 0.95}) {
         write_safely(middle, whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
         EXPECT_THROW(read_volume(folder_.path()), Error) << "cut at " << part;
     }
@@ -137,8 +137,11 @@ TEST(DicomThirdParty, BadFilesAreRefusedInWordsAndNeverCrashUs) {
     int read = 0, refused = 0;
     for (const auto& entry : fs::directory_iterator(*folder)) {
         if (!entry.is_regular_file() || refused > 25) continue;
+        const test::TemporaryFolder alone;
+        const fs::path file = alone.path() / entry.path().filename();
+        fs::copy_file(entry.path(), file);
         try {
-            read_volume(entry.path());
+            read_volume(file);
             ++read;
         } catch (const Error& e) {
             ++refused;

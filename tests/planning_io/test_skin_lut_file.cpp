@@ -2,6 +2,8 @@
 
 #include <chrono>
 #include <cmath>
+#include <ctime>
+#include <fstream>
 #include <iostream>
 #include <random>
 
@@ -13,6 +15,10 @@
 
 namespace planlight {
 namespace {
+
+void put(const std::filesystem::path& file, const std::string& content) {
+    std::ofstream(file, std::ios::binary) << content;  // without waiting for the disk
+}
 
 const SkinLut& head_lut() {
     static const SkinLut lut = [] {
@@ -60,7 +66,7 @@ TEST(SkinLutFile, EveryFlippedBitIsRefused) {
     const auto refused = [&](std::size_t byte, int bit) {
         std::string flipped = whole;
         flipped[byte] = static_cast<char>(flipped[byte] ^ (1 << bit));
-        write_safely(file, flipped);
+        put(file, flipped);
         try {
             read_skin_lut(file);
             return false;
@@ -81,14 +87,14 @@ TEST(SkinLutFile, CutOrLengthenedFileIsRefused) {
     write_skin_lut(head_lut(), file);
     const std::string whole = read_whole(file);
     for (std::size_t length = 0; length < 300; ++length) {
-        write_safely(file, whole.substr(0, length));
+        put(file, whole.substr(0, length));
         ASSERT_THROW(read_skin_lut(file), DamagedFileError) << length;
     }
     for (std::size_t cut = 1; cut < whole.size() - 300; cut = cut * 3 / 2 + 1) {
-        write_safely(file, whole.substr(0, whole.size() - cut));
+        put(file, whole.substr(0, whole.size() - cut));
         ASSERT_THROW(read_skin_lut(file), DamagedFileError) << whole.size() - cut;
     }
-    write_safely(file, whole + '\0');
+    put(file, whole + '\0');
     EXPECT_THROW(read_skin_lut(file), DamagedFileError);
     EXPECT_THROW(read_skin_lut(folder.path() / "none.lut"), InputError);
 }
@@ -129,15 +135,17 @@ TEST(SkinLutFile, LoadsAPatientSizedTable) {
             for (int i = 0; i < 128; ++i) lut.distance_mm[at++] = static_cast<float>((Eigen::Vector3d(i, j, k) - Eigen::Vector3d::Constant(63.5)).norm() * 2 - 90);
     const test::TemporaryFolder folder;
     write_skin_lut(lut, folder.path() / "skin.lut");
-    double best_s = 1e9;
+    double best_s = 1e9, best_processor_s = 1e9;
     for (int i = 0; i < 3; ++i) {
         const auto begin = std::chrono::steady_clock::now();
+        const std::clock_t begin_processor = std::clock();
         const SkinLut back = read_skin_lut(folder.path() / "skin.lut");
         best_s = std::min(best_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
+        best_processor_s = std::min(best_processor_s, static_cast<double>(std::clock() - begin_processor) / CLOCKS_PER_SEC);
         EXPECT_EQ(back.nearest, lut.nearest);
     }
     RecordProperty("load_s", std::to_string(best_s));
-    std::cout << "load and verify 256^3: " << best_s << " s, file " << static_cast<double>(std::filesystem::file_size(folder.path() / "skin.lut")) / 1e6 << " MB\n";
+    std::cout << "load and verify 256^3: " << best_s << " s (" << best_processor_s << " s of all processors), file " << static_cast<double>(std::filesystem::file_size(folder.path() / "skin.lut")) / 1e6 << " MB\n";
 }
 
 }  // namespace
