@@ -2,16 +2,16 @@
 
 #include "planning_io/content_hash.h"
 #include "planning_io/invesalius_project.h"
+#include "planning_io/read_dicom.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
 
 namespace fs = std::filesystem;
 
-Volume read_volume(const fs::path& path, const std::string&) {
+Volume read_volume(const fs::path& path, const std::string& series_uid) {
     if (!fs::exists(path)) throw InputError(path, "does not exist", "Check the name of the project or folder.");
-    if (path.extension() == ".inv3") return read_invesalius_volume(path);
-    throw InputError(path, "is not an InVesalius project", "Name a project that InVesalius 3 saved (.inv3).");
+    return path.extension() == ".inv3" ? read_invesalius_volume(path) : read_dicom_series(path, series_uid);
 }
 
 std::string hash_of(const Volume& volume) {
