@@ -151,11 +151,13 @@ DetachedBody detach_objects(const Mask& dense, const std::vector<float>& values,
     DetachedBody result;
     Mask filled = outside_air(dense, grid);
     for (auto& v : filled) v = !v;
-    const LargestPiece core = largest_piece(erode(filled, grid, detach_radius_mm), grid);
+    // Half a voxel more: a bridge ends half a voxel before the centre of the first voxel of air.
+    const double radius_mm = detach_radius_mm + grid.spacing_mm.maxCoeff() / 2;
+    const LargestPiece core = largest_piece(erode(filled, grid, radius_mm), grid);
     if (core.voxels == 0) return result;
 
     // One voxel more than the opening gives back: the rounding of its ball to voxels.
-    const Mask near = dilate(core.mask, grid, detach_radius_mm + grid.spacing_mm.maxCoeff());
+    const Mask near = dilate(core.mask, grid, radius_mm + grid.spacing_mm.maxCoeff());
     Mask state(filled.size());
     std::vector<std::size_t> seeds;
     for (std::size_t i = 0; i < state.size(); ++i) {

@@ -143,9 +143,9 @@ TEST(BuildSkinLut, SkinVoxelsAreThoseTheTrianglesPassThrough) {
 
 TEST(BuildSkinLut, PointersOfASphereCarryItsSkinAndNormals) {
     const double radius = 40;
-    const SkinLut lut = build_skin_lut(sphere(radius, 6));  // edges 1 mm: chords lie 0.003 mm inside
+    const SkinLut lut = build_skin_lut(sphere(radius, 6));  // edges up to 1.5 mm: e^2/(8 R) = 0.007 mm
     for (const auto& s : lut.skin) {
-        ASSERT_NEAR(s.position_in_ct.norm(), radius, 0.005);
+        ASSERT_NEAR(s.position_in_ct.norm(), radius, 0.008);
         ASSERT_GT(s.normal_in_ct.dot(s.position_in_ct.normalized()), 0.9999F);
     }
     // The voxel table's answer is at most one voxel diagonal further than the truth.
@@ -195,7 +195,7 @@ TEST(BuildSkinLut, SignedDistanceVanishesOnTheAnalyticHead) {
         ASSERT_LT(inside->mm, 0);
     }
     std::sort(errors.begin(), errors.end());
-    EXPECT_LT(errors[errors.size() / 2], 0.01);
+    EXPECT_LT(errors[errors.size() / 2], 0.02);  // h^2/(8 R) twice for a radius of 60 mm, and chords of 2 mm
     // Creases where nose and ears leave the head (radius of a few mm) are beyond a field of 2 mm.
     EXPECT_LT(errors[errors.size() * 95 / 100], 0.05);
     EXPECT_LT(turned, errors.size() / 20);

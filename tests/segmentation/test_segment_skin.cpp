@@ -36,21 +36,35 @@ Errors errors_of(const TriangleMesh& mesh, double threshold, const Eigen::Matrix
     return result;
 }
 
+struct Segmented {
+    Volume scan;
+    SkinMask mask;
+    TriangleMesh skin;
+    explicit Segmented(const ScanOptions& options)
+        : scan(synthetic_scan(options)), mask(segment_skin(scan)), skin(triangulate_skin(scan, mask)) {}
+};
+
+/// The scan with all objects and openings, and the bare one: made once.
+const Segmented& whole() {
+    static const Segmented made{ScanOptions{}};
+    return made;
+}
+const Segmented& bare() {
+    static const Segmented made{ScanOptions{.objects = false, .openings = false}};
+    return made;
+}
+
 TEST(SegmentSkin, FindsTheThresholdBetweenAirAndSoftTissue) {
-    const SkinMask mask = segment_skin(synthetic_scan());
+    const SkinMask& mask = whole().mask;
     EXPECT_NEAR(mask.threshold, -480, 15);  // peaks -1000 and 40; bins of 10 HU, noise of 15 HU
-    Volume stored = synthetic_scan();       // the same scan in a scanner's own numbers
+    Volume stored = whole().scan;           // the same scan in a scanner's own numbers
     for (auto& v : stored.values) v = 2 * (v + 1024);
     stored.is_hu = false;
     EXPECT_NEAR(segment_skin(stored).threshold, 2 * (1024 - 480), 60);
 }
 
 TEST(TriangulateSkin, LiesOnTheCrossingOfABareHead) {
-    ScanOptions options;
-    options.objects = options.openings = false;
-    const Volume scan = synthetic_scan(options);
-    const SkinMask mask = segment_skin(scan);
-    const TriangleMesh skin = triangulate_skin(scan, mask);
+    const auto& [scan, mask, skin] = bare();
     const Errors errors = errors_of(skin, mask.threshold);
     RecordProperty("rms_um", static_cast<int>(1000 * errors.rms));
     EXPECT_GT(errors.count, 20000U);
@@ -61,9 +75,7 @@ TEST(TriangulateSkin, LiesOnTheCrossingOfABareHead) {
 }
 
 TEST(TriangulateSkin, IsOneClosedOutwardSurfaceWithoutHandles) {
-    const Volume scan = synthetic_scan();
-    const SkinMask mask = segment_skin(scan);
-    const TriangleMesh skin = triangulate_skin(scan, mask);
+    const auto& [scan, mask, skin] = whole();
     const MeshFacts facts = facts_of(skin);
     EXPECT_EQ(facts.bad_edges, 0U);
     EXPECT_EQ(facts.pieces, 1U);
@@ -78,11 +90,9 @@ TEST(TriangulateSkin, IsOneClosedOutwardSurfaceWithoutHandles) {
 }
 
 TEST(SegmentSkin, CutsOffTablePlatesAndWireAndKeepsTheEars) {
-    const Volume scan = synthetic_scan();
-    const SkinMask mask = segment_skin(scan);
-    const TriangleMesh skin = triangulate_skin(scan, mask);
-    EXPECT_GE(mask.pieces_removed, 3);
-    EXPECT_GT(mask.removed_ml, 500);  // table alone: 208 x 8 x 197 mm = 328 ml; plates 60 ml each and more
+    const auto& [scan, mask, skin] = whole();
+    EXPECT_GE(mask.pieces_removed, 2);  // table and plates hang together; the wire
+    EXPECT_NEAR(mask.removed_ml, 328 + 2 * 77 + 1, 25);  // 208 x 8 x 197 mm; 3.5 x 163 x 135 mm each; thin things measure thick
     double furthest = 0, left_ear = 0, right_ear = 0;
     std::size_t off = 0, count = 0;
     for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
@@ -95,16 +105,14 @@ TEST(SegmentSkin, CutsOffTablePlatesAndWireAndKeepsTheEars) {
         ++count;
         off += std::abs(d - crossing_distance_mm(mask.threshold)) > 0.26;
     }
-    EXPECT_LT(furthest, 4);            // a stub where the wire or the plate touched, no longer than the detach radius and a voxel
+    EXPECT_LT(furthest, 2.5 + 1.5 * 1.6);  // a stub where the plate touched: the detach radius and one and a half voxels
     EXPECT_GT(left_ear, 86);           // the ear's edge is at 89
     EXPECT_LT(right_ear, -84);         // at -86
     EXPECT_LT(off, count / 50);        // unflagged and off the skin: at the contacts and openings only
 }
 
 TEST(SegmentSkin, LidsNostrilsEarCanalsAndThroat) {
-    const Volume scan = synthetic_scan();
-    const SkinMask mask = segment_skin(scan);
-    const TriangleMesh skin = triangulate_skin(scan, mask);
+    const auto& [scan, mask, skin] = whole();
     std::size_t lids = 0;
     double deepest = 0;
     for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
@@ -119,16 +127,17 @@ TEST(SegmentSkin, LidsNostrilsEarCanalsAndThroat) {
 }
 
 TEST(TriangulateSkin, ClosesTheEndOfTheVolumeByAFlatPlane) {
-    const Volume scan = synthetic_scan();
-    const TriangleMesh skin = triangulate_skin(scan, segment_skin(scan));
-    std::size_t cut = 0;
+    const TriangleMesh& skin = whole().skin;
+    std::size_t cut = 0, misplaced = 0, flat = 0;
     for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
-        EXPECT_EQ(skin.flags[v] == kCutPlane, skin.vertices_in_ct[v].z() < kCutZ_mm - 0.01);
+        misplaced += (skin.flags[v] == kCutPlane) != (skin.vertices_in_ct[v].z() < kCutZ_mm - 0.01);
         if (skin.flags[v] != kCutPlane) continue;
         ++cut;
-        EXPECT_NEAR(skin.vertices_in_ct[v].z(), kCutZ_mm - 0.8, 0.81);  // half a slice beyond the last centres
+        flat += std::abs(skin.vertices_in_ct[v].z() - (kCutZ_mm - 0.8)) < 1e-3;  // half a slice beyond the last centres
     }
     EXPECT_GT(cut, 500U);
+    EXPECT_EQ(misplaced, 0U);
+    EXPECT_GT(flat, cut * 95 / 100);  // the rim rounds off within half a slice
 }
 
 TEST(TriangulateSkin, FollowsTurnedVoxelAxes) {
@@ -144,10 +153,7 @@ TEST(TriangulateSkin, FollowsTurnedVoxelAxes) {
 }
 
 TEST(TriangulateSkin, DecimatesWithinTheBound) {
-    ScanOptions options;
-    options.objects = options.openings = false;
-    const Volume scan = synthetic_scan(options);
-    const SkinMask mask = segment_skin(scan);
+    const auto& [scan, mask, skin] = bare();
     SkinSettings fine, coarse;
     fine.max_decimation_error_mm = 0;
     coarse.max_edge_mm = 6;

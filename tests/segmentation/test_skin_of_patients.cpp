@@ -19,13 +19,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Distances of the real-skin vertices of `skin` from the nearest triangle of `reference`, sorted, mm.
-std::vector<double> distances(const TriangleMesh& skin, const TriangleMesh& reference) {
+/// Distances of points from the nearest triangle of `mesh`, mm.
+std::vector<double> distances(const std::vector<Vector3d>& from, const TriangleMesh& mesh) {
     vtkNew<vtkPoints> points;
     points->SetDataTypeToDouble();
-    for (const auto& p : reference.vertices_in_ct) points->InsertNextPoint(p.data());
+    for (const auto& p : mesh.vertices_in_ct) points->InsertNextPoint(p.data());
     vtkNew<vtkCellArray> cells;
-    for (const auto& t : reference.triangles) {
+    for (const auto& t : mesh.triangles) {
         const vtkIdType ids[3] = {t[0], t[1], t[2]};
         cells->InsertNextCell(3, ids);
     }
@@ -36,15 +36,13 @@ std::vector<double> distances(const TriangleMesh& skin, const TriangleMesh& refe
     locator->SetDataSet(surface);
     locator->BuildLocator();
     std::vector<double> result;
-    for (std::size_t v = 0; v < skin.vertices_in_ct.size(); v += 5) {
-        if (skin.flags[v] != kSkin) continue;
+    for (const Vector3d& p : from) {
         double closest[3], squared = 0;
         vtkIdType cell = 0;
         int part = 0;
-        locator->FindClosestPoint(skin.vertices_in_ct[v].data(), closest, cell, part, squared);
+        locator->FindClosestPoint(p.data(), closest, cell, part, squared);
         result.push_back(std::sqrt(squared));
     }
-    std::sort(result.begin(), result.end());
     return result;
 }
 
@@ -134,12 +132,22 @@ TEST_F(ExamplePatient, AgreesWithTheSurfaceOfInVesalius) {
     settings.threshold = -142;  // of the project's skin surface
     const SkinMask same = segment_skin(volume, settings);
     const TriangleMesh mesh = triangulate_skin(volume, same, settings);
+    // InVesalius keeps cavities and head holder in its surface: only its vertices within 3 mm of our skin are compared, and
+    // they must be most of what one skin has. The other surface of the project is bone.
     double best = 1e9;
+    std::size_t most = 0;
     for (const auto& surface : surfaces) {
-        const auto mm = distances(mesh, surface);
-        best = std::min(best, mm[mm.size() / 2]);
+        std::vector<Vector3d> some;
+        for (std::size_t v = 0; v < surface.vertices_in_ct.size(); v += 5) some.push_back(surface.vertices_in_ct[v]);
+        std::vector<double> mm = distances(some, mesh);
+        std::erase_if(mm, [](double d) { return d > 3; });
+        if (mm.size() < most) continue;
+        most = mm.size();
+        std::nth_element(mm.begin(), mm.begin() + static_cast<std::ptrdiff_t>(most / 2), mm.end());
+        best = mm[most / 2];
     }
     RecordProperty("median_um", static_cast<int>(1000 * best));
+    EXPECT_GT(most, 10000U);
     EXPECT_LT(best, 0.957 / 3);
 }
 
