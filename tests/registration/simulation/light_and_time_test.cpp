@@ -79,12 +79,10 @@ TEST_F(Room, BeforeTheDelayTheFormerPictureIsLit) {
     Projector& projector = rig().projector();
     const Instant long_time = now() + std::chrono::seconds(9);
     const double white = brightness(frame(projector.show(plain(projector, 255), long_time)).left);
-    StereoFrame seen = frame();
-    while (true) {  // black ordered 10 ms before an exposure begins is not light on the patient yet
-        const Instant next_begins = seen.at - seen.exposure / 2 + milliseconds(40);
-        rig().wait(next_begins - milliseconds(10) - now());
-        break;
-    }
+    const StereoFrame seen = frame();
+    // Black ordered 10 ms before an exposure begins is not light on the patient yet.
+    const Instant next_begins = seen.at - seen.exposure / 2 + milliseconds(40);
+    rig().wait(next_begins - milliseconds(10) - now());
     const Instant on = projector.show(plain(projector, 0), long_time);
     EXPECT_NEAR(brightness(frame().left), white, 0.2);
     EXPECT_LT(brightness(frame(on).left), 0.5 * white);
