@@ -35,19 +35,22 @@ void spread_along(Mask& mask, const std::array<int, 3>& size, int axis, int reac
         }
 }
 
+/// Calls `visit` with every 6-neighbour of a voxel.
+template <typename Visit>
+void for_neighbours(std::size_t at, const std::array<int, 3>& size, Visit&& visit) {
+    const std::size_t row = static_cast<std::size_t>(size[0]), slice = row * static_cast<std::size_t>(size[1]);
+    const auto i = static_cast<int>(at % row), j = static_cast<int>(at / row % static_cast<std::size_t>(size[1])),
+               k = static_cast<int>(at / slice);
+    if (i > 0) visit(at - 1);
+    if (i + 1 < size[0]) visit(at + 1);
+    if (j > 0) visit(at - row);
+    if (j + 1 < size[1]) visit(at + row);
+    if (k > 0) visit(at - slice);
+    if (k + 1 < size[2]) visit(at + slice);
+}
+
 /// The largest 6-connected body of `mask`.
 Mask largest_body(const Mask& mask, const std::array<int, 3>& size) {
-    const std::ptrdiff_t row = size[0], slice = row * size[1];
-    const auto neighbours = [&](std::size_t at, auto&& visit) {
-        const auto v = static_cast<std::ptrdiff_t>(at);
-        const std::ptrdiff_t i = v % row, j = v / row % size[1], k = v / slice;
-        if (i > 0) visit(at - 1);
-        if (i + 1 < size[0]) visit(at + 1);
-        if (j > 0) visit(at - static_cast<std::size_t>(row));
-        if (j + 1 < size[1]) visit(at + static_cast<std::size_t>(row));
-        if (k > 0) visit(at - static_cast<std::size_t>(slice));
-        if (k + 1 < size[2]) visit(at + static_cast<std::size_t>(slice));
-    };
     Mask left = mask;
     std::vector<std::size_t> body, best;
     for (std::size_t seed = 0; seed < left.size(); ++seed) {
@@ -55,7 +58,7 @@ Mask largest_body(const Mask& mask, const std::array<int, 3>& size) {
         body.assign(1, seed);
         left[seed] = 0;
         for (std::size_t next = 0; next < body.size(); ++next)
-            neighbours(body[next], [&](std::size_t n) {
+            for_neighbours(body[next], size, [&](std::size_t n) {
                 if (left[n]) {
                     left[n] = 0;
                     body.push_back(n);
@@ -95,13 +98,19 @@ Mask head_voxels(const Volume& volume, double threshold) {
     const double voxel_mm3 = std::abs(volume.ct_from_voxel.linear().determinant());
     if (static_cast<double>(std::count(head.begin(), head.end(), 1)) * voxel_mm3 < kLeastHead_mm3) return {};
     // Thin parts that hang on the head (ears, nose) come back; what only touches through air does not.
-    const double step_mm = volume.spacing_mm().minCoeff();
-    for (int step = 0; step < static_cast<int>(kGrownBack_mm / step_mm); ++step) {
-        const Mask wider = grown(head, volume.size, {1, 1, 1});
-        bool changed = false;
-        for (std::size_t v = 0; v < head.size(); ++v)
-            if (wider[v] && above[v] && !head[v]) head[v] = changed = true;
-        if (!changed) break;
+    std::vector<std::size_t> front, next;
+    for (std::size_t v = 0; v < head.size(); ++v)
+        if (head[v]) front.push_back(v);
+    const int steps = static_cast<int>(kGrownBack_mm / volume.spacing_mm().minCoeff());
+    for (int step = 0; step < steps && !front.empty(); ++step) {
+        next.clear();
+        for (const std::size_t v : front)
+            for_neighbours(v, volume.size, [&](std::size_t n) {
+                if (!above[n] || head[n]) return;
+                head[n] = 1;
+                next.push_back(n);
+            });
+        front.swap(next);
     }
     return head;
 }

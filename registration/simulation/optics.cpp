@@ -47,7 +47,7 @@ Vector3d Optics::direction_of(const Vector2d& pixel) const {
     for (int i = 0; i < 60; ++i) {  // the bend is small: what is missing is put on until nothing is missing
         const Vector2d missing = wanted - bent(ideal);
         ideal += missing;
-        if (missing.squaredNorm() < 1e-24) break;
+        if (missing.squaredNorm() < 1e-20) break;
     }
     return (focal_mm * forward + ideal.x() * right + ideal.y() * down).normalized();
 }

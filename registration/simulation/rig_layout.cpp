@@ -74,7 +74,8 @@ void disturb(Optics& device, double scale, double working_distance_mm, std::mt19
     device.radial_per_mm2 += 0.05 * scale * unit(random) * device.pitch_mm.x() / (corner_mm * corner_mm * corner_mm);
     device.turn(0.04 * scale / f_px * Vector3d(unit(random), unit(random), 0));
     device.turn(Vector3d(0, 0, 0.005 * scale * unit(random) * M_PI / 180));
-    device.eye += 0.02 * scale * Vector3d(unit(random), unit(random), unit(random));
+    const double pixel_mm = working_distance_mm / f_px;
+    device.eye += scale * (0.04 * pixel_mm * (unit(random) * device.right + unit(random) * device.down) + 0.05 * unit(random) * device.forward);
 }
 
 double reprojection_rms_px(const RigLayout& truth, const RigLayout& found) {
