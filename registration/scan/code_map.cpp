@@ -9,6 +9,7 @@ namespace planlight {
 namespace {
 
 constexpr int kReach = 2;            // 5 x 5 neighbours
+constexpr int kWhole = (2 * kReach + 1) * (2 * kReach + 1);
 constexpr int kMinNeighbours = 12;   // about half of them
 constexpr double kRoughness_px = 0.25;  // rms about the affine map that the surface's own curvature and texture may make
 constexpr int kMaxSteps = 5;
@@ -71,7 +72,7 @@ std::optional<LocalCode> local_code(const DecodedView& view, int x, int y) {
     const double allowed = kRoughness_px * kRoughness_px + 9 * sigma * sigma;
     if (residual > directions * (s.n - 3) * allowed) return std::nullopt;
     if (fit.row(0).squaredNorm() > 9 * directions * allowed) return std::nullopt;  // the pixel itself stands off
-    return LocalCode{centre + fit.row(0).transpose(), fit.bottomRows<2>().transpose(), sigma * std::sqrt(inverse(0, 0))};
+    return LocalCode{centre + fit.row(0).transpose(), fit.bottomRows<2>().transpose(), s.n > kWhole - 0.5, sigma * std::sqrt(inverse(0, 0))};
 }
 
 CodeIndex::CodeIndex(const DecodedView& view, int projector_width, int projector_height)

@@ -13,6 +13,7 @@ namespace planlight {
 struct LocalCode {
     Eigen::Vector2d code;         ///< projector pixel (column, row) at the centre pixel; row 0 when rows are not coded
     Eigen::Matrix2d by_pixel;     ///< its derivative by the camera pixel; second row zero when rows are not coded
+    bool whole = false;           ///< every neighbour took part: no edge of an object, a shadow or the picture is near
     double sigma_px = 0;          ///< one standard deviation of `code`, projector pixels, from the noise alone
 };
 

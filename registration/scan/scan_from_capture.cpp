@@ -42,9 +42,16 @@ ScanResult scan_from_capture(const ScanCapture& capture, const RigCalibration& r
     check_size(result.left, rig.left_camera, "left");
     check_size(result.right, rig.right_camera, "right");
     result.decode_s = watch.lap_s();
+    RigCalibration rig_now = rig;
     result.raw = triangulate(result.left, result.right, rig, settings.triangulation);
+    if (capture.stripes.rows) result.resection = resect_projector(result.raw, rig, settings.resection);
+    if (settings.use_resection && result.resection && result.resection->believable) {
+        rig_now.projector = result.resection->projector;
+        result.raw = triangulate(result.left, result.right, rig_now, settings.triangulation);
+        result.resection_used = true;
+    }
     result.triangulate_s = watch.lap_s();
-    result.clean = remove_outliers(result.raw, rig, settings.outliers);
+    result.clean = remove_outliers(result.raw, rig_now, settings.outliers);
     result.outliers_s = watch.lap_s();
     return result;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "registration/devices/stereo_camera.h"
 #include "registration/scan/decode_stripes.h"
 #include "registration/scan/remove_outliers.h"
+#include "registration/scan/resect_projector.h"
 #include "registration/scan/triangulate.h"
 
 namespace planlight {
@@ -29,6 +31,10 @@ struct ScanSettings {
     DecodeSettings decode;
     TriangulationSettings triangulation;
     OutlierSettings outliers;
+    ResectionSettings resection;
+    /// Take the projector from where the scan finds it, if that is believable (`Resection::believable`): without it an
+    /// error of the projector's calibration goes straight into the points that only one camera sees.
+    bool use_resection = true;
 };
 
 /// A scan from pictures to clean cloud, with everything in between for the report (Fig. 2).
@@ -36,6 +42,8 @@ struct ScanResult {
     DecodedView left, right;
     Triangulation raw;
     OutlierReport clean;
+    std::optional<Resection> resection;  ///< empty: too few points, or columns only
+    bool resection_used = false;         ///< then `raw` and `clean` are made with `resection->projector`
     double decode_s = 0, triangulate_s = 0, outliers_s = 0;
 };
 

@@ -85,9 +85,19 @@ void judge(const std::optional<Estimate>& estimate, const RigCalibration& rig, c
     else outcome.kind = outcome.sigma_mm < kMaxSigma_mm ? Kind::point : Kind::disagree;
 }
 
+/// At an edge of an object, a shadow or the projector's picture, blur mixes light with darkness and shifts the code.
+/// Two cameras see the same shift and agree on the place; with one camera it would go straight into depth.
+bool near_an_edge(const LocalCode& local, const CameraModel& projector) {
+    constexpr double kRim_px = 3;
+    const Eigen::Vector2d last(projector.width - 1, projector.height - 1);
+    return !local.whole || local.code.minCoeff() < kRim_px || (last - local.code).minCoeff() < kRim_px;
+}
+
 /// A pixel that one camera and the projector share.
 void two_views(const CameraModel& camera, const Eigen::Vector2d& pixel, const LocalCode& local, const RigCalibration& rig,
                const TriangulationSettings& settings, PointOutcome& outcome) {
+    outcome.kind = PointOutcome::Kind::ragged;
+    if (near_an_edge(local, rig.projector)) return;
     outcome.kind = PointOutcome::Kind::disagree;
     const auto sight = ray_through(camera, pixel), light = ray_through(rig.projector, local.code);
     if (!sight || !light) return;
@@ -114,6 +124,7 @@ void three_views(const Eigen::Vector2d& left_pixel, const LocalCode& left, const
     if (const auto expected = project(rig.projector, *start)) {
         outcome.placed_by_cameras = true;
         outcome.projector_offset_px = left.code - *expected;
+        outcome.p_by_cameras = *start;
         outcome.epipolar_px = epipolar_distance(rig.right_camera, *sight, *start, right.pixel);
     }
     const Eigen::Matrix2d pixel_by_code = right.local.by_pixel.inverse();

@@ -26,7 +26,7 @@ struct Triangulation {
     std::vector<Seen> seen;         ///< per point: by whom
     std::size_t three_view = 0, two_view = 0;
     std::size_t no_partner = 0, disagree = 0, outside_volume = 0;
-    std::size_t ragged = 0;         ///< the code is not smooth around the pixel: an edge, hair, a glint
+    std::size_t ragged = 0;         ///< the code is not smooth around the pixel: an edge, hair, a glint; with one camera also its rim
     int stride = 1;                 ///< as used
 
     /// Evidence about the calibration, over the points that both cameras placed without the projector: the median of
@@ -34,6 +34,15 @@ struct Triangulation {
     /// the gate drops count as well, or a rig that is off would look fine.
     Eigen::Vector2d projector_offset_px = Eigen::Vector2d::Zero();
     double epipolar_rms_px = 0;
+
+    /// A sample of those points (at most 20,000), for the resection of the projector. With columns only the row of
+    /// the pixel is what the rig expects, not measured.
+    struct ByCameras {
+        Eigen::Vector3d p_in_rig;
+        Eigen::Vector2d pixel_in_projector;
+        double epipolar_px;
+    };
+    std::vector<ByCameras> by_cameras;
 };
 
 /// Triangulates the decoded views of both cameras. The views must code both directions, or the columns only when three

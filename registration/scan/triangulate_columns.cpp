@@ -79,6 +79,7 @@ void place(const DecodedView& right, const Eigen::Vector2d& pixel, const LocalCo
     const auto lit = project(rig.projector, p, by_point);
     if (!lit) return;
     outcome.placed_by_cameras = true;
+    outcome.p_by_cameras = p;
     outcome.projector_offset_px = {local.code.x() - lit->x(), 0.0};
     const double sigma_px = std::hypot(settings.projector_sigma_px, settings.camera_sigma_px, local.sigma_px);
     const double projector_sigma = sigma_px / std::abs(by_point.row(0).dot(sight->direction));

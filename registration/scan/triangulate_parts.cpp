@@ -14,6 +14,17 @@ double median(std::vector<double>& values) {
     return *middle;
 }
 
+/// A sample of the points that the cameras placed, evenly along the list.
+void keep_by_cameras(const std::vector<PointOutcome>& outcomes, std::size_t count, Triangulation& result) {
+    constexpr std::size_t kSample = 20000;
+    const std::size_t every = 1 + count / kSample;
+    std::size_t seen = 0;
+    for (const PointOutcome& o : outcomes) {
+        if (!o.placed_by_cameras || seen++ % every != 0) continue;
+        result.by_cameras.push_back({o.p_by_cameras, o.pixel_in_projector, o.epipolar_px});
+    }
+}
+
 void collect_evidence(const std::vector<PointOutcome>& outcomes, Triangulation& result) {
     std::vector<double> du, dv;
     double squares = 0;
@@ -24,6 +35,7 @@ void collect_evidence(const std::vector<PointOutcome>& outcomes, Triangulation& 
         squares += o.epipolar_px * o.epipolar_px;
     }
     if (du.empty()) return;
+    keep_by_cameras(outcomes, du.size(), result);
     result.epipolar_rms_px = std::sqrt(squares / static_cast<double>(du.size()));
     result.projector_offset_px = {median(du), median(dv)};
 }
