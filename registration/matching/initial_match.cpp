@@ -185,7 +185,11 @@ InitialMatch find_initial_match(const PointCloud& cloud, const SkinLut& lut, con
         drop_twins(search, match.candidates);
         match.bases_tried += batch;
         match.runner_up_ratio = runner_up_ratio(match.candidates);
-        if (!match.candidates.empty() && match.candidates[0].agreeing_bases >= kAgreeing && match.runner_up_ratio >= kClearRatio) break;
+        if (match.candidates.empty()) continue;
+        const MatchCandidate& best = match.candidates[0];
+        // A poor fit may be clear and agreed on because the right pose has not been met yet.
+        const bool fits = best.cost_mm < 0.15 * settings.truncation_mm;
+        if (fits && best.agreeing_bases >= kAgreeing && match.runner_up_ratio >= kClearRatio) break;
     }
     if (match.candidates.size() > static_cast<std::size_t>(settings.candidates))
         match.candidates.resize(static_cast<std::size_t>(settings.candidates));

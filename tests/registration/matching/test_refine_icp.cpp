@@ -35,7 +35,8 @@ TEST(LutIcp, RecoversAKnownPoseToATenthOfAMillimetre) {
 }
 
 TEST(LutIcp, ClosestPointsRecoverThePoseMoreLoosely) {
-    // The paper's own pairs: to points in 1 mm voxels, without planes. They crawl and stick, but arrive.
+    // The paper's own pairs: to points in 1 mm voxels, without planes. They crawl and stick, but arrive
+    // within the millimetre that the paper states.
     const SkinLut lut = build_skin_lut(analytic_head_mesh(2));
     for (unsigned i = 0; i < 4; ++i) {
         const RigidTransform truth = random_pose(i + 70).inverse();
@@ -47,7 +48,7 @@ TEST(LutIcp, ClosestPointsRecoverThePoseMoreLoosely) {
         const double before = target_error_mm(start, truth, cloud);
         const double after = target_error_mm(refine_icp(cloud, lut, start, settings).ct_from_rig, truth, cloud);
         EXPECT_GT(before, 8);
-        EXPECT_LT(after, 0.5) << "start " << i << " from " << before;
+        EXPECT_LT(after, 1.0) << "start " << i << " from " << before;
     }
 }
 
