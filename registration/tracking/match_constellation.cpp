@@ -142,6 +142,7 @@ ConstellationMatch match_constellation(const RigCalibration& rig, const std::vec
     // Three markers out of many fit somewhere by chance, and in a mirrored arrangement always: a triangle has no handedness.
     const int expected = std::min(seen, static_cast<int>(markers.size()));
     const int needed = std::max(settings.min_markers, expected >= 4 ? std::max(4, (2 * expected + 2) / 3) : 0);
+    result.needed = needed;
     std::erase_if(proposals, [&](const Proposal& p) { return p.markers < needed; });
     if (proposals.empty()) {
         result.reason = seen < settings.min_markers

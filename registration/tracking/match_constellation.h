@@ -12,6 +12,7 @@ namespace planlight {
 struct ConstellationMatch {
     std::optional<RigidTransform> rig_from_patient;
     std::vector<Sighting> sightings;
+    int needed = 0;      ///< markers that must agree for the pose to be believed
     std::string reason;  ///< why there is no match
 };
 

@@ -141,6 +141,10 @@ PatientTracker::Attempt PatientTracker::search(const StereoFrame& frame) {
     attempt.checked.reason = match.reason;
     if (match.rig_from_patient)
         attempt.checked = fit_pose_checked(rig_, markers_, match.sightings, *match.rig_from_patient, settings_);
+    if (attempt.checked.fit && distinct_markers(attempt.checked.used) < match.needed) {
+        attempt.checked.fit.reset();
+        attempt.checked.reason = "the discs seen are not in the arrangement of the markers";
+    }
     for (const auto& m : left) attempt.left.push_back({m, -1});
     for (const auto& m : right) attempt.right.push_back({m, -1});
     for (const Sighting& s : match.sightings)
