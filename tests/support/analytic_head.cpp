@@ -1,5 +1,6 @@
 #include "tests/support/analytic_head.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
