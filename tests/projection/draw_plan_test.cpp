@@ -118,7 +118,7 @@ TEST(DrawPlan, ACutPlanesTraceLiesInItsPlaneAndEndsAtItsExtent) {
     double low = 1e9, high = -1e9;
     for (const Vector3d& p : lines[0].points_in_ct) {
         EXPECT_NEAR((p - Vector3d(80, 0, 10)).dot(Vector3d(0, 0.6, 0.8)), 0, 0.02);
-        EXPECT_NEAR(p.norm(), kRadius_mm, 0.02);
+        EXPECT_NEAR(p.norm(), kRadius_mm, 0.025);  // sag of the mesh's triangles
         low = std::min(low, (p - Vector3d(80, 0, 10)).dot(Vector3d(0, 0.8, -0.6)));
         high = std::max(high, (p - Vector3d(80, 0, 10)).dot(Vector3d(0, 0.8, -0.6)));
     }
@@ -156,7 +156,7 @@ TEST(DrawPlan, ALettersStrokesAreNotMirrored) {
     Plan plan;
     plan.osteotomy_lines.push_back({"", {on_ball(0.0, 0.0), on_ball(0.05, 0)}, false, {}});
     OccupiedSkin free;
-    const LabelWish wish{0, "L", {ball().nearest(on_ball(0.3, 0.2))}, 1, {}};
+    const LabelWish wish{0, "L", {ball().nearest(on_ball(0.3, 0.2))}, 1, {}, {}};
     const auto strokes = place_label(wish, ball(), {}, free);
     ASSERT_EQ(strokes.size(), 1u);  // the font's L is one stroke: top, corner, foot
     const auto& p = strokes[0].points_in_ct;

@@ -17,8 +17,8 @@ namespace {
 using Eigen::Vector3d;
 constexpr double kRadius_mm = 80;
 
-// Chords of 2.7 mm sag 0.011 mm below a ball of 80 mm: no answer on the mesh can be nearer to the ball than that.
-constexpr double kSag_mm = 0.015;
+// Triangles of 3.2 mm sag 0.022 mm below a ball of 80 mm: no answer on the mesh can be nearer to the ball than that.
+constexpr double kSag_mm = 0.025;
 
 TEST(SkinSurface, HitsTheNearSideOfABallFirst) {
     const SkinSurface skin(test::ball_mesh(kRadius_mm, 5));
@@ -53,7 +53,9 @@ TEST(SkinSurface, AStraightWayOnABallIsAGreatCircle) {
         ASSERT_TRUE(end);
         const double angle = way_mm / kRadius_mm;
         const Vector3d truth = kRadius_mm * (std::cos(angle) * n + std::sin(angle) * t);
-        EXPECT_LT((end->p_in_ct - truth).norm(), 0.1) << i;  // the figure asked for: 0.1 mm along the skin
+        // Asked for: 0.1 mm in length, 1 degree in direction (1 mm here); the mesh's facets allow 0.2 degrees.
+        EXPECT_NEAR(kRadius_mm * std::acos(end->p_in_ct.normalized().dot(n)), way_mm, 0.05) << i;
+        EXPECT_LT((end->p_in_ct - truth).norm(), way_mm * 0.2 * std::numbers::pi / 180) << i;
     }
 }
 
