@@ -113,7 +113,7 @@ void Drawer::add_ticks(int item_index, Rgb colour, const SkinLine& line) {
 }
 
 void Drawer::wish(int item_index, std::vector<Point> anchors, double keep_off_mm, std::optional<Vector3d> away_from) {
-    wishes_.push_back({item_index, item(item_index).label, std::move(anchors), keep_off_mm, away_from});
+    wishes_.push_back({item_index, item(item_index).label, std::move(anchors), keep_off_mm, away_from, {}});
 }
 
 void Drawer::wish_along(int item_index, const SkinLine& line) {
@@ -224,6 +224,12 @@ void Drawer::draw_labels() {
     OccupiedSkin occupied;
     for (const Stroke& stroke : drawing.strokes)
         for (const Vector3d& p : stroke.points_in_ct) occupied.add(p);
+    // The projector stands where the whole plan can be lit: labels keep to skin that faces as the plan does on average.
+    Vector3d facing = Vector3d::Zero();
+    for (const Stroke& stroke : drawing.strokes)
+        for (const Vector3d& n : stroke.normals_in_ct) facing += n;
+    if (facing.norm() > 1e-9)
+        for (LabelWish& w : wishes_) w.facing_in_ct = facing.normalized();
     for (const Vector3d& marker : settings_.keep_clear_in_ct) {
         const Point centre = skin_.nearest(marker);
         for (double r = 1; r <= settings_.keep_clear_radius_mm; r += 1)

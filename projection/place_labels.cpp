@@ -16,9 +16,9 @@ using Eigen::Vector3d;
 using Point = SkinSurface::Point;
 
 constexpr double kLineSpacing = 1.65;  // of the text height
-constexpr double kMaxWidth_mm = 38;    // of a text line: the patch that stays true to length
+constexpr double kMaxWidth_mm = 44;    // of a text line: its ends are 22 mm from its middle, where the map is still true
 constexpr Rgb kWhite{235, 235, 235};
-constexpr double kClear_mm = 1.4;      // between a text's outline and anything drawn
+constexpr double kClear_mm = 1.8;      // between a text's outline and anything drawn
 
 struct Candidate {
     TextFrame frame;
@@ -137,7 +137,7 @@ void try_ring(const LabelWish& wish, const SkinSurface& skin, const DrawingSetti
             if (!middle) continue;
             const Vector3d& from = wish.anchors[a].p_in_ct;
             double cost = gap_mm + 0.3 * static_cast<double>(a) + 2 * std::abs(std::sin(angle)) + (std::cos(angle) < -0.1 ? 0.5 : 0) +
-                          20 * (1 - middle->normal_in_ct.dot(wish.anchors[a].normal_in_ct));
+                          30 * (1 - middle->normal_in_ct.dot(wish.facing_in_ct.value_or(wish.anchors[a].normal_in_ct)));
             if (wish.away_from_in_ct && (middle->p_in_ct - *wish.away_from_in_ct).norm() < (from - *wish.away_from_in_ct).norm())
                 cost += 15;
             if (best.overlaps == 0 && cost >= best.cost) continue;

@@ -30,6 +30,7 @@ struct LabelWish {
     std::vector<SkinSurface::Point> anchors; ///< places it may stand beside, best first
     double keep_off_mm = 1.5;                ///< half size of what is drawn at the anchor
     std::optional<Eigen::Vector3d> away_from_in_ct;  ///< the side that is left free: the middle of a closed line
+    std::optional<Eigen::Vector3d> facing_in_ct;     ///< unit: skin that faces this way is preferred
 };
 
 /// The text's strokes where they overlap nothing and the skin is flat, the anchor's own surroundings first; a thin line

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <mutex>
 
 #include "planning_io/types/error.h"
@@ -92,8 +93,11 @@ LitPoint DrawingRenderer::Parts::light_point(const Vector3d& p, const Vector3d& 
     const auto answer = depth.ask(*pixel, (projector_from_ct.device_from_rig * p).z());
     bool hidden = answer == DepthPicture::Answer::hidden;
     if (answer == DepthPicture::Answer::near_an_edge) {
-        constexpr double kOff_skin_mm = 0.8;  // clear of the point's own triangles
-        const auto hit = skin.first_hit({p + kOff_skin_mm * normal, to_light / distance_mm});
+        // Along the light, so that the shadow's edge is not shifted, until clear of the point's own triangles.
+        const Vector3d towards = to_light / distance_mm;
+        constexpr double kOff_skin_mm = 0.8, kMost_mm = 4;
+        const double step_mm = std::min(kMost_mm, kOff_skin_mm / std::max(1e-3, normal.dot(towards)));
+        const auto hit = skin.first_hit({p + step_mm * towards, towards});
         hidden = hit && (hit->p_in_ct - p).norm() < distance_mm;
     }
     counts.hidden += hidden ? 1 : 0;
@@ -165,7 +169,8 @@ RenderCounts DrawingRenderer::render_into(RgbImage& picture, const PlanDrawing& 
     const std::lock_guard lock(parts.in_use);
     picture.width = width();
     picture.height = height();
-    picture.pixels.assign(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()), Rgb{0, 0, 0});
+    picture.pixels.resize(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
+    std::memset(picture.pixels.data(), 0, picture.pixels.size() * sizeof(Rgb));
     parts.projector_from_ct = parts.projector;
     parts.projector_from_ct.device_from_rig = parts.projector.device_from_rig * rig_from_ct;
     parts.light_in_ct = parts.projector_from_ct.centre_in_rig();

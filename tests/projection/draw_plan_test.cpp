@@ -1,0 +1,252 @@
+#include "projection/draw_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "projection/place_labels.h"
+#include "tests/projection/shapes.h"
+#include "tests/support/analytic_head.h"
+
+namespace planlight {
+namespace {
+
+using Eigen::Vector3d;
+constexpr double kRadius_mm = 80;
+
+const SkinSurface& ball() {
+    static const SkinSurface kBall(test::ball_mesh(kRadius_mm, 5));
+    return kBall;
+}
+
+Vector3d on_ball(double longitude, double latitude) {
+    return kRadius_mm * Vector3d(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude), std::sin(latitude));
+}
+
+double great_circle_mm(const Vector3d& a, const Vector3d& b) {
+    return kRadius_mm * std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+DrawingSettings without_labels() {
+    DrawingSettings settings;
+    settings.labels = false;
+    return settings;
+}
+
+std::vector<Stroke> strokes_of(const PlanDrawing& drawing, StrokeKind kind, int item) {
+    std::vector<Stroke> found;
+    for (const Stroke& s : drawing.strokes)
+        if (s.kind == kind && s.item == item) found.push_back(s);
+    return found;
+}
+
+Vector3d middle(const Stroke& s) {
+    const auto n = s.points_in_ct.size();
+    return (s.points_in_ct[(n - 1) / 2] + s.points_in_ct[n / 2]) / 2;
+}
+
+TEST(DrawPlan, TenMillimetresOfALineAreTenMillimetresAlongABall) {
+    Plan plan;
+    plan.osteotomy_lines.push_back({"O1", {on_ball(0.2, -0.3), on_ball(1.3, 0.5)}, false, {}});
+    const PlanDrawing drawing = draw_plan(plan, ball());
+    const auto ticks = strokes_of(drawing, StrokeKind::tick, 0);
+    const double whole_mm = great_circle_mm(on_ball(0.2, -0.3), on_ball(1.3, 0.5));
+    ASSERT_EQ(ticks.size(), static_cast<std::size_t>(whole_mm / 10) + 1);
+    for (std::size_t i = 0; i < ticks.size(); ++i)
+        EXPECT_NEAR(great_circle_mm(on_ball(0.2, -0.3), middle(ticks[i])), 10.0 * static_cast<double>(i), 0.1) << i;
+    for (std::size_t i = 1; i < ticks.size(); ++i)
+        EXPECT_NEAR(great_circle_mm(middle(ticks[i - 1]), middle(ticks[i])), 10, 0.1) << i;
+    EXPECT_EQ(drawing.items[0].label, "O1  " + std::to_string(std::lround(whole_mm)) + " mm");
+}
+
+TEST(DrawPlan, TicksStandSquareToTheLineAndAreAsLongAsAsked) {
+    Plan plan;
+    plan.osteotomy_lines.push_back({"", {on_ball(0, 0), on_ball(0.8, 0)}, false, {}});
+    const PlanDrawing drawing = draw_plan(plan, ball());
+    for (const Stroke& tick : strokes_of(drawing, StrokeKind::tick, 0)) {
+        const Vector3d run = (tick.points_in_ct.back() - tick.points_in_ct.front()).normalized();
+        EXPECT_GT(std::abs(run.z()), std::cos(std::numbers::pi / 180));  // the line runs along the equator: ticks along z, to 1 degree
+        const double length_mm = great_circle_mm(tick.points_in_ct.front(), tick.points_in_ct.back());
+        EXPECT_TRUE(std::abs(length_mm - 2) < 0.02 || std::abs(length_mm - 4) < 0.02) << length_mm;
+    }
+}
+
+TEST(DrawPlan, ABoreholeIsACircleOfItsDiameterOnTheSkin) {
+    for (const double diameter_mm : {3.0, 7.0, 14.0, 40.0}) {
+        Plan plan;
+        plan.boreholes.push_back({"B1", on_ball(0.5, 0.4), {}, diameter_mm, 6, {}});
+        const PlanDrawing drawing = draw_plan(plan, ball(), without_labels());
+        const auto strokes = strokes_of(drawing, StrokeKind::borehole, 0);
+        const auto ring = std::find_if(strokes.begin(), strokes.end(), [](const Stroke& s) { return s.closed; });
+        ASSERT_NE(ring, strokes.end());
+        double around_mm = 0;
+        for (std::size_t i = 0; i < ring->points_in_ct.size(); ++i) {
+            const Vector3d& p = ring->points_in_ct[i];
+            const Vector3d& next = ring->points_in_ct[(i + 1) % ring->points_in_ct.size()];
+            EXPECT_NEAR(2 * great_circle_mm(on_ball(0.5, 0.4), p), diameter_mm, 0.02 * diameter_mm);
+            EXPECT_LT((next - p).norm(), 0.55);
+            around_mm += great_circle_mm(p, next);
+        }
+        // A circle on a ball is shorter than pi d by sin(rho)/rho.
+        const double rho = diameter_mm / 2 / kRadius_mm;
+        EXPECT_NEAR(around_mm, std::numbers::pi * diameter_mm * std::sin(rho) / rho, 0.02 * around_mm);
+        EXPECT_EQ(drawing.items[0].label, "B1  ⌀" + std::to_string(std::lround(diameter_mm)) + "  6 mm deep");
+    }
+}
+
+TEST(DrawPlan, AnglesOfTheCrossAndOfLinesAreTrue) {
+    Plan plan;  // two legs that meet at a right angle on the ball: along the equator, then up a meridian
+    plan.osteotomy_lines.push_back({"", {on_ball(-0.4, 0), on_ball(0, 0), on_ball(0, 0.4)}, false, {}});
+    const PlanDrawing drawing = draw_plan(plan, ball(), without_labels());
+    const auto line = strokes_of(drawing, StrokeKind::osteotomy_line, 0).front();
+    const auto corner = std::min_element(line.points_in_ct.begin(), line.points_in_ct.end(), [](const auto& a, const auto& b) {
+        return (a - on_ball(0, 0)).norm() < (b - on_ball(0, 0)).norm();
+    });
+    const Vector3d before = *(corner - 10) - *corner, after = *(corner + 10) - *corner;
+    EXPECT_NEAR(std::acos(before.normalized().dot(after.normalized())) * 180 / std::numbers::pi, 90, 1);
+}
+
+TEST(DrawPlan, ACutPlanesTraceLiesInItsPlaneAndEndsAtItsExtent) {
+    Plan plan;
+    plan.cut_planes.push_back({"C1", {80, 0, 10}, Vector3d(0, 0.6, 0.8), Vector3d(0, 0.8, -0.6), 40, 30, {}});
+    const PlanDrawing drawing = draw_plan(plan, ball(), without_labels());
+    const auto lines = strokes_of(drawing, StrokeKind::cut_plane, 0);
+    ASSERT_EQ(lines.size(), 1u);
+    double low = 1e9, high = -1e9;
+    for (const Vector3d& p : lines[0].points_in_ct) {
+        EXPECT_NEAR((p - Vector3d(80, 0, 10)).dot(Vector3d(0, 0.6, 0.8)), 0, 0.02);
+        EXPECT_NEAR(p.norm(), kRadius_mm, 0.025);  // sag of the mesh's triangles
+        low = std::min(low, (p - Vector3d(80, 0, 10)).dot(Vector3d(0, 0.8, -0.6)));
+        high = std::max(high, (p - Vector3d(80, 0, 10)).dot(Vector3d(0, 0.8, -0.6)));
+    }
+    EXPECT_NEAR(low, -20, 0.05);
+    EXPECT_NEAR(high, 20, 0.05);
+}
+
+TEST(DrawPlan, AWholeCutIsOneClosedLine) {
+    Plan plan;
+    plan.cut_planes.push_back({"C1", {0, 0, 10}, Vector3d::UnitZ(), Vector3d::UnitX(), 400, 400, {}});
+    const PlanDrawing drawing = draw_plan(plan, ball());
+    const auto lines = strokes_of(drawing, StrokeKind::cut_plane, 0);
+    ASSERT_EQ(lines.size(), 1u);
+    EXPECT_TRUE(lines[0].closed);
+    EXPECT_EQ(drawing.items[0].label, "C1  " + std::to_string(std::lround(2 * std::numbers::pi * std::sqrt(80.0 * 80 - 100))) + " mm");
+}
+
+TEST(DrawPlan, TextRunsToTheRightAndStandsUpSeenFromOutside) {
+    const Vector3d up(0, 0, 1);
+    for (const Vector3d& place : {on_ball(0.1, 0), on_ball(2, 0.7), on_ball(-2.5, -0.9), on_ball(4, 0.2)}) {
+        const TextFrame f = text_frame(ball().nearest(place), up);
+        const Vector3d outwards = place.normalized();
+        EXPECT_GT(f.right_in_ct.cross(f.up_in_ct).dot(outwards), 0.999);  // mirrored text would give -1
+        EXPECT_GT(f.up_in_ct.dot(up), 0.3);
+        EXPECT_NEAR(f.right_in_ct.dot(up), 0, 1e-3);
+    }
+    // On top of the head a reader before the face (-y) sees text stand away from him (+y), running to his right (-x).
+    const TextFrame top = text_frame(ball().nearest(on_ball(0, std::numbers::pi / 2)), up);
+    EXPECT_GT(top.up_in_ct.y(), 0.99);
+    EXPECT_GT(top.right_in_ct.x(), 0.99);
+}
+
+TEST(DrawPlan, ALettersStrokesAreNotMirrored) {
+    // "L": its long stroke is left of its foot's end, and stands above it, as a viewer outside the ball sees it.
+    Plan plan;
+    plan.osteotomy_lines.push_back({"", {on_ball(0.0, 0.0), on_ball(0.05, 0)}, false, {}});
+    OccupiedSkin free;
+    const LabelWish wish{0, "L", {ball().nearest(on_ball(0.3, 0.2))}, 1, {}, {}};
+    const auto strokes = place_label(wish, ball(), {}, free);
+    ASSERT_EQ(strokes.size(), 1u);  // the font's L is one stroke: top, corner, foot
+    const auto& p = strokes[0].points_in_ct;
+    const Vector3d outwards = p.front().normalized(), right = Vector3d(0, 0, 1).cross(outwards).normalized();
+    EXPECT_GT((p.back() - p.front()).dot(right), 2);
+    EXPECT_GT(p.front().z() - p.back().z(), 4);
+    EXPECT_NEAR(great_circle_mm(p.front(), p[p.size() / 2 + 2]), 5, 0.6);
+    double height_mm = 0;
+    for (const Vector3d& q : p) height_mm = std::max(height_mm, great_circle_mm(p.front(), q));
+    EXPECT_NEAR(height_mm, 5 * std::sqrt(1 + 16.0 / 36), 0.05);  // diagonal of a capital 5 high, 4/6 as wide
+}
+
+Plan forehead_plan() {
+    const auto at = [](double x, double z) {
+        Vector3d p(x, -130, z);
+        while (test::analytic_head_distance(p) > 1e-4) p.y() += test::analytic_head_distance(p);
+        return p;
+    };
+    Plan plan;
+    plan.osteotomy_lines.push_back({"Osteotomy", {at(-32, 26), at(0, 24), at(32, 26), at(33, 50), at(30, 76), at(0, 78), at(-30, 76), at(-33, 50)}, true, {}});
+    plan.boreholes = {{"B1", at(-32, 26), {}, 7, 6, {}}, {"B2", at(32, 26), {}, 7, 6, {}}, {"B3", at(30, 76), {}, 7, 6, {}}, {"B4", at(-30, 76), {}, 7, 6, {}}};
+    plan.trajectories.push_back({"T1", at(4, 52), at(4, 52) + Vector3d(18, 55, -12), 0, {}});
+    return plan;
+}
+
+TEST(DrawPlan, LabelsOverlapNothingOnAHead) {
+    const SkinSurface head(test::analytic_head_mesh(2));
+    const PlanDrawing drawing = draw_plan(forehead_plan(), head);
+    ASSERT_EQ(drawing.items.size(), 6u);
+    for (const auto& item : drawing.items) EXPECT_TRUE(item.warnings.empty()) << item.warnings.front();
+    double nearest_mm = 1e9;
+    std::size_t text = 0;
+    for (const Stroke& a : drawing.strokes) {
+        if (a.kind != StrokeKind::label) continue;
+        for (const Stroke& b : drawing.strokes) {
+            if (b.kind == StrokeKind::label && b.item == a.item) continue;
+            for (const Vector3d& p : a.points_in_ct)
+                for (const Vector3d& q : b.points_in_ct) nearest_mm = std::min(nearest_mm, (p - q).norm());
+        }
+        ++text;
+    }
+    EXPECT_GT(text, 60u);
+    EXPECT_GT(nearest_mm, 0.9);
+}
+
+TEST(DrawPlan, EveryStrokeLiesOnTheSkinInSmallSteps) {
+    const SkinSurface head(test::analytic_head_mesh(2));
+    const DrawingSettings settings;
+    for (const Stroke& s : draw_plan(forehead_plan(), head, settings).strokes)
+        for (std::size_t i = 0; i < s.points_in_ct.size(); ++i) {
+            EXPECT_LT(std::abs(test::analytic_head_distance(s.points_in_ct[i])), 0.15);  // sag of 2 mm edges at small radii
+            EXPECT_NEAR(s.normals_in_ct[i].norm(), 1, 1e-9);
+            if (i > 0) {
+                EXPECT_LT((s.points_in_ct[i] - s.points_in_ct[i - 1]).norm(), settings.max_segment_mm + 0.06);
+            }
+        }
+}
+
+TEST(CheckPlan, NamesEveryFaultWithItsNumber) {
+    Plan plan;
+    plan.trajectories.push_back({"T1", on_ball(0, 0) * (94 / kRadius_mm), on_ball(0, 0) * 0.5, 2, {}});
+    plan.trajectories.push_back({"T2", on_ball(1, 0), on_ball(1, 0) * 1.5, 2, {}});
+    plan.boreholes.push_back({"B1", {std::nan(""), 0, 0}, {}, 7, 6, {}});
+    plan.osteotomy_lines.push_back({"O1", {on_ball(0, 0)}, false, {}});
+    plan.cut_planes.push_back({"C1", {0, 0, 200}, Vector3d::UnitZ(), Vector3d::UnitX(), 50, 50, {}});
+    const auto faults = check_plan(plan, ball());
+    const auto said = [&](const std::string& text) {
+        return std::any_of(faults.begin(), faults.end(), [&](const auto& f) { return f.find(text) != std::string::npos; });
+    };
+    EXPECT_TRUE(said("T1: its entry is 14.0 mm from the skin"));
+    EXPECT_TRUE(said("T2: its target lies outside the body, 40.0 mm from the skin"));
+    EXPECT_TRUE(said("B1: its numbers are not finite"));
+    EXPECT_TRUE(said("O1: it has 1 point(s)"));
+    EXPECT_TRUE(said("C1: it does not meet the skin"));
+    EXPECT_NO_THROW(draw_plan(plan, ball()));
+}
+
+TEST(CheckPlan, AGoodPlanHasNoFaults) {
+    const SkinSurface head(test::analytic_head_mesh(3));
+    EXPECT_TRUE(check_plan(forehead_plan(), head, {}).empty());
+}
+
+TEST(DrawPlan, APlanOfAnotherFrameIsNotDrawn) {
+    Plan plan;
+    plan.boreholes.push_back({"B1", on_ball(0, 0) * 2, {}, 7, 6, {}});
+    const PlanDrawing drawing = draw_plan(plan, ball());
+    EXPECT_TRUE(drawing.strokes.empty());
+    ASSERT_EQ(drawing.items.size(), 1u);
+    EXPECT_FALSE(drawing.items[0].warnings.empty());
+}
+
+}  // namespace
+}  // namespace planlight
