@@ -89,7 +89,7 @@ struct OperatorWindow::Parts {
         glfwMakeContextCurrent(window);
         glfwSwapInterval(0);  // the loop that follows the patient must not wait for this screen
         listen();
-        target = render_target(640, 480, [w = window] { glfwMakeContextCurrent(w); });
+        target = render_target(640, 480, 0, [w = window] { glfwMakeContextCurrent(w); });
         scene = std::make_unique<Scene>(*target, font_files);
         gui = ImGui::CreateContext();
         ImGui::SetCurrentContext(gui);

@@ -28,11 +28,12 @@ void on(vtkObject& object, unsigned long event, std::function<void(void*)> call)
 
 }  // namespace
 
-vtkSmartPointer<vtkGenericOpenGLRenderWindow> render_target(int width, int height, std::function<void()> make_current) {
+vtkSmartPointer<vtkGenericOpenGLRenderWindow> render_target(int width, int height, int samples,
+                                                            std::function<void()> make_current) {
     auto window = vtkSmartPointer<vtkGenericOpenGLRenderWindow>::New();
     window->SetReadyForRendering(true);
     window->SetOwnContext(0);
-    window->SetMultiSamples(4);
+    window->SetMultiSamples(samples);
     window->SetDPI(72);
     window->SetSize(width, height);
     on(*window, vtkCommand::WindowMakeCurrentEvent, [make_current](void*) { make_current(); });

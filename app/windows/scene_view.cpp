@@ -15,7 +15,7 @@ namespace {
 RgbImage render(const SceneModel& model, const SceneView& view, int width, int height) {
     const FontFiles fonts = find_fonts();
     const auto context = headless_gl(width, height);
-    const auto window = render_target(width, height, [] {});
+    const auto window = render_target(width, height, 4, [] {});
     RgbImage picture;
     {
         Scene scene(*window, fonts);

@@ -61,6 +61,16 @@ float evidence_height(const Pen& pen, const OperatorModel& model, float width) {
     return line_height(pen.fonts.small) * static_cast<float>(lines);
 }
 
+void draw_evidence(const Pen& pen, const OperatorModel& model, Box box, bool cut) {
+    const float line = line_height(pen.fonts.small);
+    const float bottom = box.bottom() + 1, end = cut ? bottom - line : bottom;
+    for (const std::string& sentence : model.evidence) {
+        box.height = end - box.y;
+        box.y += pen.paragraph(pen.fonts.small, sentence, box, theme::kQuiet);
+    }
+    if (cut) pen.line(pen.fonts.small, "… hold the mouse here for the rest", box.x, bottom - line / 2, box.width, theme::kAmber);
+}
+
 }  // namespace
 
 TableShown draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int first_row) {
@@ -90,10 +100,7 @@ TableShown draw_table(const Pen& pen, const Box& box, const OperatorModel& model
                      std::to_string(count) + " · turn the mouse wheel for the others",
                  columns.name_x, y + line / 2, text_width_px, theme::kAmber);
 
-    float at = box.bottom() - pad - evidence;
-    for (const std::string& sentence : model.evidence)
-        at += pen.paragraph(pen.fonts.small, sentence, {columns.name_x, at, text_width_px, box.bottom() - pad - at + 1},
-                            theme::kQuiet);
+    draw_evidence(pen, model, {columns.name_x, box.bottom() - pad - evidence, text_width_px, evidence}, evidence < wanted);
     return {rows, evidence >= wanted};
 }
 

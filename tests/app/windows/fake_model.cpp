@@ -138,6 +138,7 @@ OperatorModel fake_model_with(StatusKind kind) {
         model.figures = {};
         model.left.picture = nullptr;
         model.left.found.clear();
+        model.left.note = "waiting for the first picture";
         model.evidence.clear();
     } else if (kind == StatusKind::refused) {
         model.status.headline = "This is not the patient of the plan, or too little skin is seen.";

@@ -24,6 +24,7 @@ done
 [ -n "$server" ] || { echo "skipped: Xorg with the dummy driver does not start here (it needs root)"; exit 77; }
 xrandr --output DUMMY0 --mode 1920x1080 --primary || exit 77
 xrandr --addmode DUMMY1 1024x768 && xrandr --output DUMMY1 --mode 1024x768 --right-of DUMMY0 || exit 77
+xrandr >/dev/null  # asks the driver again: only then does it call the second output connected
 if [ "$manager" != none ]; then "$manager" >/dev/null 2>&1 & wm=$!; sleep 1; fi
 export LIBGL_ALWAYS_SOFTWARE=1
 timeout 120 "$program" "$folder"

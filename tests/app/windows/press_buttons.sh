@@ -1,0 +1,40 @@
+#!/bin/bash
+# press_buttons.sh PROGRAM FOLDER: presses every control of the operator window with a real mouse and keyboard (xdotool)
+# on a virtual screen and compares what the window said. Exit code 77: the tools are not installed.
+program=$1 folder=$2
+for needed in xvfb-run xdotool; do command -v $needed >/dev/null || { echo "skipped: $needed is not installed"; exit 77; }; done
+if [ "$3" != inside ]; then
+  rm -rf "$folder"; mkdir -p "$folder"
+  LIBGL_ALWAYS_SOFTWARE=1 exec xvfb-run -a -s "-screen 0 1920x1080x24" "$0" "$program" "$folder" inside
+fi
+failed=0
+timeout 100 "$program" "$folder" >"$folder/said" 2>"$folder/errors" & pid=$!
+trap 'kill $pid 2>/dev/null' EXIT
+for i in $(seq 100); do [ -e "$folder/places" ] && break; kill -0 $pid 2>/dev/null || break; sleep 0.2; done
+[ -e "$folder/places" ] || { echo "FAIL the window did not open"; cat "$folder/errors"; exit 1; }
+window=$(xdotool search --name "Planlight buttons" | tail -1)
+xdotool windowfocus "$window"; sleep 0.3
+
+wait_for() {  # wait_for WORD WHAT: a line WORD was said since the last look
+  for i in $(seq 20); do
+    if tail -n +$((seen + 1)) "$folder/said" | grep -qx -- "$1"; then seen=$(wc -l <"$folder/said"); echo "ok   $2"; return; fi
+    sleep 0.2
+  done
+  echo "FAIL $2: \"$1\" was not said"; failed=1; seen=$(wc -l <"$folder/said")
+}
+silent() { sleep 1; if [ "$(wc -l <"$folder/said")" != "$seen" ]; then echo "FAIL $1: $(tail -1 "$folder/said")"; failed=1; else echo "ok   $1"; fi; seen=$(wc -l <"$folder/said"); }
+click() { xdotool mousemove "$1" "$2"; sleep 0.4; xdotool mousedown 1; sleep 0.4; xdotool mouseup 1; }
+place() { awk -v n="$1" '$1 == n { print $2, $3 }' "$folder/places"; }
+
+seen=0
+awk '$4 < 72 || $5 < 72 { print "FAIL " $1 " is " $4 "x" $5 " pixels, less than 72"; bad = 1 } END { exit bad }' "$folder/places" || failed=1
+for control in scan register stop dark; do click $(place $control); wait_for $control "pressing $control"; done
+click $(place track); silent "a button that is not enabled says nothing"
+xdotool mousemove $(place dark); sleep 0.4; xdotool click 1; wait_for dark "DARK by the shortest click"
+for key in space b Escape; do xdotool key $key; wait_for dark "DARK by the key $key"; done
+xdotool key x; silent "another key says nothing"
+xdotool mousemove 600 500; sleep 0.4; xdotool mousedown 1; sleep 0.4; xdotool mousemove 700 500; sleep 0.4; xdotool mouseup 1
+wait_for "turned +" "dragging the head to the right shows more of the patient's right"
+silent "and nothing else happens"
+xdotool windowclose "$window" 2>/dev/null
+exit $failed

@@ -1,0 +1,185 @@
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <vector>
+
+#include "app/windows/fonts.h"
+#include "app/windows/layout.h"
+#include "app/windows/number_text.h"
+#include "app/windows/orientation.h"
+#include "app/windows/panels.h"
+#include "app/windows/scene_view.h"
+#include "fake_model.h"
+#include "tests/support/analytic_head.h"
+
+namespace planlight {
+namespace {
+
+std::string letters(double azimuth, double elevation) {
+    const ViewAxes axes = axes_of({azimuth, elevation, 1, Eigen::Vector2d::Zero()});
+    return direction_letters(-axes.right_in_ct) + " " + direction_letters(axes.right_in_ct) + " " +
+           direction_letters(axes.up_in_ct) + " " + direction_letters(-axes.up_in_ct);
+}
+
+// Left, right, top, bottom of the view; DICOM patient axes: +x left, +y posterior, +z superior.
+TEST(Orientation, LettersAreThoseOfThePatientNotOfTheViewer) {
+    EXPECT_EQ(letters(0, 0), "R L S I") << "face to face, the patient's right is at the viewer's left";
+    EXPECT_EQ(letters(M_PI, 0), "L R S I") << "from behind";
+    EXPECT_EQ(letters(M_PI / 2, 0), "P A S I") << "from the patient's right the face looks to the viewer's right";
+    EXPECT_EQ(letters(-M_PI / 2, 0), "A P S I") << "from the patient's left";
+    EXPECT_EQ(letters(0, 1.5), "R L P A") << "from above, with the face downwards in the picture";
+    EXPECT_EQ(letters(M_PI / 4, 0), "RP LA S I") << "half from the right: two letters";
+}
+
+TEST(Orientation, TheAxesOfAViewAreRightHanded) {
+    for (double az = -3; az < 3; az += 0.37)
+        for (double el = -1.5; el < 1.5; el += 0.31) {
+            const ViewAxes a = axes_of({az, el, 1, Eigen::Vector2d::Zero()});
+            EXPECT_NEAR((a.right_in_ct.cross(a.up_in_ct) - a.backward_in_ct).norm(), 0, 1e-12);
+            EXPECT_GT(a.up_in_ct.z(), 0) << "the head is never upside down";
+        }
+}
+
+TEST(NumberText, HasOneDecimalItsUnitAndNoBlank) {
+    EXPECT_EQ(number_text(8.54, "mm"), "8.5 mm");
+    EXPECT_EQ(number_text(-0.04, "mm"), "0.0 mm");
+    EXPECT_EQ(number_text(1.24, "°"), "1.2°");
+    EXPECT_EQ(number_text(std::nullopt, "mm"), "–");
+    EXPECT_EQ(number_text(std::numeric_limits<double>::quiet_NaN(), "mm"), "–");
+    EXPECT_EQ(number_text(-std::numeric_limits<double>::infinity(), "mm"), "–");
+}
+
+/// The fonts as the windows load them, without any window.
+struct LoadedFonts {
+    ImFontAtlas atlas;
+    FontSet fonts;
+    explicit LoadedFonts(const FontFiles& files, float scale = 1) : fonts(load_fonts(atlas, files, scale)) {}
+};
+
+// A planning station once showed "8_.5 mm": a digit replaced by a blank (FDA class I recall). Every number, every size.
+TEST(Fonts, NoCharacterOfAnyNumberIsBlank) {
+    const LoadedFonts loaded(find_fonts());
+    const FontSet& f = loaded.fonts;
+    for (const ImFont* font : {f.small, f.body, f.strong, f.number, f.title})
+        for (int tenths = -9999; tenths <= 9999; ++tenths)
+            ASSERT_TRUE(missing_glyphs(*font, number_text(tenths / 10.0, "mm")).empty()) << tenths / 10.0;
+}
+
+TEST(Fonts, EveryShownCharacterExistsInEverySize) {
+    const std::string shown =
+        "0123456789 .,:;-–—·°µ⌀±×≤≥≈…/()%+−√²³äöüÄÖÜßéèçñøåŁłšžΔσαβμДЖ "
+        "The plan on the skin may be used. Overlay error now / s ABCDEFGHIJKLMNOPQRSTUVWXYZ abcdefghijklmnopqrstuvwxyz";
+    for (const float scale : {0.6F, 1.0F, 1.5F}) {
+        const LoadedFonts loaded(find_fonts(), scale);
+        const FontSet& f = loaded.fonts;
+        for (const ImFont* font : {f.small, f.body, f.strong, f.number, f.title})
+            EXPECT_EQ(missing_glyphs(*font, shown), std::vector<std::string>{});
+        for (const StatusKind kind : {StatusKind::ready, StatusKind::scanning, StatusKind::matching, StatusKind::aligned,
+                                      StatusKind::check, StatusKind::refused, StatusKind::dark})
+            EXPECT_TRUE(missing_glyphs(*f.word, status_word(kind)).empty()) << status_word(kind);
+        EXPECT_EQ(missing_glyphs(*f.body, "a漢b"), std::vector<std::string>{"漢"}) << "what is missing is found out";
+    }
+}
+
+TEST(Fonts, DejaVuAloneIsEnough) {
+    const std::filesystem::path folder = "/usr/share/fonts/truetype/dejavu";
+    if (!std::filesystem::exists(folder / "DejaVuSans.ttf")) GTEST_SKIP() << "fonts-dejavu-core is not installed";
+    const LoadedFonts loaded({folder / "DejaVuSans.ttf", folder / "DejaVuSans-Bold.ttf", {}});
+    EXPECT_TRUE(missing_glyphs(*loaded.fonts.body, "Borehole 1, ⌀ 7.0 mm · 1.2° – µ …").empty());
+}
+
+// 20 mm on a 24 inch screen of 1080 lines (299 mm high) are 72 pixels.
+TEST(Fonts, TheStatusWordIsReadableAtFourMetres) {
+    const LoadedFonts loaded(find_fonts());
+    const ImFontGlyph* const letter = loaded.fonts.word->FindGlyphNoFallback('A');
+    ASSERT_NE(letter, nullptr);
+    EXPECT_GE(letter->Y1 - letter->Y0, 72);
+}
+
+bool overlap(const Box& a, const Box& b) {
+    return a.x < b.right() && b.x < a.right() && a.y < b.bottom() && b.y < a.bottom();
+}
+
+TEST(Layout, NothingOverlapsOrLeavesTheWindowAtAnySize) {
+    for (int width = 1280; width <= 3840; width += 64)
+        for (int height = 800; height <= 2160; height += 56) {
+            const WindowLayout p = layout_of(width, height);
+            const std::vector<Box> all{p.title, p.steps, p.dark,    p.scene, p.left_camera, p.right_camera,
+                                       p.table, p.buttons, p.banner};
+            for (std::size_t i = 0; i < all.size(); ++i) {
+                EXPECT_GE(all[i].x, 0);
+                EXPECT_GE(all[i].y, 0);
+                EXPECT_LE(all[i].right(), width);
+                EXPECT_LE(all[i].bottom(), height);
+                EXPECT_GE(all[i].width, 72) << i << " at " << width << "x" << height;
+                EXPECT_GE(all[i].height, 72) << i << " at " << width << "x" << height;
+                for (std::size_t j = 0; j < i; ++j)
+                    EXPECT_FALSE(overlap(all[i], all[j])) << i << " and " << j << " at " << width << "x" << height;
+            }
+            EXPECT_GE((p.buttons.width - 3 * p.gap) / 4, 72);
+        }
+}
+
+/// Mean column and row of the pixels for which `like` is true, as fractions of the picture; their count.
+template <typename Like>
+std::array<double, 3> centre_of(const RgbImage& picture, Like like) {
+    double x_sum = 0, y_sum = 0, count = 0;
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x)
+            if (like(picture.at(x, y))) x_sum += x, y_sum += y, ++count;
+    return {x_sum / count / picture.width, y_sum / count / picture.height, count};
+}
+
+bool is_plan_green(const Rgb& c) { return c[1] > 200 && c[0] < 80 && c[2] < 140; }
+
+SceneModel head_with_a_green_ring_near(const Eigen::Vector3d& near_in_ct) {
+    SceneModel scene;
+    scene.skin = std::make_shared<TriangleMesh>(test::analytic_head_mesh(4));
+    Stroke ring{StrokeKind::borehole, 0, {40, 235, 110}, 0.8, true, {}, {}};
+    const Eigen::Vector3d middle = test::on_analytic_head(near_in_ct), u = test::analytic_head_normal(middle).unitOrthogonal(),
+                          v = test::analytic_head_normal(middle).cross(u);
+    for (int i = 0; i < 40; ++i) {
+        const double a = 2 * M_PI * i / 40;
+        ring.points_in_ct.push_back(test::on_analytic_head(middle + 10 * (std::cos(a) * u + std::sin(a) * v)));
+        ring.normals_in_ct.push_back(test::analytic_head_normal(ring.points_in_ct.back()));
+    }
+    scene.plan = std::make_shared<PlanDrawing>(PlanDrawing{{}, {ring}});
+    return scene;
+}
+
+// No display is needed: the test takes it away.
+TEST(RenderScene, ShowsThePatientsRightAtTheViewersLeftWithoutAnyDisplay) {
+    unsetenv("DISPLAY");
+    const SceneModel scene = head_with_a_green_ring_near({-55, -75, 55});
+    const SceneView from_the_front{0, 0, 1, Eigen::Vector2d::Zero()}, from_behind{M_PI, 0, 1, Eigen::Vector2d::Zero()};
+    const auto front = centre_of(render_scene(scene, from_the_front, 640, 480), is_plan_green);
+    EXPECT_GT(front[2], 100) << "the ring is seen";
+    EXPECT_LT(front[0], 0.45) << "the patient's right is at the viewer's left";
+    EXPECT_LT(front[1], 0.5) << "the forehead is in the upper half";
+    const auto behind = centre_of(render_scene(scene, from_behind, 640, 480), is_plan_green);
+    EXPECT_EQ(behind[2], 0) << "the head hides it from behind";
+}
+
+TEST(RenderScene, AnEmptySceneIsDarkButHasItsLetters) {
+    const RgbImage picture = render_scene({}, {}, 640, 480);
+    ASSERT_EQ(picture.width, 640);
+    ASSERT_EQ(picture.height, 480);
+    const auto letters_seen = centre_of(picture, [](const Rgb& c) { return c[0] > 200 && c[1] > 200 && c[2] > 200; });
+    EXPECT_GT(letters_seen[2], 100);
+    EXPECT_LT(letters_seen[2], 5000);
+}
+
+TEST(ViewOfPlan, LooksAtTheSideThePlanIsOn) {
+    const auto side = [](const Eigen::Vector3d& near_in_ct) {
+        return view_of_plan(*head_with_a_green_ring_near(near_in_ct).plan).azimuth;
+    };
+    EXPECT_GT(side({-80, 0, 20}), 0.2) << "a plan on the patient's right is looked at from the right";
+    EXPECT_LT(side({80, 0, 20}), -0.2);
+    EXPECT_NEAR(view_of_plan({}).azimuth, 0, 1e-9) << "no plan: from the front";
+}
+
+}  // namespace
+}  // namespace planlight
