@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <map>
 #include <memory>
@@ -7,6 +8,7 @@
 #include <random>
 
 #include "registration/simulation/simulated_rig.h"
+#include "registration/simulation/true_surface.h"
 #include "tests/registration/simulation/analytic_volume.h"
 
 namespace planlight::simulation {
@@ -75,8 +77,8 @@ TEST_P(Picture, ALitProjectorPixelIsSeenWhereOpenCvSays) {
     const RgbImage black = plain(0);
     RgbImage dots = black;
     std::vector<Vector2d> centres;
-    for (int v = 60; v < dots.height - 60; v += 45)
-        for (int u = 60; u < dots.width - 60; u += 45) {
+    for (int v = 60; v < dots.height - 60; v += 32)
+        for (int u = 60; u < dots.width - 60; u += 32) {
             centres.emplace_back(u, v);
             for (int y = v - 2; y <= v + 2; ++y)
                 for (int x = u - 2; x <= u + 2; ++x) dots.at(x, y) = {255, 255, 255};
@@ -95,6 +97,8 @@ TEST_P(Picture, ALitProjectorPixelIsSeenWhereOpenCvSays) {
         const Vector3d n = rig().true_rig_from_ct(rig().clock().now()).linear() * light->normal_in_ct;
         const auto cosine = [&](const Vector3d& from) { return n.dot((from - in_rig(light->p_in_ct)).normalized()); };
         if (cosine(eye) < 0.6) continue;
+        const auto& markers = rig().true_markers_in_ct();  // their edges would pull the centroid
+        if (std::any_of(markers.begin(), markers.end(), [&](const Vector3d& m) { return (m - light->p_in_ct).norm() < 12; })) continue;
         for (const auto* side : {&calibration.left_camera, &calibration.right_camera}) {
             if (cosine(side->centre_in_rig()) < 0.6) continue;
             const bool left = side == &calibration.left_camera;
@@ -138,7 +142,9 @@ TEST_P(Picture, MarkersAreDarkDiscsRoundTheirTrueCentres) {
                 }
             const int cx = static_cast<int>(std::lround(c.x())), cy = static_cast<int>(std::lround(c.y()));
             EXPECT_LT(picture.at(cx, cy), 0.25 * white);
-            EXPECT_LT((sum / weight - c).norm(), 0.25);  // curved skin and perspective move a disc's centroid a little
+            // On skin of 70 mm radius the rim of the disc lies 4^2 / (2 * 70) = 0.11 mm below its centre;
+            // this plain centroid in whole pixels is good to 0.05 px at best.
+            EXPECT_LT((sum / weight - c).norm(), 0.11 * side->focal_x / 900 + 0.05);
         }
     }
 }
@@ -157,7 +163,7 @@ TEST_P(Picture, ACoveredMarkerShowsNoDisc) {
     const int covered = contrast(under(plain(255)).left);
     rig().cover_markers({});
     EXPECT_GT(open, 60);
-    EXPECT_LT(covered, 25);
+    EXPECT_LT(covered, open / 2);
     EXPECT_EQ(contrast(under(plain(255)).left), open);
 }
 
@@ -168,6 +174,7 @@ TEST_P(Picture, WhatTheHeadHidesFromTheProjectorIsInShadow) {
     const RigidTransform ct_from_rig = rig().true_rig_from_ct(now).inverse();
     const Vector3d light_in_ct = ct_from_rig * calibration.projector.centre_in_rig();
     const Vector3d eye_in_ct = ct_from_rig * calibration.left_camera.centre_in_rig();
+    const TrueSurface surface(test::volume_of_analytic_head(), -300);
     std::mt19937 random(5);
     std::normal_distribution<double> unit;
     int lit = 0, lit_wrong = 0, hidden = 0, hidden_wrong = 0;
@@ -176,13 +183,14 @@ TEST_P(Picture, WhatTheHeadHidesFromTheProjectorIsInShadow) {
         const Vector2d in_left = opencv_pixel(calibration.left_camera, in_rig(s));
         if (in_left.x() < 5 || in_left.y() < 5 || in_left.x() > white.left.width - 6 || in_left.y() > white.left.height - 6) continue;
         if (dark.left.at(static_cast<int>(std::lround(in_left.x())), static_cast<int>(std::lround(in_left.y()))) < 4) continue;
+        const auto first = surface.first_hit(eye_in_ct, (s - eye_in_ct).normalized());
+        if (!first || (first->p_in_ct - s).norm() > 0.3) continue;  // the camera itself does not see it
         const Vector2d on_panel = opencv_pixel(calibration.projector, in_rig(s));
         const auto light = rig().true_light(on_panel, now);
         if (!light || (light->normal_in_ct.dot((light_in_ct - light->p_in_ct).normalized()) < 0.3)) continue;
         const double depth_mm = (s - light->p_in_ct).norm();
         const int gained = white.left.at(static_cast<int>(std::lround(in_left.x())), static_cast<int>(std::lround(in_left.y()))) -
                            dark.left.at(static_cast<int>(std::lround(in_left.x())), static_cast<int>(std::lround(in_left.y())));
-        if (s.normalized().dot((eye_in_ct - s).normalized()) < 0.2) continue;
         if (depth_mm < 0.5) {
             ++lit;
             lit_wrong += gained < 8;
@@ -192,10 +200,10 @@ TEST_P(Picture, WhatTheHeadHidesFromTheProjectorIsInShadow) {
         }
     }
     ASSERT_GT(lit, 500);
-    EXPECT_LT(lit_wrong, 0.1 * lit);  // discs of markers are dark, and some of these points the camera itself cannot see
+    EXPECT_LT(lit_wrong, 0.05 * lit);  // discs of markers are dark
     RecordProperty("hidden", hidden);
     if (hidden > 20) {
-        EXPECT_LT(hidden_wrong, 0.4 * hidden);
+        EXPECT_LT(hidden_wrong, 0.05 * hidden);
     }
 }
 
