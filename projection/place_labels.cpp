@@ -18,7 +18,7 @@ using Point = SkinSurface::Point;
 constexpr double kLineSpacing = 1.65;  // of the text height
 constexpr double kMaxWidth_mm = 44;    // of a text line: its ends are 22 mm from its middle, where the map is still true
 constexpr Rgb kWhite{235, 235, 235};
-constexpr double kClear_mm = 1.8;      // between a text's outline and anything drawn
+constexpr double kClear_mm = 2.6;      // between a text's outline and anything drawn
 
 struct Candidate {
     TextFrame frame;
