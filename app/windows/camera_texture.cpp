@@ -6,8 +6,10 @@
 
 namespace planlight {
 
-CameraTexture::~CameraTexture() {
+void CameraTexture::release() {
     if (texture_ != 0) glDeleteTextures(1, &texture_);
+    texture_ = 0;
+    shown_ = nullptr;
 }
 
 unsigned CameraTexture::take(const std::shared_ptr<const GrayImage>& picture) {

@@ -106,8 +106,8 @@ struct OperatorWindow::Parts {
         ImGui_ImplOpenGL3_Shutdown();
         ImGui_ImplGlfw_Shutdown();
         ImGui::DestroyContext(gui);
-        left = {};
-        right = {};
+        left.release();
+        right.release();
         scene.reset();
         target->Finalize();
         target = nullptr;
