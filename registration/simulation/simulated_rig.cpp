@@ -98,9 +98,10 @@ void SimulatedRig::Room::add_motion(const Motion& motion) {
     history.add(HeadMotion(motion, now_, room_from_ct * neck, room_from_ct * middle, motion_random), now_);
 }
 
-/// White light on skin that faces the devices becomes about 200 grey in both cameras.
+/// White light and the room's lamps together make skin that faces the devices about 165 grey in both cameras, so that
+/// the white of the stickers is not drowned in saturation.
 void SimulatedRig::Room::set_exposure() {
-    constexpr double kBrightSkin = 190.0 / 255;
+    constexpr double kBrightSkin = 165.0 / 255;
     look_at_head(now_);
     const RgbImage white(width(), height(), {255, 255, 255});
     const LightMap light(width(), height(), &white);
@@ -116,7 +117,7 @@ void SimulatedRig::Room::set_exposure() {
         std::nth_element(light_buffer.begin(), bright, light_buffer.end());
         sum += static_cast<double>(*bright) / 2;
     }
-    gain = kBrightSkin / sum;
+    gain = std::max(kBrightSkin - settings.ambient, 0.1) / sum;
 }
 
 void SimulatedRig::Room::look_at_head(Instant at) {
