@@ -34,7 +34,6 @@ int run_simulate(const SimulateOptions& options) {
     simulation::RoomSettings room;
     room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     room.seed = options.seed;
-    room.ambient = 0.2;
     simulation::SimulatedRig rig(volume, points_of(plan), room);
     std::filesystem::create_directories(options.out);
     write_rig(rig.calibration(), options.out / "rig.json");

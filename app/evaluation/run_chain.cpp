@@ -64,7 +64,6 @@ private:
         simulation::RoomSettings room;
         room.preset = settings.preset;
         room.seed = settings.seed;
-        room.ambient = 0.2;  // dimmed lamps: the markers must be seen beside a mostly dark projector picture
         return room;
     }
 

@@ -130,7 +130,6 @@ void LiveSession::run(const Volume& volume, const LiveSettings& settings) {
     simulation::RoomSettings room;
     room.preset = settings.preset;
     room.seed = settings.seed;
-    room.ambient = 0.2;
     simulation::SimulatedRig rig(volume, points_of(case_.plan), room);
     LightTap tap(rig.projector(), *this);
     SessionSettings session_settings;

@@ -30,9 +30,9 @@ struct RoomSettings {
     Preset preset = Preset::modern;
     unsigned seed = 1;               ///< of everything random: pose, noise, texture, calibration error, markers
     double skin_threshold_hu = -300; ///< of the CT field that is the true skin
-    int markers = 6;
+    int markers = 8;                 ///< asked for; fewer where the skin has no room
     Motion motion;
-    double ambient = 0.08;           ///< share of full scale on white skin
+    double ambient = 0.2;            ///< of dimmed lamps: share of full scale on white skin
     double calibration_error = 1;    ///< scales the difference between true and calibrated rig (0 = perfect)
     Instant projector_delay = std::chrono::milliseconds(25);
     bool noise = true;

@@ -28,7 +28,7 @@ struct MarkerSettings {
     double min_axis_ratio = 0.35;
     double max_fit_residual_px = 0.35;
     double sticker_ratio = 2;       ///< diameter of the white sticker / diameter of the disc
-    double min_ring_step = 0.1;     ///< how much darker than the sticker the skin round it is, as a fraction of the contrast
+    double min_ring_step = 0.04;     ///< how much darker than the sticker the skin round it is, as a fraction of the contrast
 };
 
 /// All markers in a picture: found by the Hough transform (Hoppe 2001, 2.2 [7]), measured by a sub-pixel ellipse fit on
