@@ -21,7 +21,8 @@ CaseDrawing::CaseDrawing(const Case& the_case, const DrawingSettings& settings)
 Session::Session(const Case& the_case, const CaseDrawing& drawing, const RigCalibration& rig, Projector& projector,
                  StereoCamera& cameras, const Clock& clock, SessionSettings settings)
     : case_(the_case),
-      drawing_(drawing),
+      skin_(drawing.skin),
+      drawing_(drawing.drawing),
       rig_(rig),
       projector_(projector),
       cameras_(cameras),
@@ -83,6 +84,7 @@ void Session::check_still_there() {
 const RegistrationResult& Session::find_patient() {
     if (!scanned_) throw CheckFailedError("there is no scan to find the patient in", "Scan first.");
     registration_ = register_patient(scanned_->clean.kept, case_.lut, settings_.registration);
+    if (registration_->verdict != Verdict::no) draw_beside_markers();
     start_overlay();
     return *registration_;
 }
@@ -92,11 +94,19 @@ void Session::confirm() {
     if (registration_) start_overlay();
 }
 
+void Session::draw_beside_markers() {
+    overlay_.reset();
+    DrawingSettings drawing = settings_.drawing;
+    const RigidTransform ct_from_patient = registration_->patient_from_ct.inverse();
+    for (const auto& marker : tracker_.markers()) drawing.keep_clear_in_ct.push_back(ct_from_patient * marker.centre_in_patient);
+    drawing_ = draw_plan(case_.plan, skin_, drawing);
+}
+
 void Session::start_overlay() {
     auto& keep_dark = settings_.overlay.render.keep_dark_in_patient;
     keep_dark.clear();
     for (const auto& marker : tracker_.markers()) keep_dark.push_back(marker.centre_in_patient);
-    overlay_ = std::make_unique<OverlayLoop>(projector_, clock_, renderer_, drawing_.drawing, *registration_, settings_.overlay);
+    overlay_ = std::make_unique<OverlayLoop>(projector_, clock_, renderer_, drawing_, *registration_, settings_.overlay);
 }
 
 Session::Update Session::update() {

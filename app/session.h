@@ -21,6 +21,7 @@ struct SessionSettings {
     RegistrationSettings registration;
     TrackingSettings tracking;
     OverlaySettings overlay;
+    DrawingSettings drawing;
     double max_motion_in_scan_mm = 0.3;  ///< of any marker between the first and last picture of a scan; above: scan again
     int min_reference_markers = 5;       ///< found in both pictures at the scan
     std::chrono::milliseconds patience{1000};
@@ -31,7 +32,7 @@ struct SessionSettings {
 /// The drawing machinery of one case: made once, used by every picture.
 struct CaseDrawing {
     SkinSurface skin;
-    PlanDrawing drawing;
+    PlanDrawing drawing;  ///< as it is before any marker is known; a session moves the labels off its markers
     explicit CaseDrawing(const Case& the_case, const DrawingSettings& settings = {});
 };
 
@@ -77,16 +78,20 @@ public:
     const RegistrationResult* registration() const { return registration_ ? &*registration_ : nullptr; }
     const PatientTracker& tracker() const { return tracker_; }
     const DrawingRenderer& renderer() const { return renderer_; }
+    /// The plan as this session draws it: labels lie beside the markers, so that none is cut by the darkness round them.
+    const PlanDrawing& drawing() const { return drawing_; }
     const RenderSettings& render_settings() const { return settings_.overlay.render; }
     double motion_in_scan_mm() const { return motion_in_scan_mm_; }
 
 private:
     void take_reference(const ScanCapture& capture);
     void check_still_there();
+    void draw_beside_markers();
     void start_overlay();
 
     const Case& case_;
-    const CaseDrawing& drawing_;
+    const SkinSurface& skin_;
+    PlanDrawing drawing_;
     RigCalibration rig_;
     Projector& projector_;
     StereoCamera& cameras_;

@@ -111,6 +111,25 @@ MatrixHeader read_header(const Entries& entries, const fs::path& file) {
 
 bool is_plist(const std::string& name) { return name.ends_with(".plist"); }
 
+/// Triangles of polygons (of three corners) or of triangle strips. False when a corner is none of the `points`.
+bool add_triangles(vtkCellArray& cells, bool strips, vtkIdType points, TriangleMesh& mesh) {
+    const auto cell = vtk::TakeSmartPointer(cells.NewIterator());
+    for (cell->GoToFirstCell(); !cell->IsDoneWithTraversal(); cell->GoToNextCell()) {
+        vtkIdType count = 0;
+        const vtkIdType* ids = nullptr;
+        cell->GetCurrentCell(count, ids);
+        for (vtkIdType c = 0; c < count; ++c)
+            if (ids[c] < 0 || ids[c] >= points) return false;
+        if (!strips && count != 3) continue;
+        for (vtkIdType c = 0; c + 2 < count; ++c) {
+            const vtkIdType odd = c % 2;  // every second triangle of a strip is wound the other way
+            mesh.triangles.push_back({static_cast<std::int32_t>(ids[c]), static_cast<std::int32_t>(ids[c + 1 + odd]),
+                                      static_cast<std::int32_t>(ids[c + 2 - odd])});
+        }
+    }
+    return true;
+}
+
 }  // namespace
 
 Volume read_invesalius_volume(const fs::path& file) {
@@ -170,16 +189,8 @@ std::vector<TriangleMesh> read_invesalius_surfaces(const fs::path& file) {
         TriangleMesh mesh;  // (x, -y, z) of the matrix is ct as read_invesalius_volume has it
         const vtkIdType points = data->GetNumberOfPoints();
         for (vtkIdType i = 0; i < points; ++i) mesh.vertices_in_ct.emplace_back(Eigen::Map<Eigen::Vector3d>(data->GetPoint(i)));
-        const auto cells = vtk::TakeSmartPointer(data->GetPolys()->NewIterator());
-        for (cells->GoToFirstCell(); !cells->IsDoneWithTraversal(); cells->GoToNextCell()) {
-            vtkIdType count = 0;
-            const vtkIdType* ids = nullptr;
-            cells->GetCurrentCell(count, ids);
-            for (vtkIdType c = 0; c < count; ++c)
-                if (ids[c] < 0 || ids[c] >= points) damaged(file, mesh_name + " is damaged");
-            if (count == 3)
-                mesh.triangles.push_back({static_cast<std::int32_t>(ids[0]), static_cast<std::int32_t>(ids[1]), static_cast<std::int32_t>(ids[2])});
-        }
+        for (vtkCellArray* const cells : {data->GetPolys(), data->GetStrips()})
+            if (!add_triangles(*cells, cells == data->GetStrips(), points, mesh)) damaged(file, mesh_name + " is damaged");
         surfaces.push_back(std::move(mesh));
     }
     return surfaces;

@@ -34,7 +34,7 @@ RgbImage coloured(const GrayImage& gray) {
 
 /// A camera picture with a ring round every marker that was found.
 RgbImage with_markers(const GrayImage& gray, const std::vector<PatientTracker::Seen>& seen) {
-    RgbImage picture = coloured(gray);
+    RgbImage picture = coloured(brightened(gray));
     for (const auto& found : found_markers(seen)) {
         const double radius = 1.6 * found.radius_px;
         const int steps = static_cast<int>(8 * radius) + 8;
@@ -104,38 +104,38 @@ void ChainPictures::take_match(const Session& session) {
     scene.ct_from_rig = found.patient_from_ct.inverse();
     scene.cloud = std::make_shared<PointCloud>(scan.raw.cloud);
     scene.cloud_distance_mm = distances_to_skin_mm(*scene.cloud, scene.ct_from_rig, case_.lut);
-    RgbImage raw = render_scene(scene, view, kSceneWidth / 2, kSceneHeight / 2);
+    RgbImage raw = render_scene(scene, view, kSceneWidth, kSceneHeight);
     scene.cloud = std::make_shared<PointCloud>(scan.clean.kept);
     scene.cloud_distance_mm = distances_to_skin_mm(*scene.cloud, scene.ct_from_rig, case_.lut);
     add("Cloud before and after the outliers were removed",
         fmt::format("{} raw points, {} kept (Fig. 2, middle and right).", scan.raw.cloud.size(), scan.clean.kept.size()),
-        side_by_side(raw, render_scene(scene, view, kSceneWidth / 2, kSceneHeight / 2)));
+        side_by_side(raw, render_scene(scene, view, kSceneWidth, kSceneHeight)));
     if (found.verdict == Verdict::no) return;
     scene.skin = std::make_shared<TriangleMesh>(case_.skin);
     const RigidTransform after = scene.ct_from_rig;
     scene.ct_from_rig = found.initial_patient_from_ct.inverse();
     scene.cloud_distance_mm = distances_to_skin_mm(*scene.cloud, scene.ct_from_rig, case_.lut);
-    RgbImage before = render_scene(scene, view, kSceneWidth / 2, kSceneHeight / 2);
+    RgbImage before = render_scene(scene, view, kSceneWidth, kSceneHeight);
     scene.ct_from_rig = after;
     scene.cloud_distance_mm = distances_to_skin_mm(*scene.cloud, scene.ct_from_rig, case_.lut);
     add("Scan on skin before and after the fine match",
         fmt::format("Residual {:.2f} mm rms, {:.0f} % of the points on the skin (Fig. 3).", found.residual_rms_mm,
                     100 * found.inlier_fraction),
-        side_by_side(before, render_scene(scene, view, kSceneWidth / 2, kSceneHeight / 2)));
+        side_by_side(before, render_scene(scene, view, kSceneWidth, kSceneHeight)));
 }
 
 void ChainPictures::take_light(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update,
                                const std::string& stage) {
     int& updates = stage == "at rest" ? rest_updates_ : moving_updates_;
     if (++updates != kSettled || !update.overlay.lit || (stage != "at rest" && stage != "moving")) return;
-    add("Cameras, " + stage, "Left and right camera: the plan as light on the patient, rings round the markers that were found (Fig. 4).",
+    add("Cameras, " + stage, "Left and right camera: the plan as light on the patient, rings round the markers that were found (Fig. 4). Brightened for the page.",
         side_by_side(with_markers(update.frame.left, session.tracker().seen_left()),
                      with_markers(update.frame.right, session.tracker().seen_right())));
     if (stage == "at rest") add("Projector picture", "What the second window shows: the plan bent so that it lies true on the skin.", update.overlay.picture);
     SceneModel scene;
     scene.skin = std::make_shared<TriangleMesh>(case_.skin);
-    scene.plan = std::make_shared<PlanDrawing>(drawing_.drawing);
-    scene.light = true_light_lines(drawing_.drawing, rig.calibration(), update.overlay, rig);
+    scene.plan = std::make_shared<PlanDrawing>(session.drawing());
+    scene.light = true_light_lines(session.drawing(), rig.calibration(), update.overlay, rig);
     add("Light on the skin, " + stage, "White: where the light truly falls. Coloured: where the plan wants it.",
         render_scene(scene, view_of_plan(drawing_.drawing), kSceneWidth, kSceneHeight));
 }

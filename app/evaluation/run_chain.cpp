@@ -22,7 +22,6 @@ public:
     Chain(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, const ChainSettings& settings,
           const ChainWatcher& watcher)
         : case_(the_case),
-          drawing_(drawing),
           settings_(settings),
           watcher_(watcher),
           plan_points_in_ct_(points_of(the_case.plan)),
@@ -144,7 +143,7 @@ private:
                 const double share = std::uniform_real_distribution<double>(0, 1)(random_);
                 const Instant until = update.overlay.lit ? update.overlay.lit_from : waiting->lit_at;
                 waiting->lit_at += from_seconds(share * seconds(until - waiting->lit_at));
-                errors.append(measure_overlay(rig_, case_.plan, drawing_.drawing, session_.renderer(),
+                errors.append(measure_overlay(rig_, case_.plan, session_.drawing(), session_.renderer(),
                                               session_.render_settings(), *waiting, stage == "at rest"));
                 waiting.reset();
             }
@@ -189,7 +188,6 @@ private:
     }
 
     const Case& case_;
-    const CaseDrawing& drawing_;
     const ChainSettings settings_;
     const ChainWatcher& watcher_;
     std::vector<Vector3d> plan_points_in_ct_;

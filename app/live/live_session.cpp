@@ -224,6 +224,7 @@ void LiveSession::find_patient(Session& session) {
         m.scene.cloud_distance_mm = distances;
         m.scene.ct_from_rig = ct_from_rig;
         m.scene.markers = markers_in_ct(session.tracker(), ct_from_rig);
+        m.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
         m.track = {found.verdict == Verdict::yes, found.verdict == Verdict::yes ? "" : "not sure enough"};
     });
     set_steps(3, found.verdict == Verdict::yes ? StepState::done : StepState::attention);
@@ -244,7 +245,7 @@ void LiveSession::follow(Session& session, simulation::SimulatedRig& rig) {
 }
 
 void LiveSession::show_update(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update) {
-    const auto light = true_light_lines(drawing_.drawing, rig.calibration(), update.overlay, rig);
+    const auto light = true_light_lines(session.drawing(), rig.calibration(), update.overlay, rig);
     Figures figures;
     figures.updates_per_s = 1 / std::max(update.times.total_s(), 1e-6);
     figures.delay_to_light_ms = 1000 * seconds(update.overlay.lit_from - update.pose.at);
@@ -257,8 +258,8 @@ void LiveSession::show_update(const Session& session, const simulation::Simulate
     change_model([&](OperatorModel& m) {
         m.figures = figures;
         m.scene.light = light;
-        m.left.picture = std::make_shared<GrayImage>(update.frame.left);
-        m.right.picture = std::make_shared<GrayImage>(update.frame.right);
+        m.left.picture = std::make_shared<GrayImage>(brightened(update.frame.left));
+        m.right.picture = std::make_shared<GrayImage>(brightened(update.frame.right));
         m.left.found = found_markers(session.tracker().seen_left());
         m.right.found = found_markers(session.tracker().seen_right());
         m.stop = {true, {}};

@@ -86,18 +86,20 @@ private:
     int step_ = 0;
 };
 
-/// A screenshot of the operator window whenever the status changes its kind.
+/// A screenshot of the operator window whenever the status changes its kind, and the light of that moment beside it.
 class Screenshots {
 public:
     explicit Screenshots(std::filesystem::path folder) : folder_(std::move(folder)) {
         if (!folder_.empty()) std::filesystem::create_directories(folder_);
     }
-    void take(OperatorWindow& window, const OperatorModel& model) {
+    void take(OperatorWindow& window, const OperatorModel& model, const LiveSession& session) {
         if (folder_.empty()) return;
         const auto kind = static_cast<int>(model.status.kind);
         frames_ = kind == kind_ ? frames_ + 1 : 0;
         kind_ = kind;
-        if (frames_ == kSettledFrames) write_png(window.screenshot(), folder_ / fmt::format("operator-{:02d}.png", ++number_));
+        if (frames_ != kSettledFrames) return;
+        write_png(window.screenshot(), folder_ / fmt::format("operator-{:02d}.png", ++number_));
+        if (const auto light = session.light().picture) write_png(*light, folder_ / fmt::format("light-{:02d}.png", number_));
     }
 
 private:
@@ -128,7 +130,7 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
         session.post(action);
         if (options.autoplay) session.post(autoplay.next(model));
         if (light) light->follow(session);
-        screenshots.take(window, model);
+        screenshots.take(window, model, session);
         if (const auto fault = session.fault(); !fault.empty()) throw std::runtime_error(fault);
         const auto now = std::chrono::steady_clock::now();
         if (session.projecting() && !projecting_since) projecting_since = now;

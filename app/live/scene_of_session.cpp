@@ -1,5 +1,7 @@
 #include "app/live/scene_of_session.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -42,6 +44,19 @@ std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing
         if (line.points_in_ct.size() > 1) lines->push_back(std::move(line));
     }
     return lines;
+}
+
+GrayImage brightened(const GrayImage& picture) {
+    std::array<std::size_t, 256> count{};
+    for (const auto value : picture.pixels) ++count[value];
+    std::size_t white = 255;
+    for (std::size_t above = 0; white > 16; --white) {
+        above += count[white];
+        if (above > picture.pixels.size() / 200) break;
+    }
+    GrayImage bright = picture;
+    for (auto& value : bright.pixels) value = static_cast<std::uint8_t>(std::min<std::size_t>(255, value * 255 / white));
+    return bright;
 }
 
 std::vector<FoundMarker> found_markers(const std::vector<PatientTracker::Seen>& seen) {

@@ -21,6 +21,9 @@ std::shared_ptr<const std::vector<SceneMarker>> markers_in_ct(const PatientTrack
 std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing& drawing, const RigCalibration& calibration,
                                                                const OverlayStep& overlay, const simulation::SimulatedRig& rig);
 
+/// The picture as a person wants to see it: what is brighter than all but the brightest half per cent becomes white.
+GrayImage brightened(const GrayImage& picture);
+
 /// The discs that the tracker found, for the camera pictures.
 std::vector<FoundMarker> found_markers(const std::vector<PatientTracker::Seen>& seen);
 

@@ -94,12 +94,13 @@ struct Scene::Parts {
         cloud.actor->GetProperty()->SetPointSize(2);
     }
 
-    void measure() {
-        if (!shown.skin || shown.skin->vertices_in_ct.empty()) return;
-        Eigen::Vector3d low = shown.skin->vertices_in_ct.front(), high = low;
-        for (const Eigen::Vector3d& p : shown.skin->vertices_in_ct) {
-            low = low.cwiseMin(p);
-            high = high.cwiseMax(p);
+    /// Frames the points of the skin; of the cloud where there is no skin.
+    void measure(const std::vector<Eigen::Vector3d>& points, const RigidTransform& ct_from_points) {
+        if (points.empty()) return;
+        Eigen::Vector3d low = ct_from_points * points.front(), high = low;
+        for (const Eigen::Vector3d& p : points) {
+            low = low.cwiseMin(ct_from_points * p);
+            high = high.cwiseMax(ct_from_points * p);
         }
         middle = 0.5 * (low + high);
         reach_mm = 0.60 * std::max({high.x() - low.x(), high.y() - low.y(), high.z() - low.z(), 1.0});
@@ -108,7 +109,7 @@ struct Scene::Parts {
     bool take_skin_and_markers(const SceneModel& scene) {
         const bool new_skin = replace(shown.skin, scene.skin);
         if (new_skin) {
-            measure();
+            if (shown.skin) measure(shown.skin->vertices_in_ct, RigidTransform::Identity());
             skin.show(shown.skin ? skin_shape(*shown.skin) : nullptr);
         }
         if (!replace(shown.markers, scene.markers) && !new_skin) return false;
@@ -124,6 +125,7 @@ struct Scene::Parts {
                                    : nullptr);
         const bool moved = !shown.ct_from_rig.matrix().isApprox(scene.ct_from_rig.matrix(), 0);
         shown.ct_from_rig = scene.ct_from_rig;
+        if ((other || moved) && shown.cloud && !shown.skin) measure(shown.cloud->points_in_rig, shown.ct_from_rig);
         return other || (moved && shown.cloud);
     }
 
