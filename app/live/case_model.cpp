@@ -38,9 +38,13 @@ OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing) {
     OperatorModel model;
     const Plan& plan = the_case.plan;
     model.case_title = "Case " + the_case.code;
-    model.case_subtitle = fmt::format("{} \u00b7 {} osteotomy, {} boreholes, {} trajectories", the_case.created.substr(0, 10),
-                                      plan.osteotomy_lines.size() + plan.cut_planes.size(), plan.boreholes.size(),
-                                      plan.trajectories.size());
+    const auto counted = [](std::size_t count, const char* one, const char* many) {
+        return fmt::format("{} {}", count, count == 1 ? one : many);
+    };
+    model.case_subtitle = fmt::format("{} \u00b7 {}, {}, {}", the_case.created.substr(0, 10),
+                                      counted(plan.osteotomy_lines.size() + plan.cut_planes.size(), "cutting line", "cutting lines"),
+                                      counted(plan.boreholes.size(), "borehole", "boreholes"),
+                                      counted(plan.trajectories.size(), "trajectory", "trajectories"));
     model.steps.fill(StepState::waiting);
     model.steps[0] = StepState::done;
     model.scene.skin = std::make_shared<TriangleMesh>(the_case.skin);

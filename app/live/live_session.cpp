@@ -267,7 +267,8 @@ void LiveSession::show_update(const Session& session, const simulation::Simulate
     if (update.overlay.lit)
         set_status(StatusKind::aligned, "The plan is on the skin.",
                    {fmt::format("Followed by {} markers, residual {:.2f} px.",
-                                std::max(update.pose.markers_left, update.pose.markers_right), update.pose.residual_px)});
+                                std::max(update.pose.markers_left, update.pose.markers_right), update.pose.residual_px),
+                    "The light itself is not measured yet: look at it on landmarks before you use it."});
     else
         set_status(StatusKind::dark, "Dark: " + update.overlay.reason + ".", {"The light comes back by itself when the pose is good."});
 }

@@ -22,6 +22,7 @@ RoomSettings paper_room(unsigned seed) {
     RoomSettings settings;
     settings.preset = Preset::paper;
     settings.seed = seed;
+    settings.ambient = 0.05;  // a dark room, so that the projector's light stands out
     return settings;
 }
 

@@ -116,7 +116,7 @@ TEST_P(Picture, ALitProjectorPixelIsSeenWhereOpenCvSays) {
 }
 
 TEST_P(Picture, MarkersAreDarkDiscsRoundTheirTrueCentres) {
-    ASSERT_EQ(rig().true_markers_in_ct().size(), 6U);
+    ASSERT_GE(rig().true_markers_in_ct().size(), 6U);
     const StereoFrame frame = under(plain(255));
     const RigCalibration& calibration = rig().calibration();
     for (const Vector3d& marker : rig().true_markers_in_ct()) {
