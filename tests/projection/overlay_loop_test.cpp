@@ -148,6 +148,20 @@ TEST_F(OverlayTest, TheEndOfTheLoopIsDark) {
     EXPECT_FALSE(projector.lit);
 }
 
+// T_global = T_cur T_ini, and not the other way round: a patient that lies turned and is then turned again about another axis.
+TEST_F(OverlayTest, DrawsForTheInitialPoseFirstAndTheMovementAfterIt) {
+    const Eigen::AngleAxisd lies(0.4, Vector3d::UnitZ()), turns(0.1, Vector3d::UnitX());
+    registration.patient_from_ct = Eigen::Translation3d(0, 0, 700) * RigidTransform(lies);
+    TrackedPose p = pose();
+    p.rig_from_patient = Eigen::Translation3d(5, 0, 0) * RigidTransform(turns);
+    const Vector3d p_in_ct(10, 20, -70);
+    const Vector3d p_in_patient = lies * p_in_ct + Vector3d(0, 0, 700);
+    const Vector3d p_in_rig = turns * p_in_patient + Vector3d(5, 0, 0);
+    OverlaySettings settings;
+    settings.predict = false;
+    EXPECT_LT((step(p, settings).rig_from_ct * p_in_ct - p_in_rig).norm(), 1e-9);
+}
+
 TEST_F(OverlayTest, DrawsWhereTheMovingPatientWillBeWhenTheLightArrives) {
     OverlayLoop loop(projector, clock, renderer, drawing, registration);
     OverlayStep last;
