@@ -53,6 +53,10 @@ Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSetti
     the_case.skin_threshold = mask.threshold;
     the_case.plan = plan;
     the_case.warnings = mask.warnings;
+    if (volume.modality == "CT" && !volume.is_hu)
+        the_case.warnings.push_back(fmt::format(
+            "the values of this CT are not HU; the skin threshold {:.0f} was {}: look at the skin before you use it", mask.threshold,
+            skin.threshold == 0 ? "found from their histogram" : "given"));
     const auto of_plan = check_plan(plan, SkinSurface(the_case.skin));
     the_case.warnings.insert(the_case.warnings.end(), of_plan.begin(), of_plan.end());
     return done;
