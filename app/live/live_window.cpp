@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <memory>
 
@@ -14,6 +15,9 @@
 
 namespace planlight {
 namespace {
+
+/// Set by Ctrl-C or a polite kill: the loop ends as if the window had been closed, and everything is dark on the way out.
+volatile std::sig_atomic_t asked_to_end = 0;
 
 /// The wall's monotonic clock, for the projector window.
 class SteadyClock final : public Clock {
@@ -122,7 +126,8 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
     Autoplay autoplay;
     Screenshots screenshots(options.screenshots);
     std::optional<std::chrono::steady_clock::time_point> projecting_since;
-    for (;;) {
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
+    while (!asked_to_end) {
         const OperatorModel model = session.model();
         const OperatorAction action = window.frame(model);
         if (action == OperatorAction::quit) return 0;
@@ -136,6 +141,7 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
         if (session.projecting() && !projecting_since) projecting_since = now;
         if (options.end_after_s > 0 && projecting_since && now - *projecting_since > std::chrono::duration<double>(options.end_after_s)) return 0;
     }
+    return 0;
 }
 
 }  // namespace planlight
