@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kClearOfPlan_mm = 15, kLeastApart_mm = 25, kReach_mm = 95;
 constexpr double kSteepest = 0.66 /* cos 48.7 degrees */, kSteepestOfFew = 0.5 /* cos 60 degrees */;
-constexpr std::size_t kFewest = 5;  ///< nobody leaves it at fewer: rather paste where the skin is steep
+constexpr std::size_t kFewest = 6;  ///< five are needed: nobody leaves it at fewer, rather pastes where the skin is steep
 
 bool sees(const TrueSurface& skin, const Optics& device, const TrueSurface::Hit& at, double steepest) {
     constexpr double kMargin_px = 40;

@@ -27,6 +27,7 @@ struct MarkerSettings {
     double min_contrast = 12;       ///< grey values
     double min_axis_ratio = 0.35;
     double max_fit_residual_px = 0.35;
+    double max_bend = 0.025;        ///< or this share of the radius, if more: a sticker on bent skin is no exact ellipse
     double sticker_ratio = 2;       ///< diameter of the white sticker / diameter of the disc
     double min_ring_step = 0.04;     ///< how much darker than the sticker the skin round it is, as a fraction of the contrast
 };
