@@ -40,6 +40,11 @@ std::function<void(const std::string&, double)> ProgressBar::callback() {
     return [this](const std::string& step, double share) { show(step, share); };
 }
 
+void ProgressBar::note(const std::string& line) {
+    end_line();
+    fmt::print(stderr, "{}\n", line);
+}
+
 void warn(const std::string& text) { fmt::print(stderr, "warning: {}\n", text); }
 
 int run_and_explain(const std::function<int()>& command) {

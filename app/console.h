@@ -13,6 +13,8 @@ public:
     /// Step by name, share 0..1. A new name ends the line of the one before.
     void show(const std::string& step, double share);
     std::function<void(const std::string&, double)> callback();
+    /// A line of its own, also where stderr is no terminal.
+    void note(const std::string& line);
 
 private:
     void end_line();

@@ -138,7 +138,11 @@ void add_demo(CLI::App& app, DemoOptions& o) {
     sub->add_option("--preset", o.preset, "modern, paper or both")->check(CLI::IsMember({"modern", "paper", "both"}))->capture_default_str();
     sub->add_option("--seed", o.seed, "First seed of the simulated rooms")->capture_default_str();
     sub->add_option("--seeds", o.seeds, "Rooms a preset")->capture_default_str()->check(CLI::Range(1, 10000));
+    sub->add_option("--jobs", o.jobs, "Rooms at a time (they slow each other down: read the times with one)")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 256));
     sub->add_flag("--headless", o.headless, "No windows, even where there is a display");
+    sub->add_flag("--no-pictures", o.no_pictures, "No pictures in the report (a machine without OpenGL)");
     sub->add_option("--out", o.out, "Folder of report.html and report.json")->capture_default_str();
     json_flag(sub, o.json);
 }

@@ -84,8 +84,8 @@ struct DemoOptions {
     Path plan, out = "planlight-demo";
     std::string preset = "both";
     unsigned seed = 1;
-    int seeds = 1;
-    bool headless = false, json = false;
+    int seeds = 1, jobs = 1;
+    bool headless = false, no_pictures = false, json = false;
 };
 int run_demo(const DemoOptions& options);
 

@@ -7,6 +7,7 @@
 #include "app/console.h"
 #include "app/evaluation/chain_pictures.h"
 #include "app/evaluation/chain_report.h"
+#include "app/evaluation/run_rooms.h"
 #include "app/live/live_window.h"
 #include "planning_io/plan_file.h"
 #include "planning_io/read_volume.h"
@@ -47,20 +48,31 @@ int run_demo(const DemoOptions& options) {
     write_case(prepared.prepared, options.out / "case", true);
     const CaseDrawing drawing(prepared.prepared);
 
-    std::vector<ChainFigures> rooms;
-    ChainPictures pictures(prepared.prepared, drawing);
+    std::vector<ChainSettings> settings;
     for (const auto preset : presets_of(options))
         for (int i = 0; i < options.seeds; ++i) {
-            ChainSettings settings;
-            settings.preset = preset;
-            settings.seed = options.seed + static_cast<unsigned>(i);
-            ChainWatcher watcher;
-            watcher.progress = [&](const std::string& stage, double share) {
-                bar.show(fmt::format("{} {}: {}", name_of(preset), settings.seed, stage), share);
-            };
-            if (i == 0 && preset == presets_of(options).back()) pictures.watch(watcher);
-            rooms.push_back(run_chain(volume, prepared.prepared, drawing, settings, watcher));
+            settings.emplace_back();
+            settings.back().preset = preset;
+            settings.back().seed = options.seed + static_cast<unsigned>(i);
         }
+    ChainPictures pictures(prepared.prepared, drawing);
+    // The pictures are of the last preset's first room.
+    const auto with_pictures = settings.size() - static_cast<std::size_t>(options.seeds);
+    const auto watcher_of = [&](std::size_t room) {
+        ChainWatcher watcher;
+        if (options.jobs == 1)
+            watcher.progress = [&, room](const std::string& stage, double share) {
+                bar.show(fmt::format("{} {}: {}", name_of(settings[room].preset), settings[room].seed, stage), share);
+            };
+        if (room == with_pictures && !options.no_pictures) pictures.watch(watcher);
+        return watcher;
+    };
+    std::size_t done = 0;
+    const auto finished = [&](std::size_t, const ChainFigures& room) {
+        bar.note(fmt::format("room {} of {}: {} {}{}", ++done, settings.size(), room.preset, room.seed,
+                             room.refused.empty() ? "" : ", refused: " + room.refused));
+    };
+    const auto rooms = run_rooms(volume, prepared.prepared, drawing, settings, options.jobs, watcher_of, finished);
     const std::string json = write_report_json(options.out / "report.json", prepared, rooms);
     write_report_html(options.out / "report.html", prepared, rooms, pictures.pictures());
     if (options.json) std::cout << json;
