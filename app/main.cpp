@@ -36,6 +36,7 @@ void add_prepare(CLI::App& app, PrepareOptions& o) {
     sub->add_option("--threshold", o.threshold, "Skin threshold, HU (default: found from the histogram)");
     sub->add_option("--voxel-mm", o.voxel_mm, "Edge of the LUT's cubic voxels")->capture_default_str()->check(CLI::Range(0.25, 10.0));
     sub->add_flag("--replace", o.replace, "Replace an existing case folder");
+    sub->add_flag("--preview", o.preview, "Open the operator window on the result");
     json_flag(sub, o.json);
 }
 

@@ -13,7 +13,7 @@ struct PrepareOptions {
     std::string series_uid;
     double threshold = 0;  ///< HU; 0 = found from the histogram
     double voxel_mm = 1;
-    bool replace = false, json = false;
+    bool replace = false, preview = false, json = false;
 };
 int run_prepare(const PrepareOptions& options);
 

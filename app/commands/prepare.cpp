@@ -1,11 +1,12 @@
 #include <fmt/format.h>
 
 #include <iostream>
-#include <nlohmann/json.hpp>
 
 #include "app/commands/commands.h"
 #include "app/console.h"
+#include "app/live/live_window.h"
 #include "app/prepare_case.h"
+#include "app/report/preparation_report.h"
 #include "planning_io/plan_file.h"
 #include "planning_io/read_volume.h"
 
@@ -26,27 +27,22 @@ int run_prepare(const PrepareOptions& options) {
     write_case(done.prepared, options.out, options.replace);
     bar.show("case folder", 1);
     const Case& the_case = done.prepared;
+    const CaseDrawing drawing(the_case);
+    bar.show("report", 0);
+    std::string no_views;
+    write_preparation_report(options.out, done, drawing.drawing, preparation_pictures(volume, the_case, drawing.drawing, no_views));
+    bar.show("report", 1);
+    if (!no_views.empty()) warn(no_views);
     for (const auto& warning : the_case.warnings) warn(warning);
     if (options.json) {
-        const nlohmann::json result = {
-            {"case", the_case.code},
-            {"folder", options.out.string()},
-            {"source", the_case.source},
-            {"threshold", done.threshold},
-            {"body_ml", done.body_ml},
-            {"removed_pieces", done.pieces_removed},
-            {"removed_ml", done.removed_ml},
-            {"skin", {{"vertices", the_case.skin.vertices_in_ct.size()}, {"triangles", the_case.skin.triangles.size()}}},
-            {"lut", {{"size", the_case.lut.size}, {"voxel_mm", the_case.lut.voxel_mm}, {"skin_voxels", the_case.lut.skin.size()}}},
-            {"plan_items", the_case.plan.size()},
-            {"seconds", {{"skin", done.segment_s}, {"surface", done.triangulate_s}, {"lut", done.lut_s}}},
-            {"warnings", the_case.warnings}};
-        std::cout << result.dump(2) << '\n';
-        return 0;
+        std::cout << preparation_json(done, drawing.drawing);
+    } else {
+        fmt::print("Case {} in {}: skin at {:.0f}, {} triangles, LUT {} x {} x {} voxels of {:.2f} mm, {} plan items.\n",
+                   the_case.code, options.out.string(), done.threshold, the_case.skin.triangles.size(), the_case.lut.size[0],
+                   the_case.lut.size[1], the_case.lut.size[2], the_case.lut.voxel_mm, the_case.plan.size());
+        fmt::print("Report: {}\n", (options.out / "report.html").string());
     }
-    fmt::print("Case {} in {}: skin at {:.0f}, {} triangles, LUT {} x {} x {} voxels of {:.2f} mm, {} plan items.\n",
-               the_case.code, options.out.string(), done.threshold, the_case.skin.triangles.size(), the_case.lut.size[0],
-               the_case.lut.size[1], the_case.lut.size[2], the_case.lut.voxel_mm, the_case.plan.size());
+    if (options.preview) show_case(the_case, drawing);
     return 0;
 }
 

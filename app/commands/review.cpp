@@ -5,7 +5,7 @@
 
 #include "app/commands/commands.h"
 #include "app/live/case_model.h"
-#include "app/windows/operator_window.h"
+#include "app/live/live_window.h"
 #include "app/windows/scene_view.h"
 #include "planning_io/case_folder.h"
 #include "planning_io/image_file.h"
@@ -28,9 +28,7 @@ int run_review(const ReviewOptions& options) {
         return 0;
     }
     if (options.json) return 0;
-    OperatorWindow window;
-    while (window.frame(model) != OperatorAction::quit) {
-    }
+    show_case(the_case, drawing);
     return 0;
 }
 

@@ -6,15 +6,9 @@
 
 #include "app/evaluation/run_chain.h"
 #include "app/prepare_case.h"
-#include "planning_io/types/image.h"
+#include "app/report/html_page.h"
 
 namespace planlight {
-
-/// A picture of the report with what it shows.
-struct ReportPicture {
-    std::string title, caption;
-    RgbImage picture;
-};
 
 /// One figure of one preset over all its rooms, against what is to be reached.
 struct ReportRow {

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <memory>
 
+#include "app/live/case_model.h"
 #include "app/live/live_session.h"
 #include "app/windows/operator_window.h"
 #include "planning_io/image_file.h"
@@ -142,6 +143,13 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
         if (options.end_after_s > 0 && projecting_since && now - *projecting_since > std::chrono::duration<double>(options.end_after_s)) return 0;
     }
     return 0;
+}
+
+void show_case(const Case& the_case, const CaseDrawing& drawing) {
+    const OperatorModel model = model_of_case(the_case, drawing);
+    OperatorWindow window;
+    while (window.frame(model) != OperatorAction::quit) {
+    }
 }
 
 }  // namespace planlight

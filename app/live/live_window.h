@@ -27,4 +27,7 @@ bool display_is_there();
 /// Throws DeviceError when a monitor is missing or a window does not land where it should.
 int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, const LiveOptions& options);
 
+/// The operator window on a case, before anything is scanned, until it is closed. Throws DeviceError without a display.
+void show_case(const Case& the_case, const CaseDrawing& drawing);
+
 }  // namespace planlight

@@ -75,6 +75,20 @@ TEST_F(CommandsTest, PrepareMakesACaseThatSaysWhatItHolds) {
     EXPECT_TRUE(fs::exists(root() / "case" / "case.json"));
 }
 
+TEST_F(CommandsTest, PrepareEndsWithAReportThatNeedsNothingElse) {
+    ASSERT_EQ(prepared_.exit_code, 0) << prepared_.err;
+    std::ifstream in(root() / "case" / "report.html");
+    const std::string page((std::istreambuf_iterator<char>(in)), {});
+    std::size_t pictures = 0;
+    for (auto at = page.find("data:image/png;base64,"); at != std::string::npos; at = page.find("data:image/png;base64,", at + 1)) ++pictures;
+    EXPECT_EQ(pictures, 7u) << "three slices, the head from four sides";
+    EXPECT_EQ(page.find("http"), std::string::npos) << "nothing comes from a network";
+    const json report = read_json(root() / "case" / "report.json");
+    EXPECT_EQ(report["case"], json::parse(prepared_.out)["case"]);
+    ASSERT_EQ(report["items"].size(), 6u);
+    for (const auto& item : report["items"]) EXPECT_LT(item["distance_to_skin_mm"].get<double>(), 10) << item["name"];
+}
+
 TEST_F(CommandsTest, TheExamplePlanRaisesNoWarningOnItsPatient) {
     ASSERT_EQ(prepared_.exit_code, 0) << prepared_.err;
     for (const auto& warning : json::parse(prepared_.out)["warnings"])

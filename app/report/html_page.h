@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "planning_io/types/image.h"
+
+namespace planlight {
+
+/// A picture of a report with what it shows.
+struct ReportPicture {
+    std::string title, caption;
+    RgbImage picture;
+};
+
+/// Text with & < > " made safe for a page.
+std::string html_escaped(const std::string& text);
+
+/// The pictures as a grid of figures, PNG inside the page. `scratch`: a file beside it is written and removed.
+std::string html_figures(const std::vector<ReportPicture>& pictures, const std::filesystem::path& scratch);
+
+/// One self-contained page, dark, no network. `body` is what stands under the heading.
+std::string html_page(const std::string& title, const std::string& body);
+
+}  // namespace planlight

@@ -1,0 +1,97 @@
+#include "app/report/slice_picture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace planlight::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// 100 mm of air (-1000) with a ball of 3 mm of 1000 HU at `ball_in_ct`. Voxels of 2 mm, centred on the origin; a slice
+/// stack sheared by `shear` mm of y a mm of z, as under a tilted gantry.
+Volume air_with_a_ball(const Vector3d& ball_in_ct, double shear = 0) {
+    Volume v;
+    v.size = {51, 51, 51};
+    v.is_hu = true;
+    v.ct_from_voxel.linear() = 2 * Eigen::Matrix3d::Identity();
+    v.ct_from_voxel.linear()(1, 2) = 2 * shear;
+    v.ct_from_voxel.translation() = Vector3d(-50, -50 - 50 * shear, -50);
+    v.values.assign(51 * 51 * 51, -1000);
+    for (int k = 0; k < 51; ++k)
+        for (int j = 0; j < 51; ++j)
+            for (int i = 0; i < 51; ++i)
+                if ((v.ct_from_voxel * Vector3d(i, j, k) - ball_in_ct).norm() < 3) v.values[v.index(i, j, k)] = 1000;
+    return v;
+}
+
+/// Where the picture is white, relative to its middle, in half pictures (x to the right, y down); letters are off-white.
+Eigen::Vector2d white_place(const RgbImage& picture) {
+    Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+    int count = 0;
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x)
+            if (picture.at(x, y) == Rgb{255, 255, 255}) {
+                sum += Eigen::Vector2d(x, y);
+                ++count;
+            }
+    EXPECT_GT(count, 20);
+    return (sum / count - Eigen::Vector2d(picture.width - 1, picture.height - 1) / 2) / (0.5 * picture.width);
+}
+
+TEST(SlicePicture, SidesAreThoseOfRadiology) {
+    // In ct (LPS) the ball lies to the left, in front and above. 30 mm of a half picture of 53 mm.
+    const Vector3d ball(30, -20, 10);
+    const Volume volume = air_with_a_ball(ball);
+    const auto axial = white_place(slice_picture(volume, {}, {}, SliceKind::axial, ball));
+    EXPECT_NEAR(axial.x(), 30 / 53.0, 0.01) << "left is on the right of the picture";
+    EXPECT_NEAR(axial.y(), -20 / 53.0, 0.01) << "anterior is up";
+    const auto coronal = white_place(slice_picture(volume, {}, {}, SliceKind::coronal, ball));
+    EXPECT_NEAR(coronal.x(), 30 / 53.0, 0.01);
+    EXPECT_NEAR(coronal.y(), -10 / 53.0, 0.01) << "superior is up";
+    const auto sagittal = white_place(slice_picture(volume, {}, {}, SliceKind::sagittal, ball));
+    EXPECT_NEAR(sagittal.x(), -20 / 53.0, 0.01) << "anterior is on the left, seen from the patient's left";
+    EXPECT_NEAR(sagittal.y(), -10 / 53.0, 0.01);
+}
+
+TEST(SlicePicture, ATiltedStackStandsAsThePatientDoes) {
+    // The box of a stack sheared by 0.3 is 130 mm wide in y: 1.06 * 130 / 2 = 68.9 mm a half picture.
+    const Vector3d ball(0, -20, 30);
+    const auto sagittal = white_place(slice_picture(air_with_a_ball(ball, 0.3), {}, {}, SliceKind::sagittal, ball));
+    EXPECT_NEAR(sagittal.x(), -20 / 68.9, 0.01);
+    EXPECT_NEAR(sagittal.y(), -30 / 68.9, 0.01);
+}
+
+TEST(SlicePicture, SkinLineLiesWhereThePlaneCutsTheMesh) {
+    // A cone of radius 40 at z = 0 and 0 at z = 40 (its tip towards the head): at z = 15 the plane cuts a circle of 25 mm.
+    TriangleMesh cone;
+    constexpr int kSides = 720;
+    for (int i = 0; i < kSides; ++i) {
+        const double a = 2 * std::numbers::pi * i / kSides;
+        cone.vertices_in_ct.emplace_back(40 * std::cos(a), 40 * std::sin(a), 0);
+        cone.triangles.push_back({i, (i + 1) % kSides, kSides});
+    }
+    cone.vertices_in_ct.emplace_back(0, 0, 40);
+    const RgbImage picture = slice_picture(air_with_a_ball({0, 0, -45}), cone, {}, SliceKind::axial, {0, 0, 15});
+    const double mm_per_px = 106.0 / picture.width;
+    int on_line = 0;
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+            const Rgb& p = picture.at(x, y);
+            if (p[1] < 150 || p[0] > 120) continue;  // green
+            const double r = mm_per_px * std::hypot(x - 319.5, y - 319.5);
+            EXPECT_NEAR(r, 25, 3 * mm_per_px);
+            ++on_line;
+        }
+    EXPECT_GT(on_line, 2 * std::numbers::pi * 25 / mm_per_px) << "the whole circle is there";
+}
+
+TEST(SlicePicture, OutsideTheVolumeIsNotBlackTissue) {
+    const RgbImage picture = slice_picture(air_with_a_ball({0, 0, 0}), {}, {}, SliceKind::axial, {0, 0, 200});
+    EXPECT_EQ(picture.at(320, 320), (Rgb{10, 14, 26})) << "beyond the last slice there is nothing to show";
+}
+
+}  // namespace
+}  // namespace planlight::test
