@@ -58,8 +58,9 @@ std::string html_escaped(const std::string& text) {
     return out;
 }
 
-std::string html_figures(const std::vector<ReportPicture>& pictures, const std::filesystem::path& scratch) {
-    std::string html = "<div class=\"grid\">";
+std::string html_figures(const std::vector<ReportPicture>& pictures, const std::filesystem::path& scratch, int columns) {
+    std::string html = columns == 0 ? "<div class=\"grid\">"
+                                    : fmt::format("<div class=\"grid\" style=\"grid-template-columns:repeat({},1fr)\">", columns);
     for (const auto& p : pictures)
         html += fmt::format("<figure><img alt=\"{}\" src=\"{}\"><figcaption><b>{}</b>{}</figcaption></figure>", html_escaped(p.title),
                             embedded(p.picture, scratch), html_escaped(p.title), html_escaped(p.caption));

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -82,8 +83,7 @@ std::vector<ReportPicture> preparation_pictures(const Volume& volume, const Case
     std::vector<ReportPicture> pictures;
     const Vector3d at = point_of_interest(the_case);
     const auto add_slice = [&](const std::string& name, SliceKind kind, const std::string& seen) {
-        pictures.push_back({name, fmt::format("At {}, seen {}. Green: skin; amber: lids over openings; grey: ends of the scan; pink: plan within 3 mm.",
-                                              place_of(kind, at), seen),
+        pictures.push_back({name, fmt::format("At {}, seen {}.", place_of(kind, at), seen),
                             slice_picture(volume, the_case.skin, the_case.plan, kind, at)});
     };
     add_slice("Axial", SliceKind::axial, "from the feet");
@@ -98,7 +98,7 @@ std::vector<ReportPicture> preparation_pictures(const Volume& volume, const Case
             SceneView view;
             view.azimuth = azimuth;
             view.elevation = 0.15;
-            pictures.push_back({name, "Skin and plan as it will be drawn.", render_scene(scene, view, 960, 720)});
+            pictures.push_back({name, "", render_scene(scene, view, 560, 460)});
         }
     } catch (const DeviceError& error) {
         warning = fmt::format("the report has no views of the head: {}", error.what());
@@ -128,8 +128,12 @@ std::string preparation_json(const Preparation& done, const PlanDrawing& drawing
 void write_preparation_report(const std::filesystem::path& folder, const Preparation& done, const PlanDrawing& drawing,
                               const std::vector<ReportPicture>& pictures) {
     const auto file = folder / "report.html";
+    const auto middle = pictures.begin() + std::min<std::ptrdiff_t>(3, static_cast<std::ptrdiff_t>(pictures.size()));
+    const std::vector<ReportPicture> slices(pictures.begin(), middle), heads(middle, pictures.end());
     const std::string body = fmt::format("<p class=\"muted\">Case {}. For research; not a medical device.</p>", html_escaped(done.prepared.code)) +
-                             warnings_section(done.prepared.warnings) + html_figures(pictures, file) + plan_table(drawing) +
+                             warnings_section(done.prepared.warnings) + html_figures(slices, file, 3) +
+                             "<p class=\"muted\">Green: skin. Amber: lids over openings. Grey: ends of the scan. Pink: plan within 3 mm "
+                             "of the slice.</p>" + (heads.empty() ? "" : html_figures(heads, file, 4)) + plan_table(drawing) +
                              figures_table(done);
     write_safely(file, html_page("Preparation", body));
     write_safely(folder / "report.json", preparation_json(done, drawing));

@@ -22,7 +22,7 @@ std::vector<ReportPicture> preparation_pictures(const Volume& volume, const Case
 /// The preparation in figures (JSON text): skin, table, plan items with their distance to the skin, times, warnings.
 std::string preparation_json(const Preparation& prepared, const PlanDrawing& drawing);
 
-/// Writes report.html (one page, pictures inside) and report.json into `folder`.
+/// Writes report.html (one page with the pictures of `preparation_pictures` inside) and report.json into `folder`.
 void write_preparation_report(const std::filesystem::path& folder, const Preparation& prepared, const PlanDrawing& drawing,
                               const std::vector<ReportPicture>& pictures);
 
