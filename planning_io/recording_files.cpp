@@ -55,6 +55,23 @@ Verdict verdict_of(const JsonValue& value) {
     value.refuse("is \"" + text + "\", none of yes, ask, no");
 }
 
+/// Absent or null where it is not known.
+Json json_of(const PoseCovariance& covariance) {
+    if (!covariance.known() || !covariance.of_turn_and_shift.allFinite()) return Json();
+    Json rows = Json::array();
+    for (Eigen::Index i = 0; i < 36; ++i) rows.push_back(covariance.of_turn_and_shift(i / 6, i % 6));
+    return {{"of_turn_and_shift", rows}, {"centre_in_ct", to_json(covariance.centre_in_ct)}};
+}
+
+PoseCovariance covariance_of(const JsonValue& json) {
+    PoseCovariance covariance;
+    const JsonValue rows = json.at("of_turn_and_shift");
+    if (rows.size() != 36) rows.refuse(fmt::format("holds {} numbers", rows.size()), "A covariance has 36, row by row.");
+    for (Eigen::Index i = 0; i < 36; ++i) covariance.of_turn_and_shift(i / 6, i % 6) = rows[static_cast<std::size_t>(i)].number();
+    covariance.centre_in_ct = json.at("centre_in_ct").vector3();
+    return covariance;
+}
+
 }  // namespace
 
 void write_capture(const CaptureFolder& capture, const fs::path& folder) {
@@ -159,6 +176,9 @@ void write_registration(const RegistrationResult& result, const fs::path& file) 
                                  {"runner_up_ratio", std::min(result.runner_up_ratio, std::numeric_limits<double>::max())},
                                  {"agreeing_bases", result.agreeing_bases},
                                  {"weakest_sigma_mm", result.weakest_sigma_mm},
+                                 {"skin_movement_mm", result.skin_movement_mm},
+                                 {"skin_offset_mm", result.skin_offset_mm},
+                                 {"covariance", json_of(result.covariance)},
                                  {"initial_match_s", result.initial_match_s},
                                  {"refine_s", result.refine_s},
                                  {"initial_patient_from_ct", to_json(result.initial_patient_from_ct)}}));
@@ -183,6 +203,9 @@ RegistrationResult read_registration(const fs::path& file) {
     result.inlier_distance_mm = number("inlier_distance_mm");
     result.runner_up_ratio = number("runner_up_ratio");
     result.weakest_sigma_mm = number("weakest_sigma_mm");
+    result.skin_movement_mm = number("skin_movement_mm");
+    result.skin_offset_mm = number("skin_offset_mm");
+    if (const auto covariance = root.find("covariance")) result.covariance = covariance_of(*covariance);
     result.initial_match_s = number("initial_match_s");
     result.refine_s = number("refine_s");
     if (const auto points = root.find("points")) result.points = static_cast<std::size_t>(points->integer(0, kAny));

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/commands.h"
+#include "app/live/case_model.h"
 #include "planning_io/case_folder.h"
 #include "planning_io/mesh_file.h"
 #include "planning_io/recording_files.h"
@@ -27,6 +28,11 @@ int run_register(const RegisterOptions& options) {
     if (options.icp == "closest-point") settings.icp.mode = IcpSettings::Mode::closest_point;
     const RegistrationResult result = register_patient(cloud, the_case.lut, settings);
     write_registration(result, options.out);
+    const CaseDrawing drawing(the_case);
+    const std::vector<double> predicted = result.verdict == Verdict::no ? std::vector<double>{} : predicted_errors_mm(the_case.plan, result);
+    nlohmann::json items = nlohmann::json::array();
+    for (std::size_t i = 0; i < predicted.size() && i < drawing.drawing.items.size(); ++i)
+        items.push_back({{"name", drawing.drawing.items[i].name}, {"predicted_95_mm", predicted[i]}});
     if (options.json) {
         const Eigen::Matrix4d m = result.patient_from_ct.matrix();
         nlohmann::json matrix = nlohmann::json::array();
@@ -41,12 +47,17 @@ int run_register(const RegisterOptions& options) {
                                     {"runner_up_ratio", result.runner_up_ratio},
                                     {"agreeing_bases", result.agreeing_bases},
                                     {"weakest_sigma_mm", result.weakest_sigma_mm},
+                                    {"skin_movement_mm", result.skin_movement_mm},
+                                    {"skin_offset_mm", result.skin_offset_mm},
+                                    {"items", items},
                                     {"seconds", {{"initial", result.initial_match_s}, {"fine", result.refine_s}}}};
         std::cout << out.dump(2) << '\n';
     } else {
         fmt::print("{}: residual {:.2f} mm rms, {:.0f} % of {} points on the skin, runner-up {:.2f} times worse.\n",
                    name_of(result.verdict), result.residual_rms_mm, 100 * result.inlier_fraction, result.points,
                    result.runner_up_ratio);
+        for (const auto& item : items)
+            fmt::print("  {}: within {:.1f} mm (95 %)\n", item["name"].get<std::string>(), item["predicted_95_mm"].get<double>());
         for (const auto& reason : result.reasons) fmt::print("  {}\n", reason);
     }
     if (result.verdict == Verdict::no)

@@ -50,6 +50,7 @@ Json room_json(const ChainFigures& room) {
               {"initial_match_right", room.initial_match_right},
               {"initial_error_mm", room.initial_error_mm},
               {"tre_mm", to_json(distribution_of(room.tre_mm))},
+              {"tre_of_predicted_95_bound", to_json(distribution_of(room.tre_of_bound))},
               {"tracking_error_mm", to_json(distribution_of(room.tracking_error_mm))},
               {"overlay_at_rest_mm", to_json(distribution_of(room.at_rest.position_mm))},
               {"overlay_moving_mm", to_json(distribution_of(room.moving.position_mm))},
@@ -130,6 +131,7 @@ PresetSummary summarise(const std::vector<ChainFigures>& all, const std::string&
     }
     s.rows = {row("scan points to true skin", "mm", gather(rooms, [](auto& r) { return r.scan_error_mm; })),
               row("registration at plan points (TRE)", "mm", gather(rooms, [](auto& r) { return r.tre_mm; }), 1),
+              row("the same, of its predicted 95 % bound", "", gather(rooms, [](auto& r) { return r.tre_of_bound; }), 1),
               row("overlay on skin at rest", "mm", gather(rooms, [](auto& r) { return r.at_rest.position_mm; }), 1),
               row("overlay on skin, moving", "mm", gather(rooms, [](auto& r) { return r.moving.position_mm; }), 2),
               row("tracked pose at plan points", "mm", gather(rooms, [](auto& r) { return r.tracking_error_mm; })),

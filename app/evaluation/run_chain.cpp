@@ -119,6 +119,7 @@ private:
         const RigidTransform truth = rig_.true_rig_from_ct(session_.capture()->began);
         for (const Vector3d& p : plan_points_in_ct_) {
             figures_.tre_mm.push_back((found.patient_from_ct * p - truth * p).norm());
+            figures_.tre_of_bound.push_back(figures_.tre_mm.back() / predicted_error(found.covariance, p).bound_95_mm);
             figures_.initial_error_mm =
                 std::max(figures_.initial_error_mm, (found.initial_patient_from_ct * p - truth * p).norm());
         }

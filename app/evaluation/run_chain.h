@@ -51,6 +51,8 @@ struct ChainFigures {
     double initial_error_mm = 0;
     std::vector<double> tre_mm;                  ///< at every plan point (targets included)
 
+    std::vector<double> tre_of_bound;            ///< the same / the 95 % bound that was predicted there
+
     OverlayErrors at_rest, moving;
     int rest_dark = 0, moving_dark = 0;          ///< updates that gave no light
     std::map<std::string, int> dark_reasons;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace planlight {
 namespace {
@@ -56,12 +57,28 @@ OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing) {
     return model;
 }
 
+std::vector<double> predicted_errors_mm(const Plan& plan, const RegistrationResult& found) {
+    std::vector<double> errors;
+    const auto add = [&](const std::vector<Eigen::Vector3d>& points_in_ct) {
+        double worst = 0;
+        for (const auto& p : points_in_ct) worst = std::max(worst, predicted_error(found.covariance, p).bound_95_mm);
+        errors.push_back(worst);
+    };
+    for (const auto& line : plan.osteotomy_lines) add(line.points_in_ct);
+    for (const auto& b : plan.boreholes) add({b.position_in_ct, b.position_in_ct + b.depth_mm * b.axis_in_ct.value_or(Eigen::Vector3d::Zero())});
+    for (const auto& t : plan.trajectories) add({t.entry_in_ct, t.target_in_ct});
+    for (const auto& c : plan.cut_planes) add({c.origin_in_ct});
+    return errors;
+}
+
 std::vector<std::string> evidence_of(const RegistrationResult& result) {
     std::vector<std::string> lines;
     lines.push_back(fmt::format("Residual {:.2f} mm rms; {:.0f} % of {} points within {:.1f} mm of the skin.", result.residual_rms_mm,
                                 100 * result.inlier_fraction, result.points, result.inlier_distance_mm));
     lines.push_back(fmt::format("Next best other pose fits {:.1f} times worse; {} independent bases agree.", result.runner_up_ratio,
                                 result.agreeing_bases));
+    lines.push_back(fmt::format("The skin lies {:.1f} mm {} that of the CT, and has moved by {:.1f} mm (rms).", std::abs(result.skin_offset_mm),
+                                result.skin_offset_mm < 0 ? "inside of" : "outside of", result.skin_movement_mm));
     lines.push_back(fmt::format("Found in {:.2f} s, refined in {:.0f} ms.", result.initial_match_s, 1000 * result.refine_s));
     lines.insert(lines.end(), result.reasons.begin(), result.reasons.end());
     return lines;

@@ -220,6 +220,9 @@ void LiveSession::find_patient(Session& session) {
     change_model([&](OperatorModel& m) {
         m.evidence = evidence_of(found);
         if (found.verdict == Verdict::no) return;
+        const auto predicted = predicted_errors_mm(case_.plan, found);
+        for (std::size_t i = 0; i < m.rows.size() && i < predicted.size(); ++i)
+            if (std::isfinite(predicted[i]) && predicted[i] > 0) m.rows[i].predicted_error_mm = predicted[i];
         m.scene.cloud = cloud;
         m.scene.cloud_distance_mm = distances;
         m.scene.ct_from_rig = ct_from_rig;

@@ -117,7 +117,12 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
     result.agreeing_bases = best.agreeing_bases;
 
     const auto refine_start = std::chrono::steady_clock::now();
-    const IcpResult icp = refine_icp(cloud, lut, best.ct_from_rig, settings.icp);
+    IcpResult icp = refine_icp(cloud, lut, best.ct_from_rig, settings.icp);
+    const MovedSkinPose settled = settle_on_moved_skin(cloud, lut, icp.ct_from_rig, settings.skin);
+    if (settings.moved_skin) icp.ct_from_rig = settled.ct_from_rig;
+    result.covariance = settled.covariance;
+    result.skin_movement_mm = settled.movement_mm;
+    result.skin_offset_mm = settled.offset_mm;
     result.refine_s = seconds_since(refine_start);
     result.patient_from_ct = icp.ct_from_rig.inverse();
 

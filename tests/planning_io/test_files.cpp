@@ -225,12 +225,18 @@ TEST(Recordings, CaptureFramesRegistrationAndPosesReadBack) {
     result.reasons = {"The chin is missing."};
     result.patient_from_ct = Eigen::Translation3d(1, 2, 3) * Eigen::AngleAxisd(0.3, Vector3d(1, 2, 2) / 3);
     result.points = 12345;
+    result.covariance.of_turn_and_shift = Eigen::Matrix<double, 6, 6>::Random();
+    result.covariance.of_turn_and_shift.diagonal().setConstant(3);
+    result.covariance.centre_in_ct = {7, 8, 9};
     result.runner_up_ratio = std::numeric_limits<double>::infinity();
     write_registration(result, folder.path() / "registration.json");
     const auto result_back = read_registration(folder.path() / "registration.json");
     EXPECT_EQ(result_back.verdict, Verdict::ask);
     EXPECT_EQ(result_back.patient_from_ct.matrix(), result.patient_from_ct.matrix());
     EXPECT_EQ(result_back.reasons, result.reasons);
+    EXPECT_EQ(result_back.covariance.of_turn_and_shift, result.covariance.of_turn_and_shift);
+    EXPECT_EQ(result_back.covariance.centre_in_ct, result.covariance.centre_in_ct);
+    EXPECT_EQ(predicted_error(result_back.covariance, {0, 0, 50}).bound_95_mm, predicted_error(result.covariance, {0, 0, 50}).bound_95_mm);
     EXPECT_GT(result_back.runner_up_ratio, 1e100);
 
     std::vector<TrackedPose> poses(2);

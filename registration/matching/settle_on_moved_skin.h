@@ -1,0 +1,40 @@
+#pragma once
+
+#include "planning_io/types/point_cloud.h"
+#include "planning_io/types/pose_covariance.h"
+#include "planning_io/types/rigid_transform.h"
+#include "planning_io/types/skin_lut.h"
+
+namespace planlight {
+
+struct MovedSkinSettings {
+    int max_patches = 240;          ///< the scan is gathered into at most about this many patches of equal size
+    double offset_prior_mm = 1;     ///< how far the whole skin may lie outside or inside of the CT's, one sigma
+    double pulled_share = 1.5;      ///< of the movement seen: how far skin may be pulled along unseen, one sigma
+    double least_movement_mm = 0.1; ///< that no residual could show, one sigma
+};
+
+/// The pose of a scan of skin that has moved since the CT, and how sure it is.
+struct MovedSkinPose {
+    RigidTransform ct_from_rig = RigidTransform::Identity();
+    PoseCovariance covariance;   ///< infinite when the scan holds too little skin to tell; the pose is then the one given
+    double movement_mm = 0;      ///< of the skin along its normal, rms
+    double correlation_mm = 0;   ///< over which the movement is alike
+    double offset_mm = 0;        ///< of the whole skin; positive outside of the CT's
+    int patches = 0;
+};
+
+/// The last step of the fine match: from a pose that is right to about a millimetre.
+///
+/// Skin moves between CT and operation by a field along its normal that is alike over some length (a Gaussian process),
+/// by an offset of the whole (another threshold, swelling all over), and by a part of each patch's own. Pose and offset
+/// are found by generalised least squares under that field. How far the skin moved and over what length it is alike is not
+/// assumed: the residuals of the patches tell it by restricted maximum likelihood (Patterson & Thompson 1971), which does
+/// not count what the pose has taken up; all plausible fields are averaged by their likelihood. The usual sigma^2 (J^T J)^-1
+/// takes the residuals of neighbours for independent, and is over-confident by an order.
+///
+/// What no residual can show is added: skin that is pulled along as a whole, in proportion to the movement that is seen.
+MovedSkinPose settle_on_moved_skin(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
+                                   const MovedSkinSettings& settings = {});
+
+}  // namespace planlight
