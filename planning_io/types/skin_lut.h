@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "planning_io/types/large_array.h"
+
 namespace planlight {
 
 /// A voxel of the table that the skin passes through, and what lies behind a pointer to it.
@@ -26,12 +28,12 @@ struct SkinLut {
     std::array<int, 3> size{0, 0, 0};
     double voxel_mm = 0;
     Eigen::Vector3d origin_in_ct = Eigen::Vector3d::Zero();
-    std::vector<std::uint32_t> nearest;  ///< per voxel: index into `skin`
+    LargeArray<std::uint32_t> nearest;  ///< per voxel: index into `skin`
     std::vector<SkinPoint> skin;
 
     std::array<int, 3> distance_size{0, 0, 0};
     double distance_voxel_mm = 0;
-    std::vector<float> distance_mm;  ///< signed, to the surface; negative inside
+    LargeArray<float> distance_mm;  ///< signed, to the surface; negative inside
 
     std::string volume_hash;  ///< of the CT the table was made from (hex)
     std::string mesh_hash;    ///< of the skin mesh (hex)
