@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@ struct SkinPoint {
     Eigen::Vector3f normal_in_ct;    ///< unit, outwards
     std::array<std::uint16_t, 3> voxel{0, 0, 0};
     std::uint8_t flags = 0;  ///< SkinFlag
+    float thickness_mm = std::numeric_limits<float>::quiet_NaN();  ///< from skin to bone; not a number where unknown
 };
 
 /// The paper's voxel file (Hoppe 2001, 2.1): cubic voxels over the body and a margin, each with a pointer to its nearest
