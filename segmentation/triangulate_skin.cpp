@@ -166,6 +166,8 @@ TriangleMesh triangulate_skin(const Volume& volume, const SkinMask& mask, const 
     mend_normals(mesh);
     report(0.5);
     TriangleMesh result = decimate_skin(mesh, settings.max_edge_mm, settings.max_decimation_error_mm);
+    report(0.9);
+    result.thickness_mm = skin_thickness(volume, result, settings.thickness);
     report(1);
     return result;
 }
