@@ -223,6 +223,7 @@ TEST(SlicerHead, ClosedSkinFromStoredValues) {
     const MeshFacts facts = facts_of(triangulate_skin(volume, mask));
     EXPECT_EQ(facts.bad_edges, 0U);
     EXPECT_EQ(facts.pieces, 1U);
+    EXPECT_EQ(facts.euler, 2);  // 13 holes through the ears, at 3.2 mm a voxel, have membranes
     EXPECT_GT(facts.volume_ml, 2000);
     EXPECT_LT(facts.volume_ml, 8000);
 }
