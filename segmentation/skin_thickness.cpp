@@ -6,25 +6,12 @@
 #include <limits>
 #include <optional>
 
+#include "segmentation/volume_sample.h"
+
 namespace planlight {
 namespace {
 
 using Eigen::Vector3d;
-
-/// Trilinear; empty outside the voxel centres.
-std::optional<double> value_at(const Volume& volume, const Vector3d& voxel) {
-    const Eigen::Vector3i low = voxel.array().floor().cast<int>();
-    for (int a = 0; a < 3; ++a)
-        if (low[a] < 0 || low[a] + 1 >= volume.size[static_cast<std::size_t>(a)]) return std::nullopt;
-    const Vector3d f = voxel - low.cast<double>();
-    const std::size_t row = static_cast<std::size_t>(volume.size[0]), slab = row * static_cast<std::size_t>(volume.size[1]);
-    const float* at = volume.values.data() + volume.index(low.x(), low.y(), low.z());
-    const auto along_x = [&](std::size_t from) {
-        return (1 - f.x()) * static_cast<double>(at[from]) + f.x() * static_cast<double>(at[from + 1]);
-    };
-    const double front = (1 - f.y()) * along_x(0) + f.y() * along_x(row), back = (1 - f.y()) * along_x(slab) + f.y() * along_x(slab + row);
-    return (1 - f.z()) * front + f.z() * back;
-}
 
 /// The first crossing of `threshold` on the way from `start`, in steps.
 std::optional<double> first_crossing(const Volume& volume, const Vector3d& start, const Vector3d& step, int steps, double threshold) {

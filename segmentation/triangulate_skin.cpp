@@ -13,6 +13,7 @@
 #include "planning_io/types/error.h"
 #include "segmentation/decimate_skin.h"
 #include "segmentation/fill_tunnels.h"
+#include "segmentation/mr_skin_edge.h"
 #include "segmentation/segment_skin.h"
 #include "segmentation/skin_field.h"
 
@@ -175,6 +176,7 @@ TriangleMesh triangulate_skin(const Volume& volume, const SkinMask& mask, const 
         for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
     smooth_lids(mesh);
     mend_normals(mesh);
+    if (volume.modality == "MR") move_to_edges(mesh, volume, mask.threshold);
     report(0.5);
     TriangleMesh result = decimate_skin(mesh, settings.max_edge_mm, settings.max_decimation_error_mm);
     report(0.9);
