@@ -73,7 +73,9 @@ private:
     };
 
     const Vector3d& point(Vertex v) const { return given_.vertices_in_ct[static_cast<std::size_t>(v.idx())]; }
-    std::uint8_t flag(Vertex v) const { return given_.flags.empty() ? std::uint8_t{0} : given_.flags[static_cast<std::size_t>(v.idx())]; }
+    std::uint8_t flag(Vertex v) const {
+        return given_.flags.empty() ? std::uint8_t{0} : given_.flags[static_cast<std::size_t>(v.idx())];
+    }
     double& error_mm(Vertex v) { return error_mm_[static_cast<std::size_t>(v.idx())]; }
 
     void try_to_remove(Vertex v, double limit_mm) {

@@ -39,7 +39,8 @@ bool connected_round_middle(std::uint32_t set, const std::array<std::uint32_t, 2
     while (fresh != 0) {
         reached |= fresh;
         std::uint32_t further = 0;
-        for (std::uint32_t left = fresh; left != 0; left &= left - 1) further |= next[static_cast<std::size_t>(std::countr_zero(left))];
+        for (std::uint32_t left = fresh; left != 0; left &= left - 1)
+            further |= next[static_cast<std::size_t>(std::countr_zero(left))];
         fresh = further & set & ~reached;
     }
     return (touching & ~reached) == 0;
@@ -63,7 +64,8 @@ Mask fill_tunnels(const Mask& body, const VoxelGrid& grid) {
     std::deque<std::size_t> queue;
     std::array<std::ptrdiff_t, 27> step{};
     for (std::ptrdiff_t n = 0; n < 27; ++n)
-        step[static_cast<std::size_t>(n)] = n % 3 - 1 + (n / 3 % 3 - 1) * static_cast<std::ptrdiff_t>(wide.row()) + (n / 9 - 1) * static_cast<std::ptrdiff_t>(wide.slab());
+        step[static_cast<std::size_t>(n)] = n % 3 - 1 + (n / 3 % 3 - 1) * static_cast<std::ptrdiff_t>(wide.row()) +
+                                            (n / 9 - 1) * static_cast<std::ptrdiff_t>(wide.slab());
     const auto for_all = [&](auto&& visit) {
         std::size_t at = 0;
         for (int k = 1; k <= grid.size[2]; ++k)
@@ -92,7 +94,8 @@ Mask fill_tunnels(const Mask& body, const VoxelGrid& grid) {
         const std::size_t v = queue.front();
         queue.pop_front();
         std::uint32_t set = 0;
-        for (std::size_t n = 0; n < 27; ++n) set |= static_cast<std::uint32_t>(state[v + static_cast<std::size_t>(step[n])] != kAir) << n;
+        for (std::size_t n = 0; n < 27; ++n)
+            set |= static_cast<std::uint32_t>(state[v + static_cast<std::size_t>(step[n])] != kAir) << n;
         state[v] = is_simple(set) ? kAir : kBlock;
         if (state[v] == kAir) ask_again_round(v);
     }

@@ -39,7 +39,9 @@ void MeshSides::find_neighbours() {
         std::int32_t high;
         std::uint32_t triangle_and_corner;
     };
-    const auto ends = [&](std::size_t t, std::size_t c) { return std::minmax(mesh_.triangles[t][(c + 1) % 3], mesh_.triangles[t][(c + 2) % 3]); };
+    const auto ends = [&](std::size_t t, std::size_t c) {
+        return std::minmax(mesh_.triangles[t][(c + 1) % 3], mesh_.triangles[t][(c + 2) % 3]);
+    };
     std::vector<std::uint32_t> begin(mesh_.vertices_in_ct.size() + 1, 0);  // of the edges whose lower end a vertex is
     for (std::size_t t = 0; t < neighbours_.size(); ++t)
         for (std::size_t c = 0; c < 3; ++c) ++begin[at(ends(t, c).first) + 1];

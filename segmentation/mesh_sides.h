@@ -24,7 +24,7 @@ private:
 
     const TriangleMesh& mesh_;
     std::vector<Eigen::Vector3d> face_normals_, corner_normals_;      // of each triangle, of each vertex
-    std::vector<std::array<std::uint32_t, 3>> neighbours_;            // across the edge opposite to each corner; itself at an opening
+    std::vector<std::array<std::uint32_t, 3>> neighbours_;  // across the edge opposite to each corner; itself at an opening
 };
 
 }  // namespace planlight

@@ -23,7 +23,8 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 double mean(const Profile& profile, double from_mm, double to_mm) {
     double sum = 0;
     int count = 0;
-    for (int s = static_cast<int>(std::lround(from_mm / kStep_mm)); s <= static_cast<int>(std::lround(to_mm / kStep_mm)); ++s, ++count)
+    for (int s = static_cast<int>(std::lround(from_mm / kStep_mm)); s <= static_cast<int>(std::lround(to_mm / kStep_mm));
+         ++s, ++count)
         sum += profile[static_cast<std::size_t>(s + kSide)];
     return sum / count;
 }
@@ -66,9 +67,11 @@ std::size_t move_to_edges(TriangleMesh& mesh, const Volume& volume, double thres
     const auto is_skin = [&](std::size_t v) { return mesh.flags.empty() || mesh.flags[v] == kSkin; };
     tbb::parallel_for(std::size_t{0}, moves_mm.size(), [&](std::size_t v) {
         if (!is_skin(v)) return;
-        const Vector3d at = voxel_from_ct * mesh.vertices_in_ct[v], step = voxel_from_ct.linear() * (kStep_mm * mesh.normals_in_ct[v]);
+        const Vector3d at = voxel_from_ct * mesh.vertices_in_ct[v],
+                       step = voxel_from_ct.linear() * (kStep_mm * mesh.normals_in_ct[v]);
         Profile profile;
-        for (int s = -kSide; s <= kSide; ++s) profile[static_cast<std::size_t>(s + kSide)] = value_at(volume, at + s * step).value_or(kUnknown);
+        for (int s = -kSide; s <= kSide; ++s)
+            profile[static_cast<std::size_t>(s + kSide)] = value_at(volume, at + s * step).value_or(kUnknown);
         moves_mm[v] = half_way(profile, threshold, settings.reach_mm);
     });
     const auto found = std::count_if(moves_mm.begin(), moves_mm.end(), [](double move) { return !std::isnan(move); });

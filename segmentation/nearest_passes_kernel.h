@@ -142,11 +142,13 @@ PLANLIGHT_INLINE void entries_of(const Lanes<Key>& keys, Key mask, Range range, 
             }
         } else {
 #if defined(__AVX512F__)
-            for (int i = 0; i < Lanes<Key>::kCount; ++i) found.v[i] = gathered(keys.v[i] & mask, entries + i * Lanes<Key>::kWidth);
+            for (int i = 0; i < Lanes<Key>::kCount; ++i)
+                found.v[i] = gathered(keys.v[i] & mask, entries + i * Lanes<Key>::kWidth);
 #else
             for (int i = 0; i < Lanes<Key>::kCount; ++i)
                 for (int l = 0; l < Lanes<Key>::kWidth; ++l)
-                    found.v[i][l] = entries[(keys.v[i][l] & mask) * kLanes + static_cast<std::size_t>(i * Lanes<Key>::kWidth + l)];
+                    found.v[i][l] =
+                        entries[(keys.v[i][l] & mask) * kLanes + static_cast<std::size_t>(i * Lanes<Key>::kWidth + l)];
 #endif
         }
         found.store(to);
@@ -183,8 +185,10 @@ PLANLIGHT_INLINE void along_row(const Stripe<Key>& stripe, std::uint32_t begin, 
     }
     for (int i = 0; i < Lanes<Key>::kCount; ++i) {
         const auto number = best.v[i] & mask;
-        *reinterpret_cast<typename Lanes<Key>::Unaligned*>(keys + i * Lanes<Key>::kWidth) = (best.v[i] - number) | static_cast<Key>(row_number);
-        for (int l = 0; l < Lanes<Key>::kWidth; ++l) skin[i * Lanes<Key>::kWidth + l] = first + static_cast<std::uint32_t>(number[l]);
+        *reinterpret_cast<typename Lanes<Key>::Unaligned*>(keys + i * Lanes<Key>::kWidth) =
+            (best.v[i] - number) | static_cast<Key>(row_number);
+        for (int l = 0; l < Lanes<Key>::kWidth; ++l)
+            skin[i * Lanes<Key>::kWidth + l] = first + static_cast<std::uint32_t>(number[l]);
     }
 }
 
@@ -195,7 +199,8 @@ void in_slice(const Stripe<Key>& stripe, int slice, void* scratch) {
     auto* skin = reinterpret_cast<std::uint32_t*>(keys + static_cast<std::size_t>(stripe.size_y + 2) * kLanes);
     auto* place = reinterpret_cast<int*>(skin + static_cast<std::size_t>(stripe.size_y + 2) * kLanes);
     int *low = place + stripe.size_y + 2, *high = low + stripe.size_y + 2;
-    const std::uint32_t* row_begin = stripe.row_begin + static_cast<std::size_t>(stripe.slices[slice]) * static_cast<std::size_t>(stripe.size_y);
+    const std::uint32_t* row_begin =
+        stripe.row_begin + static_cast<std::size_t>(stripe.slices[slice]) * static_cast<std::size_t>(stripe.size_y);
     int rows = 0;
     for (int y = 0; y < stripe.size_y; ++y) {
         if (row_begin[y] == row_begin[y + 1]) continue;

@@ -19,7 +19,9 @@ template <class Key>
 const Passes<Key>& passes_for(VectorPath path) {
     constexpr bool kNarrow = sizeof(Key) == 4;
     if (path == VectorPath::best)
-        path = can_use(VectorPath::avx512) ? VectorPath::avx512 : can_use(VectorPath::avx2) ? VectorPath::avx2 : VectorPath::plain;
+        path = can_use(VectorPath::avx512) ? VectorPath::avx512
+               : can_use(VectorPath::avx2) ? VectorPath::avx2
+                                           : VectorPath::plain;
     if (!can_use(path)) throw std::logic_error("this processor does not have the instructions asked for");
     if constexpr (kNarrow) return path == VectorPath::avx512 ? kAvx512 : path == VectorPath::avx2 ? kAvx2 : kPlain;
     else return path == VectorPath::avx512 ? kAvx512Wide : path == VectorPath::avx2 ? kAvx2Wide : kPlainWide;
@@ -37,7 +39,8 @@ struct SkinRows {
         for (std::size_t s = 0; s < x.size(); ++s) {
             const auto& v = lut.skin[s].voxel;
             const std::size_t own = at(v[2]) * at(lut.size[1]) + v[1];
-            if (v[0] >= lut.size[0] || v[1] >= lut.size[1] || v[2] >= lut.size[2] || own + 1 < row || (own + 1 == row && *before >= v[0]))
+            if (v[0] >= lut.size[0] || v[1] >= lut.size[1] || v[2] >= lut.size[2] || own + 1 < row ||
+                (own + 1 == row && *before >= v[0]))
                 throw std::logic_error("the skin voxels are not in the order of the table");
             for (; row <= own; ++row) begin[row] = static_cast<std::uint32_t>(s);
             x[s] = v[0];
@@ -52,7 +55,8 @@ struct SkinRows {
 template <class Key>
 std::vector<Key> squares_of(int n, unsigned bits) {
     std::vector<Key> squares;
-    for (std::int64_t d = -n; d <= n + kLanes; ++d) squares.push_back(static_cast<Key>(static_cast<std::uint64_t>(d * d) << bits));
+    for (std::int64_t d = -n; d <= n + kLanes; ++d)
+        squares.push_back(static_cast<Key>(static_cast<std::uint64_t>(d * d) << bits));
     return squares;
 }
 
@@ -64,8 +68,20 @@ void transform(SkinLut& lut, const SkinRows& rows, unsigned bits, VectorPath pat
     const std::size_t row_step = (rows.slices.size() + 1) * kLanes;  // one more: no power of two, which would crowd the caches
     LargeArray<Key> keys(row_step * at(lut.size[1]));
     LargeArray<std::uint32_t> skin(keys.size());
-    Stripe<Key> stripe{lut.size[0], lut.size[1], lut.size[2], 0, bits, squares.data() + longest, rows.begin.data(), rows.x.data(),
-                       rows.slices.data(), static_cast<int>(rows.slices.size()), row_step, keys.data(), skin.data(), lut.nearest.data()};
+    Stripe<Key> stripe{.size_x = lut.size[0],
+                       .size_y = lut.size[1],
+                       .size_z = lut.size[2],
+                       .x0 = 0,
+                       .bits = bits,
+                       .squares = squares.data() + longest,
+                       .row_begin = rows.begin.data(),
+                       .skin_x = rows.x.data(),
+                       .slices = rows.slices.data(),
+                       .slice_count = static_cast<int>(rows.slices.size()),
+                       .row_step = row_step,
+                       .keys = keys.data(),
+                       .skin = skin.data(),
+                       .nearest = lut.nearest.data()};
     const std::size_t scratch = scratch_bytes<Key>(lut.size[1], lut.size[2]);
     const auto for_all = [&](int count, auto&& pass) {
         tbb::parallel_for(tbb::blocked_range<int>(0, count, 4), [&](const tbb::blocked_range<int>& range) {
@@ -85,8 +101,8 @@ void transform(SkinLut& lut, const SkinRows& rows, unsigned bits, VectorPath pat
 bool can_use(VectorPath path) {
     switch (path) {
         case VectorPath::avx512:
-            return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") &&
-                   __builtin_cpu_supports("avx512vl");
+            return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                   __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
         case VectorPath::avx2: return __builtin_cpu_supports("avx2");
         default: return true;
     }

@@ -34,7 +34,8 @@ struct Look {
 
 /// The nodes that may lie nearer to the triangle than `bound_mm` says: their distance from its plane, and within the plane
 /// from its circle, leaves that open. Appends their indices to `found`, returns how many.
-__attribute__((target_clones("avx2", "default"))) std::size_t open_nodes(const Look& look, const float* bound_mm, std::uint32_t* found) {
+__attribute__((target_clones("avx2", "default"))) std::size_t open_nodes(const Look& look, const float* bound_mm,
+                                                                         std::uint32_t* found) {
     std::size_t count = 0;
     for (int k = 0; k < look.count_z; ++k)
         for (int j = 0; j < look.count_y; ++j) {
@@ -87,10 +88,12 @@ private:
         std::array<std::vector<std::size_t>, 3> voxel;  // of the table, for each node along each axis
         for (std::size_t a = 0; a < 3; ++a)
             for (int n = 0; n < lut_.distance_size[a]; ++n)
-                voxel[a].push_back(static_cast<std::size_t>(std::min(std::round(n * lut_.distance_voxel_mm / lut_.voxel_mm), lut_.size[a] - 1.0)));
+                voxel[a].push_back(static_cast<std::size_t>(
+                    std::min(std::round(n * lut_.distance_voxel_mm / lut_.voxel_mm), lut_.size[a] - 1.0)));
         tbb::parallel_for(0, lut_.distance_size[2], [&](int k) {
             for (int j = 0; j < lut_.distance_size[1]; ++j) {
-                const std::uint32_t* pointers = lut_.nearest.data() + (voxel[2][at(k)] * at(lut_.size[1]) + voxel[1][at(j)]) * at(lut_.size[0]);
+                const std::uint32_t* pointers =
+                    lut_.nearest.data() + (voxel[2][at(k)] * at(lut_.size[1]) + voxel[1][at(j)]) * at(lut_.size[0]);
                 const std::size_t row = at(k) * slab_ + at(j) * row_;
                 for (int i = 0; i < lut_.distance_size[0]; ++i) {
                     const auto& skin = lut_.skin[pointers[voxel[0][at(i)]]].position_in_ct;
@@ -107,7 +110,8 @@ private:
         std::vector<std::vector<std::uint32_t>> bins(at(blocks));
         for (std::size_t t = 0; t < skin_.triangles.size(); ++t) {
             const auto [low, high] = range(t);
-            for (int b = low.z() / kLayers; b <= std::min(high.z() / kLayers, blocks - 1); ++b) bins[at(b)].push_back(static_cast<std::uint32_t>(t));
+            for (int b = low.z() / kLayers; b <= std::min(high.z() / kLayers, blocks - 1); ++b)
+                bins[at(b)].push_back(static_cast<std::uint32_t>(t));
         }
         tbb::parallel_for(0, blocks, [&](int b) {
             Layers layers{b * kLayers, std::min((b + 1) * kLayers, lut_.distance_size[2]), at(b * kLayers) * slab_, {}, {}};
@@ -153,17 +157,21 @@ private:
         const Vector3d centre = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3;
         double radius = 0;
         for (std::size_t c = 0; c < 3; ++c) radius = std::max(radius, (corner(t, c) - centre).norm());
-        const Eigen::Vector3f first = (position(low.x(), low.y(), low.z()) - centre).cast<float>(), normal = sides_.face_normal(t).cast<float>();
+        const Eigen::Vector3f first = (position(low.x(), low.y(), low.z()) - centre).cast<float>(),
+                              normal = sides_.face_normal(t).cast<float>();
         const std::size_t first_node = at(low.z() - layers.begin) * slab_ + at(low.y()) * row_ + at(low.x());
-        const Look look{first.x(), first.y(), first.z(), static_cast<float>(lut_.distance_voxel_mm), normal.x(), normal.y(), normal.z(),
-                        static_cast<float>(radius) + kSlack_mm, count.x(), count.y(), count.z(), first_node, row_, slab_};
+        const Look look{first.x(),  first.y(),  first.z(),  static_cast<float>(lut_.distance_voxel_mm),
+                        normal.x(), normal.y(), normal.z(), static_cast<float>(radius) + kSlack_mm,
+                        count.x(),  count.y(),  count.z(),  first_node,
+                        row_,       slab_};
         layers.open.resize(static_cast<std::size_t>(count.prod()));
         const std::size_t found = open_nodes(look, layers.bound_mm.data(), layers.open.data());
         for (std::size_t n = 0; n < found; ++n) offer(t, layers.first_node + layers.open[n], layers.bound_mm[layers.open[n]]);
     }
 
     void offer(std::size_t t, std::size_t node, float& bound_mm) {
-        const Vector3d p = position(static_cast<int>(node % row_), static_cast<int>(node % slab_ / row_), static_cast<int>(node / slab_));
+        const Vector3d p =
+            position(static_cast<int>(node % row_), static_cast<int>(node % slab_ / row_), static_cast<int>(node / slab_));
         const Vector3d w = closest_weights(p, corner(t, 0), corner(t, 1), corner(t, 2));
         const Vector3d offset = p - (w.x() * corner(t, 0) + w.y() * corner(t, 1) + w.z() * corner(t, 2));
         const double far = offset.norm();

@@ -14,7 +14,8 @@ namespace {
 using Eigen::Vector3d;
 
 /// The first crossing of `threshold` on the way from `start`, in steps.
-std::optional<double> first_crossing(const Volume& volume, const Vector3d& start, const Vector3d& step, int steps, double threshold) {
+std::optional<double> first_crossing(const Volume& volume, const Vector3d& start, const Vector3d& step, int steps,
+                                     double threshold) {
     double before = -INFINITY;
     for (int s = 0; s <= steps; ++s) {
         const auto value = value_at(volume, start + s * step);

@@ -62,7 +62,8 @@ private:
         const Vector3d weights = closest_weights(voxel.cast<double>(), t[0], t[1], t[2]);
         const Vector3d point = weights.x() * t[0] + weights.y() * t[1] + weights.z() * t[2];
         const double squared = (point - voxel.cast<double>()).squaredNorm();
-        std::uint32_t& number = number_[(at(voxel.z() - first_) * at(lut_.size[1]) + at(voxel.y())) * at(lut_.size[0]) + at(voxel.x())];
+        std::uint32_t& number =
+            number_[(at(voxel.z() - first_) * at(lut_.size[1]) + at(voxel.y())) * at(lut_.size[0]) + at(voxel.x())];
         if (number == kNone) {
             number = static_cast<std::uint32_t>(points_.size());
             points_.emplace_back();
@@ -115,7 +116,8 @@ std::vector<std::vector<std::uint32_t>> triangles_of_layers(const TriangleMesh& 
             low = std::min(low, z);
             high = std::max(high, z);
         }
-        const auto first = static_cast<int>(std::floor(low + 0.5)) / kLayers, last = static_cast<int>(std::floor(high + 0.5)) / kLayers;
+        const auto first = static_cast<int>(std::floor(low + 0.5)) / kLayers,
+                   last = static_cast<int>(std::floor(high + 0.5)) / kLayers;
         for (int g = first; g <= last; ++g) groups[at(g)].push_back(static_cast<std::uint32_t>(t));
     }
     return groups;

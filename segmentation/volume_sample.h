@@ -17,7 +17,8 @@ inline std::optional<double> value_at(const Volume& volume, const Eigen::Vector3
     const auto along_x = [&](std::size_t from) {
         return (1 - f.x()) * static_cast<double>(at[from]) + f.x() * static_cast<double>(at[from + 1]);
     };
-    const double front = (1 - f.y()) * along_x(0) + f.y() * along_x(row), back = (1 - f.y()) * along_x(slab) + f.y() * along_x(slab + row);
+    const double front = (1 - f.y()) * along_x(0) + f.y() * along_x(row),
+                 back = (1 - f.y()) * along_x(slab) + f.y() * along_x(slab + row);
     return (1 - f.z()) * front + f.z() * back;
 }
 

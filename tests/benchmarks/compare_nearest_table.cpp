@@ -97,7 +97,9 @@ struct Scene {
         for (const auto& s : lut.skin) itk_image->GetBufferPointer()[index(s)] = 1, inverse[index(s)] = 0;
     }
     std::size_t voxels() const { return at(lut.size[0]) * at(lut.size[1]) * at(lut.size[2]); }
-    std::size_t index(const SkinPoint& s) const { return (at(s.voxel[2]) * at(lut.size[1]) + s.voxel[1]) * at(lut.size[0]) + s.voxel[0]; }
+    std::size_t index(const SkinPoint& s) const {
+        return (at(s.voxel[2]) * at(lut.size[1]) + s.voxel[1]) * at(lut.size[0]) + s.voxel[0];
+    }
     std::array<int, 3> voxel(std::size_t n) const {
         const std::size_t row = at(lut.size[0]), slab = row * at(lut.size[1]);
         return {static_cast<int>(n % row), static_cast<int>(n % slab / row), static_cast<int>(n / slab)};
@@ -112,7 +114,8 @@ struct Scene {
 
 std::vector<Contestant> contestants(Scene& scene) {
     std::vector<Contestant> all;
-    const std::pair<VectorPath, const char*> paths[] = {{VectorPath::avx512, "ours, AVX-512"}, {VectorPath::avx2, "ours, AVX2"}, {VectorPath::plain, "ours, plain"}};
+    const std::pair<VectorPath, const char*> paths[] = {
+        {VectorPath::avx512, "ours, AVX-512"}, {VectorPath::avx2, "ours, AVX2"}, {VectorPath::plain, "ours, plain"}};
     for (const auto& [path, name] : paths)
         if (can_use(path))
             all.push_back({name, "voxel", [&scene, path] { point_to_nearest(scene.lut, path); },
@@ -178,17 +181,19 @@ void compare(const TriangleMesh& skin, int n, int repeats) {
     for (const auto& s : scene.lut.skin) on_skin[scene.index(s)] = true;
     for (Contestant& one : all) {
         std::size_t same = 0;
-        for (std::size_t v = 0; v < scene.voxels(); ++v) same += !on_skin[v] && std::abs(one.squared(v) - scene.squared(v, scene.lut.nearest[v])) < 1e-3;
+        for (std::size_t v = 0; v < scene.voxels(); ++v)
+            same += !on_skin[v] && std::abs(one.squared(v) - scene.squared(v, scene.lut.nearest[v])) < 1e-3;
         one.exact = static_cast<double>(same) / static_cast<double>(scene.voxels() - scene.lut.skin.size());
     }
     const int samples = 1000, wrong = wrong_of_samples(scene, samples);
-    fmt::print("\n{} x {} x {} voxels, {} of skin; median of {}; ours wrong at {} of {} voxels tried by brute force\n", scene.lut.size[0], scene.lut.size[1],
-               scene.lut.size[2], scene.lut.skin.size(), repeats, wrong, samples);
+    fmt::print("\n{} x {} x {} voxels, {} of skin; median of {}; ours wrong at {} of {} voxels tried by brute force\n",
+               scene.lut.size[0], scene.lut.size[1], scene.lut.size[2], scene.lut.skin.size(), repeats, wrong, samples);
     fmt::print("{:30} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "", "gives", "wall s", "CPU s", "x wall", "x CPU", "exact %");
     for (const Contestant& one : all)
         fmt::print("{:30} {:>9} {:>9.4f} {:>9.4f} {:>9.1f} {:>9.1f} {:>9.3f}\n", one.name, one.gives, one.wall(), one.processor(),
                    one.wall() / all[0].wall(), one.processor() / all[0].processor(), 100 * one.exact);
-    if (static_cast<double>(scene.voxels()) > kDanielssonMost) fmt::print("itk::DanielssonDistanceMap is left out at this size.\n");
+    if (static_cast<double>(scene.voxels()) > kDanielssonMost)
+        fmt::print("itk::DanielssonDistanceMap is left out at this size.\n");
 }
 
 /// The whole build of the table, by stage.

@@ -67,7 +67,9 @@ double furthest(const TriangleMesh& from, const TriangleMesh& to) {
             const auto [a, b, c] = left.back();
             left.pop_back();
             const Vector3d middle = (a + b + c) / 3;
-            const double d = distance(middle), radius = std::sqrt(std::max({(a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm()}));
+            const double d = distance(middle),
+                         radius = std::sqrt(
+                             std::max({(a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm()}));
             least = std::max(least, d);
             if (d + radius <= least + kTolerance_mm) continue;
             const Vector3d ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
@@ -115,9 +117,15 @@ std::vector<Shape> shapes() {
     std::normal_distribution<double> noise(0, 0.04);
     std::vector<Shape> all;
     all.push_back({"ball", star([](const Vector3d&) { return 9.0; }, 9, 0.7)});
-    all.push_back({"bumps", star([](const Vector3d& w) { return 9 + std::sin(9 * w.x()) * std::sin(8 * w.y()) + 0.5 * std::cos(11 * w.z()); }, 9, 0.5)});
+    all.push_back(
+        {"bumps",
+         star([](const Vector3d& w) { return 9 + std::sin(9 * w.x()) * std::sin(8 * w.y()) + 0.5 * std::cos(11 * w.z()); }, 9,
+              0.5)});
     all.push_back({"scanner's noise", star([&](const Vector3d&) { return 9 + noise(random); }, 9, 0.7)});
-    all.push_back({"disc with a sharp rim", star([](const Vector3d& w) { return 1 / std::sqrt(w.x() * w.x() / 100 + w.y() * w.y() / 80 + w.z() * w.z() / 3); }, 8, 0.5)});
+    all.push_back(
+        {"disc with a sharp rim",
+         star([](const Vector3d& w) { return 1 / std::sqrt(w.x() * w.x() / 100 + w.y() * w.y() / 80 + w.z() * w.z() / 3); }, 8,
+              0.5)});
     return all;
 }
 
@@ -170,7 +178,9 @@ TEST(DecimateSkin, ACollapseMovesTheSurfaceByNoMoreThanItsBound) {
         for (int s = 0; s < 200; ++s) {
             const std::size_t i = static_cast<std::size_t>(s % n);
             const double a = any(random), b = any(random) * (1 - a);
-            const auto on = [&](const Vector3d& centre) { return Vector3d(centre + a * (ring[i] - centre) + b * (ring[(i + 1) % ring.size()] - centre)); };
+            const auto on = [&](const Vector3d& centre) {
+                return Vector3d(centre + a * (ring[i] - centre) + b * (ring[(i + 1) % ring.size()] - centre));
+            };
             most = std::max({most, distance_to_fan(on(v), ring[target], ring), distance_to_fan(on(ring[target]), v, ring)});
         }
         ASSERT_LE(most, *bound + 1e-12) << "trial " << trial;

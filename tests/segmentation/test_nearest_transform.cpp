@@ -70,18 +70,24 @@ std::vector<Shape> small_shapes() {
     std::vector<Shape> shapes;
     shapes.push_back({"one voxel", table({1, 1, 1}, [](int, int, int) { return true; })});
     shapes.push_back({"one point", table({37, 41, 29}, [](int i, int j, int k) { return i == 36 && j == 0 && k == 11; })});
-    shapes.push_back({"first and last", table({33, 20, 19}, [](int i, int j, int k) { return (i == 0 && j == 0 && k == 0) || (i == 32 && j == 19 && k == 18); })});
+    shapes.push_back({"first and last", table({33, 20, 19}, [](int i, int j, int k) {
+                          return (i == 0 && j == 0 && k == 0) || (i == 32 && j == 19 && k == 18);
+                      })});
     shapes.push_back({"plane x", table({40, 17, 23}, [](int i, int, int) { return i == 31; })});
     shapes.push_back({"plane y", table({35, 21, 18}, [](int, int j, int) { return j == 5; })});
     shapes.push_back({"plane z", table({31, 16, 25}, [](int, int, int k) { return k == 24; })});
-    shapes.push_back({"two planes, ties between", table({32, 16, 16}, [](int i, int, int k) { return i == 4 || i == 10 || k == 3 || k == 9; })});
+    shapes.push_back({"two planes, ties between",
+                      table({32, 16, 16}, [](int i, int, int k) { return i == 4 || i == 10 || k == 3 || k == 9; })});
     shapes.push_back({"all skin", table({34, 9, 8}, [](int, int, int) { return true; })});
     shapes.push_back({"chequered, all ties", table({36, 12, 11}, [](int i, int j, int k) { return (i + j + k) % 2 == 0; })});
-    shapes.push_back({"every third slice and row", table({67, 24, 24}, [](int i, int j, int k) { return k % 3 == 1 && j % 5 == 2 && i % 7 == 3; })});
+    shapes.push_back({"every third slice and row",
+                      table({67, 24, 24}, [](int i, int j, int k) { return k % 3 == 1 && j % 5 == 2 && i % 7 == 3; })});
     shapes.push_back({"row", table({129, 1, 1}, [](int i, int, int) { return i % 40 == 20; })});
     shapes.push_back({"column", table({1, 130, 1}, [](int, int j, int) { return j % 50 == 7; })});
     shapes.push_back({"stack", table({1, 1, 131}, [](int, int, int k) { return k == 3 || k == 90; })});
-    shapes.push_back({"shell", table({50, 44, 47}, [](int i, int j, int k) { return std::abs(std::hypot(i - 24.3, j - 22.0, k - 20.5) - 16) < 0.6; })});
+    shapes.push_back({"shell", table({50, 44, 47}, [](int i, int j, int k) {
+                          return std::abs(std::hypot(i - 24.3, j - 22.0, k - 20.5) - 16) < 0.6;
+                      })});
     unsigned seed = 1;
     for (const int x : {15, 16, 31, 32, 33, 64, 65})
         for (const double share : {0.0008, 0.02}) {
@@ -107,7 +113,8 @@ TEST_P(NearestTransform, PointsEveryVoxelOfSmallTablesToTheFirstOfItsNearest) {
         for (int k = 0; k < shape.lut.size[2]; ++k)
             for (int j = 0; j < shape.lut.size[1]; ++j)
                 for (int i = 0; i < shape.lut.size[0]; ++i) wrong += shape.lut.nearest.at(n++) != trying.nearest(i, j, k);
-        EXPECT_EQ(wrong, 0U) << shape.name << ", " << shape.lut.size[0] << " x " << shape.lut.size[1] << " x " << shape.lut.size[2];
+        EXPECT_EQ(wrong, 0U) << shape.name << ", " << shape.lut.size[0] << " x " << shape.lut.size[1] << " x "
+                             << shape.lut.size[2];
         EXPECT_EQ(n, shape.lut.nearest.size());
     }
 }
@@ -130,13 +137,16 @@ TEST_P(NearestTransform, TablesTooLongForThePackedKeysGetWideOnes) {
 
 INSTANTIATE_TEST_SUITE_P(Paths, NearestTransform, testing::Values(VectorPath::plain, VectorPath::avx2, VectorPath::avx512),
                          [](const auto& path) {
-                             return path.param == VectorPath::plain ? "Plain" : path.param == VectorPath::avx2 ? "Avx2" : "Avx512";
+                             return path.param == VectorPath::plain  ? "Plain"
+                                    : path.param == VectorPath::avx2 ? "Avx2"
+                                                                     : "Avx512";
                          });
 
 /// A bumpy closed shell of a head's shape over most of a table.
 SkinLut large_shell(std::array<int, 3> size) {
     return table(size, [&](int i, int j, int k) {
-        const double x = (i - 0.5 * size[0]) / (0.33 * size[0]), y = (j - 0.47 * size[1]) / (0.36 * size[1]), z = (k - 0.5 * size[2]) / (0.34 * size[2]);
+        const double x = (i - 0.5 * size[0]) / (0.33 * size[0]), y = (j - 0.47 * size[1]) / (0.36 * size[1]),
+                     z = (k - 0.5 * size[2]) / (0.34 * size[2]);
         const double r = x * x + y * y + z * z;
         if (r < 0.7 || r > 1.4) return false;
         return std::abs(std::sqrt(r) + 0.04 * std::sin(9 * x) * std::cos(7 * y + z) - 1) < 1.8 / size[0];

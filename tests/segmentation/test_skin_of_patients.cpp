@@ -161,11 +161,14 @@ TEST_F(ExamplePatient, NotOneVertexIsOnTheHeadHolder) {
     // -50 HU outside the head lies within 3 mm of this circle, up to y = -112 mm.
     const Eigen::Vector2d axis(124.8, -103.4);
     const double radius_mm = 113.2, thick_mm = 3, top_y_mm = -112;
-    const auto on_cup = [&](const Vector3d& p) { return p.y() > top_y_mm && std::abs((p.head<2>() - axis).norm() - radius_mm) < thick_mm + 2; };
+    const auto on_cup = [&](const Vector3d& p) {
+        return p.y() > top_y_mm && std::abs((p.head<2>() - axis).norm() - radius_mm) < thick_mm + 2;
+    };
     std::size_t plastic = 0, theirs = 0, ours = 0;
     for (int k = 0; k < volume.size[2]; k += 4)
         for (int j = 0; j < volume.size[1]; ++j)
-            for (int i = 0; i < volume.size[0]; ++i) plastic += volume.at(i, j, k) > -50 && on_cup(volume.ct_from_voxel * Vector3d(i, j, k));
+            for (int i = 0; i < volume.size[0]; ++i)
+                plastic += volume.at(i, j, k) > -50 && on_cup(volume.ct_from_voxel * Vector3d(i, j, k));
     EXPECT_GT(plastic, 10000U);  // the cup is there
     const auto surfaces = read_invesalius_surfaces(*example_patient());
     for (const auto& p : surfaces.at(0).vertices_in_ct) theirs += on_cup(p);

@@ -33,7 +33,8 @@ Volume ball_with_bone(double bone_radius_mm) {
         for (int j = 0; j < volume.size[1]; ++j)
             for (int i = 0; i < volume.size[0]; ++i) {
                 const Vector3d p = volume.ct_from_voxel * Vector3d(i, j, k);
-                volume.values.push_back(static_cast<float>(-1000 + 1040 * share(p.norm() - kSkin_mm) + 960 * share((p - kBoneCentre).norm() - bone_radius_mm)));
+                volume.values.push_back(static_cast<float>(-1000 + 1040 * share(p.norm() - kSkin_mm) +
+                                                           960 * share((p - kBoneCentre).norm() - bone_radius_mm)));
             }
     return volume;
 }
@@ -53,7 +54,8 @@ TEST(SkinThickness, OfABallIsTheWayToItsBone) {
         double sum2 = 0, worst = 0;
         for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
             ASSERT_FALSE(std::isnan(skin.thickness_mm[v]));
-            const double error = static_cast<double>(skin.thickness_mm[v]) - true_thickness(skin.vertices_in_ct[v], skin.normals_in_ct[v], bone_mm);
+            const double error = static_cast<double>(skin.thickness_mm[v]) -
+                                 true_thickness(skin.vertices_in_ct[v], skin.normals_in_ct[v], bone_mm);
             sum2 += error * error;
             worst = std::max(worst, std::abs(error));
         }
@@ -109,7 +111,9 @@ TEST(SkinThickness, ReachesTheTable) {
     const SkinLut lut = build_skin_lut(skin);
     for (const auto& s : lut.skin) {
         if (s.position_in_ct.z() > 52) { EXPECT_TRUE(std::isnan(s.thickness_mm)); }  // edges are below 2.2 mm
-        if (s.position_in_ct.z() < 48) { ASSERT_NEAR(s.thickness_mm, true_thickness(s.position_in_ct.cast<double>(), s.normal_in_ct.cast<double>(), 60), 0.4); }
+        if (s.position_in_ct.z() < 48) {
+            ASSERT_NEAR(s.thickness_mm, true_thickness(s.position_in_ct.cast<double>(), s.normal_in_ct.cast<double>(), 60), 0.4);
+        }
     }
     skin.thickness_mm.clear();
     for (const auto& s : build_skin_lut(skin).skin) ASSERT_TRUE(std::isnan(s.thickness_mm));
