@@ -69,16 +69,19 @@ void write_mesh(const TriangleMesh& mesh, const fs::path& file) {
     const std::size_t count = mesh.vertices_in_ct.size();
     check_length(mesh.normals_in_ct, count, file, "normals");
     check_length(mesh.flags, count, file, "flags");
+    check_length(mesh.thickness_mm, count, file, "thickness");
     std::string header = "ply\nformat binary_little_endian 1.0\ncomment Planlight skin mesh, mm. SPACE=LPS\nelement vertex " + std::to_string(count) + "\n" +
                          columns_of("double", {"x", "y", "z"});
     if (!mesh.normals_in_ct.empty()) header += columns_of("double", {"nx", "ny", "nz"});
     if (!mesh.flags.empty()) header += columns_of("uchar", {"flags"});
+    if (!mesh.thickness_mm.empty()) header += columns_of("float", {"thickness"});
     header += "element face " + std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
     Rows rows;
     for (std::size_t i = 0; i < count; ++i) {
         rows.add(mesh.vertices_in_ct[i]);
         if (!mesh.normals_in_ct.empty()) rows.add(mesh.normals_in_ct[i]);
         if (!mesh.flags.empty()) rows.add(mesh.flags[i]);
+        if (!mesh.thickness_mm.empty()) rows.add(mesh.thickness_mm[i]);
     }
     for (const auto& triangle : mesh.triangles) {
         rows.add(std::uint8_t{3});
@@ -101,6 +104,11 @@ TriangleMesh read_mesh(const fs::path& file) {
         for (const double flag : *flags) {
             if (!(flag >= 0 && flag <= 255)) damaged(file, "has flags that are not bytes");
             mesh.flags.push_back(static_cast<std::uint8_t>(flag));
+        }
+    if (const auto* thickness = ply.column("thickness"))
+        for (const double mm : *thickness) {
+            if (mm < 0 || std::isinf(mm)) damaged(file, "has a thickness below zero or without end");
+            mesh.thickness_mm.push_back(static_cast<float>(mm));  // not a number where unknown
         }
     for (const auto& face : ply.faces)
         for (std::size_t c = 2; c < face.size(); ++c)  // a polygon becomes a fan

@@ -8,7 +8,7 @@
 
 namespace planlight {
 
-/// Binary PLY with "comment SPACE=LPS"; vertex normals and flags included.
+/// Binary PLY with "comment SPACE=LPS"; vertex normals, flags and thickness included.
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file);
 
 /// PLY as written above, or another program's PLY with SPACE=LPS or SPACE=RAS (converted); without a SPACE it is refused.

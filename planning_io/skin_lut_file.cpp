@@ -4,8 +4,11 @@
 #include "planning_io/safe_write.h"
 #include "planning_io/types/error.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace planlight {
 namespace {
@@ -24,13 +27,14 @@ std::size_t product(const std::array<int, 3>& size) {
 
 /// The skin points, one array for each thing they hold.
 struct SkinColumns {
-    std::vector<float> positions, normals;
+    std::vector<float> positions, normals, thickness;
     std::vector<std::uint16_t> voxels;
     std::vector<std::uint8_t> flags;
 
     void resize(std::size_t count) {
         positions.resize(3 * count);
         normals.resize(3 * count);
+        thickness.resize(count);
         voxels.resize(3 * count);
         flags.resize(count);
     }
@@ -45,6 +49,7 @@ SkinColumns columns_of(const std::vector<SkinPoint>& skin) {
             columns.normals[3 * i + axis] = skin[i].normal_in_ct[static_cast<Eigen::Index>(axis)];
             columns.voxels[3 * i + axis] = skin[i].voxel[axis];
         }
+        columns.thickness[i] = skin[i].thickness_mm;
         columns.flags[i] = skin[i].flags;
     }
     return columns;
@@ -56,14 +61,15 @@ std::vector<SkinPoint> points_of(const SkinColumns& columns) {
         skin[i].position_in_ct = Eigen::Map<const Eigen::Vector3f>(&columns.positions[3 * i]);
         skin[i].normal_in_ct = Eigen::Map<const Eigen::Vector3f>(&columns.normals[3 * i]);
         skin[i].voxel = {columns.voxels[3 * i], columns.voxels[3 * i + 1], columns.voxels[3 * i + 2]};
+        skin[i].thickness_mm = columns.thickness[i];
         skin[i].flags = columns.flags[i];
     }
     return skin;
 }
 
 std::vector<ChunkedArray> arrays_of(SkinLut& lut, SkinColumns& columns) {
-    return {array_of(lut.nearest),    array_of(columns.positions), array_of(columns.normals),
-            array_of(columns.voxels), array_of(columns.flags),     array_of(lut.distance_mm)};
+    return {array_of(lut.nearest),        array_of(columns.positions), array_of(columns.normals), array_of(columns.voxels),
+            array_of(columns.thickness), array_of(columns.flags),     array_of(lut.distance_mm)};
 }
 
 std::string fields_of(const SkinLut& lut) {
@@ -110,24 +116,36 @@ SkinLut lut_of(const std::string& fields, SkinColumns& columns, const fs::path& 
     return lut;
 }
 
+__attribute__((target_clones("avx2", "default"))) std::uint32_t highest_of(const std::uint32_t* values, std::size_t count) {
+    std::uint32_t highest = 0;
+    for (std::size_t i = 0; i < count; ++i) highest = values[i] > highest ? values[i] : highest;
+    return highest;
+}
+
+std::uint32_t highest_of(const LargeArray<std::uint32_t>& values) {
+    return tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, values.size(), 1 << 18), std::uint32_t{0},
+        [&](const auto& range, std::uint32_t highest) { return std::max(highest, highest_of(values.data() + range.begin(), range.size())); },
+        [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); });
+}
+
 /// What a reader of the table may rely on. The sentence says what is wrong; empty when nothing is.
 std::string fault_of(const SkinLut& lut) {
     if (product(lut.size) == 0 || product(lut.size) != lut.nearest.size()) return "the table's size and its pointers do not agree";
     if (product(lut.distance_size) != lut.distance_mm.size()) return "the distance field's size and its values do not agree";
     if (!(lut.voxel_mm > 0) || !std::isfinite(lut.voxel_mm) || !lut.origin_in_ct.allFinite()) return "the table's geometry makes no sense";
     if (!lut.distance_mm.empty() && (!(lut.distance_voxel_mm > 0) || !std::isfinite(lut.distance_voxel_mm))) return "the distance field's geometry makes no sense";
-    std::uint32_t highest = 0;
-    for (const std::uint32_t pointer : lut.nearest) highest = std::max(highest, pointer);
-    if (highest >= lut.skin.size()) return "a pointer of the table points past the skin";
+    if (highest_of(lut.nearest) >= lut.skin.size()) return "a pointer of the table points past the skin";
     for (const SkinPoint& p : lut.skin) {
         if (!p.position_in_ct.allFinite() || !p.normal_in_ct.allFinite()) return "a skin point is not finite";
+        if (std::isinf(p.thickness_mm) || p.thickness_mm < 0) return "a skin point has a thickness that makes no sense";
         for (std::size_t axis = 0; axis < 3; ++axis)
             if (p.voxel[axis] >= lut.size[axis]) return "a skin point lies outside the table";
     }
     return {};
 }
 
-constexpr ChunkedKind kKind{"PLANLUT\n", 1};
+constexpr ChunkedKind kKind{"PLANLUT\n", 2};
 
 }  // namespace
 

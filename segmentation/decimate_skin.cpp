@@ -1,12 +1,15 @@
 #include "segmentation/decimate_skin.h"
 
 #include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "segmentation/closest_point_on_triangle.h"
+#include "segmentation/collapse_bound.h"
 
 namespace planlight {
 namespace {
@@ -39,7 +42,9 @@ public:
             for (const Vertex v : halves_.vertices()) try_to_remove(v, share * max_error_mm);
     }
 
-    TriangleMesh result() {
+    double most_mm() const { return most_mm_; }
+
+    TriangleMesh result() const {
         TriangleMesh mesh;
         std::vector<std::int32_t> new_index(given_.vertices_in_ct.size(), -1);
         for (const Vertex v : halves_.vertices()) {
@@ -49,6 +54,7 @@ public:
             mesh.vertices_in_ct.push_back(given_.vertices_in_ct[old]);
             if (!given_.normals_in_ct.empty()) mesh.normals_in_ct.push_back(given_.normals_in_ct[old]);
             if (!given_.flags.empty()) mesh.flags.push_back(given_.flags[old]);
+            if (!given_.thickness_mm.empty()) mesh.thickness_mm.push_back(given_.thickness_mm[old]);
         }
         for (const auto f : halves_.faces()) {
             if (halves_.status(f).deleted()) continue;
@@ -61,24 +67,45 @@ public:
     }
 
 private:
+    struct Way {
+        double least_mm;
+        HalfEdge along;
+    };
+
     const Vector3d& point(Vertex v) const { return given_.vertices_in_ct[static_cast<std::size_t>(v.idx())]; }
-    std::uint8_t flag(Vertex v) const { return given_.flags.empty() ? std::uint8_t{0} : given_.flags[static_cast<std::size_t>(v.idx())]; }
+    std::uint8_t flag(Vertex v) const {
+        return given_.flags.empty() ? std::uint8_t{0} : given_.flags[static_cast<std::size_t>(v.idx())];
+    }
     double& error_mm(Vertex v) { return error_mm_[static_cast<std::size_t>(v.idx())]; }
 
     void try_to_remove(Vertex v, double limit_mm) {
         if (halves_.status(v).deleted() || halves_.is_isolated(v) || halves_.is_boundary(v) || error_mm(v) >= limit_mm) return;
-        HalfEdge best;
-        double least = limit_mm;
+        ways_.clear();
         for (const HalfEdge h : halves_.voh_range(v)) {
             if (flag(halves_.to_vertex_handle(h)) != flag(v)) continue;
-            const double total = error_mm(v) + deviation_mm(h);
-            if (total > least || !halves_.is_collapse_ok(h)) continue;
-            least = total;
-            best = h;
+            const double total = error_mm(v) + deviation_mm(h);  // at least; the proof is dearer
+            if (total <= limit_mm && halves_.is_collapse_ok(h)) ways_.push_back({total, h});
         }
-        if (!best.is_valid()) return;
-        for (const Vertex ring : halves_.vv_range(v)) error_mm(ring) = std::max(error_mm(ring), least);
-        halves_.collapse(best);
+        std::sort(ways_.begin(), ways_.end(), [](const Way& a, const Way& b) { return a.least_mm < b.least_mm; });
+        for (const Way& way : ways_) {
+            const auto bound_mm = proven_bound(way.along);
+            if (!bound_mm || error_mm(v) + *bound_mm > limit_mm) continue;
+            const double total = error_mm(v) + *bound_mm;
+            most_mm_ = std::max(most_mm_, total);
+            for (const Vertex ring : halves_.vv_range(v)) error_mm(ring) = std::max(error_mm(ring), total);
+            halves_.collapse(way.along);
+            return;
+        }
+    }
+
+    std::optional<double> proven_bound(HalfEdge h) {
+        ring_.clear();
+        std::size_t target = 0;
+        for (const HalfEdge s : halves_.voh_ccw_range(halves_.from_vertex_handle(h))) {
+            if (s == h) target = ring_.size();
+            ring_.push_back(point(halves_.to_vertex_handle(s)));
+        }
+        return collapse_bound(point(halves_.from_vertex_handle(h)), ring_, target);
     }
 
     /// Distance of the vertex from the triangles left when it is pulled along `h`; huge when one of them would be bad.
@@ -107,13 +134,18 @@ private:
     const TriangleMesh& given_;
     double max_edge_mm_;
     HalfEdgeMesh halves_;
-    std::vector<double> error_mm_;  // bound on the error of the triangles round each vertex
+    std::vector<double> error_mm_;  // proven for the triangles round each vertex
+    double most_mm_ = 0;
+    std::vector<Way> ways_;
+    std::vector<Vector3d> ring_;
 };
 
 }  // namespace
 
 TriangleMesh decimate_skin(const TriangleMesh& mesh, double max_edge_mm, double max_error_mm) {
-    return Decimation(mesh, max_edge_mm, max_error_mm).result();
+    const Decimation decimation(mesh, max_edge_mm, max_error_mm);
+    if (decimation.most_mm() > max_error_mm) throw std::logic_error("the decimation left its bound");
+    return decimation.result();
 }
 
 }  // namespace planlight

@@ -3,127 +3,122 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <bit>
+#include <stdexcept>
 
-#include "segmentation/skin_voxels.h"
+#include "segmentation/nearest_passes.h"
 
 namespace planlight {
 namespace {
 
-/// Along one line: which position `p` has the least (q - p)^2 + squared[p], for every q (lower envelope of parabolas).
-class Envelope {
-public:
-    explicit Envelope(int n) : position_(static_cast<std::size_t>(n)), height_(position_.size()), start_(position_.size()) {}
+using namespace nearest_passes;
 
-    void clear() { count_ = 0; }
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
 
-    /// Adds the parabola of `p`; positions must rise.
-    void add(std::int32_t p, std::int32_t squared) {
-        const std::int32_t height = squared + p * p;
-        std::int32_t from = 0;
-        while (count_ > 0) {
-            const std::size_t top = count_ - 1;
-            // The new parabola is the lower one from the first q with 2 q (p - p_top) > height - height_top.
-            const std::int32_t difference = height - height_[top], twice = 2 * (p - position_[top]);
-            from = difference < 0 ? 0 : difference / twice + 1;
-            if (from > start_[top]) break;
-            --count_;
-            from = 0;
-        }
-        position_[count_] = p;
-        height_[count_] = height;
-        start_[count_] = from;
-        ++count_;
-    }
-
-    /// Calls `put(q, p)` for q = 0..n-1 with the nearest p. Nothing when there is no parabola.
-    template <class Put>
-    void read(int n, Put&& put) const {
-        for (std::size_t c = 0; c < count_; ++c) {
-            const std::int32_t end = c + 1 < count_ ? std::min(start_[c + 1], n) : n;
-            for (std::int32_t q = start_[c]; q < end; ++q) put(q, position_[c]);
-        }
-    }
-
-private:
-    std::vector<std::int32_t> position_, height_, start_;
-    std::size_t count_ = 0;
-};
-
-struct Table {
-    std::uint32_t* nearest;
-    std::array<int, 3> size;
-    std::size_t row, slab;
-    std::vector<std::array<std::int32_t, 3>> voxel;  // of each skin point
-
-    explicit Table(SkinLut& lut)
-        : nearest(lut.nearest.data()), size(lut.size), row(static_cast<std::size_t>(size[0])),
-          slab(row * static_cast<std::size_t>(size[1])), voxel(lut.skin.size()) {
-        for (std::size_t s = 0; s < voxel.size(); ++s)
-            for (std::size_t a = 0; a < 3; ++a) voxel[s][a] = lut.skin[s].voxel[a];
-    }
-};
-
-/// Nearest skin voxel of the same row: two sweeps.
-void along_row(const Table& table, std::uint32_t* line) {
-    std::uint32_t last = kNoSkin;
-    std::int32_t last_i = 0;
-    for (std::int32_t i = 0; i < table.size[0]; ++i) {
-        if (line[i] == kNoSkin) continue;
-        const std::int32_t middle = last == kNoSkin ? 0 : (last_i + i) / 2 + 1;
-        for (std::int32_t b = last == kNoSkin ? 0 : last_i + 1; b < i; ++b) line[b] = b < middle && last != kNoSkin ? last : line[i];
-        last = line[i];
-        last_i = i;
-    }
-    if (last != kNoSkin) std::fill(line + last_i + 1, line + table.size[0], last);
+template <class Key>
+const Passes<Key>& passes_for(VectorPath path) {
+    constexpr bool kNarrow = sizeof(Key) == 4;
+    if (path == VectorPath::best)
+        path = can_use(VectorPath::avx512) ? VectorPath::avx512
+               : can_use(VectorPath::avx2) ? VectorPath::avx2
+                                           : VectorPath::plain;
+    if (!can_use(path)) throw std::logic_error("this processor does not have the instructions asked for");
+    if constexpr (kNarrow) return path == VectorPath::avx512 ? kAvx512 : path == VectorPath::avx2 ? kAvx2 : kPlain;
+    else return path == VectorPath::avx512 ? kAvx512Wide : path == VectorPath::avx2 ? kAvx2Wide : kPlainWide;
 }
 
-/// `lines` neighbouring lines with stride `stride` along `axis`; each entry points to the nearest skin voxel so far.
-void along_lines(const Table& table, std::size_t first, std::size_t lines, std::size_t stride, std::size_t axis, int i0,
-                 int j0) {
-    const int n = table.size[axis];
-    Envelope envelope(n);
-    std::vector<std::uint32_t> block(static_cast<std::size_t>(n) * lines);
-    for (std::size_t q = 0; q < static_cast<std::size_t>(n); ++q)
-        std::copy_n(table.nearest + first + q * stride, lines, block.data() + q * lines);
-    std::vector<std::uint32_t> line(static_cast<std::size_t>(n));
-    for (std::size_t l = 0; l < lines; ++l) {
-        envelope.clear();
-        const std::int32_t i = i0 + static_cast<std::int32_t>(l);
-        for (std::int32_t p = 0; p < n; ++p) {
-            const std::uint32_t s = block[static_cast<std::size_t>(p) * lines + l];
-            line[static_cast<std::size_t>(p)] = s;
-            if (s == kNoSkin) continue;
-            const std::int32_t di = i - table.voxel[s][0];
-            const std::int32_t dj = axis == 2 ? j0 - table.voxel[s][1] : 0;
-            envelope.add(p, di * di + dj * dj);
+/// The skin voxels by rows of the table.
+struct SkinRows {
+    std::vector<std::uint32_t> begin;  // of each row; one more
+    std::vector<std::uint16_t> x;
+    std::vector<int> slices;           // with skin
+
+    explicit SkinRows(const SkinLut& lut) : begin(at(lut.size[1]) * at(lut.size[2]) + 1), x(lut.skin.size()) {
+        std::size_t row = 0;
+        const std::uint16_t* before = nullptr;
+        for (std::size_t s = 0; s < x.size(); ++s) {
+            const auto& v = lut.skin[s].voxel;
+            const std::size_t own = at(v[2]) * at(lut.size[1]) + v[1];
+            if (v[0] >= lut.size[0] || v[1] >= lut.size[1] || v[2] >= lut.size[2] || own + 1 < row ||
+                (own + 1 == row && *before >= v[0]))
+                throw std::logic_error("the skin voxels are not in the order of the table");
+            for (; row <= own; ++row) begin[row] = static_cast<std::uint32_t>(s);
+            x[s] = v[0];
+            before = &x[s];
+            if (slices.empty() || slices.back() != v[2]) slices.push_back(v[2]);
         }
-        envelope.read(n, [&](std::int32_t q, std::int32_t p) {
-            block[static_cast<std::size_t>(q) * lines + l] = line[static_cast<std::size_t>(p)];
+        for (; row < begin.size(); ++row) begin[row] = static_cast<std::uint32_t>(x.size());
+    }
+};
+
+/// squares[d] for d = -n .. n + kLanes at [n + d], in the keys' upper bits.
+template <class Key>
+std::vector<Key> squares_of(int n, unsigned bits) {
+    std::vector<Key> squares;
+    for (std::int64_t d = -n; d <= n + kLanes; ++d)
+        squares.push_back(static_cast<Key>(static_cast<std::uint64_t>(d * d) << bits));
+    return squares;
+}
+
+template <class Key>
+void transform(SkinLut& lut, const SkinRows& rows, unsigned bits, VectorPath path) {
+    const Passes<Key>& passes = passes_for<Key>(path);
+    const int longest = *std::max_element(lut.size.begin(), lut.size.end());
+    const std::vector<Key> squares = squares_of<Key>(longest, bits);
+    const std::size_t row_step = (rows.slices.size() + 1) * kLanes;  // one more: no power of two, which would crowd the caches
+    LargeArray<Key> keys(row_step * at(lut.size[1]));
+    LargeArray<std::uint32_t> skin(keys.size());
+    Stripe<Key> stripe{.size_x = lut.size[0],
+                       .size_y = lut.size[1],
+                       .size_z = lut.size[2],
+                       .x0 = 0,
+                       .bits = bits,
+                       .squares = squares.data() + longest,
+                       .row_begin = rows.begin.data(),
+                       .skin_x = rows.x.data(),
+                       .slices = rows.slices.data(),
+                       .slice_count = static_cast<int>(rows.slices.size()),
+                       .row_step = row_step,
+                       .keys = keys.data(),
+                       .skin = skin.data(),
+                       .nearest = lut.nearest.data()};
+    const std::size_t scratch = scratch_bytes<Key>(lut.size[1], lut.size[2]);
+    const auto for_all = [&](int count, auto&& pass) {
+        tbb::parallel_for(tbb::blocked_range<int>(0, count, 4), [&](const tbb::blocked_range<int>& range) {
+            thread_local LargeArray<std::byte> own;
+            if (own.size() < scratch) own = LargeArray<std::byte>(scratch);
+            for (int i = range.begin(); i < range.end(); ++i) pass(stripe, i, own.data());
         });
+    };
+    for (; stripe.x0 < stripe.size_x; stripe.x0 += kLanes) {
+        for_all(stripe.slice_count, passes.in_slice);
+        for_all(stripe.size_y, passes.across_slices);
     }
-    for (std::size_t q = 0; q < static_cast<std::size_t>(n); ++q)
-        std::copy_n(block.data() + q * lines, lines, table.nearest + first + q * stride);
-}
-
-constexpr std::size_t kLines = 16;  // one cache line of pointers
-
-void along_columns(const Table& table, std::size_t base, std::size_t stride, std::size_t axis, int j) {
-    for (std::size_t i = 0; i < table.row; i += kLines)
-        along_lines(table, base + i, std::min(kLines, table.row - i), stride, axis, static_cast<int>(i), j);
 }
 
 }  // namespace
 
-void point_to_nearest(SkinLut& lut) {
-    const Table table(lut);
-    tbb::parallel_for(0, table.size[2], [&](int k) {
-        const std::size_t base = static_cast<std::size_t>(k) * table.slab;
-        for (int j = 0; j < table.size[1]; ++j) along_row(table, table.nearest + base + static_cast<std::size_t>(j) * table.row);
-        along_columns(table, base, table.row, 1, 0);
-    });
-    tbb::parallel_for(0, table.size[1], [&](int j) {
-        along_columns(table, static_cast<std::size_t>(j) * table.row, table.slab, 2, j);
-    });
+bool can_use(VectorPath path) {
+    switch (path) {
+        case VectorPath::avx512:
+            return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+                   __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+        case VectorPath::avx2: return __builtin_cpu_supports("avx2");
+        default: return true;
+    }
+}
+
+void point_to_nearest(SkinLut& lut, VectorPath path) {
+    if (lut.skin.empty()) throw std::logic_error("a table needs a skin");
+    const SkinRows rows(lut);
+    lut.nearest = {};
+    lut.nearest.resize(at(lut.size[0]) * at(lut.size[1]) * at(lut.size[2]));
+    const auto most = static_cast<unsigned>(std::max(lut.size[1], lut.size[2]));
+    const unsigned bits = std::max(6U, static_cast<unsigned>(std::bit_width(most - 1)));
+    std::uint64_t furthest = 0;  // squared
+    for (const int n : lut.size) furthest += at(n - 1) * at(n - 1);
+    if (furthest >> (32 - bits) == 0) transform<std::uint32_t>(lut, rows, bits, path);
+    else transform<std::uint64_t>(lut, rows, bits, path);
 }
 
 }  // namespace planlight

@@ -7,6 +7,7 @@
 
 #include "planning_io/types/triangle_mesh.h"
 #include "planning_io/types/volume.h"
+#include "segmentation/skin_thickness.h"
 
 namespace planlight {
 
@@ -16,6 +17,7 @@ struct SkinSettings {
     double detach_radius_mm = 2.5;      ///< bridges thinner than twice this to the table or head holder are cut
     double max_edge_mm = 2;             ///< of the finished mesh
     double max_decimation_error_mm = 0.15;
+    ThicknessSettings thickness;        ///< of the soft tissue over the bone
 };
 
 /// Which voxels are body (1) and which is outside air (0), same order as Volume::values, with what was taken away.
@@ -34,7 +36,7 @@ SkinMask segment_skin(const Volume& volume, const SkinSettings& settings = {},
                       const std::function<void(double)>& progress = {});
 
 /// The outer skin as triangles in ct: sub-voxel on the field's crossing of the threshold, one piece, closed (lids flagged
-/// kSeal, volume ends kCutPlane), outward normals, decimated within the bound.
+/// kSeal, volume ends kCutPlane), outward normals, decimated within the bound, with its thickness over the bone (CT in HU).
 TriangleMesh triangulate_skin(const Volume& volume, const SkinMask& mask, const SkinSettings& settings = {},
                               const std::function<void(double)>& progress = {});
 

@@ -8,173 +8,187 @@
 #include <limits>
 
 #include "segmentation/closest_point_on_triangle.h"
+#include "segmentation/mesh_sides.h"
 
 namespace planlight {
 namespace {
 
 using Eigen::Vector3d;
 
+constexpr float kUnknown = std::numeric_limits<float>::max();
+constexpr int kRow = 8;       // nodes that are looked at together
+constexpr int kLayers = 6;    // of the grid that one task owns
+constexpr float kSlack_mm = 1e-3F;  // above the rounding of all that is kept as float
+
 std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
 
-/// Pseudonormals: which side of the surface a point is on, whatever its nearest feature.
-struct SidedTriangle {
-    std::array<Vector3d, 3> corner;
-    std::array<Vector3d, 3> corner_normal;
-    std::array<Vector3d, 3> edge_normal;  ///< of the edge opposite to the corner
-    Vector3d face_normal, centre;
-    double radius;
+/// A triangle and a box of nodes, seen from the triangle's centre; mm.
+struct Look {
+    float x, y, z;                    ///< the first node
+    float step;
+    float normal_x, normal_y, normal_z;
+    float radius;                     ///< of the triangle round its centre
+    int count_x, count_y, count_z;
+    std::size_t first, row, slab;     ///< node's index, and strides
 };
 
-struct EdgeUse {
-    std::int32_t low, high;
-    std::uint32_t triangle;
-    std::uint8_t opposite;
-    bool same_edge(const EdgeUse& other) const { return low == other.low && high == other.high; }
-};
-
-std::vector<EdgeUse> sorted_edges(const TriangleMesh& skin) {
-    std::vector<EdgeUse> edges;
-    edges.reserve(skin.triangles.size() * 3);
-    for (std::size_t t = 0; t < skin.triangles.size(); ++t)
-        for (std::size_t c = 0; c < 3; ++c) {
-            const auto a = skin.triangles[t][(c + 1) % 3], b = skin.triangles[t][(c + 2) % 3];
-            edges.push_back({std::min(a, b), std::max(a, b), static_cast<std::uint32_t>(t), static_cast<std::uint8_t>(c)});
+/// The nodes that may lie nearer to the triangle than `bound_mm` says: their distance from its plane, and within the plane
+/// from its circle, leaves that open. Appends their indices to `found`, returns how many.
+__attribute__((target_clones("avx2", "default"))) std::size_t open_nodes(const Look& look, const float* bound_mm,
+                                                                         std::uint32_t* found) {
+    std::size_t count = 0;
+    for (int k = 0; k < look.count_z; ++k)
+        for (int j = 0; j < look.count_y; ++j) {
+            const float y = look.y + static_cast<float>(j) * look.step, z = look.z + static_cast<float>(k) * look.step;
+            const float across = y * y + z * z, plane_yz = y * look.normal_y + z * look.normal_z;
+            const std::size_t row = look.first + at(k) * look.slab + at(j) * look.row;
+            for (int i = 0; i < look.count_x; i += kRow) {
+                const float* bound = bound_mm + row + i;
+                std::int32_t open[kRow], any = 0;
+                for (int l = 0; l < kRow; ++l) {
+                    const float x = look.x + static_cast<float>(i + l) * look.step;
+                    const float plane = x * look.normal_x + plane_yz, within = x * x + across - plane * plane;
+                    const float room = bound[l] * bound[l] - plane * plane;  // squared distance left within the plane
+                    const float over = within - look.radius * look.radius - room;
+                    // within <= (radius + sqrt(room))^2, without the root
+                    open[l] = (room > 0) & ((over <= 0) | (over * over <= 4 * look.radius * look.radius * room));
+                    any |= open[l];
+                }
+                if (!any) continue;
+                for (int l = 0; l < kRow && i + l < look.count_x; ++l)
+                    if (open[l]) found[count++] = static_cast<std::uint32_t>(row + at(i + l));
+            }
         }
-    std::sort(edges.begin(), edges.end(), [](const EdgeUse& a, const EdgeUse& b) {
-        return a.low != b.low ? a.low < b.low : a.high < b.high;
-    });
-    return edges;
-}
-
-std::vector<SidedTriangle> sided_triangles(const TriangleMesh& skin) {
-    std::vector<SidedTriangle> sided(skin.triangles.size());
-    std::vector<Vector3d> corner_sum(skin.vertices_in_ct.size(), Vector3d::Zero());
-    for (std::size_t t = 0; t < sided.size(); ++t) {
-        SidedTriangle& s = sided[t];
-        for (std::size_t c = 0; c < 3; ++c) s.corner[c] = skin.vertices_in_ct[at(skin.triangles[t][c])];
-        s.face_normal = (s.corner[1] - s.corner[0]).cross(s.corner[2] - s.corner[0]).normalized();
-        s.centre = (s.corner[0] + s.corner[1] + s.corner[2]) / 3;
-        s.radius = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            s.radius = std::max(s.radius, (s.corner[c] - s.centre).norm());
-            const Vector3d u = (s.corner[(c + 1) % 3] - s.corner[c]).normalized(), v = (s.corner[(c + 2) % 3] - s.corner[c]).normalized();
-            corner_sum[at(skin.triangles[t][c])] += std::acos(std::clamp(u.dot(v), -1.0, 1.0)) * s.face_normal;
-        }
-        s.edge_normal.fill(s.face_normal);
-    }
-    const std::vector<EdgeUse> edges = sorted_edges(skin);
-    for (std::size_t e = 0; e + 1 < edges.size(); ++e) {
-        if (!edges[e].same_edge(edges[e + 1])) continue;
-        const Vector3d sum = sided[edges[e].triangle].face_normal + sided[edges[e + 1].triangle].face_normal;
-        sided[edges[e].triangle].edge_normal[edges[e].opposite] = sum;
-        sided[edges[e + 1].triangle].edge_normal[edges[e + 1].opposite] = sum;
-    }
-    for (std::size_t t = 0; t < sided.size(); ++t)
-        for (std::size_t c = 0; c < 3; ++c) sided[t].corner_normal[c] = corner_sum[at(skin.triangles[t][c])];
-    return sided;
-}
-
-/// The feature's pseudonormal for the weights of the closest point.
-const Vector3d& normal_at(const SidedTriangle& s, const Vector3d& weights) {
-    for (int c = 0; c < 3; ++c)
-        if (weights[c] >= 1) return s.corner_normal[static_cast<std::size_t>(c)];
-    for (int c = 0; c < 3; ++c)
-        if (weights[c] <= 0) return s.edge_normal[static_cast<std::size_t>(c)];
-    return s.face_normal;
+    return count;
 }
 
 class DistanceGrid {
 public:
-    explicit DistanceGrid(SkinLut& lut) : lut_(lut) {
-        lut_.distance_mm.assign(at(lut.distance_size[0]) * at(lut.distance_size[1]) * at(lut.distance_size[2]), kFar);
+    DistanceGrid(const TriangleMesh& skin, SkinLut& lut)
+        : skin_(skin), lut_(lut), sides_(skin), row_(at(lut.distance_size[0])), slab_(row_ * at(lut.distance_size[1])),
+          bound_mm_(slab_ * at(lut.distance_size[2])) {
+        lut_.distance_mm = {};
+        lut_.distance_mm.resize(slab_ * at(lut.distance_size[2]));
+        put_bounds();
+        put_band();
+        put_signs();
     }
 
-    void put_band(const std::vector<SidedTriangle>& triangles) {
-        // Each task owns some layers of the grid, so no two write the same value.
-        constexpr int kLayers = 6;
-        const int blocks = (lut_.distance_size[2] + kLayers - 1) / kLayers;
-        std::vector<std::vector<std::uint32_t>> bins(at(blocks));
-        for (std::size_t t = 0; t < triangles.size(); ++t) {
-            const auto [low, high] = range(triangles[t]);
-            for (int b = std::max(low.z(), 0) / kLayers; b <= std::min(high.z() / kLayers, blocks - 1); ++b)
-                bins[at(b)].push_back(static_cast<std::uint32_t>(t));
-        }
-        tbb::parallel_for(0, blocks, [&](int b) {
-            for (const auto t : bins[at(b)]) put(triangles[t], b * kLayers, std::min((b + 1) * kLayers, lut_.distance_size[2]));
-        });
-    }
+private:
+    /// What one task owns while the band is put.
+    struct Layers {
+        int begin, end;
+        std::size_t first_node;
+        std::vector<float> bound_mm;  ///< of the layers' nodes, and a row more; falls to the distance
+        std::vector<std::uint32_t> open;
+    };
 
-    /// Beyond the band: the pointer's distance, with the sign of the band last crossed on the way from the table's side.
-    void put_far() {
+    /// No node is further from the skin than from the point behind its pointer.
+    void put_bounds() {
+        std::array<std::vector<std::size_t>, 3> voxel;  // of the table, for each node along each axis
+        for (std::size_t a = 0; a < 3; ++a)
+            for (int n = 0; n < lut_.distance_size[a]; ++n)
+                voxel[a].push_back(static_cast<std::size_t>(
+                    std::min(std::round(n * lut_.distance_voxel_mm / lut_.voxel_mm), lut_.size[a] - 1.0)));
         tbb::parallel_for(0, lut_.distance_size[2], [&](int k) {
             for (int j = 0; j < lut_.distance_size[1]; ++j) {
-                float* row = lut_.distance_mm.data() + index(0, j, k);
-                bool inside = false;
+                const std::uint32_t* pointers =
+                    lut_.nearest.data() + (voxel[2][at(k)] * at(lut_.size[1]) + voxel[1][at(j)]) * at(lut_.size[0]);
+                const std::size_t row = at(k) * slab_ + at(j) * row_;
                 for (int i = 0; i < lut_.distance_size[0]; ++i) {
-                    if (row[i] != kFar) {
-                        inside = row[i] < 0;
-                        continue;
-                    }
-                    const Vector3d p = position(i, j, k);
-                    const auto mm = static_cast<float>((nearest_inside_table(p).position_in_ct.cast<double>() - p).norm());
-                    row[i] = inside ? -mm : mm;
+                    const auto& skin = lut_.skin[pointers[voxel[0][at(i)]]].position_in_ct;
+                    bound_mm_[row + at(i)] = (position(i, j, k).cast<float>() - skin).norm();
+                    lut_.distance_mm[row + at(i)] = kUnknown;
                 }
             }
         });
     }
 
-private:
-    static constexpr float kFar = std::numeric_limits<float>::max();
-
-    std::size_t index(int i, int j, int k) const {
-        return (at(k) * at(lut_.distance_size[1]) + at(j)) * at(lut_.distance_size[0]) + at(i);
+    void put_band() {
+        // Each task owns some layers of the grid, so no two write the same value.
+        const int blocks = (lut_.distance_size[2] + kLayers - 1) / kLayers;
+        std::vector<std::vector<std::uint32_t>> bins(at(blocks));
+        for (std::size_t t = 0; t < skin_.triangles.size(); ++t) {
+            const auto [low, high] = range(t);
+            for (int b = low.z() / kLayers; b <= std::min(high.z() / kLayers, blocks - 1); ++b)
+                bins[at(b)].push_back(static_cast<std::uint32_t>(t));
+        }
+        tbb::parallel_for(0, blocks, [&](int b) {
+            Layers layers{b * kLayers, std::min((b + 1) * kLayers, lut_.distance_size[2]), at(b * kLayers) * slab_, {}, {}};
+            const auto first = bound_mm_.begin() + static_cast<std::ptrdiff_t>(layers.first_node);
+            layers.bound_mm.assign(first, first + static_cast<std::ptrdiff_t>(at(layers.end - layers.begin) * slab_));
+            for (float& bound : layers.bound_mm) bound = std::min(bound + kSlack_mm, static_cast<float>(kExactBand_mm));
+            layers.bound_mm.resize(layers.bound_mm.size() + kRow, 0.0F);
+            for (const auto t : bins[at(b)]) put(t, layers);
+        });
     }
+
+    /// Beyond the band: the pointer's distance, with the sign of the band last crossed on the way from the table's side.
+    void put_signs() {
+        tbb::parallel_for(std::size_t{0}, lut_.distance_mm.size() / row_, [&](std::size_t line) {
+            float* row = lut_.distance_mm.data() + line * row_;
+            bool inside = false;
+            for (std::size_t i = 0; i < row_; ++i) {
+                const float mm = bound_mm_[line * row_ + i];
+                if (row[i] != kUnknown) inside = row[i] < 0;
+                else row[i] = inside ? -mm : mm;
+            }
+        });
+    }
+
     Vector3d position(int i, int j, int k) const { return lut_.origin_in_ct + lut_.distance_voxel_mm * Vector3d(i, j, k); }
+    const Vector3d& corner(std::size_t t, std::size_t c) const { return skin_.vertices_in_ct[at(skin_.triangles[t][c])]; }
 
-    std::pair<Eigen::Vector3i, Eigen::Vector3i> range(const SidedTriangle& s) const {
-        const Vector3d low = s.corner[0].cwiseMin(s.corner[1]).cwiseMin(s.corner[2]) - Vector3d::Constant(kExactBand_mm);
-        const Vector3d high = s.corner[0].cwiseMax(s.corner[1]).cwiseMax(s.corner[2]) + Vector3d::Constant(kExactBand_mm);
-        return {((low - lut_.origin_in_ct) / lut_.distance_voxel_mm).array().ceil().cast<int>(),
-                ((high - lut_.origin_in_ct) / lut_.distance_voxel_mm).array().floor().cast<int>()};
+    /// First and last nodes within the band round a triangle.
+    std::pair<Eigen::Vector3i, Eigen::Vector3i> range(std::size_t t) const {
+        const Vector3d low = corner(t, 0).cwiseMin(corner(t, 1)).cwiseMin(corner(t, 2)) - Vector3d::Constant(kExactBand_mm);
+        const Vector3d high = corner(t, 0).cwiseMax(corner(t, 1)).cwiseMax(corner(t, 2)) + Vector3d::Constant(kExactBand_mm);
+        const Eigen::Vector3i last(lut_.distance_size[0] - 1, lut_.distance_size[1] - 1, lut_.distance_size[2] - 1);
+        return {((low - lut_.origin_in_ct) / lut_.distance_voxel_mm).array().ceil().cast<int>().cwiseMax(0),
+                ((high - lut_.origin_in_ct) / lut_.distance_voxel_mm).array().floor().cast<int>().matrix().cwiseMin(last)};
     }
 
-    void put(const SidedTriangle& s, int from_k, int to_k) {
-        const auto [low, high] = range(s);
-        for (int k = std::max(low.z(), from_k); k <= std::min(high.z(), to_k - 1); ++k)
-            for (int j = std::max(low.y(), 0); j <= std::min(high.y(), lut_.distance_size[1] - 1); ++j)
-                for (int i = std::max(low.x(), 0); i <= std::min(high.x(), lut_.distance_size[0] - 1); ++i)
-                    offer(s, position(i, j, k), lut_.distance_mm[index(i, j, k)]);
+    void put(std::size_t t, Layers& layers) {
+        auto [low, high] = range(t);
+        low.z() = std::max(low.z(), layers.begin);
+        high.z() = std::min(high.z(), layers.end - 1);
+        const Eigen::Vector3i count = high - low + Eigen::Vector3i::Ones();
+        if (count.minCoeff() <= 0) return;
+        const Vector3d centre = (corner(t, 0) + corner(t, 1) + corner(t, 2)) / 3;
+        double radius = 0;
+        for (std::size_t c = 0; c < 3; ++c) radius = std::max(radius, (corner(t, c) - centre).norm());
+        const Eigen::Vector3f first = (position(low.x(), low.y(), low.z()) - centre).cast<float>(),
+                              normal = sides_.face_normal(t).cast<float>();
+        const std::size_t first_node = at(low.z() - layers.begin) * slab_ + at(low.y()) * row_ + at(low.x());
+        const Look look{first.x(),  first.y(),  first.z(),  static_cast<float>(lut_.distance_voxel_mm),
+                        normal.x(), normal.y(), normal.z(), static_cast<float>(radius) + kSlack_mm,
+                        count.x(),  count.y(),  count.z(),  first_node,
+                        row_,       slab_};
+        layers.open.resize(static_cast<std::size_t>(count.prod()));
+        const std::size_t found = open_nodes(look, layers.bound_mm.data(), layers.open.data());
+        for (std::size_t n = 0; n < found; ++n) offer(t, layers.first_node + layers.open[n], layers.bound_mm[layers.open[n]]);
     }
 
-    static void offer(const SidedTriangle& s, const Vector3d& p, float& mm) {
-        const double best = std::min<double>(std::abs(mm), kExactBand_mm);
-        const Vector3d from_centre = p - s.centre;
-        if (std::abs(from_centre.dot(s.face_normal)) >= best) return;
-        if (from_centre.squaredNorm() >= (best + s.radius) * (best + s.radius)) return;
-        const Vector3d w = closest_weights(p, s.corner[0], s.corner[1], s.corner[2]);
-        const Vector3d offset = p - (w.x() * s.corner[0] + w.y() * s.corner[1] + w.z() * s.corner[2]);
+    void offer(std::size_t t, std::size_t node, float& bound_mm) {
+        const Vector3d p =
+            position(static_cast<int>(node % row_), static_cast<int>(node % slab_ / row_), static_cast<int>(node / slab_));
+        const Vector3d w = closest_weights(p, corner(t, 0), corner(t, 1), corner(t, 2));
+        const Vector3d offset = p - (w.x() * corner(t, 0) + w.y() * corner(t, 1) + w.z() * corner(t, 2));
         const double far = offset.norm();
-        if (far >= best) return;
-        mm = static_cast<float>(offset.dot(normal_at(s, w)) < 0 ? -far : far);
+        if (far >= static_cast<double>(bound_mm)) return;
+        bound_mm = static_cast<float>(far);
+        lut_.distance_mm[node] = static_cast<float>(offset.dot(sides_.normal_at(t, w)) < 0 ? -far : far);
     }
 
-    const SkinPoint& nearest_inside_table(const Vector3d& p) const {
-        const Vector3d v = ((p - lut_.origin_in_ct) / lut_.voxel_mm).array().round();
-        std::size_t n = 0;
-        for (int a = 2; a >= 0; --a)
-            n = n * at(lut_.size[at(a)]) + at(static_cast<std::int32_t>(std::clamp(v[a], 0.0, lut_.size[at(a)] - 1.0)));
-        return lut_.skin[lut_.nearest[n]];
-    }
-
+    const TriangleMesh& skin_;
     SkinLut& lut_;
+    MeshSides sides_;
+    std::size_t row_, slab_;
+    LargeArray<float> bound_mm_;
 };
 
 }  // namespace
 
-void fill_signed_distance(const TriangleMesh& skin, SkinLut& lut) {
-    DistanceGrid grid(lut);
-    grid.put_band(sided_triangles(skin));
-    grid.put_far();
-}
+void fill_signed_distance(const TriangleMesh& skin, SkinLut& lut) { DistanceGrid(skin, lut); }
 
 }  // namespace planlight

@@ -1,11 +1,12 @@
 #include "segmentation/skin_voxels.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 
 #include "segmentation/closest_point_on_triangle.h"
+#include "segmentation/triangle_in_voxels.h"
 
 namespace planlight {
 namespace {
@@ -13,102 +14,128 @@ namespace {
 using Eigen::Vector3d;
 using Corners = std::array<Vector3d, 3>;
 
-/// Separating axes of a triangle and the cube of half side 1/2 round the origin (Akenine-Moller 2001), without the box
-/// axes: the caller walks only the boxes of the triangle's bounds.
-bool overlaps_unit_cube(const Corners& t) {
-    constexpr double kHalf = 0.5 + 1e-9;
-    const std::array<Vector3d, 3> edges{t[1] - t[0], t[2] - t[1], t[0] - t[2]};
-    const Vector3d normal = edges[0].cross(edges[1]);
-    if (std::abs(normal.dot(t[0])) > kHalf * normal.cwiseAbs().sum()) return false;
-    for (const Vector3d& e : edges)
-        for (int axis = 0; axis < 3; ++axis) {
-            const Vector3d n = e.cross(Vector3d::Unit(axis));
-            const double a = n.dot(t[0]), b = n.dot(t[1]), c = n.dot(t[2]);
-            const double reach = kHalf * n.cwiseAbs().sum();
-            if (std::min({a, b, c}) > reach || std::max({a, b, c}) < -reach) return false;
-        }
-    return true;
+constexpr int kLayers = 4;  // of the table that one task owns
+constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+std::size_t at(int index) { return static_cast<std::size_t>(index); }
+
+Corners corners_in_voxels(const TriangleMesh& skin, const SkinLut& lut, const std::array<std::int32_t, 3>& triangle) {
+    Corners t;
+    for (std::size_t c = 0; c < 3; ++c) t[c] = (skin.vertices_in_ct[at(triangle[c])] - lut.origin_in_ct) / lut.voxel_mm;
+    return t;
 }
 
-class Marker {
+/// The skin voxels of some layers of the table.
+class Layers {
 public:
-    Marker(const TriangleMesh& skin, SkinLut& lut) : skin_(skin), lut_(lut) {
-        for (const auto& triangle : skin.triangles) mark(triangle);
-        sort();
+    Layers(const TriangleMesh& skin, const SkinLut& lut, int first)
+        : skin_(skin), lut_(lut), first_(first), end_(std::min(first + kLayers, lut.size[2])),
+          number_(at(lut.size[0]) * at(lut.size[1]) * at(end_ - first), kNone) {}
+
+    void mark(const std::array<std::int32_t, 3>& triangle) {
+        const Corners t = corners_in_voxels(skin_, lut_, triangle);
+        const TriangleInVoxels voxels(t);
+        for (int k = std::max(voxels.low.z(), first_); k <= std::min(voxels.high.z(), end_ - 1); ++k)
+            for (int j = voxels.low.y(); j <= voxels.high.y(); ++j)
+                for (int i = voxels.low.x(); i <= voxels.high.x(); ++i)
+                    if (voxels.passes({i, j, k})) offer(triangle, t, {i, j, k});
+    }
+
+    /// In the order of the table.
+    std::vector<SkinPoint> sorted() const {
+        std::vector<std::uint32_t> begin(at(lut_.size[1]) * at(end_ - first_) + 1, 0), order(points_.size());
+        const auto row_of = [&](const SkinPoint& s) { return at(s.voxel[2] - first_) * at(lut_.size[1]) + s.voxel[1]; };
+        for (const SkinPoint& s : points_) ++begin[row_of(s) + 1];
+        for (std::size_t r = 1; r < begin.size(); ++r) begin[r] += begin[r - 1];
+        std::vector<std::uint32_t> next = begin;
+        for (std::size_t s = 0; s < points_.size(); ++s) order[next[row_of(points_[s])]++] = static_cast<std::uint32_t>(s);
+        for (std::size_t r = 0; r + 1 < begin.size(); ++r)
+            std::sort(order.begin() + begin[r], order.begin() + begin[r + 1],
+                      [&](std::uint32_t a, std::uint32_t b) { return points_[a].voxel[0] < points_[b].voxel[0]; });
+        std::vector<SkinPoint> result(points_.size());
+        for (std::size_t s = 0; s < result.size(); ++s) result[s] = points_[order[s]];
+        return result;
     }
 
 private:
-    void mark(const std::array<std::int32_t, 3>& triangle) {
-        Corners t;  // in voxels
-        for (std::size_t c = 0; c < 3; ++c)
-            t[c] = (skin_.vertices_in_ct[static_cast<std::size_t>(triangle[c])] - lut_.origin_in_ct) / lut_.voxel_mm;
-        const Eigen::Vector3i low = (t[0].cwiseMin(t[1]).cwiseMin(t[2]).array() + 0.5).floor().cast<int>();
-        const Eigen::Vector3i high = (t[0].cwiseMax(t[1]).cwiseMax(t[2]).array() + 0.5).floor().cast<int>();
-        for (int k = low.z(); k <= high.z(); ++k)
-            for (int j = low.y(); j <= high.y(); ++j)
-                for (int i = low.x(); i <= high.x(); ++i) {
-                    const Vector3d centre(i, j, k);
-                    if (overlaps_unit_cube({t[0] - centre, t[1] - centre, t[2] - centre})) offer(triangle, t, {i, j, k});
-                }
-    }
-
     void offer(const std::array<std::int32_t, 3>& triangle, const Corners& t, const Eigen::Vector3i& voxel) {
         const Vector3d weights = closest_weights(voxel.cast<double>(), t[0], t[1], t[2]);
         const Vector3d point = weights.x() * t[0] + weights.y() * t[1] + weights.z() * t[2];
         const double squared = (point - voxel.cast<double>()).squaredNorm();
-        std::uint32_t& at = lut_.nearest[index(voxel)];
-        if (at == kNoSkin) {
-            at = static_cast<std::uint32_t>(lut_.skin.size());
-            lut_.skin.emplace_back();
+        std::uint32_t& number =
+            number_[(at(voxel.z() - first_) * at(lut_.size[1]) + at(voxel.y())) * at(lut_.size[0]) + at(voxel.x())];
+        if (number == kNone) {
+            number = static_cast<std::uint32_t>(points_.size());
+            points_.emplace_back();
             squared_.push_back(squared);
-        } else if (squared >= squared_[at]) {
+        } else if (squared >= squared_[number]) {
             return;
         }
-        squared_[at] = squared;
-        SkinPoint& s = lut_.skin[at];
+        squared_[number] = squared;
+        SkinPoint& s = points_[number];
         s.position_in_ct = (lut_.origin_in_ct + lut_.voxel_mm * point).cast<float>();
         s.normal_in_ct = normal(triangle, t, weights).cast<float>();
-        for (int a = 0; a < 3; ++a) s.voxel[static_cast<std::size_t>(a)] = static_cast<std::uint16_t>(voxel[a]);
+        for (int a = 0; a < 3; ++a) s.voxel[at(a)] = static_cast<std::uint16_t>(voxel[a]);
         s.flags = 0;
         if (!skin_.flags.empty())
-            for (const auto corner : triangle) s.flags |= skin_.flags[static_cast<std::size_t>(corner)];
+            for (const auto corner : triangle) s.flags |= skin_.flags[at(corner)];
+        if (!skin_.thickness_mm.empty()) s.thickness_mm = thickness(triangle, weights);
     }
 
     Vector3d normal(const std::array<std::int32_t, 3>& triangle, const Corners& t, const Vector3d& weights) const {
         const Vector3d face = (t[1] - t[0]).cross(t[2] - t[0]).normalized();
         if (skin_.normals_in_ct.empty()) return face;
         Vector3d sum = Vector3d::Zero();
-        for (int c = 0; c < 3; ++c)
-            sum += weights[c] * skin_.normals_in_ct[static_cast<std::size_t>(triangle[static_cast<std::size_t>(c)])];
+        for (int c = 0; c < 3; ++c) sum += weights[c] * skin_.normals_in_ct[at(triangle[at(c)])];
         return sum.norm() > 1e-3 ? Vector3d(sum.normalized()) : face;
     }
 
-    std::size_t index(const Eigen::Vector3i& v) const {
-        return (static_cast<std::size_t>(v.z()) * static_cast<std::size_t>(lut_.size[1]) + static_cast<std::size_t>(v.y())) *
-                   static_cast<std::size_t>(lut_.size[0]) + static_cast<std::size_t>(v.x());
-    }
-
-    void sort() {
-        std::vector<SkinPoint>& skin = lut_.skin;
-        std::sort(skin.begin(), skin.end(), [](const SkinPoint& a, const SkinPoint& b) {
-            return std::lexicographical_compare(a.voxel.rbegin(), a.voxel.rend(), b.voxel.rbegin(), b.voxel.rend());
-        });
-        for (std::size_t s = 0; s < skin.size(); ++s)
-            lut_.nearest[index({skin[s].voxel[0], skin[s].voxel[1], skin[s].voxel[2]})] = static_cast<std::uint32_t>(s);
+    /// Not a number when it is not known at a corner that counts.
+    float thickness(const std::array<std::int32_t, 3>& triangle, const Vector3d& weights) const {
+        double sum = 0;
+        for (int c = 0; c < 3; ++c)
+            if (weights[c] > 0) sum += weights[c] * static_cast<double>(skin_.thickness_mm[at(triangle[at(c)])]);
+        return static_cast<float>(sum);
     }
 
     const TriangleMesh& skin_;
-    SkinLut& lut_;
-    std::vector<double> squared_;  // distance of each skin voxel's point from its centre, voxels
+    const SkinLut& lut_;
+    int first_, end_;
+    std::vector<std::uint32_t> number_;  // of each voxel in points_
+    std::vector<SkinPoint> points_;
+    std::vector<double> squared_;  // distance of each point from its voxel's centre, voxels
 };
+
+/// For each group of layers the triangles that may pass through it, in their order.
+std::vector<std::vector<std::uint32_t>> triangles_of_layers(const TriangleMesh& skin, const SkinLut& lut) {
+    std::vector<std::vector<std::uint32_t>> groups(at((lut.size[2] + kLayers - 1) / kLayers));
+    for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+        double low = INFINITY, high = -INFINITY;
+        for (const auto corner : skin.triangles[t]) {
+            const double z = (skin.vertices_in_ct[at(corner)].z() - lut.origin_in_ct.z()) / lut.voxel_mm;
+            low = std::min(low, z);
+            high = std::max(high, z);
+        }
+        const auto first = static_cast<int>(std::floor(low + 0.5)) / kLayers,
+                   last = static_cast<int>(std::floor(high + 0.5)) / kLayers;
+        for (int g = first; g <= last; ++g) groups[at(g)].push_back(static_cast<std::uint32_t>(t));
+    }
+    return groups;
+}
 
 }  // namespace
 
 void mark_skin_voxels(const TriangleMesh& skin, SkinLut& lut) {
+    const auto groups = triangles_of_layers(skin, lut);
+    std::vector<std::vector<SkinPoint>> found(groups.size());
+    tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t g) {
+        if (groups[g].empty()) return;
+        Layers layers(skin, lut, static_cast<int>(g) * kLayers);
+        for (const auto t : groups[g]) layers.mark(skin.triangles[t]);
+        found[g] = layers.sorted();
+    });
     lut.skin.clear();
-    lut.nearest.assign(static_cast<std::size_t>(lut.size[0]) * static_cast<std::size_t>(lut.size[1]) *
-                           static_cast<std::size_t>(lut.size[2]), kNoSkin);
-    Marker(skin, lut);
+    for (const auto& points : found) lut.skin.insert(lut.skin.end(), points.begin(), points.end());
 }
 
 }  // namespace planlight

@@ -12,6 +12,8 @@
 
 #include "planning_io/types/error.h"
 #include "segmentation/decimate_skin.h"
+#include "segmentation/fill_tunnels.h"
+#include "segmentation/mr_skin_edge.h"
 #include "segmentation/segment_skin.h"
 #include "segmentation/skin_field.h"
 
@@ -83,6 +85,9 @@ TriangleMesh largest_shell(const TriangleMesh& mesh) {
     }
     return shell;
 }
+
+/// Of a closed mesh of one piece.
+bool has_handles(const TriangleMesh& mesh) { return mesh.vertices_in_ct.size() != mesh.triangles.size() / 2 + 2; }
 
 /// Flags and outward normals (unit, in ct) from the field; vertices exactly on their grid edge, still in field voxels.
 void describe_vertices(TriangleMesh& mesh, const Volume& volume, const SkinMask& mask, const SkinField& field) {
@@ -157,15 +162,25 @@ TriangleMesh triangulate_skin(const Volume& volume, const SkinMask& mask, const 
     TriangleMesh mesh = largest_shell(contour(field));
     if (mesh.triangles.empty()) throw InputError({}, "The mask holds no body.", "Segment the volume again.");
     report(0.3);
-    describe_vertices(mesh, volume, mask, field);
+    SkinMask filled;
+    if (has_handles(mesh)) {
+        filled.threshold = mask.threshold;
+        filled.body = fill_tunnels(mask.body, grid_of(volume));
+        field = skin_field(volume, filled);
+        mesh = largest_shell(contour(field));
+    }
+    describe_vertices(mesh, volume, filled.body.empty() ? mask : filled, field);
     const bool mirrored = volume.ct_from_voxel.linear().determinant() < 0;
     for (auto& p : mesh.vertices_in_ct) p = volume.ct_from_voxel * (p - Vector3d::Ones());
     if (mirrored)
         for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
     smooth_lids(mesh);
     mend_normals(mesh);
+    if (volume.modality == "MR") move_to_edges(mesh, volume, mask.threshold);
     report(0.5);
     TriangleMesh result = decimate_skin(mesh, settings.max_edge_mm, settings.max_decimation_error_mm);
+    report(0.9);
+    result.thickness_mm = skin_thickness(volume, result, settings.thickness);
     report(1);
     return result;
 }

@@ -3,9 +3,12 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "planning_io/types/large_array.h"
 
 namespace planlight {
 
@@ -15,6 +18,7 @@ struct SkinPoint {
     Eigen::Vector3f normal_in_ct;    ///< unit, outwards
     std::array<std::uint16_t, 3> voxel{0, 0, 0};
     std::uint8_t flags = 0;  ///< SkinFlag
+    float thickness_mm = std::numeric_limits<float>::quiet_NaN();  ///< from skin to bone; not a number where unknown
 };
 
 /// The paper's voxel file (Hoppe 2001, 2.1): cubic voxels over the body and a margin, each with a pointer to its nearest
@@ -26,12 +30,12 @@ struct SkinLut {
     std::array<int, 3> size{0, 0, 0};
     double voxel_mm = 0;
     Eigen::Vector3d origin_in_ct = Eigen::Vector3d::Zero();
-    std::vector<std::uint32_t> nearest;  ///< per voxel: index into `skin`
+    LargeArray<std::uint32_t> nearest;  ///< per voxel: index into `skin`
     std::vector<SkinPoint> skin;
 
     std::array<int, 3> distance_size{0, 0, 0};
     double distance_voxel_mm = 0;
-    std::vector<float> distance_mm;  ///< signed, to the surface; negative inside
+    LargeArray<float> distance_mm;  ///< signed, to the surface; negative inside
 
     std::string volume_hash;  ///< of the CT the table was made from (hex)
     std::string mesh_hash;    ///< of the skin mesh (hex)

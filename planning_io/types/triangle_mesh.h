@@ -20,6 +20,8 @@ struct TriangleMesh {
     std::vector<std::array<std::int32_t, 3>> triangles;
     std::vector<Eigen::Vector3d> normals_in_ct;  ///< per vertex, unit, outwards; empty when not computed
     std::vector<std::uint8_t> flags;             ///< SkinFlag per vertex; empty means all kSkin
+    /// Per vertex, from the skin inwards to bone; not a number where none was found. Empty when not computed.
+    std::vector<float> thickness_mm;
 };
 
 }  // namespace planlight

@@ -74,17 +74,22 @@ TEST(ImageFile, PicturesReadBackAndCutOnesAreRefused) {
     EXPECT_THROW(write_png(GrayImage(), file), DiskError);
 }
 
-TEST(MeshFile, ReadsBackBitForBitWithNormalsAndFlags) {
+TEST(MeshFile, ReadsBackBitForBitWithNormalsFlagsAndThickness) {
     const test::TemporaryFolder folder;
     TriangleMesh mesh = test::analytic_head_mesh(12);
     mesh.flags.assign(mesh.vertices_in_ct.size(), kSkin);
     mesh.flags[5] = kCutPlane;
+    mesh.thickness_mm.assign(mesh.vertices_in_ct.size(), 4.25F);
+    mesh.thickness_mm[5] = std::numeric_limits<float>::quiet_NaN();
     write_mesh(mesh, folder.path() / "m.ply");
     const TriangleMesh back = read_mesh(folder.path() / "m.ply");
     EXPECT_EQ(back.vertices_in_ct, mesh.vertices_in_ct);
     EXPECT_EQ(back.triangles, mesh.triangles);
     EXPECT_EQ(back.normals_in_ct, mesh.normals_in_ct);
     EXPECT_EQ(back.flags, mesh.flags);
+    ASSERT_EQ(back.thickness_mm.size(), mesh.thickness_mm.size());
+    EXPECT_TRUE(std::isnan(back.thickness_mm[5]));
+    EXPECT_EQ(back.thickness_mm[6], 4.25F);
     EXPECT_EQ(hash_of(back), hash_of(mesh));
     std::swap(mesh.triangles[0][1], mesh.triangles[0][2]);
     EXPECT_NE(hash_of(back), hash_of(mesh));
@@ -93,6 +98,9 @@ TEST(MeshFile, ReadsBackBitForBitWithNormalsAndFlags) {
         write_safely(folder.path() / "m.ply", whole.substr(0, whole.size() - cut));
         EXPECT_THROW(read_mesh(folder.path() / "m.ply"), DamagedFileError);
     }
+    mesh.thickness_mm[7] = -1;
+    write_mesh(mesh, folder.path() / "m.ply");
+    EXPECT_THROW(read_mesh(folder.path() / "m.ply"), DamagedFileError);
 }
 
 TEST(MeshFile, AnotherProgramsPlyNeedsItsSpace) {

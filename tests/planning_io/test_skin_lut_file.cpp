@@ -1,10 +1,12 @@
 #include <gtest/gtest.h>
 
+#include <bit>
 #include <chrono>
 #include <cmath>
 #include <ctime>
 #include <fstream>
 #include <iostream>
+#include <limits>
 #include <random>
 
 #include "planning_io/safe_write.h"
@@ -46,6 +48,7 @@ void expect_same(const SkinLut& a, const SkinLut& b) {
         ASSERT_EQ(a.skin[i].normal_in_ct, b.skin[i].normal_in_ct);
         ASSERT_EQ(a.skin[i].voxel, b.skin[i].voxel);
         ASSERT_EQ(a.skin[i].flags, b.skin[i].flags);
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(a.skin[i].thickness_mm), std::bit_cast<std::uint32_t>(b.skin[i].thickness_mm));
     }
 }
 
@@ -53,6 +56,7 @@ TEST(SkinLutFile, ReadsBackBitForBit) {
     const test::TemporaryFolder folder;
     SkinLut lut = head_lut();
     lut.skin[3].flags = kSeal;
+    lut.skin[5].thickness_mm = 6.25F;  // the others' is unknown, which is no number
     write_skin_lut(lut, folder.path() / "skin.lut");
     expect_same(read_skin_lut(folder.path() / "skin.lut"), lut);
 }
@@ -99,6 +103,15 @@ TEST(SkinLutFile, CutOrLengthenedFileIsRefused) {
     EXPECT_THROW(read_skin_lut(folder.path() / "none.lut"), InputError);
 }
 
+TEST(SkinLutFile, AThicknessThatMakesNoSenseIsNotWritten) {
+    const test::TemporaryFolder folder;
+    for (const float thickness : {-1.0F, std::numeric_limits<float>::infinity()}) {
+        SkinLut lut = head_lut();
+        lut.skin[7].thickness_mm = thickness;
+        EXPECT_THROW(write_skin_lut(lut, folder.path() / "skin.lut"), InputError);
+    }
+}
+
 TEST(SkinLutFile, ATableThatPointsPastItsSkinIsNotWritten) {
     const test::TemporaryFolder folder;
     SkinLut lut = head_lut();
@@ -121,7 +134,7 @@ TEST(SkinLutFile, LoadsAPatientSizedTable) {
     };
     for (std::size_t c = 0; c < skin_of.size(); ++c) {
         skin_of[c] = static_cast<std::uint32_t>(lut.skin.size());
-        lut.skin.push_back({Eigen::Vector3f::Constant(static_cast<float>(c) * 0.01F), Eigen::Vector3f::UnitX(), {1, 2, 3}, 0});
+        lut.skin.push_back({Eigen::Vector3f::Constant(static_cast<float>(c) * 0.01F), Eigen::Vector3f::UnitX(), {1, 2, 3}});
     }
     lut.nearest.resize(std::size_t{256} * 256 * 256);
     lut.distance_mm.resize(std::size_t{128} * 128 * 128);

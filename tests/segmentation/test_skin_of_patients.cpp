@@ -87,7 +87,7 @@ TEST_F(ExamplePatient, SkinIsOneClosedOutwardSurfaceWithoutHandles) {
     EXPECT_EQ(facts.pieces, 1U);
     EXPECT_EQ(facts.euler, 2);
     EXPECT_GT(skin.triangles.size(), 60000U);
-    EXPECT_LT(skin.triangles.size(), 180000U);
+    EXPECT_LT(skin.triangles.size(), 190000U);
     EXPECT_NEAR(facts.volume_ml, 3250, 150);  // an adult head from the upper lip up
 }
 
@@ -125,30 +125,88 @@ TEST_F(ExamplePatient, SkinVerticesLieOnTheCrossingOfTheThreshold) {
     EXPECT_LT(off, count / 200);
 }
 
-TEST_F(ExamplePatient, AgreesWithTheSurfaceOfInVesalius) {
+double share_of(std::vector<double>& values, double share) {
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+TEST_F(ExamplePatient, LiesWithinAQuarterOfAMillimetreOfTheSurfaceOfInVesalius) {
     const auto surfaces = read_invesalius_surfaces(*example_patient());
     ASSERT_FALSE(surfaces.empty());
     SkinSettings settings;
     settings.threshold = -142;  // of the project's skin surface
-    const SkinMask same = segment_skin(volume, settings);
-    const TriangleMesh mesh = triangulate_skin(volume, same, settings);
-    // InVesalius keeps cavities and head holder in its surface: only its vertices within 3 mm of our skin are compared, and
-    // they must be most of what one skin has. The other surface of the project is bone.
-    double best = 1e9;
-    std::size_t most = 0;
+    const TriangleMesh mesh = triangulate_skin(volume, segment_skin(volume, settings), settings);
+    // InVesalius keeps cavities, cushion and head holder in its surface: so it is asked from every vertex of our true outer
+    // skin how far theirs is. The other surface of the project is bone.
+    std::vector<Vector3d> outer_skin;
+    for (std::size_t v = 0; v < mesh.vertices_in_ct.size(); v += 3)
+        if (mesh.flags[v] == kSkin) outer_skin.push_back(mesh.vertices_in_ct[v]);
+    double median = 1e9, p95 = 1e9;
     for (const auto& surface : surfaces) {
-        std::vector<Vector3d> some;
-        for (std::size_t v = 0; v < surface.vertices_in_ct.size(); v += 5) some.push_back(surface.vertices_in_ct[v]);
-        std::vector<double> mm = distances(some, mesh);
-        std::erase_if(mm, [](double d) { return d > 3; });
-        if (mm.size() < most) continue;
-        most = mm.size();
-        std::nth_element(mm.begin(), mm.begin() + static_cast<std::ptrdiff_t>(most / 2), mm.end());
-        best = mm[most / 2];
+        std::vector<double> mm = distances(outer_skin, surface);
+        if (share_of(mm, 0.5) >= median) continue;
+        median = share_of(mm, 0.5);
+        p95 = share_of(mm, 0.95);
     }
-    RecordProperty("median_um", static_cast<int>(1000 * best));
-    EXPECT_GT(most, 10000U);
-    EXPECT_LT(best, 0.957 / 3);
+    RecordProperty("median_um", static_cast<int>(1000 * median));
+    RecordProperty("p95_um", static_cast<int>(1000 * p95));
+    EXPECT_GT(outer_skin.size(), 20000U);
+    EXPECT_LT(median, 0.25);
+    EXPECT_LT(p95, 0.25);
+}
+
+TEST_F(ExamplePatient, NotOneVertexIsOnTheHeadHolder) {
+    // The holder is a plastic cup below the head, round an axis along z. Measured on the slices: all that is denser than
+    // -50 HU outside the head lies within 3 mm of this circle, up to y = -112 mm.
+    const Eigen::Vector2d axis(124.8, -103.4);
+    const double radius_mm = 113.2, thick_mm = 3, top_y_mm = -112;
+    const auto on_cup = [&](const Vector3d& p) {
+        return p.y() > top_y_mm && std::abs((p.head<2>() - axis).norm() - radius_mm) < thick_mm + 2;
+    };
+    std::size_t plastic = 0, theirs = 0, ours = 0;
+    for (int k = 0; k < volume.size[2]; k += 4)
+        for (int j = 0; j < volume.size[1]; ++j)
+            for (int i = 0; i < volume.size[0]; ++i)
+                plastic += volume.at(i, j, k) > -50 && on_cup(volume.ct_from_voxel * Vector3d(i, j, k));
+    EXPECT_GT(plastic, 10000U);  // the cup is there
+    const auto surfaces = read_invesalius_surfaces(*example_patient());
+    for (const auto& p : surfaces.at(0).vertices_in_ct) theirs += on_cup(p);
+    EXPECT_GT(theirs, 10000U);  // and in the surface that a threshold alone gives
+    for (const auto& p : skin.vertices_in_ct) ours += on_cup(p);
+    EXPECT_EQ(ours, 0U);
+    // Between cup and head lies a folded cushion. Behind the head, above the neck, the scalp is thin: nothing of it is skin.
+    std::size_t behind = 0, thick = 0;
+    for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
+        if (skin.flags[v] != kSkin || skin.vertices_in_ct[v].y() < axis.y() || skin.vertices_in_ct[v].z() < 60) continue;
+        ++behind;
+        thick += !(skin.thickness_mm[v] < 12);
+    }
+    EXPECT_GT(behind, 15000U);
+    EXPECT_EQ(thick, 0U);
+}
+
+TEST_F(ExamplePatient, SoftTissueIsAsThickAsOnPeople) {
+    // Ultrasound and CT studies of adults: 4 to 6 mm over forehead and crown, thicker on cheeks, which have no bone within
+    // reach in places.
+    ASSERT_EQ(skin.thickness_mm.size(), skin.vertices_in_ct.size());
+    std::vector<double> crown, all;
+    std::size_t real = 0;
+    for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
+        if (skin.flags[v] != kSkin) continue;
+        ++real;
+        if (std::isnan(skin.thickness_mm[v])) continue;
+        all.push_back(static_cast<double>(skin.thickness_mm[v]));
+        if (skin.vertices_in_ct[v].z() > 100) crown.push_back(all.back());
+    }
+    for (const int percent : {5, 25, 50, 75, 95})
+        RecordProperty("all_p" + std::to_string(percent) + "_um", static_cast<int>(1000 * share_of(all, 0.01 * percent)));
+    RecordProperty("crown_median_um", static_cast<int>(1000 * share_of(crown, 0.5)));
+    EXPECT_GT(static_cast<double>(all.size()), 0.8 * static_cast<double>(real));
+    EXPECT_GT(share_of(crown, 0.5), 3);
+    EXPECT_LT(share_of(crown, 0.5), 7);
+    EXPECT_GT(share_of(all, 0.05), 2.5);
+    EXPECT_LT(share_of(crown, 0.95), 10);
 }
 
 TEST_F(ExamplePatient, ThresholdMovesTheSkinByLessThanAMillimetre) {
@@ -168,6 +226,7 @@ TEST(SlicerHead, ClosedSkinFromStoredValues) {
     const MeshFacts facts = facts_of(triangulate_skin(volume, mask));
     EXPECT_EQ(facts.bad_edges, 0U);
     EXPECT_EQ(facts.pieces, 1U);
+    EXPECT_EQ(facts.euler, 2);  // 13 holes through the ears, at 3.2 mm a voxel, have membranes
     EXPECT_GT(facts.volume_ml, 2000);
     EXPECT_LT(facts.volume_ml, 8000);
 }
