@@ -17,6 +17,7 @@ struct Volume {
     std::string modality;                ///< "CT" or "MR"
     std::string frame_of_reference_uid;  ///< empty when the file has none
     std::string source;                  ///< what it was read from, for reports: format, file name; never a patient's name
+    std::vector<std::string> notes;      ///< what was noticed and did not stop the reading, in words; never a name, id or path
 
     std::size_t index(int i, int j, int k) const {
         return (static_cast<std::size_t>(k) * static_cast<std::size_t>(size[1]) + static_cast<std::size_t>(j)) *
