@@ -1,8 +1,6 @@
 #include "planning_io/dicom_folder.h"
 
 #include <fmt/format.h>
-#include <sys/mman.h>
-#include <unistd.h>
 #include <vtkDICOMItem.h>
 #include <vtkDICOMMetaData.h>
 #include <vtkDICOMParser.h>
@@ -106,7 +104,7 @@ void add_common(vtkDICOMMetaData* meta, DicomFile& file) {
     }
 }
 
-/// False when the header cannot be read to its end, or the file is a directory of others.
+/// False when the header does not even say of which series the file is.
 bool read_header(DicomFile& file, bool& is_directory) {
     file.readable_as = inflated_dicom(file.path);
     vtkNew<vtkDICOMMetaData> meta;
@@ -129,8 +127,9 @@ bool read_header(DicomFile& file, bool& is_directory) {
         const int a = padding.AsInt(), b = limit.IsValid() ? limit.AsInt() : a;
         file.padding = std::min(a, b), file.padding_limit = std::max(a, b);
     }
-    if (parser->GetErrorCode() != 0 && file.series_uid.empty()) return false;
-    if (parser->GetPixelDataFound() || parser->GetErrorCode() != 0) {
+    file.damaged = parser->GetErrorCode() != 0;
+    if (file.series_uid.empty()) return false;
+    if (parser->GetPixelDataFound() || file.damaged) {
         const int frames = std::clamp(meta->Get(0, DC::NumberOfFrames).AsInt(), 1, kMostFrames);
         const std::string name = file.path.filename().string();
         for (int frame = 0; frame < frames; ++frame) file.slices.push_back(slice_of(meta, frame, frames > 1 ? fmt::format("{} frame {}", name, frame + 1) : name));
@@ -150,6 +149,13 @@ std::vector<fs::path> files_in(const fs::path& folder, int depth) {
     }
     std::sort(files.begin(), files.end());
     return files;
+}
+
+/// Whether it has DICOM's mark; without it a file may merely look like a data set.
+bool says_dicom(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    std::string mark(4, '\0');
+    return in.seekg(128) && in.read(mark.data(), 4) && mark == "DICM";
 }
 
 /// "0.5 x 0.5 x 1.25 mm" of what is known, for people.
@@ -193,19 +199,20 @@ std::vector<DicomSlice> DicomSeries::all_slices() const {
 }
 
 bool DicomSeries::is_volume() const {
-    return !files.empty() && slices() > 0 &&
-           std::all_of(files.begin(), files.end(), [](const DicomFile& f) { return kVolumeClasses.contains(f.storage_class) && !f.localizer; });
+    return std::all_of(files.begin(), files.end(), [](const DicomFile& f) { return kVolumeClasses.contains(f.storage_class); }) &&
+           std::any_of(files.begin(), files.end(), [](const DicomFile& f) { return !f.localizer && !f.slices.empty(); });
 }
 
 DicomFolder find_dicom(const fs::path& folder, int depth) {
     DicomFolder found;
     for (const fs::path& path : files_in(folder, depth)) {
-        if (!vtkDICOMUtilities::IsDICOMFile(path.c_str())) continue;
+        if (!says_dicom(path) && !vtkDICOMUtilities::IsDICOMFile(path.c_str())) continue;
         DicomFile file;
         file.path = path;
         bool is_directory = false;
-        if (!read_header(file, is_directory)) found.unreadable.push_back(path);
-        else if (!is_directory) {
+        if (!read_header(file, is_directory)) {
+            if (says_dicom(path)) found.unreadable.push_back(path);
+        } else if (!is_directory) {
             auto series = std::find_if(found.series.begin(), found.series.end(), [&](const DicomSeries& s) { return s.uid == file.series_uid; });
             if (series == found.series.end()) series = found.series.insert(found.series.end(), DicomSeries{file.series_uid, file.modality, file.description, file.number, {}});
             series->files.push_back(std::move(file));

@@ -14,6 +14,7 @@ struct DicomFile {
     std::string readable_as;  ///< where to read it from: `path`, or its inflated copy in memory
     std::string series_uid, modality, description, number, storage_class, rescale_type;
     bool localizer = false;
+    bool damaged = false;  ///< the header ends too early or makes no sense
     bool has_padding = false;
     int padding = 0, padding_limit = 0;  ///< stored values that stand for "nothing was measured", from - to
     std::vector<DicomSlice> slices;      ///< one, or one a frame; empty for an object without pixels
@@ -25,7 +26,7 @@ struct DicomSeries {
     std::vector<DicomFile> files;
     int slices() const;
     std::vector<DicomSlice> all_slices() const;
-    /// CT or MR image objects (Enhanced ones too), and no localizer.
+    /// CT or MR image objects (Enhanced ones too), and not localizers only.
     bool is_volume() const;
 };
 

@@ -92,6 +92,8 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
     const fs::path folder = is_folder ? path : path.has_parent_path() ? path.parent_path() : fs::path(".");
     DicomSeries series = choose_series(find_dicom(folder, is_folder || is_index ? kScanDepth : 1), path, wanted);
     const int localizers = leave_localizers_aside(series);
+    for (const auto& file : series.files)
+        if (file.damaged) throw DamagedFileError(file.path, "is damaged or cut short in its header", kCopyAgain);
     if (const auto fault = fault_of(series.all_slices())) throw InputError(path, fault->problem, fault->remedy);
     if (!series.is_volume()) throw InputError(path, fmt::format("is no CT or MR volume (storage class {})", series.files.front().storage_class), "Give a series of CT or MR image objects.");
 
@@ -102,9 +104,12 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
     reader->SetMemoryRowOrderToFileNative();
     reader->AutoRescaleOff();
     reader->UpdateInformation();
-    if (reader->GetErrorCode()) throw DamagedFileError(path, "a file of the series is damaged", kCopyAgain);
-    reader->Update();
-    if (reader->GetErrorCode()) throw DamagedFileError(path, "a file of the series is damaged or cut short", kCopyAgain);
+    if (!reader->GetErrorCode()) reader->Update();
+    if (reader->GetErrorCode()) {
+        const char* name = reader->GetInternalFileName();
+        const auto file = std::find_if(series.files.begin(), series.files.end(), [&](const DicomFile& f) { return name && f.readable_as == name; });
+        throw DamagedFileError(file == series.files.end() ? path : file->path, "is damaged or cut short", kCopyAgain);
+    }
 
     std::vector<DicomSlice> slices;
     std::vector<SliceValues> meaning;

@@ -68,8 +68,6 @@ int sides_with_air(const Volume& volume, double level) {
 void check_grid(const Volume& volume, const fs::path& file, double tolerance) {
     const Eigen::Matrix3d axes = volume.ct_from_voxel.linear();
     if (!volume.ct_from_voxel.matrix().allFinite()) throw InputError(file, "has a geometry with a value that is not a number", kExportAgain);
-    if (volume.ct_from_voxel.translation().cwiseAbs().maxCoeff() > kMostMagnitude_mm)
-        throw InputError(file, fmt::format("begins {:.0f} mm from the origin of its frame", volume.ct_from_voxel.translation().norm()), "Check its units and its origin.");
     for (int a = 0; a < 3; ++a) {
         const double spacing = axes.col(a).norm();
         const int count = volume.size[static_cast<std::size_t>(a)];
@@ -86,6 +84,8 @@ void check_grid(const Volume& volume, const fs::path& file, double tolerance) {
                                  "Give the DICOM series, or resample the volume to perpendicular axes.");
         }
     }
+    if (volume.ct_from_voxel.translation().cwiseAbs().maxCoeff() > kMostMagnitude_mm)
+        throw InputError(file, fmt::format("begins {:.0f} mm from the origin of its frame", volume.ct_from_voxel.translation().norm()), "Check its units and its origin.");
 }
 
 void make_right_handed(Volume& volume) {

@@ -120,10 +120,13 @@ void add_slices(std::vector<VolumeCase>& list) {
     list.push_back(slices("a defaced head, by its description", "face was taken away", [](DicomObject& o) { o.text(0x0008103e, "LO", "T1 defaced"); }));
     list.push_back(slices("no skin: one value only", "no skin", [](DicomObject& o) { fill(o, 24); }));
     list.push_back(slices("no skin: nothing but air", "no skin", [](DicomObject& o) { fill(o, 24), o.elements[kPixels].bytes[64 * 64] = 30; }));
-    list.push_back(slices("no skin: the body fills the volume to all sides", "no skin", [](DicomObject& o) {
-        std::vector<std::int16_t> values(64 * 64, 1064);
-        for (int j = 20; j < 40; ++j) for (int i = 20; i < 40; ++i) values[static_cast<std::size_t>(64 * j + i)] = 24;
-        o.pixels(values);
+    list.push_back(series("no skin: the body fills the volume to all sides, air is only inside", "all six sides", [](Objects& objects) {
+        for (std::size_t k = 0; k < objects.size(); ++k) {
+            std::vector<std::int16_t> values(64 * 64, 1064);
+            for (int at = 0; at < 64 * 64; ++at)
+                if (k > 3 && k < 20 && at % 64 > 20 && at % 64 < 40 && at / 64 > 20 && at / 64 < 40) values[static_cast<std::size_t>(at)] = 24;
+            objects[k].pixels(values);
+        }
     }));
 }
 

@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <fstream>
 #include <numeric>
 #include <random>
-
-#include "planning_io/safe_write.h"
 
 namespace planlight::test {
 namespace {
@@ -151,7 +150,7 @@ std::vector<std::filesystem::path> write_series(const std::vector<DicomObject>& 
     std::vector<std::filesystem::path> files;
     for (std::size_t i = 0; i < objects.size(); ++i) {
         files.push_back(folder / fmt::format("I{:04}", (i * 37 + 11) % 1009));  // 1009 is prime: no name twice
-        write_safely(files.back(), encode_dicom(objects[i], encoding, transfer_syntax));
+        std::ofstream(files.back(), std::ios::binary) << encode_dicom(objects[i], encoding, transfer_syntax);
     }
     return files;
 }

@@ -4,6 +4,7 @@
 
 #include "planning_io/read_volume.h"
 #include "planning_io/types/error.h"
+#include "tests/planning_io/mutate_volumes.h"
 #include "tests/planning_io/volume_cases.h"
 #include "tests/support/test_data.h"
 
@@ -52,6 +53,16 @@ TEST_P(SpoiltVolume, IsRefusedWithItsReasonAndARemedy) {
         EXPECT_FALSE(e.remedy.empty());
         EXPECT_EQ(std::string(e.what()).find("Phantom"), std::string::npos) << "a patient's name in a sentence: " << e.what();
     }
+}
+
+/// `fuzz_volumes --mutations 10000` is the whole of it. A crash of the program would end this test, a child's is counted.
+TEST(DamagedVolumes, NeverCrashHangOrChangeAFile) {
+    const MutationCounts counts = mutate_volumes(320, 7);
+    EXPECT_EQ(counts.not_an_error, 0) << (counts.faults.empty() ? "" : counts.faults.front());
+    EXPECT_EQ(counts.slow, 0) << "the child is stopped after 2 s of processor";
+    EXPECT_EQ(counts.changed_files, 0);
+    EXPECT_EQ(counts.read + counts.refused + counts.damaged + counts.other_errors, counts.mutations);
+    EXPECT_GT(counts.damaged, 80) << "the damage is real";
 }
 
 }  // namespace

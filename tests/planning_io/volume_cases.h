@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ std::vector<VolumeCase> sound_volumes();
 
 /// Everything that is to be refused.
 std::vector<VolumeCase> spoilt_volumes();
+
+/// For a failed test's message.
+inline void PrintTo(const VolumeCase& c, std::ostream* out) { *out << c.name; }
 
 /// Letters and digits of a case's name, for the name of a test.
 std::string test_name_of(const VolumeCase& c);
