@@ -203,6 +203,8 @@ bool DicomSeries::is_volume() const {
            std::any_of(files.begin(), files.end(), [](const DicomFile& f) { return !f.localizer && !f.slices.empty(); });
 }
 
+bool is_dicom_directory(const fs::path& file) { return lower_case(file.filename().string()).starts_with("dicomdir"); }
+
 DicomFolder find_dicom(const fs::path& folder, int depth) {
     DicomFolder found;
     for (const fs::path& path : files_in(folder, depth)) {
@@ -224,14 +226,16 @@ DicomFolder find_dicom(const fs::path& folder, int depth) {
 DicomSeries choose_series(const DicomFolder& folder, const fs::path& path, const std::string& wanted) {
     std::vector<DicomSeries> chosen;
     const bool is_folder = fs::is_directory(path);
-    const bool says_folder = is_folder || lower_case(path.filename().string()) == "dicomdir";
+    const bool says_folder = is_folder || is_dicom_directory(path);
     for (const DicomSeries& s : folder.series)
         if (!wanted.empty() ? s.uid == wanted || s.number == wanted : says_folder ? s.is_volume() : holds(s, path)) chosen.push_back(s);
     if (chosen.size() > 1 && wanted.empty() && std::any_of(chosen.begin(), chosen.end(), [](const auto& s) { return s.slices() >= kFewestSlices; }))
         std::erase_if(chosen, [](const DicomSeries& s) { return s.slices() < kFewestSlices; });  // a few slices are no rival
     for (const auto& file : folder.unreadable)
-        if (chosen.size() != 1 || is_folder || fs::equivalent(file, path))
+        if (says_folder || !chosen.empty() || fs::equivalent(file, path))
             throw DamagedFileError(file, "is a DICOM file that cannot be read, so that nobody can tell of which series it is", "Copy or export the series again; if the file is of no use, move it elsewhere.");
+    if (!says_folder && wanted.empty() && chosen.empty())
+        throw InputError(path, "is no DICOM file", "Name a folder with a CT or MR series, or a file: .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, .inv3.");
     if (folder.series.empty()) throw InputError(path, "holds no DICOM images", "Name a folder with a CT or MR series, or a file: .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, .inv3.");
     if (chosen.empty())
         throw InputError(path, (wanted.empty() ? "holds no CT or MR volume; there is:" : "holds no series of the UID or number " + wanted + "; there is:") + table_of(folder.series), "Name a folder with a CT or MR series of slices.");

@@ -88,14 +88,14 @@ int leave_localizers_aside(DicomSeries& series) {
 
 Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
     const bool is_folder = fs::is_directory(path);
-    const bool is_index = !is_folder && (path.filename() == "DICOMDIR" || path.filename() == "dicomdir");
+    const bool is_index = !is_folder && is_dicom_directory(path);
     const fs::path folder = is_folder ? path : path.has_parent_path() ? path.parent_path() : fs::path(".");
     DicomSeries series = choose_series(find_dicom(folder, is_folder || is_index ? kScanDepth : 1), path, wanted);
     const int localizers = leave_localizers_aside(series);
     for (const auto& file : series.files)
         if (file.damaged) throw DamagedFileError(file.path, "is damaged or cut short in its header", kCopyAgain);
-    if (const auto fault = fault_of(series.all_slices())) throw InputError(path, fault->problem, fault->remedy);
     if (!series.is_volume()) throw InputError(path, fmt::format("is no CT or MR volume (storage class {})", series.files.front().storage_class), "Give a series of CT or MR image objects.");
+    if (const auto fault = fault_of(series.all_slices())) throw InputError(path, fault->problem, fault->remedy);
 
     vtkNew<vtkStringArray> names;
     for (const auto& file : series.files) names->InsertNextValue(file.readable_as);
