@@ -25,7 +25,7 @@ constexpr rlim_t kMaxMemoryBytes = rlim_t{4} << 30;
 constexpr rlim_t kMaxAnswerBytes = rlim_t{8} << 30;
 constexpr rlim_t kMaxOpenFiles = 4096;
 constexpr rlim_t kMinProcessor_s = 1, kMaxProcessor_s = 240;
-constexpr std::uintmax_t kSlowestBytes_s = 1'000'000;  // JPEG 2000, the slowest to unpack, takes a third of this time
+constexpr std::uintmax_t kSlowestBytes_s = 1'000'000;  // every sound file is unpacked much faster
 constexpr unsigned kMaxWait_s = 300;
 constexpr std::uint64_t kMaxNotes = 100;
 constexpr const char* kCopyAgain = "Copy or export it again from where it came from.";

@@ -48,6 +48,11 @@ Volume read_volume(const fs::path& path, const std::string& series) {
     return parse_in_child(path, [&] { return parse_volume(path, series); });
 }
 
+void make_anonymous(Volume& volume) {
+    volume.source = volume.modality + " volume";
+    volume.frame_of_reference_uid.clear();
+}
+
 std::string hash_of(const Volume& volume) {
     ContentHash hash;
     hash.add("planlight volume 1");

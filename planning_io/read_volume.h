@@ -14,6 +14,9 @@ namespace planlight {
 /// slice, uneven spacing, no frame ...; the list is in INTAKE.md), DamagedFileError for a damaged file.
 Volume read_volume(const std::filesystem::path& path, const std::string& series = {});
 
+/// Takes the file name or the series' UID and the frame of reference's UID away from a volume whose case must not name a patient.
+void make_anonymous(Volume& volume);
+
 /// The hash of values and geometry (XXH3-128, hex): two volumes with the same hash are the same volume.
 std::string hash_of(const Volume& volume);
 

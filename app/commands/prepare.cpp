@@ -15,7 +15,8 @@ int run_prepare(const PrepareOptions& options) {
     ProgressBar bar;
     bar.show("volume", 0);
     const Plan plan = read_plan(options.plan);
-    const Volume volume = read_volume(options.volume, options.series_uid);
+    Volume volume = read_volume(options.volume, options.series_uid);
+    if (options.anonymous) make_anonymous(volume);
     bar.show("volume", 1);
     SkinSettings skin;
     skin.threshold = options.threshold;
@@ -31,7 +32,6 @@ int run_prepare(const PrepareOptions& options) {
         const nlohmann::json result = {
             {"case", the_case.code},
             {"folder", options.out.string()},
-            {"source", the_case.source},
             {"threshold", done.threshold},
             {"body_ml", done.body_ml},
             {"removed_pieces", done.pieces_removed},

@@ -96,10 +96,10 @@ void write_report_html(const std::filesystem::path& file, const Preparation& pre
                        const std::vector<ReportPicture>& pictures) {
     std::string html = fmt::format(
         "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>Planlight report</title><style>{}</style></head>"
-        "<body><main><h1>Light on the patient</h1><p class=\"muted\">Case {}, {}. All errors are those of a simulated operating "
+        "<body><main><h1>Light on the patient</h1><p class=\"muted\">Case {}. All errors are those of a simulated operating "
         "room with its own optics and the CT field as the true skin; no real projector or camera was measured. "
         "For research; not a medical device.</p>",
-        kStyle, escape(prepared.prepared.code), escape(prepared.prepared.source));
+        kStyle, escape(prepared.prepared.code));
     for (const auto* preset : {"modern", "paper"})
         if (const auto s = summarise(rooms, preset); s.rooms > 0) html += preset_section(s);
     html += preparation_section(prepared) + "<h2>Step by step</h2><div class=\"grid\">";

@@ -21,7 +21,7 @@ Eigen::Matrix3d axes(const Eigen::Vector3d& row, const Eigen::Vector3d& column) 
 }
 
 VolumeCase series(const std::string& name, const std::function<Objects()>& make, DicomEncoding encoding = DicomEncoding::explicit_little) {
-    return {name, "", [make, encoding](const fs::path& folder) { return write_series(make(), folder, encoding), folder; }, "", true};
+    return {name, "", [make, encoding](const fs::path& folder) { return write_series(make(), folder, encoding), folder; }, "", true, "CT"};
 }
 
 VolumeCase packed(const std::string& name, DicomPacking packing) {
@@ -29,7 +29,7 @@ VolumeCase packed(const std::string& name, DicomPacking packing) {
                 for (const auto& file : write_series(synthetic_series({}), folder))
                     if (!pack_dicom(file, packing)) throw std::runtime_error("GDCM could not pack " + file.string());
                 return folder;
-            }, "", true};
+            }, "", true, "CT"};
 }
 
 VolumeCase position(const std::string& name, const Eigen::Matrix3d& turn, const std::string& patient_position, double shear_mm = 0) {
@@ -37,7 +37,7 @@ VolumeCase position(const std::string& name, const Eigen::Matrix3d& turn, const 
 }
 
 VolumeCase file(const std::string& name, const std::string& file_name, const std::function<std::string()>& bytes) {
-    return {name, "", [=](const fs::path& folder) { return write_safely(folder / file_name, bytes()), folder / file_name; }, "", true};
+    return {name, "", [=](const fs::path& folder) { return write_safely(folder / file_name, bytes()), folder / file_name; }, "", true, "CT"};
 }
 
 /// What else a hospital's folder holds: another patient's scout, a short second series, a secondary capture, a report, a letter.
@@ -79,8 +79,14 @@ void add_dicom(std::vector<VolumeCase>& list) {
     list.push_back(series("DICOM, Enhanced CT, frames shuffled", [] { return Objects{enhanced_object({})}; }));
     list.push_back(series("DICOM, Enhanced CT, deflated", [] { return Objects{enhanced_object({})}; }, DicomEncoding::deflated));
     list.push_back(series("DICOM, Enhanced MR, frames shuffled", [] { return Objects{enhanced_object({}, {.modality = "MR"})}; }));
-    list.back().is_hu = false;
+    list.back().is_hu = false, list.back().modality = "MR";
     list.push_back(series("DICOM, MR without rescale", [] { return synthetic_series({}, {.modality = "MR"}); }));
+    list.back().is_hu = false, list.back().modality = "MR";
+    list.push_back(series("DICOM, CT whose values are not HU (0 and more, no offset)", [] {
+        Objects objects = synthetic_series({});
+        for (auto& o : objects) o.decimals(0x00281052, {0}), o.erase(0x00281054);
+        return objects;
+    }));
     list.back().is_hu = false;
     list.push_back(series("DICOM, signed CT without rescale slope and intercept", [] {
         Objects objects = synthetic_series({}, {.is_signed = true});
@@ -125,16 +131,16 @@ void add_folders(std::vector<VolumeCase>& list) {
         add_company(folder);
         return folder;
     };
-    list.push_back({"DICOM folder with a scout, key images of another person, screenshots, a report, a DICOMDIR and a letter", "", full, "", true});
-    list.push_back({"the same folder by its DICOMDIR", "", [full](const fs::path& folder) { return full(folder) / "DICOMDIR"; }, "", true});
-    list.push_back({"any slice of a series", "", [](const fs::path& folder) { return write_series(synthetic_series({}), folder)[5]; }, "", true});
+    list.push_back({"DICOM folder with a scout, key images of another person, screenshots, a report, a DICOMDIR and a letter", "", full, "", true, "CT"});
+    list.push_back({"the same folder by its DICOMDIR", "", [full](const fs::path& folder) { return full(folder) / "DICOMDIR"; }, "", true, "CT"});
+    list.push_back({"any slice of a series", "", [](const fs::path& folder) { return write_series(synthetic_series({}), folder)[5]; }, "", true, "CT"});
     const auto two = [](const fs::path& folder) {
         write_series(synthetic_series({}), folder / "thin");
         write_series(synthetic_series(turned_grid(Eigen::Matrix3d::Identity(), 0.5), {.description = "Soft", .uid = "1.2.826.0.1.3680043.9.9999.7.2", .number = "3"}), folder / "soft");
         return folder;
     };
-    list.push_back({"two series in a folder, one named by UID", "", two, "1.2.826.0.1.3680043.9.9999.7.1", true});
-    list.push_back({"two series in a folder, one named by number", "", two, "2", true});
+    list.push_back({"two series in a folder, one named by UID", "", two, "1.2.826.0.1.3680043.9.9999.7.1", true, "CT"});
+    list.push_back({"two series in a folder, one named by number", "", two, "2", true, "CT"});
     list.push_back({"a localizer picture inside the series", "", [](const fs::path& folder) {
                         Objects objects = synthetic_series({});
                         DicomObject scout = objects[3];
@@ -143,7 +149,7 @@ void add_folders(std::vector<VolumeCase>& list) {
                         scout.decimals(0x00200037, {0, 1, 0, 0, 0, -1});
                         objects.push_back(scout);
                         return write_series(objects, folder), folder;
-                    }, "", true});
+                    }, "", true, "CT"});
 }
 
 void add_formats(std::vector<VolumeCase>& list) {
@@ -198,7 +204,7 @@ void add_formats(std::vector<VolumeCase>& list) {
                         write_safely(folder / "head.nhdr", h);
                         write_safely(folder / "head.raw.gz", gzipped(int16_bytes(grid)));
                         return folder / "head.nhdr";
-                    }, "", true});
+                    }, "", true, "CT"});
     list.push_back(file("MetaImage", "head.mha", [=] { return metaimage_header(oblique) + int16_bytes(oblique); }));
     list.push_back(file("MetaImage, packed, left-handed axes, AnatomicalOrientation LAI", "head.mha", [=] {
         std::string h = metaimage_header(left_handed, true);
@@ -211,7 +217,7 @@ void add_formats(std::vector<VolumeCase>& list) {
                         write_safely(folder / "head.mhd", h);
                         write_safely(folder / "head.raw", int16_bytes(grid));
                         return folder / "head.mhd";
-                    }, "", true});
+                    }, "", true, "CT"});
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ VolumeCase series(const std::string& name, const std::string& says, const std::f
                 spoil(objects);
                 write_series(objects, folder, DicomEncoding::explicit_little, transfer_syntax);
                 return folder;
-            }, "", true};
+            }, "", true, "CT"};
 }
 
 /// One slice, or all of them.
@@ -34,7 +34,7 @@ VolumeCase slices(const std::string& name, const std::string& says, const std::f
 }
 
 VolumeCase file(const std::string& name, const std::string& says, const std::string& file_name, const std::function<std::string()>& bytes) {
-    return {name, says, [=](const fs::path& folder) { return write_safely(folder / file_name, bytes()), folder / file_name; }, "", true};
+    return {name, says, [=](const fs::path& folder) { return write_safely(folder / file_name, bytes()), folder / file_name; }, "", true, "CT"};
 }
 
 VolumeCase nifti(const std::string& name, const std::string& says, const std::function<void(std::string&)>& spoil) {
@@ -67,8 +67,8 @@ void add_stack(std::vector<VolumeCase>& list) {
                         write_series(synthetic_series({}), folder / "a");
                         write_series(synthetic_series({}, {.description = "Bone", .uid = "1.2.826.0.1.3680043.9.9999.7.2", .number = "3"}), folder / "b");
                         return folder;
-                    }, "", true});
-    list.push_back({"a series named that is not there", "no series", [](const fs::path& folder) { return write_series(synthetic_series({}), folder), folder; }, "1.2.3", true});
+                    }, "", true, "CT"});
+    list.push_back({"a series named that is not there", "no series", [](const fs::path& folder) { return write_series(synthetic_series({}), folder), folder; }, "1.2.3", true, "CT"});
     list.push_back(slice("two frames of reference", "frames of reference", [](DicomObject& o) { o.text(0x00200052, "UI", "1.2.3.4"); }));
     list.push_back(slice("two patients by ID", "two patients", [](DicomObject& o) { o.text(0x00100020, "LO", "OTHER"); }));
     list.push_back(slice("two patients by name", "two patients", [](DicomObject& o) { o.text(0x00100010, "PN", "Other^Person"); }));
@@ -137,7 +137,7 @@ void add_damage(std::vector<VolumeCase>& list) {
                               const std::string whole = read_whole(files[9]);
                               write_safely(files[9], whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
                               return folder;
-                          }, "", true};
+                          }, "", true, "CT"};
     };
     list.push_back(cut("a file cut in its pixels", 0.6)), list.back().says = "damaged or cut";
     list.push_back(cut("a file cut in its header", 0.02)), list.back().says = "cannot be read";
@@ -147,9 +147,9 @@ void add_damage(std::vector<VolumeCase>& list) {
                         const std::string whole = read_whole(files[9]);
                         write_safely(files[9], whole.substr(0, whole.size() * 3 / 4));
                         return folder;
-                    }, "", true});
-    list.push_back({"an empty folder", "no DICOM images", [](const fs::path& folder) { return folder; }, "", true});
-    list.push_back({"a folder without DICOM files", "no DICOM images", [](const fs::path& folder) { return write_safely(folder / "letter.txt", "Dear colleague"), folder; }, "", true});
+                    }, "", true, "CT"});
+    list.push_back({"an empty folder", "no DICOM images", [](const fs::path& folder) { return folder; }, "", true, "CT"});
+    list.push_back({"a folder without DICOM files", "no DICOM images", [](const fs::path& folder) { return write_safely(folder / "letter.txt", "Dear colleague"), folder; }, "", true, "CT"});
     list.push_back(file("an Analyze header", "Analyze", "head.hdr", [] { return nifti_header({}); }));
     list.push_back(file("NIfTI: cut in its voxels", "cut short", "head.nii", [] { return nifti_bytes(nifti_header({}), {}).substr(0, 100000); }));
     list.push_back(file("NIfTI: gzip with a wrong checksum", "damaged", "head.nii.gz", [] {

@@ -17,6 +17,7 @@ struct VolumeCase {
     std::function<std::filesystem::path(const std::filesystem::path& empty_folder)> make;  ///< what to give to read_volume
     std::string series;  ///< to ask for by name
     bool is_hu = true;
+    std::string modality = "CT";
 };
 
 /// Everything that is to be read, with the phantom's values at their places: transfer syntaxes, positions, formats, mixed folders.
