@@ -35,15 +35,17 @@ struct DicomFolder {
     std::vector<std::filesystem::path> unreadable;  ///< DICOM files whose header cannot be read
 };
 
-/// Finds every DICOM object in a folder (ten levels deep, whatever the files are called; DICOMDIR is not needed and not believed).
-/// Throws InputError for more than 200,000 files. Crashes on some damaged files: to be called in a child process.
+/// Finds every DICOM object in a folder (ten levels deep, whatever the files are called; DICOMDIR is not needed and not
+/// believed). Throws InputError for more than 200,000 files. Crashes on some damaged files: to be called in a child
+/// process.
 DicomFolder find_dicom(const std::filesystem::path& folder, int depth);
 
 /// Whether a file is a DICOMDIR by its name: it stands for its folder.
 bool is_dicom_directory(const std::filesystem::path& file);
 
-/// The series of that UID or number; else that of `file`; else the only volume. Throws InputError with the list of series when
-/// there is none or more than one, DamagedFileError when a file of the folder cannot be told to be of another series.
+/// The series of that UID or number; else that of `file`; else the only volume. Throws InputError with the list of
+/// series when there is none or more than one, DamagedFileError when a file of the folder cannot be told to be of
+/// another series.
 DicomSeries choose_series(const DicomFolder& folder, const std::filesystem::path& path, const std::string& wanted);
 
 }  // namespace planlight

@@ -36,9 +36,13 @@ SliceOrder order_of(vtkDICOMReader* reader, const DicomSeries& series, const fs:
     vtkIntArray *files = reader->GetFileIndexArray(), *frames = reader->GetFrameIndexArray();
     SliceOrder order;
     for (vtkIdType s = 0; files && s < files->GetNumberOfTuples(); ++s)
-        order.emplace_back(static_cast<std::size_t>(files->GetComponent(s, 0)), frames && frames->GetNumberOfTuples() > s ? static_cast<std::size_t>(frames->GetComponent(s, 0)) : 0);
+        order.emplace_back(
+            static_cast<std::size_t>(files->GetComponent(s, 0)),
+            frames && frames->GetNumberOfTuples() > s ? static_cast<std::size_t>(frames->GetComponent(s, 0)) : 0);
     if (static_cast<int>(order.size()) != series.slices() || (files && files->GetNumberOfComponents() != 1))
-        throw InputError(path, fmt::format("its {} pictures do not stack to one volume ({} slices)", series.slices(), order.size()), "Export one series of one time point.");
+        throw InputError(
+            path, fmt::format("its {} pictures do not stack to one volume ({} slices)", series.slices(), order.size()),
+            "Export one series of one time point.");
     return order;
 }
 
@@ -46,7 +50,8 @@ SliceOrder order_of(vtkDICOMReader* reader, const DicomSeries& series, const fs:
 void check_against_reader(vtkDICOMReader* reader, const Volume& volume, const fs::path& path) {
     const double* spacing = reader->GetOutput()->GetSpacing();
     for (int corner = 0; corner < 8; ++corner) {
-        const Eigen::Vector3d voxel((corner & 1) * (volume.size[0] - 1), ((corner >> 1) & 1) * (volume.size[1] - 1), (corner >> 2) * (volume.size[2] - 1));
+        const Eigen::Vector3d voxel((corner & 1) * (volume.size[0] - 1), ((corner >> 1) & 1) * (volume.size[1] - 1),
+                                    (corner >> 2) * (volume.size[2] - 1));
         const std::array<double, 4> in{voxel.x() * spacing[0], voxel.y() * spacing[1], voxel.z() * spacing[2], 1};
         std::array<double, 4> out{};
         reader->GetPatientMatrix()->MultiplyPoint(in.data(), out.data());
@@ -55,20 +60,36 @@ void check_against_reader(vtkDICOMReader* reader, const Volume& volume, const fs
     }
 }
 
+template <class T>
+void copy_as(vtkDataArray* scalars, Volume& volume) {
+    const T* stored = static_cast<const T*>(scalars->GetVoidPointer(0));
+    std::transform(stored, stored + volume.values.size(), volume.values.begin(), [](T v) { return static_cast<float>(v); });
+}
+
 void copy_stored_values(vtkImageData* image, Volume& volume, const fs::path& path) {
     vtkDataArray* scalars = image->GetPointData()->GetScalars();
     const auto count = volume.index(0, 0, volume.size[2]);
     std::array<int, 3> dimensions{};
     image->GetDimensions(dimensions.data());
-    if (dimensions != volume.size || !scalars || scalars->GetNumberOfComponents() != 1 || static_cast<std::size_t>(scalars->GetNumberOfTuples()) != count)
+    if (dimensions != volume.size || !scalars || scalars->GetNumberOfComponents() != 1 ||
+        static_cast<std::size_t>(scalars->GetNumberOfTuples()) != count)
         throw DamagedFileError(path, "its pictures could not be unpacked", kCopyAgain);
     volume.values.resize(count);
-    for (std::size_t i = 0; i < count; ++i) volume.values[i] = static_cast<float>(scalars->GetComponent(static_cast<vtkIdType>(i), 0));
+    switch (scalars->GetDataType()) {
+        case VTK_UNSIGNED_SHORT: return copy_as<unsigned short>(scalars, volume);
+        case VTK_SHORT: return copy_as<short>(scalars, volume);
+        case VTK_UNSIGNED_CHAR: return copy_as<unsigned char>(scalars, volume);
+        default: break;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+        volume.values[i] = static_cast<float>(scalars->GetComponent(static_cast<vtkIdType>(i), 0));
 }
 
 void note_geometry(const DicomSeries& series, Volume& volume) {
     if (const double tilt = tilt_of(volume.ct_from_voxel); tilt > kTilted)
-        volume.notes.push_back(fmt::format("the gantry was tilted by {:.1f} degrees: the slices stay where they were, sheared", tilt * 180 / std::numbers::pi));
+        volume.notes.push_back(
+            fmt::format("the gantry was tilted by {:.1f} degrees: the slices stay where they were, sheared",
+                        tilt * 180 / std::numbers::pi));
     for (const auto& slice : series.all_slices())
         if (transfer_syntax_of(slice.transfer_syntax) == TransferSyntax::lossy) {
             volume.notes.push_back("the pictures were compressed with loss");
@@ -94,7 +115,10 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
     const int localizers = leave_localizers_aside(series);
     for (const auto& file : series.files)
         if (file.damaged) throw DamagedFileError(file.path, "is damaged or cut short in its header", kCopyAgain);
-    if (!series.is_volume()) throw InputError(path, fmt::format("is no CT or MR volume (storage class {})", series.files.front().storage_class), "Give a series of CT or MR image objects.");
+    if (!series.is_volume())
+        throw InputError(path,
+                         fmt::format("is no CT or MR volume (storage class {})", series.files.front().storage_class),
+                         "Give a series of CT or MR image objects.");
     if (const auto fault = fault_of(series.all_slices())) throw InputError(path, fault->problem, fault->remedy);
 
     vtkNew<vtkStringArray> names;
@@ -107,7 +131,8 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
     if (!reader->GetErrorCode()) reader->Update();
     if (reader->GetErrorCode()) {
         const char* name = reader->GetInternalFileName();
-        const auto file = std::find_if(series.files.begin(), series.files.end(), [&](const DicomFile& f) { return name && f.readable_as == name; });
+        const auto file = std::find_if(series.files.begin(), series.files.end(),
+                                       [&](const DicomFile& f) { return name && f.readable_as == name; });
         throw DamagedFileError(file == series.files.end() ? path : file->path, "is damaged or cut short", kCopyAgain);
     }
 
@@ -124,7 +149,8 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
     volume.modality = series.modality;
     volume.frame_of_reference_uid = slices[0].frame_of_reference_uid;
     volume.source = fmt::format("DICOM series {}", series.uid);
-    if (localizers > 0) volume.notes.push_back(fmt::format("{} localizer picture(s) of the series were left aside", localizers));
+    if (localizers > 0)
+        volume.notes.push_back(fmt::format("{} localizer picture(s) of the series were left aside", localizers));
     note_geometry(series, volume);
     check_against_reader(reader, volume, path);
     copy_stored_values(reader->GetOutput(), volume, path);

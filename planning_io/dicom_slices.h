@@ -12,27 +12,29 @@ namespace planlight {
 struct DicomSlice {
     static constexpr double kUnsaid = std::numeric_limits<double>::quiet_NaN();
 
-    std::string file;                                                                    ///< name, and frame when there are several
-    Eigen::Vector3d position_in_ct = Eigen::Vector3d::Constant(kUnsaid);                 ///< Image Position (Patient): centre of the first pixel, mm
-    Eigen::Vector3d row_direction = Eigen::Vector3d::Constant(kUnsaid);                  ///< Image Orientation (Patient): along a row
-    Eigen::Vector3d column_direction = Eigen::Vector3d::Constant(kUnsaid);               ///< along a column
-    double column_spacing_mm = kUnsaid, row_spacing_mm = kUnsaid;                        ///< between columns (along a row), between rows
+    std::string file;  ///< name, and frame when there are several
+    Eigen::Vector3d position_in_ct =
+        Eigen::Vector3d::Constant(kUnsaid);  ///< Image Position (Patient): centre of the first pixel, mm
+    Eigen::Vector3d row_direction = Eigen::Vector3d::Constant(kUnsaid);  ///< Image Orientation (Patient): along a row
+    Eigen::Vector3d column_direction = Eigen::Vector3d::Constant(kUnsaid);  ///< along a column
+    double column_spacing_mm = kUnsaid, row_spacing_mm = kUnsaid;  ///< between columns (along a row), between rows
     int columns = 0, rows = 0;
     std::string frame_of_reference_uid, patient, patient_position;
-    int samples = 1;                                                                     ///< 3: a colour picture
-    std::string stored_as;                                                               ///< bits and sign of its pixels
-    std::string transfer_syntax;                                                         ///< UID; empty: implicit little endian
-    double slope = 1, intercept = 0;                                                     ///< of the rescaling
+    int samples = 1;                  ///< 3: a colour picture
+    std::string stored_as;            ///< bits and sign of its pixels
+    std::string transfer_syntax;      ///< UID; empty: implicit little endian
+    double slope = 1, intercept = 0;  ///< of the rescaling
     bool has_rescale = false;
-    std::string defaced;                                                                 ///< how it says that the face was taken away
+    std::string defaced;  ///< how it says that the face was taken away
 };
 
 struct DicomRefusal {
     std::string problem, remedy;
 };
 
-/// Why the slices, in any order, are not one safe volume; empty when they are: evenly spaced to 0.01 mm along their normal
-/// and on one straight line, one orientation (1e-4), one size and spacing, one patient and frame of reference, at least 16.
+/// Why the slices, in any order, are not one safe volume; empty when they are: evenly spaced to 0.01 mm along their
+/// normal and on one straight line, one orientation (1e-4), one size and spacing, one patient and frame of reference,
+/// at least 16.
 std::optional<DicomRefusal> fault_of(std::vector<DicomSlice> slices);
 
 /// The affine of slices in this order (they have no fault): i along a row, j along a column, k from slice to slice.

@@ -25,8 +25,8 @@ struct TextHeader {
     std::vector<double> numbers(const std::string& name, std::size_t count) const;
 };
 
-/// Reads lines up to an empty one or, when `last` is given, through the line of that name; at most 64 KiB and 500 lines of
-/// printable text, no name twice. Lines that begin with '#' are left out. Throws DamagedFileError.
+/// Reads lines up to an empty one or, when `last` is given, through the line of that name; at most 64 KiB and 500 lines
+/// of printable text, no name twice. Lines that begin with '#' are left out. Throws DamagedFileError.
 TextHeader read_text_header(const std::filesystem::path& file, const std::string& separator, const std::string& last);
 
 /// Numbers of a text; empty when it holds anything else.
@@ -34,7 +34,8 @@ std::vector<double> numbers_of(std::string text);
 
 std::string lower_case(std::string text);
 
-/// The data file that a header names, in the header's own folder or below. InputError when it is elsewhere or not there.
+/// The data file that a header names, in the header's own folder or below. InputError when it is elsewhere or not
+/// there.
 std::filesystem::path data_file_beside(const std::filesystem::path& header, const std::string& name);
 
 /// InputError when a file's name or description says that its face was removed.

@@ -22,9 +22,12 @@ constexpr std::size_t kMostBytes = std::size_t{1} << 30;
 
 /// Where the file's first group ends, from its length element; 0 when there is none.
 std::size_t end_of_first_group(const std::string& head) {
-    if (head.size() < 144 || head.compare(128, 4, "DICM") != 0 || head.compare(132, 8, std::string("\2\0\0\0UL\4\0", 8)) != 0) return 0;
+    if (head.size() < 144 || head.compare(128, 4, "DICM") != 0 ||
+        head.compare(132, 8, std::string("\2\0\0\0UL\4\0", 8)) != 0)
+        return 0;
     std::uint32_t length = 0;
-    for (std::size_t i = 0; i < 4; ++i) length |= static_cast<std::uint32_t>(static_cast<unsigned char>(head[140 + i])) << (8 * i);
+    for (std::size_t i = 0; i < 4; ++i)
+        length |= static_cast<std::uint32_t>(static_cast<unsigned char>(head[140 + i])) << (8 * i);
     return 144 + std::size_t{length};
 }
 
@@ -59,8 +62,10 @@ std::string inflated_dicom(const fs::path& file) {
     const std::size_t uid = head.find(kDeflated);
     if (end == 0 || uid == std::string::npos || uid > end) return file.string();
     const std::string whole = read_whole(file);
-    if (whole.size() < end || whole.size() > kMostBytes) throw DamagedFileError(file, "is cut short", "Copy or export the series again.");
-    std::string inflated = whole.substr(0, end).replace(uid, kDeflated.size(), kExplicit) + inflate_all(whole, end, file);
+    if (whole.size() < end || whole.size() > kMostBytes)
+        throw DamagedFileError(file, "is cut short", "Copy or export the series again.");
+    std::string inflated =
+        whole.substr(0, end).replace(uid, kDeflated.size(), kExplicit) + inflate_all(whole, end, file);
     const int memory = memfd_create("planlight-dicom", 0);
     for (std::size_t done = 0; memory >= 0 && done < inflated.size();) {
         const ssize_t wrote = write(memory, inflated.data() + done, inflated.size() - done);

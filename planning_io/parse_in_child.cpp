@@ -74,8 +74,10 @@ private:
         while (good_ && bytes > 0) {
             const ssize_t moved = out ? write(fd_, at, bytes) : read(fd_, at, bytes);
             if (moved < 0 && errno == EINTR) continue;
-            if (moved <= 0) good_ = false;
-            else at += moved, bytes -= static_cast<std::size_t>(moved);
+            if (moved <= 0)
+                good_ = false;
+            else
+                at += moved, bytes -= static_cast<std::size_t>(moved);
         }
     }
     int fd_;
@@ -120,11 +122,13 @@ rlim_t processor_limit_s(const fs::path& path) {
     std::error_code error;
     if (fs::is_regular_file(path, error)) bytes = fs::file_size(path, error);
     int files = 0;
-    if (const fs::path folder = fs::is_directory(path, error) ? path : path.parent_path(); fs::is_directory(folder, error))
-        for (fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error), end; !error && entry != end && files < 100000;
-             entry.increment(error))
+    if (const fs::path folder = fs::is_directory(path, error) ? path : path.parent_path();
+        fs::is_directory(folder, error))
+        for (fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error), end;
+             !error && entry != end && files < 100000; entry.increment(error))
             if (std::error_code ignored; entry->is_regular_file(ignored)) bytes += entry->file_size(ignored), ++files;
-    return std::min(kMaxProcessor_s, kMinProcessor_s + static_cast<rlim_t>(bytes / kSlowestBytes_s) + static_cast<rlim_t>(files / 500));
+    return std::min(kMaxProcessor_s,
+                    kMinProcessor_s + static_cast<rlim_t>(bytes / kSlowestBytes_s) + static_cast<rlim_t>(files / 500));
 }
 
 void limit_this_process(rlim_t processor_s) {
@@ -162,7 +166,8 @@ void limit_this_process(rlim_t processor_s) {
     } catch (const Error& e) {
         answer(e.exit_code == ExitCode::file_damaged ? Outcome::damaged : Outcome::refused, e.what(), e.remedy);
     } catch (const std::bad_alloc&) {
-        answer(Outcome::refused, path.string() + ": needs more than 4 GiB of memory", "Give one series, or resample it to larger voxels.");
+        answer(Outcome::refused, path.string() + ": needs more than 4 GiB of memory",
+               "Give one series, or resample it to larger voxels.");
     } catch (const std::exception& e) {
         answer(Outcome::damaged, path.string() + ": cannot be read (" + e.what() + ")", kCopyAgain);
     }
@@ -174,7 +179,8 @@ void limit_this_process(rlim_t processor_s) {
 Volume parse_in_child(const fs::path& path, const std::function<Volume()>& parse) {
     Channel channel;
     const pid_t child = channel.good() ? fork() : -1;
-    if (child < 0) throw DiskError(path, "no child process could be started to read it", "Close other programs and try again.");
+    if (child < 0)
+        throw DiskError(path, "no child process could be started to read it", "Close other programs and try again.");
     if (child == 0) be_the_child(channel, path, parse);
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
@@ -182,9 +188,13 @@ Volume parse_in_child(const fs::path& path, const std::function<Volume()>& parse
     if (WIFSIGNALED(status)) {
         const int signal = WTERMSIG(status);
         const bool slow = signal == SIGXCPU || signal == SIGKILL || signal == SIGALRM;
-        throw DamagedFileError(path, slow ? "took longer to read than a sound file does" : "made its parser crash (signal " + std::to_string(signal) + ")", kCopyAgain);
+        throw DamagedFileError(path,
+                               slow ? "took longer to read than a sound file does"
+                                    : "made its parser crash (signal " + std::to_string(signal) + ")",
+                               kCopyAgain);
     }
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw DamagedFileError(path, "could not be read to its end", kCopyAgain);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        throw DamagedFileError(path, "could not be read to its end", kCopyAgain);
     channel.rewind();
     const auto outcome = channel.get_value<Outcome>();
     if (outcome != Outcome::volume) {

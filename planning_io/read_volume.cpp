@@ -35,7 +35,8 @@ Volume parse_volume(const fs::path& path, const std::string& series) {
     if (name.ends_with(".nrrd") || name.ends_with(".nhdr")) return checked(parse_nrrd(path), path);
     if (name.ends_with(".mha") || name.ends_with(".mhd")) return checked(parse_metaimage(path), path);
     if (name.ends_with(".hdr") || name.ends_with(".img"))
-        throw InputError(path, "is an Analyze file or half of a NIfTI pair, which may not say left from right", "Convert the DICOM series to one .nii.gz, or give the DICOM series.");
+        throw InputError(path, "is an Analyze file or half of a NIfTI pair, which may not say left from right",
+                         "Convert the DICOM series to one .nii.gz, or give the DICOM series.");
     return parse_dicom_series(path, series);
 }
 
@@ -44,7 +45,8 @@ Volume parse_volume(const fs::path& path, const std::string& series) {
 Volume read_volume(const fs::path& path, const std::string& series) {
     std::error_code error;
     if (!fs::exists(path, error)) throw InputError(path, "does not exist", "Check the name of the file or folder.");
-    if (!fs::is_regular_file(path, error) && !fs::is_directory(path, error)) throw InputError(path, "is neither a file nor a folder", "Name a file or folder.");
+    if (!fs::is_regular_file(path, error) && !fs::is_directory(path, error))
+        throw InputError(path, "is neither a file nor a folder", "Name a file or folder.");
     return parse_in_child(path, [&] { return parse_volume(path, series); });
 }
 

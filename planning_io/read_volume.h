@@ -7,14 +7,17 @@
 
 namespace planlight {
 
-/// Reads a CT or MR volume: a folder (or any file) of a DICOM series, NIfTI-1 (.nii, .nii.gz), NRRD (.nrrd, .nhdr), MetaImage
-/// (.mha, .mhd) or an InVesalius project (.inv3). `series`: UID or number of the DICOM series, where the folder holds several volumes.
+/// Reads a CT or MR volume: a folder (or any file) of a DICOM series, NIfTI-1 (.nii, .nii.gz), NRRD (.nrrd, .nhdr),
+/// MetaImage
+/// (.mha, .mhd) or an InVesalius project (.inv3). `series`: UID or number of the DICOM series, where the folder holds
+/// several volumes.
 ///
-/// Everything is parsed in a child process with limits. Throws InputError for what is not one safe volume (missing or double
-/// slice, uneven spacing, no frame ...; the list is in INTAKE.md), DamagedFileError for a damaged file.
+/// Everything is parsed in a child process with limits. Throws InputError for what is not one safe volume (missing or
+/// double slice, uneven spacing, no frame ...; the list is in INTAKE.md), DamagedFileError for a damaged file.
 Volume read_volume(const std::filesystem::path& path, const std::string& series = {});
 
-/// Takes the file name or the series' UID and the frame of reference's UID away from a volume whose case must not name a patient.
+/// Takes the file name or the series' UID and the frame of reference's UID away from a volume whose case must not name
+/// a patient.
 void make_anonymous(Volume& volume);
 
 /// The hash of values and geometry (XXH3-128, hex): two volumes with the same hash are the same volume.

@@ -24,8 +24,13 @@ std::string number(std::uint64_t value, std::size_t bytes, bool big) {
 }
 
 std::string swapped(std::string bytes, const std::string& vr) {
-    const std::size_t width = vr == "US" || vr == "SS" || vr == "OW" ? 2 : vr == "UL" || vr == "FL" ? 4 : vr == "FD" ? 8 : 1;
-    for (std::size_t at = 0; at + width <= bytes.size(); at += width) std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(at), bytes.begin() + static_cast<std::ptrdiff_t>(at + width));
+    const std::size_t width = vr == "US" || vr == "SS" || vr == "OW" ? 2
+                              : vr == "UL" || vr == "FL"             ? 4
+                              : vr == "FD"                           ? 8
+                                                                     : 1;
+    for (std::size_t at = 0; at + width <= bytes.size(); at += width)
+        std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(at),
+                     bytes.begin() + static_cast<std::ptrdiff_t>(at + width));
     return bytes;
 }
 
@@ -41,7 +46,8 @@ std::string encode_set(const DicomObject& object, bool is_explicit, bool big) {
             }
         }
         out += number(tag >> 16, 2, big) + number(tag & 0xffff, 2, big);
-        const bool is_long = element.vr == "OB" || element.vr == "OW" || element.vr == "SQ" || element.vr == "UN" || element.vr == "UT";
+        const bool is_long =
+            element.vr == "OB" || element.vr == "OW" || element.vr == "SQ" || element.vr == "UN" || element.vr == "UT";
         if (is_explicit) out.append(element.vr).append(is_long ? 2 : 0, '\0');
         out += number(value.size(), is_explicit && !is_long ? 2 : 4, big) + value;
     }
@@ -69,13 +75,17 @@ void DicomObject::text(std::uint32_t tag, const std::string& vr, const std::stri
     elements[tag] = {vr, value, {}};
     if (value.size() % 2) elements[tag].bytes.push_back(vr == "UI" ? '\0' : ' ');
 }
-void DicomObject::number(std::uint32_t tag, std::uint16_t value) { elements[tag] = {"US", little(value, 2), {}}; }
+void DicomObject::number(std::uint32_t tag, std::uint16_t value) {
+    elements[tag] = {"US", little(value, 2), {}};
+}
 void DicomObject::decimals(std::uint32_t tag, const std::vector<double>& values) {
     std::string all;
     for (const double v : values) all.append(all.empty() ? "" : "\\").append(fmt::format("{:.9g}", v));
     text(tag, "DS", all);
 }
-void DicomObject::items(std::uint32_t tag, std::vector<DicomObject> list) { elements[tag] = {"SQ", "", std::move(list)}; }
+void DicomObject::items(std::uint32_t tag, std::vector<DicomObject> list) {
+    elements[tag] = {"SQ", "", std::move(list)};
+}
 void DicomObject::pixels(const std::vector<std::int16_t>& values) {
     std::string bytes;
     bytes.reserve(values.size() * 2);
@@ -84,11 +94,11 @@ void DicomObject::pixels(const std::vector<std::int16_t>& values) {
 }
 
 std::string encode_dicom(const DicomObject& object, DicomEncoding encoding, const std::string& transfer_syntax) {
-    const std::string uid = !transfer_syntax.empty()                         ? transfer_syntax
-                            : encoding == DicomEncoding::implicit_little     ? "1.2.840.10008.1.2"
-                            : encoding == DicomEncoding::explicit_big        ? "1.2.840.10008.1.2.2"
-                            : encoding == DicomEncoding::deflated            ? "1.2.840.10008.1.2.1.99"
-                                                                             : "1.2.840.10008.1.2.1";
+    const std::string uid = !transfer_syntax.empty()                     ? transfer_syntax
+                            : encoding == DicomEncoding::implicit_little ? "1.2.840.10008.1.2"
+                            : encoding == DicomEncoding::explicit_big    ? "1.2.840.10008.1.2.2"
+                            : encoding == DicomEncoding::deflated        ? "1.2.840.10008.1.2.1.99"
+                                                                         : "1.2.840.10008.1.2.1";
     DicomObject first;
     first.elements[0x00020001] = {"OB", std::string("\0\1", 2), {}};
     if (object.elements.contains(0x00080016)) first.elements[0x00020002] = {"UI", object.value(0x00080016), {}};
@@ -98,8 +108,10 @@ std::string encode_dicom(const DicomObject& object, DicomEncoding encoding, cons
     const std::string group = encode_set(first, true, false);
     DicomObject length;
     length.elements[0x00020000] = {"UL", little(group.size(), 4), {}};
-    const std::string set = encode_set(object, encoding != DicomEncoding::implicit_little, encoding == DicomEncoding::explicit_big);
-    return std::string(128, '\0') + "DICM" + encode_set(length, true, false) + group + (encoding == DicomEncoding::deflated ? deflated(set) : set);
+    const std::string set =
+        encode_set(object, encoding != DicomEncoding::implicit_little, encoding == DicomEncoding::explicit_big);
+    return std::string(128, '\0') + "DICM" + encode_set(length, true, false) + group +
+           (encoding == DicomEncoding::deflated ? deflated(set) : set);
 }
 
 bool pack_dicom(const std::filesystem::path& file, DicomPacking packing) {

@@ -8,7 +8,8 @@
 
 namespace planlight::test {
 
-/// A DICOM data set in memory, every element of which can be spoilt. Values are little endian bytes; sequences hold items.
+/// A DICOM data set in memory, every element of which can be spoilt. Values are little endian bytes; sequences hold
+/// items.
 struct DicomObject {
     struct Element {
         std::string vr, bytes;
@@ -17,17 +18,18 @@ struct DicomObject {
     std::map<std::uint32_t, Element> elements;  ///< by group << 16 | element
 
     void text(std::uint32_t tag, const std::string& vr, const std::string& value);
-    void number(std::uint32_t tag, std::uint16_t value);                      ///< US
-    void decimals(std::uint32_t tag, const std::vector<double>& values);      ///< DS
-    void items(std::uint32_t tag, std::vector<DicomObject> items);            ///< SQ
-    void pixels(const std::vector<std::int16_t>& values);                     ///< (7FE0,0010), OW
+    void number(std::uint32_t tag, std::uint16_t value);                  ///< US
+    void decimals(std::uint32_t tag, const std::vector<double>& values);  ///< DS
+    void items(std::uint32_t tag, std::vector<DicomObject> items);        ///< SQ
+    void pixels(const std::vector<std::int16_t>& values);                 ///< (7FE0,0010), OW
     void erase(std::uint32_t tag) { elements.erase(tag); }
     std::string value(std::uint32_t tag) const { return elements.at(tag).bytes; }
 };
 
 enum class DicomEncoding { implicit_little, explicit_little, explicit_big, deflated };
 
-/// The whole file: preamble, group 2, data set. `transfer_syntax` replaces the UID that `encoding` has (a lie, for tests).
+/// The whole file: preamble, group 2, data set. `transfer_syntax` replaces the UID that `encoding` has (a lie, for
+/// tests).
 std::string encode_dicom(const DicomObject& object, DicomEncoding encoding, const std::string& transfer_syntax = {});
 
 /// Packs an explicit little endian file anew with GDCM, in place. False when GDCM cannot.

@@ -12,8 +12,8 @@
 #include "tests/planning_io/volume_cases.h"
 #include "tests/support/test_data.h"
 
-/// intake_table FOLDER_OR_FILE...: gives everything found there to read_volume or read_plan, then every synthetic case, and prints a
-/// markdown table: what, accepted (with its geometry) or refused, and the sentence.
+/// intake_table FOLDER_OR_FILE...: gives everything found there to read_volume or read_plan, then every synthetic case,
+/// and prints a markdown table: what, accepted (with its geometry) or refused, and the sentence.
 namespace planlight::test {
 namespace {
 
@@ -28,7 +28,8 @@ struct Row {
 /// Without the path that the row names already; the rest of a path below `root` as "DATA".
 std::string one_line(std::string text, const std::string& path, const std::string& root) {
     if (text.starts_with(path + ": ")) text.erase(0, path.size() + 2);
-    for (std::size_t at; !root.empty() && (at = text.find(root)) != std::string::npos;) text.replace(at, root.size(), "DATA");
+    for (std::size_t at; !root.empty() && (at = text.find(root)) != std::string::npos;)
+        text.replace(at, root.size(), "DATA");
     std::string line;
     for (const char c : text) line += c == '\n' ? "; " : c == '|' ? "/" : std::string(1, c);
     return line.size() > 420 ? line.substr(0, 417) + "..." : line;
@@ -43,8 +44,9 @@ std::string words_of(const Volume& v) {
         axes += (v.ct_from_voxel.linear().col(a)[along] > 0 ? "LPS" : "RAI")[along];
     }
     const Eigen::Vector3d s = v.spacing_mm();
-    std::string text = fmt::format("{}{}, {} x {} x {} voxels of {:.3g} x {:.3g} x {:.3g} mm, axes towards {}", v.modality, v.is_hu ? " in HU" : "", v.size[0], v.size[1], v.size[2],
-                                   s.x(), s.y(), s.z(), axes);
+    std::string text =
+        fmt::format("{}{}, {} x {} x {} voxels of {:.3g} x {:.3g} x {:.3g} mm, axes towards {}", v.modality,
+                    v.is_hu ? " in HU" : "", v.size[0], v.size[1], v.size[2], s.x(), s.y(), s.z(), axes);
     for (const auto& note : v.notes) text += "; " + note;
     return text;
 }
@@ -67,20 +69,25 @@ Row plan_row(const std::string& what, const fs::path& path, const std::string& r
     }
 }
 
-bool is_plan_place(const fs::path& path) { return path.string().find("/plans/") != std::string::npos; }
+bool is_plan_place(const fs::path& path) {
+    return path.string().find("/plans/") != std::string::npos;
+}
 
 bool is_text(const fs::path& path) {
     const std::string e = path.extension().string();
-    return e == ".md" || e == ".txt" || e == ".dump" || e == ".py" || path.filename().string().find("LICENSE") != std::string::npos;
+    return e == ".md" || e == ".txt" || e == ".dump" || e == ".py" ||
+           path.filename().string().find("LICENSE") != std::string::npos;
 }
 
 /// Folders whose files belong together are one thing; others are looked into.
 void collect(const fs::path& path, std::vector<fs::path>& things) {
     if (!fs::is_directory(path)) return things.push_back(path);
     std::set<fs::path> files, folders;
-    for (const auto& entry : fs::directory_iterator(path)) (entry.is_directory() ? folders : files).insert(entry.path());
+    for (const auto& entry : fs::directory_iterator(path))
+        (entry.is_directory() ? folders : files).insert(entry.path());
     std::erase_if(files, is_text);
-    const bool series = folders.empty() && path.filename() != "single_files" && !is_plan_place(path / "x") && path.string().find("/scans") == std::string::npos;
+    const bool series = folders.empty() && path.filename() != "single_files" && !is_plan_place(path / "x") &&
+                        path.string().find("/scans") == std::string::npos;
     if (series && !files.empty()) return things.push_back(path);
     for (const auto& file : files) things.push_back(file);
     for (const auto& folder : folders) collect(folder, things);
@@ -88,8 +95,10 @@ void collect(const fs::path& path, std::vector<fs::path>& things) {
 
 void print(const std::string& title, const std::vector<Row>& rows) {
     const auto accepted = std::count_if(rows.begin(), rows.end(), [](const Row& r) { return r.accepted; });
-    fmt::print("\n## {}: {} accepted, {} refused\n\n| what | | sentence |\n|---|---|---|\n", title, accepted, rows.size() - static_cast<std::size_t>(accepted));
-    for (const Row& row : rows) fmt::print("| {} | {} | {} |\n", row.what, row.accepted ? "accepted" : "refused", row.sentence);
+    fmt::print("\n## {}: {} accepted, {} refused\n\n| what | | sentence |\n|---|---|---|\n", title, accepted,
+               rows.size() - static_cast<std::size_t>(accepted));
+    for (const Row& row : rows)
+        fmt::print("| {} | {} | {} |\n", row.what, row.accepted ? "accepted" : "refused", row.sentence);
 }
 
 std::vector<Row> synthetic(const std::vector<VolumeCase>& cases) {
@@ -119,7 +128,10 @@ int main(int argc, char** argv) {
             if (thing.parent_path().filename() == "single_files") {  // other people's files have nothing to do with it
                 fs::copy_file(thing, alone.path() / thing.filename());
                 volumes.push_back(volume_row(what, alone.path() / thing.filename(), "", alone.path().string()));
-            } else (is_plan_place(thing / "x") ? plans : volumes).push_back(is_plan_place(thing / "x") ? plan_row(what, thing, root) : volume_row(what, thing, "", root));
+            } else
+                (is_plan_place(thing / "x") ? plans : volumes)
+                    .push_back(is_plan_place(thing / "x") ? plan_row(what, thing, root)
+                                                          : volume_row(what, thing, "", root));
             std::cerr << '.' << std::flush;
         }
     }

@@ -32,9 +32,21 @@ std::vector<Seed> seeds_in(const fs::path& folder) {
     std::vector<Seed> seeds;
     int number = 0;
     for (const auto& c : sound_volumes()) {
-        static const char* kKinds[] = {"DICOM, explicit little endian", "DICOM, implicit little endian", "DICOM, explicit big endian", "DICOM, deflated", "DICOM, RLE",
-                                       "DICOM, JPEG lossless", "DICOM, JPEG-LS", "DICOM, JPEG 2000", "DICOM, Enhanced CT, frames shuffled", "NIfTI, sform",
-                                       "NIfTI, gzip, left-handed axes", "NRRD, raw", "NRRD, gzip", "MetaImage", "MetaImage, packed, left-handed axes, AnatomicalOrientation LAI"};
+        static const char* kKinds[] = {"DICOM, explicit little endian",
+                                       "DICOM, implicit little endian",
+                                       "DICOM, explicit big endian",
+                                       "DICOM, deflated",
+                                       "DICOM, RLE",
+                                       "DICOM, JPEG lossless",
+                                       "DICOM, JPEG-LS",
+                                       "DICOM, JPEG 2000",
+                                       "DICOM, Enhanced CT, frames shuffled",
+                                       "NIfTI, sform",
+                                       "NIfTI, gzip, left-handed axes",
+                                       "NRRD, raw",
+                                       "NRRD, gzip",
+                                       "MetaImage",
+                                       "MetaImage, packed, left-handed axes, AnatomicalOrientation LAI"};
         if (std::find(std::begin(kKinds), std::end(kKinds), c.name) == std::end(kKinds)) continue;
         const fs::path place = folder / std::to_string(number++);
         fs::create_directories(place);
@@ -59,13 +71,36 @@ std::string mutated(const Seed& seed, std::mt19937& random) {
     const auto place = [&] { return below(below(4) != 0 ? std::min(seed.header, bytes.size()) : bytes.size()); };
     const std::size_t count = std::size_t{1} << below(6);
     switch (below(7)) {
-        case 0: for (std::size_t n = 0; n < count; ++n) { char& c = bytes[place()]; c = static_cast<char>(c ^ (1 << below(8))); } break;
-        case 1: for (std::size_t n = 0; n < count; ++n) bytes[place()] = static_cast<char>(below(256)); break;
-        case 2: bytes.resize(below(bytes.size())); break;
-        case 3: { const std::size_t at = place(); bytes.erase(at, count); } break;
-        case 4: { const std::size_t at = place(); bytes.insert(at, bytes.substr(at, count)); } break;
-        case 5: { const std::size_t at = place(); for (std::size_t n = 0; n < 4 && at + n < bytes.size(); ++n) bytes[at + n] = static_cast<char>(below(2) ? 0xff : 0x7f); } break;
-        default: { const std::size_t a = place(), b = place(); for (std::size_t n = 0; n < count && std::max(a, b) + n < bytes.size(); ++n) std::swap(bytes[a + n], bytes[b + n]); } break;
+        case 0:
+            for (std::size_t n = 0; n < count; ++n) {
+                char& c = bytes[place()];
+                c = static_cast<char>(c ^ (1 << below(8)));
+            }
+            break;
+        case 1:
+            for (std::size_t n = 0; n < count; ++n) bytes[place()] = static_cast<char>(below(256));
+            break;
+        case 2:
+            bytes.resize(below(bytes.size()));
+            break;
+        case 3: {
+            const std::size_t at = place();
+            bytes.erase(at, count);
+        } break;
+        case 4: {
+            const std::size_t at = place();
+            bytes.insert(at, bytes.substr(at, count));
+        } break;
+        case 5: {
+            const std::size_t at = place();
+            for (std::size_t n = 0; n < 4 && at + n < bytes.size(); ++n)
+                bytes[at + n] = static_cast<char>(below(2) ? 0xff : 0x7f);
+        } break;
+        default: {
+            const std::size_t a = place(), b = place();
+            for (std::size_t n = 0; n < count && std::max(a, b) + n < bytes.size(); ++n)
+                std::swap(bytes[a + n], bytes[b + n]);
+        } break;
     }
     return bytes;
 }
@@ -73,7 +108,9 @@ std::string mutated(const Seed& seed, std::mt19937& random) {
 double children_processor_s() {
     rusage usage{};
     getrusage(RUSAGE_CHILDREN, &usage);
-    const auto s = [](const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); };
+    const auto s = [](const timeval& t) {
+        return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+    };
     return s(usage.ru_utime) + s(usage.ru_stime);
 }
 
@@ -92,8 +129,11 @@ void read_one(const Seed& seed, MutationCounts& counts) {
         const std::string what = e.what();
         counts.parser_crashes += what.find("made its parser crash") != std::string::npos;
         counts.cut_off += what.find("took longer") != std::string::npos || what.find("4 GiB") != std::string::npos;
-        ++(e.exit_code == ExitCode::input_refused ? counts.refused : e.exit_code == ExitCode::file_damaged ? counts.damaged : counts.other_errors);
-        if (e.remedy.empty() || what.empty()) ++counts.not_an_error, counts.faults.push_back("no sentence for " + seed.give.string());
+        ++(e.exit_code == ExitCode::input_refused  ? counts.refused
+           : e.exit_code == ExitCode::file_damaged ? counts.damaged
+                                                   : counts.other_errors);
+        if (e.remedy.empty() || what.empty())
+            ++counts.not_an_error, counts.faults.push_back("no sentence for " + seed.give.string());
     } catch (const std::exception& e) {
         ++counts.not_an_error;
         counts.faults.push_back(e.what());

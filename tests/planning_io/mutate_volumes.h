@@ -16,8 +16,9 @@ struct MutationCounts {
     std::vector<std::string> faults;
 };
 
-/// Damages copies of sound volumes of every kind (DICOM of eight transfer syntaxes, Enhanced CT, NIfTI, NRRD, MetaImage, InVesalius) and
-/// gives them to read_volume, in turn: flipped bits, overwritten, cut, repeated and swapped bytes, most of them in the headers.
+/// Damages copies of sound volumes of every kind (DICOM of eight transfer syntaxes, Enhanced CT, NIfTI, NRRD,
+/// MetaImage, InVesalius) and gives them to read_volume, in turn: flipped bits, overwritten, cut, repeated and swapped
+/// bytes, most of them in the headers.
 MutationCounts mutate_volumes(int mutations, unsigned seed);
 
 inline constexpr double kSlowProcessor_s = 2;

@@ -20,41 +20,66 @@ Eigen::Matrix3d axes(const Eigen::Vector3d& row, const Eigen::Vector3d& column) 
     return m;
 }
 
-VolumeCase series(const std::string& name, const std::function<Objects()>& make, DicomEncoding encoding = DicomEncoding::explicit_little) {
-    return {name, "", [make, encoding](const fs::path& folder) { return write_series(make(), folder, encoding), folder; }, "", true, "CT"};
+VolumeCase series(const std::string& name, const std::function<Objects()>& make,
+                  DicomEncoding encoding = DicomEncoding::explicit_little) {
+    return {
+        name, "",   [make, encoding](const fs::path& folder) { return write_series(make(), folder, encoding), folder; },
+        "",   true, "CT"};
 }
 
 VolumeCase packed(const std::string& name, DicomPacking packing) {
-    return {name, "", [packing](const fs::path& folder) {
+    return {name,
+            "",
+            [packing](const fs::path& folder) {
                 for (const auto& file : write_series(synthetic_series({}), folder))
                     if (!pack_dicom(file, packing)) throw std::runtime_error("GDCM could not pack " + file.string());
                 return folder;
-            }, "", true, "CT"};
+            },
+            "",
+            true,
+            "CT"};
 }
 
-VolumeCase position(const std::string& name, const Eigen::Matrix3d& turn, const std::string& patient_position, double shear_mm = 0) {
-    return series(name, [=] { SeriesLook look; look.position = patient_position; return synthetic_series(turned_grid(turn, shear_mm), look); });
+VolumeCase position(const std::string& name, const Eigen::Matrix3d& turn, const std::string& patient_position,
+                    double shear_mm = 0) {
+    return series(name, [=] {
+        SeriesLook look;
+        look.position = patient_position;
+        return synthetic_series(turned_grid(turn, shear_mm), look);
+    });
 }
 
 VolumeCase file(const std::string& name, const std::string& file_name, const std::function<std::string()>& bytes) {
-    return {name, "", [=](const fs::path& folder) { return write_safely(folder / file_name, bytes()), folder / file_name; }, "", true, "CT"};
+    return {name,
+            "",
+            [=](const fs::path& folder) { return write_safely(folder / file_name, bytes()), folder / file_name; },
+            "",
+            true,
+            "CT"};
 }
 
-/// What else a hospital's folder holds: another patient's scout, a short second series, a secondary capture, a report, a letter.
+/// What else a hospital's folder holds: another patient's scout, a short second series, a secondary capture, a report,
+/// a letter.
 void add_company(const fs::path& folder) {
     SeriesLook scout{.description = "Scout", .uid = "1.2.826.0.1.3680043.9.9999.7.90", .number = "1"};
     Objects localizer = synthetic_series({}, scout);
     for (auto& o : localizer) o.text(0x00080008, "CS", "ORIGINAL\\PRIMARY\\LOCALIZER");
     write_series(localizer, folder / "a");
-    SeriesLook few{.patient = "Other^Person", .patient_id = "P2", .description = "Key images", .uid = "1.2.826.0.1.3680043.9.9999.7.91", .number = "5"};
+    SeriesLook few{.patient = "Other^Person",
+                   .patient_id = "P2",
+                   .description = "Key images",
+                   .uid = "1.2.826.0.1.3680043.9.9999.7.91",
+                   .number = "5"};
     Objects five = synthetic_series({}, few);
     five.resize(5);
     write_series(five, folder / "b" / "c");
     SeriesLook capture{.description = "Screenshot", .uid = "1.2.826.0.1.3680043.9.9999.7.92", .number = "99"};
     Objects shots = synthetic_series({}, capture);
-    for (auto& o : shots) o.text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.7"), o.erase(0x00200032), o.erase(0x00200037);
+    for (auto& o : shots)
+        o.text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.7"), o.erase(0x00200032), o.erase(0x00200037);
     write_series(shots, folder / "d");
-    SeriesLook words{.modality = "SR", .description = "Report", .uid = "1.2.826.0.1.3680043.9.9999.7.93", .number = "100"};
+    SeriesLook words{
+        .modality = "SR", .description = "Report", .uid = "1.2.826.0.1.3680043.9.9999.7.93", .number = "100"};
     Objects report = synthetic_series({}, words);
     report.resize(1);
     report[0].text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.88.11");
@@ -77,8 +102,10 @@ void add_dicom(std::vector<VolumeCase>& list) {
     list.push_back(packed("DICOM, JPEG-LS", DicomPacking::jpeg_ls));
     list.push_back(packed("DICOM, JPEG 2000", DicomPacking::jpeg_2000));
     list.push_back(series("DICOM, Enhanced CT, frames shuffled", [] { return Objects{enhanced_object({})}; }));
-    list.push_back(series("DICOM, Enhanced CT, deflated", [] { return Objects{enhanced_object({})}; }, DicomEncoding::deflated));
-    list.push_back(series("DICOM, Enhanced MR, frames shuffled", [] { return Objects{enhanced_object({}, {.modality = "MR"})}; }));
+    list.push_back(series(
+        "DICOM, Enhanced CT, deflated", [] { return Objects{enhanced_object({})}; }, DicomEncoding::deflated));
+    list.push_back(
+        series("DICOM, Enhanced MR, frames shuffled", [] { return Objects{enhanced_object({}, {.modality = "MR"})}; }));
     list.back().is_hu = false, list.back().modality = "MR";
     list.push_back(series("DICOM, MR without rescale", [] { return synthetic_series({}, {.modality = "MR"}); }));
     list.back().is_hu = false, list.back().modality = "MR";
@@ -116,13 +143,15 @@ void add_dicom(std::vector<VolumeCase>& list) {
 
 void add_positions(std::vector<VolumeCase>& list) {
     const Eigen::Vector3d x = Eigen::Vector3d::UnitX(), y = Eigen::Vector3d::UnitY(), z = Eigen::Vector3d::UnitZ();
-    list.push_back(position("DICOM, gantry tilted by -18.4 degrees (slices sheared by 4/3 mm each)", Eigen::Matrix3d::Identity(), "HFS", -4.0 / 3));
+    list.push_back(position("DICOM, gantry tilted by -18.4 degrees (slices sheared by 4/3 mm each)",
+                            Eigen::Matrix3d::Identity(), "HFS", -4.0 / 3));
     list.push_back(position("DICOM, feet first, slices from the top", axes(-x, y), "FFS"));
     list.push_back(position("DICOM, prone", axes(-x, -y), "HFP"));
     list.push_back(position("DICOM, lying on the left side", axes(y, -x), "HFDL"));
     list.push_back(position("DICOM, sagittal", axes(y, -z), "HFS"));
     list.push_back(position("DICOM, coronal", axes(x, -z), "HFS"));
-    list.push_back(position("DICOM, oblique", Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix(), "HFS"));
+    list.push_back(position(
+        "DICOM, oblique", Eigen::AngleAxisd(0.3, Eigen::Vector3d(1, -2, 0.5).normalized()).toRotationMatrix(), "HFS"));
 }
 
 void add_folders(std::vector<VolumeCase>& list) {
@@ -131,17 +160,25 @@ void add_folders(std::vector<VolumeCase>& list) {
         add_company(folder);
         return folder;
     };
-    list.push_back({"DICOM folder with a scout, key images of another person, screenshots, a report, a DICOMDIR and a letter", "", full, "", true, "CT"});
-    list.push_back({"the same folder by its DICOMDIR", "", [full](const fs::path& folder) { return full(folder) / "DICOMDIR"; }, "", true, "CT"});
-    list.push_back({"any slice of a series", "", [](const fs::path& folder) { return write_series(synthetic_series({}), folder)[5]; }, "", true, "CT"});
+    list.push_back(
+        {"DICOM folder with a scout, key images of another person, screenshots, a report, a DICOMDIR and a letter", "",
+         full, "", true, "CT"});
+    list.push_back({"the same folder by its DICOMDIR", "",
+                    [full](const fs::path& folder) { return full(folder) / "DICOMDIR"; }, "", true, "CT"});
+    list.push_back({"any slice of a series", "",
+                    [](const fs::path& folder) { return write_series(synthetic_series({}), folder)[5]; }, "", true,
+                    "CT"});
     const auto two = [](const fs::path& folder) {
         write_series(synthetic_series({}), folder / "thin");
-        write_series(synthetic_series(turned_grid(Eigen::Matrix3d::Identity(), 0.5), {.description = "Soft", .uid = "1.2.826.0.1.3680043.9.9999.7.2", .number = "3"}), folder / "soft");
+        write_series(synthetic_series(turned_grid(Eigen::Matrix3d::Identity(), 0.5),
+                                      {.description = "Soft", .uid = "1.2.826.0.1.3680043.9.9999.7.2", .number = "3"}),
+                     folder / "soft");
         return folder;
     };
     list.push_back({"two series in a folder, one named by UID", "", two, "1.2.826.0.1.3680043.9.9999.7.1", true, "CT"});
     list.push_back({"two series in a folder, one named by number", "", two, "2", true, "CT"});
-    list.push_back({"a localizer picture inside the series", "", [](const fs::path& folder) {
+    list.push_back({"a localizer picture inside the series", "",
+                    [](const fs::path& folder) {
                         Objects objects = synthetic_series({});
                         DicomObject scout = objects[3];
                         scout.text(0x00080008, "CS", "ORIGINAL\\PRIMARY\\LOCALIZER");
@@ -149,7 +186,8 @@ void add_folders(std::vector<VolumeCase>& list) {
                         scout.decimals(0x00200037, {0, 1, 0, 0, 0, -1});
                         objects.push_back(scout);
                         return write_series(objects, folder), folder;
-                    }, "", true, "CT"});
+                    },
+                    "", true, "CT"});
 }
 
 void add_formats(std::vector<VolumeCase>& list) {
@@ -158,7 +196,8 @@ void add_formats(std::vector<VolumeCase>& list) {
     Grid left_handed = grid;  // as NIfTI files of radiological order are
     left_handed.ct_from_voxel = grid.ct_from_voxel * Eigen::Translation3d(63, 0, 0) * Eigen::Scaling(-1.0, 1.0, 1.0);
     list.push_back(file("NIfTI, sform", "head.nii", [=] { return nifti_bytes(nifti_header(oblique), oblique); }));
-    list.push_back(file("NIfTI, gzip, left-handed axes", "head.nii.gz", [=] { return gzipped(nifti_bytes(nifti_header(left_handed), left_handed)); }));
+    list.push_back(file("NIfTI, gzip, left-handed axes", "head.nii.gz",
+                        [=] { return gzipped(nifti_bytes(nifti_header(left_handed), left_handed)); }));
     list.push_back(file("NIfTI, qform, third axis reversed", "head.nii", [=] {
         std::string h = nifti_header(grid);
         put<std::int16_t>(h, 254, 0);
@@ -166,7 +205,8 @@ void add_formats(std::vector<VolumeCase>& list) {
         put<float>(h, 76, -1);  // x and y of RAS against LPS: half a turn about z; then z reversed
         put<float>(h, 264, 1);
         const Eigen::Vector3d last = grid.ct_from_voxel * Eigen::Vector3d(0, 0, 23);
-        put<float>(h, 268, static_cast<float>(-last.x())), put<float>(h, 272, static_cast<float>(-last.y())), put<float>(h, 276, static_cast<float>(last.z()));
+        put<float>(h, 268, static_cast<float>(-last.x())), put<float>(h, 272, static_cast<float>(-last.y())),
+            put<float>(h, 276, static_cast<float>(last.z()));
         Grid reversed = grid;
         reversed.ct_from_voxel = grid.ct_from_voxel * Eigen::Translation3d(0, 0, 23) * Eigen::Scaling(1.0, 1.0, -1.0);
         return nifti_bytes(h, reversed);
@@ -189,7 +229,8 @@ void add_formats(std::vector<VolumeCase>& list) {
         return bytes;
     }));
     list.push_back(file("NRRD, raw", "head.nrrd", [=] { return nrrd_header(oblique) + int16_bytes(oblique); }));
-    list.push_back(file("NRRD, gzip", "head.nrrd", [=] { return nrrd_header(grid, "gzip") + gzipped(int16_bytes(grid)); }));
+    list.push_back(
+        file("NRRD, gzip", "head.nrrd", [=] { return nrrd_header(grid, "gzip") + gzipped(int16_bytes(grid)); }));
     list.push_back(file("NRRD in RAS, big endian", "head.nrrd", [=] {
         Grid ras = oblique;
         ras.ct_from_voxel = Eigen::Scaling(-1.0, -1.0, 1.0) * oblique.ct_from_voxel;
@@ -198,26 +239,30 @@ void add_formats(std::vector<VolumeCase>& list) {
         h.replace(h.find("endian: little"), 14, "endian: big");
         return h + int16_bytes(oblique, true);
     }));
-    list.push_back({"NRRD, header and data file apart", "", [=](const fs::path& folder) {
+    list.push_back({"NRRD, header and data file apart", "",
+                    [=](const fs::path& folder) {
                         std::string h = nrrd_header(grid, "gzip");
                         h.insert(h.size() - 1, "data file: head.raw.gz\n");
                         write_safely(folder / "head.nhdr", h);
                         write_safely(folder / "head.raw.gz", gzipped(int16_bytes(grid)));
                         return folder / "head.nhdr";
-                    }, "", true, "CT"});
+                    },
+                    "", true, "CT"});
     list.push_back(file("MetaImage", "head.mha", [=] { return metaimage_header(oblique) + int16_bytes(oblique); }));
     list.push_back(file("MetaImage, packed, left-handed axes, AnatomicalOrientation LAI", "head.mha", [=] {
         std::string h = metaimage_header(left_handed, true);
         h.insert(h.find("Offset"), "AnatomicalOrientation = LAI\n");
         return h + zlibbed(int16_bytes(left_handed));
     }));
-    list.push_back({"MetaImage, header and data file apart", "", [=](const fs::path& folder) {
+    list.push_back({"MetaImage, header and data file apart", "",
+                    [=](const fs::path& folder) {
                         std::string h = metaimage_header(grid);
                         h.replace(h.find("LOCAL"), 5, "head.raw");
                         write_safely(folder / "head.mhd", h);
                         write_safely(folder / "head.raw", int16_bytes(grid));
                         return folder / "head.mhd";
-                    }, "", true, "CT"});
+                    },
+                    "", true, "CT"});
 }
 
 }  // namespace
@@ -235,7 +280,8 @@ std::string test_name_of(const VolumeCase& c) {
     std::string name;
     bool upper = true;
     for (const char letter : c.name) {
-        if (std::isalnum(static_cast<unsigned char>(letter))) name += upper ? static_cast<char>(std::toupper(static_cast<unsigned char>(letter))) : letter;
+        if (std::isalnum(static_cast<unsigned char>(letter)))
+            name += upper ? static_cast<char>(std::toupper(static_cast<unsigned char>(letter))) : letter;
         upper = !std::isalnum(static_cast<unsigned char>(letter));
     }
     return name;

@@ -24,7 +24,9 @@ std::string packed(const std::string& plain, int window) {
     return out;
 }
 
-std::string three(const Eigen::Vector3d& v, const char* between) { return fmt::format("{:.9g}{}{:.9g}{}{:.9g}", v.x(), between, v.y(), between, v.z()); }
+std::string three(const Eigen::Vector3d& v, const char* between) {
+    return fmt::format("{:.9g}{}{:.9g}{}{:.9g}", v.x(), between, v.y(), between, v.z());
+}
 
 }  // namespace
 
@@ -46,29 +48,39 @@ std::string nifti_header(const Grid& grid) {
     put<std::int16_t>(h, 254, 1);
     const Eigen::Matrix4d ras = (Eigen::Scaling(-1.0, -1.0, 1.0) * grid.ct_from_voxel).matrix();
     for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 4; ++column) put<float>(h, 280 + 4 * static_cast<std::size_t>(row * 4 + column), static_cast<float>(ras(row, column)));
+        for (int column = 0; column < 4; ++column)
+            put<float>(h, 280 + 4 * static_cast<std::size_t>(row * 4 + column), static_cast<float>(ras(row, column)));
     h.replace(344, 4, std::string("n+1\0", 4));
     return h;
 }
 
-std::string nifti_bytes(const std::string& header, const Grid& grid) { return header + std::string(4, '\0') + int16_bytes(grid); }
+std::string nifti_bytes(const std::string& header, const Grid& grid) {
+    return header + std::string(4, '\0') + int16_bytes(grid);
+}
 
 std::string nrrd_header(const Grid& grid, const std::string& encoding) {
     const Eigen::Affine3d& a = grid.ct_from_voxel;
     std::string directions;
-    for (int axis = 0; axis < 3; ++axis) directions += fmt::format("{}({})", axis ? " " : "", three(a.linear().col(axis), ","));
-    return fmt::format("NRRD0004\n# made by a test\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: {} {} {}\nspace directions: {}\n"
-                       "kinds: domain domain domain\nendian: little\nencoding: {}\nspace origin: ({})\n\n",
-                       grid.size[0], grid.size[1], grid.size[2], directions, encoding, three(a.translation(), ","));
+    for (int axis = 0; axis < 3; ++axis)
+        directions += fmt::format("{}({})", axis ? " " : "", three(a.linear().col(axis), ","));
+    return fmt::format(
+        "NRRD0004\n# made by a test\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: {} {} {}\nspace "
+        "directions: {}\n"
+        "kinds: domain domain domain\nendian: little\nencoding: {}\nspace origin: ({})\n\n",
+        grid.size[0], grid.size[1], grid.size[2], directions, encoding, three(a.translation(), ","));
 }
 
 std::string metaimage_header(const Grid& grid, bool is_packed) {
     const Eigen::Matrix3d axes = grid.ct_from_voxel.linear();
     const Eigen::Matrix3d unit = axes.colwise().normalized();
-    return fmt::format("ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = {}\nTransformMatrix = {} {} {}\n"
-                       "Offset = {}\nCenterOfRotation = 0 0 0\nElementSpacing = {}\nDimSize = {} {} {}\nElementType = MET_SHORT\nElementDataFile = LOCAL\n",
-                       is_packed ? "True" : "False", three(unit.col(0), " "), three(unit.col(1), " "), three(unit.col(2), " "), three(grid.ct_from_voxel.translation(), " "),
-                       three(axes.colwise().norm().transpose(), " "), grid.size[0], grid.size[1], grid.size[2]);
+    return fmt::format(
+        "ObjectType = Image\nNDims = 3\nBinaryData = True\nBinaryDataByteOrderMSB = False\nCompressedData = "
+        "{}\nTransformMatrix = {} {} {}\n"
+        "Offset = {}\nCenterOfRotation = 0 0 0\nElementSpacing = {}\nDimSize = {} {} {}\nElementType = "
+        "MET_SHORT\nElementDataFile = LOCAL\n",
+        is_packed ? "True" : "False", three(unit.col(0), " "), three(unit.col(1), " "), three(unit.col(2), " "),
+        three(grid.ct_from_voxel.translation(), " "), three(axes.colwise().norm().transpose(), " "), grid.size[0],
+        grid.size[1], grid.size[2]);
 }
 
 std::string int16_bytes(const Grid& grid, bool big_endian) {
@@ -79,21 +91,31 @@ std::string int16_bytes(const Grid& grid, bool big_endian) {
     return bytes;
 }
 
-std::string gzipped(const std::string& plain) { return packed(plain, 15 + 16); }
-std::string zlibbed(const std::string& plain) { return packed(plain, 15); }
+std::string gzipped(const std::string& plain) {
+    return packed(plain, 15 + 16);
+}
+std::string zlibbed(const std::string& plain) {
+    return packed(plain, 15);
+}
 
 void write_invesalius_project(const std::filesystem::path& file) {
     const Grid grid;
     const std::string plist = fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!DOCTYPE plist PUBLIC \"-//Apple//DTD PLIST 1.0//EN\" \"http://www.apple.com/DTDs/PropertyList-1.0.dtd\">\n"
-        "<plist version=\"1.0\"><dict><key>modality</key><string>CT</string><key>spacing</key><array><real>3</real><real>3</real><real>4</real></array>"
-        "<key>matrix</key><dict><key>dtype</key><string>int16</string><key>filename</key><string>matrix.dat</string><key>shape</key><array>"
-        "<integer>{}</integer><integer>{}</integer><integer>{}</integer></array></dict></dict></plist>\n", grid.size[2], grid.size[1], grid.size[0]);
+        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<!DOCTYPE plist PUBLIC \"-//Apple//DTD PLIST 1.0//EN\" "
+        "\"http://www.apple.com/DTDs/PropertyList-1.0.dtd\">\n"
+        "<plist "
+        "version=\"1.0\"><dict><key>modality</key><string>CT</string><key>spacing</key><array><real>3</real><real>3</"
+        "real><real>4</real></array>"
+        "<key>matrix</key><dict><key>dtype</key><string>int16</string><key>filename</key><string>matrix.dat</"
+        "string><key>shape</key><array>"
+        "<integer>{}</integer><integer>{}</integer><integer>{}</integer></array></dict></dict></plist>\n",
+        grid.size[2], grid.size[1], grid.size[0]);
     archive* tar = archive_write_new();
     archive_write_set_format_ustar(tar);
     archive_write_add_filter_gzip(tar);
     archive_write_open_filename(tar, file.c_str());
-    const std::pair<const char*, std::string> entries[] = {{"project/main.plist", plist}, {"project/matrix.dat", int16_bytes(grid)}};
+    const std::pair<const char*, std::string> entries[] = {{"project/main.plist", plist},
+                                                           {"project/matrix.dat", int16_bytes(grid)}};
     for (const auto& [name, content] : entries) {
         archive_entry* entry = archive_entry_new();
         archive_entry_set_pathname(entry, name);

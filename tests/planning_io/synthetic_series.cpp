@@ -14,16 +14,21 @@ using Eigen::Vector3d;
 
 constexpr const char* kRoot = "1.2.826.0.1.3680043.9.9999";
 
-bool is_ct(const SeriesLook& look) { return look.modality == "CT"; }
+bool is_ct(const SeriesLook& look) {
+    return look.modality == "CT";
+}
 
 /// MR has no negative values: the phantom's HU from zero on.
-std::int16_t stored(std::int16_t hu, const SeriesLook& look) { return static_cast<std::int16_t>(is_ct(look) && look.is_signed ? hu : hu + 1024); }
+std::int16_t stored(std::int16_t hu, const SeriesLook& look) {
+    return static_cast<std::int16_t>(is_ct(look) && look.is_signed ? hu : hu + 1024);
+}
 
 DicomObject common(const Grid& grid, const SeriesLook& look, const std::string& storage_class, int instance) {
     DicomObject o;
     o.text(0x00080008, "CS", "ORIGINAL\\PRIMARY\\AXIAL");
     o.text(0x00080016, "UI", storage_class);
-    o.text(0x00080018, "UI", fmt::format("{}.9.{}.{}", kRoot, instance + 1, std::hash<std::string>()(look.uid) % 100000));
+    o.text(0x00080018, "UI",
+           fmt::format("{}.9.{}.{}", kRoot, instance + 1, std::hash<std::string>()(look.uid) % 100000));
     o.text(0x00080020, "DA", "20260101");
     o.text(0x00080060, "CS", look.modality);
     o.text(0x0008103e, "LO", look.description);
@@ -46,16 +51,22 @@ DicomObject common(const Grid& grid, const SeriesLook& look, const std::string& 
     return o;
 }
 
-Vector3d position_of(const Grid& grid, int k) { return grid.ct_from_voxel * Vector3d(0, 0, k); }
+Vector3d position_of(const Grid& grid, int k) {
+    return grid.ct_from_voxel * Vector3d(0, 0, k);
+}
 
 std::vector<double> orientation_of(const Grid& grid) {
-    const Vector3d r = grid.ct_from_voxel.linear().col(0).normalized(), c = grid.ct_from_voxel.linear().col(1).normalized();
+    const Vector3d r = grid.ct_from_voxel.linear().col(0).normalized(),
+                   c = grid.ct_from_voxel.linear().col(1).normalized();
     return {r.x(), r.y(), r.z(), c.x(), c.y(), c.z()};
 }
 
-std::vector<double> spacing_of(const Grid& grid) { return {grid.ct_from_voxel.linear().col(1).norm(), grid.ct_from_voxel.linear().col(0).norm()}; }
+std::vector<double> spacing_of(const Grid& grid) {
+    return {grid.ct_from_voxel.linear().col(1).norm(), grid.ct_from_voxel.linear().col(0).norm()};
+}
 
-std::vector<std::int16_t> slice_of(const std::vector<std::int16_t>& values, const Grid& grid, int k, const SeriesLook& look) {
+std::vector<std::int16_t> slice_of(const std::vector<std::int16_t>& values, const Grid& grid, int k,
+                                   const SeriesLook& look) {
     const auto slab = static_cast<std::ptrdiff_t>(grid.size[0]) * grid.size[1];
     std::vector<std::int16_t> slice(values.begin() + k * slab, values.begin() + (k + 1) * slab);
     for (auto& v : slice) v = stored(v, look);
@@ -65,7 +76,8 @@ std::vector<std::int16_t> slice_of(const std::vector<std::int16_t>& values, cons
 }  // namespace
 
 int phantom_hu(const Vector3d& p) {
-    const double r = std::sqrt(std::pow(p.x() / 72, 2) + std::pow((p.y() - 4) / 84, 2) + std::pow((p.z() - 20) / 90, 2));
+    const double r =
+        std::sqrt(std::pow(p.x() / 72, 2) + std::pow((p.y() - 4) / 84, 2) + std::pow((p.z() - 20) / 90, 2));
     const bool nose = std::abs(p.x() - 3) < 10 && p.y() < -60 && p.y() > -93 && p.z() < 10 && p.z() > -25;
     if (r > 1 && !nose) return -1000;
     if (r > 0.84 && r < 0.92) return 900 + static_cast<int>(std::lround(p.x() + 0.5 * p.z()));
@@ -76,7 +88,8 @@ std::vector<std::int16_t> phantom_values(const Grid& grid) {
     std::vector<std::int16_t> values;
     for (int k = 0; k < grid.size[2]; ++k)
         for (int j = 0; j < grid.size[1]; ++j)
-            for (int i = 0; i < grid.size[0]; ++i) values.push_back(static_cast<std::int16_t>(phantom_hu(grid.ct_from_voxel * Vector3d(i, j, k))));
+            for (int i = 0; i < grid.size[0]; ++i)
+                values.push_back(static_cast<std::int16_t>(phantom_hu(grid.ct_from_voxel * Vector3d(i, j, k))));
     return values;
 }
 
@@ -144,7 +157,8 @@ DicomObject enhanced_object(const Grid& grid, const SeriesLook& look) {
     return o;
 }
 
-std::vector<std::filesystem::path> write_series(const std::vector<DicomObject>& objects, const std::filesystem::path& folder, DicomEncoding encoding,
+std::vector<std::filesystem::path> write_series(const std::vector<DicomObject>& objects,
+                                                const std::filesystem::path& folder, DicomEncoding encoding,
                                                 const std::string& transfer_syntax) {
     std::filesystem::create_directories(folder);
     std::vector<std::filesystem::path> files;

@@ -9,8 +9,8 @@
 
 namespace planlight::test {
 
-/// Whole HU of a phantom at a point of ct: a head without symmetry (skin with a slope of values, skull, brain, nose) in air.
-/// Every place has its own value, so that a turned, shifted or mirrored volume is wrong nearly everywhere.
+/// Whole HU of a phantom at a point of ct: a head without symmetry (skin with a slope of values, skull, brain, nose) in
+/// air. Every place has its own value, so that a turned, shifted or mirrored volume is wrong nearly everywhere.
 int phantom_hu(const Eigen::Vector3d& p_in_ct);
 
 /// A grid over the phantom: i, j, k as the file has them.
@@ -25,7 +25,8 @@ std::vector<std::int16_t> phantom_values(const Grid& grid);
 Grid turned_grid(const Eigen::Matrix3d& turn, double shear_mm = 0);
 
 struct SeriesLook {
-    std::string modality = "CT", patient = "Test^Phantom", patient_id = "PHANTOM-1", description = "Head thin", uid = "1.2.826.0.1.3680043.9.9999.7.1", number = "2";
+    std::string modality = "CT", patient = "Test^Phantom", patient_id = "PHANTOM-1", description = "Head thin",
+                uid = "1.2.826.0.1.3680043.9.9999.7.1", number = "2";
     std::string position = "HFS";
     bool is_signed = false;  ///< unsigned, stored as HU + 1024; or signed, stored as HU
 };
@@ -36,8 +37,11 @@ std::vector<DicomObject> synthetic_series(const Grid& grid, const SeriesLook& lo
 /// One Enhanced CT or MR object with a frame a slice, the frames shuffled.
 DicomObject enhanced_object(const Grid& grid, const SeriesLook& look = {});
 
-/// Writes the objects as files with meaningless names in a meaningless order; gives the files in the order of the objects.
-std::vector<std::filesystem::path> write_series(const std::vector<DicomObject>& objects, const std::filesystem::path& folder,
-                                                DicomEncoding encoding = DicomEncoding::explicit_little, const std::string& transfer_syntax = {});
+/// Writes the objects as files with meaningless names in a meaningless order; gives the files in the order of the
+/// objects.
+std::vector<std::filesystem::path> write_series(const std::vector<DicomObject>& objects,
+                                                const std::filesystem::path& folder,
+                                                DicomEncoding encoding = DicomEncoding::explicit_little,
+                                                const std::string& transfer_syntax = {});
 
 }  // namespace planlight::test

@@ -13,8 +13,9 @@ Volume scanned(const Grid& grid, const char* folder_name, const TemporaryFolder&
     return read_volume(folder.path() / folder_name);
 }
 
-/// The phantom has voxels of 3 x 3 x 4 mm, and skull and skin change from 1000 to 40 HU and less between two of them: its surface is a
-/// staircase of voxels, and two scans of it differ by a quarter of a voxel where the data end. A tilt forgotten costs centimetres.
+/// The phantom has voxels of 3 x 3 x 4 mm, and skull and skin change from 1000 to 40 HU and less between two of them:
+/// its surface is a staircase of voxels, and two scans of it differ by a quarter of a voxel where the data end. A tilt
+/// forgotten costs centimetres.
 TEST(OneHeadTwoScans, StraightAndTiltedShowOneSkullInOneFrame) {
     const TemporaryFolder folder;
     const Volume straight = scanned({}, "straight", folder);
@@ -26,10 +27,11 @@ TEST(OneHeadTwoScans, StraightAndTiltedShowOneSkullInOneFrame) {
     EXPECT_GT(surface_distance(tilted, straight, 200).median_mm, 2 * apart.median_mm);
 }
 
-/// The same skull phantom scanned straight (5 mm slices) and with -18.5 degrees of tilt (2.5 mm): half a thick slice is 2.5 mm, and
-/// bone at 200 HU is blurred by it; 0.9 mm is what two such scans of one skull agree to.
+/// The same skull phantom scanned straight (5 mm slices) and with -18.5 degrees of tilt (2.5 mm): half a thick slice
+/// is 2.5 mm, and bone at 200 HU is blurred by it; 0.9 mm is what two such scans of one skull agree to.
 TEST(OneHeadTwoScans, ThePhilipsPhantomStraightAndTilted) {
-    const auto plain = third_party_data("ct/philips_skull_phantom/plain_5mm"), tilt = third_party_data("ct/philips_skull_phantom/tilt_minus18p5");
+    const auto plain = third_party_data("ct/philips_skull_phantom/plain_5mm"),
+               tilt = third_party_data("ct/philips_skull_phantom/tilt_minus18p5");
     if (!plain || !tilt) GTEST_SKIP() << "the phantom is not here";
     const Volume a = read_volume(*plain), b = read_volume(*tilt);
     EXPECT_EQ(a.frame_of_reference_uid, b.frame_of_reference_uid);

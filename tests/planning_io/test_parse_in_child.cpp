@@ -22,7 +22,9 @@ std::string refusal_of(const std::function<Volume()>& parse) {
     return "";
 }
 
-bool says(const std::string& text, const char* part) { return text.find(part) != std::string::npos; }
+bool says(const std::string& text, const char* part) {
+    return text.find(part) != std::string::npos;
+}
 
 TEST(ParseInChild, AVolumeComesThroughWhole) {
     Volume made;
@@ -41,9 +43,22 @@ TEST(ParseInChild, AVolumeComesThroughWhole) {
 
 TEST(ParseInChild, ACrashAHangAndAGreedyParserCostTheChildOnly) {
     EXPECT_TRUE(says(refusal_of<DamagedFileError>([]() -> Volume { std::abort(); }), "crash (signal 6)"));
-    EXPECT_TRUE(says(refusal_of<DamagedFileError>([]() -> Volume { raise(SIGSEGV); return {}; }), "crash (signal 11)"));
-    EXPECT_TRUE(says(refusal_of<DamagedFileError>([]() -> Volume { for (volatile int spin = 0;;) spin = spin + 1; }), "took longer")) << "after a second of processor";
-    EXPECT_TRUE(says(refusal_of<InputError>([]() -> Volume { Volume v; v.values.resize(std::size_t{5} << 28); return v; }), "4 GiB"));
+    EXPECT_TRUE(says(refusal_of<DamagedFileError>([]() -> Volume {
+                         raise(SIGSEGV);
+                         return {};
+                     }),
+                     "crash (signal 11)"));
+    EXPECT_TRUE(says(refusal_of<DamagedFileError>([]() -> Volume {
+                         for (volatile int spin = 0;;) spin = spin + 1;
+                     }),
+                     "took longer"))
+        << "after a second of processor";
+    EXPECT_TRUE(says(refusal_of<InputError>([]() -> Volume {
+                         Volume v;
+                         v.values.resize(std::size_t{5} << 28);
+                         return v;
+                     }),
+                     "4 GiB"));
     EXPECT_TRUE(says(refusal_of<DamagedFileError>([]() -> Volume { _exit(0); }), "to its end"));
 }
 

@@ -12,13 +12,16 @@ namespace planlight::test {
 namespace {
 
 /// Names of tests; long output of a case's functions helps nobody.
-std::string name_of(const ::testing::TestParamInfo<VolumeCase>& info) { return test_name_of(info.param); }
+std::string name_of(const ::testing::TestParamInfo<VolumeCase>& info) {
+    return test_name_of(info.param);
+}
 
 class SoundVolume : public ::testing::TestWithParam<VolumeCase> {};
 INSTANTIATE_TEST_SUITE_P(Volumes, SoundVolume, ::testing::ValuesIn(sound_volumes()), name_of);
 
-/// The values are whole numbers and the codes lossless, so they must be equal. Positions are written with nine digits, a voxel whose
-/// value is rounded the other way there is allowed 1 HU, and one on the phantom's edges may fall on the other side.
+/// The values are whole numbers and the codes lossless, so they must be equal. Positions are written with nine digits,
+/// a voxel whose value is rounded the other way there is allowed 1 HU, and one on the phantom's edges may fall on the
+/// other side.
 TEST_P(SoundVolume, HasThePhantomsValueAtEveryPlaceInCt) {
     const TemporaryFolder folder;
     const Volume volume = read_volume(GetParam().make(folder.path()), GetParam().series);
@@ -51,11 +54,13 @@ TEST_P(SpoiltVolume, IsRefusedWithItsReasonAndARemedy) {
     } catch (const Error& e) {
         EXPECT_NE(std::string(e.what()).find(GetParam().says), std::string::npos) << e.what();
         EXPECT_FALSE(e.remedy.empty());
-        EXPECT_EQ(std::string(e.what()).find("Phantom"), std::string::npos) << "a patient's name in a sentence: " << e.what();
+        EXPECT_EQ(std::string(e.what()).find("Phantom"), std::string::npos)
+            << "a patient's name in a sentence: " << e.what();
     }
 }
 
-/// `fuzz_volumes --mutations 10000` is the whole of it. A crash of the program would end this test, a child's is counted.
+/// `fuzz_volumes --mutations 10000` is the whole of it. A crash of the program would end this test, a child's is
+/// counted.
 TEST(DamagedVolumes, NeverCrashHangOrChangeAFile) {
     const MutationCounts counts = mutate_volumes(320, 7);
     EXPECT_EQ(counts.not_an_error, 0) << (counts.faults.empty() ? "" : counts.faults.front());
