@@ -263,8 +263,8 @@ DicomSeries choose_series(const DicomFolder& folder, const fs::path& path, const
     for (const auto& file : folder.unreadable)
         if (says_folder || !chosen.empty() || fs::equivalent(file, path))
             throw DamagedFileError(file,
-                                   "is a DICOM file that cannot be read, so that nobody can tell of which series it is",
-                                   "Copy or export the series again; if the file is of no use, move it elsewhere.");
+                                   "is a DICOM file that is damaged or does not say of which series it is",
+                                   "Copy or export the series again; if the file is not of the series, move it elsewhere.");
     if (!says_folder && wanted.empty() && chosen.empty())
         throw InputError(
             path, "is no DICOM file",

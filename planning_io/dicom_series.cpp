@@ -46,6 +46,17 @@ SliceOrder order_of(vtkDICOMReader* reader, const DicomSeries& series, const fs:
     return order;
 }
 
+/// The file that cannot be unpacked by itself; `path` when each can.
+fs::path damaged_file_of(const DicomSeries& series, const fs::path& path) {
+    for (const auto& file : series.files) {
+        vtkNew<vtkDICOMReader> reader;
+        reader->SetFileName(file.readable_as.c_str());
+        reader->Update();
+        if (reader->GetErrorCode()) return file.path;
+    }
+    return path;
+}
+
 /// The affine from the slices' own positions must agree with vtk-dicom's reading of them: two readings, one geometry.
 void check_against_reader(vtkDICOMReader* reader, const Volume& volume, const fs::path& path) {
     const double* spacing = reader->GetOutput()->GetSpacing();
@@ -129,12 +140,7 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
     reader->AutoRescaleOff();
     reader->UpdateInformation();
     if (!reader->GetErrorCode()) reader->Update();
-    if (reader->GetErrorCode()) {
-        const char* name = reader->GetInternalFileName();
-        const auto file = std::find_if(series.files.begin(), series.files.end(),
-                                       [&](const DicomFile& f) { return name && f.readable_as == name; });
-        throw DamagedFileError(file == series.files.end() ? path : file->path, "is damaged or cut short", kCopyAgain);
-    }
+    if (reader->GetErrorCode()) throw DamagedFileError(damaged_file_of(series, path), "is damaged or cut short", kCopyAgain);
 
     std::vector<DicomSlice> slices;
     std::vector<SliceValues> meaning;

@@ -22,7 +22,7 @@ DicomRefusal refusal(const std::string& problem, const char* remedy = kExportAga
 }
 
 std::string numbers(const Eigen::Vector3d& v) {
-    return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x(), v.y(), v.z());
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x(), v.y(), v.z());
 }
 
 std::optional<DicomRefusal> fault_of_axes(const DicomSlice& s) {
@@ -112,7 +112,7 @@ std::optional<DicomRefusal> fault_of_stack(const std::vector<DicomSlice>& slices
     std::sort(sorted.begin(), sorted.end());
     const double usual = sorted[sorted.size() / 2];
     if (sorted.back() < kEven_mm)
-        return refusal(fmt::format("all {} slices lie at one position ({} mm)", slices.size(),
+        return refusal(fmt::format("all {} slices lie at one position, {} mm", slices.size(),
                                    numbers(slices.front().position_in_ct)),
                        "Give a series whose slices follow each other in space.");
     for (std::size_t i = 0; i < gaps.size(); ++i) {

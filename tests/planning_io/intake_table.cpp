@@ -30,6 +30,7 @@ std::string one_line(std::string text, const std::string& path, const std::strin
     if (text.starts_with(path + ": ")) text.erase(0, path.size() + 2);
     for (std::size_t at; !root.empty() && (at = text.find(root)) != std::string::npos;)
         text.replace(at, root.size(), "DATA");
+    for (std::size_t at; (at = text.find(":\n")) != std::string::npos;) text.erase(at + 1, 1);
     std::string line;
     for (const char c : text) line += c == '\n' ? "; " : c == '|' ? "/" : std::string(1, c);
     return line.size() > 420 ? line.substr(0, 417) + "..." : line;
@@ -111,6 +112,21 @@ std::vector<Row> synthetic(const std::vector<VolumeCase>& cases) {
     return rows;
 }
 
+constexpr const char* kHead =
+    R"(# What is taken in, and what is refused
+
+Made by one command; nothing below was written by hand:
+
+    build/tests/planning_io/intake_table DATA/ct DATA/mri DATA/dicom_bad DATA/plans DATA/scans Cranium.inv3 ch2.nii.gz > planning_io/INTAKE.md
+
+`Cranium.inv3` is the example patient (Debian's `invesalius-examples`), `ch2.nii.gz` of Debian's `mricron-data`. DATA is a collection of
+public files, kept outside of this repository: `ct` from Slicer/Slicer (Testing/Data/Input/CTHeadAxialDicom) and neurolabusc/dcm_qa_ct
+(In/Philips), `mri` from neurolabusc/dcm_qa_decubitus, `dicom_bad` from icometrix/dicom2nifti and pydicom/pydicom (each of its single
+files is given alone), `plans` from Slicer, SlicerMorph, afids, SlicerRt, dicompyler-core and pydicom, `scans` from Rvcg, VTKData and
+OpenGR (point clouds: none is a volume). The synthetic volumes are those of the tests; a sound one is also compared with its phantom
+there, value by value. Axes: the way i, j and k run, to the (L)eft, (P)osterior, (S)uperior and so on.
+)";
+
 }  // namespace
 }  // namespace planlight::test
 
@@ -135,6 +151,7 @@ int main(int argc, char** argv) {
             std::cerr << '.' << std::flush;
         }
     }
+    fmt::print("{}", kHead);
     if (!volumes.empty()) print("Volumes of other people", volumes);
     if (!plans.empty()) print("Plans of other people", plans);
     print("Synthetic volumes that are sound", synthetic(sound_volumes()));

@@ -226,9 +226,9 @@ void add_damage(std::vector<VolumeCase>& list) {
                           true,
                           "CT"};
     };
-    list.push_back(cut("a file cut in its pixels", 0.6)), list.back().says = "damaged or cut";
-    list.push_back(cut("a file cut in its header", 0.02)), list.back().says = "cannot be read";
-    list.push_back({"a JPEG 2000 file cut in its pixels", "damaged or cut",
+    list.push_back(cut("a file cut in its pixels", 0.6)), list.back().says = "I0344: is damaged or cut short";
+    list.push_back(cut("a file cut in its header", 0.02)), list.back().says = "I0344: is a DICOM file that is damaged";
+    list.push_back({"a JPEG 2000 file cut in its pixels", "I0344: is damaged or cut short",
                     [](const fs::path& folder) {
                         const auto files = write_series(synthetic_series({}), folder);
                         for (const auto& f : files) pack_dicom(f, DicomPacking::jpeg_2000);
