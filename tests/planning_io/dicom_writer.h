@@ -14,6 +14,7 @@ struct DicomObject {
     struct Element {
         std::string vr, bytes;
         std::vector<DicomObject> items;
+        std::vector<std::string> fragments;  ///< packed pixels, one a frame
     };
     std::map<std::uint32_t, Element> elements;  ///< by group << 16 | element
 
@@ -35,5 +36,10 @@ std::string encode_dicom(const DicomObject& object, DicomEncoding encoding, cons
 /// Packs an explicit little endian file anew with GDCM, in place. False when GDCM cannot.
 enum class DicomPacking { rle, jpeg_lossless, jpeg_ls, jpeg_2000 };
 bool pack_dicom(const std::filesystem::path& file, DicomPacking packing);
+
+/// The file with its pixels packed by GDCM and every other element as it is: GDCM's own writer makes the frames of an
+/// Enhanced object evenly spaced in the order in which they lie in the file, whatever their positions were. Empty when
+/// GDCM cannot.
+std::string encode_packed_dicom(DicomObject object, DicomPacking packing, const std::filesystem::path& scratch_file);
 
 }  // namespace planlight::test

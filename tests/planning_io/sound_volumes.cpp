@@ -40,6 +40,20 @@ VolumeCase packed(const std::string& name, DicomPacking packing) {
             "CT"};
 }
 
+VolumeCase packed_enhanced(const std::string& name, DicomPacking packing) {
+    return {name,
+            "",
+            [packing](const fs::path& folder) {
+                const std::string bytes = encode_packed_dicom(enhanced_object({}), packing, folder / "scratch");
+                if (bytes.empty()) throw std::runtime_error("GDCM could not pack the Enhanced object");
+                write_safely(folder / "enhanced", bytes);
+                return folder;
+            },
+            "",
+            true,
+            "CT"};
+}
+
 VolumeCase position(const std::string& name, const Eigen::Matrix3d& turn, const std::string& patient_position,
                     double shear_mm = 0) {
     return series(name, [=] {
@@ -104,6 +118,9 @@ void add_dicom(std::vector<VolumeCase>& list) {
     list.push_back(series("DICOM, Enhanced CT, frames shuffled", [] { return Objects{enhanced_object({})}; }));
     list.push_back(series(
         "DICOM, Enhanced CT, deflated", [] { return Objects{enhanced_object({})}; }, DicomEncoding::deflated));
+    list.push_back(packed_enhanced("DICOM, Enhanced CT, JPEG 2000", DicomPacking::jpeg_2000));
+    list.push_back(packed_enhanced("DICOM, Enhanced CT, JPEG-LS", DicomPacking::jpeg_ls));
+    list.push_back(packed_enhanced("DICOM, Enhanced CT, RLE", DicomPacking::rle));
     list.push_back(
         series("DICOM, Enhanced MR, frames shuffled", [] { return Objects{enhanced_object({}, {.modality = "MR"})}; }));
     list.back().is_hu = false, list.back().modality = "MR";
@@ -126,7 +143,7 @@ void add_dicom(std::vector<VolumeCase>& list) {
             std::string& pixels = o.elements[0x7fe00010].bytes;  // the outermost eight columns, which are air
             for (std::size_t at = 0; at < pixels.size(); at += 2)
                 if (at / 2 % 64 < 8) pixels[at] = pixels[at + 1] = 0;
-            o.elements[0x00280120] = {"SS", std::string(2, '\0'), {}};
+            o.elements[0x00280120] = {"SS", std::string(2, '\0'), {}, {}};
         }
         return objects;
     }));

@@ -1,4 +1,5 @@
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -20,6 +21,13 @@ std::string refusal_of(const std::function<Volume()>& parse) {
         return e.what();
     }
     return "";
+}
+
+double children_processor_s() {
+    rusage usage{};
+    getrusage(RUSAGE_CHILDREN, &usage);
+    return static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
+           1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
 }
 
 bool says(const std::string& text, const char* part) {
@@ -48,11 +56,14 @@ TEST(ParseInChild, ACrashAHangAndAGreedyParserCostTheChildOnly) {
                          return {};
                      }),
                      "crash (signal 11)"));
+    const double before_s = children_processor_s();
     EXPECT_TRUE(says(refusal_of<DamagedFileError>([]() -> Volume {
                          for (volatile int spin = 0;;) spin = spin + 1;
                      }),
                      "took longer"))
         << "after a second of processor";
+    EXPECT_LT(children_processor_s() - before_s, 2)
+        << "the limit is 1 s of processor, whatever the clock on the wall says";
     EXPECT_TRUE(says(refusal_of<InputError>([]() -> Volume {
                          Volume v;
                          v.values.resize(std::size_t{5} << 28);

@@ -8,6 +8,7 @@
 #include "planning_io/read_volume.h"
 #include "planning_io/safe_write.h"
 #include "planning_io/types/error.h"
+#include "tests/planning_io/synthetic_series.h"
 #include "tests/support/test_data.h"
 
 namespace planlight {
@@ -135,6 +136,19 @@ TEST(DicomThirdParty, BadFilesAreRefusedInWordsAndNeverCrashUs) {
     }
     EXPECT_EQ(read, 0) << "a single picture is no volume";
     EXPECT_GT(refused, 10);
+}
+
+/// Frames are looked up one by one: the work must grow with their number, not with its square, or the child's limit is
+/// met.
+TEST(EnhancedDicom, SixHundredFramesAreWithinTheChildsLimits) {
+    const test::TemporaryFolder folder;
+    test::Grid grid;
+    grid.size[2] = 600;
+    grid.ct_from_voxel.linear().col(2) *= 24.0 / 600;
+    test::write_series({test::enhanced_object(grid)}, folder.path());
+    const Volume volume = read_volume(folder.path());
+    EXPECT_EQ(volume.size[2], 600);
+    EXPECT_NEAR(volume.spacing_mm().z(), 0.16, 1e-6);
 }
 
 TEST(DicomRefusals, AFolderWithoutDicomIsRefused) {
