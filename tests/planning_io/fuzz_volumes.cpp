@@ -22,6 +22,7 @@ int main(int argc, char** argv) {
                c.changed_files);
     fmt::print("processor {:.1f} s in all, at most {:.2f} s a volume (wall clock at most {:.2f} s)\n", c.processor_s,
                c.most_processor_s, c.most_wall_s);
+    for (const auto& [kind, count] : c.crash_kinds) fmt::print("  the child's crash {}: {}\n", kind, count);
     for (const auto& fault : c.faults) fmt::print("  {}\n", fault);
     return c.not_an_error || c.slow || c.changed_files ? 1 : 0;
 }

@@ -127,7 +127,9 @@ void read_one(const Seed& seed, MutationCounts& counts) {
         ++counts.read;
     } catch (const Error& e) {
         const std::string what = e.what();
-        counts.parser_crashes += what.find("made its parser crash") != std::string::npos;
+        const auto crash = what.find("made its parser crash");
+        counts.parser_crashes += crash != std::string::npos;
+        if (crash != std::string::npos) ++counts.crash_kinds[what.substr(what.find('(', crash))];
         counts.cut_off += what.find("took longer") != std::string::npos || what.find("4 GiB") != std::string::npos;
         ++(e.exit_code == ExitCode::input_refused  ? counts.refused
            : e.exit_code == ExitCode::file_damaged ? counts.damaged

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -8,6 +9,7 @@ namespace planlight::test {
 struct MutationCounts {
     int mutations = 0, read = 0, refused = 0, damaged = 0, other_errors = 0;
     int parser_crashes = 0;  ///< of the child, which is what it is there for
+    std::map<std::string, int> crash_kinds;
     int cut_off = 0;         ///< by the child's limits
     int not_an_error = 0;    ///< anything thrown that is not one of our errors: a fault of ours
     int slow = 0;            ///< more than `kSlowProcessor_s` of processor
