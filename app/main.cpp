@@ -29,10 +29,11 @@ CLI::Option* preset_option(CLI::App* sub, std::string& preset) {
 void add_prepare(CLI::App& app, PrepareOptions& o) {
     auto* sub = command(app, "prepare", "CT or MR volume and plan -> case folder (skin, LUT, plan, checksums)",
                         "prepare Cranium.inv3 --plan frontal_defect.mrk.json --out case");
-    sub->add_option("volume", o.volume, "DICOM folder or file, or InVesalius project (.inv3)")->required();
+    sub->add_option("volume", o.volume, "DICOM folder or file, NIfTI, NRRD, MetaImage, or InVesalius project (.inv3)")->required();
     sub->add_option("--plan", o.plan, "3D Slicer markups file (.mrk.json), or a folder of them")->required();
     sub->add_option("--out", o.out, "Case folder to write")->required();
-    sub->add_option("--series", o.series_uid, "UID of the DICOM series, where the folder holds several");
+    sub->add_option("--series", o.series_uid, "UID or number of the DICOM series, where the folder holds several");
+    sub->add_flag("--anonymous", o.anonymous, "Leave UIDs and file names of the volume out of the case folder");
     sub->add_option("--threshold", o.threshold, "Skin threshold, HU (default: found from the histogram)");
     sub->add_option("--voxel-mm", o.voxel_mm, "Edge of the LUT's cubic voxels")->capture_default_str()->check(CLI::Range(0.25, 10.0));
     sub->add_flag("--replace", o.replace, "Replace an existing case folder");

@@ -7,7 +7,8 @@
 
 namespace planlight {
 
-/// Parses and checks the series in this process, which a damaged file may crash: `read_dicom_series` calls it in a child.
-Volume parse_dicom_series(const std::filesystem::path& folder_or_file, const std::string& series_uid);
+/// Parses and checks the series of that UID or number (or the only volume there) in this process, which a damaged file
+/// may crash: to be called in a child process.
+Volume parse_dicom_series(const std::filesystem::path& folder_or_file, const std::string& series);
 
 }  // namespace planlight

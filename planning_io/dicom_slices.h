@@ -1,31 +1,50 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace planlight {
 
-/// What one slice of a series says of itself.
+/// What one slice (a file, or one frame of a multi-frame file) says of itself; what it does not say is NaN or empty.
 struct DicomSlice {
-    std::string file;
-    Eigen::Vector3d position_in_ct;                ///< Image Position (Patient): centre of the first pixel, mm
-    Eigen::Vector3d row_direction, column_direction; ///< Image Orientation (Patient): along a row, along a column
-    double column_spacing_mm = 0, row_spacing_mm = 0;///< between columns (along a row), between rows
+    static constexpr double kUnsaid = std::numeric_limits<double>::quiet_NaN();
+
+    std::string file;  ///< name, and frame when there are several
+    Eigen::Vector3d position_in_ct =
+        Eigen::Vector3d::Constant(kUnsaid);  ///< Image Position (Patient): centre of the first pixel, mm
+    Eigen::Vector3d row_direction = Eigen::Vector3d::Constant(kUnsaid);  ///< Image Orientation (Patient): along a row
+    Eigen::Vector3d column_direction = Eigen::Vector3d::Constant(kUnsaid);  ///< along a column
+    double column_spacing_mm = kUnsaid, row_spacing_mm = kUnsaid;  ///< between columns (along a row), between rows
     int columns = 0, rows = 0;
-    std::string frame_of_reference_uid, patient;
+    std::string frame_of_reference_uid, patient, patient_position;
+    int samples = 1;                  ///< 3: a colour picture
+    std::string stored_as;            ///< bits and sign of its pixels
+    std::string transfer_syntax;      ///< UID; empty: implicit little endian
+    double slope = 1, intercept = 0;  ///< of the rescaling
+    bool has_rescale = false;
+    std::string defaced;  ///< how it says that the face was taken away
 };
 
 struct DicomRefusal {
     std::string problem, remedy;
 };
 
-/// Why the slices, in any order, are not one safe volume; empty when they are: evenly spaced to 0.01 mm along their normal
-/// and on one straight line, one orientation (1e-4), one size and spacing, one patient and frame of reference, at least 16.
+/// Why the slices, in any order, are not one safe volume; empty when they are: evenly spaced to 0.01 mm along their
+/// normal and on one straight line, one orientation (1e-4), one size and spacing, one patient and frame of reference,
+/// at least 16.
 std::optional<DicomRefusal> fault_of(std::vector<DicomSlice> slices);
 
 /// The affine of slices in this order (they have no fault): i along a row, j along a column, k from slice to slice.
 Eigen::Affine3d ct_from_voxel_of(const std::vector<DicomSlice>& slices);
+
+/// The angle between the slices' normal and the way from slice to slice, radians: a tilted gantry's.
+double tilt_of(const Eigen::Affine3d& ct_from_voxel);
+
+/// Whether the pixels can be unpacked, and whether they were packed with loss.
+enum class TransferSyntax { unknown, lossless, lossy };
+TransferSyntax transfer_syntax_of(const std::string& uid);
 
 }  // namespace planlight

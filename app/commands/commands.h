@@ -13,6 +13,7 @@ struct PrepareOptions {
     std::string series_uid;
     double threshold = 0;  ///< HU; 0 = found from the histogram
     double voxel_mm = 1;
+    bool anonymous = false;  ///< no UID and no file name of the volume in the case folder
     bool replace = false, preview = false, json = false;
 };
 int run_prepare(const PrepareOptions& options);

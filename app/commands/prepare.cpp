@@ -16,7 +16,8 @@ int run_prepare(const PrepareOptions& options) {
     ProgressBar bar;
     bar.show("volume", 0);
     const Plan plan = read_plan(options.plan);
-    const Volume volume = read_volume(options.volume, options.series_uid);
+    Volume volume = read_volume(options.volume, options.series_uid);
+    if (options.anonymous) make_anonymous(volume);
     bar.show("volume", 1);
     SkinSettings skin;
     skin.threshold = options.threshold;

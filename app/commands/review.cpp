@@ -20,7 +20,7 @@ int run_review(const ReviewOptions& options) {
     for (const auto& item : drawing.drawing.items)
         items.push_back({{"name", item.name}, {"label", item.label}, {"distance_to_skin_mm", item.distance_to_skin_mm}, {"warnings", item.warnings}});
     if (options.json)
-        std::cout << nlohmann::json{{"case", the_case.code}, {"created", the_case.created}, {"source", the_case.source},
+        std::cout << nlohmann::json{{"case", the_case.code}, {"created", the_case.created},
                                     {"items", items}, {"warnings", the_case.warnings}}.dump(2) << '\n';
     if (!options.picture.empty()) {
         write_png(render_scene(model.scene, view_of_plan(drawing.drawing)), options.picture);

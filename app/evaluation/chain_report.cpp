@@ -98,7 +98,7 @@ Json summary_json(const PresetSummary& s) {
 
 Json preparation_json(const Preparation& prepared) {
     const Case& c = prepared.prepared;
-    return {{"case", c.code}, {"source", c.source}, {"threshold", prepared.threshold}, {"body_ml", prepared.body_ml},
+    return {{"case", c.code}, {"threshold", prepared.threshold}, {"body_ml", prepared.body_ml},
             {"removed_ml", prepared.removed_ml}, {"removed_pieces", prepared.pieces_removed},
             {"triangles", c.skin.triangles.size()}, {"lut_size", c.lut.size}, {"lut_voxel_mm", c.lut.voxel_mm},
             {"skin_voxels", c.lut.skin.size()}, {"warnings", c.warnings},

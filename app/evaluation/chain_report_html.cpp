@@ -47,10 +47,10 @@ std::string preparation_section(const Preparation& p) {
 void write_report_html(const std::filesystem::path& file, const Preparation& prepared, const std::vector<ChainFigures>& rooms,
                        const std::vector<ReportPicture>& pictures) {
     std::string html = fmt::format(
-        "<p class=\"muted\">Case {}, {}. All errors are those of a simulated operating "
+        "<p class=\"muted\">Case {}. All errors are those of a simulated operating "
         "room with its own optics and the CT field as the true skin; no real projector or camera was measured. "
         "For research; not a medical device.</p>",
-        html_escaped(prepared.prepared.code), html_escaped(prepared.prepared.source));
+        html_escaped(prepared.prepared.code));
     for (const auto* preset : {"modern", "paper"})
         if (const auto s = summarise(rooms, preset); s.rooms > 0) html += preset_section(s);
     html += preparation_section(prepared) + "<h2>Step by step</h2>" + html_figures(pictures, file);

@@ -42,7 +42,7 @@ std::string figures_table(const Preparation& done) {
     const auto row = [](const std::string& name, const std::string& value) {
         return fmt::format("<tr><td>{}</td><td>{}</td></tr>", name, html_escaped(value));
     };
-    return "<h2>Figures</h2><table>" + row("Case", c.code) + row("Made", c.created) + row("Volume", c.source) +
+    return "<h2>Figures</h2><table>" + row("Case", c.code) + row("Made", c.created) +
            row("Skin threshold", fmt::format("{:.0f}", done.threshold)) + row("Body", fmt::format("{:.0f} ml", done.body_ml)) +
            row("Taken away (table, head holder, wires)", fmt::format("{} pieces, {:.0f} ml", done.pieces_removed, done.removed_ml)) +
            row("Skin mesh", fmt::format("{} triangles, {} vertices", c.skin.triangles.size(), c.skin.vertices_in_ct.size())) +
@@ -111,7 +111,6 @@ std::string preparation_json(const Preparation& done, const PlanDrawing& drawing
     const nlohmann::json result = {
         {"case", c.code},
         {"created", c.created},
-        {"source", c.source},
         {"threshold", done.threshold},
         {"body_ml", done.body_ml},
         {"removed_pieces", done.pieces_removed},

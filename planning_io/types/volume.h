@@ -10,13 +10,16 @@ namespace planlight {
 
 /// A CT or MR volume. Voxel (i,j,k) has its centre at `ct_from_voxel * (i,j,k)`; i runs fastest in `values`.
 struct Volume {
-    std::array<int, 3> size{0, 0, 0};                            ///< voxels along i, j, k
-    Eigen::Affine3d ct_from_voxel = Eigen::Affine3d::Identity(); ///< mm per voxel; right-handed; may be sheared (gantry tilt)
-    std::vector<float> values;                                   ///< HU when `is_hu`, else as stored
+    std::array<int, 3> size{0, 0, 0};  ///< voxels along i, j, k
+    Eigen::Affine3d ct_from_voxel =
+        Eigen::Affine3d::Identity();  ///< mm per voxel; right-handed; may be sheared (gantry tilt)
+    std::vector<float> values;        ///< HU when `is_hu`, else as stored
     bool is_hu = false;
     std::string modality;                ///< "CT" or "MR"
     std::string frame_of_reference_uid;  ///< empty when the file has none
-    std::string source;                  ///< what it was read from, for reports: format, file name; never a patient's name
+    std::string source;  ///< what it was read from, for reports: format, file name; never a patient's name
+    std::vector<std::string>
+        notes;  ///< what was noticed and did not stop the reading, in words; never a name, id or path
 
     std::size_t index(int i, int j, int k) const {
         return (static_cast<std::size_t>(k) * static_cast<std::size_t>(size[1]) + static_cast<std::size_t>(j)) *

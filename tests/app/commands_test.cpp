@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "tests/app/run_command.h"
+#include "tests/planning_io/synthetic_series.h"
 #include "tests/support/test_data.h"
 
 namespace planlight::test {
@@ -125,6 +126,36 @@ TEST_F(CommandsTest, PatternsWritesTheWholeSequence) {
     const json result = json::parse(run.out);
     for (const auto& name : result["patterns"]) EXPECT_TRUE(fs::exists(root() / "patterns" / (name.get<std::string>() + ".png")));
     EXPECT_GE(result["patterns"].size(), 2u + 2u * 8u);
+}
+
+/// Whether any file of the folder holds the text.
+bool folder_says(const fs::path& folder, const std::string& text) {
+    for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+        std::ifstream in(entry.path(), std::ios::binary);
+        std::stringstream all;
+        all << in.rdbuf();
+        if (all.str().find(text) != std::string::npos || entry.path().filename().string().find(text) != std::string::npos) return true;
+    }
+    return false;
+}
+
+TEST_F(CommandsTest, AnAnonymousCaseHoldsNoNameIdOrPathOfTheSeries) {
+    const SeriesLook look{.patient = "Mustermann^Erika", .patient_id = "ID-4711", .description = "Kopf duenn"};
+    write_series(synthetic_series({}, look), root() / "Mustermann");
+    std::ofstream(root() / "hole.mrk.json") << R"({"@schema": "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/markups-schema-v1.0.3.json#",
+        "markups": [{"type": "Fiducial", "coordinateSystem": "LPS", "coordinateUnits": "mm",
+        "controlPoints": [{"id": "1", "label": "B1", "position": [71, 4, 20], "description": "diameter_mm=7 depth_mm=6", "positionStatus": "defined"}]}]})";
+    const std::vector<std::string> identity = {"Mustermann", "Erika", "ID-4711", "Kopf duenn", look.uid, "1.2.826.0.1.3680043.9.9999.5", root().string()};
+    const auto named = run_planlight("prepare Mustermann --plan hole.mrk.json --voxel-mm 4 --out named_case --json", root());
+    ASSERT_EQ(named.exit_code, 0) << named.err;
+    EXPECT_TRUE(folder_says(root() / "named_case", look.uid)) << "the search finds what is there";
+    const auto run = run_planlight("prepare Mustermann --plan hole.mrk.json --voxel-mm 4 --out anonymous_case --anonymous --json", root());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    for (const auto& text : identity) {
+        EXPECT_FALSE(folder_says(root() / "anonymous_case", text)) << text;
+        EXPECT_EQ(folder_says(root() / "named_case", text), text == look.uid) << text;  // no case holds more than the UID
+        EXPECT_EQ(run.out.find(text), std::string::npos) << text;
+    }
 }
 
 TEST_F(CommandsTest, AMissingFileIsSaidSo) {

@@ -1,4 +1,4 @@
-#include "planning_io/read_dicom.h"
+#include "planning_io/parse_in_child.h"
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -13,7 +14,6 @@
 #include <cstdio>
 #include <new>
 
-#include "planning_io/dicom_series.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -22,9 +22,13 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr rlim_t kMaxMemoryBytes = rlim_t{4} << 30;
-constexpr rlim_t kMaxProcessor_s = 60;
+constexpr rlim_t kMaxAnswerBytes = rlim_t{8} << 30;
+constexpr rlim_t kMaxOpenFiles = 4096;
+constexpr rlim_t kMinProcessor_s = 1, kMaxProcessor_s = 240;
+constexpr std::uintmax_t kSlowestBytes_s = 1'000'000;  // every sound file is unpacked much faster
 constexpr unsigned kMaxWait_s = 300;
-constexpr const char* kCopyAgain = "Copy or export the series again.";
+constexpr std::uint64_t kMaxNotes = 100;
+constexpr const char* kCopyAgain = "Copy or export it again from where it came from.";
 
 enum class Outcome : std::uint32_t { volume, refused, damaged };
 
@@ -70,8 +74,10 @@ private:
         while (good_ && bytes > 0) {
             const ssize_t moved = out ? write(fd_, at, bytes) : read(fd_, at, bytes);
             if (moved < 0 && errno == EINTR) continue;
-            if (moved <= 0) good_ = false;
-            else at += moved, bytes -= static_cast<std::size_t>(moved);
+            if (moved <= 0)
+                good_ = false;
+            else
+                at += moved, bytes -= static_cast<std::size_t>(moved);
         }
     }
     int fd_;
@@ -87,6 +93,8 @@ void put_volume(Channel& channel, const Volume& volume) {
     channel.put_text(volume.modality);
     channel.put_text(volume.frame_of_reference_uid);
     channel.put_text(volume.source);
+    channel.put_value(static_cast<std::uint64_t>(volume.notes.size()));
+    for (const auto& note : volume.notes) channel.put_text(note);
     channel.put(volume.values.data(), volume.values.size() * sizeof(float));
 }
 
@@ -100,13 +108,30 @@ Volume get_volume(Channel& channel) {
     volume.modality = channel.get_text();
     volume.frame_of_reference_uid = channel.get_text();
     volume.source = channel.get_text();
+    const auto notes = channel.get_value<std::uint64_t>();
+    for (std::uint64_t n = 0; n < notes && n < kMaxNotes; ++n) volume.notes.push_back(channel.get_text());
     if (!channel.good()) return volume;
     volume.values.resize(volume.index(0, 0, volume.size[2]));
     channel.get(volume.values.data(), volume.values.size() * sizeof(float));
     return volume;
 }
 
-void limit_this_process() {
+/// Processor time that a sound file or folder of this size does not need.
+rlim_t processor_limit_s(const fs::path& path) {
+    std::uintmax_t bytes = 0;
+    std::error_code error;
+    if (fs::is_regular_file(path, error)) bytes = fs::file_size(path, error);
+    int files = 0;
+    if (const fs::path folder = fs::is_directory(path, error) ? path : path.parent_path();
+        fs::is_directory(folder, error))
+        for (fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error), end;
+             !error && entry != end && files < 100000; entry.increment(error))
+            if (std::error_code ignored; entry->is_regular_file(ignored)) bytes += entry->file_size(ignored), ++files;
+    return std::min(kMaxProcessor_s,
+                    kMinProcessor_s + static_cast<rlim_t>(bytes / kSlowestBytes_s) + static_cast<rlim_t>(files / 500));
+}
+
+void limit_this_process(rlim_t processor_s) {
     rlim_t already = 0;  // pages of address space that the parent brought along
     if (std::FILE* status = std::fopen("/proc/self/statm", "r")) {
         unsigned long pages = 0;
@@ -118,7 +143,9 @@ void limit_this_process() {
         setrlimit(what, &both);
     };
     limit(RLIMIT_AS, already + kMaxMemoryBytes);
-    limit(RLIMIT_CPU, kMaxProcessor_s);
+    limit(RLIMIT_CPU, processor_s);
+    limit(RLIMIT_FSIZE, kMaxAnswerBytes);
+    limit(RLIMIT_NOFILE, kMaxOpenFiles);
     limit(RLIMIT_CORE, 0);
     alarm(kMaxWait_s);
     if (const int nowhere = open("/dev/null", O_WRONLY); nowhere >= 0) {  // the parsers' own chatter
@@ -127,19 +154,20 @@ void limit_this_process() {
     }
 }
 
-[[noreturn]] void be_the_child(Channel& channel, const fs::path& path, const std::string& series_uid) {
-    limit_this_process();
+[[noreturn]] void be_the_child(Channel& channel, const fs::path& path, const std::function<Volume()>& parse) {
+    limit_this_process(processor_limit_s(path));
     const auto answer = [&](Outcome outcome, const std::string& problem, const std::string& remedy) {
         channel.put_value(outcome);
         channel.put_text(problem);
         channel.put_text(remedy);
     };
     try {
-        put_volume(channel, parse_dicom_series(path, series_uid));
+        put_volume(channel, parse());
     } catch (const Error& e) {
         answer(e.exit_code == ExitCode::file_damaged ? Outcome::damaged : Outcome::refused, e.what(), e.remedy);
     } catch (const std::bad_alloc&) {
-        answer(Outcome::refused, path.string() + ": needs more than 4 GiB of memory", "Give one series, or resample it to larger voxels.");
+        answer(Outcome::refused, path.string() + ": needs more than 4 GiB of memory",
+               "Give one series, or resample it to larger voxels.");
     } catch (const std::exception& e) {
         answer(Outcome::damaged, path.string() + ": cannot be read (" + e.what() + ")", kCopyAgain);
     }
@@ -148,20 +176,25 @@ void limit_this_process() {
 
 }  // namespace
 
-Volume read_dicom_series(const fs::path& path, const std::string& series_uid) {
+Volume parse_in_child(const fs::path& path, const std::function<Volume()>& parse) {
     Channel channel;
     const pid_t child = channel.good() ? fork() : -1;
-    if (child < 0) throw DiskError(path, "no child process could be started to read it", "Close other programs and try again.");
-    if (child == 0) be_the_child(channel, path, series_uid);
+    if (child < 0)
+        throw DiskError(path, "no child process could be started to read it", "Close other programs and try again.");
+    if (child == 0) be_the_child(channel, path, parse);
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
     }
     if (WIFSIGNALED(status)) {
         const int signal = WTERMSIG(status);
         const bool slow = signal == SIGXCPU || signal == SIGKILL || signal == SIGALRM;
-        throw DamagedFileError(path, slow ? "took longer to read than a sound series does" : "made the DICOM parser crash (signal " + std::to_string(signal) + ")", kCopyAgain);
+        throw DamagedFileError(path,
+                               slow ? "took longer to read than a sound file does"
+                                    : "made its parser crash (signal " + std::to_string(signal) + ")",
+                               kCopyAgain);
     }
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) throw DamagedFileError(path, "could not be read to its end", kCopyAgain);
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        throw DamagedFileError(path, "could not be read to its end", kCopyAgain);
     channel.rewind();
     const auto outcome = channel.get_value<Outcome>();
     if (outcome != Outcome::volume) {
