@@ -45,6 +45,7 @@ Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSetti
     done.removed_ml = mask.removed_ml;
     done.pieces_removed = mask.pieces_removed;
     the_case.volume_hash = hash_of(volume);
+    the_case.frame_of_reference_uid = volume.frame_of_reference_uid;
     the_case.lut.volume_hash = the_case.volume_hash;
     the_case.lut.mesh_hash = hash_of(the_case.skin);
     the_case.code = the_case.volume_hash.substr(0, 8);
