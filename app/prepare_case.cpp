@@ -8,7 +8,7 @@
 
 #include "planning_io/mesh_file.h"
 #include "planning_io/read_volume.h"
-#include "projection/draw_plan.h"
+#include "projection/check_plan.h"
 
 namespace planlight {
 namespace {
@@ -58,8 +58,9 @@ Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSetti
         the_case.warnings.push_back(fmt::format(
             "the values of this CT are not HU; the skin threshold {:.0f} was {}: look at the skin before you use it", mask.threshold,
             skin.threshold == 0 ? "found from their histogram" : "given"));
-    const auto of_plan = check_plan(plan, SkinSurface(the_case.skin));
-    the_case.warnings.insert(the_case.warnings.end(), of_plan.begin(), of_plan.end());
+    const PlanVerdict of_plan = check_plan(plan, SkinSurface(the_case.skin), box_of(volume));
+    refuse_stopped_plan(of_plan);
+    the_case.warnings.insert(the_case.warnings.end(), of_plan.warnings.begin(), of_plan.warnings.end());
     return done;
 }
 
