@@ -96,6 +96,7 @@ void check_extent(const Plan& plan, const fs::path& file) {
         high = high.cwiseMax(p);
     }
     const double across_mm = (high - low).norm();
+    if (across_mm == 0) throw InputError(file, fmt::format("has all its {} points at one place", points.size()), "Export the plan again.");
     if (!(across_mm >= kLeastAcross_mm) || across_mm > kMostAcross_mm)
         throw InputError(file, fmt::format("the whole plan is {:.3g} mm across: its numbers cannot be millimetres", across_mm), "Export the plan in mm.");
 }

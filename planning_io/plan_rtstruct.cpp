@@ -12,6 +12,7 @@
 #include <cmath>
 #include <map>
 
+#include "planning_io/contour_stack.h"
 #include "planning_io/limited_child.h"
 #include "planning_io/plan_file.h"
 #include "planning_io/plan_settings.h"
@@ -25,7 +26,6 @@ using Eigen::Vector3d;
 
 constexpr const char* kCopyAgain = "Export the structure set again.";
 constexpr const char* kRtStructClass = "1.2.840.10008.5.1.4.1.1.481.3";
-constexpr std::size_t kSolidHeights = 3;
 constexpr double kMaxCoordinate_mm = 5000;
 
 struct Contour {
@@ -197,20 +197,11 @@ private:
         plan.cut_planes.push_back({name, (p[0] + p[2]) / 2, normal, u.normalized(), u.norm(), v.norm(), colour_});
     }
 
-    /// Of closed contours that are parallel to the first.
     std::size_t count_heights() const {
-        std::vector<double> heights;
-        std::optional<Vector3d> normal;
-        for (const Contour& contour : roi_.contours) {
-            if (contour.type != "CLOSED_PLANAR") continue;
-            const auto p = points_of_contour(contour);
-            Vector3d sum = Vector3d::Zero(), centre = Vector3d::Zero();
-            for (std::size_t i = 0; i < p.size(); ++i) sum += p[i].cross(p[(i + 1) % p.size()]), centre += p[i] / static_cast<double>(p.size());
-            if (!normal && sum.norm() > 1e-6) normal = sum.normalized();
-            if (normal) heights.push_back(normal->dot(centre));
-        }
-        std::sort(heights.begin(), heights.end());
-        return static_cast<std::size_t>(std::unique(heights.begin(), heights.end(), [](double a, double b) { return b - a < 0.1; }) - heights.begin());
+        std::vector<std::vector<Vector3d>> closed;
+        for (const Contour& contour : roi_.contours)
+            if (contour.type == "CLOSED_PLANAR") closed.push_back(points_of_contour(contour));
+        return heights_of_contours(closed);
     }
 
     const Roi& roi_;

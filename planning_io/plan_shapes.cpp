@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "planning_io/contour_stack.h"
 #include "planning_io/plan_file.h"
 #include "planning_io/plan_settings.h"
 #include "planning_io/shape_file.h"
@@ -94,6 +95,18 @@ private:
     const fs::path& file_;
 };
 
+/// Contours of a solid on slices, which nobody means as lines to cut along.
+void refuse_contour_stack(const Shape& shape, const fs::path& file) {
+    std::vector<std::vector<Vector3d>> closed;
+    for (const auto& line : shape.lines) {
+        if (!line.kind.empty() || line.points.size() < 4 || line.points.front() != line.points.back()) continue;
+        closed.emplace_back();
+        for (const auto i : line.points) closed.back().push_back(shape.points[static_cast<std::size_t>(i)]);
+    }
+    if (const std::size_t heights = heights_of_contours(closed); heights >= kSolidHeights)
+        throw InputError(file, fmt::format("has contours at {} heights: a solid, not a line to cut along", heights), "Export the cuts alone, as curves.");
+}
+
 /// Lines of two points end to end are one line: most programs write curves so.
 void join_segments(Shape& shape) {
     for (const auto& line : shape.lines)
@@ -114,6 +127,7 @@ PlanImport read_shape_plan(const fs::path& file, const PlanImportSettings& setti
     Shape shape = welded(read_shape(file)).shape;
     const Space space = settled_space(shape.space, settings.space, file, "Export it with its space (3D Slicer does: SPACE=LPS)");
     join_segments(shape);
+    refuse_contour_stack(shape, file);
     PlanImport read;
     const auto numbered = [&](std::size_t i, std::size_t count) { return count == 1 ? plan_name_of(file) : fmt::format("{} {}", plan_name_of(file), i + 1); };
     for (const auto& loop : border_loops(shape, file)) shape.lines.push_back({loop, {}, {}, {}, {}, {}});

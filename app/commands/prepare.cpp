@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/commands.h"
+#include "app/commands/plan_options.h"
 #include "app/console.h"
 #include "app/prepare_case.h"
-#include "planning_io/plan_file.h"
 #include "planning_io/read_volume.h"
 
 namespace planlight {
@@ -14,14 +14,15 @@ namespace planlight {
 int run_prepare(const PrepareOptions& options) {
     ProgressBar bar;
     bar.show("volume", 0);
-    const Plan plan = read_plan(options.plan);
     const Volume volume = read_volume(options.volume, options.series_uid);
+    const PlanImport plan = import_plan(options.plan, plan_settings(options.frame, options.accept_frame, volume.frame_of_reference_uid));
     bar.show("volume", 1);
     SkinSettings skin;
     skin.threshold = options.threshold;
     LutSettings lut;
     lut.voxel_mm = options.voxel_mm;
-    const Preparation done = prepare_case(volume, plan, skin, lut, iso_date_now(), bar.callback());
+    Preparation done = prepare_case(volume, plan.plan, skin, lut, iso_date_now(), bar.callback());
+    done.prepared.warnings.insert(done.prepared.warnings.end(), plan.notes.begin(), plan.notes.end());
     bar.show("case folder", 0);
     write_case(done.prepared, options.out, options.replace);
     bar.show("case folder", 1);
