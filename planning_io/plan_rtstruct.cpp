@@ -13,9 +13,11 @@
 #include <map>
 
 #include "planning_io/contour_stack.h"
+#include "planning_io/dicom_structure.h"
 #include "planning_io/limited_child.h"
 #include "planning_io/plan_file.h"
 #include "planning_io/plan_settings.h"
+#include "planning_io/safe_write.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -85,6 +87,7 @@ std::vector<Roi> rois_of(vtkDICOMMetaData* meta, const fs::path& file) {
 }
 
 void parse(Parcel& parcel, const fs::path& file) {
+    if (!dicom_nests_to_its_end(read_whole(file))) throw DamagedFileError(file, "is damaged or cut short", kCopyAgain);
     vtkNew<vtkDICOMMetaData> meta;
     vtkNew<vtkDICOMParser> parser;
     parser->SetFileName(file.c_str());
