@@ -21,6 +21,8 @@ Shape parse_ply_shape(const std::string& content, const fs::path& file) {
     shape.space = space_marked(comments, file);
     const auto *x = ply.column("x"), *y = ply.column("y"), *z = ply.column("z");
     if (!x || !y || !z) throw DamagedFileError(file, "has no columns x, y, z", "Write or copy the PLY file again.");
+    if (const auto* flags = ply.column("flags"))
+        for (const double flag : *flags) shape.flags.push_back(flag >= 0 && flag <= 255 ? static_cast<std::uint8_t>(flag) : std::uint8_t{0});
     for (std::size_t i = 0; i < ply.vertices; ++i) shape.points.emplace_back((*x)[i], (*y)[i], (*z)[i]);
     for (const auto& face : ply.faces)
         for (std::size_t c = 2; c < face.size(); ++c)
@@ -71,6 +73,7 @@ WeldedShape welded(const Shape& shape) {
         if (first[i] == static_cast<std::int32_t>(i)) {
             now[i] = static_cast<std::int32_t>(result.shape.points.size());
             result.shape.points.push_back(shape.points[i]);
+            if (!shape.flags.empty()) result.shape.flags.push_back(shape.flags[i]);
         }
     }
     const auto moved = [&](std::int32_t i) { return now[static_cast<std::size_t>(first[static_cast<std::size_t>(i)])]; };

@@ -27,6 +27,7 @@ struct Shape {
     std::vector<Eigen::Vector3d> points;
     std::vector<ShapeLine> lines;
     std::vector<std::array<std::int32_t, 3>> triangles;
+    std::vector<std::uint8_t> flags;  ///< SkinFlag per point, of our own PLY files; else empty
     std::optional<Space> space;  ///< from its "SPACE=LPS" or "SPACE=RAS" mark, where 3D Slicer puts it
 };
 

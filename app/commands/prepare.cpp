@@ -21,7 +21,14 @@ int run_prepare(const PrepareOptions& options) {
     skin.threshold = options.threshold;
     LutSettings lut;
     lut.voxel_mm = options.voxel_mm;
-    Preparation done = prepare_case(volume, plan.plan, skin, lut, iso_date_now(), bar.callback());
+    Preparation done;
+    if (options.surface.empty()) {
+        done = prepare_case(volume, plan.plan, skin, lut, iso_date_now(), bar.callback());
+    } else {
+        const SurfaceFile surface = read_surface(options.surface, {plan_settings(options.surface_frame, options.accept_frame, volume.frame_of_reference_uid), options.segment});
+        check_surface_fits(surface.mesh, volume, options.surface);
+        done = prepare_case_on(volume, surface, plan.plan, lut, iso_date_now(), bar.callback());
+    }
     done.prepared.warnings.insert(done.prepared.warnings.end(), plan.notes.begin(), plan.notes.end());
     bar.show("case folder", 0);
     write_case(done.prepared, options.out, options.replace);
