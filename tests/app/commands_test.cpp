@@ -165,6 +165,26 @@ TEST_F(CommandsTest, PlanListsChecksAndConverts) {
     EXPECT_EQ(json::parse(again.out)["items"].size(), 6U);
 }
 
+TEST_F(CommandsTest, AnotherProgramsSurfaceCanBeProjectedOn) {
+    // The case's own skin, given back as a surface: the same case, without a segmentation.
+    const std::string prepare = "prepare " + example_patient()->string() + " --plan " + kPlan;
+    const auto run = run_planlight(prepare + " --surface case/skin.ply --out on_skin --json", root());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const json own = json::parse(prepared_.out), result = json::parse(run.out);
+    EXPECT_EQ(result["skin"], own["skin"]);
+    EXPECT_EQ(result["case"], own["case"]);
+    EXPECT_EQ(run_planlight("review on_skin --picture on_skin.png", root()).exit_code, 0);
+    // The same with the frame not said, said wrongly, and said rightly.
+    std::ifstream in(root() / "case" / "skin.ply", std::ios::binary);
+    std::string ply((std::istreambuf_iterator<char>(in)), {});
+    ply.replace(ply.find("SPACE=LPS"), 9, "no space ");
+    std::ofstream(root() / "unsaid.ply", std::ios::binary) << ply;
+    expect_one_clear_sentence(run_planlight(prepare + " --surface unsaid.ply --out never", root()), 3, "does not say its coordinate system");
+    expect_one_clear_sentence(run_planlight(prepare + " --surface unsaid.ply --surface-frame RAS --out never", root()), 3, "outside the volume");
+    EXPECT_EQ(run_planlight(prepare + " --surface unsaid.ply --surface-frame LPS --out said", root()).exit_code, 0);
+    EXPECT_FALSE(fs::exists(root() / "never"));
+}
+
 TEST_F(CommandsTest, ALutOfAnotherCaseIsRefused) {
     ASSERT_EQ(run_planlight("prepare " + example_patient()->string() + " --plan " + kPlan + " --threshold -200 --voxel-mm 2 --out other", root()).exit_code, 0);
     fs::copy_file(root() / "other" / "skin.lut", root() / "mixed.lut", fs::copy_options::overwrite_existing);
