@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 constexpr std::size_t kFewestTriangles = 100;
 constexpr double kLeastAcross_mm = 50, kMostAcross_mm = 600;
 constexpr double kMostOddEdges = 1e-3;
-constexpr double kLeastInside = 0.95, kLeastEdge = 0.6, kAcrossEdge_mm = 1.5;
+constexpr double kLeastInside = 0.95, kLeastEdge = 0.75, kAcrossEdge_mm = 1.5;
 
 struct Edge {
     std::int32_t low, high;
@@ -207,7 +207,7 @@ SurfaceFile read_surface(const fs::path& file, const SurfaceSettings& settings) 
     return surface;
 }
 
-void check_surface_fits(const TriangleMesh& surface, const Volume& volume, const fs::path& file) {
+double check_surface_fits(const TriangleMesh& surface, const Volume& volume, const fs::path& file) {
     const Eigen::Affine3d voxel_from_ct = volume.ct_from_voxel.inverse();
     std::size_t inside = 0, edge = 0, compared = 0;
     for (std::size_t v = 0; v < surface.vertices_in_ct.size(); ++v) {
@@ -222,9 +222,11 @@ void check_surface_fits(const TriangleMesh& surface, const Volume& volume, const
     if (share_inside < kLeastInside)
         throw InputError(file, fmt::format("lies outside the volume with {:.0f} % of its points", 100 * (1 - share_inside)), "Check that it was made on this CT, and its coordinate system.");
     const double share_edge = compared > 0 ? static_cast<double>(edge) / static_cast<double>(compared) : 0;
-    if (volume.modality == "CT" && share_edge < kLeastEdge)
+    if (volume.modality != "CT") return NAN;
+    if (share_edge < kLeastEdge)
         throw InputError(file, fmt::format("does not lie on an edge of this CT: only at {:.0f} % of its points it is brighter under the surface than over it", 100 * share_edge),
                          "Check that it was made on this CT, and its coordinate system.");
+    return share_edge;
 }
 
 }  // namespace planlight

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 namespace planlight {
 namespace {
@@ -33,6 +35,17 @@ double distance_mm(const SkinSurface& skin, const Vector3d& p) { return (skin.ne
 
 }  // namespace
 
+bool in_the_body(const SkinSurface& skin, const Vector3d& p) {
+    if (skin.inside(p)) return true;
+    constexpr int kWays = 96;
+    int ended = 0;
+    for (int i = 0; i < kWays; ++i) {  // evenly over the sphere, along a spiral
+        const double z = 1 - (2 * i + 1.0) / kWays, around = i * std::numbers::pi * (3 - std::sqrt(5.0)), across = std::sqrt(1 - z * z);
+        ended += skin.first_hit({p, Vector3d(across * std::cos(around), across * std::sin(around), z)}).has_value();
+    }
+    return 4 * ended >= 3 * kWays;
+}
+
 std::vector<std::string> faults(const Trajectory& t, const SkinSurface& skin, const DrawingSettings& s) {
     Faults f("trajectory", t.name);
     if (!finite(t)) {
@@ -41,7 +54,7 @@ std::vector<std::string> faults(const Trajectory& t, const SkinSurface& skin, co
     }
     f.check_distance("its entry", distance_mm(skin, t.entry_in_ct), s);
     if (t.length_mm() < 1) f.add("entry and target are only {:.2f} mm apart", t.length_mm());
-    if (!skin.inside(t.target_in_ct))
+    if (!in_the_body(skin, t.target_in_ct))
         f.add("its target lies outside the body, {:.1f} mm from the skin", distance_mm(skin, t.target_in_ct));
     if (t.diameter_mm < 0) f.add("its diameter of {} mm is negative", t.diameter_mm);
     return f.sentences();

@@ -119,9 +119,9 @@ private:
 
     void check_own(const Trajectory& t) {
         const double entry_mm = to_skin_mm(t.entry_in_ct), target_mm = to_skin_mm(t.target_in_ct);
-        const bool target_inside = skin_.inside(t.target_in_ct);
+        const bool target_inside = in_the_body(skin_, t.target_in_ct);
         if (t.length_mm() < 1) return stop(t.name, "entry and target are only {:.2f} mm apart", t.length_mm());
-        if (entry_mm > settings_.near_skin_mm && skin_.inside(t.entry_in_ct) && (target_mm < settings_.near_skin_mm || !target_inside))
+        if (entry_mm > settings_.near_skin_mm && in_the_body(skin_, t.entry_in_ct) && (target_mm < settings_.near_skin_mm || !target_inside))
             return stop(t.name, "entry and target are swapped: the entry lies {:.1f} mm under the skin, the target {:.1f} mm from it", entry_mm, target_mm);
         if (!target_inside && target_mm > 1) stop(t.name, "its target lies outside the body, {:.1f} mm from the skin", target_mm);
         if (t.length_mm() > settings_.max_depth_mm) stop(t.name, "it is {:.0f} mm deep (at most {:.0f} mm)", t.length_mm(), settings_.max_depth_mm);

@@ -8,8 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "app/prepare_case.h"
+#include "planning_io/invesalius_project.h"
+#include "planning_io/mesh_file.h"
 #include "planning_io/plan_file.h"
 #include "planning_io/read_volume.h"
+#include "planning_io/surface_file.h"
 #include "planning_io/types/error.h"
 #include "projection/check_plan.h"
 #include "projection/mid_plane.h"
@@ -149,6 +153,71 @@ TEST_F(PlanOnPatient, PlansOnTheSkinAndOnTheBoneBelowItAreNotStopped) {
 TEST_F(PlanOnPatient, MetresAndMicrometresAreStopped) {
     for (const double factor : {1e-3, 0.1, 10.0, 25.4, 1e3})
         EXPECT_THROW(refuse_stopped_plan(check_plan(moved(plan, [&](const Vector3d& p) { return Vector3d(factor * p); }), *skin, box)), InputError) << factor;
+}
+
+/// Surfaces that InVesalius segmented on the example patient (skin with all inside, and bone), read as another program's.
+class SurfaceOnPatient : public testing::Test {
+protected:
+    void SetUp() override {
+        if (!example_patient()) GTEST_SKIP() << "the package invesalius-examples is not installed";
+        volume_ = read_volume(*example_patient());
+        const TemporaryFolder folder;
+        for (const TriangleMesh& found : read_invesalius_surfaces(*example_patient())) {
+            write_mesh(found, folder.path() / "surface.ply");
+            surfaces_.push_back(read_surface(folder.path() / "surface.ply"));
+        }
+        ASSERT_EQ(surfaces_.size(), 2U);
+    }
+    bool fits(const TriangleMesh& mesh) const {
+        try {
+            check_surface_fits(mesh, volume_, "surface.ply");
+            return true;
+        } catch (const InputError&) {
+            return false;
+        }
+    }
+    Volume volume_;
+    std::vector<SurfaceFile> surfaces_;
+};
+
+TEST_F(SurfaceOnPatient, OnlyWhereItLiesInTheCtASurfaceIsTaken) {
+    const VolumeBox box = box_of(volume_);
+    const Vector3d middle = box.ct_from_voxel * (Vector3d(box.size[0] - 1, box.size[1] - 1, box.size[2] - 1) / 2);
+    const auto all = axis_permutations_and_flips();
+    for (const SurfaceFile& surface : surfaces_) {
+        const double share = check_surface_fits(surface.mesh, volume_, "surface.ply");
+        int refused = 0;
+        for (std::size_t i = 1; i < all.size(); ++i) {
+            TriangleMesh wrong = surface.mesh;
+            for (auto& p : wrong.vertices_in_ct) p = all[i] * (p - middle) + middle;
+            for (auto& n : wrong.normals_in_ct) n = all[i] * n;
+            refused += !fits(wrong);
+        }
+        TriangleMesh shifted = surface.mesh;
+        double shift_mm = 0;
+        for (; shift_mm < 40 && fits(shifted); ++shift_mm)
+            for (auto& p : shifted.vertices_in_ct) p.y() += 1;
+        std::printf("%zu triangles: brighter inside at %.0f %% of the points; %d of 47 wrong axes refused; refused when shifted by %.0f mm\n",
+                    surface.mesh.triangles.size(), 100 * share, refused, shift_mm);
+        EXPECT_GT(share, 0.9);
+        EXPECT_EQ(refused, 47);  // about the middle of the volume
+    }
+}
+
+TEST_F(SurfaceOnPatient, ACaseOnTheBoneHoldsItsTableAndThePlan) {
+    // The example plan was made on the skin: the skull lies 3 to 10 mm under it, and its target is in the cranium.
+    const SurfaceFile& bone = surfaces_[0];
+    const Plan plan = read_plan(std::string(PLANLIGHT_EXAMPLE_FOLDER) + "/frontal_defect.mrk.json");
+    LutSettings lut;
+    lut.voxel_mm = 2;
+    const Preparation done = prepare_case_on(volume_, bone, plan, lut, "2026-01-01T00:00:00Z");
+    EXPECT_EQ(done.prepared.skin.triangles.size(), bone.mesh.triangles.size());
+    EXPECT_EQ(done.prepared.lut.mesh_hash, hash_of(bone.mesh));
+    EXPECT_GT(done.prepared.lut.skin.size(), 10000U);
+    for (const auto& warning : done.prepared.warnings) EXPECT_EQ(warning.find("T1"), std::string::npos) << warning;
+    const PlanVerdict verdict = check_plan(plan, SkinSurface(bone.mesh));
+    EXPECT_GT(verdict.median_to_skin_mm, 2);
+    EXPECT_LT(verdict.median_to_skin_mm, 10);
 }
 
 }  // namespace
