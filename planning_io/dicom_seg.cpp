@@ -34,6 +34,7 @@ using Eigen::Vector3d;
 
 constexpr const char* kSegClass = "1.2.840.10008.5.1.4.1.1.66.4";
 constexpr const char* kExportAgain = "Export the segmentation as a binary, uncompressed DICOM SEG, or as STL with its space.";
+constexpr int kMostEmpty = 20;   // slices a frame: the others would be gaps
 constexpr double kEven = 0.02;  // of a slice's distance
 
 std::string text(const vtkDICOMValue& value) {
@@ -112,6 +113,7 @@ Stack stack_of(vtkDICOMMetaData* meta, int segment, const fs::path& file) {
         stack.frame_and_slice.emplace_back(f.index, static_cast<int>(std::lround(slice)));
     }
     const int last = stack.frame_and_slice.back().second;
+    if (last >= kMostEmpty * static_cast<int>(frames.size())) throw InputError(file, fmt::format("has {} frames over {} slices", frames.size(), last + 1), kExportAgain);
     stack.slices = last + 1;
     stack.ct_from_voxel.linear().col(0) = column_mm * *along_row;
     stack.ct_from_voxel.linear().col(1) = row_mm * *along_column;
@@ -201,6 +203,8 @@ void parse(Parcel& parcel, const fs::path& file, const std::string& segment) {
     if (static_cast<double>(stack.columns) * stack.rows * stack.slices > 7e8) throw InputError(file, "is larger than 700 million voxels", "Resample the segmentation to larger voxels.");
     const auto offset = static_cast<std::size_t>(std::max<vtkTypeInt64>(0, parser->GetFileOffset()));
     if (!parser->GetPixelDataFound() || offset >= content.size()) throw DamagedFileError(file, "holds no pixels", kExportAgain);
+    const double pixels = static_cast<double>(meta->Get(DC::NumberOfFrames).AsInt()) * stack.columns * stack.rows;
+    if (pixels > 8 * static_cast<double>(content.size() - offset)) throw DamagedFileError(file, "holds fewer pixels than it announces", kExportAgain);
     put_surface(parcel, smoothed(stack, content.substr(offset), file), stack.ct_from_voxel);
 }
 

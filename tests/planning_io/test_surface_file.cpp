@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <random>
 
 #include "planning_io/mesh_file.h"
 #include "planning_io/safe_write.h"
@@ -251,6 +253,22 @@ TEST_F(SurfaceFileTest, ASegmentationOfAnotherCtOrUnknownSegmentIsRefused) {
     EXPECT_SAYS(refusal(two, of_ct("1.2.3", "Other")), "0 frame(s)");
     const std::string whole = ball_seg("1.2.3");
     for (std::size_t part = 1; part < 16; ++part) EXPECT_FALSE(refusal(write("cut.dcm", whole.substr(0, whole.size() * part / 16)), of_ct("1.2.3")).empty()) << part;
+}
+
+TEST_F(SurfaceFileTest, NoFlippedByteOfASegmentationBringsTheProgramDownOrHoldsItUp) {
+    const std::string whole = ball_seg("1.2.3");
+    std::mt19937 random(3);
+    double slowest_s = 0;
+    for (int i = 0; i < 200; ++i) {
+        std::string flipped = whole;
+        const std::size_t within = i % 2 ? whole.size() : 1500;  // half of them in the head
+        for (int k = 0; k < 3; ++k) flipped[132 + random() % (within - 132)] = static_cast<char>(random());
+        std::ofstream(folder_.path() / "flipped.dcm", std::ios::binary) << flipped;
+        const auto began = std::chrono::steady_clock::now();
+        refusal(folder_.path() / "flipped.dcm", of_ct("1.2.3"));  // anything but an Error would end the test
+        slowest_s = std::max(slowest_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+    }
+    EXPECT_LT(slowest_s, 2);
 }
 
 TEST_F(SurfaceFileTest, RealMeshesAreReadOrRefusedWithTheReason) {
