@@ -49,9 +49,9 @@ void add_prepare(CLI::App& app, PrepareOptions& o) {
     sub->add_option("volume", o.volume, "DICOM folder or file, or InVesalius project (.inv3)")->required();
     sub->add_option("--plan", o.plan, "Plan file, or a folder of them: .mrk.json, .fcsv, RTSTRUCT, tables, lines (see planning_io/README.md)")->required();
     plan_frame_options(sub, o.frame, o.accept_frame);
-    sub->add_option("--surface", o.surface, "Surface to project on instead of the skin: bone, or any other (.stl, .ply, .obj, .vtp, .vtk, DICOM SEG)");
+    sub->add_option("--surface", o.surface, "Surface to project on instead of the skin: bone, or any other (.stl, .ply, .obj, .vtp, .vtk, DICOM SEG or RTSTRUCT)");
     sub->add_option("--surface-frame", o.surface_frame, "Coordinate system of a surface that does not say its own")->check(CLI::IsMember({"LPS", "RAS"}));
-    sub->add_option("--segment", o.segment, "Which segment of a DICOM SEG, by its label");
+    sub->add_option("--segment", o.segment, "Which segment or ROI of a DICOM SEG or RTSTRUCT, by its name");
     sub->add_option("--out", o.out, "Case folder to write")->required();
     sub->add_option("--series", o.series_uid, "UID of the DICOM series, where the folder holds several");
     sub->add_option("--threshold", o.threshold, "Skin threshold, HU (default: found from the histogram)");

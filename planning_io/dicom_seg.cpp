@@ -2,26 +2,21 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <vtkCellArray.h>
 #include <vtkDICOMDictionary.h>
 #include <vtkDICOMItem.h>
 #include <vtkDICOMMetaData.h>
 #include <vtkDICOMParser.h>
 #include <vtkDICOMSequence.h>
-#include <vtkFlyingEdges3D.h>
-#include <vtkImageData.h>
 #include <vtkNew.h>
-#include <vtkPointData.h>
-#include <vtkPolyData.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <map>
 
 #include "planning_io/dicom_structure.h"
 #include "planning_io/limited_child.h"
+#include "planning_io/mask_surface.h"
 #include "planning_io/plan_rtstruct.h"
 #include "planning_io/safe_write.h"
 #include "planning_io/types/error.h"
@@ -122,66 +117,18 @@ Stack stack_of(vtkDICOMMetaData* meta, int segment, const fs::path& file) {
     return stack;
 }
 
-/// A share of 0..1 per voxel with two empty voxels all round, smoothed by (1 2 1)/4 along each axis: the surface at 0.5 stays.
-vtkSmartPointer<vtkImageData> smoothed(const Stack& stack, const std::string& bits, const fs::path& file) {
-    constexpr int kRim = 2;
-    const int nx = stack.columns + 2 * kRim, ny = stack.rows + 2 * kRim, nz = stack.slices + 2 * kRim;
+/// The segment's voxels from the packed bits of all frames, which follow each other without padding.
+MaskStack mask_of(const Stack& stack, std::string_view bits, const fs::path& file) {
+    MaskStack mask{{stack.columns, stack.rows, stack.slices}, stack.ct_from_voxel, {}};
     const std::size_t pixels = static_cast<std::size_t>(stack.columns) * static_cast<std::size_t>(stack.rows);
-    auto image = vtkSmartPointer<vtkImageData>::New();
-    image->SetDimensions(nx, ny, nz);
-    image->SetOrigin(-kRim, -kRim, -kRim);
-    image->AllocateScalars(VTK_FLOAT, 1);
-    auto* values = static_cast<float*>(image->GetScalarPointer());
-    const std::size_t row = static_cast<std::size_t>(nx), slab = row * static_cast<std::size_t>(ny), all = slab * static_cast<std::size_t>(nz);
-    std::fill(values, values + all, 0.0F);
-    std::size_t set = 0;
+    mask.inside.assign(pixels * static_cast<std::size_t>(stack.slices), 0);
     for (const auto& [frame, slice] : stack.frame_and_slice)
         for (std::size_t i = 0; i < pixels; ++i) {
-            const std::size_t bit = static_cast<std::size_t>(frame) * pixels + i;  // frames follow each other without padding
+            const std::size_t bit = static_cast<std::size_t>(frame) * pixels + i;
             if (bit / 8 >= bits.size()) throw DamagedFileError(file, "holds fewer pixels than it announces", kExportAgain);
-            if (!((static_cast<unsigned char>(bits[bit / 8]) >> (bit % 8)) & 1)) continue;
-            const std::size_t x = i % static_cast<std::size_t>(stack.columns) + kRim, y = i / static_cast<std::size_t>(stack.columns) + kRim;
-            values[static_cast<std::size_t>(slice + kRim) * slab + y * row + x] = 1;
-            ++set;
+            mask.inside[static_cast<std::size_t>(slice) * pixels + i] = (static_cast<unsigned char>(bits[bit / 8]) >> (bit % 8)) & 1;
         }
-    if (set == 0) throw InputError(file, "has an empty segment", "Choose another segment.");
-    for (const std::size_t stride : {std::size_t{1}, row, slab}) {  // the rim stays 0
-        float before = 0;
-        std::vector<float> last(stride, 0.0F);
-        for (std::size_t i = stride; i + stride < all; ++i) {
-            before = last[i % stride];
-            last[i % stride] = values[i];
-            values[i] = 0.25F * before + 0.5F * values[i] + 0.25F * values[i + stride];
-        }
-    }
-    return image;
-}
-
-void put_surface(Parcel& parcel, vtkImageData* image, const Eigen::Affine3d& ct_from_voxel) {
-    vtkNew<vtkFlyingEdges3D> surface;
-    surface->SetInputData(image);
-    surface->SetValue(0, 0.5);
-    surface->ComputeNormalsOff();
-    surface->ComputeGradientsOff();
-    surface->ComputeScalarsOff();
-    surface->Update();
-    vtkPolyData* data = surface->GetOutput();
-    std::vector<double> coordinates;
-    for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) {
-        const double* v = data->GetPoint(i);
-        const Vector3d p = ct_from_voxel * Vector3d(v[0], v[1], v[2]);
-        coordinates.insert(coordinates.end(), {p.x(), p.y(), p.z()});
-    }
-    std::vector<std::array<std::int32_t, 3>> triangles;
-    for (vtkIdType c = 0; c < data->GetPolys()->GetNumberOfCells(); ++c) {
-        vtkIdType count = 0;
-        const vtkIdType* p = nullptr;
-        data->GetPolys()->GetCellAtId(c, count, p);
-        if (count == 3 && p[0] != p[1] && p[1] != p[2] && p[2] != p[0])
-            triangles.push_back({static_cast<std::int32_t>(p[0]), static_cast<std::int32_t>(p[1]), static_cast<std::int32_t>(p[2])});
-    }
-    parcel.put(coordinates);
-    parcel.put(triangles);
+    return mask;
 }
 
 void parse(Parcel& parcel, const fs::path& file, const std::string& segment) {
@@ -205,7 +152,12 @@ void parse(Parcel& parcel, const fs::path& file, const std::string& segment) {
     if (!parser->GetPixelDataFound() || offset >= content.size()) throw DamagedFileError(file, "holds no pixels", kExportAgain);
     const double pixels = static_cast<double>(meta->Get(DC::NumberOfFrames).AsInt()) * stack.columns * stack.rows;
     if (pixels > 8 * static_cast<double>(content.size() - offset)) throw DamagedFileError(file, "holds fewer pixels than it announces", kExportAgain);
-    put_surface(parcel, smoothed(stack, content.substr(offset), file), stack.ct_from_voxel);
+    const TriangleMesh mesh = surface_of_mask(mask_of(stack, std::string_view(content).substr(offset), file));
+    if (mesh.triangles.empty()) throw InputError(file, "has an empty segment", "Choose another segment.");
+    std::vector<double> coordinates;
+    for (const auto& p : mesh.vertices_in_ct) coordinates.insert(coordinates.end(), {p.x(), p.y(), p.z()});
+    parcel.put(coordinates);
+    parcel.put(mesh.triangles);
 }
 
 }  // namespace
@@ -218,7 +170,6 @@ bool is_dicom_file(const fs::path& file) {
 }
 
 TriangleMesh read_dicom_seg(const fs::path& file, const std::string& segment, const PlanImportSettings& settings, std::vector<std::string>& notes) {
-    if (settings.space == Space::ras) throw InputError(file, "is DICOM, which is always LPS; --surface-frame says RAS", "Leave --surface-frame out.");
     Parcel parcel = parse_in_child(file, "DICOM file", [&](Parcel& p) { parse(p, file, segment); });
     check_frame_of_reference(parcel.get_text(), settings, file, notes);
     TriangleMesh mesh;

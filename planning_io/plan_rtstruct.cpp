@@ -1,23 +1,16 @@
 #include "planning_io/plan_rtstruct.h"
 
 #include <fmt/format.h>
-#include <vtkDICOMDictionary.h>
-#include <vtkDICOMItem.h>
-#include <vtkDICOMMetaData.h>
-#include <vtkDICOMParser.h>
-#include <vtkDICOMSequence.h>
-#include <vtkNew.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
-#include <map>
+#include <cstdio>
 
 #include "planning_io/contour_stack.h"
-#include "planning_io/dicom_structure.h"
-#include "planning_io/limited_child.h"
 #include "planning_io/plan_file.h"
 #include "planning_io/plan_settings.h"
-#include "planning_io/safe_write.h"
+#include "planning_io/rt_struct.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -26,105 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-constexpr const char* kCopyAgain = "Export the structure set again.";
-constexpr const char* kRtStructClass = "1.2.840.10008.5.1.4.1.1.481.3";
 constexpr double kMaxCoordinate_mm = 5000;
-
-struct Contour {
-    std::string type;  ///< CLOSED_PLANAR ...
-    std::vector<double> numbers;
-};
-struct Roi {
-    std::string name, description, frame_of_reference_uid;
-    std::vector<double> colour;  ///< 0..255; empty when not given
-    std::vector<Contour> contours;
-};
-
-std::string text(const vtkDICOMValue& value) {
-    std::string result = value.IsValid() ? value.AsUTF8String() : std::string();
-    while (!result.empty() && (result.back() == ' ' || result.back() == '\0')) result.pop_back();
-    return result;
-}
-
-std::vector<double> numbers(const vtkDICOMValue& value) {
-    std::vector<double> list(value.GetNumberOfValues());
-    for (std::size_t i = 0; i < list.size(); ++i) list[i] = value.GetDouble(i);
-    return list;
-}
-
-std::vector<Roi> rois_of(vtkDICOMMetaData* meta, const fs::path& file) {
-    const std::string kind = text(meta->Get(DC::SOPClassUID)), modality = text(meta->Get(DC::Modality));
-    if (kind != kRtStructClass)
-        throw InputError(file, "is DICOM of modality " + (modality.empty() ? "unknown" : modality) + ", not an RT Structure Set",
-                         modality == "SEG" ? "Give it to `planlight prepare --surface`, or export the plan's contours as RTSTRUCT." : "Export the plan as RT Structure Set.");
-    std::vector<Roi> rois;
-    std::map<int, std::size_t> by_number;
-    const vtkDICOMSequence sets = meta->Get(DC::StructureSetROISequence);
-    for (std::size_t i = 0; i < sets.GetNumberOfItems(); ++i) {
-        const vtkDICOMItem& item = sets.GetItem(i);
-        if (!by_number.emplace(item.Get(DC::ROINumber).AsInt(), i).second)
-            throw InputError(file, fmt::format("has two ROIs of the number {}", item.Get(DC::ROINumber).AsInt()), kCopyAgain);
-        rois.push_back({text(item.Get(DC::ROIName)), text(item.Get(DC::ROIDescription)), text(item.Get(DC::ReferencedFrameOfReferenceUID)), {}, {}});
-    }
-    const vtkDICOMSequence drawn = meta->Get(DC::ROIContourSequence);
-    for (std::size_t i = 0; i < drawn.GetNumberOfItems(); ++i) {
-        const vtkDICOMItem& item = drawn.GetItem(i);
-        const auto at = by_number.find(item.Get(DC::ReferencedROINumber).AsInt());
-        if (at == by_number.end()) throw DamagedFileError(file, fmt::format("has contours of an ROI {} that it does not name", item.Get(DC::ReferencedROINumber).AsInt()), kCopyAgain);
-        Roi& roi = rois[at->second];
-        if (item.Get(DC::ROIDisplayColor).IsValid()) roi.colour = numbers(item.Get(DC::ROIDisplayColor));
-        const vtkDICOMSequence contours = item.Get(DC::ContourSequence);
-        for (std::size_t c = 0; c < contours.GetNumberOfItems(); ++c) {
-            const vtkDICOMItem& contour = contours.GetItem(c);
-            Contour read{text(contour.Get(DC::ContourGeometricType)), numbers(contour.Get(DC::ContourData))};
-            const int points = contour.Get(DC::NumberOfContourPoints).AsInt();
-            if (static_cast<std::size_t>(3 * std::max(points, 0)) != read.numbers.size())
-                throw DamagedFileError(file, fmt::format("ROI \"{}\", contour {}: announces {} points and holds {} numbers", roi.name, c + 1, points, read.numbers.size()), kCopyAgain);
-            roi.contours.push_back(std::move(read));
-        }
-    }
-    return rois;
-}
-
-void parse(Parcel& parcel, const fs::path& file) {
-    if (!dicom_nests_to_its_end(read_whole(file))) throw DamagedFileError(file, "is damaged or cut short", kCopyAgain);
-    vtkNew<vtkDICOMMetaData> meta;
-    vtkNew<vtkDICOMParser> parser;
-    parser->SetFileName(file.c_str());
-    parser->SetMetaData(meta);
-    parser->Update();
-    if (parser->GetErrorCode() != 0) throw DamagedFileError(file, "is damaged or cut short", kCopyAgain);
-    const auto rois = rois_of(meta, file);
-    const vtkDICOMSequence frames = meta->Get(DC::ReferencedFrameOfReferenceSequence);
-    std::string frame = text(meta->Get(DC::FrameOfReferenceUID));
-    if (frames.GetNumberOfItems() > 0) frame = text(frames.GetItem(0).Get(DC::FrameOfReferenceUID));
-    parcel.put(frame);
-    parcel.put(static_cast<std::uint64_t>(rois.size()));
-    for (const Roi& roi : rois) {
-        for (const auto& said : {roi.name, roi.description, roi.frame_of_reference_uid}) parcel.put(said);
-        parcel.put(roi.colour);
-        parcel.put(static_cast<std::uint64_t>(roi.contours.size()));
-        for (const Contour& contour : roi.contours) parcel.put(contour.type), parcel.put(contour.numbers);
-    }
-}
-
-std::vector<Roi> unpack(Parcel& parcel) {
-    std::vector<Roi> rois(parcel.get<std::uint64_t>());
-    for (Roi& roi : rois) {
-        roi.name = parcel.get_text();
-        roi.description = parcel.get_text();
-        roi.frame_of_reference_uid = parcel.get_text();
-        roi.colour = parcel.get_list<double>();
-        roi.contours.resize(parcel.get<std::uint64_t>());
-        for (Contour& contour : roi.contours) contour.type = parcel.get_text(), contour.numbers = parcel.get_list<double>();
-    }
-    return rois;
-}
 
 /// One ROI's contours into the plan.
 class RoiReader {
 public:
-    RoiReader(const Roi& roi, const fs::path& file) : roi_(roi), file_(file), said_(roi.description, [this](const std::string& p) { refuse(p); }) {
+    RoiReader(const RtRoi& roi, const fs::path& file) : roi_(roi), file_(file), said_(roi.description, [this](const std::string& p) { refuse(p); }) {
         if (roi.colour.size() == 3)
             colour_ = Colour{static_cast<float>(roi.colour[0] / 255), static_cast<float>(roi.colour[1] / 255), static_cast<float>(roi.colour[2] / 255)};
     }
@@ -172,7 +72,7 @@ private:
         return a.normalized();
     }
 
-    std::vector<Vector3d> points_of_contour(const Contour& contour) const {
+    std::vector<Vector3d> points_of_contour(const RtContour& contour) const {
         std::vector<Vector3d> points;
         for (std::size_t i = 0; i + 2 < contour.numbers.size(); i += 3) {
             points.emplace_back(contour.numbers[i], contour.numbers[i + 1], contour.numbers[i + 2]);
@@ -202,12 +102,12 @@ private:
 
     std::size_t count_heights() const {
         std::vector<std::vector<Vector3d>> closed;
-        for (const Contour& contour : roi_.contours)
+        for (const RtContour& contour : roi_.contours)
             if (contour.type == "CLOSED_PLANAR") closed.push_back(points_of_contour(contour));
         return heights_of_contours(closed);
     }
 
-    const Roi& roi_;
+    const RtRoi& roi_;
     const fs::path& file_;
     PlanSettings said_;
     std::optional<Colour> colour_;
@@ -231,16 +131,12 @@ void check_frame_of_reference(const std::string& uid_of_plan, const PlanImportSe
 
 PlanImport read_rtstruct(const fs::path& file, const PlanImportSettings& settings) {
     if (settings.space == Space::ras) throw InputError(file, "is DICOM, which is always LPS; --frame says RAS", "Leave --frame out.");
-    Parcel parcel = parse_in_child(file, "DICOM file", [&](Parcel& p) { parse(p, file); });
     PlanImport read;
-    read.frame_of_reference_uid = parcel.get_text();
-    const auto rois = unpack(parcel);
-    if (rois.empty()) throw InputError(file, "names no ROI", "Export the structure set with the plan's contours.");
-    if (read.frame_of_reference_uid.empty()) read.frame_of_reference_uid = rois.front().frame_of_reference_uid;
+    const RtStruct set = read_rt_struct(file);
+    const auto& rois = set.rois;
+    read.frame_of_reference_uid = set.frame_of_reference_uid;
     check_frame_of_reference(read.frame_of_reference_uid, settings, file, read.notes);
-    for (const Roi& roi : rois) {
-        if (!roi.frame_of_reference_uid.empty() && roi.frame_of_reference_uid != read.frame_of_reference_uid)
-            throw InputError(file, "ROI \"" + roi.name + "\" is in another frame of reference, " + roi.frame_of_reference_uid, "Export the ROIs of one CT.");
+    for (const RtRoi& roi : rois) {
         const RoiReader reader(roi, file);
         const std::string why_not = reader.nothing_to_draw();
         if (why_not.empty()) reader.append_to(read.plan);

@@ -8,6 +8,8 @@
 #include <numeric>
 
 #include "planning_io/dicom_seg.h"
+#include "planning_io/roi_surface.h"
+#include "planning_io/rt_struct.h"
 #include "planning_io/shape_file.h"
 #include "planning_io/types/error.h"
 
@@ -192,7 +194,8 @@ double value_at(const Volume& volume, const Eigen::Affine3d& voxel_from_ct, cons
 SurfaceFile read_surface(const fs::path& file, const SurfaceSettings& settings) {
     SurfaceFile surface;
     if (is_dicom_file(file)) {
-        surface.mesh = read_dicom_seg(file, settings.segment, settings.said, surface.notes);
+        if (settings.said.space == Space::ras) throw InputError(file, "is DICOM, which is always LPS; --surface-frame says RAS", "Leave --surface-frame out.");
+        surface.mesh = is_rt_struct(file) ? read_roi_surface(file, settings.segment, settings.said, surface.notes) : read_dicom_seg(file, settings.segment, settings.said, surface.notes);
     } else {
         if (!settings.segment.empty()) throw InputError(file, "holds no named segments", "Leave --segment out.");
         const WeldedShape read = welded(read_shape(file));

@@ -13,7 +13,7 @@ namespace planlight {
 
 struct SurfaceSettings {
     PlanImportSettings said;  ///< space of files that do not say theirs; frame of reference of the CT (for DICOM SEG)
-    std::string segment;      ///< which of a SEG, by its label; needed when it holds several
+    std::string segment;      ///< which of a SEG or RTSTRUCT, by its name; needed when it holds several
 };
 
 /// A surface to project on, and what it was judged by.
@@ -27,7 +27,7 @@ struct SurfaceFile {
     std::vector<std::string> notes; ///< in words, with the file's name
 };
 
-/// Reads STL, PLY, OBJ, VTP, VTK or a DICOM SEG as a surface in ct.
+/// Reads STL, PLY, OBJ, VTP, VTK, a segment of a DICOM SEG or a solid of an RTSTRUCT as a surface in ct.
 ///
 /// Refused (InputError, with numbers): no SPACE mark and no `said.space`; fewer than 100 triangles; smaller than 50 mm or larger
 /// than 600 mm; more than 0.1 % of the edges with three triangles or more, or sides that cannot be turned alike. A closed piece

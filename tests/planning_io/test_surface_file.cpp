@@ -255,6 +255,64 @@ TEST_F(SurfaceFileTest, ASegmentationOfAnotherCtOrUnknownSegmentIsRefused) {
     for (std::size_t part = 1; part < 16; ++part) EXPECT_FALSE(refusal(write("cut.dcm", whole.substr(0, whole.size() * part / 16)), of_ct("1.2.3")).empty()) << part;
 }
 
+/// An RT Structure Set of one ball of 60 mm radius round (10, 20, -30), contours of 120 corners every 2.5 mm, and of one line.
+std::string ball_rt_struct() {
+    std::vector<DicomBytes> contours;
+    for (double z = -57.5; z < 60; z += 2.5) {
+        const double r = std::sqrt(60 * 60 - z * z);
+        std::string data;
+        for (int i = 0; i < 120; ++i) {
+            if (i > 0) data += '\\';
+            data += fmt::format("{:.3f}\\{:.3f}\\{:.3f}", 10 + r * std::cos(2 * M_PI * i / 120), 20 + r * std::sin(2 * M_PI * i / 120), z - 30);
+        }
+        contours.push_back(DicomBytes().add(0x30060042, "CS", "CLOSED_PLANAR").add(0x30060046, "IS", "120").add(0x30060050, "DS", data));
+    }
+    return DicomBytes()
+        .add(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.481.3")
+        .add(0x00080060, "CS", "RTSTRUCT")
+        .add(0x00200052, "UI", "1.2.3")
+        .add_sequence(0x30060020, {DicomBytes().add(0x30060022, "IS", "1").add(0x30060024, "UI", "1.2.3").add(0x30060026, "LO", "Ball"),
+                                   DicomBytes().add(0x30060022, "IS", "2").add(0x30060024, "UI", "1.2.3").add(0x30060026, "LO", "Line")})
+        .add_sequence(0x30060039, {DicomBytes().add_sequence(0x30060040, contours).add(0x30060084, "IS", "1"),
+                                   DicomBytes().add_sequence(0x30060040, {contours[10]}).add(0x30060084, "IS", "2")})
+        .file("1.2.840.10008.5.1.4.1.1.481.3");
+}
+
+TEST_F(SurfaceFileTest, ContoursOfABallAreItsSurface) {
+    const fs::path file = write("ball.dcm", ball_rt_struct());
+    const SurfaceFile read = read_surface(file, of_ct("1.2.3"));
+    EXPECT_TRUE(read.closed);
+    EXPECT_EQ(read.pieces, 1U);
+    double sum = 0, worst = 0;
+    for (const auto& p : read.mesh.vertices_in_ct) {
+        if (std::abs(p.z() + 30) > 50) continue;  // the caps are flat, half a slice beyond the last contour
+        const double off = (p - Vector3d(10, 20, -30)).norm() - 60;
+        sum += off;
+        worst = std::max(worst, std::abs(off));
+    }
+    EXPECT_NEAR(sum / static_cast<double>(read.mesh.vertices_in_ct.size()), 0, 0.1);
+    EXPECT_LT(worst, 1.5);  // steps of slices 2.5 mm apart
+    EXPECT_SAYS(refusal(file, of_ct("9.9")), "9.9");
+    EXPECT_SAYS(refusal(file, of_ct("1.2.3", "Line")), "holds no solid \"Line\"; there is: Ball");
+    // As a plan, the line is a line and the ball is left out.
+    PlanImportSettings same_ct;
+    same_ct.frame_of_reference_uid = "1.2.3";
+    const PlanImport plan = import_plan(file, same_ct);
+    ASSERT_EQ(plan.plan.osteotomy_lines.size(), 1U);
+    EXPECT_EQ(plan.plan.osteotomy_lines[0].name, "Line");
+    ASSERT_EQ(plan.notes.size(), 1U);
+    EXPECT_SAYS(plan.notes[0], "ROI \"Ball\" has contours at 47 heights");
+}
+
+TEST_F(SurfaceFileTest, RealContoursOfABodyAreOneSurface) {
+    const auto file = test::third_party_data("plans/dicompyler_rtstruct_ct/rtss.dcm");
+    if (!file) GTEST_SKIP() << "third-party plans are not here";
+    const SurfaceFile read = read_surface(*file, of_ct("2.16.840.1.113662.2.12.0.3057.1241703565.36", "BODY"));
+    EXPECT_TRUE(read.closed);
+    EXPECT_GT(read.mesh.triangles.size(), 50000U);
+    EXPECT_SAYS(refusal(*file, of_ct("2.16.840.1.113662.2.12.0.3057.1241703565.36")), "solids: BODY");
+}
+
 TEST_F(SurfaceFileTest, NoFlippedByteOfASegmentationBringsTheProgramDownOrHoldsItUp) {
     const std::string whole = ball_seg("1.2.3");
     std::mt19937 random(3);
