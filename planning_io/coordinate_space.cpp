@@ -23,7 +23,8 @@ std::optional<Space> space_marked(std::string_view header, const fs::path& file)
         const std::string word(header.substr(begin, (end == std::string_view::npos ? header.size() : end) - begin));
         const auto space = space_named(word);
         if (!space)
-            throw InputError(file, "says SPACE=" + word.substr(0, 20) + ", neither LPS nor RAS", "Export it again in LPS or RAS.");
+            throw InputError(file, "says SPACE=" + word.substr(0, 20) + ", neither LPS nor RAS",
+                             "Export it again in LPS or RAS.");
         if (said && *said != *space)
             throw InputError(file, "says both SPACE=LPS and SPACE=RAS", "Export it again in one coordinate system.");
         said = space;
@@ -31,12 +32,15 @@ std::optional<Space> space_marked(std::string_view header, const fs::path& file)
     return said;
 }
 
-Space settled_space(std::optional<Space> file_says, std::optional<Space> person_says, const fs::path& file, std::string_view how_to_say) {
+Space settled_space(std::optional<Space> file_says, std::optional<Space> person_says, const fs::path& file,
+                    std::string_view how_to_say) {
     if (!file_says && !person_says)
-        throw InputError(file, "does not say its coordinate system", std::string(how_to_say) + ", or say it with --frame LPS or --frame RAS.");
+        throw InputError(file, "does not say its coordinate system",
+                         std::string(how_to_say) + ", or say it with --frame LPS or --frame RAS.");
     if (file_says && person_says && *file_says != *person_says)
-        throw InputError(file, std::string("says that it is in ") + (*file_says == Space::lps ? "LPS" : "RAS") + ", --frame says otherwise",
-                         "Leave --frame out, or export the file again.");
+        throw InputError(
+            file, std::string("says that it is in ") + (*file_says == Space::lps ? "LPS" : "RAS") + ", --frame says otherwise",
+            "Leave --frame out, or export the file again.");
     return file_says ? *file_says : *person_says;
 }
 

@@ -6,7 +6,8 @@
 namespace planlight {
 namespace {
 
-constexpr std::uint32_t kUndefined = 0xFFFFFFFF, kItem = 0xFFFEE000, kItemEnd = 0xFFFEE00D, kSequenceEnd = 0xFFFEE0DD, kPixelData = 0x7FE00010;
+constexpr std::uint32_t kUndefined = 0xFFFFFFFF, kItem = 0xFFFEE000, kItemEnd = 0xFFFEE00D, kSequenceEnd = 0xFFFEE0DD,
+                        kPixelData = 0x7FE00010;
 constexpr int kDeepest = 32;
 
 /// Walks over elements (DICOM part 5, chapter 7). Every function gives false where the bytes do not fit.
@@ -25,7 +26,8 @@ public:
             if (!element(0)) return false;
             if (number(begin + 2, 2) == 0x0010) transfer_syntax = data_.substr(begin + 8, at_ - begin - 8);
         }
-        while (!transfer_syntax.empty() && (transfer_syntax.back() == '\0' || transfer_syntax.back() == ' ')) transfer_syntax.pop_back();
+        while (!transfer_syntax.empty() && (transfer_syntax.back() == '\0' || transfer_syntax.back() == ' '))
+            transfer_syntax.pop_back();
         end = at_;
         return true;
     }
@@ -33,7 +35,8 @@ public:
 private:
     std::uint32_t number(std::size_t at, std::size_t bytes) const {
         std::uint32_t value = 0;
-        for (std::size_t i = 0; i < bytes; ++i) value |= static_cast<std::uint32_t>(static_cast<unsigned char>(data_[at + i])) << (8 * (big_ ? bytes - 1 - i : i));
+        for (std::size_t i = 0; i < bytes; ++i)
+            value |= static_cast<std::uint32_t>(static_cast<unsigned char>(data_[at + i])) << (8 * (big_ ? bytes - 1 - i : i));
         return value;
     }
     bool has(std::size_t bytes) const { return bytes <= data_.size() - at_; }

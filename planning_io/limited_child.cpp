@@ -124,7 +124,9 @@ Parcel parse_in_child(const fs::path& file, const std::string& what, const std::
     if (WIFSIGNALED(status)) {
         const int signal = WTERMSIG(status);
         const bool slow = signal == SIGXCPU || signal == SIGKILL || signal == SIGALRM;
-        throw DamagedFileError(file, slow ? "took longer to read than a sound " + what + " does" : "made the reader of a " + what + " crash (signal " + std::to_string(signal) + ")",
+        throw DamagedFileError(file,
+                               slow ? "took longer to read than a sound " + what + " does"
+                                    : "made the reader of a " + what + " crash (signal " + std::to_string(signal) + ")",
                                kCopyAgain);
     }
     std::string bytes;

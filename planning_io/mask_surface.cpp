@@ -33,7 +33,8 @@ void fill(vtkImageData* image, const MaskStack& mask) {
     std::fill(values, values + all, 0.0F);
     for (std::size_t k = 0; k < n[2]; ++k)
         for (std::size_t j = 0; j < n[1]; ++j)
-            for (std::size_t i = 0; i < n[0]; ++i) values[(k + kRim) * slab + (j + kRim) * row + i + kRim] = mask.inside[(k * n[1] + j) * n[0] + i];
+            for (std::size_t i = 0; i < n[0]; ++i)
+                values[(k + kRim) * slab + (j + kRim) * row + i + kRim] = mask.inside[(k * n[1] + j) * n[0] + i];
     for (const std::size_t stride : {std::size_t{1}, row, slab}) smooth(values, all, stride);
 }
 
@@ -60,7 +61,8 @@ TriangleMesh surface_of_mask(const MaskStack& mask) {
         const vtkIdType* p = nullptr;
         data->GetPolys()->GetCellAtId(c, count, p);
         if (count == 3 && p[0] != p[1] && p[1] != p[2] && p[2] != p[0])
-            mesh.triangles.push_back({static_cast<std::int32_t>(p[0]), static_cast<std::int32_t>(p[1]), static_cast<std::int32_t>(p[2])});
+            mesh.triangles.push_back(
+                {static_cast<std::int32_t>(p[0]), static_cast<std::int32_t>(p[1]), static_cast<std::int32_t>(p[2])});
     }
     return mesh;
 }

@@ -39,7 +39,8 @@ std::optional<Space> space_of(const Header& header, const fs::path& file, std::v
         const std::string& word = given->second;
         if (word == "0" || word == "RAS") return Space::ras;
         if (word == "1" || word == "LPS") return Space::lps;
-        if (word == "2" || word == "IJK") throw InputError(file, "is in voxels (CoordinateSystem = " + word + "), not in mm", kSaveAgain);
+        if (word == "2" || word == "IJK")
+            throw InputError(file, "is in voxels (CoordinateSystem = " + word + "), not in mm", kSaveAgain);
         throw InputError(file, "says CoordinateSystem = \"" + word + "\", which is none", kSaveAgain);
     }
     if (!header.slicer3) return std::nullopt;
@@ -143,14 +144,20 @@ PlanImport read_fcsv(const std::string& content, const fs::path& file, const Pla
         if (trimmed(line).empty()) continue;
         if (!space) {
             for (const char* column : {"x", "y", "z"})
-                if (!header.column.contains(column)) throw InputError(file, fmt::format("names no column \"{}\" in a line \"# columns = ...\"", column), kSaveAgain);
-            space = settled_space(space_of(header, file, read.notes), settings.space, file, "Save the points from 3D Slicer as .mrk.json");
+                if (!header.column.contains(column))
+                    throw InputError(file, fmt::format("names no column \"{}\" in a line \"# columns = ...\"", column),
+                                     kSaveAgain);
+            space = settled_space(space_of(header, file, read.notes), settings.space, file,
+                                  "Save the points from 3D Slicer as .mrk.json");
         }
         const Row row(header, split_fields(line, ','), number, file);
-        read.plan.boreholes.push_back(borehole_of(row, *space, fmt::format("{}-{}", plan_name_of(file), read.plan.boreholes.size() + 1)));
+        read.plan.boreholes.push_back(
+            borehole_of(row, *space, fmt::format("{}-{}", plan_name_of(file), read.plan.boreholes.size() + 1)));
     }
-    if (const auto count = header.values.find("numPoints"); count != header.values.end() && number_in(count->second) != static_cast<double>(read.plan.boreholes.size()))
-        read.notes.push_back(fmt::format("{} announces {} points and holds {}", file.filename().string(), count->second, read.plan.boreholes.size()));
+    if (const auto count = header.values.find("numPoints");
+        count != header.values.end() && number_in(count->second) != static_cast<double>(read.plan.boreholes.size()))
+        read.notes.push_back(fmt::format("{} announces {} points and holds {}", file.filename().string(), count->second,
+                                         read.plan.boreholes.size()));
     if (read.plan.empty()) throw InputError(file, "holds no points", kSaveAgain);
     return read;
 }

@@ -34,8 +34,10 @@ int schema_minor(const JsonValue& root) {
     const std::string schema = root.at("@schema").text();
     const std::string before = "markups-schema-v1.0.";
     const auto at = schema.find(before);
-    if (at == std::string::npos || at + before.size() >= schema.size() || !std::isdigit(static_cast<unsigned char>(schema[at + before.size()])))
-        root.at("@schema").refuse("is \"" + schema + "\", not a 3D Slicer markups schema 1.0.x", "Save the plan from 3D Slicer as .mrk.json.");
+    if (at == std::string::npos || at + before.size() >= schema.size() ||
+        !std::isdigit(static_cast<unsigned char>(schema[at + before.size()])))
+        root.at("@schema").refuse("is \"" + schema + "\", not a 3D Slicer markups schema 1.0.x",
+                                  "Save the plan from 3D Slicer as .mrk.json.");
     return schema[at + before.size()] - '0';
 }
 
@@ -56,7 +58,9 @@ bool is_dicom(const std::string& content) { return content.size() >= 132 && cont
 
 /// Files that planning programs write beside their plans, and what to do with them.
 void refuse_known_others(const std::string& content, const fs::path& file) {
-    const auto refuse = [&](const std::string& what, const std::string& remedy) { throw InputError(file, "is " + what + ", not a plan", remedy); };
+    const auto refuse = [&](const std::string& what, const std::string& remedy) {
+        throw InputError(file, "is " + what + ", not a plan", remedy);
+    };
     if (content.starts_with("PK\x03\x04")) refuse("a spreadsheet or another zip archive", "Save its table as CSV, or unpack it.");
     if (content.starts_with("# Annotation file") || ends(file, ".acsv"))
         refuse("an annotation of 3D Slicer 4, which says no frame", "Open it in 3D Slicer and save it as markups (.mrk.json).");
@@ -77,7 +81,8 @@ PlanImport read_one(const fs::path& file, const PlanImportSettings& settings) {
     for (const char* ending : {".vtp", ".vtk", ".ply", ".obj", ".stl"})
         if (ends(file, ending)) return read_shape_plan(file, settings);
     throw InputError(file, "is of no kind that a plan is read from",
-                     "Give 3D Slicer markups (.mrk.json, .fcsv), DICOM RTSTRUCT (.dcm), a table of trajectories (.csv, .tsv), or lines (.vtp, .vtk, .ply, .obj).");
+                     "Give 3D Slicer markups (.mrk.json, .fcsv), DICOM RTSTRUCT (.dcm), a table of trajectories (.csv, .tsv), or "
+                     "lines (.vtp, .vtk, .ply, .obj).");
 }
 
 bool is_plan_name(const fs::path& file) {
@@ -96,9 +101,11 @@ void check_extent(const Plan& plan, const fs::path& file) {
         high = high.cwiseMax(p);
     }
     const double across_mm = (high - low).norm();
-    if (across_mm == 0) throw InputError(file, fmt::format("has all its {} points at one place", points.size()), "Export the plan again.");
+    if (across_mm == 0)
+        throw InputError(file, fmt::format("has all its {} points at one place", points.size()), "Export the plan again.");
     if (!(across_mm >= kLeastAcross_mm) || across_mm > kMostAcross_mm)
-        throw InputError(file, fmt::format("the whole plan is {:.3g} mm across: its numbers cannot be millimetres", across_mm), "Export the plan in mm.");
+        throw InputError(file, fmt::format("the whole plan is {:.3g} mm across: its numbers cannot be millimetres", across_mm),
+                         "Export the plan in mm.");
 }
 
 }  // namespace
@@ -111,11 +118,16 @@ std::string plan_name_of(const fs::path& file) {
 }
 
 void append(PlanImport& to, PlanImport more) {
-    if (!more.frame_of_reference_uid.empty() && !to.frame_of_reference_uid.empty() && more.frame_of_reference_uid != to.frame_of_reference_uid)
-        throw InputError({}, "The plan's files are in two frames of reference, " + to.frame_of_reference_uid + " and " + more.frame_of_reference_uid,
+    if (!more.frame_of_reference_uid.empty() && !to.frame_of_reference_uid.empty() &&
+        more.frame_of_reference_uid != to.frame_of_reference_uid)
+        throw InputError({},
+                         "The plan's files are in two frames of reference, " + to.frame_of_reference_uid + " and " +
+                             more.frame_of_reference_uid,
                          "Give the plan of one CT.");
     if (to.frame_of_reference_uid.empty()) to.frame_of_reference_uid = more.frame_of_reference_uid;
-    const auto move = [](auto& into, auto& from) { into.insert(into.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end())); };
+    const auto move = [](auto& into, auto& from) {
+        into.insert(into.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+    };
     move(to.plan.trajectories, more.plan.trajectories);
     move(to.plan.boreholes, more.plan.boreholes);
     move(to.plan.osteotomy_lines, more.plan.osteotomy_lines);
@@ -133,7 +145,9 @@ PlanImport import_plan(const fs::path& file_or_folder, const PlanImportSettings&
     for (const auto& entry : fs::directory_iterator(file_or_folder))
         if (is_plan_name(entry.path())) files.push_back(entry.path());
     std::sort(files.begin(), files.end());
-    if (files.empty()) throw InputError(file_or_folder, "holds no plan file", "Save the plan's markups from 3D Slicer (.mrk.json) into this folder.");
+    if (files.empty())
+        throw InputError(file_or_folder, "holds no plan file",
+                         "Save the plan's markups from 3D Slicer (.mrk.json) into this folder.");
     PlanImport all;
     for (const auto& file : files) append(all, read_one(file, settings));
     check_extent(all.plan, file_or_folder);

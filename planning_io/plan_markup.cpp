@@ -117,7 +117,8 @@ void append_boreholes(Plan& plan, const JsonValue& markup, const MarkupSpace& sp
         b.diameter_mm = settings.length_mm("diameter_mm", kMaxDiameter_mm);
         b.depth_mm = settings.length_mm("depth_mm", kMaxDepth_mm);
         if (const auto axis = settings.text("axis")) {
-            if (*axis != "z") points[i].refuse("describes axis=" + *axis + "; only axis=z (the third column of its orientation) is known");
+            if (*axis != "z")
+                points[i].refuse("describes axis=" + *axis + "; only axis=z (the third column of its orientation) is known");
             b.axis_in_ct = axes_in_ct(points[i].at("orientation"), space).col(2);
         }
         b.colour = colour_of(markup);
@@ -125,7 +126,8 @@ void append_boreholes(Plan& plan, const JsonValue& markup, const MarkupSpace& sp
     }
 }
 
-void append_osteotomy_line(Plan& plan, const JsonValue& markup, const MarkupSpace& space, const std::string& otherwise, bool closed) {
+void append_osteotomy_line(Plan& plan, const JsonValue& markup, const MarkupSpace& space, const std::string& otherwise,
+                           bool closed) {
     const JsonValue points = markup.at("controlPoints");
     const std::size_t count = count_points(points, closed ? 3 : 2);
     OsteotomyLine line;
@@ -142,7 +144,9 @@ void append_osteotomy_line(Plan& plan, const JsonValue& markup, const MarkupSpac
 
 /// Two cuts that meet: an open line of three points whose name says the angle between them.
 void append_angle(Plan& plan, const JsonValue& markup, const MarkupSpace& space, const std::string& otherwise) {
-    if (markup.at("controlPoints").size() != 3) markup.at("controlPoints").refuse("holds other than the three points of an angle", "Place its three points in 3D Slicer.");
+    if (markup.at("controlPoints").size() != 3)
+        markup.at("controlPoints")
+            .refuse("holds other than the three points of an angle", "Place its three points in 3D Slicer.");
     append_osteotomy_line(plan, markup, space, otherwise, false);
     OsteotomyLine& line = plan.osteotomy_lines.back();
     const Vector3d a = line.points_in_ct[0] - line.points_in_ct[1], b = line.points_in_ct[2] - line.points_in_ct[1];
@@ -204,7 +208,9 @@ void append_markup(Plan& plan, const JsonValue& markup, bool units_required, con
     const auto refuse = [&](const std::string& problem, const std::string& remedy) {
         markup.refuse("(\"" + name_of(markup, otherwise) + "\") is of type \"" + type + "\", " + problem, remedy);
     };
-    if (type == "ROI") refuse("a box, which is nothing to cut or to drill", "Draw its outline as a closed curve, or its sides as planes, in 3D Slicer.");
+    if (type == "ROI")
+        refuse("a box, which is nothing to cut or to drill",
+               "Draw its outline as a closed curve, or its sides as planes, in 3D Slicer.");
     const bool line = type == "Line", points = type == "Fiducial", angle = type == "Angle", plane = type == "Plane";
     const bool closed = type == "ClosedCurve";
     if (!line && !points && !angle && !plane && !closed && type != "Curve")
@@ -219,7 +225,8 @@ void append_markup(Plan& plan, const JsonValue& markup, bool units_required, con
 
 Json markup_of(const Trajectory& t) {
     Json markup = base("Line", t.name, t.colour);
-    markup["controlPoints"] = Json::array({control_point(1, "entry", t.entry_in_ct, description_of(t)), control_point(2, "target", t.target_in_ct, "")});
+    markup["controlPoints"] = Json::array(
+        {control_point(1, "entry", t.entry_in_ct, description_of(t)), control_point(2, "target", t.target_in_ct, "")});
     return markup;
 }
 

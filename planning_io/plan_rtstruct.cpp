@@ -24,9 +24,11 @@ constexpr double kMaxCoordinate_mm = 5000;
 /// One ROI's contours into the plan.
 class RoiReader {
 public:
-    RoiReader(const RtRoi& roi, const fs::path& file) : roi_(roi), file_(file), said_(roi.description, [this](const std::string& p) { refuse(p); }) {
+    RoiReader(const RtRoi& roi, const fs::path& file)
+        : roi_(roi), file_(file), said_(roi.description, [this](const std::string& p) { refuse(p); }) {
         if (roi.colour.size() == 3)
-            colour_ = Colour{static_cast<float>(roi.colour[0] / 255), static_cast<float>(roi.colour[1] / 255), static_cast<float>(roi.colour[2] / 255)};
+            colour_ = Colour{static_cast<float>(roi.colour[0] / 255), static_cast<float>(roi.colour[1] / 255),
+                             static_cast<float>(roi.colour[2] / 255)};
     }
 
     /// A word for why the ROI is nothing to draw; empty when it is.
@@ -45,10 +47,12 @@ public:
             const std::string& type = roi_.contours[c].type;
             if (type == "POINT") {
                 if (points.size() != 1) refuse(fmt::format("is a POINT of {} points", points.size()));
-                plan.boreholes.push_back({name, points[0], axis(), said_.length_mm("diameter_mm", kMaxDiameter_mm), said_.length_mm("depth_mm", kMaxDepth_mm), colour_});
+                plan.boreholes.push_back({name, points[0], axis(), said_.length_mm("diameter_mm", kMaxDiameter_mm),
+                                          said_.length_mm("depth_mm", kMaxDepth_mm), colour_});
             } else if (kind == "trajectory") {
                 if (points.size() != 2 || points[0] == points[1]) refuse("is not a trajectory of two points");
-                plan.trajectories.push_back({name, points[0], points[1], said_.length_mm("diameter_mm", kMaxDiameter_mm), colour_});
+                plan.trajectories.push_back(
+                    {name, points[0], points[1], said_.length_mm("diameter_mm", kMaxDiameter_mm), colour_});
             } else if (kind == "cut_plane") {
                 append_plane(plan, name, points);
             } else if (type == "CLOSED_PLANAR" || type == "OPEN_PLANAR" || type == "OPEN_NONPLANAR") {
@@ -68,7 +72,8 @@ private:
         const auto given = said_.text("axis");
         if (!given) return std::nullopt;
         Vector3d a;
-        if (std::sscanf(given->c_str(), "%lf,%lf,%lf", &a.x(), &a.y(), &a.z()) != 3 || !(std::abs(a.norm() - 1) < 1e-3)) refuse("describes axis=" + *given + ", not three numbers of unit length");
+        if (std::sscanf(given->c_str(), "%lf,%lf,%lf", &a.x(), &a.y(), &a.z()) != 3 || !(std::abs(a.norm() - 1) < 1e-3))
+            refuse("describes axis=" + *given + ", not three numbers of unit length");
         return a.normalized();
     }
 
@@ -76,7 +81,8 @@ private:
         std::vector<Vector3d> points;
         for (std::size_t i = 0; i + 2 < contour.numbers.size(); i += 3) {
             points.emplace_back(contour.numbers[i], contour.numbers[i + 1], contour.numbers[i + 2]);
-            if (!points.back().allFinite() || points.back().cwiseAbs().maxCoeff() > kMaxCoordinate_mm) refuse("has a coordinate that is not a number of mm within 5 m");
+            if (!points.back().allFinite() || points.back().cwiseAbs().maxCoeff() > kMaxCoordinate_mm)
+                refuse("has a coordinate that is not a number of mm within 5 m");
         }
         if (points.empty()) refuse("has a contour without points");
         return points;
@@ -88,14 +94,16 @@ private:
             closed = true;
         }
         points.erase(std::unique(points.begin(), points.end()), points.end());  // contours are rounded to few digits
-        if (points.size() < (closed ? 3U : 2U)) refuse(fmt::format("has a {} contour of {} points", closed ? "closed" : "open", points.size()));
+        if (points.size() < (closed ? 3U : 2U))
+            refuse(fmt::format("has a {} contour of {} points", closed ? "closed" : "open", points.size()));
         plan.osteotomy_lines.push_back({name, std::move(points), closed, colour_});
     }
 
     void append_plane(Plan& plan, const std::string& name, const std::vector<Vector3d>& p) const {
         if (p.size() != 4 || (p[0] + p[2] - p[1] - p[3]).norm() > 1e-3) refuse("is not a plane of four corners");
         const Vector3d u = p[1] - p[0], v = p[2] - p[1];
-        if (!(u.norm() > 1e-3) || !(v.norm() > 1e-3) || std::abs(u.normalized().dot(v.normalized())) > 1e-3) refuse("is not a rectangle");
+        if (!(u.norm() > 1e-3) || !(v.norm() > 1e-3) || std::abs(u.normalized().dot(v.normalized())) > 1e-3)
+            refuse("is not a rectangle");
         const Vector3d normal = u.cross(v).normalized();
         plan.cut_planes.push_back({name, (p[0] + p[2]) / 2, normal, u.normalized(), u.norm(), v.norm(), colour_});
     }
@@ -115,22 +123,28 @@ private:
 
 }  // namespace
 
-void check_frame_of_reference(const std::string& uid_of_plan, const PlanImportSettings& settings, const fs::path& file, std::vector<std::string>& notes) {
-    if (uid_of_plan.empty()) throw InputError(file, "does not name its frame of reference", "Export it again, on the CT of the case.");
+void check_frame_of_reference(const std::string& uid_of_plan, const PlanImportSettings& settings, const fs::path& file,
+                              std::vector<std::string>& notes) {
+    if (uid_of_plan.empty())
+        throw InputError(file, "does not name its frame of reference", "Export it again, on the CT of the case.");
     if (!settings.frame_of_reference_uid) {
-        notes.push_back(fmt::format("{}: its frame of reference {} was not checked against a CT", file.filename().string(), uid_of_plan));
+        notes.push_back(
+            fmt::format("{}: its frame of reference {} was not checked against a CT", file.filename().string(), uid_of_plan));
         return;
     }
     const std::string& of_ct = *settings.frame_of_reference_uid;
     if (of_ct.empty())
-        throw InputError(file, "is in the frame of reference " + uid_of_plan + ", and the volume names none",
-                         "Prepare the case from the DICOM series that it was drawn on, or say --accept-frame " + uid_of_plan + " if it was.");
+        throw InputError(
+            file, "is in the frame of reference " + uid_of_plan + ", and the volume names none",
+            "Prepare the case from the DICOM series that it was drawn on, or say --accept-frame " + uid_of_plan + " if it was.");
     if (of_ct != uid_of_plan)
-        throw InputError(file, "is in the frame of reference " + uid_of_plan + ", the volume in " + of_ct, "Give the structure set that was drawn on this series.");
+        throw InputError(file, "is in the frame of reference " + uid_of_plan + ", the volume in " + of_ct,
+                         "Give the structure set that was drawn on this series.");
 }
 
 PlanImport read_rtstruct(const fs::path& file, const PlanImportSettings& settings) {
-    if (settings.space == Space::ras) throw InputError(file, "is DICOM, which is always LPS; --frame says RAS", "Leave --frame out.");
+    if (settings.space == Space::ras)
+        throw InputError(file, "is DICOM, which is always LPS; --frame says RAS", "Leave --frame out.");
     PlanImport read;
     const RtStruct set = read_rt_struct(file);
     const auto& rois = set.rois;
@@ -145,7 +159,8 @@ PlanImport read_rtstruct(const fs::path& file, const PlanImportSettings& setting
     if (read.plan.empty()) {
         std::string all;
         for (const auto& note : read.notes) all += "\n  " + note;
-        throw InputError(file, fmt::format("holds nothing to draw; of its {} ROIs:{}", rois.size(), all), "Draw the cuts as single contours and the holes as points.");
+        throw InputError(file, fmt::format("holds nothing to draw; of its {} ROIs:{}", rois.size(), all),
+                         "Draw the cuts as single contours and the holes as points.");
     }
     return read;
 }

@@ -26,7 +26,7 @@ void write_plan_rtstruct(const Plan& plan, const RtStructIdentity& identity, con
 
 /// Throws InputError unless the frame of reference of a DICOM plan is that of the CT, as `settings` says it; not given, it
 /// is noted as not checked.
-void check_frame_of_reference(const std::string& uid_of_plan, const PlanImportSettings& settings, const std::filesystem::path& file,
-                              std::vector<std::string>& notes);
+void check_frame_of_reference(const std::string& uid_of_plan, const PlanImportSettings& settings,
+                              const std::filesystem::path& file, std::vector<std::string>& notes);
 
 }  // namespace planlight

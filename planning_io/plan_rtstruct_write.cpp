@@ -69,7 +69,8 @@ class RoiWriter {
 public:
     explicit RoiWriter(const RtStructIdentity& identity) : identity_(identity) {}
 
-    void add(const std::string& name, const std::string& description, const char* type, const std::vector<Vector3d>& points, const std::optional<Colour>& colour) {
+    void add(const std::string& name, const std::string& description, const char* type, const std::vector<Vector3d>& points,
+             const std::optional<Colour>& colour) {
         const std::string number = std::to_string(++count_);
         vtkDICOMItem named;
         named.Set(DC::ROINumber, vtkDICOMValue(vtkDICOMVR::IS, number));
@@ -122,14 +123,17 @@ void add_items(RoiWriter& writer, const Plan& plan) {
     for (const auto& o : plan.osteotomy_lines) add_line(writer, o);
     for (const auto& b : plan.boreholes) {
         std::string description = description_of(b);
-        if (b.axis_in_ct) description += fmt::format(" axis={},{},{}", exact(b.axis_in_ct->x()), exact(b.axis_in_ct->y()), exact(b.axis_in_ct->z()));
+        if (b.axis_in_ct)
+            description +=
+                fmt::format(" axis={},{},{}", exact(b.axis_in_ct->x()), exact(b.axis_in_ct->y()), exact(b.axis_in_ct->z()));
         writer.add(b.name, description, "POINT", {b.position_in_ct}, b.colour);
     }
     for (const auto& t : plan.trajectories)
         writer.add(t.name, "kind=trajectory " + description_of(t), "OPEN_PLANAR", {t.entry_in_ct, t.target_in_ct}, t.colour);
     for (const auto& c : plan.cut_planes) {
         const Vector3d u = c.first_axis_in_ct * c.width_mm / 2, v = c.normal_in_ct.cross(c.first_axis_in_ct) * c.height_mm / 2;
-        writer.add(c.name, "kind=cut_plane", "CLOSED_PLANAR", {c.origin_in_ct - u - v, c.origin_in_ct + u - v, c.origin_in_ct + u + v, c.origin_in_ct - u + v}, c.colour);
+        writer.add(c.name, "kind=cut_plane", "CLOSED_PLANAR",
+                   {c.origin_in_ct - u - v, c.origin_in_ct + u - v, c.origin_in_ct + u + v, c.origin_in_ct - u + v}, c.colour);
     }
 }
 
@@ -199,7 +203,8 @@ std::string compile(vtkDICOMMetaData* meta, const fs::path& file) {
 void write_plan_rtstruct(const Plan& plan, const RtStructIdentity& identity, const fs::path& file) {
     check_plan_numbers(plan, file);
     if (identity.frame_of_reference_uid.empty())
-        throw InputError(file, "would not name a frame of reference: the volume has none", "Export .mrk.json or .vtp, or prepare the case from a DICOM series.");
+        throw InputError(file, "would not name a frame of reference: the volume has none",
+                         "Export .mrk.json or .vtp, or prepare the case from a DICOM series.");
     RoiWriter writer(identity);
     add_items(writer, plan);
     std::string content = identity.code + identity.frame_of_reference_uid + identity.created;

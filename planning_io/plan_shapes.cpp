@@ -28,7 +28,8 @@ std::vector<Loop> border_loops(const Shape& shape, const fs::path& file) {
     std::map<std::int32_t, std::int32_t> next;
     for (const auto& [a, b] : edges)
         if (!edges.contains({b, a}) && !next.emplace(a, b).second)
-            throw InputError(file, "has an edge that touches itself, which is no line to cut along", "Repair the surface, or draw its outline as a closed curve.");
+            throw InputError(file, "has an edge that touches itself, which is no line to cut along",
+                             "Repair the surface, or draw its outline as a closed curve.");
     std::vector<Loop> loops;
     while (!next.empty()) {
         Loop loop{next.begin()->first};
@@ -36,7 +37,9 @@ std::vector<Loop> border_loops(const Shape& shape, const fs::path& file) {
             loop.push_back(at->second);
             next.erase(at);
         }
-        if (loop.front() != loop.back()) throw InputError(file, "has triangles that are not turned alike", "Repair the surface, or draw its outline as a closed curve.");
+        if (loop.front() != loop.back())
+            throw InputError(file, "has triangles that are not turned alike",
+                             "Repair the surface, or draw its outline as a closed curve.");
         loops.push_back(std::move(loop));
     }
     return loops;
@@ -48,7 +51,9 @@ public:
 
     void add(Plan& plan, const ShapeLine& line, const std::string& otherwise) const {
         const std::string name = line.kind.empty() && line.name.empty() ? otherwise : line.name;
-        const auto refuse = [&](const std::string& problem) { throw InputError(file_, "\"" + name + "\" " + problem, "Correct this item of the plan."); };
+        const auto refuse = [&](const std::string& problem) {
+            throw InputError(file_, "\"" + name + "\" " + problem, "Correct this item of the plan.");
+        };
         std::vector<Vector3d> points;
         for (const auto i : line.points) points.push_back(to_ct(shape_.points[static_cast<std::size_t>(i)], space_));
         const PlanSettings said(line.description, refuse);
@@ -70,7 +75,8 @@ public:
 
 private:
     template <class Refuse>
-    void add_line(Plan& plan, const std::string& name, std::vector<Vector3d> points, const std::optional<Colour>& colour, const Refuse& refuse) const {
+    void add_line(Plan& plan, const std::string& name, std::vector<Vector3d> points, const std::optional<Colour>& colour,
+                  const Refuse& refuse) const {
         OsteotomyLine o{name, std::move(points), false, colour};
         if (o.points_in_ct.size() < 2) refuse("is a single point, which is nothing to cut along");
         o.closed = o.points_in_ct.size() > 3 && o.points_in_ct.front() == o.points_in_ct.back();
@@ -82,12 +88,15 @@ private:
 
     /// Its four corners, the first side along the first axis.
     template <class Refuse>
-    void add_plane(Plan& plan, const std::string& name, const std::vector<Vector3d>& p, const std::optional<Colour>& colour, const Refuse& refuse) const {
+    void add_plane(Plan& plan, const std::string& name, const std::vector<Vector3d>& p, const std::optional<Colour>& colour,
+                   const Refuse& refuse) const {
         if (p.size() != 5 || p[0] != p[4]) refuse("is not a plane of four corners");
         const Vector3d u = p[1] - p[0], v = p[2] - p[1];
-        if (!(u.norm() > 1e-6) || !(v.norm() > 1e-6) || std::abs(u.normalized().dot(v.normalized())) > 1e-6 || (p[0] + p[2] - p[1] - p[3]).norm() > 1e-6)
+        if (!(u.norm() > 1e-6) || !(v.norm() > 1e-6) || std::abs(u.normalized().dot(v.normalized())) > 1e-6 ||
+            (p[0] + p[2] - p[1] - p[3]).norm() > 1e-6)
             refuse("is not a rectangle");
-        plan.cut_planes.push_back({name, (p[0] + p[2]) / 2, u.normalized().cross(v.normalized()), u.normalized(), u.norm(), v.norm(), colour});
+        plan.cut_planes.push_back(
+            {name, (p[0] + p[2]) / 2, u.normalized().cross(v.normalized()), u.normalized(), u.norm(), v.norm(), colour});
     }
 
     const Shape& shape_;
@@ -104,7 +113,8 @@ void refuse_contour_stack(const Shape& shape, const fs::path& file) {
         for (const auto i : line.points) closed.back().push_back(shape.points[static_cast<std::size_t>(i)]);
     }
     if (const std::size_t heights = heights_of_contours(closed); heights >= kSolidHeights)
-        throw InputError(file, fmt::format("has contours at {} heights: a solid, not a line to cut along", heights), "Export the cuts alone, as curves.");
+        throw InputError(file, fmt::format("has contours at {} heights: a solid, not a line to cut along", heights),
+                         "Export the cuts alone, as curves.");
 }
 
 /// Lines of two points end to end are one line: most programs write curves so.
@@ -113,7 +123,8 @@ void join_segments(Shape& shape) {
         if (line.points.size() != 2 || !line.kind.empty() || !line.name.empty()) return;
     std::vector<ShapeLine> joined;
     for (auto& line : shape.lines) {
-        if (!joined.empty() && joined.back().points.back() == line.points[0] && joined.back().points.front() != joined.back().points.back())
+        if (!joined.empty() && joined.back().points.back() == line.points[0] &&
+            joined.back().points.front() != joined.back().points.back())
             joined.back().points.push_back(line.points[1]);
         else
             joined.push_back(std::move(line));
@@ -129,13 +140,17 @@ PlanImport read_shape_plan(const fs::path& file, const PlanImportSettings& setti
     join_segments(shape);
     refuse_contour_stack(shape, file);
     PlanImport read;
-    const auto numbered = [&](std::size_t i, std::size_t count) { return count == 1 ? plan_name_of(file) : fmt::format("{} {}", plan_name_of(file), i + 1); };
+    const auto numbered = [&](std::size_t i, std::size_t count) {
+        return count == 1 ? plan_name_of(file) : fmt::format("{} {}", plan_name_of(file), i + 1);
+    };
     for (const auto& loop : border_loops(shape, file)) shape.lines.push_back({loop, {}, {}, {}, {}, {}});
     if (shape.lines.empty() && !shape.triangles.empty())
-        throw InputError(file, fmt::format("is a closed surface of {} triangles, without an edge to cut along", shape.triangles.size()),
+        throw InputError(file,
+                         fmt::format("is a closed surface of {} triangles, without an edge to cut along", shape.triangles.size()),
                          "Draw the cut as a curve; to project on this surface, give it to `planlight prepare --surface`.");
     if (shape.lines.empty()) throw InputError(file, "holds no lines", "Export the plan's curves as lines.");
-    for (std::size_t i = 0; i < shape.lines.size(); ++i) ShapePlan(shape, space, file).add(read.plan, shape.lines[i], numbered(i, shape.lines.size()));
+    for (std::size_t i = 0; i < shape.lines.size(); ++i)
+        ShapePlan(shape, space, file).add(read.plan, shape.lines[i], numbered(i, shape.lines.size()));
     check_plan_numbers(read.plan, file);
     return read;
 }

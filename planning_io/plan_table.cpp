@@ -28,7 +28,8 @@ struct Columns {
     std::size_t count = 0;
 };
 
-std::optional<std::array<std::size_t, 3>> triple(const std::map<std::string, std::size_t>& at, const std::array<const char*, 3>& names) {
+std::optional<std::array<std::size_t, 3>> triple(const std::map<std::string, std::size_t>& at,
+                                                 const std::array<const char*, 3>& names) {
     std::array<std::size_t, 3> found{};
     for (std::size_t i = 0; i < 3; ++i) {
         const auto column = at.find(names[i]);
@@ -41,22 +42,27 @@ std::optional<std::array<std::size_t, 3>> triple(const std::map<std::string, std
 Columns columns_of(const std::vector<std::string>& names, const fs::path& file, std::vector<std::string>& notes) {
     std::map<std::string, std::size_t> at;
     for (std::size_t i = 0; i < names.size(); ++i)
-        if (!at.emplace(names[i], i).second) throw InputError(file, "names the column \"" + names[i] + "\" twice", std::string(kHowTo) + ".");
+        if (!at.emplace(names[i], i).second)
+            throw InputError(file, "names the column \"" + names[i] + "\" twice", std::string(kHowTo) + ".");
     auto entry = triple(at, {"ex", "ey", "ez"}), target = triple(at, {"tx", "ty", "tz"});
     if (!entry) entry = triple(at, {"entry_x", "entry_y", "entry_z"});
     if (!target) target = triple(at, {"target_x", "target_y", "target_z"});
     if (!entry || !target)
-        throw InputError(file, fmt::format("does not name an entry and a target of each trajectory; its columns are {}", fmt::join(names, ", ")),
-                         std::string(kHowTo) + "; lists of contacts, and of a start and an end, do not say which is which.");
+        throw InputError(
+            file,
+            fmt::format("does not name an entry and a target of each trajectory; its columns are {}", fmt::join(names, ", ")),
+            std::string(kHowTo) + "; lists of contacts, and of a start and an end, do not say which is which.");
     if (!at.contains("name")) throw InputError(file, "names no column \"name\"", std::string(kHowTo) + ".");
     Columns columns{at["name"], *entry, *target, std::nullopt, names.size()};
     if (at.contains("diameter_mm")) columns.diameter = at["diameter_mm"];
     std::vector<std::string> left_out;
     for (std::size_t i = 0; i < names.size(); ++i) {
-        const bool used = i == columns.name || i == columns.diameter || std::count(entry->begin(), entry->end(), i) || std::count(target->begin(), target->end(), i);
+        const bool used = i == columns.name || i == columns.diameter || std::count(entry->begin(), entry->end(), i) ||
+                          std::count(target->begin(), target->end(), i);
         if (!used) left_out.push_back(names[i]);
     }
-    if (!left_out.empty()) notes.push_back(fmt::format("{}: the columns {} are left out", file.filename().string(), fmt::join(left_out, ", ")));
+    if (!left_out.empty())
+        notes.push_back(fmt::format("{}: the columns {} are left out", file.filename().string(), fmt::join(left_out, ", ")));
     return columns;
 }
 
@@ -74,16 +80,20 @@ double unit_in(const std::string& comments, const fs::path& file) {
 class Row {
 public:
     Row(std::vector<std::string> fields, int line, const fs::path& file) : fields_(std::move(fields)), line_(line), file_(file) {}
-    [[noreturn]] void refuse(const std::string& problem) const { throw InputError(file_, fmt::format("line {} {}", line_, problem), "Correct this line."); }
+    [[noreturn]] void refuse(const std::string& problem) const {
+        throw InputError(file_, fmt::format("line {} {}", line_, problem), "Correct this line.");
+    }
     const std::string& text(std::size_t column) const { return fields_[column]; }
     double number(std::size_t column, double most) const {
         const auto value = number_in(fields_[column]);
-        if (!value || std::abs(*value) > most) refuse(fmt::format("has \"{}\" where a number within {} must stand", fields_[column], most));
+        if (!value || std::abs(*value) > most)
+            refuse(fmt::format("has \"{}\" where a number within {} must stand", fields_[column], most));
         return *value;
     }
     Vector3d point(const std::array<std::size_t, 3>& columns, double mm_per_unit) const {
         Vector3d p;
-        for (int axis = 0; axis < 3; ++axis) p[axis] = mm_per_unit * number(columns[static_cast<std::size_t>(axis)], kMaxCoordinate_mm / mm_per_unit);
+        for (int axis = 0; axis < 3; ++axis)
+            p[axis] = mm_per_unit * number(columns[static_cast<std::size_t>(axis)], kMaxCoordinate_mm / mm_per_unit);
         return p;
     }
     void check_count(std::size_t count) const {
@@ -142,10 +152,12 @@ PlanImport read_trajectory_table(const std::string& content, const fs::path& fil
             continue;
         }
         if (read.plan.empty()) {
-            space = settled_space(space_marked(comments, file), settings.space, file, "Put the line \"# SPACE=LPS\" (or RAS) before the table");
+            space = settled_space(space_marked(comments, file), settings.space, file,
+                                  "Put the line \"# SPACE=LPS\" (or RAS) before the table");
             mm_per_unit = unit_in(comments, file);
         }
-        read.plan.trajectories.push_back(trajectory_of(Row(split_fields(line, separator), number, file), *columns, space, mm_per_unit));
+        read.plan.trajectories.push_back(
+            trajectory_of(Row(split_fields(line, separator), number, file), *columns, space, mm_per_unit));
     }
     if (read.plan.empty()) throw InputError(file, "holds no trajectories", std::string(kHowTo) + ".");
     return read;

@@ -32,8 +32,8 @@ public:
         axes_->SetName("axis");
         colours_->SetName("colour");
     }
-    void add(const char* kind, const std::string& name, const std::string& description, const std::vector<Vector3d>& points, bool closed,
-             const std::optional<Colour>& colour, const std::optional<Vector3d>& axis = std::nullopt) {
+    void add(const char* kind, const std::string& name, const std::string& description, const std::vector<Vector3d>& points,
+             bool closed, const std::optional<Colour>& colour, const std::optional<Vector3d>& axis = std::nullopt) {
         const vtkIdType first = points_->GetNumberOfPoints();
         for (const auto& p : points) points_->InsertNextPoint(p.data());
         vtkCellArray* cells = points.size() == 1 ? verts_.Get() : lines_.Get();
@@ -53,7 +53,8 @@ public:
         data->SetPoints(points_);
         data->SetVerts(verts_);
         data->SetLines(lines_);
-        for (vtkAbstractArray* array : std::initializer_list<vtkAbstractArray*>{kinds_.Get(), names_.Get(), descriptions_.Get(), axes_.Get(), colours_.Get()})
+        for (vtkAbstractArray* array : std::initializer_list<vtkAbstractArray*>{kinds_.Get(), names_.Get(), descriptions_.Get(),
+                                                                                axes_.Get(), colours_.Get()})
             data->GetCellData()->AddArray(array);
         vtkNew<vtkStringArray> space;
         space->SetName("SPACE");
@@ -85,8 +86,10 @@ std::vector<Vector3d> corners_of(const CutPlane& c) {
 void write_plan_vtp(const Plan& plan, const std::filesystem::path& file) {
     check_plan_numbers(plan, file);
     PlanCells cells;
-    for (const auto& b : plan.boreholes) cells.add("borehole", b.name, description_of(b), {b.position_in_ct}, false, b.colour, b.axis_in_ct);
-    for (const auto& t : plan.trajectories) cells.add("trajectory", t.name, description_of(t), {t.entry_in_ct, t.target_in_ct}, false, t.colour);
+    for (const auto& b : plan.boreholes)
+        cells.add("borehole", b.name, description_of(b), {b.position_in_ct}, false, b.colour, b.axis_in_ct);
+    for (const auto& t : plan.trajectories)
+        cells.add("trajectory", t.name, description_of(t), {t.entry_in_ct, t.target_in_ct}, false, t.colour);
     for (const auto& o : plan.osteotomy_lines) cells.add("osteotomy_line", o.name, "", o.points_in_ct, o.closed, o.colour);
     for (const auto& c : plan.cut_planes) cells.add("cut_plane", c.name, "", corners_of(c), true, c.colour);
     write_safely(file, cells.as_vtp());

@@ -34,7 +34,8 @@ std::vector<Loop> loops_of(const RtRoi& roi, const fs::path& file) {
         for (std::size_t i = 0; i + 2 < contour.numbers.size(); i += 3) {
             loop.emplace_back(contour.numbers[i], contour.numbers[i + 1], contour.numbers[i + 2]);
             if (!loop.back().allFinite() || loop.back().cwiseAbs().maxCoeff() > 5000)
-                throw InputError(file, "ROI \"" + roi.name + "\" has a coordinate that is not a number of mm within 5 m", kExportAgain);
+                throw InputError(file, "ROI \"" + roi.name + "\" has a coordinate that is not a number of mm within 5 m",
+                                 kExportAgain);
         }
         loops.push_back(std::move(loop));
     }
@@ -44,7 +45,8 @@ std::vector<Loop> loops_of(const RtRoi& roi, const fs::path& file) {
 /// Axes with z across the contours, and the loops in them.
 Eigen::Matrix3d axes_of(const std::vector<Loop>& loops) {
     Vector3d area = Vector3d::Zero();
-    for (std::size_t i = 0; i < loops[0].size(); ++i) area += (loops[0][i] - loops[0][0]).cross(loops[0][(i + 1) % loops[0].size()] - loops[0][0]);
+    for (std::size_t i = 0; i < loops[0].size(); ++i)
+        area += (loops[0][i] - loops[0][0]).cross(loops[0][(i + 1) % loops[0].size()] - loops[0][0]);
     Eigen::Matrix3d axes;
     axes.col(2) = area.normalized();
     axes.col(0) = axes.col(2).unitOrthogonal();
@@ -72,7 +74,9 @@ void draw(MaskStack& mask, const Loop& loop, int slice, const Vector3d& low) {
 }
 
 MaskStack mask_of(std::vector<Loop> loops, const std::string& name, const fs::path& file) {
-    const auto refuse = [&](const std::string& problem) { throw InputError(file, "ROI \"" + name + "\" " + problem, kExportAgain); };
+    const auto refuse = [&](const std::string& problem) {
+        throw InputError(file, "ROI \"" + name + "\" " + problem, kExportAgain);
+    };
     const Eigen::Matrix3d axes = axes_of(loops);
     Vector3d low = Vector3d::Constant(INFINITY), high = -low;
     std::vector<double> heights;
@@ -94,14 +98,19 @@ MaskStack mask_of(std::vector<Loop> loops, const std::string& name, const fs::pa
     double step = INFINITY;
     for (std::size_t i = 1; i < sorted.size(); ++i)
         if (sorted[i] - sorted[i - 1] > kOneHeight_mm) step = std::min(step, sorted[i] - sorted[i - 1]);
-    const double slices = std::round((sorted.back() - sorted.front()) / step) + 1;
+    const double whole = sorted.back() - sorted.front();
+    step = whole / std::round(whole / step);  // the smallest gap is rounded; over all of them that would add up
+    const double slices = std::round(whole / step) + 1;
     if (!(slices < kMostEmpty * static_cast<double>(loops.size()))) refuse("has contours that are not evenly spaced");
     const Vector3d first(low.x(), low.y(), sorted.front());
     MaskStack mask;
-    mask.size = {static_cast<int>((high.x() - low.x()) / kPixel_mm) + 2, static_cast<int>((high.y() - low.y()) / kPixel_mm) + 2, static_cast<int>(slices)};
+    mask.size = {static_cast<int>((high.x() - low.x()) / kPixel_mm) + 2, static_cast<int>((high.y() - low.y()) / kPixel_mm) + 2,
+                 static_cast<int>(slices)};
     mask.ct_from_voxel.linear() = axes * Vector3d(kPixel_mm, kPixel_mm, step).asDiagonal();
     mask.ct_from_voxel.translation() = axes * first;
-    mask.inside.assign(static_cast<std::size_t>(mask.size[0]) * static_cast<std::size_t>(mask.size[1]) * static_cast<std::size_t>(mask.size[2]), 0);
+    mask.inside.assign(
+        static_cast<std::size_t>(mask.size[0]) * static_cast<std::size_t>(mask.size[1]) * static_cast<std::size_t>(mask.size[2]),
+        0);
     for (std::size_t i = 0; i < loops.size(); ++i) {
         const double slice = (heights[i] - sorted.front()) / step;
         if (std::abs(slice - std::round(slice)) > 0.1) refuse("has contours that are not evenly spaced");
@@ -112,7 +121,8 @@ MaskStack mask_of(std::vector<Loop> loops, const std::string& name, const fs::pa
 
 }  // namespace
 
-TriangleMesh read_roi_surface(const fs::path& file, const std::string& roi, const PlanImportSettings& settings, std::vector<std::string>& notes) {
+TriangleMesh read_roi_surface(const fs::path& file, const std::string& roi, const PlanImportSettings& settings,
+                              std::vector<std::string>& notes) {
     const RtStruct set = read_rt_struct(file);
     check_frame_of_reference(set.frame_of_reference_uid, settings, file, notes);
     std::vector<std::string> names;
@@ -124,7 +134,9 @@ TriangleMesh read_roi_surface(const fs::path& file, const std::string& roi, cons
     }
     if (names.empty()) throw InputError(file, "holds no solid: no ROI has closed contours at three heights", kExportAgain);
     if (!chosen || (roi.empty() && names.size() > 1))
-        throw InputError(file, roi.empty() ? fmt::format("holds {} solids: {}", names.size(), fmt::join(names, ", ")) : fmt::format("holds no solid \"{}\"; there is: {}", roi, fmt::join(names, ", ")),
+        throw InputError(file,
+                         roi.empty() ? fmt::format("holds {} solids: {}", names.size(), fmt::join(names, ", "))
+                                     : fmt::format("holds no solid \"{}\"; there is: {}", roi, fmt::join(names, ", ")),
                          "Choose one by its name (--segment NAME).");
     return surface_of_mask(mask_of(loops_of(*chosen, file), chosen->name, file));
 }

@@ -41,7 +41,9 @@ std::vector<RtRoi> rois_of(vtkDICOMMetaData* meta, const fs::path& file) {
     const std::string kind = text(meta->Get(DC::SOPClassUID)), modality = text(meta->Get(DC::Modality));
     if (kind != kRtStructClass)
         throw InputError(file, "is DICOM of modality " + (modality.empty() ? "unknown" : modality) + ", not an RT Structure Set",
-                         modality == "SEG" ? "Give it to `planlight prepare --surface`, or export the plan's contours as RTSTRUCT." : "Export the plan as RT Structure Set.");
+                         modality == "SEG"
+                             ? "Give it to `planlight prepare --surface`, or export the plan's contours as RTSTRUCT."
+                             : "Export the plan as RT Structure Set.");
     std::vector<RtRoi> rois;
     std::map<int, std::size_t> by_number;
     const vtkDICOMSequence sets = meta->Get(DC::StructureSetROISequence);
@@ -49,13 +51,20 @@ std::vector<RtRoi> rois_of(vtkDICOMMetaData* meta, const fs::path& file) {
         const vtkDICOMItem& item = sets.GetItem(i);
         if (!by_number.emplace(item.Get(DC::ROINumber).AsInt(), i).second)
             throw InputError(file, fmt::format("has two ROIs of the number {}", item.Get(DC::ROINumber).AsInt()), kCopyAgain);
-        rois.push_back({text(item.Get(DC::ROIName)), text(item.Get(DC::ROIDescription)), text(item.Get(DC::ReferencedFrameOfReferenceUID)), {}, {}});
+        rois.push_back({text(item.Get(DC::ROIName)),
+                        text(item.Get(DC::ROIDescription)),
+                        text(item.Get(DC::ReferencedFrameOfReferenceUID)),
+                        {},
+                        {}});
     }
     const vtkDICOMSequence drawn = meta->Get(DC::ROIContourSequence);
     for (std::size_t i = 0; i < drawn.GetNumberOfItems(); ++i) {
         const vtkDICOMItem& item = drawn.GetItem(i);
         const auto at = by_number.find(item.Get(DC::ReferencedROINumber).AsInt());
-        if (at == by_number.end()) throw DamagedFileError(file, fmt::format("has contours of an ROI {} that it does not name", item.Get(DC::ReferencedROINumber).AsInt()), kCopyAgain);
+        if (at == by_number.end())
+            throw DamagedFileError(
+                file, fmt::format("has contours of an ROI {} that it does not name", item.Get(DC::ReferencedROINumber).AsInt()),
+                kCopyAgain);
         RtRoi& roi = rois[at->second];
         if (item.Get(DC::ROIDisplayColor).IsValid()) roi.colour = numbers(item.Get(DC::ROIDisplayColor));
         const vtkDICOMSequence contours = item.Get(DC::ContourSequence);
@@ -64,7 +73,10 @@ std::vector<RtRoi> rois_of(vtkDICOMMetaData* meta, const fs::path& file) {
             RtContour read{text(contour.Get(DC::ContourGeometricType)), numbers(contour.Get(DC::ContourData))};
             const int points = contour.Get(DC::NumberOfContourPoints).AsInt();
             if (static_cast<std::size_t>(3 * std::max(points, 0)) != read.numbers.size())
-                throw DamagedFileError(file, fmt::format("ROI \"{}\", contour {}: announces {} points and holds {} numbers", roi.name, c + 1, points, read.numbers.size()), kCopyAgain);
+                throw DamagedFileError(file,
+                                       fmt::format("ROI \"{}\", contour {}: announces {} points and holds {} numbers", roi.name,
+                                                   c + 1, points, read.numbers.size()),
+                                       kCopyAgain);
             roi.contours.push_back(std::move(read));
         }
     }
@@ -125,7 +137,8 @@ RtStruct read_rt_struct(const fs::path& file) {
     if (set.frame_of_reference_uid.empty()) set.frame_of_reference_uid = set.rois.front().frame_of_reference_uid;
     for (const RtRoi& roi : set.rois)
         if (!roi.frame_of_reference_uid.empty() && roi.frame_of_reference_uid != set.frame_of_reference_uid)
-            throw InputError(file, "ROI \"" + roi.name + "\" is in another frame of reference, " + roi.frame_of_reference_uid, "Export the ROIs of one CT.");
+            throw InputError(file, "ROI \"" + roi.name + "\" is in another frame of reference, " + roi.frame_of_reference_uid,
+                             "Export the ROIs of one CT.");
     return set;
 }
 

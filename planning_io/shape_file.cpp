@@ -22,17 +22,20 @@ Shape parse_ply_shape(const std::string& content, const fs::path& file) {
     const auto *x = ply.column("x"), *y = ply.column("y"), *z = ply.column("z");
     if (!x || !y || !z) throw DamagedFileError(file, "has no columns x, y, z", "Write or copy the PLY file again.");
     if (const auto* flags = ply.column("flags"))
-        for (const double flag : *flags) shape.flags.push_back(flag >= 0 && flag <= 255 ? static_cast<std::uint8_t>(flag) : std::uint8_t{0});
+        for (const double flag : *flags)
+            shape.flags.push_back(flag >= 0 && flag <= 255 ? static_cast<std::uint8_t>(flag) : std::uint8_t{0});
     for (std::size_t i = 0; i < ply.vertices; ++i) shape.points.emplace_back((*x)[i], (*y)[i], (*z)[i]);
     for (const auto& face : ply.faces)
         for (std::size_t c = 2; c < face.size(); ++c)
-            shape.triangles.push_back({static_cast<std::int32_t>(face[0]), static_cast<std::int32_t>(face[c - 1]), static_cast<std::int32_t>(face[c])});
+            shape.triangles.push_back(
+                {static_cast<std::int32_t>(face[0]), static_cast<std::int32_t>(face[c - 1]), static_cast<std::int32_t>(face[c])});
     return shape;
 }
 
 void check(const Shape& shape, const fs::path& file) {
     for (const auto& p : shape.points)
-        if (!p.allFinite()) throw InputError(file, "has a coordinate that is not a finite number", "Repair it and export it again.");
+        if (!p.allFinite())
+            throw InputError(file, "has a coordinate that is not a finite number", "Repair it and export it again.");
     const auto count = static_cast<std::int32_t>(shape.points.size());
     const auto exists = [&](std::int32_t i) { return i >= 0 && i < count; };
     bool good = true;
@@ -68,7 +71,8 @@ WeldedShape welded(const Shape& shape) {
     });
     std::vector<std::int32_t> first(order.size());  // of every place, the first point of the file there
     for (std::size_t i = 0; i < order.size(); ++i)
-        first[static_cast<std::size_t>(order[i])] = i > 0 && point(order[i]) == point(order[i - 1]) ? first[static_cast<std::size_t>(order[i - 1])] : order[i];
+        first[static_cast<std::size_t>(order[i])] =
+            i > 0 && point(order[i]) == point(order[i - 1]) ? first[static_cast<std::size_t>(order[i - 1])] : order[i];
     for (std::size_t i = 0; i < first.size(); ++i) {
         if (first[i] == static_cast<std::int32_t>(i)) {
             now[i] = static_cast<std::int32_t>(result.shape.points.size());

@@ -20,7 +20,8 @@ double number(std::string_view word, const fs::path& file) {
     if (word.starts_with('+')) word.remove_prefix(1);
     double value = 0;
     const auto [stop, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (error != std::errc() || stop != word.data() + word.size()) damaged(file, "has \"" + std::string(word.substr(0, 20)) + "\" where a number must stand");
+    if (error != std::errc() || stop != word.data() + word.size())
+        damaged(file, "has \"" + std::string(word.substr(0, 20)) + "\" where a number must stand");
     return value;
 }
 
@@ -51,7 +52,8 @@ std::size_t binary_triangles(const std::string& content) {
 Shape parse_binary_stl(const std::string& content, const fs::path& file) {
     const std::size_t count = binary_triangles(content);
     if (content.size() != kHeaderBytes + 4 + kTriangleBytes * count)
-        damaged(file, "announces " + std::to_string(count) + " triangles and is " + std::to_string(content.size()) + " bytes long");
+        damaged(file,
+                "announces " + std::to_string(count) + " triangles and is " + std::to_string(content.size()) + " bytes long");
     Shape shape;
     shape.space = space_marked(std::string_view(content).substr(0, kHeaderBytes), file);
     for (std::size_t t = 0; t < count; ++t) {

@@ -76,7 +76,9 @@ void put_poly_data(Parcel& parcel, vtkPolyData* data, const fs::path& file) {
         vtkIdType count = 0;
         const vtkIdType* points = nullptr;
         cells->GetCellAtId(c, count, points);
-        if (count == 3) corners.push_back({static_cast<std::int32_t>(points[0]), static_cast<std::int32_t>(points[1]), static_cast<std::int32_t>(points[2])});
+        if (count == 3)
+            corners.push_back({static_cast<std::int32_t>(points[0]), static_cast<std::int32_t>(points[1]),
+                               static_cast<std::int32_t>(points[2])});
     }
     parcel.put(corners);
 }
@@ -104,12 +106,14 @@ std::string title_of(const fs::path& file) {
 
 Shape parse_vtk_in_child(const fs::path& file, bool xml) {
     const std::string title = xml ? std::string() : title_of(file);
-    Parcel parcel = parse_in_child(file, "VTK file", [&](Parcel& p) { xml ? parse<vtkXMLPolyDataReader>(p, file) : parse<vtkPolyDataReader>(p, file); });
+    Parcel parcel = parse_in_child(
+        file, "VTK file", [&](Parcel& p) { xml ? parse<vtkXMLPolyDataReader>(p, file) : parse<vtkPolyDataReader>(p, file); });
     Shape shape;
     const std::string field = parcel.get_text();
     shape.space = space_marked(field.empty() ? title : "SPACE=" + field, file);
     const auto coordinates = parcel.get_list<double>();
-    for (std::size_t i = 0; i + 2 < coordinates.size(); i += 3) shape.points.emplace_back(coordinates[i], coordinates[i + 1], coordinates[i + 2]);
+    for (std::size_t i = 0; i + 2 < coordinates.size(); i += 3)
+        shape.points.emplace_back(coordinates[i], coordinates[i + 1], coordinates[i + 2]);
     const auto lines = parcel.get<std::uint64_t>();
     for (std::uint64_t i = 0; i < lines; ++i) {
         ShapeLine line;

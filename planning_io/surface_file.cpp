@@ -39,14 +39,17 @@ std::vector<Edge> sorted_edges(const TriangleMesh& mesh) {
             const auto a = mesh.triangles[t][c], b = mesh.triangles[t][(c + 1) % 3];
             edges.push_back({std::min(a, b), std::max(a, b), static_cast<std::int32_t>(t), a < b});
         }
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
+    std::sort(edges.begin(), edges.end(),
+              [](const Edge& a, const Edge& b) { return a.low != b.low ? a.low < b.low : a.high < b.high; });
     return edges;
 }
 
 /// Turns all triangles of a piece alike, and the piece outwards. Counts edges and pieces on its way.
 class Turner {
 public:
-    Turner(SurfaceFile& surface, const fs::path& file) : surface_(surface), mesh_(surface.mesh), file_(file) { join_neighbours(); }
+    Turner(SurfaceFile& surface, const fs::path& file) : surface_(surface), mesh_(surface.mesh), file_(file) {
+        join_neighbours();
+    }
 
     void turn() {
         std::vector<std::int8_t> turned(mesh_.triangles.size(), -1);  // -1 not seen, 0 as it is, 1 to be turned
@@ -86,7 +89,10 @@ private:
         }
         surface_.closed = surface_.border_edges == 0;
         if (static_cast<double>(surface_.odd_edges) > kMostOddEdges * static_cast<double>(count))
-            throw InputError(file_, fmt::format("has {} edges of {} where three triangles or more meet: it is no surface", surface_.odd_edges, count), "Repair the mesh and export it again.");
+            throw InputError(
+                file_,
+                fmt::format("has {} edges of {} where three triangles or more meet: it is no surface", surface_.odd_edges, count),
+                "Repair the mesh and export it again.");
     }
 
     std::vector<std::size_t> collect(std::size_t first, std::vector<std::int8_t>& turned) const {
@@ -100,7 +106,8 @@ private:
                     turned[t] = wanted;
                     piece.push_back(t);
                 } else if (turned[t] != wanted) {
-                    throw InputError(file_, "has an inside that runs over into its outside", "Repair the mesh and export it again.");
+                    throw InputError(file_, "has an inside that runs over into its outside",
+                                     "Repair the mesh and export it again.");
                 }
             }
         return piece;
@@ -108,7 +115,9 @@ private:
 
     /// By the sum of the volumes of the triangles over the piece's middle: positive when the piece encloses it, or bulges away.
     void face_outwards(const std::vector<std::size_t>& piece) {
-        const auto p = [&](std::size_t t, std::size_t c) { return mesh_.vertices_in_ct[static_cast<std::size_t>(mesh_.triangles[t][c])]; };
+        const auto p = [&](std::size_t t, std::size_t c) {
+            return mesh_.vertices_in_ct[static_cast<std::size_t>(mesh_.triangles[t][c])];
+        };
         Vector3d middle = Vector3d::Zero();
         for (const auto t : piece) middle += (p(t, 0) + p(t, 1) + p(t, 2)) / (3 * static_cast<double>(piece.size()));
         double six_volumes = 0;
@@ -127,7 +136,8 @@ void set_normals(TriangleMesh& mesh) {
     mesh.normals_in_ct.assign(mesh.vertices_in_ct.size(), Vector3d::Zero());
     for (const auto& t : mesh.triangles) {
         const Vector3d& a = mesh.vertices_in_ct[static_cast<std::size_t>(t[0])];
-        const Vector3d n = (mesh.vertices_in_ct[static_cast<std::size_t>(t[1])] - a).cross(mesh.vertices_in_ct[static_cast<std::size_t>(t[2])] - a);
+        const Vector3d n = (mesh.vertices_in_ct[static_cast<std::size_t>(t[1])] - a)
+                               .cross(mesh.vertices_in_ct[static_cast<std::size_t>(t[2])] - a);
         for (const auto corner : t) mesh.normals_in_ct[static_cast<std::size_t>(corner)] += n;
     }
     for (auto& n : mesh.normals_in_ct) n = n.norm() > 0 ? n.normalized() : Vector3d::UnitZ();
@@ -160,7 +170,8 @@ TriangleMesh used_part(const Shape& shape, Space space, std::size_t& degenerate)
 
 void check_size(const TriangleMesh& mesh, const fs::path& file) {
     if (mesh.triangles.size() < kFewestTriangles)
-        throw InputError(file, fmt::format("holds {} triangles: too few to be a surface to project on", mesh.triangles.size()), "Export the whole surface as triangles.");
+        throw InputError(file, fmt::format("holds {} triangles: too few to be a surface to project on", mesh.triangles.size()),
+                         "Export the whole surface as triangles.");
     Vector3d low = mesh.vertices_in_ct.front(), high = low;
     for (const auto& p : mesh.vertices_in_ct) {
         low = low.cwiseMin(p);
@@ -168,15 +179,18 @@ void check_size(const TriangleMesh& mesh, const fs::path& file) {
     }
     const double across = (high - low).maxCoeff();
     if (!(across >= kLeastAcross_mm) || across > kMostAcross_mm)
-        throw InputError(file, fmt::format("is {:.3g} mm across, not between {:.0f} and {:.0f} mm", across, kLeastAcross_mm, kMostAcross_mm),
-                         across < 1 ? "Export it in mm (it seems to be in metres)." : "Export it in mm.");
+        throw InputError(
+            file, fmt::format("is {:.3g} mm across, not between {:.0f} and {:.0f} mm", across, kLeastAcross_mm, kMostAcross_mm),
+            across < 1 ? "Export it in mm (it seems to be in metres)." : "Export it in mm.");
 }
 
 void describe(SurfaceFile& surface, const fs::path& file) {
     const std::string name = file.filename().string();
     if (!surface.closed) surface.notes.push_back(fmt::format("{} is open: {} edges at its border", name, surface.border_edges));
-    if (surface.odd_edges > 0) surface.notes.push_back(fmt::format("{}: at {} edges three triangles or more meet", name, surface.odd_edges));
-    if (surface.degenerate > 0) surface.notes.push_back(fmt::format("{}: {} triangles without area are left out", name, surface.degenerate));
+    if (surface.odd_edges > 0)
+        surface.notes.push_back(fmt::format("{}: at {} edges three triangles or more meet", name, surface.odd_edges));
+    if (surface.degenerate > 0)
+        surface.notes.push_back(fmt::format("{}: {} triangles without area are left out", name, surface.degenerate));
     if (surface.pieces > 1) surface.notes.push_back(fmt::format("{} consists of {} pieces", name, surface.pieces));
 }
 
@@ -194,12 +208,15 @@ double value_at(const Volume& volume, const Eigen::Affine3d& voxel_from_ct, cons
 SurfaceFile read_surface(const fs::path& file, const SurfaceSettings& settings) {
     SurfaceFile surface;
     if (is_dicom_file(file)) {
-        if (settings.said.space == Space::ras) throw InputError(file, "is DICOM, which is always LPS; --surface-frame says RAS", "Leave --surface-frame out.");
-        surface.mesh = is_rt_struct(file) ? read_roi_surface(file, settings.segment, settings.said, surface.notes) : read_dicom_seg(file, settings.segment, settings.said, surface.notes);
+        if (settings.said.space == Space::ras)
+            throw InputError(file, "is DICOM, which is always LPS; --surface-frame says RAS", "Leave --surface-frame out.");
+        surface.mesh = is_rt_struct(file) ? read_roi_surface(file, settings.segment, settings.said, surface.notes)
+                                          : read_dicom_seg(file, settings.segment, settings.said, surface.notes);
     } else {
         if (!settings.segment.empty()) throw InputError(file, "holds no named segments", "Leave --segment out.");
         const WeldedShape read = welded(read_shape(file));
-        const Space space = settled_space(read.shape.space, settings.said.space, file, "Export the surface with its space (3D Slicer does: SPACE=LPS)");
+        const Space space = settled_space(read.shape.space, settings.said.space, file,
+                                          "Export the surface with its space (3D Slicer does: SPACE=LPS)");
         surface.degenerate = read.degenerate;
         surface.mesh = used_part(read.shape, space, surface.degenerate);
     }
@@ -216,18 +233,23 @@ double check_surface_fits(const TriangleMesh& surface, const Volume& volume, con
     for (std::size_t v = 0; v < surface.vertices_in_ct.size(); ++v) {
         const Vector3d &p = surface.vertices_in_ct[v], &n = surface.normals_in_ct[v];
         inside += !std::isnan(value_at(volume, voxel_from_ct, p));
-        const double under = value_at(volume, voxel_from_ct, p - kAcrossEdge_mm * n), over = value_at(volume, voxel_from_ct, p + kAcrossEdge_mm * n);
+        const double under = value_at(volume, voxel_from_ct, p - kAcrossEdge_mm * n),
+                     over = value_at(volume, voxel_from_ct, p + kAcrossEdge_mm * n);
         if (std::isnan(under) || std::isnan(over)) continue;
         ++compared;
         edge += under > over;
     }
     const double share_inside = static_cast<double>(inside) / static_cast<double>(surface.vertices_in_ct.size());
     if (share_inside < kLeastInside)
-        throw InputError(file, fmt::format("lies outside the volume with {:.0f} % of its points", 100 * (1 - share_inside)), "Check that it was made on this CT, and its coordinate system.");
+        throw InputError(file, fmt::format("lies outside the volume with {:.0f} % of its points", 100 * (1 - share_inside)),
+                         "Check that it was made on this CT, and its coordinate system.");
     const double share_edge = compared > 0 ? static_cast<double>(edge) / static_cast<double>(compared) : 0;
     if (volume.modality != "CT") return NAN;
     if (share_edge < kLeastEdge)
-        throw InputError(file, fmt::format("does not lie on an edge of this CT: only at {:.0f} % of its points it is brighter under the surface than over it", 100 * share_edge),
+        throw InputError(file,
+                         fmt::format("does not lie on an edge of this CT: only at {:.0f} % of its points it is brighter under "
+                                     "the surface than over it",
+                                     100 * share_edge),
                          "Check that it was made on this CT, and its coordinate system.");
     return share_edge;
 }

@@ -36,8 +36,8 @@ SurfaceFile read_surface(const std::filesystem::path& file, const SurfaceSetting
 
 /// Checks that the surface belongs to the volume: at least 95 % of its vertices lie inside the box of the volume, and a CT has an
 /// edge there: at 75 % of the vertices at least it is brighter 1.5 mm under the surface than 1.5 mm over it. (Half of them are
-/// where a surface lies across everything, in another frame.) Gives that share; NaN where the volume is no CT and it says nothing.
-/// Throws InputError with the numbers.
+/// where a surface lies across everything, in another frame.) Gives that share; NaN where the volume is no CT and it says
+/// nothing. Throws InputError with the numbers.
 double check_surface_fits(const TriangleMesh& surface, const Volume& volume, const std::filesystem::path& file);
 
 }  // namespace planlight

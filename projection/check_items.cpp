@@ -40,7 +40,8 @@ bool in_the_body(const SkinSurface& skin, const Vector3d& p) {
     constexpr int kWays = 96;
     int ended = 0;
     for (int i = 0; i < kWays; ++i) {  // evenly over the sphere, along a spiral
-        const double z = 1 - (2 * i + 1.0) / kWays, around = i * std::numbers::pi * (3 - std::sqrt(5.0)), across = std::sqrt(1 - z * z);
+        const double z = 1 - (2 * i + 1.0) / kWays, around = i * std::numbers::pi * (3 - std::sqrt(5.0)),
+                     across = std::sqrt(1 - z * z);
         ended += skin.first_hit({p, Vector3d(across * std::cos(around), across * std::sin(around), z)}).has_value();
     }
     return 4 * ended >= 3 * kWays;

@@ -63,8 +63,9 @@ public:
         if (!points_.empty()) verdict_.median_to_skin_mm = distance_quantile(points_, skin_, 0.5);
         if (items_ > 0) verdict_.share_far = static_cast<double>(far_items_) / items_;
         if (items_ > 0 && verdict_.share_far > settings_.max_share_far)
-            verdict_.stops.push_back(fmt::format("{} of {} items lie more than {:.0f} mm from the skin (median of all points {:.1f} mm)", far_items_, items_,
-                                                 settings_.near_skin_mm, verdict_.median_to_skin_mm));
+            verdict_.stops.push_back(
+                fmt::format("{} of {} items lie more than {:.0f} mm from the skin (median of all points {:.1f} mm)", far_items_,
+                            items_, settings_.near_skin_mm, verdict_.median_to_skin_mm));
         check_alternatives();
         return std::move(verdict_);
     }
@@ -72,7 +73,8 @@ public:
 private:
     template <typename... Args>
     void stop(const std::string& name, fmt::format_string<Args...> text, Args&&... args) {
-        verdict_.stops.push_back((name.empty() ? "an item without a name" : name) + ": " + fmt::format(text, std::forward<Args>(args)...));
+        verdict_.stops.push_back((name.empty() ? "an item without a name" : name) + ": " +
+                                 fmt::format(text, std::forward<Args>(args)...));
     }
     double to_skin_mm(const Vector3d& p) const { return (skin_.nearest(p).p_in_ct - p).norm(); }
 
@@ -84,12 +86,14 @@ private:
         for (const auto& p : points) {
             const Vector3d v = volume_->ct_from_voxel.inverse() * p;
             for (int axis = 0; axis < 3; ++axis) {
-                const double beyond = std::max(-v[axis], v[axis] - (volume_->size[static_cast<std::size_t>(axis)] - 1)) * spacing[axis];
+                const double beyond =
+                    std::max(-v[axis], v[axis] - (volume_->size[static_cast<std::size_t>(axis)] - 1)) * spacing[axis];
                 if (beyond > out_mm) out_mm = beyond, worst = p;
             }
         }
         if (out_mm > settings_.outside_volume_mm)
-            stop(name, "its point ({:.0f}, {:.0f}, {:.0f}) lies {:.0f} mm outside the volume", worst.x(), worst.y(), worst.z(), out_mm);
+            stop(name, "its point ({:.0f}, {:.0f}, {:.0f}) lies {:.0f} mm outside the volume", worst.x(), worst.y(), worst.z(),
+                 out_mm);
     }
 
     void check_near_skin(const std::string& name, const std::vector<Vector3d>& points) {
@@ -97,7 +101,8 @@ private:
         for (const auto& p : points) far_mm = std::max(far_mm, to_skin_mm(p));
         points_.insert(points_.end(), points.begin(), points.end());
         if (far_mm > settings_.near_skin_mm) ++far_items_;
-        if (far_mm > settings_.too_far_mm) stop(name, "it is {:.1f} mm from the skin, too far to be drawn (at most {:.0f} mm)", far_mm, settings_.too_far_mm);
+        if (far_mm > settings_.too_far_mm)
+            stop(name, "it is {:.1f} mm from the skin, too far to be drawn (at most {:.0f} mm)", far_mm, settings_.too_far_mm);
     }
 
     void check_side(const std::string& name, const std::vector<Vector3d>& points) {
@@ -106,29 +111,36 @@ private:
         if (!looked_for_mid_plane_) {
             mid_plane_ = find_mid_plane(skin_);
             looked_for_mid_plane_ = true;
-            if (!mid_plane_) verdict_.warnings.push_back("the middle of the head was not found: sides in names could not be checked");
+            if (!mid_plane_)
+                verdict_.warnings.push_back("the middle of the head was not found: sides in names could not be checked");
         }
         if (!mid_plane_) return;
         double left_mm = 0;  // of the item's first point (an entry), or of the middle of a line
         for (const auto& p : points) left_mm += mid_plane_->left_mm(p) / static_cast<double>(points.size());
         const double wrong_mm = *claimed == Side::left ? -left_mm : left_mm;
         if (wrong_mm > settings_.side_margin_mm)
-            stop(name, "it is named {} and lies {:.0f} mm {} of the middle of the head", *claimed == Side::left ? "left" : "right", wrong_mm,
-                 *claimed == Side::left ? "right" : "left");
+            stop(name, "it is named {} and lies {:.0f} mm {} of the middle of the head",
+                 *claimed == Side::left ? "left" : "right", wrong_mm, *claimed == Side::left ? "right" : "left");
     }
 
     void check_own(const Trajectory& t) {
         const double entry_mm = to_skin_mm(t.entry_in_ct), target_mm = to_skin_mm(t.target_in_ct);
         const bool target_inside = in_the_body(skin_, t.target_in_ct);
         if (t.length_mm() < 1) return stop(t.name, "entry and target are only {:.2f} mm apart", t.length_mm());
-        if (entry_mm > settings_.near_skin_mm && in_the_body(skin_, t.entry_in_ct) && (target_mm < settings_.near_skin_mm || !target_inside))
-            return stop(t.name, "entry and target are swapped: the entry lies {:.1f} mm under the skin, the target {:.1f} mm from it", entry_mm, target_mm);
+        if (entry_mm > settings_.near_skin_mm && in_the_body(skin_, t.entry_in_ct) &&
+            (target_mm < settings_.near_skin_mm || !target_inside))
+            return stop(t.name,
+                        "entry and target are swapped: the entry lies {:.1f} mm under the skin, the target {:.1f} mm from it",
+                        entry_mm, target_mm);
         if (!target_inside && target_mm > 1) stop(t.name, "its target lies outside the body, {:.1f} mm from the skin", target_mm);
-        if (t.length_mm() > settings_.max_depth_mm) stop(t.name, "it is {:.0f} mm deep (at most {:.0f} mm)", t.length_mm(), settings_.max_depth_mm);
+        if (t.length_mm() > settings_.max_depth_mm)
+            stop(t.name, "it is {:.0f} mm deep (at most {:.0f} mm)", t.length_mm(), settings_.max_depth_mm);
     }
     void check_own(const Borehole& b) {
-        if (b.depth_mm > settings_.max_depth_mm) stop(b.name, "it is {:.0f} mm deep (at most {:.0f} mm)", b.depth_mm, settings_.max_depth_mm);
-        if (b.axis_in_ct && b.axis_in_ct->dot(skin_.nearest(b.position_in_ct).normal_in_ct) > 0.2) stop(b.name, "its axis points out of the body");
+        if (b.depth_mm > settings_.max_depth_mm)
+            stop(b.name, "it is {:.0f} mm deep (at most {:.0f} mm)", b.depth_mm, settings_.max_depth_mm);
+        if (b.axis_in_ct && b.axis_in_ct->dot(skin_.nearest(b.position_in_ct).normal_in_ct) > 0.2)
+            stop(b.name, "its axis points out of the body");
     }
     void check_own(const OsteotomyLine&) {}
     void check_own(const CutPlane& c) {
@@ -144,11 +156,16 @@ private:
             high = high.cwiseMax(p);
         }
         Vector3d centre = (low + high) / 2;
-        if (volume_) centre = volume_->ct_from_voxel * (Vector3d(volume_->size[0] - 1, volume_->size[1] - 1, volume_->size[2] - 1) / 2);
+        if (volume_)
+            centre = volume_->ct_from_voxel * (Vector3d(volume_->size[0] - 1, volume_->size[1] - 1, volume_->size[2] - 1) / 2);
         const auto other = best_alternative(points_, skin_, centre);
-        if (!other || other->fit_mm > settings_.turned_fit_mm || verdict_.median_to_skin_mm < settings_.turned_gain * std::max(other->fit_mm, kFinestFit_mm)) return;
-        verdict_.stops.push_back(fmt::format("the plan lies a median of {:.1f} mm off the skin; with {} it would lie within {:.1f} mm: its axes are exchanged or flipped",
-                                             verdict_.median_to_skin_mm, other->words, other->fit_mm));
+        if (!other || other->fit_mm > settings_.turned_fit_mm ||
+            verdict_.median_to_skin_mm < settings_.turned_gain * std::max(other->fit_mm, kFinestFit_mm))
+            return;
+        verdict_.stops.push_back(
+            fmt::format("the plan lies a median of {:.1f} mm off the skin; with {} it would lie within {:.1f} mm: its axes are "
+                        "exchanged or flipped",
+                        verdict_.median_to_skin_mm, other->words, other->fit_mm));
     }
 
     const SkinSurface& skin_;
@@ -165,7 +182,8 @@ private:
 
 }  // namespace
 
-PlanVerdict check_plan(const Plan& plan, const SkinSurface& skin, const std::optional<VolumeBox>& volume, const PlanCheckSettings& settings) {
+PlanVerdict check_plan(const Plan& plan, const SkinSurface& skin, const std::optional<VolumeBox>& volume,
+                       const PlanCheckSettings& settings) {
     PlanChecker checker(skin, volume, settings);
     for (const auto& o : plan.osteotomy_lines) checker.look_at(o);
     for (const auto& b : plan.boreholes) checker.look_at(b);
@@ -181,7 +199,8 @@ void refuse_stopped_plan(const PlanVerdict& verdict) {
     for (std::size_t i = 0; i < std::min(kMostSaid, verdict.stops.size()); ++i) said += (i > 0 ? "; " : "") + verdict.stops[i];
     if (verdict.stops.size() > kMostSaid) said += fmt::format("; and {} more", verdict.stops.size() - kMostSaid);
     throw InputError({}, "The plan does not fit this patient: " + said,
-                     "Check that it was made on this CT, its coordinate system and its units; a plan on bone is projected on the bone (--surface).");
+                     "Check that it was made on this CT, its coordinate system and its units; a plan on bone is projected on the "
+                     "bone (--surface).");
 }
 
 }  // namespace planlight

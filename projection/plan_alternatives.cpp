@@ -18,7 +18,8 @@ std::string words_of(const Matrix3d& axes) {
     std::array<std::string, 3> read;
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column)
-            if (axes(row, column) != 0) read[static_cast<std::size_t>(row)] = std::string(axes(row, column) < 0 ? "-" : "") + "xyz"[column];
+            if (axes(row, column) != 0)
+                read[static_cast<std::size_t>(row)] = std::string(axes(row, column) < 0 ? "-" : "") + "xyz"[column];
     return fmt::format("(x, y, z) read as ({}, {}, {})", read[0], read[1], read[2]);
 }
 
@@ -54,12 +55,14 @@ std::vector<Matrix3d> axis_permutations_and_flips() {
 double distance_quantile(const std::vector<Vector3d>& points, const SkinSurface& skin, double share) {
     std::vector<double> far;
     for (const auto& p : points) far.push_back((skin.nearest(p).p_in_ct - p).norm());
-    const auto at = far.begin() + static_cast<std::ptrdiff_t>(std::min(far.size() - 1, static_cast<std::size_t>(share * static_cast<double>(far.size()))));
+    const auto at = far.begin() + static_cast<std::ptrdiff_t>(std::min(
+                                      far.size() - 1, static_cast<std::size_t>(share * static_cast<double>(far.size()))));
     std::nth_element(far.begin(), at, far.end());
     return *at;
 }
 
-std::optional<Alternative> best_alternative(const std::vector<Vector3d>& points, const SkinSurface& skin, const Vector3d& centre) {
+std::optional<Alternative> best_alternative(const std::vector<Vector3d>& points, const SkinSurface& skin,
+                                            const Vector3d& centre) {
     const auto some = thinned(points);
     if (some.size() < kFewestPoints || span_mm(some) < kLeastSpan_mm) return std::nullopt;
     std::optional<Alternative> best;
@@ -70,7 +73,8 @@ std::optional<Alternative> best_alternative(const std::vector<Vector3d>& points,
             std::vector<Vector3d> copy;
             for (const auto& p : some) copy.push_back(all[i] * (p - about) + about);
             const double fit = distance_quantile(copy, skin, 0.9);
-            if (!best || fit < best->fit_mm) best = Alternative{all[i], words_of(all[i]) + (about_centre ? " about the middle of the volume" : ""), fit};
+            if (!best || fit < best->fit_mm)
+                best = Alternative{all[i], words_of(all[i]) + (about_centre ? " about the middle of the volume" : ""), fit};
         }
     return best;
 }

@@ -40,7 +40,8 @@ Patient read_patient(const PlanOptions& options) {
         const Volume volume = read_volume(options.volume, options.series_uid);
         const std::string code = hash_of(volume).substr(0, 8);
         if (patient.known && patient.code != code)
-            throw InputError(options.volume, "is not the volume of this case (" + code + ", the case is " + patient.code + ")", "Name the volume that the case was prepared from.");
+            throw InputError(options.volume, "is not the volume of this case (" + code + ", the case is " + patient.code + ")",
+                             "Name the volume that the case was prepared from.");
         patient.known = true;
         patient.code = code;
         patient.frame_of_reference_uid = volume.frame_of_reference_uid;
@@ -54,8 +55,9 @@ void check_in_box(const Plan& plan, const VolumeBox& box) {
         const Eigen::Vector3d v = box.ct_from_voxel.inverse() * p;
         for (int axis = 0; axis < 3; ++axis)
             if (v[axis] < -2 || v[axis] > box.size[static_cast<std::size_t>(axis)] + 1)
-                throw InputError({}, fmt::format("The plan's point ({:.0f}, {:.0f}, {:.0f}) lies outside the volume", p.x(), p.y(), p.z()),
-                                 "Check that it was made on this CT, its coordinate system and its units.");
+                throw InputError(
+                    {}, fmt::format("The plan's point ({:.0f}, {:.0f}, {:.0f}) lies outside the volume", p.x(), p.y(), p.z()),
+                    "Check that it was made on this CT, its coordinate system and its units.");
     }
 }
 
@@ -94,12 +96,19 @@ void list_plan(Listing& list, const Plan& plan) {
         double way = 0;
         for (std::size_t i = 1; i < o.points_in_ct.size(); ++i) way += (o.points_in_ct[i] - o.points_in_ct[i - 1]).norm();
         if (o.closed) way += (o.points_in_ct.front() - o.points_in_ct.back()).norm();
-        list.add("osteotomy line", o.name, fmt::format("{}, {} points, {:.1f} mm", o.closed ? "closed" : "open", o.points_in_ct.size(), way), o.points_in_ct.front());
+        list.add("osteotomy line", o.name,
+                 fmt::format("{}, {} points, {:.1f} mm", o.closed ? "closed" : "open", o.points_in_ct.size(), way),
+                 o.points_in_ct.front());
     }
-    for (const auto& b : plan.boreholes) list.add("borehole", b.name, fmt::format("diameter {:g} mm, depth {:g} mm", b.diameter_mm, b.depth_mm), b.position_in_ct);
+    for (const auto& b : plan.boreholes)
+        list.add("borehole", b.name, fmt::format("diameter {:g} mm, depth {:g} mm", b.diameter_mm, b.depth_mm), b.position_in_ct);
     for (const auto& t : plan.trajectories)
-        list.add("trajectory", t.name, fmt::format("{:.1f} mm{}", t.length_mm(), t.diameter_mm > 0 ? fmt::format(", diameter {:g} mm", t.diameter_mm) : ""), t.entry_in_ct);
-    for (const auto& c : plan.cut_planes) list.add("cut plane", c.name, fmt::format("{:g} x {:g} mm", c.width_mm, c.height_mm), c.origin_in_ct);
+        list.add(
+            "trajectory", t.name,
+            fmt::format("{:.1f} mm{}", t.length_mm(), t.diameter_mm > 0 ? fmt::format(", diameter {:g} mm", t.diameter_mm) : ""),
+            t.entry_in_ct);
+    for (const auto& c : plan.cut_planes)
+        list.add("cut plane", c.name, fmt::format("{:g} x {:g} mm", c.width_mm, c.height_mm), c.origin_in_ct);
 }
 
 void write(const PlanImport& read, const Patient& patient, const PlanOptions& options) {
@@ -110,7 +119,8 @@ void write(const PlanImport& read, const Patient& patient, const PlanOptions& op
     else if (name.ends_with(".vtp")) write_plan_vtp(plan, out);
     else if (name.ends_with(".dcm")) {
         const std::string frame = patient.known ? patient.frame_of_reference_uid : read.frame_of_reference_uid;
-        write_plan_rtstruct(plan, {patient.code, options.accept_frame.empty() ? frame : options.accept_frame, iso_date_now()}, out);
+        write_plan_rtstruct(plan, {patient.code, options.accept_frame.empty() ? frame : options.accept_frame, iso_date_now()},
+                            out);
     } else throw InputError(out, "is of no kind that a plan is written as", "End its name in .mrk.json, .vtp or .dcm.");
 }
 
@@ -118,7 +128,8 @@ void write(const PlanImport& read, const Patient& patient, const PlanOptions& op
 
 int run_plan(const PlanOptions& options) {
     const Patient patient = read_patient(options);
-    const auto settings = plan_settings(options.frame, options.accept_frame, patient.known ? std::optional(patient.frame_of_reference_uid) : std::nullopt);
+    const auto settings = plan_settings(options.frame, options.accept_frame,
+                                        patient.known ? std::optional(patient.frame_of_reference_uid) : std::nullopt);
     PlanImport read;
     for (const auto& file : options.files) append(read, import_plan(file, settings));
     for (const auto& note : read.notes) warn(note);
@@ -134,8 +145,13 @@ int run_plan(const PlanOptions& options) {
     Listing list(patient);
     list_plan(list, read.plan);
     if (options.json) {
-        nlohmann::json result{{"items", list.items}, {"notes", read.notes}, {"warnings", verdict.warnings}, {"frame_of_reference_uid", read.frame_of_reference_uid},
-                              {"checked_against", patient.skin ? "skin" : patient.box ? "volume" : "nothing"}};
+        nlohmann::json result{{"items", list.items},
+                              {"notes", read.notes},
+                              {"warnings", verdict.warnings},
+                              {"frame_of_reference_uid", read.frame_of_reference_uid},
+                              {"checked_against", patient.skin  ? "skin"
+                                                  : patient.box ? "volume"
+                                                                : "nothing"}};
         if (patient.skin) result["median_to_skin_mm"] = verdict.median_to_skin_mm;
         if (!options.out.empty()) result["written"] = options.out.string();
         std::cout << result.dump(2) << '\n';

@@ -15,7 +15,8 @@ int run_prepare(const PrepareOptions& options) {
     ProgressBar bar;
     bar.show("volume", 0);
     const Volume volume = read_volume(options.volume, options.series_uid);
-    const PlanImport plan = import_plan(options.plan, plan_settings(options.frame, options.accept_frame, volume.frame_of_reference_uid));
+    const PlanImport plan =
+        import_plan(options.plan, plan_settings(options.frame, options.accept_frame, volume.frame_of_reference_uid));
     bar.show("volume", 1);
     SkinSettings skin;
     skin.threshold = options.threshold;
@@ -25,7 +26,9 @@ int run_prepare(const PrepareOptions& options) {
     if (options.surface.empty()) {
         done = prepare_case(volume, plan.plan, skin, lut, iso_date_now(), bar.callback());
     } else {
-        const SurfaceFile surface = read_surface(options.surface, {plan_settings(options.surface_frame, options.accept_frame, volume.frame_of_reference_uid), options.segment});
+        const SurfaceFile surface = read_surface(
+            options.surface,
+            {plan_settings(options.surface_frame, options.accept_frame, volume.frame_of_reference_uid), options.segment});
         check_surface_fits(surface.mesh, volume, options.surface);
         done = prepare_case_on(volume, surface, plan.plan, lut, iso_date_now(), bar.callback());
     }

@@ -179,8 +179,10 @@ TEST_F(CommandsTest, AnotherProgramsSurfaceCanBeProjectedOn) {
     std::string ply((std::istreambuf_iterator<char>(in)), {});
     ply.replace(ply.find("SPACE=LPS"), 9, "no space ");
     std::ofstream(root() / "unsaid.ply", std::ios::binary) << ply;
-    expect_one_clear_sentence(run_planlight(prepare + " --surface unsaid.ply --out never", root()), 3, "does not say its coordinate system");
-    expect_one_clear_sentence(run_planlight(prepare + " --surface unsaid.ply --surface-frame RAS --out never", root()), 3, "outside the volume");
+    expect_one_clear_sentence(run_planlight(prepare + " --surface unsaid.ply --out never", root()), 3,
+                              "does not say its coordinate system");
+    expect_one_clear_sentence(run_planlight(prepare + " --surface unsaid.ply --surface-frame RAS --out never", root()), 3,
+                              "outside the volume");
     EXPECT_EQ(run_planlight(prepare + " --surface unsaid.ply --surface-frame LPS --out said", root()).exit_code, 0);
     EXPECT_FALSE(fs::exists(root() / "never"));
 }
@@ -250,7 +252,8 @@ TEST_F(CommandsTest, WrongUsageGivesExitTwo) {
 }
 
 TEST_F(CommandsTest, EveryCommandExplainsItselfWithAnExample) {
-    for (const char* name : {"demo", "prepare", "plan", "patterns", "scan", "register", "track", "project", "session", "review", "simulate"}) {
+    for (const char* name :
+         {"demo", "prepare", "plan", "patterns", "scan", "register", "track", "project", "session", "review", "simulate"}) {
         const auto run = run_planlight(std::string(name) + " --help", root());
         EXPECT_EQ(run.exit_code, 0) << name;
         EXPECT_NE(run.out.find("Example:"), std::string::npos) << name;

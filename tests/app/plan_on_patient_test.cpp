@@ -38,7 +38,8 @@ Plan moved(Plan plan, const Move& move) {
 
 /// The words of a stop that tell its kind.
 std::string kind_of(const std::string& stop) {
-    for (const char* words : {"outside the volume", "too far to be drawn", "items lie more than", "outside the body", "swapped", "it is named", "axes are exchanged"})
+    for (const char* words : {"outside the volume", "too far to be drawn", "items lie more than", "outside the body", "swapped",
+                              "it is named", "axes are exchanged"})
         if (stop.find(words) != std::string::npos) return words;
     return stop;
 }
@@ -71,14 +72,16 @@ TEST_F(PlanOnPatient, TheExamplePlanPasses) {
 }
 
 /// How many of the 47 wrong exchanges and flips of the axes about a point are stopped; the rest as matrices. Prints by what.
-std::vector<Eigen::Matrix3d> not_stopped(const Plan& plan, const Vector3d& about, const SkinSurface& skin, const VolumeBox& box, const char* words) {
+std::vector<Eigen::Matrix3d> not_stopped(const Plan& plan, const Vector3d& about, const SkinSurface& skin, const VolumeBox& box,
+                                         const char* words) {
     const auto all = axis_permutations_and_flips();
     EXPECT_EQ(all.size(), 48U);
     EXPECT_TRUE(all.front().isIdentity());
     std::map<std::string, int> by, alone;
     std::vector<Eigen::Matrix3d> passed;
     for (std::size_t i = 1; i < all.size(); ++i) {
-        const PlanVerdict verdict = check_plan(moved(plan, [&](const Vector3d& p) { return Vector3d(all[i] * (p - about) + about); }), skin, box);
+        const PlanVerdict verdict =
+            check_plan(moved(plan, [&](const Vector3d& p) { return Vector3d(all[i] * (p - about) + about); }), skin, box);
         std::map<std::string, int> kinds;
         for (const auto& stop : verdict.stops) ++kinds[kind_of(stop)];
         for (const auto& [kind, count] : kinds) ++by[kind];
@@ -138,7 +141,8 @@ TEST_F(PlanOnPatient, PlansOnTheSkinAndOnTheBoneBelowItAreNotStopped) {
             while (line.points_in_ct.size() < 15) {
                 const Vector3d offset(80 * unit(random) - 40, 80 * unit(random) - 40, 80 * unit(random) - 40);
                 const auto at = skin->nearest(mesh.vertices_in_ct[v] + offset);
-                if ((at.p_in_ct - mesh.vertices_in_ct[v]).norm() < 40) line.points_in_ct.push_back(at.p_in_ct - depth_mm * at.normal_in_ct);
+                if ((at.p_in_ct - mesh.vertices_in_ct[v]).norm() < 40)
+                    line.points_in_ct.push_back(at.p_in_ct - depth_mm * at.normal_in_ct);
             }
             Plan patch;
             patch.osteotomy_lines.push_back(std::move(line));
@@ -152,7 +156,10 @@ TEST_F(PlanOnPatient, PlansOnTheSkinAndOnTheBoneBelowItAreNotStopped) {
 
 TEST_F(PlanOnPatient, MetresAndMicrometresAreStopped) {
     for (const double factor : {1e-3, 0.1, 10.0, 25.4, 1e3})
-        EXPECT_THROW(refuse_stopped_plan(check_plan(moved(plan, [&](const Vector3d& p) { return Vector3d(factor * p); }), *skin, box)), InputError) << factor;
+        EXPECT_THROW(
+            refuse_stopped_plan(check_plan(moved(plan, [&](const Vector3d& p) { return Vector3d(factor * p); }), *skin, box)),
+            InputError)
+            << factor;
 }
 
 /// Surfaces that InVesalius segmented on the example patient (skin with all inside, and bone), read as another program's.
@@ -197,8 +204,10 @@ TEST_F(SurfaceOnPatient, OnlyWhereItLiesInTheCtASurfaceIsTaken) {
         double shift_mm = 0;
         for (; shift_mm < 40 && fits(shifted); ++shift_mm)
             for (auto& p : shifted.vertices_in_ct) p.y() += 1;
-        std::printf("%zu triangles: brighter inside at %.0f %% of the points; %d of 47 wrong axes refused; refused when shifted by %.0f mm\n",
-                    surface.mesh.triangles.size(), 100 * share, refused, shift_mm);
+        std::printf(
+            "%zu triangles: brighter inside at %.0f %% of the points; %d of 47 wrong axes refused; refused when shifted by %.0f "
+            "mm\n",
+            surface.mesh.triangles.size(), 100 * share, refused, shift_mm);
         EXPECT_GT(share, 0.9);
         EXPECT_EQ(refused, 47);  // about the middle of the volume
     }

@@ -24,7 +24,9 @@ public:
         bytes_ += value;
         return *this;
     }
-    DicomBytes& add_us(std::uint32_t tag, std::uint16_t value) { return add(tag, "US", {static_cast<char>(value & 0xFF), static_cast<char>(value >> 8)}); }
+    DicomBytes& add_us(std::uint32_t tag, std::uint16_t value) {
+        return add(tag, "US", {static_cast<char>(value & 0xFF), static_cast<char>(value >> 8)});
+    }
     DicomBytes& add_sequence(std::uint32_t tag, const std::vector<DicomBytes>& items) {
         DicomBytes all;
         for (const auto& item : items) {
@@ -40,7 +42,8 @@ public:
         DicomBytes head;
         head.add(0x00020002, "UI", sop_class).add(0x00020003, "UI", "1.2.3.4.5").add(0x00020010, "UI", "1.2.840.10008.1.2.1");
         DicomBytes length;
-        length.add(0x00020000, "UL", std::string{static_cast<char>(head.bytes_.size() & 0xFF), static_cast<char>(head.bytes_.size() >> 8), 0, 0});
+        length.add(0x00020000, "UL",
+                   std::string{static_cast<char>(head.bytes_.size() & 0xFF), static_cast<char>(head.bytes_.size() >> 8), 0, 0});
         return std::string(128, '\0') + "DICM" + length.bytes_ + head.bytes_ + bytes_;
     }
 

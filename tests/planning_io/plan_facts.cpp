@@ -14,10 +14,13 @@ public:
 
     Plan make() {
         Plan plan;
-        plan.boreholes.push_back({name(), Vector3d(-50, 0, 10), std::nullopt, 7, 6, std::nullopt});  // so that the plan is never tiny
+        plan.boreholes.push_back(
+            {name(), Vector3d(-50, 0, 10), std::nullopt, 7, 6, std::nullopt});  // so that the plan is never tiny
         plan.boreholes.push_back({name(), Vector3d(50, 0, 10), std::nullopt, 0, 0, std::nullopt});
         for (int i = count(4); i > 0; --i) plan.trajectories.push_back({name(), point(), point(), size(100), colour()});
-        for (int i = count(4); i > 0; --i) plan.boreholes.push_back({name(), point(), chance(0.5) ? std::optional(direction()) : std::nullopt, size(100), size(200), colour()});
+        for (int i = count(4); i > 0; --i)
+            plan.boreholes.push_back(
+                {name(), point(), chance(0.5) ? std::optional(direction()) : std::nullopt, size(100), size(200), colour()});
         for (int i = count(4); i > 0; --i) {
             OsteotomyLine line{name(), {}, chance(0.5), colour()};
             for (int p = 3 + count(20); p > 0; --p) line.points_in_ct.push_back(point());
@@ -42,8 +45,16 @@ private:
         return Colour{static_cast<float>(share()), static_cast<float>(share()), static_cast<float>(share())};
     }
     std::string name() {
-        static const char* const kNames[] = {"", "B1", "Osteotomy α β", "left \"quoted\"", "comma, semicolon; tab", "Bohrloch Ø 7 äöü", "a=b diameter_mm=3",
-                                             "ein sehr langer Name, länger als die vierundsechzig Zeichen", "slash/and", "x"};
+        static const char* const kNames[] = {"",
+                                             "B1",
+                                             "Osteotomy α β",
+                                             "left \"quoted\"",
+                                             "comma, semicolon; tab",
+                                             "Bohrloch Ø 7 äöü",
+                                             "a=b diameter_mm=3",
+                                             "ein sehr langer Name, länger als die vierundsechzig Zeichen",
+                                             "slash/and",
+                                             "x"};
         return kNames[std::uniform_int_distribution<std::size_t>(0, std::size(kNames) - 1)(random_)];
     }
     std::mt19937 random_;

@@ -8,10 +8,13 @@ namespace planlight::test {
 
 /// Every value of two plans is equal: coordinates within `mm`, colours within `colour` (0: bit for bit).
 inline void expect_same(const Plan& a, const Plan& b, double mm = 0, double colour = 0) {
-    const auto near = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q) { EXPECT_LE((p - q).cwiseAbs().maxCoeff(), mm) << p.transpose() << " | " << q.transpose(); };
+    const auto near = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
+        EXPECT_LE((p - q).cwiseAbs().maxCoeff(), mm) << p.transpose() << " | " << q.transpose();
+    };
     const auto same_colour = [&](const std::optional<Colour>& c, const std::optional<Colour>& d, const std::string& name) {
         ASSERT_EQ(c.has_value(), d.has_value()) << name;
-        for (std::size_t i = 0; c && i < 3; ++i) EXPECT_LE(std::abs(static_cast<double>((*c)[i]) - static_cast<double>((*d)[i])), colour) << name;
+        for (std::size_t i = 0; c && i < 3; ++i)
+            EXPECT_LE(std::abs(static_cast<double>((*c)[i]) - static_cast<double>((*d)[i])), colour) << name;
     };
     ASSERT_EQ(a.trajectories.size(), b.trajectories.size());
     for (std::size_t i = 0; i < a.trajectories.size(); ++i) {

@@ -63,7 +63,8 @@ TEST(PlanRoundTrip, RandomPlansComeBackFromVtp) {
 }
 
 std::string fcsv(const std::string& version, const std::string& system, const std::string& rows) {
-    return "# Markups fiducial file version = " + version + "\n" + (system.empty() ? "" : "# CoordinateSystem = " + system + "\n") +
+    return "# Markups fiducial file version = " + version + "\n" +
+           (system.empty() ? "" : "# CoordinateSystem = " + system + "\n") +
            "# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n" + rows;
 }
 
@@ -77,10 +78,15 @@ TEST_F(PlanImportTest, FcsvPointsStandWhereSlicerPutsThem) {
         EXPECT_EQ(plan.boreholes[0].diameter_mm, 7);
         EXPECT_EQ(plan.boreholes[0].depth_mm, 6.5);
     }
-    for (const char* lps : {"1", "LPS"}) EXPECT_EQ(import_plan(write("a.fcsv", fcsv("4.11", lps, row))).plan.boreholes[0].position_in_ct, Vector3d(10, 20, 30)) << lps;
+    for (const char* lps : {"1", "LPS"})
+        EXPECT_EQ(import_plan(write("a.fcsv", fcsv("4.11", lps, row))).plan.boreholes[0].position_in_ct, Vector3d(10, 20, 30))
+            << lps;
     EXPECT_EQ(import_plan(write("a.fcsv", fcsv("4.10", "", row)), kLps).plan.boreholes[0].position_in_ct, Vector3d(10, 20, 30));
     // Quoted labels, Windows line ends, and the fields that Slicer 5 adds.
-    const Plan quoted = import_plan(write("b.fcsv", fcsv("5.6", "LPS", "id,1,2,3,0,0,0,1,1,1,0,\"a, \"\"b\"\"\",,,2,0\r\nid,9,2,3,0,0,0,1,1,1,0,,,,2,0\r\n"))).plan;
+    const Plan quoted =
+        import_plan(write("b.fcsv", fcsv("5.6", "LPS",
+                                         "id,1,2,3,0,0,0,1,1,1,0,\"a, \"\"b\"\"\",,,2,0\r\nid,9,2,3,0,0,0,1,1,1,0,,,,2,0\r\n")))
+            .plan;
     EXPECT_EQ(quoted.boreholes[0].name, "a, \"b\"");
     EXPECT_EQ(quoted.boreholes[1].name, "b-2");
 }
@@ -120,9 +126,13 @@ TEST_F(PlanImportTest, TrajectoriesOfATableNeedTheirFrame) {
     ASSERT_EQ(ras.trajectories.size(), 15U);
     EXPECT_EQ(ras.trajectories[0].name, "RAMF");
     EXPECT_EQ(ras.trajectories[0].entry_in_ct, Vector3d(30.4242, 22.574, 8.00022));
-    EXPECT_EQ(import_plan(kData / "seeg_trajectories.csv", kLps).plan.trajectories[0].target_in_ct, Vector3d(-52.9504, -29.8389, 14.3085));
-    const PlanImport said = import_plan(write("t.tsv", "\xEF\xBB\xBF# SPACE=RAS\n# units=um\nname\tentry_x\tentry_y\tentry_z\ttarget_x\ttarget_y\ttarget_z\tdiameter_mm\tsurgeon\n"
-                                                       "A\t10000\t20000\t30000\t10000\t20000\t-5000\t2.5\tX\n"));
+    EXPECT_EQ(import_plan(kData / "seeg_trajectories.csv", kLps).plan.trajectories[0].target_in_ct,
+              Vector3d(-52.9504, -29.8389, 14.3085));
+    const PlanImport said =
+        import_plan(write("t.tsv",
+                          "\xEF\xBB\xBF# SPACE=RAS\n# "
+                          "units=um\nname\tentry_x\tentry_y\tentry_z\ttarget_x\ttarget_y\ttarget_z\tdiameter_mm\tsurgeon\n"
+                          "A\t10000\t20000\t30000\t10000\t20000\t-5000\t2.5\tX\n"));
     EXPECT_TRUE(said.plan.trajectories[0].entry_in_ct.isApprox(Vector3d(-10, -20, 30), 1e-12));
     EXPECT_EQ(said.plan.trajectories[0].diameter_mm, 2.5);
     ASSERT_EQ(said.notes.size(), 1U);
@@ -153,7 +163,8 @@ TEST_F(PlanImportTest, TablesThatDoNotSayWhatTheyHoldAreRefused) {
 const char* kSquareObj = "v 0 0 0\nv 30 0 0\nv 30 30 0\nv 0 30 0\nf 1 2 3\nf 1 3 4\n";
 
 TEST_F(PlanImportTest, LinesOfMeshFilesAreOsteotomyLines) {
-    const Plan lines = import_plan(write("cut.obj", "# SPACE=RAS\nv 1 2 3\nv 10 2 3\nv 10 20 3\nl 1 2 3\no lid\nl 1 2 3 1\n")).plan;
+    const Plan lines =
+        import_plan(write("cut.obj", "# SPACE=RAS\nv 1 2 3\nv 10 2 3\nv 10 20 3\nl 1 2 3\no lid\nl 1 2 3 1\n")).plan;
     ASSERT_EQ(lines.osteotomy_lines.size(), 2U);
     EXPECT_EQ(lines.osteotomy_lines[0].name, "cut 1");
     EXPECT_EQ(lines.osteotomy_lines[0].points_in_ct[1], Vector3d(-10, -2, 3));
@@ -168,8 +179,10 @@ TEST_F(PlanImportTest, LinesOfMeshFilesAreOsteotomyLines) {
     EXPECT_EQ(edge.osteotomy_lines[0].points_in_ct.size(), 4U);
     EXPECT_EQ(edge.osteotomy_lines[0].name, "patch");
     // Segments end to end in a legacy VTK file, as many programs write curves.
-    const std::string vtk = "# vtk DataFile Version 3.0\n3D Slicer output. SPACE=LPS\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 10 0 0 10 10 0 10 10 10\n"
-                            "LINES 3 9\n2 0 1\n2 1 2\n2 2 3\n";
+    const std::string vtk =
+        "# vtk DataFile Version 3.0\n3D Slicer output. SPACE=LPS\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 10 0 0 10 10 0 "
+        "10 10 10\n"
+        "LINES 3 9\n2 0 1\n2 1 2\n2 2 3\n";
     const Plan joined = import_plan(write("curve.vtk", vtk)).plan;
     ASSERT_EQ(joined.osteotomy_lines.size(), 1U);
     EXPECT_EQ(joined.osteotomy_lines[0].points_in_ct.size(), 4U);
@@ -186,11 +199,13 @@ TEST_F(PlanImportTest, MeshesThatAreNoLinesAreRefused) {
     const std::string tetrahedron = "# SPACE=LPS\nv 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
     EXPECT_SAYS(refusal("a.obj", tetrahedron), "closed surface of 4 triangles");
     std::string stack = "# SPACE=LPS\n";
-    for (int z = 0; z < 4; ++z) stack += fmt::format("v 0 0 {0}\nv 30 0 {0}\nv 30 30 {0}\nl {1} {2} {3} {1}\n", 3 * z, 3 * z + 1, 3 * z + 2, 3 * z + 3);
+    for (int z = 0; z < 4; ++z)
+        stack += fmt::format("v 0 0 {0}\nv 30 0 {0}\nv 30 30 {0}\nl {1} {2} {3} {1}\n", 3 * z, 3 * z + 1, 3 * z + 2, 3 * z + 3);
     EXPECT_SAYS(refusal("a.obj", stack), "contours at 4 heights");
     EXPECT_SAYS(refusal("a.obj", "# SPACE=LPS\nv 0 0 0\nv 9 0 0\nl 1 5\n"), "which does not exist");
     EXPECT_SAYS(refusal("a.obj", "# SPACE=LPS\nv 0 0 nan\nv 9 0 0\nl 1 2\n"), "not a finite number");
-    EXPECT_SAYS(refusal("a.stl", "solid SPACE=LPS\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"), "is cut short");
+    EXPECT_SAYS(refusal("a.stl", "solid SPACE=LPS\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"),
+                "is cut short");
     EXPECT_SAYS(refusal("a.stl", std::string(90, 'x')), "announces");
     EXPECT_SAYS(refusal("a.vtp", "<?xml version=\"1.0\"?><VTKFile type=\"PolyData\"><PolyData>"), "a.vtp");
     EXPECT_SAYS(refusal("a.vtk", "no VTK file"), "is not a VTK file");
@@ -200,7 +215,8 @@ TEST_F(PlanImportTest, AVtpThatIsCutAnywhereIsRefusedAndNeverReadAsLess) {
     Plan plan = test::random_plan(3);
     write_plan_vtp(plan, folder_.path() / "whole.vtp");
     const std::string whole = read_whole(folder_.path() / "whole.vtp");
-    for (std::size_t part = 1; part < 20; ++part) EXPECT_FALSE(refusal("cut.vtp", whole.substr(0, whole.size() * part / 20)).empty()) << part;
+    for (std::size_t part = 1; part < 20; ++part)
+        EXPECT_FALSE(refusal("cut.vtp", whole.substr(0, whole.size() * part / 20)).empty()) << part;
 }
 
 TEST_F(PlanImportTest, AnAngleIsTwoCutsThatMeetAndARoiIsRefused) {

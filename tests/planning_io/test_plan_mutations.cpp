@@ -22,7 +22,9 @@ namespace fs = std::filesystem;
 
 /// A few bytes flipped, doubled, cut out, overwritten by words that parsers stumble over, or the end cut off.
 std::string mutated(std::string content, std::mt19937& random) {
-    static const char* const kWords[] = {"nan", "inf", "-1", "1e308", "99999999999999999999", "\"", ",", "\n", "{", "[", "]", "\0\0\0\0", "\xFF\xFF\xFF\xFF", "LPS", "RAS", "<", "0"};
+    static const char* const kWords[] = {"nan", "inf", "-1", "1e308",    "99999999999999999999", "\"",  ",",   "\n",
+                                         "{",   "[",   "]",  "\0\0\0\0", "\xFF\xFF\xFF\xFF",     "LPS", "RAS", "<",
+                                         "0"};
     const auto below = [&](std::size_t n) { return n == 0 ? 0 : std::uniform_int_distribution<std::size_t>(0, n - 1)(random); };
     for (std::size_t times = 1 + below(4); times > 0 && !content.empty(); --times) {
         const std::size_t at = below(content.size()), length = std::min(content.size() - at, 1 + below(16));
@@ -64,7 +66,8 @@ public:
             }
             slowest_s = std::max(slowest_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
         }
-        std::printf("%s: %d read, %d refused, %d damaged, slowest %.3f s\n", seed_name.c_str(), read, refused, damaged, slowest_s);
+        std::printf("%s: %d read, %d refused, %d damaged, slowest %.3f s\n", seed_name.c_str(), read, refused, damaged,
+                    slowest_s);
         EXPECT_LT(slowest_s, 2);
         EXPECT_GT(refused + damaged, 0);
     }
@@ -93,12 +96,20 @@ TEST(PlanMutations, NoMutatedFileBringsTheProgramDown) {
     mutations.read("a.csv", read_whole(data / "seeg_trajectories.csv"), 500 * times, lps);
     mutations.read("a.obj", "# SPACE=RAS\nv 1 2 3\nv 10 2 3\nv 10 20 3\nv 1 20 3\nl 1 2 3\nf 1 2 3 4\n", 500 * times, {});
     std::string stl = "solid SPACE=LPS\n";
-    for (int i = 0; i < 2; ++i) stl += "facet normal 0 0 1\nouter loop\nvertex " + std::to_string(50 * i) + " 0 0\nvertex 20 0 0\nvertex 0 20 0\nendloop\nendfacet\n";
+    for (int i = 0; i < 2; ++i)
+        stl += "facet normal 0 0 1\nouter loop\nvertex " + std::to_string(50 * i) +
+               " 0 0\nvertex 20 0 0\nvertex 0 20 0\nendloop\nendfacet\n";
     mutations.read("a.stl", stl + "endsolid\n", 300 * times, {});
-    mutations.read("a.ply", "ply\nformat ascii 1.0\ncomment SPACE=LPS\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n"
-                            "property list uchar int vertex_indices\nend_header\n0 0 0\n20 0 0\n20 20 0\n0 20 0\n3 0 1 2\n3 0 2 3\n", 300 * times, {});
+    mutations.read("a.ply",
+                   "ply\nformat ascii 1.0\ncomment SPACE=LPS\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
+                   "float z\nelement face 2\n"
+                   "property list uchar int vertex_indices\nend_header\n0 0 0\n20 0 0\n20 20 0\n0 20 0\n3 0 1 2\n3 0 2 3\n",
+                   300 * times, {});
     mutations.read("a.vtp", read_whole(folder.path() / "seed.vtp"), 150 * times, {});
-    mutations.read("a.vtk", "# vtk DataFile Version 3.0\nSPACE=LPS\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 10 0 0 10 10 0 10 10 10\nLINES 3 9\n2 0 1\n2 1 2\n2 2 3\n", 150 * times, {});
+    mutations.read("a.vtk",
+                   "# vtk DataFile Version 3.0\nSPACE=LPS\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 10 0 0 10 10 0 10 10 "
+                   "10\nLINES 3 9\n2 0 1\n2 1 2\n2 2 3\n",
+                   150 * times, {});
     mutations.read("a.dcm", read_whole(folder.path() / "seed.dcm"), 150 * times, same_ct);
 }
 

@@ -43,7 +43,9 @@ const TriangleMesh& head() {
     return kHead;
 }
 
-const Vector3d& corner(const TriangleMesh& mesh, const std::array<std::int32_t, 3>& t, std::size_t c) { return mesh.vertices_in_ct[static_cast<std::size_t>(t[c])]; }
+const Vector3d& corner(const TriangleMesh& mesh, const std::array<std::int32_t, 3>& t, std::size_t c) {
+    return mesh.vertices_in_ct[static_cast<std::size_t>(t[c])];
+}
 
 /// The share of triangles that look the way the analytic head's surface does.
 double share_outward(const TriangleMesh& mesh) {
@@ -62,7 +64,8 @@ std::string binary_stl(const TriangleMesh& mesh, std::string header) {
     for (const auto& t : mesh.triangles) {
         std::array<float, 12> values{};
         for (std::size_t c = 0; c < 3; ++c)
-            for (int axis = 0; axis < 3; ++axis) values[3 + 3 * c + static_cast<std::size_t>(axis)] = static_cast<float>(corner(mesh, t, c)[axis]);
+            for (int axis = 0; axis < 3; ++axis)
+                values[3 + 3 * c + static_cast<std::size_t>(axis)] = static_cast<float>(corner(mesh, t, c)[axis]);
         header.append(reinterpret_cast<const char*>(values.data()), 48);
         header.append(2, '\0');
     }
@@ -99,8 +102,9 @@ TEST_F(SurfaceFileTest, TheSameHeadFromEveryFormatIsTheSameClosedOutwardSurface)
     write_mesh(head(), folder_.path() / "head.ply");
     TriangleMesh ras = head();
     for (auto& p : ras.vertices_in_ct) p = Vector3d(-p.x(), -p.y(), p.z());
-    for (const fs::path& file : {folder_.path() / "head.ply", write("head.stl", binary_stl(head(), "3D Slicer output. SPACE=LPS")), write("ras.stl", binary_stl(ras, "SPACE=RAS")),
-                                 write("head.obj", obj(head(), "# SPACE=LPS\n"))}) {
+    for (const fs::path& file :
+         {folder_.path() / "head.ply", write("head.stl", binary_stl(head(), "3D Slicer output. SPACE=LPS")),
+          write("ras.stl", binary_stl(ras, "SPACE=RAS")), write("head.obj", obj(head(), "# SPACE=LPS\n"))}) {
         const SurfaceFile read = read_surface(file);
         EXPECT_TRUE(read.closed) << file;
         EXPECT_EQ(read.pieces, 1U) << file;
@@ -108,7 +112,8 @@ TEST_F(SurfaceFileTest, TheSameHeadFromEveryFormatIsTheSameClosedOutwardSurface)
         ASSERT_EQ(read.mesh.triangles.size(), head().triangles.size()) << file;
         EXPECT_EQ(read.mesh.vertices_in_ct.size(), head().vertices_in_ct.size()) << file;  // STL's corners are welded
         EXPECT_GT(share_outward(read.mesh), 0.999) << file;
-        for (const auto& p : read.mesh.vertices_in_ct) ASSERT_LT(std::abs(test::analytic_head_distance(p)), 1e-4) << file;  // float's digits
+        for (const auto& p : read.mesh.vertices_in_ct)
+            ASSERT_LT(std::abs(test::analytic_head_distance(p)), 1e-4) << file;  // float's digits
     }
 }
 
@@ -140,7 +145,9 @@ TEST_F(SurfaceFileTest, WhatIsNoSurfaceIsRefusedWithNumbers) {
     TriangleMesh fins = head();
     for (int i = 0; i < 40; ++i) {
         fins.vertices_in_ct.push_back(1.2 * corner(head(), head().triangles[static_cast<std::size_t>(50 * i)], 0));
-        fins.triangles.push_back({head().triangles[static_cast<std::size_t>(50 * i)][0], head().triangles[static_cast<std::size_t>(50 * i)][1], static_cast<std::int32_t>(fins.vertices_in_ct.size()) - 1});
+        fins.triangles.push_back({head().triangles[static_cast<std::size_t>(50 * i)][0],
+                                  head().triangles[static_cast<std::size_t>(50 * i)][1],
+                                  static_cast<std::int32_t>(fins.vertices_in_ct.size()) - 1});
     }
     EXPECT_SAYS(refusal(write("fins.obj", obj(fins, "# SPACE=LPS\n"))), "40 edges");
     const std::string whole = binary_stl(head(), "SPACE=LPS");
@@ -150,7 +157,8 @@ TEST_F(SurfaceFileTest, WhatIsNoSurfaceIsRefusedWithNumbers) {
     for (int i = 0; i < 100; ++i)
         for (const double s : {-10.0, 10.0}) {
             const double a = 2 * M_PI * i / 100;
-            strip += fmt::format("v {} {} {}\n", (60 + s * std::cos(a / 2)) * std::cos(a), (60 + s * std::cos(a / 2)) * std::sin(a), s * std::sin(a / 2));
+            strip += fmt::format("v {} {} {}\n", (60 + s * std::cos(a / 2)) * std::cos(a),
+                                 (60 + s * std::cos(a / 2)) * std::sin(a), s * std::sin(a / 2));
         }
     for (int i = 0; i < 100; ++i) {
         const int a = 2 * i + 1, b = a + 1, c = i == 99 ? 2 : a + 2, d = i == 99 ? 1 : a + 3;
@@ -159,8 +167,8 @@ TEST_F(SurfaceFileTest, WhatIsNoSurfaceIsRefusedWithNumbers) {
     EXPECT_SAYS(refusal(write("strip.obj", strip)), "inside that runs over into its outside");
 }
 
-/// A SEG of an oblique stack: a ball of radius 30 mm round (5, -10, 20), voxels 1.5 x 1.2 x 2 mm, slices from the last to the first;
-/// segment 2 is a small cube elsewhere.
+/// A SEG of an oblique stack: a ball of radius 30 mm round (5, -10, 20), voxels 1.5 x 1.2 x 2 mm, slices from the last to the
+/// first; segment 2 is a small cube elsewhere.
 std::string ball_seg(const std::string& frame_of_reference, const std::string& labels = "Bone") {
     const int columns = 56, rows = 60, slices = 40;
     const Eigen::Matrix3d axes = Eigen::AngleAxisd(0.3, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
@@ -194,13 +202,17 @@ std::string ball_seg(const std::string& frame_of_reference, const std::string& l
             if (!any) break;
         }
         if (!any) continue;
-        per_frame.push_back(DicomBytes()
-                                .add_sequence(0x00209113, {DicomBytes().add(0x00200032, "DS", ds({position.x(), position.y(), position.z()}))})
-                                .add_sequence(0x0062000A, {DicomBytes().add_us(0x0062000B, 1)}));
+        per_frame.push_back(
+            DicomBytes()
+                .add_sequence(0x00209113, {DicomBytes().add(0x00200032, "DS", ds({position.x(), position.y(), position.z()}))})
+                .add_sequence(0x0062000A, {DicomBytes().add_us(0x0062000B, 1)}));
     }
-    const DicomBytes shared = DicomBytes()
-                                  .add_sequence(0x00209116, {DicomBytes().add(0x00200037, "DS", ds({axes(0, 0), axes(1, 0), axes(2, 0), axes(0, 1), axes(1, 1), axes(2, 1)}))})
-                                  .add_sequence(0x00289110, {DicomBytes().add(0x00180050, "DS", "2").add(0x00280030, "DS", "1.2\\1.5")});
+    const DicomBytes shared =
+        DicomBytes()
+            .add_sequence(0x00209116,
+                          {DicomBytes().add(0x00200037, "DS",
+                                            ds({axes(0, 0), axes(1, 0), axes(2, 0), axes(0, 1), axes(1, 1), axes(2, 1)}))})
+            .add_sequence(0x00289110, {DicomBytes().add(0x00180050, "DS", "2").add(0x00280030, "DS", "1.2\\1.5")});
     std::vector<DicomBytes> segments{DicomBytes().add_us(0x00620004, 1).add(0x00620005, "LO", labels)};
     if (labels != "Bone") segments.push_back(DicomBytes().add_us(0x00620004, 2).add(0x00620005, "LO", "Other"));
     return DicomBytes()
@@ -237,7 +249,8 @@ TEST_F(SurfaceFileTest, ASegmentOfABallIsABallWhereItLies) {
     EXPECT_NEAR(sum / static_cast<double>(read.mesh.vertices_in_ct.size()), 0, 0.1);  // voxels are cut at their centres
     EXPECT_LT(worst, 1.3);                                                             // two thirds of the longest voxel edge
     for (const auto& t : read.mesh.triangles) {
-        const Vector3d n = (corner(read.mesh, t, 1) - corner(read.mesh, t, 0)).cross(corner(read.mesh, t, 2) - corner(read.mesh, t, 0));
+        const Vector3d n =
+            (corner(read.mesh, t, 1) - corner(read.mesh, t, 0)).cross(corner(read.mesh, t, 2) - corner(read.mesh, t, 0));
         ASSERT_GE(n.dot(corner(read.mesh, t, 0) - Vector3d(5, -10, 20)), 0);
     }
 }
@@ -252,7 +265,8 @@ TEST_F(SurfaceFileTest, ASegmentationOfAnotherCtOrUnknownSegmentIsRefused) {
     EXPECT_TRUE(refusal(two, of_ct("1.2.3", "Skull")).empty());
     EXPECT_SAYS(refusal(two, of_ct("1.2.3", "Other")), "0 frame(s)");
     const std::string whole = ball_seg("1.2.3");
-    for (std::size_t part = 1; part < 16; ++part) EXPECT_FALSE(refusal(write("cut.dcm", whole.substr(0, whole.size() * part / 16)), of_ct("1.2.3")).empty()) << part;
+    for (std::size_t part = 1; part < 16; ++part)
+        EXPECT_FALSE(refusal(write("cut.dcm", whole.substr(0, whole.size() * part / 16)), of_ct("1.2.3")).empty()) << part;
 }
 
 /// An RT Structure Set of one ball of 60 mm radius round (10, 20, -30), contours of 120 corners every 2.5 mm, and of one line.
@@ -263,16 +277,19 @@ std::string ball_rt_struct() {
         std::string data;
         for (int i = 0; i < 120; ++i) {
             if (i > 0) data += '\\';
-            data += fmt::format("{:.3f}\\{:.3f}\\{:.3f}", 10 + r * std::cos(2 * M_PI * i / 120), 20 + r * std::sin(2 * M_PI * i / 120), z - 30);
+            data += fmt::format("{:.3f}\\{:.3f}\\{:.3f}", 10 + r * std::cos(2 * M_PI * i / 120),
+                                20 + r * std::sin(2 * M_PI * i / 120), z - 30);
         }
-        contours.push_back(DicomBytes().add(0x30060042, "CS", "CLOSED_PLANAR").add(0x30060046, "IS", "120").add(0x30060050, "DS", data));
+        contours.push_back(
+            DicomBytes().add(0x30060042, "CS", "CLOSED_PLANAR").add(0x30060046, "IS", "120").add(0x30060050, "DS", data));
     }
     return DicomBytes()
         .add(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.481.3")
         .add(0x00080060, "CS", "RTSTRUCT")
         .add(0x00200052, "UI", "1.2.3")
-        .add_sequence(0x30060020, {DicomBytes().add(0x30060022, "IS", "1").add(0x30060024, "UI", "1.2.3").add(0x30060026, "LO", "Ball"),
-                                   DicomBytes().add(0x30060022, "IS", "2").add(0x30060024, "UI", "1.2.3").add(0x30060026, "LO", "Line")})
+        .add_sequence(0x30060020,
+                      {DicomBytes().add(0x30060022, "IS", "1").add(0x30060024, "UI", "1.2.3").add(0x30060026, "LO", "Ball"),
+                       DicomBytes().add(0x30060022, "IS", "2").add(0x30060024, "UI", "1.2.3").add(0x30060026, "LO", "Line")})
         .add_sequence(0x30060039, {DicomBytes().add_sequence(0x30060040, contours).add(0x30060084, "IS", "1"),
                                    DicomBytes().add_sequence(0x30060040, {contours[10]}).add(0x30060084, "IS", "2")})
         .file("1.2.840.10008.5.1.4.1.1.481.3");

@@ -25,7 +25,8 @@ const SkinSurface& ball() {
 }
 
 Vector3d on_ball(double longitude, double latitude) {
-    return kRadius_mm * Vector3d(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude), std::sin(latitude));
+    return kRadius_mm *
+           Vector3d(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude), std::sin(latitude));
 }
 
 bool said(const std::vector<std::string>& sentences, const std::string& text) {
@@ -69,14 +70,20 @@ TEST(CheckPlan, WhatMustNotBeShownIsStoppedByNameAndNumber) {
         EXPECT_THROW(refuse_stopped_plan(verdict), InputError);
         return verdict.stops;
     };
-    EXPECT_TRUE(said(stops_of([](Plan& p) { p.boreholes[0].position_in_ct.x() = std::nan(""); }), "B1: its numbers are not finite"));
-    EXPECT_TRUE(said(stops_of([](Plan& p) { p.osteotomy_lines[0].points_in_ct[1].z() = std::numeric_limits<double>::infinity(); }), "O1: its numbers are not finite"));
-    EXPECT_TRUE(said(stops_of([](Plan& p) { p.trajectories[0].target_in_ct = on_ball(0, 0) * 1.5; }), "T1: its target lies outside the body, 40.0 mm"));
+    EXPECT_TRUE(
+        said(stops_of([](Plan& p) { p.boreholes[0].position_in_ct.x() = std::nan(""); }), "B1: its numbers are not finite"));
+    EXPECT_TRUE(
+        said(stops_of([](Plan& p) { p.osteotomy_lines[0].points_in_ct[1].z() = std::numeric_limits<double>::infinity(); }),
+             "O1: its numbers are not finite"));
+    EXPECT_TRUE(said(stops_of([](Plan& p) { p.trajectories[0].target_in_ct = on_ball(0, 0) * 1.5; }),
+                     "T1: its target lies outside the body, 40.0 mm"));
     EXPECT_TRUE(said(stops_of([](Plan& p) { std::swap(p.trajectories[0].entry_in_ct, p.trajectories[0].target_in_ct); }),
                      "T1: entry and target are swapped: the entry lies 40.0 mm under the skin"));
-    EXPECT_TRUE(said(stops_of([](Plan& p) { p.trajectories[0].target_in_ct = on_ball(0, 0) * 0.995; }), "T1: entry and target are only 0.40 mm apart"));
+    EXPECT_TRUE(said(stops_of([](Plan& p) { p.trajectories[0].target_in_ct = on_ball(0, 0) * 0.995; }),
+                     "T1: entry and target are only 0.40 mm apart"));
     EXPECT_TRUE(said(stops_of([](Plan& p) { p.boreholes[0].depth_mm = 250; }), "B1: it is 250 mm deep"));
-    EXPECT_TRUE(said(stops_of([](Plan& p) { p.boreholes[0].axis_in_ct = on_ball(0.5, 0.2).normalized(); }), "B1: its axis points out of the body"));
+    EXPECT_TRUE(said(stops_of([](Plan& p) { p.boreholes[0].axis_in_ct = on_ball(0.5, 0.2).normalized(); }),
+                     "B1: its axis points out of the body"));
     EXPECT_TRUE(said(stops_of([](Plan& p) { p.boreholes[0].position_in_ct *= 1.5; }), "B1: it is 40.0 mm from the skin"));
     EXPECT_TRUE(said(stops_of([](Plan& p) {
                          p.boreholes[0].position_in_ct *= 1.2;
@@ -95,9 +102,13 @@ TEST(CheckPlan, WhatLiesOutsideTheVolumeIsStopped) {
 }
 
 TEST(CheckPlan, OnlyWordsThatMeanASideClaimOne) {
-    for (const char* name : {"left", "Left burr hole", "B1 LINKS", "trajectory-links", "L frontal", "T3_L", "incision gauche"}) EXPECT_EQ(side_named(name), Side::left) << name;
-    for (const char* name : {"right", "rechts", "R temporal", "Entry R", "dexter-2"}) EXPECT_EQ(side_named(name), Side::right) << name;
-    for (const char* name : {"", "L", "R", "L1", "R2D2", "Rand", "cleft", "leftover", "brightness", "left right", "L to R", "Schnitt", "V L 3"}) EXPECT_EQ(side_named(name), std::nullopt) << name;
+    for (const char* name : {"left", "Left burr hole", "B1 LINKS", "trajectory-links", "L frontal", "T3_L", "incision gauche"})
+        EXPECT_EQ(side_named(name), Side::left) << name;
+    for (const char* name : {"right", "rechts", "R temporal", "Entry R", "dexter-2"})
+        EXPECT_EQ(side_named(name), Side::right) << name;
+    for (const char* name :
+         {"", "L", "R", "L1", "R2D2", "Rand", "cleft", "leftover", "brightness", "left right", "L to R", "Schnitt", "V L 3"})
+        EXPECT_EQ(side_named(name), std::nullopt) << name;
 }
 
 TEST(CheckPlan, TheMiddleOfAHeadIsFoundHoweverItLies) {
@@ -108,7 +119,9 @@ TEST(CheckPlan, TheMiddleOfAHeadIsFoundHoweverItLies) {
     EXPECT_NEAR(straight->point_in_ct.dot(straight->normal_in_ct), 0, 6);
     for (const double degrees : {-20.0, 20.0}) {
         TriangleMesh turned = mesh;
-        const Eigen::Matrix3d turn = (Eigen::AngleAxisd(degrees * M_PI / 180, Vector3d::UnitZ()) * Eigen::AngleAxisd(0.1, Vector3d::UnitY())).toRotationMatrix();
+        const Eigen::Matrix3d turn =
+            (Eigen::AngleAxisd(degrees * M_PI / 180, Vector3d::UnitZ()) * Eigen::AngleAxisd(0.1, Vector3d::UnitY()))
+                .toRotationMatrix();
         for (auto& p : turned.vertices_in_ct) p = turn * p + Vector3d(100, -50, 30);
         for (auto& n : turned.normals_in_ct) n = turn * n;
         const auto found = find_mid_plane(SkinSurface(turned));
