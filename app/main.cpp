@@ -26,11 +26,41 @@ CLI::Option* preset_option(CLI::App* sub, std::string& preset) {
         ->capture_default_str();
 }
 
+void plan_frame_options(CLI::App* sub, std::string& frame, std::string& accept_frame) {
+    sub->add_option("--frame", frame, "Coordinate system of plan files that do not say their own")
+        ->check(CLI::IsMember({"LPS", "RAS"}));
+    sub->add_option("--accept-frame", accept_frame, "DICOM frame of reference (UID) that is known to be the volume's");
+}
+
+void add_plan(CLI::App& app, PlanOptions& o) {
+    auto* sub = command(app, "plan", "Plan files -> checked, listed, converted",
+                        "plan trajectories.csv --frame RAS --case case --out plan.mrk.json");
+    sub->add_option(
+           "files", o.files,
+           "3D Slicer markups (.mrk.json, .fcsv), RTSTRUCT (.dcm), trajectories (.csv, .tsv), lines (.vtp, .vtk, .ply, .obj)")
+        ->required();
+    sub->add_option("--case", o.case_folder, "Check against this case's skin");
+    sub->add_option("--volume", o.volume, "Check against this volume's box and frame of reference");
+    sub->add_option("--series", o.series_uid, "UID of the DICOM series, where the folder holds several");
+    plan_frame_options(sub, o.frame, o.accept_frame);
+    sub->add_option("--out", o.out, "Write the whole plan: .mrk.json, .vtp, or .dcm (RTSTRUCT)");
+    json_flag(sub, o.json);
+}
+
 void add_prepare(CLI::App& app, PrepareOptions& o) {
     auto* sub = command(app, "prepare", "CT or MR volume and plan -> case folder (skin, LUT, plan, checksums)",
                         "prepare Cranium.inv3 --plan frontal_defect.mrk.json --out case");
     sub->add_option("volume", o.volume, "DICOM folder or file, NIfTI, NRRD, MetaImage, or InVesalius project (.inv3)")->required();
-    sub->add_option("--plan", o.plan, "3D Slicer markups file (.mrk.json), or a folder of them")->required();
+    sub->add_option("--plan", o.plan,
+                    "Plan file, or a folder of them: .mrk.json, .fcsv, RTSTRUCT, tables, lines (see planning_io/README.md)")
+        ->required();
+    plan_frame_options(sub, o.frame, o.accept_frame);
+    sub->add_option(
+        "--surface", o.surface,
+        "Surface to project on instead of the skin: bone, or any other (.stl, .ply, .obj, .vtp, .vtk, DICOM SEG or RTSTRUCT)");
+    sub->add_option("--surface-frame", o.surface_frame, "Coordinate system of a surface that does not say its own")
+        ->check(CLI::IsMember({"LPS", "RAS"}));
+    sub->add_option("--segment", o.segment, "Which segment or ROI of a DICOM SEG or RTSTRUCT, by its name");
     sub->add_option("--out", o.out, "Case folder to write")->required();
     sub->add_option("--series", o.series_uid, "UID or number of the DICOM series, where the folder holds several");
     sub->add_flag("--anonymous", o.anonymous, "Leave UIDs and file names of the volume out of the case folder");
@@ -157,6 +187,7 @@ int main(int argc, char** argv) {
     app.require_subcommand(1);
     app.set_version_flag("--version", "planlight 0.1.0");
     PrepareOptions prepare;
+    PlanOptions plan;
     PatternsOptions patterns;
     SimulateOptions simulate;
     ScanOptions scan;
@@ -168,6 +199,7 @@ int main(int argc, char** argv) {
     DemoOptions demo;
     add_demo(app, demo);
     add_prepare(app, prepare);
+    add_plan(app, plan);
     add_patterns(app, patterns);
     add_scan(app, scan);
     add_register(app, registration);
@@ -185,6 +217,7 @@ int main(int argc, char** argv) {
         const std::string name = app.get_subcommands().front()->get_name();
         if (name == "demo") return run_demo(demo);
         if (name == "prepare") return run_prepare(prepare);
+        if (name == "plan") return run_plan(plan);
         if (name == "patterns") return run_patterns(patterns);
         if (name == "scan") return run_scan(scan);
         if (name == "register") return run_register(registration);

@@ -8,7 +8,7 @@
 
 #include "planning_io/mesh_file.h"
 #include "planning_io/read_volume.h"
-#include "projection/draw_plan.h"
+#include "projection/check_plan.h"
 
 namespace planlight {
 namespace {
@@ -22,6 +22,24 @@ double timed(const std::string& name, const std::function<void(const std::string
     });
     if (progress) progress(name, 1);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+}
+
+/// The LUT, what belongs to the volume, and the plan checked: of a case that has its skin.
+void finish(Preparation& done, const Volume& volume, const Plan& plan, const LutSettings& lut, const std::string& created,
+            const std::function<void(const std::string&, double)>& progress) {
+    Case& the_case = done.prepared;
+    done.lut_s = timed("table", progress, [&](const auto& share) { the_case.lut = build_skin_lut(the_case.skin, lut, share); });
+    the_case.volume_hash = hash_of(volume);
+    the_case.frame_of_reference_uid = volume.frame_of_reference_uid;
+    the_case.lut.volume_hash = the_case.volume_hash;
+    the_case.lut.mesh_hash = hash_of(the_case.skin);
+    the_case.code = the_case.volume_hash.substr(0, 8);
+    the_case.created = created;
+    the_case.source = volume.source;
+    the_case.plan = plan;
+    const PlanVerdict of_plan = check_plan(plan, SkinSurface(the_case.skin), box_of(volume));
+    refuse_stopped_plan(of_plan);
+    the_case.warnings.insert(the_case.warnings.end(), of_plan.warnings.begin(), of_plan.warnings.end());
 }
 
 }  // namespace
@@ -38,28 +56,27 @@ Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSetti
     done.segment_s = timed("skin", progress, [&](const auto& share) { mask = segment_skin(volume, skin, share); });
     done.triangulate_s =
         timed("surface", progress, [&](const auto& share) { the_case.skin = triangulate_skin(volume, mask, skin, share); });
-    done.lut_s = timed("table", progress, [&](const auto& share) { the_case.lut = build_skin_lut(the_case.skin, lut, share); });
-
     done.threshold = mask.threshold;
     done.body_ml = mask.volume_ml;
     done.removed_ml = mask.removed_ml;
     done.pieces_removed = mask.pieces_removed;
-    the_case.volume_hash = hash_of(volume);
-    the_case.lut.volume_hash = the_case.volume_hash;
-    the_case.lut.mesh_hash = hash_of(the_case.skin);
-    the_case.code = the_case.volume_hash.substr(0, 8);
-    the_case.created = created;
-    the_case.source = volume.source;
     the_case.skin_threshold = mask.threshold;
-    the_case.plan = plan;
     the_case.warnings = volume.notes;
     the_case.warnings.insert(the_case.warnings.end(), mask.warnings.begin(), mask.warnings.end());
     if (volume.modality == "CT" && !volume.is_hu)
         the_case.warnings.push_back(fmt::format(
             "the values of this CT are not HU; the skin threshold {:.0f} was {}: look at the skin before you use it", mask.threshold,
             skin.threshold == 0 ? "found from their histogram" : "given"));
-    const auto of_plan = check_plan(plan, SkinSurface(the_case.skin));
-    the_case.warnings.insert(the_case.warnings.end(), of_plan.begin(), of_plan.end());
+    finish(done, volume, plan, lut, created, progress);
+    return done;
+}
+
+Preparation prepare_case_on(const Volume& volume, const SurfaceFile& surface, const Plan& plan, const LutSettings& lut,
+                            const std::string& created, const std::function<void(const std::string&, double)>& progress) {
+    Preparation done;
+    done.prepared.skin = surface.mesh;
+    done.prepared.warnings = surface.notes;
+    finish(done, volume, plan, lut, created, progress);
     return done;
 }
 

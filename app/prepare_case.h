@@ -5,6 +5,7 @@
 #include <string>
 
 #include "planning_io/case_folder.h"
+#include "planning_io/surface_file.h"
 #include "planning_io/types/volume.h"
 #include "segmentation/build_skin_lut.h"
 #include "segmentation/segment_skin.h"
@@ -23,6 +24,10 @@ struct Preparation {
 /// `progress(step, share)` names the step and how far it is, 0..1; may be empty. `created` is an ISO 8601 date.
 Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSettings& skin, const LutSettings& lut,
                          const std::string& created, const std::function<void(const std::string&, double)>& progress = {});
+
+/// The same on a surface that somebody else segmented (`mesh` as `read_surface` gives it, its `notes` become warnings).
+Preparation prepare_case_on(const Volume& volume, const SurfaceFile& surface, const Plan& plan, const LutSettings& lut,
+                            const std::string& created, const std::function<void(const std::string&, double)>& progress = {});
 
 /// Now, as ISO 8601 in UTC.
 std::string iso_date_now();

@@ -32,6 +32,7 @@ Json manifest_of(const Case& prepared) {
                 {"created", prepared.created},
                 {"source", prepared.source},
                 {"volume_hash", prepared.volume_hash},
+                {"frame_of_reference_uid", prepared.frame_of_reference_uid},
                 {"mesh_hash", hash_of(prepared.skin)},
                 {"skin_threshold", prepared.skin_threshold},
                 {"warnings", prepared.warnings}};
@@ -108,6 +109,7 @@ Case read_case(const fs::path& folder) {
     prepared.created = manifest.at("created").text();
     prepared.source = manifest.at("source").text();
     prepared.volume_hash = manifest.at("volume_hash").text();
+    if (const auto uid = manifest.find("frame_of_reference_uid")) prepared.frame_of_reference_uid = uid->text();
     prepared.skin_threshold = manifest.at("skin_threshold").number();
     const JsonValue warnings = manifest.at("warnings");
     for (std::size_t i = 0; i < warnings.size(); ++i) prepared.warnings.push_back(warnings[i].text());

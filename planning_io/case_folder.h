@@ -16,6 +16,7 @@ struct Case {
     std::string created;      ///< ISO 8601
     std::string source;       ///< Volume::source
     std::string volume_hash;
+    std::string frame_of_reference_uid;  ///< Volume::frame_of_reference_uid; empty when the volume has none
     double skin_threshold = 0;
     TriangleMesh skin;
     SkinLut lut;

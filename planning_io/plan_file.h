@@ -1,18 +1,21 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "planning_io/types/plan.h"
 
 namespace planlight {
 
-/// Reads a plan from one 3D Slicer markups file (.mrk.json, schema 1.0.x) or from every .mrk.json in a folder.
-///
-/// Line = trajectory (first point entry, second target); Curve and ClosedCurve = osteotomy line; Fiducial = boreholes
-/// (diameter, depth and axis from the point's description "diameter_mm=7 depth_mm=6 axis=z"; see the room's README);
-/// Plane = cut plane. Coordinate system exactly "LPS" or "RAS", units mm (or um): anything else is refused with InputError.
+/// Reads a plan from a file that says its own frame and units, or from a folder of such files: `import_plan` without any help.
 Plan read_plan(const std::filesystem::path& file_or_folder);
+
+/// Throws InputError, by name, when a coordinate is not finite or a size is negative.
+void check_plan_numbers(const Plan& plan, const std::filesystem::path& file);
+
+/// What a file without names of its own calls its items: the file's name without its ending.
+std::string plan_name_of(const std::filesystem::path& file);
 
 /// Writes the plan as one .mrk.json that 3D Slicer opens (LPS, mm) and `read_plan` reads back value for value.
 void write_plan(const Plan& plan, const std::filesystem::path& file);

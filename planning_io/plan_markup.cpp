@@ -1,9 +1,11 @@
 #include "planning_io/plan_markup.h"
 
-#include <charconv>
+#include <fmt/format.h>
+
 #include <cmath>
-#include <map>
-#include <sstream>
+#include <numbers>
+
+#include "planning_io/plan_settings.h"
 
 namespace planlight {
 namespace {
@@ -14,15 +16,15 @@ constexpr double kMaxCoordinate_mm = 5000;
 constexpr const char* kSaveAgain = "Save it again from 3D Slicer, in LPS and mm.";
 
 /// How a markup's numbers become ct, mm.
-struct Space {
+struct MarkupSpace {
     double mm_per_unit = 1;
     double sign_xy = 1;
     Vector3d direction(const Vector3d& d) const { return {sign_xy * d.x(), sign_xy * d.y(), d.z()}; }
     Vector3d point(const Vector3d& p) const { return mm_per_unit * direction(p); }
 };
 
-Space space_of(const JsonValue& markup, bool units_required) {
-    Space space;
+MarkupSpace space_of(const JsonValue& markup, bool units_required) {
+    MarkupSpace space;
     const std::string system = markup.at("coordinateSystem").text();
     if (system != "LPS" && system != "RAS") markup.at("coordinateSystem").refuse("is \"" + system + "\", neither \"LPS\" nor \"RAS\"", kSaveAgain);
     if (system == "RAS") space.sign_xy = -1;
@@ -38,7 +40,7 @@ Space space_of(const JsonValue& markup, bool units_required) {
     return space;
 }
 
-Vector3d point_in_ct(const JsonValue& position, const Space& space) {
+Vector3d point_in_ct(const JsonValue& position, const MarkupSpace& space) {
     const Vector3d p = space.point(position.vector3());
     if (p.cwiseAbs().maxCoeff() > kMaxCoordinate_mm) position.refuse("is more than 5 m from the origin", "Check the units of the plan.");
     return p;
@@ -51,7 +53,7 @@ Vector3d unit(const Vector3d& v, const JsonValue& where) {
     return std::abs(length - 1) < 1e-9 ? v : v / length;
 }
 
-Eigen::Matrix3d axes_in_ct(const JsonValue& orientation, const Space& space) {
+Eigen::Matrix3d axes_in_ct(const JsonValue& orientation, const MarkupSpace& space) {
     const Eigen::Matrix3d file = orientation.matrix3();
     Eigen::Matrix3d axes;
     for (int column = 0; column < 3; ++column) axes.col(column) = unit(space.direction(file.col(column)), orientation);
@@ -70,26 +72,9 @@ std::optional<Colour> colour_of(const JsonValue& markup) {
     return Colour{static_cast<float>((*list)[0].number(0, 1)), static_cast<float>((*list)[1].number(0, 1)), static_cast<float>((*list)[2].number(0, 1))};
 }
 
-/// The "key=value" words of a description; other words are the surgeon's own.
-std::map<std::string, std::string> settings_of(const JsonValue& point) {
-    std::map<std::string, std::string> settings;
+PlanSettings settings_of(const JsonValue& point) {
     const auto description = point.find("description");
-    if (!description) return settings;
-    std::istringstream words(description->text());
-    for (std::string word; words >> word;)
-        if (const auto equals = word.find('='); equals != std::string::npos) settings[word.substr(0, equals)] = word.substr(equals + 1);
-    return settings;
-}
-
-double length_setting(const std::map<std::string, std::string>& settings, const std::string& key, double most_mm, const JsonValue& point) {
-    const auto setting = settings.find(key);
-    if (setting == settings.end()) return 0;
-    double value = 0;
-    const char *begin = setting->second.data(), *end = begin + setting->second.size();
-    const auto [stop, error] = std::from_chars(begin, end, value);
-    if (error != std::errc() || stop != end || !(value >= 0) || value > most_mm)
-        point.refuse("describes " + key + "=" + setting->second + ", not a number from 0 to " + Json(most_mm).dump());
-    return value;
+    return {description ? description->text() : std::string(), [point](const std::string& problem) { point.refuse(problem); }};
 }
 
 std::size_t count_points(const JsonValue& points, std::size_t least) {
@@ -101,38 +86,39 @@ std::size_t count_points(const JsonValue& points, std::size_t least) {
     return count;
 }
 
-std::string name_of(const JsonValue& markup, const char* otherwise) {
+/// The markup's own name, also an empty one; 3D Slicer leaves it out of files of one markup, which are named by it.
+std::string name_of(const JsonValue& markup, const std::string& otherwise) {
     const auto name = markup.find("name");
-    const std::string text = name ? name->text() : std::string();
-    return text.empty() ? otherwise : text;
+    return name ? name->text() : otherwise;
 }
 
-void append_trajectory(Plan& plan, const JsonValue& markup, const Space& space) {
+void append_trajectory(Plan& plan, const JsonValue& markup, const MarkupSpace& space, const std::string& otherwise) {
     const JsonValue points = markup.at("controlPoints");
     if (count_points(points, 2) != 2) points.refuse("holds more than the two points of a line");
     Trajectory t;
-    t.name = name_of(markup, "Trajectory");
+    t.name = name_of(markup, otherwise);
     t.entry_in_ct = point_in_ct(points[0].at("position"), space);
     t.target_in_ct = point_in_ct(points[1].at("position"), space);
-    t.diameter_mm = length_setting(settings_of(points[0]), "diameter_mm", 100, points[0]);
+    t.diameter_mm = settings_of(points[0]).length_mm("diameter_mm", kMaxDiameter_mm);
     t.colour = colour_of(markup);
     if (!(t.length_mm() > 1e-3)) markup.refuse("(\"" + t.name + "\") is a line of no length", "Place its entry and its target apart.");
     plan.trajectories.push_back(std::move(t));
 }
 
-void append_boreholes(Plan& plan, const JsonValue& markup, const Space& space) {
+void append_boreholes(Plan& plan, const JsonValue& markup, const MarkupSpace& space, const std::string& otherwise) {
     const JsonValue points = markup.at("controlPoints");
     const std::size_t count = count_points(points, 0);
     for (std::size_t i = 0; i < count; ++i) {
         const auto settings = settings_of(points[i]);
         Borehole b;
         const auto label = points[i].find("label");
-        b.name = label && !label->text().empty() ? label->text() : name_of(markup, "Borehole");
+        b.name = label && !label->text().empty() ? label->text() : name_of(markup, otherwise);
         b.position_in_ct = point_in_ct(points[i].at("position"), space);
-        b.diameter_mm = length_setting(settings, "diameter_mm", 100, points[i]);
-        b.depth_mm = length_setting(settings, "depth_mm", 300, points[i]);
-        if (const auto axis = settings.find("axis"); axis != settings.end()) {
-            if (axis->second != "z") points[i].refuse("describes axis=" + axis->second + "; only axis=z (the third column of its orientation) is known");
+        b.diameter_mm = settings.length_mm("diameter_mm", kMaxDiameter_mm);
+        b.depth_mm = settings.length_mm("depth_mm", kMaxDepth_mm);
+        if (const auto axis = settings.text("axis")) {
+            if (*axis != "z")
+                points[i].refuse("describes axis=" + *axis + "; only axis=z (the third column of its orientation) is known");
             b.axis_in_ct = axes_in_ct(points[i].at("orientation"), space).col(2);
         }
         b.colour = colour_of(markup);
@@ -140,11 +126,12 @@ void append_boreholes(Plan& plan, const JsonValue& markup, const Space& space) {
     }
 }
 
-void append_osteotomy_line(Plan& plan, const JsonValue& markup, const Space& space, bool closed) {
+void append_osteotomy_line(Plan& plan, const JsonValue& markup, const MarkupSpace& space, const std::string& otherwise,
+                           bool closed) {
     const JsonValue points = markup.at("controlPoints");
     const std::size_t count = count_points(points, closed ? 3 : 2);
     OsteotomyLine line;
-    line.name = name_of(markup, "Osteotomy line");
+    line.name = name_of(markup, otherwise);
     line.closed = closed;
     line.colour = colour_of(markup);
     for (std::size_t i = 0; i < count; ++i) {
@@ -155,9 +142,21 @@ void append_osteotomy_line(Plan& plan, const JsonValue& markup, const Space& spa
     plan.osteotomy_lines.push_back(std::move(line));
 }
 
-void append_cut_plane(Plan& plan, const JsonValue& markup, const Space& space) {
+/// Two cuts that meet: an open line of three points whose name says the angle between them.
+void append_angle(Plan& plan, const JsonValue& markup, const MarkupSpace& space, const std::string& otherwise) {
+    if (markup.at("controlPoints").size() != 3)
+        markup.at("controlPoints")
+            .refuse("holds other than the three points of an angle", "Place its three points in 3D Slicer.");
+    append_osteotomy_line(plan, markup, space, otherwise, false);
+    OsteotomyLine& line = plan.osteotomy_lines.back();
+    const Vector3d a = line.points_in_ct[0] - line.points_in_ct[1], b = line.points_in_ct[2] - line.points_in_ct[1];
+    const double degrees = std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
+    line.name += fmt::format("{}{:.1f} deg", line.name.empty() ? "" : " ", degrees);
+}
+
+void append_cut_plane(Plan& plan, const JsonValue& markup, const MarkupSpace& space, const std::string& otherwise) {
     CutPlane plane;
-    plane.name = name_of(markup, "Cut plane");
+    plane.name = name_of(markup, otherwise);
     plane.origin_in_ct = point_in_ct(markup.at("center"), space);
     const Eigen::Matrix3d axes = axes_in_ct(markup.at("orientation"), space);
     plane.first_axis_in_ct = axes.col(0);
@@ -204,29 +203,36 @@ Eigen::Matrix3d orientation_with_z(const Vector3d& z) {
 
 }  // namespace
 
-void append_markup(Plan& plan, const JsonValue& markup, bool units_required) {
+void append_markup(Plan& plan, const JsonValue& markup, bool units_required, const std::string& otherwise) {
     const std::string type = markup.at("type").text();
+    const auto refuse = [&](const std::string& problem, const std::string& remedy) {
+        markup.refuse("(\"" + name_of(markup, otherwise) + "\") is of type \"" + type + "\", " + problem, remedy);
+    };
+    if (type == "ROI")
+        refuse("a box, which is nothing to cut or to drill",
+               "Draw its outline as a closed curve, or its sides as planes, in 3D Slicer.");
+    const bool line = type == "Line", points = type == "Fiducial", angle = type == "Angle", plane = type == "Plane";
     const bool closed = type == "ClosedCurve";
-    if (type != "Line" && type != "Fiducial" && type != "Curve" && !closed && type != "Plane")
-        markup.refuse("(\"" + name_of(markup, "no name") + "\") is of type \"" + type + "\", which means nothing in a plan",
-                      "Keep only lines, points, curves and planes in the plan's file.");
-    const Space space = space_of(markup, units_required);
-    if (type == "Line") append_trajectory(plan, markup, space);
-    if (type == "Fiducial") append_boreholes(plan, markup, space);
-    if (type == "Curve" || closed) append_osteotomy_line(plan, markup, space, closed);
-    if (type == "Plane") append_cut_plane(plan, markup, space);
+    if (!line && !points && !angle && !plane && !closed && type != "Curve")
+        refuse("which means nothing in a plan", "Keep only lines, angles, points, curves and planes in the plan's file.");
+    const MarkupSpace space = space_of(markup, units_required);
+    if (line) append_trajectory(plan, markup, space, otherwise);
+    else if (points) append_boreholes(plan, markup, space, otherwise);
+    else if (angle) append_angle(plan, markup, space, otherwise);
+    else if (plane) append_cut_plane(plan, markup, space, otherwise);
+    else append_osteotomy_line(plan, markup, space, otherwise, closed);
 }
 
 Json markup_of(const Trajectory& t) {
     Json markup = base("Line", t.name, t.colour);
-    const std::string description = t.diameter_mm > 0 ? "diameter_mm=" + Json(t.diameter_mm).dump() : "";
-    markup["controlPoints"] = Json::array({control_point(1, "entry", t.entry_in_ct, description), control_point(2, "target", t.target_in_ct, "")});
+    markup["controlPoints"] = Json::array(
+        {control_point(1, "entry", t.entry_in_ct, description_of(t)), control_point(2, "target", t.target_in_ct, "")});
     return markup;
 }
 
 Json markup_of(const Borehole& b) {
     Json markup = base("Fiducial", b.name, b.colour);
-    Json point = control_point(1, b.name, b.position_in_ct, "diameter_mm=" + Json(b.diameter_mm).dump() + " depth_mm=" + Json(b.depth_mm).dump());
+    Json point = control_point(1, b.name, b.position_in_ct, description_of(b));
     if (b.axis_in_ct) {
         point["description"] = point["description"].get<std::string>() + " axis=z";
         point["orientation"] = to_json(orientation_with_z(*b.axis_in_ct));

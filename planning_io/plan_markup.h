@@ -5,8 +5,9 @@
 
 namespace planlight {
 
-/// One markup of a 3D Slicer markups file, into the plan. Refused by name and reason where it is not a plan item.
-void append_markup(Plan& plan, const JsonValue& markup, bool units_required);
+/// One markup of a 3D Slicer markups file, into the plan, named `otherwise` where it has no name. Refused by name and reason
+/// where it is not a plan item.
+void append_markup(Plan& plan, const JsonValue& markup, bool units_required, const std::string& otherwise);
 
 Json markup_of(const Trajectory& trajectory);
 Json markup_of(const Borehole& borehole);

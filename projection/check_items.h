@@ -30,6 +30,10 @@ inline bool finite(const CutPlane& c) {
            std::isfinite(c.width_mm) && std::isfinite(c.height_mm);
 }
 
+/// True when the point lies under the skin, or when three of four straight ways from it end at the surface: in the cranium under
+/// a surface of bone, which has no inside of its own and holes.
+bool in_the_body(const SkinSurface& skin, const Eigen::Vector3d& p_in_ct);
+
 /// What is wrong with one item, one sentence each, by name.
 std::vector<std::string> faults(const Trajectory& t, const SkinSurface& skin, const DrawingSettings& s);
 std::vector<std::string> faults(const Borehole& b, const SkinSurface& skin, const DrawingSettings& s);

@@ -1,120 +1,206 @@
+#include "projection/check_plan.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
+#include "planning_io/types/error.h"
 #include "projection/check_items.h"
-#include "projection/draw_plan.h"
+#include "projection/mid_plane.h"
+#include "projection/plan_alternatives.h"
+#include "projection/plan_sides.h"
 
 namespace planlight {
 namespace {
 
 using Eigen::Vector3d;
 
-/// Collects sentences that all begin with the item's name.
-class Faults {
+constexpr double kFinestFit_mm = 0.2;  // of any plan on a skin of triangles
+
+/// The points of an item that must lie near the skin.
+std::vector<Vector3d> skin_points(const Trajectory& t) { return {t.entry_in_ct}; }
+std::vector<Vector3d> skin_points(const Borehole& b) { return {b.position_in_ct}; }
+std::vector<Vector3d> skin_points(const OsteotomyLine& o) { return o.points_in_ct; }
+std::vector<Vector3d> skin_points(const CutPlane&) { return {}; }
+
+std::vector<Vector3d> all_points(const Trajectory& t) { return {t.entry_in_ct, t.target_in_ct}; }
+std::vector<Vector3d> all_points(const CutPlane& c) { return {c.origin_in_ct}; }
+template <class Item>
+std::vector<Vector3d> all_points(const Item& item) {
+    return skin_points(item);
+}
+
+class PlanChecker {
 public:
-    Faults(const char* kind, const std::string& name) : name_(name.empty() ? fmt::format("{} without a name", kind) : name) {}
-    template <typename... Args>
-    void add(fmt::format_string<Args...> text, Args&&... args) {
-        sentences_.push_back(name_ + ": " + fmt::format(text, std::forward<Args>(args)...));
+    PlanChecker(const SkinSurface& skin, const std::optional<VolumeBox>& volume, const PlanCheckSettings& settings)
+        : skin_(skin), volume_(volume), settings_(settings) {
+        drawing_.max_distance_to_skin_mm = settings.near_skin_mm;
     }
-    void check_distance(const char* what, double distance_mm, const DrawingSettings& s) {
-        if (distance_mm > s.max_distance_to_skin_mm)
-            add("{} is {:.1f} mm from the skin (at most {:.0f} mm expected){}", what, distance_mm, s.max_distance_to_skin_mm,
-                distance_mm > kTooFarFactor * s.max_distance_to_skin_mm ? "; it is not drawn" : "");
+
+    template <class Item>
+    void look_at(const Item& item) {
+        ++items_;
+        if (!item.name.empty()) ++names_[item.name];
+        const auto some = faults(item, skin_, drawing_);
+        verdict_.warnings.insert(verdict_.warnings.end(), some.begin(), some.end());
+        if (!finite(item)) {
+            stop(item.name, "its numbers are not finite");
+            ++far_items_;
+            return;
+        }
+        check_in_volume(item.name, all_points(item));
+        check_near_skin(item.name, skin_points(item));
+        check_side(item.name, all_points(item));
+        check_own(item);
     }
-    std::vector<std::string> sentences() { return std::move(sentences_); }
+
+    PlanVerdict verdict() {
+        for (const auto& [name, count] : names_)
+            if (count > 1) verdict_.warnings.push_back(fmt::format("{}: {} items have this name", name, count));
+        if (items_ == 0) verdict_.warnings.push_back("the plan is empty");
+        if (!points_.empty()) verdict_.median_to_skin_mm = distance_quantile(points_, skin_, 0.5);
+        if (items_ > 0) verdict_.share_far = static_cast<double>(far_items_) / items_;
+        if (items_ > 0 && verdict_.share_far > settings_.max_share_far)
+            verdict_.stops.push_back(
+                fmt::format("{} of {} items lie more than {:.0f} mm from the skin (median of all points {:.1f} mm)", far_items_,
+                            items_, settings_.near_skin_mm, verdict_.median_to_skin_mm));
+        check_alternatives();
+        return std::move(verdict_);
+    }
 
 private:
-    std::string name_;
-    std::vector<std::string> sentences_;
-};
+    template <typename... Args>
+    void stop(const std::string& name, fmt::format_string<Args...> text, Args&&... args) {
+        verdict_.stops.push_back((name.empty() ? "an item without a name" : name) + ": " +
+                                 fmt::format(text, std::forward<Args>(args)...));
+    }
+    double to_skin_mm(const Vector3d& p) const { return (skin_.nearest(p).p_in_ct - p).norm(); }
 
-double distance_mm(const SkinSurface& skin, const Vector3d& p) { return (skin.nearest(p).p_in_ct - p).norm(); }
+    void check_in_volume(const std::string& name, const std::vector<Vector3d>& points) {
+        if (!volume_) return;
+        double out_mm = 0;
+        Vector3d worst = Vector3d::Zero();
+        const Vector3d spacing = volume_->ct_from_voxel.linear().colwise().norm().transpose();
+        for (const auto& p : points) {
+            const Vector3d v = volume_->ct_from_voxel.inverse() * p;
+            for (int axis = 0; axis < 3; ++axis) {
+                const double beyond =
+                    std::max(-v[axis], v[axis] - (volume_->size[static_cast<std::size_t>(axis)] - 1)) * spacing[axis];
+                if (beyond > out_mm) out_mm = beyond, worst = p;
+            }
+        }
+        if (out_mm > settings_.outside_volume_mm)
+            stop(name, "its point ({:.0f}, {:.0f}, {:.0f}) lies {:.0f} mm outside the volume", worst.x(), worst.y(), worst.z(),
+                 out_mm);
+    }
+
+    void check_near_skin(const std::string& name, const std::vector<Vector3d>& points) {
+        double far_mm = 0;
+        for (const auto& p : points) far_mm = std::max(far_mm, to_skin_mm(p));
+        points_.insert(points_.end(), points.begin(), points.end());
+        if (far_mm > settings_.near_skin_mm) ++far_items_;
+        if (far_mm > settings_.too_far_mm)
+            stop(name, "it is {:.1f} mm from the skin, too far to be drawn (at most {:.0f} mm)", far_mm, settings_.too_far_mm);
+    }
+
+    void check_side(const std::string& name, const std::vector<Vector3d>& points) {
+        const auto claimed = side_named(name);
+        if (!claimed || points.empty()) return;
+        if (!looked_for_mid_plane_) {
+            mid_plane_ = find_mid_plane(skin_);
+            looked_for_mid_plane_ = true;
+            if (!mid_plane_)
+                verdict_.warnings.push_back("the middle of the head was not found: sides in names could not be checked");
+        }
+        if (!mid_plane_) return;
+        double left_mm = 0;  // of the item's first point (an entry), or of the middle of a line
+        for (const auto& p : points) left_mm += mid_plane_->left_mm(p) / static_cast<double>(points.size());
+        const double wrong_mm = *claimed == Side::left ? -left_mm : left_mm;
+        if (wrong_mm > settings_.side_margin_mm)
+            stop(name, "it is named {} and lies {:.0f} mm {} of the middle of the head",
+                 *claimed == Side::left ? "left" : "right", wrong_mm, *claimed == Side::left ? "right" : "left");
+    }
+
+    void check_own(const Trajectory& t) {
+        const double entry_mm = to_skin_mm(t.entry_in_ct), target_mm = to_skin_mm(t.target_in_ct);
+        const bool target_inside = in_the_body(skin_, t.target_in_ct);
+        if (t.length_mm() < 1) return stop(t.name, "entry and target are only {:.2f} mm apart", t.length_mm());
+        if (entry_mm > settings_.near_skin_mm && in_the_body(skin_, t.entry_in_ct) &&
+            (target_mm < settings_.near_skin_mm || !target_inside))
+            return stop(t.name,
+                        "entry and target are swapped: the entry lies {:.1f} mm under the skin, the target {:.1f} mm from it",
+                        entry_mm, target_mm);
+        if (!target_inside && target_mm > 1) stop(t.name, "its target lies outside the body, {:.1f} mm from the skin", target_mm);
+        if (t.length_mm() > settings_.max_depth_mm)
+            stop(t.name, "it is {:.0f} mm deep (at most {:.0f} mm)", t.length_mm(), settings_.max_depth_mm);
+    }
+    void check_own(const Borehole& b) {
+        if (b.depth_mm > settings_.max_depth_mm)
+            stop(b.name, "it is {:.0f} mm deep (at most {:.0f} mm)", b.depth_mm, settings_.max_depth_mm);
+        if (b.axis_in_ct && b.axis_in_ct->dot(skin_.nearest(b.position_in_ct).normal_in_ct) > 0.2)
+            stop(b.name, "its axis points out of the body");
+    }
+    void check_own(const OsteotomyLine&) {}
+    void check_own(const CutPlane& c) {
+        if (!faults(c, skin_, drawing_).empty()) ++far_items_;  // it does not meet the skin, or is no plane
+    }
+
+    /// A plan whose axes were exchanged or flipped fits the skin when they are put right again.
+    void check_alternatives() {
+        if (points_.empty()) return;
+        Vector3d low = skin_.mesh().vertices_in_ct.front(), high = low;
+        for (const auto& p : skin_.mesh().vertices_in_ct) {
+            low = low.cwiseMin(p);
+            high = high.cwiseMax(p);
+        }
+        Vector3d centre = (low + high) / 2;
+        if (volume_)
+            centre = volume_->ct_from_voxel * (Vector3d(volume_->size[0] - 1, volume_->size[1] - 1, volume_->size[2] - 1) / 2);
+        const auto other = best_alternative(points_, skin_, centre);
+        if (!other || other->fit_mm > settings_.turned_fit_mm ||
+            verdict_.median_to_skin_mm < settings_.turned_gain * std::max(other->fit_mm, kFinestFit_mm))
+            return;
+        verdict_.stops.push_back(
+            fmt::format("the plan lies a median of {:.1f} mm off the skin; with {} it would lie within {:.1f} mm: its axes are "
+                        "exchanged or flipped",
+                        verdict_.median_to_skin_mm, other->words, other->fit_mm));
+    }
+
+    const SkinSurface& skin_;
+    const std::optional<VolumeBox>& volume_;
+    const PlanCheckSettings& settings_;
+    DrawingSettings drawing_;
+    PlanVerdict verdict_;
+    int items_ = 0, far_items_ = 0;
+    std::map<std::string, int> names_;
+    std::vector<Vector3d> points_;
+    std::optional<MidPlane> mid_plane_;
+    bool looked_for_mid_plane_ = false;
+};
 
 }  // namespace
 
-std::vector<std::string> faults(const Trajectory& t, const SkinSurface& skin, const DrawingSettings& s) {
-    Faults f("trajectory", t.name);
-    if (!finite(t)) {
-        f.add("its points are not finite; it is not drawn");
-        return f.sentences();
-    }
-    f.check_distance("its entry", distance_mm(skin, t.entry_in_ct), s);
-    if (t.length_mm() < 1) f.add("entry and target are only {:.2f} mm apart", t.length_mm());
-    if (!skin.inside(t.target_in_ct))
-        f.add("its target lies outside the body, {:.1f} mm from the skin", distance_mm(skin, t.target_in_ct));
-    if (t.diameter_mm < 0) f.add("its diameter of {} mm is negative", t.diameter_mm);
-    return f.sentences();
+PlanVerdict check_plan(const Plan& plan, const SkinSurface& skin, const std::optional<VolumeBox>& volume,
+                       const PlanCheckSettings& settings) {
+    PlanChecker checker(skin, volume, settings);
+    for (const auto& o : plan.osteotomy_lines) checker.look_at(o);
+    for (const auto& b : plan.boreholes) checker.look_at(b);
+    for (const auto& t : plan.trajectories) checker.look_at(t);
+    for (const auto& c : plan.cut_planes) checker.look_at(c);
+    return checker.verdict();
 }
 
-std::vector<std::string> faults(const Borehole& b, const SkinSurface& skin, const DrawingSettings& s) {
-    Faults f("borehole", b.name);
-    if (!finite(b)) {
-        f.add("its numbers are not finite; it is not drawn");
-        return f.sentences();
-    }
-    f.check_distance("its position", distance_mm(skin, b.position_in_ct), s);
-    if (!(b.diameter_mm > 0)) f.add("it has no diameter; only its centre is drawn");
-    if (b.diameter_mm > 60) f.add("its diameter of {:.0f} mm is larger than any drill's", b.diameter_mm);
-    if (!(b.depth_mm > 0)) f.add("it has no depth");
-    if (b.axis_in_ct && b.axis_in_ct->dot(skin.nearest(b.position_in_ct).normal_in_ct) > 0)
-        f.add("its axis points out of the body");
-    return f.sentences();
-}
-
-std::vector<std::string> faults(const OsteotomyLine& o, const SkinSurface& skin, const DrawingSettings& s) {
-    Faults f("osteotomy line", o.name);
-    if (!finite(o)) {
-        f.add("its points are not finite; it is not drawn");
-        return f.sentences();
-    }
-    if (o.points_in_ct.size() < 2) f.add("it has {} point(s); a line needs two", o.points_in_ct.size());
-    if (o.closed && o.points_in_ct.size() == 2) f.add("it is closed but has only two points; it is drawn open");
-    double far_mm = 0, way_mm = 0;
-    for (std::size_t i = 0; i < o.points_in_ct.size(); ++i) {
-        far_mm = std::max(far_mm, distance_mm(skin, o.points_in_ct[i]));
-        if (i > 0) way_mm += (o.points_in_ct[i] - o.points_in_ct[i - 1]).norm();
-    }
-    f.check_distance("a point of it", far_mm, s);
-    if (o.points_in_ct.size() > 1 && way_mm < 1) f.add("it is only {:.2f} mm long", way_mm);
-    return f.sentences();
-}
-
-std::vector<std::string> faults(const CutPlane& c, const SkinSurface& skin, const DrawingSettings& s) {
-    Faults f("cut plane", c.name);
-    if (!finite(c)) {
-        f.add("its numbers are not finite; it is not drawn");
-        return f.sentences();
-    }
-    if (!(c.width_mm > 0) || !(c.height_mm > 0)) f.add("it has no extent ({} x {} mm)", c.width_mm, c.height_mm);
-    if (std::abs(c.normal_in_ct.norm() - 1) > 1e-3 || std::abs(c.first_axis_in_ct.norm() - 1) > 1e-3 ||
-        std::abs(c.normal_in_ct.dot(c.first_axis_in_ct)) > 1e-3)
-        f.add("its axes are not unit length and square to each other; it is not drawn");
-    else if (trace(skin, c, s.max_segment_mm).empty())
-        f.add("it does not meet the skin within its extent of {:.0f} x {:.0f} mm", c.width_mm, c.height_mm);
-    return f.sentences();
-}
-
-std::vector<std::string> check_plan(const Plan& plan, const SkinSurface& skin, const DrawingSettings& settings) {
-    std::vector<std::string> all;
-    std::map<std::string, int> names;
-    const auto look_at = [&](const auto& items) {
-        for (const auto& item : items) {
-            const auto some = faults(item, skin, settings);
-            all.insert(all.end(), some.begin(), some.end());
-            if (!item.name.empty()) ++names[item.name];
-        }
-    };
-    look_at(plan.osteotomy_lines);
-    look_at(plan.boreholes);
-    look_at(plan.trajectories);
-    look_at(plan.cut_planes);
-    for (const auto& [name, count] : names)
-        if (count > 1) all.push_back(fmt::format("{}: {} items have this name", name, count));
-    if (plan.empty()) all.push_back("the plan is empty");
-    return all;
+void refuse_stopped_plan(const PlanVerdict& verdict) {
+    if (verdict.stops.empty()) return;
+    constexpr std::size_t kMostSaid = 4;
+    std::string said;
+    for (std::size_t i = 0; i < std::min(kMostSaid, verdict.stops.size()); ++i) said += (i > 0 ? "; " : "") + verdict.stops[i];
+    if (verdict.stops.size() > kMostSaid) said += fmt::format("; and {} more", verdict.stops.size() - kMostSaid);
+    throw InputError({}, "The plan does not fit this patient: " + said,
+                     "Check that it was made on this CT, its coordinate system and its units; a plan on bone is projected on the "
+                     "bone (--surface).");
 }
 
 }  // namespace planlight

@@ -57,7 +57,4 @@ struct DrawingSettings {
 /// three times `max_distance_to_skin_mm` from the skin, has no strokes, and a warning.
 PlanDrawing draw_plan(const Plan& plan, const SkinSurface& skin, const DrawingSettings& settings = {});
 
-/// The plan's own faults, one sentence each, by name: entry far from skin, target outside the body, zero length, not finite.
-std::vector<std::string> check_plan(const Plan& plan, const SkinSurface& skin, const DrawingSettings& settings = {});
-
 }  // namespace planlight

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 /// One struct of options and one function a command; each function gives the exit code of a run that was not refused.
 namespace planlight {
@@ -11,12 +12,23 @@ using Path = std::filesystem::path;
 struct PrepareOptions {
     Path volume, plan, out;
     std::string series_uid;
+    std::string frame, accept_frame;  ///< of a plan that does not say its coordinate system; a DICOM frame of reference
+    Path surface;                     ///< to project on, instead of the skin
+    std::string surface_frame, segment;
     double threshold = 0;  ///< HU; 0 = found from the histogram
     double voxel_mm = 1;
     bool anonymous = false;  ///< no UID and no file name of the volume in the case folder
     bool replace = false, preview = false, json = false;
 };
 int run_prepare(const PrepareOptions& options);
+
+struct PlanOptions {
+    std::vector<Path> files;
+    Path case_folder, volume, out;
+    std::string series_uid, frame, accept_frame;
+    bool json = false;
+};
+int run_plan(const PlanOptions& options);
 
 struct PatternsOptions {
     Path out;

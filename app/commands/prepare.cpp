@@ -1,13 +1,14 @@
 #include <fmt/format.h>
 
 #include <iostream>
+#include <optional>
 
 #include "app/commands/commands.h"
+#include "app/commands/plan_options.h"
 #include "app/console.h"
 #include "app/live/live_window.h"
 #include "app/prepare_case.h"
 #include "app/report/preparation_report.h"
-#include "planning_io/plan_file.h"
 #include "planning_io/read_volume.h"
 
 namespace planlight {
@@ -15,15 +16,24 @@ namespace planlight {
 int run_prepare(const PrepareOptions& options) {
     ProgressBar bar;
     bar.show("volume", 0);
-    const Plan plan = read_plan(options.plan);
     Volume volume = read_volume(options.volume, options.series_uid);
+    const PlanImport plan =
+        import_plan(options.plan, plan_settings(options.frame, options.accept_frame, volume.frame_of_reference_uid));
+    std::optional<SurfaceFile> surface;
+    if (!options.surface.empty()) {
+        surface = read_surface(options.surface, {plan_settings(options.surface_frame, options.accept_frame, volume.frame_of_reference_uid),
+                                                 options.segment});
+        check_surface_fits(surface->mesh, volume, options.surface);
+    }
     if (options.anonymous) make_anonymous(volume);
     bar.show("volume", 1);
     SkinSettings skin;
     skin.threshold = options.threshold;
     LutSettings lut;
     lut.voxel_mm = options.voxel_mm;
-    const Preparation done = prepare_case(volume, plan, skin, lut, iso_date_now(), bar.callback());
+    Preparation done = surface ? prepare_case_on(volume, *surface, plan.plan, lut, iso_date_now(), bar.callback())
+                               : prepare_case(volume, plan.plan, skin, lut, iso_date_now(), bar.callback());
+    done.prepared.warnings.insert(done.prepared.warnings.end(), plan.notes.begin(), plan.notes.end());
     bar.show("case folder", 0);
     write_case(done.prepared, options.out, options.replace);
     bar.show("case folder", 1);

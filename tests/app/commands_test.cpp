@@ -178,17 +178,58 @@ TEST_F(CommandsTest, APlanInAnUnknownFrameIsRefusedNotGuessed) {
     expect_one_clear_sentence(run_planlight("prepare " + example_patient()->string() + " --plan odd.mrk.json --out new", root()), 3, "lps");
 }
 
-TEST_F(CommandsTest, APlanReadInTheWrongFrameIsWarnedOfByName) {
+TEST_F(CommandsTest, APlanReadInTheWrongFrameIsRefusedByNameAndLeavesNothing) {
     json plan = read_json(kPlan);
     for (auto& markup : plan["markups"]) markup["coordinateSystem"] = "RAS";  // turned by 180 degrees about z
     std::ofstream(root() / "turned.mrk.json") << plan;
     const auto run = run_planlight("prepare " + example_patient()->string() + " --plan turned.mrk.json --out turned --json", root());
-    if (run.exit_code == 0) {
-        std::string warnings = json::parse(run.out)["warnings"].dump();
-        for (const char* item : {"Osteotomy", "B1", "T1"}) EXPECT_NE(warnings.find(item), std::string::npos) << warnings;
-    } else {
-        EXPECT_EQ(run.exit_code, 3) << run.err;
-    }
+    expect_one_clear_sentence(run, 3, "does not fit this patient");
+    for (const char* item : {"Osteotomy", "outside the volume"}) EXPECT_NE(run.err.find(item), std::string::npos) << run.err;
+    EXPECT_FALSE(fs::exists(root() / "turned"));
+}
+
+TEST_F(CommandsTest, PlanListsChecksAndConverts) {
+    ASSERT_EQ(prepared_.exit_code, 0) << prepared_.err;
+    std::ofstream(root() / "t.csv") << "name,ex,ey,ez,tx,ty,tz,diameter_mm\nT1,-139.68,190.04,120.85,-132.49,134.29,99.87,2.5\n";
+    expect_one_clear_sentence(run_planlight("plan t.csv --case case", root()), 3, "does not say its coordinate system");
+    expect_one_clear_sentence(run_planlight("plan t.csv --frame LPS --case case", root()), 3, "T1");
+    const auto run = run_planlight("plan t.csv --frame RAS --case case --out t.mrk.json --json", root());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const json item = json::parse(run.out)["items"][0];
+    EXPECT_EQ(item["kind"], "trajectory");
+    EXPECT_LT(item["to_skin_mm"].get<double>(), 3);          // the example plan's own entry
+    EXPECT_GT(item["left_of_middle_mm"].get<double>(), 10);  // at x = 139.68, the head's middle near 124
+    const auto position = read_json(root() / "t.mrk.json")["markups"][0]["controlPoints"][0]["position"];
+    EXPECT_EQ(position[0], 139.68);
+    // An InVesalius project has no frame of reference: no RTSTRUCT can be written for it.
+    expect_one_clear_sentence(run_planlight("plan t.mrk.json --case case --out t.dcm", root()), 3, "frame of reference");
+    EXPECT_FALSE(fs::exists(root() / "t.dcm"));
+    ASSERT_EQ(run_planlight("plan " + kPlan + " --case case --out all.vtp", root()).exit_code, 0);
+    const auto again = run_planlight("plan all.vtp --case case --json", root());
+    ASSERT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_EQ(json::parse(again.out)["items"].size(), 6U);
+}
+
+TEST_F(CommandsTest, AnotherProgramsSurfaceCanBeProjectedOn) {
+    // The case's own skin, given back as a surface: the same case, without a segmentation.
+    const std::string prepare = "prepare " + example_patient()->string() + " --plan " + kPlan;
+    const auto run = run_planlight(prepare + " --surface case/skin.ply --out on_skin --json", root());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const json own = json::parse(prepared_.out), result = json::parse(run.out);
+    EXPECT_EQ(result["skin"], own["skin"]);
+    EXPECT_EQ(result["case"], own["case"]);
+    EXPECT_EQ(run_planlight("review on_skin --picture on_skin.png", root()).exit_code, 0);
+    // The same with the frame not said, said wrongly, and said rightly.
+    std::ifstream in(root() / "case" / "skin.ply", std::ios::binary);
+    std::string ply((std::istreambuf_iterator<char>(in)), {});
+    ply.replace(ply.find("SPACE=LPS"), 9, "no space ");
+    std::ofstream(root() / "unsaid.ply", std::ios::binary) << ply;
+    expect_one_clear_sentence(run_planlight(prepare + " --surface unsaid.ply --out never", root()), 3,
+                              "does not say its coordinate system");
+    expect_one_clear_sentence(run_planlight(prepare + " --surface unsaid.ply --surface-frame RAS --out never", root()), 3,
+                              "outside the volume");
+    EXPECT_EQ(run_planlight(prepare + " --surface unsaid.ply --surface-frame LPS --out said", root()).exit_code, 0);
+    EXPECT_FALSE(fs::exists(root() / "never"));
 }
 
 TEST_F(CommandsTest, ALutOfAnotherCaseIsRefused) {
@@ -256,7 +297,8 @@ TEST_F(CommandsTest, WrongUsageGivesExitTwo) {
 }
 
 TEST_F(CommandsTest, EveryCommandExplainsItselfWithAnExample) {
-    for (const char* name : {"demo", "prepare", "patterns", "scan", "register", "track", "project", "session", "review", "simulate"}) {
+    for (const char* name :
+         {"demo", "prepare", "plan", "patterns", "scan", "register", "track", "project", "session", "review", "simulate"}) {
         const auto run = run_planlight(std::string(name) + " --help", root());
         EXPECT_EQ(run.exit_code, 0) << name;
         EXPECT_NE(run.out.find("Example:"), std::string::npos) << name;

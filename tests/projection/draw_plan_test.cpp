@@ -215,30 +215,6 @@ TEST(DrawPlan, EveryStrokeLiesOnTheSkinInSmallSteps) {
         }
 }
 
-TEST(CheckPlan, NamesEveryFaultWithItsNumber) {
-    Plan plan;
-    plan.trajectories.push_back({"T1", on_ball(0, 0) * (94 / kRadius_mm), on_ball(0, 0) * 0.5, 2, {}});
-    plan.trajectories.push_back({"T2", on_ball(1, 0), on_ball(1, 0) * 1.5, 2, {}});
-    plan.boreholes.push_back({"B1", {std::nan(""), 0, 0}, {}, 7, 6, {}});
-    plan.osteotomy_lines.push_back({"O1", {on_ball(0, 0)}, false, {}});
-    plan.cut_planes.push_back({"C1", {0, 0, 200}, Vector3d::UnitZ(), Vector3d::UnitX(), 50, 50, {}});
-    const auto faults = check_plan(plan, ball());
-    const auto said = [&](const std::string& text) {
-        return std::any_of(faults.begin(), faults.end(), [&](const auto& f) { return f.find(text) != std::string::npos; });
-    };
-    EXPECT_TRUE(said("T1: its entry is 14.0 mm from the skin"));
-    EXPECT_TRUE(said("T2: its target lies outside the body, 40.0 mm from the skin"));
-    EXPECT_TRUE(said("B1: its numbers are not finite"));
-    EXPECT_TRUE(said("O1: it has 1 point(s)"));
-    EXPECT_TRUE(said("C1: it does not meet the skin"));
-    EXPECT_NO_THROW(draw_plan(plan, ball()));
-}
-
-TEST(CheckPlan, AGoodPlanHasNoFaults) {
-    const SkinSurface head(test::analytic_head_mesh(3));
-    EXPECT_TRUE(check_plan(forehead_plan(), head, {}).empty());
-}
-
 TEST(DrawPlan, APlanOfAnotherFrameIsNotDrawn) {
     Plan plan;
     plan.boreholes.push_back({"B1", on_ball(0, 0) * 2, {}, 7, 6, {}});

@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/commands.h"
+#include "app/commands/plan_options.h"
+#include "app/console.h"
+#include "app/prepare_case.h"
+#include "planning_io/case_folder.h"
+#include "planning_io/plan_file.h"
+#include "planning_io/plan_rtstruct.h"
+#include "planning_io/plan_shapes.h"
+#include "planning_io/read_volume.h"
+#include "planning_io/types/error.h"
+#include "projection/check_plan.h"
+#include "projection/mid_plane.h"
+
+namespace planlight {
+namespace {
+
+/// What the plan is checked against: nothing, a volume, or a case.
+struct Patient {
+    std::string code, frame_of_reference_uid;
+    std::optional<SkinSurface> skin;
+    std::optional<VolumeBox> box;
+    bool known = false;
+};
+
+Patient read_patient(const PlanOptions& options) {
+    Patient patient;
+    if (!options.case_folder.empty()) {
+        Case prepared = read_case(options.case_folder);
+        patient.known = true;
+        patient.code = prepared.code;
+        patient.frame_of_reference_uid = prepared.frame_of_reference_uid;
+        patient.skin.emplace(std::move(prepared.skin));
+    }
+    if (!options.volume.empty()) {
+        const Volume volume = read_volume(options.volume, options.series_uid);
+        const std::string code = hash_of(volume).substr(0, 8);
+        if (patient.known && patient.code != code)
+            throw InputError(options.volume, "is not the volume of this case (" + code + ", the case is " + patient.code + ")",
+                             "Name the volume that the case was prepared from.");
+        patient.known = true;
+        patient.code = code;
+        patient.frame_of_reference_uid = volume.frame_of_reference_uid;
+        patient.box = box_of(volume);
+    }
+    return patient;
+}
+
+void check_in_box(const Plan& plan, const VolumeBox& box) {
+    for (const auto& p : points_of(plan)) {
+        const Eigen::Vector3d v = box.ct_from_voxel.inverse() * p;
+        for (int axis = 0; axis < 3; ++axis)
+            if (v[axis] < -2 || v[axis] > box.size[static_cast<std::size_t>(axis)] + 1)
+                throw InputError(
+                    {}, fmt::format("The plan's point ({:.0f}, {:.0f}, {:.0f}) lies outside the volume", p.x(), p.y(), p.z()),
+                    "Check that it was made on this CT, its coordinate system and its units.");
+    }
+}
+
+/// The items as a list, with where each lies on the head when the skin is known.
+class Listing {
+public:
+    explicit Listing(const Patient& patient) : skin_(patient.skin ? &*patient.skin : nullptr) {
+        if (skin_) mid_plane_ = find_mid_plane(*skin_);
+    }
+    void add(const char* kind, const std::string& name, const std::string& what, const Eigen::Vector3d& at) {
+        nlohmann::json item{{"kind", kind}, {"name", name}, {"what", what}, {"at_in_ct", {at.x(), at.y(), at.z()}}};
+        std::string where;
+        if (skin_) {
+            const double far = (skin_->nearest(at).p_in_ct - at).norm();
+            item["to_skin_mm"] = far;
+            where = fmt::format(", {:.1f} mm from the skin", far);
+        }
+        if (mid_plane_) {
+            const double left = mid_plane_->left_mm(at);
+            item["left_of_middle_mm"] = left;
+            where += fmt::format(", {:.0f} mm {} of the middle", std::abs(left), left > 0 ? "left" : "right");
+        }
+        items.push_back(std::move(item));
+        lines += fmt::format("  {:<14} {:<24} {}{}\n", kind, name, what, where);
+    }
+    nlohmann::json items = nlohmann::json::array();
+    std::string lines;
+
+private:
+    const SkinSurface* skin_;
+    std::optional<MidPlane> mid_plane_;
+};
+
+void list_plan(Listing& list, const Plan& plan) {
+    for (const auto& o : plan.osteotomy_lines) {
+        double way = 0;
+        for (std::size_t i = 1; i < o.points_in_ct.size(); ++i) way += (o.points_in_ct[i] - o.points_in_ct[i - 1]).norm();
+        if (o.closed) way += (o.points_in_ct.front() - o.points_in_ct.back()).norm();
+        list.add("osteotomy line", o.name,
+                 fmt::format("{}, {} points, {:.1f} mm", o.closed ? "closed" : "open", o.points_in_ct.size(), way),
+                 o.points_in_ct.front());
+    }
+    for (const auto& b : plan.boreholes)
+        list.add("borehole", b.name, fmt::format("diameter {:g} mm, depth {:g} mm", b.diameter_mm, b.depth_mm), b.position_in_ct);
+    for (const auto& t : plan.trajectories)
+        list.add(
+            "trajectory", t.name,
+            fmt::format("{:.1f} mm{}", t.length_mm(), t.diameter_mm > 0 ? fmt::format(", diameter {:g} mm", t.diameter_mm) : ""),
+            t.entry_in_ct);
+    for (const auto& c : plan.cut_planes)
+        list.add("cut plane", c.name, fmt::format("{:g} x {:g} mm", c.width_mm, c.height_mm), c.origin_in_ct);
+}
+
+void write(const PlanImport& read, const Patient& patient, const PlanOptions& options) {
+    const Plan& plan = read.plan;
+    const Path& out = options.out;
+    const std::string name = out.filename().string();
+    if (name.ends_with(".mrk.json")) write_plan(plan, out);
+    else if (name.ends_with(".vtp")) write_plan_vtp(plan, out);
+    else if (name.ends_with(".dcm")) {
+        const std::string frame = patient.known ? patient.frame_of_reference_uid : read.frame_of_reference_uid;
+        write_plan_rtstruct(plan, {patient.code, options.accept_frame.empty() ? frame : options.accept_frame, iso_date_now()},
+                            out);
+    } else throw InputError(out, "is of no kind that a plan is written as", "End its name in .mrk.json, .vtp or .dcm.");
+}
+
+}  // namespace
+
+int run_plan(const PlanOptions& options) {
+    const Patient patient = read_patient(options);
+    const auto settings = plan_settings(options.frame, options.accept_frame,
+                                        patient.known ? std::optional(patient.frame_of_reference_uid) : std::nullopt);
+    PlanImport read;
+    for (const auto& file : options.files) append(read, import_plan(file, settings));
+    for (const auto& note : read.notes) warn(note);
+    PlanVerdict verdict;
+    if (patient.skin) {
+        verdict = check_plan(read.plan, *patient.skin, patient.box);
+        for (const auto& warning : verdict.warnings) warn(warning);
+        refuse_stopped_plan(verdict);
+    } else if (patient.box) {
+        check_in_box(read.plan, *patient.box);
+    }
+    if (!options.out.empty()) write(read, patient, options);
+    Listing list(patient);
+    list_plan(list, read.plan);
+    if (options.json) {
+        nlohmann::json result{{"items", list.items},
+                              {"notes", read.notes},
+                              {"warnings", verdict.warnings},
+                              {"frame_of_reference_uid", read.frame_of_reference_uid},
+                              {"checked_against", patient.skin  ? "skin"
+                                                  : patient.box ? "volume"
+                                                                : "nothing"}};
+        if (patient.skin) result["median_to_skin_mm"] = verdict.median_to_skin_mm;
+        if (!options.out.empty()) result["written"] = options.out.string();
+        std::cout << result.dump(2) << '\n';
+        return 0;
+    }
+    fmt::print("{} plan items{}:\n{}", read.plan.size(), options.out.empty() ? "" : " in " + options.out.string(), list.lines);
+    return 0;
+}
+
+}  // namespace planlight

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace planlight {
+
+/// One contour as it stands in the file: "CLOSED_PLANAR" ..., and x y z x y z ... in ct, mm.
+struct RtContour {
+    std::string type;
+    std::vector<double> numbers;
+};
+
+/// A region of interest of a structure set.
+struct RtRoi {
+    std::string name, description, frame_of_reference_uid;
+    std::vector<double> colour;  ///< 0..255; empty when not given
+    std::vector<RtContour> contours;
+};
+
+struct RtStruct {
+    std::string frame_of_reference_uid;  ///< of all its ROIs
+    std::vector<RtRoi> rois;             ///< one at least
+};
+
+/// True when the first 4 KiB of the file name the class of RT Structure Sets.
+bool is_rt_struct(const std::filesystem::path& file);
+
+/// Reads a DICOM RT Structure Set in a child process. Throws InputError for another kind of DICOM, none or doubled ROIs or two
+/// frames of reference, DamagedFileError for a cut file or one whose numbers do not fit each other.
+RtStruct read_rt_struct(const std::filesystem::path& file);
+
+}  // namespace planlight

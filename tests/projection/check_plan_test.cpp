@@ -1,0 +1,148 @@
+#include "projection/check_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+#include "planning_io/types/error.h"
+#include "projection/mid_plane.h"
+#include "projection/plan_sides.h"
+#include "tests/projection/shapes.h"
+#include "tests/support/analytic_head.h"
+
+namespace planlight {
+namespace {
+
+using Eigen::Vector3d;
+constexpr double kRadius_mm = 80;
+
+const SkinSurface& ball() {
+    static const SkinSurface kBall(test::ball_mesh(kRadius_mm, 5));
+    return kBall;
+}
+
+Vector3d on_ball(double longitude, double latitude) {
+    return kRadius_mm *
+           Vector3d(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude), std::sin(latitude));
+}
+
+bool said(const std::vector<std::string>& sentences, const std::string& text) {
+    return std::any_of(sentences.begin(), sentences.end(), [&](const auto& f) { return f.find(text) != std::string::npos; });
+}
+
+/// A plan of good items, of which one is spoilt.
+Plan good_plan() {
+    Plan plan;
+    plan.trajectories.push_back({"T1", on_ball(0, 0), on_ball(0, 0) * 0.5, 2, {}});
+    plan.boreholes.push_back({"B1", on_ball(0.5, 0.2), {}, 7, 6, {}});
+    plan.osteotomy_lines.push_back({"O1", {on_ball(0, 0.5), on_ball(0.3, 0.5), on_ball(0.3, 0.8)}, true, {}});
+    return plan;
+}
+
+TEST(CheckPlan, AGoodPlanHasNeitherWarningsNorStops) {
+    const PlanVerdict verdict = check_plan(good_plan(), ball());
+    EXPECT_TRUE(verdict.warnings.empty());
+    EXPECT_TRUE(verdict.stops.empty());
+    EXPECT_LT(verdict.median_to_skin_mm, 0.1);
+    EXPECT_NO_THROW(refuse_stopped_plan(verdict));
+}
+
+TEST(CheckPlan, OneItemALittleOffIsWarnedOfWithItsNumber) {
+    Plan plan = good_plan();
+    plan.trajectories[0].entry_in_ct = on_ball(0, 0) * (94 / kRadius_mm);
+    plan.cut_planes.push_back({"C1", {0, 0, 200}, Vector3d::UnitZ(), Vector3d::UnitX(), 50, 50, {}});
+    plan.osteotomy_lines.push_back({"O2", {on_ball(0, 0)}, false, {}});
+    const PlanVerdict verdict = check_plan(plan, ball());
+    EXPECT_TRUE(verdict.stops.empty()) << verdict.stops.front();
+    EXPECT_TRUE(said(verdict.warnings, "T1: its entry is 14.0 mm from the skin"));
+    EXPECT_TRUE(said(verdict.warnings, "C1: it does not meet the skin"));
+    EXPECT_TRUE(said(verdict.warnings, "O2: it has 1 point(s)"));
+}
+
+TEST(CheckPlan, WhatMustNotBeShownIsStoppedByNameAndNumber) {
+    const auto stops_of = [](const std::function<void(Plan&)>& spoil) {
+        Plan plan = good_plan();
+        spoil(plan);
+        const PlanVerdict verdict = check_plan(plan, ball());
+        EXPECT_THROW(refuse_stopped_plan(verdict), InputError);
+        return verdict.stops;
+    };
+    EXPECT_TRUE(
+        said(stops_of([](Plan& p) { p.boreholes[0].position_in_ct.x() = std::nan(""); }), "B1: its numbers are not finite"));
+    EXPECT_TRUE(
+        said(stops_of([](Plan& p) { p.osteotomy_lines[0].points_in_ct[1].z() = std::numeric_limits<double>::infinity(); }),
+             "O1: its numbers are not finite"));
+    EXPECT_TRUE(said(stops_of([](Plan& p) { p.trajectories[0].target_in_ct = on_ball(0, 0) * 1.5; }),
+                     "T1: its target lies outside the body, 40.0 mm"));
+    EXPECT_TRUE(said(stops_of([](Plan& p) { std::swap(p.trajectories[0].entry_in_ct, p.trajectories[0].target_in_ct); }),
+                     "T1: entry and target are swapped: the entry lies 40.0 mm under the skin"));
+    EXPECT_TRUE(said(stops_of([](Plan& p) { p.trajectories[0].target_in_ct = on_ball(0, 0) * 0.995; }),
+                     "T1: entry and target are only 0.40 mm apart"));
+    EXPECT_TRUE(said(stops_of([](Plan& p) { p.boreholes[0].depth_mm = 250; }), "B1: it is 250 mm deep"));
+    EXPECT_TRUE(said(stops_of([](Plan& p) { p.boreholes[0].axis_in_ct = on_ball(0.5, 0.2).normalized(); }),
+                     "B1: its axis points out of the body"));
+    EXPECT_TRUE(said(stops_of([](Plan& p) { p.boreholes[0].position_in_ct *= 1.5; }), "B1: it is 40.0 mm from the skin"));
+    EXPECT_TRUE(said(stops_of([](Plan& p) {
+                         p.boreholes[0].position_in_ct *= 1.2;
+                         p.trajectories[0].entry_in_ct *= 1.2;
+                     }),
+                     "2 of 3 items lie more than 10 mm from the skin"));
+}
+
+TEST(CheckPlan, WhatLiesOutsideTheVolumeIsStopped) {
+    VolumeBox box;
+    box.ct_from_voxel.translation() = Vector3d(-90, -90, -90);
+    box.size = {181, 181, 181};
+    EXPECT_TRUE(check_plan(good_plan(), ball(), box).stops.empty());
+    box.size = {181, 181, 140};  // up to z = 49: O1 reaches up to 57.4
+    EXPECT_TRUE(said(check_plan(good_plan(), ball(), box).stops, "O1: its point (53, 16, 57) lies 8 mm outside the volume"));
+}
+
+TEST(CheckPlan, OnlyWordsThatMeanASideClaimOne) {
+    for (const char* name : {"left", "Left burr hole", "B1 LINKS", "trajectory-links", "L frontal", "T3_L", "incision gauche"})
+        EXPECT_EQ(side_named(name), Side::left) << name;
+    for (const char* name : {"right", "rechts", "R temporal", "Entry R", "dexter-2"})
+        EXPECT_EQ(side_named(name), Side::right) << name;
+    for (const char* name :
+         {"", "L", "R", "L1", "R2D2", "Rand", "cleft", "leftover", "brightness", "left right", "L to R", "Schnitt", "V L 3"})
+        EXPECT_EQ(side_named(name), std::nullopt) << name;
+}
+
+TEST(CheckPlan, TheMiddleOfAHeadIsFoundHoweverItLies) {
+    // The analytic head has unequal ears, so its middle is only near x = 0; turned, it must follow.
+    const TriangleMesh mesh = test::analytic_head_mesh(4);
+    const auto straight = find_mid_plane(SkinSurface(mesh));
+    ASSERT_TRUE(straight);
+    EXPECT_NEAR(straight->point_in_ct.dot(straight->normal_in_ct), 0, 6);
+    for (const double degrees : {-20.0, 20.0}) {
+        TriangleMesh turned = mesh;
+        const Eigen::Matrix3d turn =
+            (Eigen::AngleAxisd(degrees * M_PI / 180, Vector3d::UnitZ()) * Eigen::AngleAxisd(0.1, Vector3d::UnitY()))
+                .toRotationMatrix();
+        for (auto& p : turned.vertices_in_ct) p = turn * p + Vector3d(100, -50, 30);
+        for (auto& n : turned.normals_in_ct) n = turn * n;
+        const auto found = find_mid_plane(SkinSurface(turned));
+        ASSERT_TRUE(found) << degrees;
+        EXPECT_GT(found->normal_in_ct.dot(turn * straight->normal_in_ct), std::cos(4 * M_PI / 180)) << degrees;
+    }
+}
+
+TEST(CheckPlan, ASideAcrossTheMiddleIsStoppedAndOneNearItIsNot) {
+    const SkinSurface head(test::analytic_head_mesh(3));
+    const auto hole = [&](const char* name, double x) {
+        Plan plan;
+        plan.boreholes.push_back({name, head.nearest({x, -120, 40}).p_in_ct, {}, 7, 6, {}});
+        return check_plan(plan, head).stops;
+    };
+    EXPECT_TRUE(hole("B left", 35).empty());  // LPS: x grows to the patient's left
+    EXPECT_TRUE(said(hole("B right", 35), "B right: it is named right and lies"));
+    EXPECT_TRUE(said(hole("B links", -35), "B links: it is named left and lies"));
+    EXPECT_TRUE(hole("B right", -35).empty());
+    EXPECT_TRUE(hole("B right", 3).empty());
+}
+
+}  // namespace
+}  // namespace planlight
