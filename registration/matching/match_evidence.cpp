@@ -61,7 +61,8 @@ std::string in_words(const Vector6d& scaled) {
 
 }  // namespace
 
-CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig, double inlier_distance_mm) {
+CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig, double inlier_distance_mm,
+                        double skin_offset_mm) {
     const DistanceField field(lut);
     const bool has_normals = cloud.normals_in_rig.size() == cloud.size();
     CloudOnSkin result;
@@ -76,7 +77,7 @@ CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const Rigid
         ++result.known;
         double d = std::numeric_limits<double>::infinity();
         Vector3d normal = Vector3d::Zero();
-        if (s) field.sample(x, d, normal);
+        if (s && field.sample(x, d, normal)) d -= skin_offset_mm;
         distances.push_back(std::abs(d));
         if (std::abs(d) > inlier_distance_mm) continue;
         if (has_normals && normal.dot(ct_from_rig.linear() * cloud.normals_in_rig[i]) < 0) continue;
@@ -88,42 +89,15 @@ CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const Rigid
     return result;
 }
 
-WeakestWay weakest_way(const PointCloud& cloud, const SkinLut& lut, const IcpResult& icp, double least_deformation_mm,
-                       double correlation_mm) {
+WeakestWay weakest_way(const PoseCovariance& covariance) {
     WeakestWay way;
     way.sigma_mm = std::numeric_limits<double>::infinity();
-    const std::vector<Contact> on_skin = contacts(cloud, lut, icp, 500);
-    if (on_skin.size() < 12) {
-        way.in_words = "move freely";
-        return way;
-    }
-    const Vector6d scale = (Vector6d() << Vector3d::Constant(1 / kLever_mm), Vector3d::Ones()).finished();
-    Matrix6d H = Matrix6d::Zero(), S = Matrix6d::Zero();
-    double smooth_squares = 0;
-    for (const Contact& a : on_skin) {
-        const Vector6d Ja = a.J.cwiseProduct(scale);
-        H += Ja * Ja.transpose();
-        Vector6d alike = Vector6d::Zero();
-        double weights = 0, smooth = 0;
-        for (const Contact& b : on_skin) {
-            const double squared = (a.x_in_ct - b.x_in_ct).squaredNorm() / (2 * correlation_mm * correlation_mm);
-            if (squared > 9) continue;
-            const double k = std::exp(-squared);
-            alike += k * b.J;
-            weights += k;
-            smooth += k * b.distance_mm;
-        }
-        smooth_squares += smooth * smooth / (weights * weights);
-        S += Ja * alike.cwiseProduct(scale).transpose();
-    }
-    H.diagonal().array() += 1e-9 * H.trace();
-    const Matrix6d inverse = H.inverse();
-    way.deformation_mm = std::max(least_deformation_mm, std::sqrt(smooth_squares / static_cast<double>(on_skin.size())));
-    const Matrix6d covariance = way.deformation_mm * way.deformation_mm * inverse * (0.5 * (S + S.transpose())) * inverse;
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(covariance);
+    way.in_words = "move freely";
+    if (!covariance.known() || !covariance.of_turn_and_shift.allFinite()) return way;
+    const Vector6d scale = (Vector6d() << Vector3d::Constant(kLever_mm), Vector3d::Ones()).finished();
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scale.asDiagonal() * covariance.of_turn_and_shift * scale.asDiagonal());
     way.sigma_mm = std::sqrt(std::max(solver.eigenvalues()(5), 0.0));
     way.in_words = in_words(solver.eigenvectors().col(5));
-    way.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
     return way;
 }
 

@@ -126,11 +126,11 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
     result.refine_s = seconds_since(refine_start);
     result.patient_from_ct = icp.ct_from_rig.inverse();
 
-    const CloudOnSkin fit = lay_on_skin(cloud, lut, icp.ct_from_rig, settings.inlier_distance_mm);
+    const CloudOnSkin fit = lay_on_skin(cloud, lut, icp.ct_from_rig, settings.inlier_distance_mm, settings.moved_skin ? settled.offset_mm : 0);
     result.inlier_fraction = fit.inlier_fraction();
     result.residual_rms_mm = fit.inlier_rms_mm;
     result.residual_median_mm = fit.median_mm;
-    const WeakestWay weakest = weakest_way(cloud, lut, icp, settings.skin_movement_mm, settings.skin_correlation_mm);
+    const WeakestWay weakest = weakest_way(settled.covariance);
     result.weakest_sigma_mm = weakest.sigma_mm;
     result.scale = best_scale(cloud, lut, icp);
     if (settings.mirror_test) result.mirror_ratio = mirror_ratio(cloud, lut, match, settings);
@@ -139,6 +139,9 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
     judge_fit(settings, fit, judgement);
     judge_uniqueness(settings, result, judgement);
     judge_mirror_and_scale(settings, result, judgement);
+    judgement.ask_if(std::abs(settled.offset_mm) > settings.max_skin_offset_mm,
+                     fmt::format("the whole skin lies {:.1f} mm {} that of the CT: swollen, or not the threshold of the skin", std::abs(settled.offset_mm),
+                                 settled.offset_mm > 0 ? "outside" : "inside"));
     judgement.ask_if(weakest.sigma_mm > settings.max_weakest_sigma_mm,
                      fmt::format("the patient could {} by {:.1f} mm unnoticed; scan more of the head", weakest.in_words, weakest.sigma_mm));
     return result;

@@ -127,8 +127,8 @@ struct Problem {
 };
 
 /// Generalised least squares of the pose and of an offset of the whole skin (another threshold, swelling all over), which
-/// has a prior of `offset_prior_mm`.
-Plausible judge(const Problem& problem, const Skin& skin, double offset_prior_mm) {
+/// has a prior. A field smaller than the least movement is not believed.
+Plausible judge(const Problem& problem, const Skin& skin, const MovedSkinSettings& settings) {
     using Matrix7d = Eigen::Matrix<double, 7, 7>;
     using Vector7d = Eigen::Matrix<double, 7, 1>;
     const auto n = problem.residual_mm.size();
@@ -153,7 +153,8 @@ Plausible judge(const Problem& problem, const Skin& skin, double offset_prior_mm
         const double log_M = 2 * small.matrixLLT().diagonal().array().log().sum();
         result.log_likelihood = -0.5 * (log_K + log_M + freedom * std::log(result.variance));
     }
-    M(6, 6) += result.variance / (offset_prior_mm * offset_prior_mm);
+    result.variance = std::max(result.variance, settings.least_movement_mm * settings.least_movement_mm);
+    M(6, 6) += result.variance / (settings.offset_prior_mm * settings.offset_prior_mm);
     const Eigen::LLT<Matrix7d> with_prior(M);
     if (with_prior.info() != Eigen::Success) return {};
     const Vector7d found = with_prior.solve(taken);
@@ -183,7 +184,7 @@ MovedSkinPose settle_on_moved_skin(const PointCloud& cloud, const SkinLut& lut, 
         for (const double own : {0.01, 0.1, 1., 10.}) skins.push_back({correlation_mm, own});
     std::vector<Plausible> judged(skins.size());
     parallel_for(static_cast<int>(skins.size()), 2, [&](int i) {
-        judged[static_cast<std::size_t>(i)] = judge(problem, skins[static_cast<std::size_t>(i)], settings.offset_prior_mm);
+        judged[static_cast<std::size_t>(i)] = judge(problem, skins[static_cast<std::size_t>(i)], settings);
     });
 
     double best = -std::numeric_limits<double>::infinity(), sum = 0;
@@ -206,10 +207,10 @@ MovedSkinPose settle_on_moved_skin(const PointCloud& cloud, const SkinLut& lut, 
     result.correlation_mm /= sum;
     result.offset_mm /= sum;
     result.covariance.centre_in_ct = centre;
-    result.covariance.of_turn_and_shift = covariance / sum - step * step.transpose();
-    const double pulled_mm = settings.pulled_share * result.movement_mm;
-    result.covariance.of_turn_and_shift.diagonal().tail<3>().array() +=
-        (pulled_mm * pulled_mm + settings.least_movement_mm * settings.least_movement_mm) / 3;
+    result.covariance.of_turn_and_shift = settings.caution * (covariance / sum - step * step.transpose());
+    const double pulled_mm = settings.pulled_share * result.movement_mm, from_offset_mm = settings.offset_share * result.offset_mm;
+    const double unseen_mm2 = pulled_mm * pulled_mm + from_offset_mm * from_offset_mm + settings.least_movement_mm * settings.least_movement_mm;
+    result.covariance.of_turn_and_shift.diagonal().tail<3>().array() += unseen_mm2 / 3;
     const Vector3d turn = step.head<3>();
     RigidTransform moved = RigidTransform::Identity();
     if (turn.norm() > 0) moved.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
