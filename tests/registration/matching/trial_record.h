@@ -39,8 +39,8 @@ struct TrialRecord {
 /// Registers the scan and compares with the truth; fills what the result says.
 void run_trial(const TrialScan& scan, const SkinLut& lut, TrialRecord& record);
 
-/// One number for how sure the certificate is: the least margin of its evidence over the limits of "yes" and "no": 1 or more
-/// where all that is asked of a "yes" holds, 0 and less where something asks for a "no". Minus infinity where nothing was found.
+/// One number for how sure the certificate is: the least margin of its evidence, each measured from its limit for "no" (0) to that
+/// for "yes" (1), or to what good scans reach where there is but one limit. Minus infinity where nothing was found.
 /// The measures: share on the skin, rms, runner-up, mirror, scale, weakest way, agreeing bases.
 double confidence(const TrialRecord& record);
 
