@@ -13,7 +13,6 @@ namespace planlight::test {
 TrialOptions trial_options(int argc, char** argv, unsigned default_trials) {
     TrialOptions options;
     options.trials = default_trials;
-    if (const std::filesystem::path ch2 = "/usr/share/mricron/templates/ch2.nii.gz"; std::filesystem::exists(ch2)) options.files.ch2 = ch2;
     options.files.mannequin = third_party_data("scans/dummyhead.mesh.ply").value_or("");
     options.files.ct_head = third_party_data("ct/slicer_cthead_dicom").value_or("");
     const std::map<std::string, std::filesystem::path*> paths{{"--ch2", &options.files.ch2},
