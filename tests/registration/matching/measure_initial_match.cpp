@@ -1,0 +1,142 @@
+// Is the patient found, from any pose? Random scans of several heads, matched without help.
+// measure_initial_match [TRIALS [SEED]] [--ch2 FILE] [--mannequin FILE] [--ct-head FOLDER] [--log FILE]
+// Default 2000 trials, seed 1. With a log the run can be cut and goes on; the tables are of all trials in the log.
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <functional>
+#include <numbers>
+#include <random>
+
+#include "tests/registration/matching/moved_skin.h"
+#include "tests/registration/matching/trial_heads.h"
+#include "tests/registration/matching/trial_options.h"
+#include "tests/registration/matching/trial_record.h"
+
+namespace planlight::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Where a scan is made from, degrees: from the front, towards the head's left; up.
+struct View {
+    std::string name;
+    double azimuth_deg, up_deg;
+};
+const std::vector<View> kViews{{"front", 0, 5}, {"half side", 45, 10}, {"side", 90, 5}, {"back", 170, 15}, {"front from above", 10, 45}};
+
+TrialRecord run(const std::vector<TrialHead>& heads, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> unit, both(-1, 1);
+    const auto between = [&](double low, double high) { return low + (high - low) * unit(random); };
+    const TrialHead& head = heads[seed % heads.size()];
+    const View& view = kViews[random() % kViews.size()];
+    const double other_side = random() % 2 == 0 ? 1 : -1;
+    const double azimuth = (other_side * view.azimuth_deg + 15 * both(random)) * std::numbers::pi / 180;
+    const double up = (view.up_deg + 12 * both(random)) * std::numbers::pi / 180;
+    TrialScanSettings scan;
+    scan.from_in_ct = Vector3d(std::sin(azimuth) * std::cos(up), -std::cos(azimuth) * std::cos(up), std::sin(up));
+    scan.roll = std::numbers::pi * both(random);
+    scan.aside_mm = {20 * both(random), 20 * both(random)};
+    scan.width_mm = between(92, 250);
+    scan.noise_mm = between(0, 1);
+    scan.stray_share = between(0, 0.4);
+    scan.drape_share = unit(random) < 0.5 ? 0 : between(0, 0.4);
+    scan.drape_height_mm = between(5, 30);
+    const auto& movements = skin_movements();
+    const bool moves = unit(random) < 0.75;
+    scan.movement = movements[random() % movements.size()].name;
+    scan.movement_mm = moves ? between(0.5, 2) : 0;
+    scan.seed = seed;
+    TrialRecord record;
+    record.seed = seed;
+    record.kind = "random";
+    record.head = head.name;
+    record.view = view.name;
+    record.width_mm = scan.width_mm;
+    record.noise_mm = scan.noise_mm;
+    record.strays = scan.stray_share;
+    record.drape = scan.drape_share;
+    record.movement = moves ? scan.movement : "none";
+    record.movement_mm = scan.movement_mm;
+    run_trial(trial_scan(head.surface, scan), head.lut, record);
+    return record;
+}
+
+void print_row(const std::string& name, const std::vector<TrialRecord>& all, const std::function<bool(const TrialRecord&)>& in) {
+    std::vector<double> before, after, initial_s, processor_s;
+    std::size_t n = 0, found = 0, good = 0, wrong[2] = {0, 0}, verdicts[3] = {0, 0, 0};
+    for (const TrialRecord& r : all) {
+        if (!in(r)) continue;
+        ++n;
+        ++verdicts[r.verdict];
+        found += r.found();
+        good += r.found() && r.final.target_mm < 2;
+        if (r.verdict < 2) wrong[r.verdict] += r.wrong();
+        if (r.found()) before.push_back(r.initial.target_mm), after.push_back(r.final.target_mm);
+        initial_s.push_back(r.initial_s);
+        processor_s.push_back(r.processor_s);
+    }
+    if (n == 0) return;
+    const auto percent = [&](std::size_t k) { return 100. * static_cast<double>(k) / static_cast<double>(n); };
+    fmt::print("| {} | {} | {:.1f} % | {:.1f} % | {:.0f} / {:.0f} / {:.0f} % | {} / {} | {:.2f}, {:.2f} | {:.2f}, {:.2f} | {:.2f}, {:.2f} | {:.2f} |\n", name, n,
+               percent(found), percent(good), percent(verdicts[0]), percent(verdicts[1]), percent(verdicts[2]), wrong[0], wrong[1],
+               quantile(before, 0.5), quantile(before, 0.95), quantile(after, 0.5), quantile(after, 0.95), quantile(initial_s, 0.5),
+               quantile(initial_s, 0.99), quantile(processor_s, 0.5));
+}
+
+void print_table(const std::vector<TrialRecord>& all) {
+    fmt::print("| trials | number | found: within 3 degrees, 5 mm | found, and < 2 mm at targets | yes / ask / no | wrong (> 5 mm): yes / ask | "
+               "error of those found, mm, before: median, 95 % | after | initial match, s by the wall: median, 99 % | processor s in all: median |\n"
+               "|---|---|---|---|---|---|---|---|---|---|\n");
+    const auto goal = [](const TrialRecord& r) { return r.width_mm >= 140 && r.movement_mm <= 1; };
+    print_row("**at least 140 mm, at most 1 mm moved**", all, goal);
+    print_row("same, at most 25 % strays, no cloth", all,
+              [&](const TrialRecord& r) { return goal(r) && r.strays <= 0.25 && r.drape == 0; });
+    print_row("all", all, [](const TrialRecord&) { return true; });
+    const auto each = [&](const std::string& title, auto key, bool of_goal) {
+        std::map<std::string, bool> names;
+        for (const TrialRecord& r : all) names[key(r)] = true;
+        for (const auto& [name, unused] : names)
+            print_row(title + name, all, [&](const TrialRecord& r) { return key(r) == name && (!of_goal || goal(r)); });
+    };
+    const auto within = [](double value, std::vector<double> edges, const std::string& unit) {
+        std::size_t i = 1;
+        while (i + 1 < edges.size() && value >= edges[i]) ++i;
+        return fmt::format("{:.3g} to {:.3g} {}", edges[i - 1], edges[i], unit);
+    };
+    each("", [](const TrialRecord& r) { return r.head; }, false);
+    each("goal's, ", [](const TrialRecord& r) { return r.head; }, true);
+    each("goal's, from: ", [](const TrialRecord& r) { return r.view; }, true);
+    each("wide ", [&](const TrialRecord& r) { return within(r.width_mm, {90, 115, 140, 170, 200, 250}, "mm"); }, false);
+    each("moved ", [&](const TrialRecord& r) { return within(r.movement_mm, {0, 0.5, 1, 1.5, 2}, "mm"); }, false);
+    each("moved by ", [&](const TrialRecord& r) { return r.movement; }, false);
+    each("strays ", [&](const TrialRecord& r) { return within(100 * r.strays, {0, 10, 25, 40}, "%"); }, false);
+    each("under a cloth ", [&](const TrialRecord& r) { return r.drape == 0 ? "0" : within(100 * r.drape, {0, 10, 25, 40}, "%"); }, false);
+}
+
+void print_misses(const std::vector<TrialRecord>& all) {
+    fmt::print("\nOf the goal's trials, not found or wrong with a yes:\n");
+    for (const TrialRecord& r : all)
+        if (((r.width_mm >= 140 && r.movement_mm <= 1 && !r.found()) || (r.verdict == 0 && r.wrong())))
+            fmt::print("  seed {}: {}, {}, {:.0f} mm, {} points, noise {:.1f}, strays {:.0f} %, cloth {:.0f} %, {} {:.1f} mm: {:.1f} mm off, verdict {}: {}\n", r.seed,
+                       r.head, r.view, r.width_mm, r.points, r.noise_mm, 100 * r.strays, 100 * r.drape, r.movement, r.movement_mm,
+                       r.final.target_mm, r.verdict, r.reasons);
+}
+
+}  // namespace
+}  // namespace planlight::test
+
+int main(int argc, char** argv) {
+    using namespace planlight::test;
+    const TrialOptions options = trial_options(argc, argv, 2000);
+    TrialLog log(options.log);
+    const std::vector<TrialHead> heads = trial_heads(options.files);
+    for (unsigned i = 0; i < options.trials; ++i) {
+        if (log.holds(options.seed + i)) continue;
+        log.add(run(heads, options.seed + i));
+        if (i % 20 == 0) fmt::print(stderr, "\r{} of {}", i, options.trials);
+    }
+    print_table(log.records());
+    print_misses(log.records());
+}
