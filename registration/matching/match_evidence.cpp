@@ -7,7 +7,6 @@
 
 #include "planning_io/types/triangle_mesh.h"
 #include "registration/matching/distance_field.h"
-#include "registration/matching/gauss_newton.h"
 
 namespace planlight {
 namespace {
@@ -24,31 +23,6 @@ double median(std::vector<double>& values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
     return *middle;
-}
-
-/// A scan point on the skin, as the linearised ICP sees it.
-struct Contact {
-    Vector3d x_in_ct, normal;
-    double distance_mm;
-    Vector6d J;
-};
-
-/// About `count` of the cloud's points that lie within 3 mm of real skin.
-std::vector<Contact> contacts(const PointCloud& cloud, const SkinLut& lut, const IcpResult& icp, std::size_t count) {
-    const DistanceField field(lut);
-    std::vector<Contact> all;
-    const std::size_t stride = std::max<std::size_t>(1, cloud.size() / std::max<std::size_t>(count, 1));
-    for (std::size_t i = 0; i < cloud.size(); i += stride) {
-        if (!cloud.points_in_rig[i].allFinite()) continue;
-        Contact c;
-        c.x_in_ct = icp.ct_from_rig * cloud.points_in_rig[i];
-        const SkinPoint* s = lut.nearest_skin(c.x_in_ct);
-        if (!s || s->flags != kSkin || !field.sample(c.x_in_ct, c.distance_mm, c.normal) || std::abs(c.distance_mm) > 3) continue;
-        c.normal.normalize();
-        c.J << (c.x_in_ct - icp.centre_in_ct).cross(c.normal), c.normal;
-        all.push_back(c);
-    }
-    return all;
 }
 
 std::string in_words(const Vector6d& scaled) {
@@ -79,6 +53,7 @@ CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const Rigid
         Vector3d normal = Vector3d::Zero();
         if (s && field.sample(x, d, normal)) d -= skin_offset_mm;
         distances.push_back(std::abs(d));
+        if (d < -inlier_distance_mm) ++result.inside;
         if (std::abs(d) > inlier_distance_mm) continue;
         if (has_normals && normal.dot(ct_from_rig.linear() * cloud.normals_in_rig[i]) < 0) continue;
         ++result.inliers;
@@ -99,41 +74,6 @@ WeakestWay weakest_way(const PoseCovariance& covariance) {
     way.sigma_mm = std::sqrt(std::max(solver.eigenvalues()(5), 0.0));
     way.in_words = in_words(solver.eigenvectors().col(5));
     return way;
-}
-
-double best_scale(const PointCloud& cloud, const SkinLut& lut, const IcpResult& icp) {
-    using Vector7d = Eigen::Matrix<double, 7, 1>;
-    using Matrix7d = Eigen::Matrix<double, 7, 7>;
-    const std::vector<Contact> on_skin = contacts(cloud, lut, icp, 4000);
-    if (on_skin.size() < 50) return 1;
-    const DistanceField field(lut);
-    Matrix3d A = Matrix3d::Identity();  // ct from ct: turned and scaled about the centre
-    Vector3d moved = Vector3d::Zero();
-    double scale = 1;
-    for (int step = 0; step < 6; ++step) {
-        Matrix7d H = Matrix7d::Zero();
-        Vector7d g = Vector7d::Zero();
-        for (const Contact& c : on_skin) {
-            const Vector3d r = scale * A * (c.x_in_ct - icp.centre_in_ct);
-            double d;
-            Vector3d n;
-            if (!field.sample(icp.centre_in_ct + moved + r, d, n)) continue;
-            n.normalize();
-            Vector7d J;
-            J << r.cross(n) / kLever_mm, n, r.dot(n) / kLever_mm;
-            const double w = tukey_weight(d, 1);
-            H += w * J * J.transpose();
-            g += w * d * J;
-        }
-        H.diagonal().array() += 1e-6 * H.trace();
-        const Vector7d delta = -H.ldlt().solve(g);
-        if (!delta.allFinite()) return 1;
-        const Vector3d turn = delta.head<3>() / kLever_mm;
-        if (turn.norm() > 0) A = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix() * A;
-        moved += delta.segment<3>(3);
-        scale *= std::clamp(1 + delta(6) / kLever_mm, 0.9, 1.1);
-    }
-    return scale;
 }
 
 Vector3d extents_mm(const PointCloud& cloud) {

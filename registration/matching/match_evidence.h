@@ -6,7 +6,7 @@
 #include "planning_io/types/point_cloud.h"
 #include "planning_io/types/pose_covariance.h"
 #include "planning_io/types/skin_lut.h"
-#include "registration/matching/refine_icp.h"
+#include "planning_io/types/rigid_transform.h"
 
 namespace planlight {
 
@@ -15,9 +15,11 @@ struct CloudOnSkin {
     std::size_t points = 0;   ///< finite ones
     std::size_t known = 0;    ///< of these, judged
     std::size_t inliers = 0;  ///< nearer than the inlier distance, facing the same way as the skin
+    std::size_t inside = 0;   ///< deeper in the body than that, where no light comes from
     double inlier_rms_mm = 0;
     double median_mm = 0;     ///< of the known ones, absolute
     double inlier_fraction() const { return known == 0 ? 0 : static_cast<double>(inliers) / static_cast<double>(known); }
+    double inside_fraction() const { return known == 0 ? 0 : static_cast<double>(inside) / static_cast<double>(known); }
     double known_fraction() const { return points == 0 ? 0 : static_cast<double>(known) / static_cast<double>(points); }
 };
 /// Distances are counted from `skin_offset_mm` outside of the CT's skin.
@@ -30,10 +32,6 @@ struct WeakestWay {
     std::string in_words;  ///< "turn about the head-foot axis"
 };
 WeakestWay weakest_way(const PoseCovariance& covariance);
-
-/// The factor by which the scan should shrink or grow to fit best (1 when it fits as it is): another patient, or a rig
-/// whose calibration has the wrong scale.
-double best_scale(const PointCloud& cloud, const SkinLut& lut, const IcpResult& icp);
 
 /// Standard deviations along the cloud's principal axes times sqrt(12): the extents of an even slab; largest first.
 /// Finite points within 3 median distances of the median only.

@@ -23,6 +23,8 @@ struct MovedSkinPose {
     double movement_mm = 0;      ///< of the skin along its normal, rms
     double correlation_mm = 0;   ///< over which the movement is alike
     double offset_mm = 0;        ///< of the whole skin; positive outside of the CT's
+    double scale = 1;            ///< by which the scan would have to grow to fit best
+    double scale_sigma = 0;      ///< one standard deviation of that
     int patches = 0;
 };
 
