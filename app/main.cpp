@@ -109,8 +109,13 @@ void add_register(CLI::App& app, RegisterOptions& o) {
     auto* sub = command(app, "register", "Cloud and case -> where the patient lies (T_ini), or a refusal (exit 6)",
                         "register case --cloud cloud.ply --out registration.json");
     sub->add_option("case", o.case_folder, "Case folder")->required();
-    sub->add_option("--cloud", o.cloud, "Clean cloud (.ply)")->required();
+    auto* cloud = sub->add_option("--cloud", o.cloud, "Clean cloud (.ply), of `scan` or of any scanner");
+    sub->add_option("--unit", o.unit, "Unit of the cloud's numbers")->check(CLI::IsMember({"mm", "cm", "m", "um", "inch"}))->capture_default_str()->needs(cloud);
+    sub->add_flag("--in-rig", o.in_rig, "The cloud is in the rig's frame though it does not say so")->needs(cloud);
+    sub->add_option("--viewpoint", o.viewpoint_in_rig, "Where the scanner stood (rig, mm), for a cloud without normals")->expected(3)->needs(cloud);
+    sub->add_option("--pairs", o.pairs, "Landmarks (.csv: name, ct and rig coordinates): they check the cloud's match, or, without a cloud, are the match");
     sub->add_option("--out", o.out, "registration.json to write")->required();
+    sub->add_option("--slicer", o.slicer_transform, "Transform for 3D Slicer to write (.tfm): it lays the cloud on the CT");
     sub->add_option("--icp", o.icp, "Fine match: signed-distance, or closest-point as in the paper")
         ->check(CLI::IsMember({"signed-distance", "closest-point"}))->capture_default_str();
     sub->add_option("--seed", o.seed, "Of the search")->capture_default_str();

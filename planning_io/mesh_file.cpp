@@ -136,12 +136,14 @@ void write_cloud(const PointCloud& cloud, const fs::path& file) {
     write_safely(file, rows.header_and_rows(header + "end_header\n"));
 }
 
-PointCloud read_cloud(const fs::path& file) {
+PointCloud read_cloud(const fs::path& file, const CloudOrigin& origin) {
     const Ply ply = parse_ply(read_whole(file), file);
-    if (!ply.says("FRAME=rig"))
-        throw InputError(file, "does not say that its points are in the rig's frame", "Add the line \"comment FRAME=rig\" to its header if they are.");
+    if (!origin.in_rig && !ply.says("FRAME=rig"))
+        throw InputError(file, "does not say that its points are in the rig's frame",
+                         "Add the line \"comment FRAME=rig\" to its header, or say --in-rig, if they are.");
     PointCloud cloud;
     cloud.points_in_rig = vectors(ply, {"x", "y", "z"}, 1, file);
+    for (auto& p : cloud.points_in_rig) p *= origin.unit_mm;
     if (ply.column("nx")) cloud.normals_in_rig = vectors(ply, {"nx", "ny", "nz"}, 1, file);
     if (ply.column("sigma"))
         for (const double sigma : column(ply, "sigma", file)) cloud.sigma_mm.push_back(static_cast<float>(sigma));

@@ -16,7 +16,15 @@ TriangleMesh read_mesh(const std::filesystem::path& file);
 
 /// Binary PLY of a scan in rig, with "comment FRAME=rig"; columns x y z nx ny nz sigma projector_x projector_y.
 void write_cloud(const PointCloud& cloud, const std::filesystem::path& file);
-PointCloud read_cloud(const std::filesystem::path& file);
+
+/// What a person says of a cloud that another program wrote.
+struct CloudOrigin {
+    double unit_mm = 1;         ///< of its numbers, in mm: 1000 for metres
+    bool in_rig = false;        ///< its points are in the rig's frame though it does not say so
+};
+/// Throws InputError for a cloud that is not said to be in the rig's frame, DamagedFileError for a damaged one. Normals are
+/// read where they are (`nx ny nz`); sigma and projector pixels as well.
+PointCloud read_cloud(const std::filesystem::path& file, const CloudOrigin& origin = {});
 
 /// XXH3-128 of vertices and triangles, hex.
 std::string hash_of(const TriangleMesh& mesh);

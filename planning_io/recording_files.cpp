@@ -176,6 +176,9 @@ void write_registration(const RegistrationResult& result, const fs::path& file) 
                                  {"runner_up_ratio", std::min(result.runner_up_ratio, std::numeric_limits<double>::max())},
                                  {"agreeing_bases", result.agreeing_bases},
                                  {"weakest_sigma_mm", result.weakest_sigma_mm},
+                                 {"mirror_ratio", std::min(result.mirror_ratio, std::numeric_limits<double>::max())},
+                                 {"scale", result.scale},
+                                 {"scale_sigma", result.scale_sigma},
                                  {"skin_movement_mm", result.skin_movement_mm},
                                  {"skin_offset_mm", result.skin_offset_mm},
                                  {"covariance", json_of(result.covariance)},
@@ -203,6 +206,9 @@ RegistrationResult read_registration(const fs::path& file) {
     result.inlier_distance_mm = number("inlier_distance_mm");
     result.runner_up_ratio = number("runner_up_ratio");
     result.weakest_sigma_mm = number("weakest_sigma_mm");
+    result.mirror_ratio = number("mirror_ratio");
+    if (root.find("scale")) result.scale = number("scale");
+    result.scale_sigma = number("scale_sigma");
     result.skin_movement_mm = number("skin_movement_mm");
     result.skin_offset_mm = number("skin_offset_mm");
     if (const auto covariance = root.find("covariance")) result.covariance = covariance_of(*covariance);

@@ -56,6 +56,11 @@ int run_scan(const ScanOptions& options);
 
 struct RegisterOptions {
     Path case_folder, cloud, out;
+    Path pairs;             ///< landmarks: a check of the cloud's match, or, without a cloud, the match
+    Path slicer_transform;  ///< to write; empty: not wanted
+    std::string unit = "mm";
+    bool in_rig = false;
+    std::vector<double> viewpoint_in_rig;  ///< 3 numbers, mm; for a cloud without normals
     std::string icp = "signed-distance";
     unsigned seed = 1;
     bool json = false;

@@ -7,8 +7,12 @@
 #include "app/live/case_model.h"
 #include "planning_io/case_folder.h"
 #include "planning_io/mesh_file.h"
+#include "planning_io/point_pairs_file.h"
 #include "planning_io/recording_files.h"
+#include "planning_io/slicer_transform.h"
 #include "planning_io/types/error.h"
+#include "registration/matching/cloud_normals.h"
+#include "registration/matching/point_pairs.h"
 #include "registration/matching/register_patient.h"
 
 namespace planlight {
@@ -18,16 +22,40 @@ const char* name_of(Verdict verdict) {
     return verdict == Verdict::yes ? "yes" : verdict == Verdict::ask ? "ask" : "no";
 }
 
+double unit_in_mm(const std::string& unit) {
+    return unit == "m" ? 1000 : unit == "cm" ? 10 : unit == "um" ? 1e-3 : unit == "inch" ? 25.4 : 1;
+}
+
+/// The cloud as the matching wants it: mm, with normals towards the devices.
+PointCloud cloud_of(const RegisterOptions& options) {
+    PointCloud cloud = read_cloud(options.cloud, {unit_in_mm(options.unit), options.in_rig});
+    if (!cloud.normals_in_rig.empty()) return cloud;
+    if (options.viewpoint_in_rig.empty())
+        throw InputError(options.cloud, "has no normals, and nothing says from where it was seen",
+                         "Say --viewpoint X Y Z: where the scanner stood, in the rig's frame, mm (0 0 0 for most scanners).");
+    return with_normals(cloud, Eigen::Vector3d(options.viewpoint_in_rig.data()));
+}
+
+RegistrationResult match(const RegisterOptions& options, const Case& the_case) {
+    if (options.cloud.empty() && options.pairs.empty())
+        throw Error(ExitCode::usage, "neither --cloud nor --pairs is given", "Give the scan, landmarks, or both.");
+    const std::vector<PointPair> pairs = options.pairs.empty() ? std::vector<PointPair>{} : read_point_pairs(options.pairs);
+    if (options.cloud.empty()) return register_point_pairs(pairs);
+    RegistrationSettings settings;
+    settings.initial.seed = options.seed;
+    if (options.icp == "closest-point") settings.icp.mode = IcpSettings::Mode::closest_point;
+    RegistrationResult result = register_patient(cloud_of(options), the_case.lut, settings);
+    check_with_point_pairs(pairs, result);
+    return result;
+}
+
 }  // namespace
 
 int run_register(const RegisterOptions& options) {
     const Case the_case = read_case(options.case_folder);
-    const PointCloud cloud = read_cloud(options.cloud);
-    RegistrationSettings settings;
-    settings.initial.seed = options.seed;
-    if (options.icp == "closest-point") settings.icp.mode = IcpSettings::Mode::closest_point;
-    const RegistrationResult result = register_patient(cloud, the_case.lut, settings);
+    const RegistrationResult result = match(options, the_case);
     write_registration(result, options.out);
+    if (!options.slicer_transform.empty() && result.verdict != Verdict::no) write_slicer_transform(result.patient_from_ct, options.slicer_transform);
     const CaseDrawing drawing(the_case);
     const std::vector<double> predicted = result.verdict == Verdict::no ? std::vector<double>{} : predicted_errors_mm(the_case.plan, result);
     nlohmann::json items = nlohmann::json::array();
@@ -47,13 +75,19 @@ int run_register(const RegisterOptions& options) {
                                     {"runner_up_ratio", result.runner_up_ratio},
                                     {"agreeing_bases", result.agreeing_bases},
                                     {"weakest_sigma_mm", result.weakest_sigma_mm},
+                                    {"mirror_ratio", result.mirror_ratio},
+                                    {"scale", result.scale},
+                                    {"scale_sigma", result.scale_sigma},
                                     {"skin_movement_mm", result.skin_movement_mm},
                                     {"skin_offset_mm", result.skin_offset_mm},
                                     {"items", items},
                                     {"seconds", {{"initial", result.initial_match_s}, {"fine", result.refine_s}}}};
         std::cout << out.dump(2) << '\n';
     } else {
-        fmt::print("{}: residual {:.2f} mm rms, {:.0f} % of {} points on the skin, runner-up {:.2f} times worse.\n",
+        if (options.cloud.empty())
+            fmt::print("{}: {} landmarks, {:.2f} mm rms.\n", name_of(result.verdict), result.points, result.residual_rms_mm);
+        else
+            fmt::print("{}: residual {:.2f} mm rms, {:.0f} % of {} points on the skin, runner-up {:.2f} times worse.\n",
                    name_of(result.verdict), result.residual_rms_mm, 100 * result.inlier_fraction, result.points,
                    result.runner_up_ratio);
         for (const auto& item : items)

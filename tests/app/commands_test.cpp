@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "planning_io/mesh_file.h"
 #include "tests/app/run_command.h"
 #include "tests/planning_io/synthetic_series.h"
 #include "tests/support/test_data.h"
@@ -118,6 +119,61 @@ TEST_F(CommandsTest, StagesOnFilesFindThePatientWithinAMillimetreOfTheTruth) {
             const Eigen::Vector4d h(p[0], p[1], p[2], 1);
             EXPECT_LT((truth * h - measured * h).norm(), 1.0) << point["label"];  // the goal of the whole chain
         }
+}
+
+/// The cloud of a PLY file as another scanner would write it: ascii, metres, no normals, no frame.
+void write_as_a_foreign_scanner(const PointCloud& cloud, const fs::path& file) {
+    std::ofstream out(file);
+    out << "ply\nformat ascii 1.0\nelement vertex " << cloud.size() << "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    for (const auto& p : cloud.points_in_rig) out << p.x() / 1000 << ' ' << p.y() / 1000 << ' ' << p.z() / 1000 << '\n';
+}
+
+TEST_F(CommandsTest, ACloudOfAnotherScannerIsRegisteredOnceItsUnitFrameAndViewpointAreSaid) {
+    const auto scan = run_planlight("scan room/capture --rig room/rig.json --out scanned.ply", root());
+    ASSERT_EQ(scan.exit_code, 0) << scan.err;
+    write_as_a_foreign_scanner(read_cloud(root() / "scanned.ply"), root() / "foreign.ply");
+    expect_one_clear_sentence(run_planlight("register case --cloud foreign.ply --out new.json", root()), 3, "rig's frame");
+    expect_one_clear_sentence(run_planlight("register case --cloud foreign.ply --in-rig --unit m --out new.json", root()), 3, "normals");
+    const auto found = run_planlight(
+        "register case --cloud foreign.ply --in-rig --unit m --viewpoint 0 0 0 --slicer match.tfm --out foreign.json --json", root());
+    ASSERT_EQ(found.exit_code, 0) << found.err;
+    const Eigen::Matrix4d truth = matrix_of(read_json(root() / "room" / "truth.json")["scan_rig_from_ct"]);
+    const Eigen::Matrix4d measured = matrix_of(json::parse(found.out)["patient_from_ct"]);
+    const Eigen::Vector4d target(120, 140, 80, 1);  // in the middle of the head
+    EXPECT_LT((truth * target - measured * target).norm(), 1.0);
+
+    // The file as ITK defines it: a point after the transform -> the point before it: from the CT back to the scan.
+    std::ifstream tfm(root() / "match.tfm");
+    std::string word;
+    while (tfm >> word && word != "Parameters:") continue;
+    Eigen::Matrix3d A;
+    Eigen::Vector3d t;
+    for (double& value : A.reshaped<Eigen::RowMajor>()) tfm >> value;
+    for (double& value : t) tfm >> value;
+    EXPECT_LT((A * target.head<3>() + t - (truth * target).head<3>()).norm(), 1.0);
+}
+
+TEST_F(CommandsTest, LandmarksAloneAreAskedForAndWrongOnesAreRefused) {
+    const Eigen::Matrix4d truth = matrix_of(read_json(root() / "room" / "truth.json")["scan_rig_from_ct"]);
+    const std::vector<Eigen::Vector3d> landmarks{{120, 60, 60}, {170, 80, 60}, {70, 80, 60}, {195, 150, 50}, {45, 150, 50}};
+    const auto write = [&](const std::string& name, const std::string& space, double shift) {
+        std::ofstream out(root() / name);
+        out << space << "name,ct_x,ct_y,ct_z,rig_x,rig_y,rig_z\n";
+        for (std::size_t i = 0; i < landmarks.size(); ++i) {
+            const Eigen::Vector4d p = truth * landmarks[i].homogeneous();
+            out << 'L' << i << ',' << landmarks[i].x() << ',' << landmarks[i].y() << ',' << landmarks[i].z() << ',' << p.x() + shift * static_cast<double>(i % 2)
+                << ',' << p.y() << ',' << p.z() << '\n';
+        }
+    };
+    write("good.csv", "# SPACE=LPS\n", 1);
+    write("bad.csv", "# SPACE=LPS\n", 40);
+    write("unsaid.csv", "", 0);
+    const auto found = run_planlight("register case --pairs good.csv --out pairs.json --json", root());
+    ASSERT_EQ(found.exit_code, 0) << found.err;
+    EXPECT_EQ(json::parse(found.out)["verdict"], "ask");
+    expect_one_clear_sentence(run_planlight("register case --pairs bad.csv --out new.json", root()), 6, "landmark");
+    expect_one_clear_sentence(run_planlight("register case --pairs unsaid.csv --out new2.json", root()), 3, "SPACE=");
+    EXPECT_EQ(run_planlight("register case --out new3.json", root()).exit_code, 2);
 }
 
 TEST_F(CommandsTest, PatternsWritesTheWholeSequence) {
