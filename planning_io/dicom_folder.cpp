@@ -193,7 +193,7 @@ std::string table_of(const std::vector<DicomSeries>& list) {
     for (const auto& s : list)
         table += fmt::format("\n  {}  {}  {}  {}  \"{}{}\"  {}", s.number.empty() ? "-" : s.number, s.modality,
                              s.slices(), spacing_text(s), s.description,
-                             s.is_volume() || s.slices() == 0 ? "" : " (no CT or MR volume)", s.uid);
+                             s.slices() == 0 ? " (no pictures)" : s.is_volume() ? "" : " (no CT or MR volume)", s.uid);
     return table;
 }
 
@@ -267,7 +267,7 @@ DicomSeries choose_series(const DicomFolder& folder, const fs::path& path, const
                                    "Copy or export the series again; if the file is not of the series, move it elsewhere.");
     if (!says_folder && wanted.empty() && chosen.empty())
         throw InputError(
-            path, "is no DICOM file",
+            path, "is no DICOM file, nor any other kind of volume that is read",
             "Name a folder with a CT or MR series, or a file: .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, .inv3.");
     if (folder.series.empty())
         throw InputError(
@@ -279,6 +279,9 @@ DicomSeries choose_series(const DicomFolder& folder, const fs::path& path, const
                                          : "holds no series of the UID or number " + wanted + "; there is:") +
                              table_of(folder.series),
                          "Name a folder with a CT or MR series of slices.");
+    if (chosen.size() > 1 && wanted.empty() && chosen.front().slices() < kFewestSlices)
+        throw InputError(path, fmt::format("holds no CT or MR volume of {} slices or more; there is:", kFewestSlices) + table_of(folder.series),
+                         "Name a folder with a CT or MR series of thin slices.");
     if (chosen.size() > 1)
         throw InputError(path, "holds several series:" + table_of(wanted.empty() ? folder.series : chosen),
                          "Choose one by its UID (--series UID).");

@@ -77,7 +77,7 @@ void fill(DicomObject& o, std::int16_t value) {
 
 void add_stack(std::vector<VolumeCase>& list) {
     list.push_back(series("a slice is missing", "missing", [](Objects& o) { o.erase(o.begin() + 9); }));
-    list.push_back(series("three slices in a row are missing", "3 slice(s) are missing",
+    list.push_back(series("three slices in a row are missing", "3 slices are missing",
                           [](Objects& o) { o.erase(o.begin() + 9, o.begin() + 12); }));
     list.push_back(series("a slice is there twice", "double slice", [](Objects& o) { o.push_back(o[9]); }));
     list.push_back(series("two scans of one head in one series", "double slice", [](Objects& o) {
