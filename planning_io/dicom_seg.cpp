@@ -193,7 +193,7 @@ bool is_dicom_file(const fs::path& file) {
 
 TriangleMesh read_dicom_seg(const fs::path& file, const std::string& segment, const PlanImportSettings& settings,
                             std::vector<std::string>& notes) {
-    Parcel parcel = parse_in_child(file, "DICOM file", [&](Parcel& p) { parse(p, file, segment); });
+    Parcel parcel = parse_in_child(file, {"DICOM file"}, [&](Parcel& p) { parse(p, file, segment); });
     check_frame_of_reference(parcel.get_text(), settings, file, notes);
     TriangleMesh mesh;
     const auto coordinates = parcel.get_list<double>();
