@@ -154,22 +154,27 @@ bool read_header(DicomFile& file, bool& is_directory) {
 std::vector<fs::path> files_in(const fs::path& folder, int depth) {
     std::vector<fs::path> files;
     std::error_code error;
-    for (fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error), end;
-         !error && entry != end; entry.increment(error)) {
+    for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
         if (entry.depth() >= depth - 1) entry.disable_recursion_pending();
         std::error_code ignored;
         if (entry->is_regular_file(ignored)) files.push_back(entry->path());
+        else if (entry->is_symlink(ignored) && !entry->exists(ignored))
+            throw InputError(entry->path(), "is a link to a file that is not there, and may be a slice", "Copy the whole series again.");
         if (files.size() > kMostFiles)
             throw InputError(folder, fmt::format("holds more than {} files", kMostFiles),
                              "Name the folder of the study.");
     }
+    if (error)  // slices may be there
+        throw InputError(folder, "cannot be searched to its end: " + error.message(), "Check the permissions of the folders in it.");
     std::sort(files.begin(), files.end());
     return files;
 }
 
-/// Whether it has DICOM's mark; without it a file may merely look like a data set.
+/// Whether it has DICOM's mark; without it a file may merely look like a data set. A file that cannot be opened may be a
+/// slice: InputError.
 bool says_dicom(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
+    if (!in) throw InputError(file, "cannot be opened, and may be a slice", "Check the permissions of the file, or move it elsewhere.");
     std::string mark(4, '\0');
     return in.seekg(128) && in.read(mark.data(), 4) && mark == "DICM";
 }

@@ -1,7 +1,7 @@
 // Nearest skin voxel of every voxel of the example patient's table: ours, on each set of instructions, against the distance
 // transforms of ITK and VTK. One program, one run, repeats interleaved, so that the ratios hold on a busy machine.
 //
-//   compare_nearest_table [repeats = 3] [sizes = own,256,512]
+//   compare_nearest_table [repeats = 3] [sizes = own,256,512] [ours]      ("ours": without the others, for many rounds)
 //
 // Everyone allocates its result within its time; a round before the first warms the memory. Ratios are to the first line. Wall:
 // the least of all rounds (on a busy machine the nearest to a quiet one); processor (all threads together): the median.
@@ -115,7 +115,7 @@ struct Scene {
     }
 };
 
-std::vector<Contestant> contestants(Scene& scene) {
+std::vector<Contestant> contestants(Scene& scene, bool with_peers) {
     std::vector<Contestant> all;
     const std::pair<VectorPath, const char*> paths[] = {
         {VectorPath::avx512, "ours, AVX-512"}, {VectorPath::avx2, "ours, AVX2"}, {VectorPath::plain, "ours, plain"}};
@@ -123,6 +123,7 @@ std::vector<Contestant> contestants(Scene& scene) {
         if (can_use(path))
             all.push_back({name, "voxel", [&scene, path] { point_to_nearest(scene.lut, path); },
                            [&scene](std::size_t n) { return scene.squared(n, scene.lut.nearest[n]); }});
+    if (!with_peers) return all;
     using Maurer = itk::SignedMaurerDistanceMapImageFilter<ByteImage, FloatImage>;
     auto maurer = std::make_shared<Maurer::Pointer>();
     all.push_back({"itk::SignedMaurerDistanceMap", "distance",
@@ -173,9 +174,9 @@ int wrong_of_samples(const Scene& scene, int samples) {
     return wrong;
 }
 
-void compare(const TriangleMesh& skin, int n, int repeats) {
+void compare(const TriangleMesh& skin, int n, int repeats, bool with_peers) {
     Scene scene(skin_in_table(skin, n));
-    std::vector<Contestant> all = contestants(scene);
+    std::vector<Contestant> all = contestants(scene, with_peers);
     for (Contestant& one : all) time(one);  // the first round only warms the memory
     for (Contestant& one : all) one.wall_s.clear(), one.processor_s.clear();
     for (int r = 0; r < repeats; ++r)  // each time another one begins
@@ -195,7 +196,7 @@ void compare(const TriangleMesh& skin, int n, int repeats) {
     for (const Contestant& one : all)
         fmt::print("{:30} {:>9} {:>9.4f} {:>9.4f} {:>9.1f} {:>9.1f} {:>9.3f}\n", one.name, one.gives, one.wall(), one.processor(),
                    one.wall() / all[0].wall(), one.processor() / all[0].processor(), 100 * one.exact);
-    if (static_cast<double>(scene.voxels()) > kDanielssonMost)
+    if (with_peers && static_cast<double>(scene.voxels()) > kDanielssonMost)
         fmt::print("itk::DanielssonDistanceMap is left out at this size.\n");
 }
 
@@ -253,6 +254,8 @@ int main(int count, char** words) {
     tell_stages(skin, repeats);
     tell_rest(volume, skin, repeats);
     std::istringstream sizes(count > 2 ? words[2] : "own,256,512");
-    for (std::string size; std::getline(sizes, size, ',');) compare(skin, size == "own" ? 0 : std::atoi(size.c_str()), repeats);
+    const bool with_peers = !(count > 3 && std::string(words[3]) == "ours");
+    for (std::string size; std::getline(sizes, size, ',');)
+        compare(skin, size == "own" ? 0 : std::atoi(size.c_str()), repeats, with_peers);
     return 0;
 }

@@ -209,6 +209,10 @@ void add_spoilt_shapes(std::vector<PlanCase>& list) {
     list.push_back(text("a scene of 3D Slicer", "scene", "p.mrml", "<MRML></MRML>"));
     list.push_back(text("a file of another kind", "of no kind", "p.doc", "anything"));
     list.push_back({"a folder without plan files", "holds no plan file", [](const fs::path& folder) { return folder; }, {}});
+    list.push_back({"a device", "a pipe or a device", [](const fs::path& folder) {
+                        fs::create_symlink("/dev/zero", folder / "p.mrk.json");
+                        return folder / "p.mrk.json";
+                    }, {}});
     list.push_back({"a file that is not there", "", [](const fs::path& folder) { return folder / "none.mrk.json"; }, {}});
     list.back().says = "none.mrk.json";
 }

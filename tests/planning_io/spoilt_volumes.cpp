@@ -237,6 +237,14 @@ void add_damage(std::vector<VolumeCase>& list) {
                         return folder;
                     },
                     "", true, "CT"});
+    list.push_back({"the last slice is a link to nothing", "link to a file that is not there",
+                    [](const fs::path& folder) {
+                        const auto files = write_series(synthetic_series({}), folder);
+                        fs::remove(files.back());
+                        fs::create_symlink(folder / "elsewhere", files.back());
+                        return folder;
+                    },
+                    "", true, "CT"});
     list.push_back(
         {"an empty folder", "no DICOM images", [](const fs::path& folder) { return folder; }, "", true, "CT"});
     list.push_back(
