@@ -185,20 +185,21 @@ std::string spacing_text(const DicomSeries& series) {
     if (slices.empty() || !std::isfinite(slices.front().column_spacing_mm)) return "-";
     std::string text = fmt::format("{:.3g} x {:.3g}", slices.front().column_spacing_mm, slices.front().row_spacing_mm);
     const Eigen::Vector3d normal = slices.front().row_direction.cross(slices.front().column_direction);
-    std::vector<double> along;
-    for (const auto& s : slices) along.push_back(normal.dot(s.position_in_ct));
-    if (std::any_of(along.begin(), along.end(), [](double d) { return !std::isfinite(d); }) || along.size() < 2)
+    if (std::any_of(slices.begin(), slices.end(), [](const auto& s) { return !s.position_in_ct.allFinite(); }) || slices.size() < 2)
         return text + " mm";
-    std::sort(along.begin(), along.end());
-    return text + fmt::format(" x {:.3g} mm", (along.back() - along.front()) / static_cast<double>(along.size() - 1));
+    const auto [first, last] = std::minmax_element(slices.begin(), slices.end(), [&](const auto& a, const auto& b) {
+        return normal.dot(a.position_in_ct) < normal.dot(b.position_in_ct);
+    });
+    return text + fmt::format(" x {:.3g} mm", (last->position_in_ct - first->position_in_ct).norm() /
+                                                   static_cast<double>(slices.size() - 1));
 }
 
 std::string table_of(const std::vector<DicomSeries>& list) {
-    std::string table = "\n  number  modality  slices  spacing  \"description\"  UID";
+    std::string table = "\n  number  modality  slices  spacing  UID  \"description\"";
     for (const auto& s : list)
-        table += fmt::format("\n  {}  {}  {}  {}  \"{}{}\"  {}", s.number.empty() ? "-" : s.number, s.modality,
-                             s.slices(), spacing_text(s), s.description,
-                             s.slices() == 0 ? " (no pictures)" : s.is_volume() ? "" : " (no CT or MR volume)", s.uid);
+        table += fmt::format("\n  {}  {}  {}  {}  {}  \"{}\"{}", s.number.empty() ? "-" : s.number, s.modality,
+                             s.slices(), spacing_text(s), s.uid, s.description,
+                             s.slices() == 0 ? " (no pictures)" : s.is_volume() ? "" : " (no CT or MR volume)");
     return table;
 }
 
