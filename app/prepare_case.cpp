@@ -56,7 +56,9 @@ Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSetti
     done.segment_s = timed("skin", progress, [&](const auto& share) { mask = segment_skin(volume, skin, share); });
     done.triangulate_s =
         timed("surface", progress, [&](const auto& share) { the_case.skin = triangulate_skin(volume, mask, skin, share); });
+    the_case.skin_edge_sigma_mm = skin_edge_sigma_mm(volume, mask, the_case.skin);
     done.threshold = mask.threshold;
+    done.brightness_ratio = mask.bias.ratio();
     done.body_ml = mask.volume_ml;
     done.removed_ml = mask.removed_ml;
     done.pieces_removed = mask.pieces_removed;
@@ -74,6 +76,7 @@ Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSetti
 Preparation prepare_case_on(const Volume& volume, const SurfaceFile& surface, const Plan& plan, const LutSettings& lut,
                             const std::string& created, const std::function<void(const std::string&, double)>& progress) {
     Preparation done;
+    done.on_given_surface = true;
     done.prepared.skin = surface.mesh;
     done.prepared.warnings = surface.notes;
     finish(done, volume, plan, lut, created, progress);

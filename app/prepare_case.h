@@ -15,6 +15,8 @@ namespace planlight {
 /// What the preparation did and how long each step took, for the report.
 struct Preparation {
     Case prepared;
+    bool on_given_surface = false;  ///< of somebody else: no threshold, no body, nothing taken away
+    double brightness_ratio = 1;    ///< of an MR, across the head, evened out before the threshold
     double threshold = 0, body_ml = 0, removed_ml = 0;
     int pieces_removed = 0;
     double segment_s = 0, triangulate_s = 0, lut_s = 0;

@@ -35,6 +35,7 @@ Json manifest_of(const Case& prepared) {
                 {"frame_of_reference_uid", prepared.frame_of_reference_uid},
                 {"mesh_hash", hash_of(prepared.skin)},
                 {"skin_threshold", prepared.skin_threshold},
+                {"skin_edge_sigma_mm", prepared.skin_edge_sigma_mm},
                 {"warnings", prepared.warnings}};
 }
 
@@ -111,6 +112,7 @@ Case read_case(const fs::path& folder) {
     prepared.volume_hash = manifest.at("volume_hash").text();
     if (const auto uid = manifest.find("frame_of_reference_uid")) prepared.frame_of_reference_uid = uid->text();
     prepared.skin_threshold = manifest.at("skin_threshold").number();
+    if (const auto sigma = manifest.find("skin_edge_sigma_mm")) prepared.skin_edge_sigma_mm = sigma->number();
     const JsonValue warnings = manifest.at("warnings");
     for (std::size_t i = 0; i < warnings.size(); ++i) prepared.warnings.push_back(warnings[i].text());
 

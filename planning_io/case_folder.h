@@ -17,7 +17,8 @@ struct Case {
     std::string source;       ///< Volume::source
     std::string volume_hash;
     std::string frame_of_reference_uid;  ///< Volume::frame_of_reference_uid; empty when the volume has none
-    double skin_threshold = 0;
+    double skin_threshold = 0;      ///< 0 of a surface that somebody else segmented
+    double skin_edge_sigma_mm = 0;  ///< how far noise moves the skin along its normal; 0 = not known
     TriangleMesh skin;
     SkinLut lut;
     Plan plan;

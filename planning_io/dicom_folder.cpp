@@ -154,22 +154,27 @@ bool read_header(DicomFile& file, bool& is_directory) {
 std::vector<fs::path> files_in(const fs::path& folder, int depth) {
     std::vector<fs::path> files;
     std::error_code error;
-    for (fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error), end;
-         !error && entry != end; entry.increment(error)) {
+    for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
         if (entry.depth() >= depth - 1) entry.disable_recursion_pending();
         std::error_code ignored;
         if (entry->is_regular_file(ignored)) files.push_back(entry->path());
+        else if (entry->is_symlink(ignored) && !entry->exists(ignored))
+            throw InputError(entry->path(), "is a link to a file that is not there, and may be a slice", "Copy the whole series again.");
         if (files.size() > kMostFiles)
             throw InputError(folder, fmt::format("holds more than {} files", kMostFiles),
                              "Name the folder of the study.");
     }
+    if (error)  // slices may be there
+        throw InputError(folder, "cannot be searched to its end: " + error.message(), "Check the permissions of the folders in it.");
     std::sort(files.begin(), files.end());
     return files;
 }
 
-/// Whether it has DICOM's mark; without it a file may merely look like a data set.
+/// Whether it has DICOM's mark; without it a file may merely look like a data set. A file that cannot be opened may be a
+/// slice: InputError.
 bool says_dicom(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
+    if (!in) throw InputError(file, "cannot be opened, and may be a slice", "Check the permissions of the file, or move it elsewhere.");
     std::string mark(4, '\0');
     return in.seekg(128) && in.read(mark.data(), 4) && mark == "DICM";
 }
@@ -180,20 +185,21 @@ std::string spacing_text(const DicomSeries& series) {
     if (slices.empty() || !std::isfinite(slices.front().column_spacing_mm)) return "-";
     std::string text = fmt::format("{:.3g} x {:.3g}", slices.front().column_spacing_mm, slices.front().row_spacing_mm);
     const Eigen::Vector3d normal = slices.front().row_direction.cross(slices.front().column_direction);
-    std::vector<double> along;
-    for (const auto& s : slices) along.push_back(normal.dot(s.position_in_ct));
-    if (std::any_of(along.begin(), along.end(), [](double d) { return !std::isfinite(d); }) || along.size() < 2)
+    if (std::any_of(slices.begin(), slices.end(), [](const auto& s) { return !s.position_in_ct.allFinite(); }) || slices.size() < 2)
         return text + " mm";
-    std::sort(along.begin(), along.end());
-    return text + fmt::format(" x {:.3g} mm", (along.back() - along.front()) / static_cast<double>(along.size() - 1));
+    const auto [first, last] = std::minmax_element(slices.begin(), slices.end(), [&](const auto& a, const auto& b) {
+        return normal.dot(a.position_in_ct) < normal.dot(b.position_in_ct);
+    });
+    return text + fmt::format(" x {:.3g} mm", (last->position_in_ct - first->position_in_ct).norm() /
+                                                   static_cast<double>(slices.size() - 1));
 }
 
 std::string table_of(const std::vector<DicomSeries>& list) {
-    std::string table = "\n  number  modality  slices  spacing  \"description\"  UID";
+    std::string table = "\n  number  modality  slices  spacing  UID  \"description\"";
     for (const auto& s : list)
-        table += fmt::format("\n  {}  {}  {}  {}  \"{}{}\"  {}", s.number.empty() ? "-" : s.number, s.modality,
-                             s.slices(), spacing_text(s), s.description,
-                             s.is_volume() || s.slices() == 0 ? "" : " (no CT or MR volume)", s.uid);
+        table += fmt::format("\n  {}  {}  {}  {}  {}  \"{}\"{}", s.number.empty() ? "-" : s.number, s.modality,
+                             s.slices(), spacing_text(s), s.uid, s.description,
+                             s.slices() == 0 ? " (no pictures)" : s.is_volume() ? "" : " (no CT or MR volume)");
     return table;
 }
 
@@ -267,7 +273,7 @@ DicomSeries choose_series(const DicomFolder& folder, const fs::path& path, const
                                    "Copy or export the series again; if the file is not of the series, move it elsewhere.");
     if (!says_folder && wanted.empty() && chosen.empty())
         throw InputError(
-            path, "is no DICOM file",
+            path, "is no DICOM file, nor any other kind of volume that is read",
             "Name a folder with a CT or MR series, or a file: .nii, .nii.gz, .nrrd, .nhdr, .mha, .mhd, .inv3.");
     if (folder.series.empty())
         throw InputError(
@@ -279,6 +285,9 @@ DicomSeries choose_series(const DicomFolder& folder, const fs::path& path, const
                                          : "holds no series of the UID or number " + wanted + "; there is:") +
                              table_of(folder.series),
                          "Name a folder with a CT or MR series of slices.");
+    if (chosen.size() > 1 && wanted.empty() && chosen.front().slices() < kFewestSlices)
+        throw InputError(path, fmt::format("holds no CT or MR volume of {} slices or more; there is:", kFewestSlices) + table_of(folder.series),
+                         "Name a folder with a CT or MR series of thin slices.");
     if (chosen.size() > 1)
         throw InputError(path, "holds several series:" + table_of(wanted.empty() ? folder.series : chosen),
                          "Choose one by its UID (--series UID).");

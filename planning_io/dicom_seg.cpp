@@ -15,6 +15,7 @@
 #include <fstream>
 
 #include "planning_io/dicom_structure.h"
+#include "planning_io/header_text.h"
 #include "planning_io/limited_child.h"
 #include "planning_io/mask_surface.h"
 #include "planning_io/plan_rtstruct.h"
@@ -101,7 +102,8 @@ Stack stack_of(vtkDICOMMetaData* meta, int segment, const fs::path& file) {
         column_mm = spacing.GetDouble(1);
         frames.push_back({f, vector(meta->Get(0, f, DC::ImagePositionPatient), 0, file, "position")});
     }
-    if (frames.size() < 2) throw InputError(file, fmt::format("holds {} frame(s) of this segment", frames.size()), kExportAgain);
+    if (frames.size() < 2)
+        throw InputError(file, "holds " + counted(static_cast<long long>(frames.size()), "frame") + " of this segment", kExportAgain);
     if (!(row_mm > 0.01) || !(column_mm > 0.01) || row_mm > 20 || column_mm > 20 || std::abs(along_row->norm() - 1) > 1e-3 ||
         std::abs(along_column->norm() - 1) > 1e-3)
         throw InputError(file, "has a pixel spacing or an orientation that makes no sense", kExportAgain);
@@ -192,7 +194,7 @@ bool is_dicom_file(const fs::path& file) {
 
 TriangleMesh read_dicom_seg(const fs::path& file, const std::string& segment, const PlanImportSettings& settings,
                             std::vector<std::string>& notes) {
-    Parcel parcel = parse_in_child(file, "DICOM file", [&](Parcel& p) { parse(p, file, segment); });
+    Parcel parcel = parse_in_child(file, {"DICOM file"}, [&](Parcel& p) { parse(p, file, segment); });
     check_frame_of_reference(parcel.get_text(), settings, file, notes);
     TriangleMesh mesh;
     const auto coordinates = parcel.get_list<double>();

@@ -12,11 +12,13 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <numbers>
 #include <vector>
 
 #include "planning_io/dicom_folder.h"
 #include "planning_io/dicom_values.h"
+#include "planning_io/header_text.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume_checks.h"
 
@@ -108,6 +110,21 @@ void note_geometry(const DicomSeries& series, Volume& volume) {
         }
 }
 
+/// What a file is, for people: by its storage class (DICOM PS3.6 A), else by its modality.
+std::string words_of_class(const DicomFile& file) {
+    static const std::map<std::string, std::string> kWords = {
+        {"1.1", "a computed radiograph"},        {"3.1", "an ultrasound sequence"}, {"6.1", "an ultrasound picture"},
+        {"7", "a secondary capture"},            {"7.4", "a secondary capture"},    {"9.1.1", "an electrocardiogram"},
+        {"20", "a nuclear medicine image"},      {"66.4", "a segmentation"},        {"88.11", "a report"},
+        {"88.22", "a report"},                   {"88.33", "a report"},             {"88.59", "a list of key pictures"},
+        {"104.1", "a PDF"},                      {"128", "a PET image"},            {"481.2", "a radiotherapy dose"},
+        {"481.3", "a plan (RTSTRUCT)"},          {"481.5", "a radiotherapy plan"}};
+    const std::string before = "1.2.840.10008.5.1.4.1.1.";
+    if (file.storage_class.starts_with(before))
+        if (const auto words = kWords.find(file.storage_class.substr(before.size())); words != kWords.end()) return words->second;
+    return fmt::format("of modality \"{}\", storage class {}", file.modality, file.storage_class);
+}
+
 /// A localizer that a scanner put into the series of the slices is not one of them.
 int leave_localizers_aside(DicomSeries& series) {
     const auto before = series.files.size();
@@ -128,7 +145,7 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
         if (file.damaged) throw DamagedFileError(file.path, "is damaged or cut short in its header", kCopyAgain);
     if (!series.is_volume())
         throw InputError(path,
-                         fmt::format("is no CT or MR volume (storage class {})", series.files.front().storage_class),
+                         "is no CT or MR volume but " + words_of_class(series.files.front()),
                          "Give a series of CT or MR image objects.");
     if (const auto fault = fault_of(series.all_slices())) throw InputError(path, fault->problem, fault->remedy);
 
@@ -156,7 +173,7 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
     volume.frame_of_reference_uid = slices[0].frame_of_reference_uid;
     volume.source = fmt::format("DICOM series {}", series.uid);
     if (localizers > 0)
-        volume.notes.push_back(fmt::format("{} localizer picture(s) of the series were left aside", localizers));
+        volume.notes.push_back("left aside: " + counted(localizers, "localizer picture") + " of the series");
     note_geometry(series, volume);
     check_against_reader(reader, volume, path);
     copy_stored_values(reader->GetOutput(), volume, path);

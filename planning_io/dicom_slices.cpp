@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "planning_io/header_text.h"
 #include "planning_io/volume_checks.h"
 
 namespace planlight {
@@ -123,8 +124,9 @@ std::optional<DicomRefusal> fault_of_stack(const std::vector<DicomSlice>& slices
                            "Keep one of them, or name one series.");
         const double steps = std::round(gaps[i] / usual);
         if (steps >= 2 && std::abs(gaps[i] - steps * usual) < 0.1 * usual)
-            return DicomRefusal{fmt::format("{} slice(s) are missing {}: the gap is {:.3f} mm, elsewhere {:.3f} mm",
-                                            static_cast<int>(steps) - 1, between, gaps[i], usual),
+            return DicomRefusal{fmt::format("{} missing {}: the gap is {:.3f} mm, elsewhere {:.3f} mm",
+                                            counted(static_cast<int>(steps) - 1, "slice") + (steps == 2 ? " is" : " are"), between,
+                                            gaps[i], usual),
                                 "Export the whole series again."};
         if (std::abs(gaps[i] - usual) > kEven_mm)
             return DicomRefusal{fmt::format("the slices are not evenly spaced: {:.3f} mm {}, elsewhere {:.3f} mm",
@@ -152,7 +154,7 @@ std::optional<DicomRefusal> fault_of(std::vector<DicomSlice> slices) {
     for (const DicomSlice& s : slices)
         if (const auto fault = fault_of_slice(s)) return fault;
     if (slices.size() < static_cast<std::size_t>(kFewestSlices))
-        return DicomRefusal{fmt::format("the series has {} slice(s), fewer than {}", slices.size(), kFewestSlices),
+        return DicomRefusal{fmt::format("the series has {}, fewer than {}", counted(static_cast<long long>(slices.size()), "slice"), kFewestSlices),
                             "Give the whole series of thin slices."};
     for (const DicomSlice& s : slices)
         if (const auto fault = fault_of_pair(slices.front(), s)) return fault;

@@ -30,6 +30,10 @@ bool is_gzip(const fs::path& file) {
     return in.get() == 0x1f && in.get() == 0x8b;
 }
 
+std::string counted(long long count, const std::string& noun) {
+    return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+}
+
 std::string lower_case(std::string text) {
     std::transform(text.begin(), text.end(), text.begin(),
                    [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c + 32 : c); });
@@ -65,7 +69,7 @@ std::vector<double> numbers_of(std::string text) {
 std::vector<double> TextHeader::numbers(const std::string& name, std::size_t count) const {
     const auto numbers = numbers_of(at(name));
     if (numbers.size() != count)
-        throw DamagedFileError(file, fmt::format("has \"{}\" in its header that is not {} number(s)", name, count),
+        throw DamagedFileError(file, fmt::format("has \"{}\" in its header that is not {}", name, counted(static_cast<long long>(count), "number")),
                                kCopyAgain);
     return numbers;
 }

@@ -34,6 +34,9 @@ std::vector<double> numbers_of(std::string text);
 
 std::string lower_case(std::string text);
 
+/// "1 slice", "4 slices".
+std::string counted(long long count, const std::string& noun);
+
 /// The data file that a header names, in the header's own folder or below. InputError when it is elsewhere or not
 /// there.
 std::filesystem::path data_file_beside(const std::filesystem::path& header, const std::string& name);

@@ -39,7 +39,10 @@ Json parse_json(std::string_view text, const fs::path& file) {
     try {
         return Json::parse(text, guard);
     } catch (const Json::exception& e) {
-        throw DamagedFileError(file, std::string("is not whole JSON (") + e.what() + ")", "Write or copy the file again.");
+        const std::string said = e.what(), before = "parse error at ";  // after the library's own number of the error
+        const auto at = said.find(before);
+        throw DamagedFileError(file, "is not whole JSON (" + (at == std::string::npos ? said : said.substr(at + before.size())) + ")",
+                               "Write or copy the file again.");
     }
 }
 

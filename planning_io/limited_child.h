@@ -1,35 +1,39 @@
 #pragma once
 
-#include <cstring>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <vector>
 
 namespace planlight {
 
-/// Bytes that a child process hands to its parent: values as they lie in memory, one after the other.
+/// Values that a child process hands to its parent, as they lie in memory, one after the other: an unnamed file in memory
+/// that both have open. What is put or taken is not kept a second time here.
 class Parcel {
 public:
-    Parcel() = default;
-    explicit Parcel(std::string bytes) : bytes_(std::move(bytes)) {}
+    Parcel();
+    ~Parcel();
+    Parcel(Parcel&& other) noexcept;
+    Parcel& operator=(Parcel&&) = delete;
 
     template <class T>
     void put(const T& value) {
         static_assert(std::is_trivially_copyable_v<T>);
-        bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+        write_all(&value, sizeof value);
     }
-    void put(const std::string& text) { put_all(text.data(), text.size()); }
+    void put(const std::string& text) { put_list(text.data(), text.size()); }
     template <class T>
     void put(const std::vector<T>& list) {
-        put_all(list.data(), list.size());
+        put_list(list.data(), list.size());
     }
     /// Throws std::out_of_range when the parcel holds less.
     template <class T>
     T get() {
         T value{};
-        take(&value, sizeof value);
+        read_all(&value, sizeof value);
         return value;
     }
     std::string get_text() { return get_all<std::string>(); }
@@ -37,32 +41,45 @@ public:
     std::vector<T> get_list() {
         return get_all<std::vector<T>>();
     }
-    const std::string& bytes() const { return bytes_; }
+
+    bool is_open() const { return fd_ >= 0; }
+    void empty();                  ///< what was put is gone
+    void begin_reading();          ///< from its first value
+    std::uint64_t left() const { return left_; }  ///< bytes to read
 
 private:
     template <class T>
-    void put_all(const T* values, std::size_t count) {
+    void put_list(const T* values, std::size_t count) {
         static_assert(std::is_trivially_copyable_v<T>);
         put(static_cast<std::uint64_t>(count));
-        if (count > 0) bytes_.append(reinterpret_cast<const char*>(values), count * sizeof(T));
+        write_all(values, count * sizeof(T));
     }
     template <class List>
     List get_all() {
         const auto count = get<std::uint64_t>();
-        if (count > (bytes_.size() - at_) / sizeof(typename List::value_type)) throw std::out_of_range("parcel");
+        if (count > left_ / sizeof(typename List::value_type)) throw std::out_of_range("parcel");
         List list(count, typename List::value_type{});
-        if (count > 0) take(list.data(), count * sizeof(typename List::value_type));
+        read_all(list.data(), count * sizeof(typename List::value_type));
         return list;
     }
-    void take(void* to, std::size_t count);
+    void write_all(const void* from, std::size_t bytes);  ///< throws std::runtime_error when there is no room
+    void read_all(void* to, std::size_t bytes);
 
-    std::string bytes_;
-    std::size_t at_ = 0;
+    int fd_ = -1;
+    std::uint64_t left_ = 0;
 };
 
-/// Runs `parse` in a child process with limits (4 GiB of memory, 30 s of processor time) and gives what it put into its
-/// parcel. An Error thrown there is thrown here again; a crash, an endless loop or any other exception is a
-/// DamagedFileError of `file`: the child is lost, never the program. `what` names the kind of file in the sentence.
-Parcel parse_in_child(const std::filesystem::path& file, const std::string& what, const std::function<void(Parcel&)>& parse);
+/// What a child may use; all of them get 4 GiB of memory, 8 GiB for their answer, and 4096 open files.
+struct ChildLimits {
+    std::string what = "file";  ///< the kind of file, for the sentences
+    unsigned processor_s = 30;
+    unsigned wait_s = 120;      ///< on the wall
+    std::string when_too_large = "Give a smaller file.";
+};
+
+/// Runs `parse` in a child process within `limits` and gives what it put into its parcel. An Error thrown there is thrown here
+/// again; more memory than allowed is an InputError of `file`; a crash, an endless loop or any other exception a
+/// DamagedFileError: the child is lost, never the program.
+Parcel parse_in_child(const std::filesystem::path& file, const ChildLimits& limits, const std::function<void(Parcel&)>& parse);
 
 }  // namespace planlight

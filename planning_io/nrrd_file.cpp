@@ -83,7 +83,7 @@ std::vector<Vector3d> vectors_of(const TextHeader& header, const std::string& na
     const auto numbers = numbers_of(text);
     if (numbers.size() != 3 * count || opened != static_cast<std::ptrdiff_t>(count))
         throw DamagedFileError(
-            header.file, fmt::format("has \"{}\" in its header that is not {} vector(s) of three numbers", name, count),
+            header.file, fmt::format("has \"{}\" in its header that is not {} of three numbers", name, counted(static_cast<long long>(count), "vector")),
             kSaveAgain);
     std::vector<Vector3d> vectors;
     for (std::size_t v = 0; v < count; ++v)

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "planning_io/header_text.h"
 #include "planning_io/plan_settings.h"
 
 namespace planlight {
@@ -79,7 +80,7 @@ PlanSettings settings_of(const JsonValue& point) {
 
 std::size_t count_points(const JsonValue& points, std::size_t least) {
     const std::size_t count = points.size();
-    if (count < least) points.refuse("holds " + std::to_string(count) + " points, fewer than " + std::to_string(least), "Place its points in 3D Slicer.");
+    if (count < least) points.refuse("holds " + counted(static_cast<long long>(count), "point") + ", fewer than " + std::to_string(least), "Place its points in 3D Slicer.");
     for (std::size_t i = 0; i < count; ++i)
         if (const auto status = points[i].find("positionStatus"); status && status->text() != "defined")
             points[i].refuse("is not placed (positionStatus \"" + status->text() + "\")", "Place or delete the point in 3D Slicer.");

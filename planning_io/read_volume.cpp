@@ -9,9 +9,9 @@
 #include "planning_io/metaimage_file.h"
 #include "planning_io/nifti_file.h"
 #include "planning_io/nrrd_file.h"
-#include "planning_io/parse_in_child.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume_checks.h"
+#include "planning_io/volume_in_child.h"
 
 namespace planlight {
 
@@ -47,7 +47,7 @@ Volume read_volume(const fs::path& path, const std::string& series) {
     if (!fs::exists(path, error)) throw InputError(path, "does not exist", "Check the name of the file or folder.");
     if (!fs::is_regular_file(path, error) && !fs::is_directory(path, error))
         throw InputError(path, "is neither a file nor a folder", "Name a file or folder.");
-    return parse_in_child(path, [&] { return parse_volume(path, series); });
+    return volume_in_child(path, [&] { return parse_volume(path, series); });
 }
 
 void make_anonymous(Volume& volume) {

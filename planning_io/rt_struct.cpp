@@ -129,7 +129,7 @@ bool is_rt_struct(const fs::path& file) {
 }
 
 RtStruct read_rt_struct(const fs::path& file) {
-    Parcel parcel = parse_in_child(file, "DICOM file", [&](Parcel& p) { parse(p, file); });
+    Parcel parcel = parse_in_child(file, {"DICOM file"}, [&](Parcel& p) { parse(p, file); });
     RtStruct set;
     set.frame_of_reference_uid = parcel.get_text();
     set.rois = unpack(parcel);

@@ -22,6 +22,8 @@ constexpr const char* kDiskRemedy = "Check the free space and the permissions of
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& doing) {
     const int code = errno;
+    if (code == ENOENT && !fs::exists(file.has_parent_path() ? file.parent_path() : fs::path(".")))
+        throw DiskError(file, doing + ": its folder does not exist", "Make the folder " + file.parent_path().string() + " first.");
     throw DiskError(file, doing + (code ? std::string(": ") + std::strerror(code) : std::string()), kDiskRemedy);
 }
 
@@ -124,6 +126,7 @@ std::string read_whole(const fs::path& file) {
     const auto status = fs::status(file, ignored);
     if (!fs::exists(status)) throw InputError(file, "does not exist", "Check the name of the file.");
     if (fs::is_directory(status)) throw InputError(file, "is a folder, not a file", "Name the file itself.");
+    if (!fs::is_regular_file(status)) throw InputError(file, "is a pipe or a device, not a file", "Copy its content to a file.");
     std::ifstream in(file, std::ios::binary);
     std::string content;
     const auto size = fs::file_size(file, ignored);

@@ -107,7 +107,7 @@ std::string title_of(const fs::path& file) {
 Shape parse_vtk_in_child(const fs::path& file, bool xml) {
     const std::string title = xml ? std::string() : title_of(file);
     Parcel parcel = parse_in_child(
-        file, "VTK file", [&](Parcel& p) { xml ? parse<vtkXMLPolyDataReader>(p, file) : parse<vtkPolyDataReader>(p, file); });
+        file, {"VTK file"}, [&](Parcel& p) { xml ? parse<vtkXMLPolyDataReader>(p, file) : parse<vtkPolyDataReader>(p, file); });
     Shape shape;
     const std::string field = parcel.get_text();
     shape.space = space_marked(field.empty() ? title : "SPACE=" + field, file);

@@ -207,6 +207,8 @@ double value_at(const Volume& volume, const Eigen::Affine3d& voxel_from_ct, cons
 
 SurfaceFile read_surface(const fs::path& file, const SurfaceSettings& settings) {
     SurfaceFile surface;
+    if (!fs::exists(file)) throw InputError(file, "does not exist", "Check the name of the file.");
+    if (!fs::is_regular_file(file)) throw InputError(file, "is no file", "Name the surface's file itself.");
     if (is_dicom_file(file)) {
         if (settings.said.space == Space::ras)
             throw InputError(file, "is DICOM, which is always LPS; --surface-frame says RAS", "Leave --surface-frame out.");

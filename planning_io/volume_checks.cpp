@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "planning_io/header_text.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -78,7 +79,7 @@ void check_grid(const Volume& volume, const fs::path& file, double tolerance) {
                              "Check its units, or export it again.");
         if (count < kFewestSlices)
             throw InputError(file,
-                             fmt::format("has {} slice(s) along axis {}, fewer than {}", count, a + 1, kFewestSlices),
+                             fmt::format("has {} along axis {}, fewer than {}", counted(count, "slice"), a + 1, kFewestSlices),
                              "Give the whole series of thin slices.");
         if (spacing * count < kShortest_mm || spacing * count > kLongest_mm)
             throw InputError(file,

@@ -46,6 +46,14 @@ SkinMask segment_skin(const Volume& volume, const SkinSettings& settings, const 
         if (progress) progress(done);
     };
     check(volume, settings);
+    if (volume.modality == "MR" && settings.threshold == 0) {  // a given threshold is one on the scanner's own values
+        const BiasField bias = fit_bias(volume);
+        Volume even = without_bias(volume, bias);
+        even.modality.clear();
+        SkinMask result = segment_skin(even, settings, progress);
+        result.bias = bias;
+        return result;
+    }
     const VoxelGrid grid = grid_of(volume);
     SkinMask result;
     result.threshold = settings.threshold != 0 ? settings.threshold : skin_threshold(volume);

@@ -7,6 +7,7 @@
 
 #include "planning_io/types/triangle_mesh.h"
 #include "planning_io/types/volume.h"
+#include "segmentation/bias_field.h"
 #include "segmentation/skin_thickness.h"
 
 namespace planlight {
@@ -23,7 +24,8 @@ struct SkinSettings {
 /// Which voxels are body (1) and which is outside air (0), same order as Volume::values, with what was taken away.
 struct SkinMask {
     std::vector<std::uint8_t> body;
-    double threshold = 0;               ///< used
+    double threshold = 0;               ///< used; of an MR on values freed of `bias`
+    BiasField bias;                     ///< of an MR whose threshold was not given; else none
     double volume_ml = 0;               ///< of the body
     int pieces_removed = 0;             ///< table, plates, wires: connected pieces cut off
     double removed_ml = 0;
@@ -39,5 +41,9 @@ SkinMask segment_skin(const Volume& volume, const SkinSettings& settings = {},
 /// kSeal, volume ends kCutPlane), outward normals, decimated within the bound, with its thickness over the bone (CT in HU).
 TriangleMesh triangulate_skin(const Volume& volume, const SkinMask& mask, const SkinSettings& settings = {},
                               const std::function<void(double)>& progress = {});
+
+/// How far noise moves the skin along its normal, mm (1 sigma): the deviation of a voxel within the body (by second
+/// differences, which its structure enlarges) over the median slope of the values across the skin. 0 where there is no slope.
+double skin_edge_sigma_mm(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin);
 
 }  // namespace planlight

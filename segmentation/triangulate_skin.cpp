@@ -151,13 +151,16 @@ void mend_normals(TriangleMesh& mesh) {
 
 }  // namespace
 
-TriangleMesh triangulate_skin(const Volume& volume, const SkinMask& mask, const SkinSettings& settings,
+TriangleMesh triangulate_skin(const Volume& given, const SkinMask& mask, const SkinSettings& settings,
                               const std::function<void(double)>& progress) {
     const auto report = [&](double done) {
         if (progress) progress(done);
     };
-    if (mask.body.size() != volume.values.size())
+    if (mask.body.size() != given.values.size())
         throw InputError({}, "The skin mask is not that of the volume.", "Segment this volume again.");
+    const bool biased = mask.bias.ratio() > 1;
+    const Volume even = biased ? without_bias(given, mask.bias) : Volume();
+    const Volume& volume = biased ? even : given;
     SkinField field = skin_field(volume, mask);
     TriangleMesh mesh = largest_shell(contour(field));
     if (mesh.triangles.empty()) throw InputError({}, "The mask holds no body.", "Segment the volume again.");

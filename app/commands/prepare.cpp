@@ -48,8 +48,9 @@ int run_prepare(const PrepareOptions& options) {
     if (options.json) {
         std::cout << preparation_json(done, drawing.drawing);
     } else {
-        fmt::print("Case {} in {}: skin at {:.0f}, {} triangles, LUT {} x {} x {} voxels of {:.2f} mm, {} plan items.\n",
-                   the_case.code, options.out.string(), done.threshold, the_case.skin.triangles.size(), the_case.lut.size[0],
+        fmt::print("Case {} in {}: {}, {} triangles, LUT {} x {} x {} voxels of {:.2f} mm, {} plan items.\n",
+                   the_case.code, options.out.string(),
+                   surface ? "on the surface given" : fmt::format("skin at {:.0f}", done.threshold), the_case.skin.triangles.size(), the_case.lut.size[0],
                    the_case.lut.size[1], the_case.lut.size[2], the_case.lut.voxel_mm, the_case.plan.size());
         fmt::print("Report: {}\n", (options.out / "report.html").string());
     }

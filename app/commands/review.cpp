@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/commands.h"
+#include "app/console.h"
 #include "app/live/case_model.h"
 #include "app/live/live_window.h"
 #include "app/windows/scene_view.h"
@@ -28,6 +29,9 @@ int run_review(const ReviewOptions& options) {
         return 0;
     }
     if (options.json) return 0;
+    for (const auto& warning : the_case.warnings) warn(warning);
+    if (const auto report = options.case_folder / "report.html"; std::filesystem::exists(report))
+        fmt::print("Report: {}\n", report.string());
     show_case(the_case, drawing);
     return 0;
 }

@@ -42,13 +42,24 @@ std::string figures_table(const Preparation& done) {
     const auto row = [](const std::string& name, const std::string& value) {
         return fmt::format("<tr><td>{}</td><td>{}</td></tr>", name, html_escaped(value));
     };
-    return "<h2>Figures</h2><table>" + row("Case", c.code) + row("Made", c.created) +
-           row("Skin threshold", fmt::format("{:.0f}", done.threshold)) + row("Body", fmt::format("{:.0f} ml", done.body_ml)) +
-           row("Taken away (table, head holder, wires)", fmt::format("{} pieces, {:.0f} ml", done.pieces_removed, done.removed_ml)) +
-           row("Skin mesh", fmt::format("{} triangles, {} vertices", c.skin.triangles.size(), c.skin.vertices_in_ct.size())) +
+    std::string skin;
+    if (done.on_given_surface) {
+        skin = row("Surface", "as given, not segmented here");
+    } else {
+        skin = row("Skin threshold", fmt::format("{:.0f}", done.threshold)) + row("Body", fmt::format("{:.0f} ml", done.body_ml)) +
+               row("Taken away (table, head holder, wires)",
+                   fmt::format("{} piece{}, {:.0f} ml", done.pieces_removed, done.pieces_removed == 1 ? "" : "s", done.removed_ml));
+        if (done.brightness_ratio > 1)
+            skin += row("Brightness across the head, evened out", fmt::format("{:.1f} : 1", done.brightness_ratio));
+        if (c.skin_edge_sigma_mm > 0) skin += row("Skin's edge moved by noise", fmt::format("{:.2f} mm (1 sigma)", c.skin_edge_sigma_mm));
+    }
+    return "<h2>Figures</h2><table>" + row("Case", c.code) + row("Made", c.created) + skin +
+           row(done.on_given_surface ? "Mesh" : "Skin mesh", fmt::format("{} triangles, {} vertices", c.skin.triangles.size(), c.skin.vertices_in_ct.size())) +
            row("LUT", fmt::format("{} x {} x {} voxels of {:.2f} mm, {} skin voxels", c.lut.size[0], c.lut.size[1], c.lut.size[2],
                                   c.lut.voxel_mm, c.lut.skin.size())) +
-           row("Time", fmt::format("skin {:.2f} s, surface {:.2f} s, LUT {:.2f} s", done.segment_s, done.triangulate_s, done.lut_s)) +
+           row("Time", done.on_given_surface ? fmt::format("LUT {:.2f} s", done.lut_s)
+                                             : fmt::format("skin {:.2f} s, surface {:.2f} s, LUT {:.2f} s", done.segment_s,
+                                                           done.triangulate_s, done.lut_s)) +
            "</table>";
 }
 
@@ -108,19 +119,23 @@ std::vector<ReportPicture> preparation_pictures(const Volume& volume, const Case
 
 std::string preparation_json(const Preparation& done, const PlanDrawing& drawing) {
     const Case& c = done.prepared;
-    const nlohmann::json result = {
+    nlohmann::json result = {
         {"case", c.code},
         {"created", c.created},
-        {"threshold", done.threshold},
-        {"body_ml", done.body_ml},
-        {"removed_pieces", done.pieces_removed},
-        {"removed_ml", done.removed_ml},
+        {"surface_given", done.on_given_surface},
         {"skin", {{"vertices", c.skin.vertices_in_ct.size()}, {"triangles", c.skin.triangles.size()}}},
         {"lut", {{"size", c.lut.size}, {"voxel_mm", c.lut.voxel_mm}, {"skin_voxels", c.lut.skin.size()}}},
         {"plan_items", c.plan.size()},
         {"items", items_json(drawing)},
         {"seconds", {{"skin", done.segment_s}, {"surface", done.triangulate_s}, {"lut", done.lut_s}}},
         {"warnings", c.warnings}};
+    if (!done.on_given_surface)
+        result.update({{"threshold", done.threshold},
+                       {"body_ml", done.body_ml},
+                       {"removed_pieces", done.pieces_removed},
+                       {"removed_ml", done.removed_ml},
+                       {"brightness_ratio", done.brightness_ratio},
+                       {"edge_sigma_mm", c.skin_edge_sigma_mm}});
     return result.dump(2) + "\n";
 }
 

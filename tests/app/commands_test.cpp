@@ -369,5 +369,20 @@ TEST_F(CommandsTest, AWindowWithoutADisplayIsADeviceError) {
     expect_one_clear_sentence(run, 5, "display");
 }
 
+TEST_F(CommandsTest, ACaseOnAGivenSurfaceSpeaksOfNoThreshold) {
+    ASSERT_EQ(prepared_.exit_code, 0) << prepared_.err;
+    const CommandRun run = run_planlight("prepare " + example_patient()->string() + " --plan " + kPlan +
+                                             " --surface case/skin.ply --out on_surface --json", root());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const json report = read_json(root() / "on_surface" / "report.json");
+    EXPECT_TRUE(report["surface_given"].get<bool>());
+    EXPECT_FALSE(report.contains("threshold"));
+    std::ifstream in(root() / "on_surface" / "report.html");
+    const std::string html((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
+    EXPECT_EQ(html.find("Skin threshold"), std::string::npos);
+    EXPECT_NE(html.find("as given"), std::string::npos);
+    EXPECT_GT(json::parse(prepared_.out)["edge_sigma_mm"].get<double>(), 0);
+}
+
 }  // namespace
 }  // namespace planlight::test

@@ -6,14 +6,16 @@
 #include <set>
 #include <vector>
 
-#include "planning_io/plan_file.h"
+#include "planning_io/plan_import.h"
 #include "planning_io/read_volume.h"
 #include "planning_io/types/error.h"
+#include "tests/planning_io/plan_cases.h"
 #include "tests/planning_io/volume_cases.h"
+#include "tests/support/analytic_head.h"
 #include "tests/support/test_data.h"
 
-/// intake_table FOLDER_OR_FILE...: gives everything found there to read_volume or read_plan, then every synthetic case,
-/// and prints a markdown table: what, accepted (with its geometry) or refused, and the sentence.
+/// intake_table FOLDER_OR_FILE...: gives everything found there to read_volume or import_plan, then every synthetic case,
+/// and prints a Markdown table: what, accepted (with its geometry) or refused, and the sentence.
 namespace planlight::test {
 namespace {
 
@@ -60,14 +62,56 @@ Row volume_row(const std::string& what, const fs::path& path, const std::string&
     }
 }
 
-Row plan_row(const std::string& what, const fs::path& path, const std::string& root) {
+/// "1 trajectory, 2 boreholes" and the notes.
+std::string words_of(const PlanImport& read) {
+    std::string text;
+    const auto add = [&](std::size_t count, const char* one, const char* more) {
+        if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, count == 1 ? one : more);
+    };
+    add(read.plan.trajectories.size(), "trajectory", "trajectories");
+    add(read.plan.boreholes.size(), "borehole", "boreholes");
+    add(read.plan.osteotomy_lines.size(), "osteotomy line", "osteotomy lines");
+    add(read.plan.cut_planes.size(), "cut plane", "cut planes");
+    if (text.empty()) text = "nothing that can be shown";
+    for (const auto& note : read.notes) text += "; " + note;
+    return text;
+}
+
+Row plan_row(const std::string& what, const fs::path& path, const std::string& root, const PlanImportSettings& settings = {}) {
     try {
-        return {what, true, fmt::format("{} plan item(s)", read_plan(path).size())};
+        return {what, true, one_line(words_of(import_plan(path, settings)), path.string(), root)};
     } catch (const Error& e) {
         return {what, false, one_line(std::string(e.what()) + ". " + e.remedy, path.string(), root)};
-    } catch (const std::exception& e) {
-        return {what, false, "FAULT OF OURS: " + std::string(e.what())};
     }
+}
+
+/// A plan as it is; where only its frame is not said, once more with the frame said.
+void add_plan_rows(std::vector<Row>& rows, const std::string& what, const fs::path& path, const std::string& root) {
+    rows.push_back(plan_row(what, path, root));
+    if (rows.back().sentence.find("does not say its coordinate system") != std::string::npos)
+        rows.push_back(plan_row(what + " `--frame RAS`", path, root, {Space::ras, {}}));
+}
+
+std::vector<Row> synthetic(const std::vector<PlanCase>& cases) {
+    std::vector<Row> rows;
+    for (const auto& c : cases) {
+        const TemporaryFolder folder;
+        rows.push_back(plan_row(c.name, c.make(folder.path()), folder.path().string(), c.settings));
+    }
+    return rows;
+}
+
+/// The checks of a plan against its patient.
+std::vector<Row> on_head() {
+    const SkinSurface skin(analytic_head_mesh(4));
+    std::vector<Row> rows;
+    for (const auto& c : plans_on_head()) {
+        const PlanVerdict verdict = check_plan(c.plan, skin, box_of_head());
+        std::string sentence = verdict.stops.empty() ? fmt::format("a median of {:.1f} mm from the skin", verdict.median_to_skin_mm) : "";
+        for (const auto& stop : verdict.stops) sentence += (sentence.empty() ? "" : "; ") + stop;
+        rows.push_back({c.name, verdict.stops.empty(), one_line(sentence, "", "")});
+    }
+    return rows;
 }
 
 bool is_plan_place(const fs::path& path) {
@@ -124,7 +168,8 @@ public files, kept outside of this repository: `ct` from Slicer/Slicer (Testing/
 (In/Philips), `mri` from neurolabusc/dcm_qa_decubitus, `dicom_bad` from icometrix/dicom2nifti and pydicom/pydicom (each of its single
 files is given alone), `plans` from Slicer, SlicerMorph, afids, SlicerRt, dicompyler-core and pydicom, `scans` from Rvcg, VTKData and
 OpenGR (point clouds: none is a volume). The synthetic volumes are those of the tests; a sound one is also compared with its phantom
-there, value by value. Axes: the way i, j and k run, to the (L)eft, (P)osterior, (S)uperior and so on.
+there, value by value. Axes: the way i, j and k run, to the (L)eft, (P)osterior, (S)uperior and so on. A plan whose file does not say its
+frame stands twice: as it is, and with `--frame RAS`.
 )";
 
 }  // namespace
@@ -144,10 +189,11 @@ int main(int argc, char** argv) {
             if (thing.parent_path().filename() == "single_files") {  // other people's files have nothing to do with it
                 fs::copy_file(thing, alone.path() / thing.filename());
                 volumes.push_back(volume_row(what, alone.path() / thing.filename(), "", alone.path().string()));
-            } else
-                (is_plan_place(thing / "x") ? plans : volumes)
-                    .push_back(is_plan_place(thing / "x") ? plan_row(what, thing, root)
-                                                          : volume_row(what, thing, "", root));
+            } else if (is_plan_place(thing / "x")) {
+                add_plan_rows(plans, what, thing, root);
+            } else {
+                volumes.push_back(volume_row(what, thing, "", root));
+            }
             std::cerr << '.' << std::flush;
         }
     }
@@ -156,5 +202,8 @@ int main(int argc, char** argv) {
     if (!plans.empty()) print("Plans of other people", plans);
     print("Synthetic volumes that are sound", synthetic(sound_volumes()));
     print("Synthetic volumes that are not", synthetic(spoilt_volumes()));
+    print("Synthetic plans that are sound", synthetic(sound_plans()));
+    print("Synthetic plans that are not", synthetic(spoilt_plans()));
+    print("Plans for the analytic head of the tests, read without fault and held against its skin", on_head());
     return 0;
 }

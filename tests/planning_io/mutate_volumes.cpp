@@ -127,7 +127,7 @@ void read_one(const Seed& seed, MutationCounts& counts) {
         ++counts.read;
     } catch (const Error& e) {
         const std::string what = e.what();
-        const auto crash = what.find("made its parser crash");
+        const auto crash = what.find("made the reader of a volume crash");
         counts.parser_crashes += crash != std::string::npos;
         if (crash != std::string::npos) ++counts.crash_kinds[what.substr(what.find('(', crash))];
         counts.cut_off += what.find("took longer") != std::string::npos || what.find("4 GiB") != std::string::npos;

@@ -77,7 +77,7 @@ void fill(DicomObject& o, std::int16_t value) {
 
 void add_stack(std::vector<VolumeCase>& list) {
     list.push_back(series("a slice is missing", "missing", [](Objects& o) { o.erase(o.begin() + 9); }));
-    list.push_back(series("three slices in a row are missing", "3 slice(s) are missing",
+    list.push_back(series("three slices in a row are missing", "3 slices are missing",
                           [](Objects& o) { o.erase(o.begin() + 9, o.begin() + 12); }));
     list.push_back(series("a slice is there twice", "double slice", [](Objects& o) { o.push_back(o[9]); }));
     list.push_back(series("two scans of one head in one series", "double slice", [](Objects& o) {
@@ -234,6 +234,14 @@ void add_damage(std::vector<VolumeCase>& list) {
                         for (const auto& f : files) pack_dicom(f, DicomPacking::jpeg_2000);
                         const std::string whole = read_whole(files[9]);
                         write_safely(files[9], whole.substr(0, whole.size() * 3 / 4));
+                        return folder;
+                    },
+                    "", true, "CT"});
+    list.push_back({"the last slice is a link to nothing", "link to a file that is not there",
+                    [](const fs::path& folder) {
+                        const auto files = write_series(synthetic_series({}), folder);
+                        fs::remove(files.back());
+                        fs::create_symlink(folder / "elsewhere", files.back());
                         return folder;
                     },
                     "", true, "CT"});

@@ -263,7 +263,7 @@ TEST_F(SurfaceFileTest, ASegmentationOfAnotherCtOrUnknownSegmentIsRefused) {
     const fs::path two = write("two.dcm", ball_seg("1.2.3", "Skull"));
     EXPECT_SAYS(refusal(two, of_ct("1.2.3")), "holds 2 segments: Skull, Other");
     EXPECT_TRUE(refusal(two, of_ct("1.2.3", "Skull")).empty());
-    EXPECT_SAYS(refusal(two, of_ct("1.2.3", "Other")), "0 frame(s)");
+    EXPECT_SAYS(refusal(two, of_ct("1.2.3", "Other")), "0 frames");
     const std::string whole = ball_seg("1.2.3");
     for (std::size_t part = 1; part < 16; ++part)
         EXPECT_FALSE(refusal(write("cut.dcm", whole.substr(0, whole.size() * part / 16)), of_ct("1.2.3")).empty()) << part;

@@ -6,6 +6,7 @@
 #include <vtkStaticCellLocator.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "planning_io/invesalius_project.h"
@@ -229,6 +230,45 @@ TEST(SlicerHead, ClosedSkinFromStoredValues) {
     EXPECT_EQ(facts.euler, 2);  // 13 holes through the ears, at 3.2 mm a voxel, have membranes
     EXPECT_GT(facts.volume_ml, 2000);
     EXPECT_LT(facts.volume_ml, 8000);
+}
+
+/// A real T1 MR, the head of one man averaged over 27 scans (Debian's mricron-data).
+TEST(MrHead, HasTheSameSkinWhenACoilMakesOneSideThreeTimesAsBright) {
+    const auto file = third_party_data("ch2.nii.gz");
+    if (!file) GTEST_SKIP() << "ch2.nii.gz is not here";
+    const Volume volume = read_volume(*file);
+    ASSERT_EQ(volume.modality, "MR");
+    const SkinMask as_it_is = segment_skin(volume);
+    const TriangleMesh skin = triangulate_skin(volume, as_it_is);
+    RecordProperty("bias_percent", static_cast<int>(100 * as_it_is.bias.ratio()));
+    RecordProperty("sigma_um", static_cast<int>(1000 * skin_edge_sigma_mm(volume, as_it_is, skin)));
+    for (const int axis : {0, 1, 2}) {
+        Volume biased = volume;
+        for (int k = 0; k < volume.size[2]; ++k)
+            for (int j = 0; j < volume.size[1]; ++j)
+                for (int i = 0; i < volume.size[0]; ++i)
+                    biased.values[volume.index(i, j, k)] *= static_cast<float>(
+                        std::pow(3, 0.5 - std::array<double, 3>{1. * i, 1. * j, 1. * k}[static_cast<std::size_t>(axis)] /
+                                              volume.size[static_cast<std::size_t>(axis)]));
+        const auto off_of = [&](const Volume& other) {
+            const TriangleMesh surface = triangulate_skin(other, segment_skin(other));
+            std::vector<Vector3d> vertices;
+            for (std::size_t v = 0; v < surface.vertices_in_ct.size(); ++v)
+                if (surface.flags[v] == kSkin) vertices.push_back(surface.vertices_in_ct[v]);
+            std::vector<double> off = distances(vertices, skin);
+            std::sort(off.begin(), off.end());
+            return off;
+        };
+        const auto off = off_of(biased);
+        biased.modality.clear();  // one threshold for all
+        const auto raw = off_of(biased);
+        RecordProperty("axis_" + std::to_string(axis) + "_p50_p95_um", std::to_string(1000 * off[off.size() / 2]) + " " +
+                                                                            std::to_string(1000 * off[off.size() * 95 / 100]));
+        RecordProperty("axis_" + std::to_string(axis) + "_raw_p95_um", std::to_string(1000 * raw[raw.size() * 95 / 100]));
+        EXPECT_LT(off[off.size() / 2], 0.1) << axis;
+        EXPECT_LT(off[off.size() * 95 / 100], 0.5) << axis;
+        EXPECT_GT(raw[raw.size() * 95 / 100], 1.5 * off[off.size() * 95 / 100]) << axis << ": the fault is there";
+    }
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 #include <cstdlib>
 #include <vector>
 
-#include "planning_io/parse_in_child.h"
+#include "planning_io/volume_in_child.h"
+#include "planning_io/limited_child.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -15,7 +16,7 @@ namespace {
 template <class Thrown>
 std::string refusal_of(const std::function<Volume()>& parse) {
     try {
-        parse_in_child("some/file.dcm", parse);
+        volume_in_child("some/file.dcm", parse);
     } catch (const Thrown& e) {
         EXPECT_FALSE(e.remedy.empty());
         return e.what();
@@ -34,7 +35,7 @@ bool says(const std::string& text, const char* part) {
     return text.find(part) != std::string::npos;
 }
 
-TEST(ParseInChild, AVolumeComesThroughWhole) {
+TEST(LimitedChild, AVolumeComesThroughWhole) {
     Volume made;
     made.size = {3, 2, 2};
     made.values = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, -12.5F};
@@ -42,14 +43,14 @@ TEST(ParseInChild, AVolumeComesThroughWhole) {
     made.modality = "CT";
     made.is_hu = true;
     made.notes = {"one", "two"};
-    const Volume got = parse_in_child("file", [&] { return made; });
+    const Volume got = volume_in_child("file", [&] { return made; });
     EXPECT_EQ(got.values, made.values);
     EXPECT_EQ(got.size, made.size);
     EXPECT_EQ(got.notes, made.notes);
     EXPECT_TRUE(got.ct_from_voxel.isApprox(made.ct_from_voxel, 0));
 }
 
-TEST(ParseInChild, ACrashAHangAndAGreedyParserCostTheChildOnly) {
+TEST(LimitedChild, ACrashAHangAndAGreedyParserCostTheChildOnly) {
     EXPECT_TRUE(says(refusal_of<DamagedFileError>([]() -> Volume { std::abort(); }), "crash (signal 6)"));
     EXPECT_TRUE(says(refusal_of<DamagedFileError>([]() -> Volume {
                          raise(SIGSEGV);
@@ -73,13 +74,43 @@ TEST(ParseInChild, ACrashAHangAndAGreedyParserCostTheChildOnly) {
     EXPECT_TRUE(says(refusal_of<DamagedFileError>([]() -> Volume { _exit(0); }), "to its end"));
 }
 
-TEST(ParseInChild, AnErrorOfTheParserComesThroughWithItsRemedy) {
+TEST(LimitedChild, AnErrorOfTheParserComesThroughWithItsRemedy) {
     try {
-        parse_in_child("file", []() -> Volume { throw InputError("a.dcm", "has a gap", "Export it again."); });
+        volume_in_child("file", []() -> Volume { throw InputError("a.dcm", "has a gap", "Export it again."); });
         FAIL();
     } catch (const InputError& e) {
         EXPECT_STREQ(e.what(), "a.dcm: has a gap");
         EXPECT_EQ(e.remedy, "Export it again.");
+    }
+}
+
+TEST(LimitedChild, AParcelGivesBackWhatWasPutAndNoMore) {
+    Parcel parcel = parse_in_child("file", {}, [](Parcel& to) {
+        to.put(3.5);
+        to.put(std::string("text"));
+        to.put(std::vector<int>{1, 2, 3});
+        to.put(std::string());
+    });
+    EXPECT_EQ(parcel.get<double>(), 3.5);
+    EXPECT_EQ(parcel.get_text(), "text");
+    EXPECT_EQ(parcel.get_list<int>(), (std::vector<int>{1, 2, 3}));
+    EXPECT_EQ(parcel.get_text(), "");
+    EXPECT_EQ(parcel.left(), 0u);
+    EXPECT_THROW(parcel.get<char>(), std::out_of_range);
+    Parcel lying = parse_in_child("file", {}, [](Parcel& to) { to.put(std::uint64_t{1} << 60); });
+    EXPECT_THROW(lying.get_list<double>(), std::out_of_range);  // says that it is longer than it is
+}
+
+TEST(LimitedChild, AParcelHalfPutIsGoneWhenTheParserThrows) {
+    const auto parse = [](Parcel& to) {
+        to.put(std::vector<double>(100000, 1.5));
+        throw InputError("a.dcm", "has a gap", "Export it again.");
+    };
+    try {
+        parse_in_child("file", {}, parse);
+        FAIL();
+    } catch (const InputError& e) {
+        EXPECT_STREQ(e.what(), "a.dcm: has a gap");
     }
 }
 
