@@ -97,7 +97,7 @@ void judge_mirror_and_scale(const RegistrationSettings& settings, const Registra
                     fmt::format("the mirror image of the scan fits better (ratio {:.2f}): left and right are exchanged", mirror));
     judgement.ask_if(mirror >= settings.mirror_fits_better && mirror < settings.min_mirror_ratio,
                      fmt::format("the mirror image of the scan fits nearly as well (ratio {:.2f})", mirror));
-    judgement.ask_if(std::abs(result.scale - 1) > settings.max_scale_error + 2 * result.scale_sigma,
+    judgement.ask_if(std::abs(result.scale - 1) > std::max(settings.max_scale_error, 1.5 * result.scale_sigma),
                      fmt::format("the head of the scan is {:.1f} % {} than that of the CT: another patient, or a wrong calibration",
                                  100 * std::abs(1 / result.scale - 1), result.scale < 1 ? "larger" : "smaller"));
 }

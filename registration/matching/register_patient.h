@@ -24,7 +24,7 @@ struct RegistrationSettings {
     bool mirror_test = true;            ///< match the mirrored scan too
     double min_mirror_ratio = 1.15;     ///< of the mirrored scan's cost; below: ask
     double mirror_fits_better = 0.87;   ///< below: no
-    double max_scale_error = 0.015;     ///< of the scan against the CT, beyond two of its sigmas; above: ask
+    double max_scale_error = 0.015;     ///< of the scan against the CT, and 1.5 of its sigmas; above: ask
 };
 
 /// Finds the patient without help: initial match, ICP, verdict with evidence. `patient` equals `rig` at the scan instant,

@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -9,6 +10,7 @@
 #include <sstream>
 
 #include "planning_io/mesh_file.h"
+#include "planning_io/rig_file.h"
 #include "tests/app/run_command.h"
 #include "tests/planning_io/synthetic_series.h"
 #include "tests/support/test_data.h"
@@ -132,10 +134,13 @@ TEST_F(CommandsTest, ACloudOfAnotherScannerIsRegisteredOnceItsUnitFrameAndViewpo
     const auto scan = run_planlight("scan room/capture --rig room/rig.json --out scanned.ply", root());
     ASSERT_EQ(scan.exit_code, 0) << scan.err;
     write_as_a_foreign_scanner(read_cloud(root() / "scanned.ply"), root() / "foreign.ply");
-    expect_one_clear_sentence(run_planlight("register case --cloud foreign.ply --out new.json", root()), 3, "rig's frame");
-    expect_one_clear_sentence(run_planlight("register case --cloud foreign.ply --in-rig --unit m --out new.json", root()), 3, "normals");
-    const auto found = run_planlight(
-        "register case --cloud foreign.ply --in-rig --unit m --viewpoint 0 0 0 --slicer match.tfm --out foreign.json --json", root());
+    expect_one_clear_sentence(run_planlight("register case --cloud foreign.ply --out refused.json", root()), 3, "rig's frame");
+    expect_one_clear_sentence(run_planlight("register case --cloud foreign.ply --in-rig --unit m --out refused.json", root()), 3, "normals");
+    const Eigen::Matrix4d rig_from_camera = read_rig(root() / "room" / "rig.json").left_camera.device_from_rig.matrix().inverse();
+    const auto found = run_planlight(fmt::format("register case --cloud foreign.ply --in-rig --unit m --viewpoint {} {} {} --slicer match.tfm "
+                                                 "--out foreign.json --json",
+                                                 rig_from_camera(0, 3), rig_from_camera(1, 3), rig_from_camera(2, 3)),
+                                     root());
     ASSERT_EQ(found.exit_code, 0) << found.err;
     const Eigen::Matrix4d truth = matrix_of(read_json(root() / "room" / "truth.json")["scan_rig_from_ct"]);
     const Eigen::Matrix4d measured = matrix_of(json::parse(found.out)["patient_from_ct"]);
@@ -171,9 +176,9 @@ TEST_F(CommandsTest, LandmarksAloneAreAskedForAndWrongOnesAreRefused) {
     const auto found = run_planlight("register case --pairs good.csv --out pairs.json --json", root());
     ASSERT_EQ(found.exit_code, 0) << found.err;
     EXPECT_EQ(json::parse(found.out)["verdict"], "ask");
-    expect_one_clear_sentence(run_planlight("register case --pairs bad.csv --out new.json", root()), 6, "landmark");
-    expect_one_clear_sentence(run_planlight("register case --pairs unsaid.csv --out new2.json", root()), 3, "SPACE=");
-    EXPECT_EQ(run_planlight("register case --out new3.json", root()).exit_code, 2);
+    expect_one_clear_sentence(run_planlight("register case --pairs bad.csv --out refused.json", root()), 6, "landmark");
+    expect_one_clear_sentence(run_planlight("register case --pairs unsaid.csv --out refused2.json", root()), 3, "SPACE=");
+    EXPECT_EQ(run_planlight("register case --out refused3.json", root()).exit_code, 2);
 }
 
 TEST_F(CommandsTest, PatternsWritesTheWholeSequence) {
