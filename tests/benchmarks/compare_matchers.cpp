@@ -1,7 +1,7 @@
 // Ours against Open3D, PCL and VTK on the same scans, in one run: the global match from any pose, and the fine match.
 //   compare_matchers [TRIALS [SEED]] [--ch2 FILE] [--mannequin FILE] [--ct-head FOLDER]   (default 24)
-// Processor seconds of all threads; what each prepares of the skin once (table, trees, features) is not in them. Errors of
-// the global match are of the pose before any fine match. Each method sees every trial; they take turns.
+// Processor seconds of all threads; what each prepares of the skin once (table, trees, features) is not in them. Errors
+// of the global match are of the pose before any fine match. Each method sees every trial; they take turns.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -84,7 +84,8 @@ double rms_over(const PointCloud& scan, const RigidTransform& a, const RigidTran
     return std::sqrt(sum / static_cast<double>(scan.size()));
 }
 
-void compete(const std::vector<PeerMatcher>& matchers, const TrialScan& scan, const RigidTransform& start, bool global, std::vector<Row>& rows) {
+void compete(const std::vector<PeerMatcher>& matchers, const TrialScan& scan, const RigidTransform& start, bool global,
+             std::vector<Row>& rows) {
     rows.resize(matchers.size());
     for (std::size_t i = 0; i < matchers.size(); ++i) {
         const double before = processor_seconds();
@@ -94,16 +95,22 @@ void compete(const std::vector<PeerMatcher>& matchers, const TrialScan& scan, co
         const PoseError error = pose_error(ct_from_rig.inverse(), scan);
         const bool found = error.turn_deg < 3 && error.middle_mm < 5;
         rows[i].found += found;
-        if (!global) rows[i].error_mm.push_back(rms_over(scan.cloud, ct_from_rig, scan.rig_from_ct.inverse()));
-        else if (found) rows[i].error_mm.push_back(error.target_mm);
+        if (!global)
+            rows[i].error_mm.push_back(rms_over(scan.cloud, ct_from_rig, scan.rig_from_ct.inverse()));
+        else if (found)
+            rows[i].error_mm.push_back(error.target_mm);
     }
 }
 
 void print_rows(const std::string& title, const std::string& error, unsigned trials, const std::vector<Row>& rows) {
-    fmt::print("\n{}, {} scans\n\n| | within 3 degrees, 5 mm | processor s: median, 95 % | {}: median, worst |\n|---|---|---|---|\n", title, trials, error);
+    fmt::print(
+        "\n{}, {} scans\n\n| | within 3 degrees, 5 mm | processor s: median, 95 % | {}: median, worst "
+        "|\n|---|---|---|---|\n",
+        title, trials, error);
     for (const Row& row : rows)
-        fmt::print("| {} | {}/{} | {:.4f}, {:.4f} | {:.3f}, {:.3f} |\n", row.name, row.found, trials, quantile(row.seconds, 0.5),
-                   quantile(row.seconds, 0.95), quantile(row.error_mm, 0.5), quantile(row.error_mm, 1));
+        fmt::print("| {} | {}/{} | {:.4f}, {:.4f} | {:.3f}, {:.3f} |\n", row.name, row.found, trials,
+                   quantile(row.seconds, 0.5), quantile(row.seconds, 0.95), quantile(row.error_mm, 0.5),
+                   quantile(row.error_mm, 1));
 }
 
 RigidTransform disturbed(const RigidTransform& ct_from_rig, const Vector3d& middle_in_ct, unsigned seed) {
@@ -132,12 +139,14 @@ int main(int argc, char** argv) {
     for (std::size_t h = 0; h < heads.size(); ++h) {
         const TriangleMesh& mesh = heads[h].surface.mesh();
         const PeerSkin skin = peer_skin(mesh);
-        const SkinLut of_truth = build_skin_lut(mesh);  // the fine match: scan and target are the same surface for everyone
+        const SkinLut of_truth =
+            build_skin_lut(mesh);  // the fine match: scan and target are the same surface for everyone
         std::vector<PeerMatcher> global{our_global(heads[h].lut)};
         add(global, open3d_global(skin));
         add(global, pcl_global(skin));
-        std::vector<PeerMatcher> icp{our_icp(of_truth, IcpSettings::Mode::signed_distance, "ours: signed distance, robust"),
-                                     our_icp(of_truth, IcpSettings::Mode::closest_point, "ours: the paper's closest point")};
+        std::vector<PeerMatcher> icp{
+            our_icp(of_truth, IcpSettings::Mode::signed_distance, "ours: signed distance, robust"),
+            our_icp(of_truth, IcpSettings::Mode::closest_point, "ours: the paper's closest point")};
         add(icp, open3d_icp(skin));
         add(icp, pcl_icp(skin));
         add(icp, vtk_icp(skin));
@@ -151,6 +160,8 @@ int main(int argc, char** argv) {
         }
     }
     print_rows("Global match, noise 0.3 mm, 5 % strays", "error at targets of those found, mm", options.trials, clean);
-    print_rows("Global match, noise 0.5 mm, 20 % strays, skin moved by 0.8 mm", "error at targets of those found, mm", options.trials, room);
-    print_rows("Fine match from 5 degrees and 10 mm off, about 20000 points, noise 0.3 mm, 5 % strays", "rms over the scan, mm", options.trials, fine);
+    print_rows("Global match, noise 0.5 mm, 20 % strays, skin moved by 0.8 mm", "error at targets of those found, mm",
+               options.trials, room);
+    print_rows("Fine match from 5 degrees and 10 mm off, about 20000 points, noise 0.3 mm, 5 % strays",
+               "rms over the scan, mm", options.trials, fine);
 }

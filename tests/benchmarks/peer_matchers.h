@@ -10,7 +10,8 @@
 
 namespace planlight {
 
-/// A matcher of another library on one skin: what it prepares of the skin once (trees, features) is behind the function.
+/// A matcher of another library on one skin: what it prepares of the skin once (trees, features) is behind the
+/// function.
 struct PeerMatcher {
     std::string name;
     /// Scan in rig, start `ct_from_rig` (which global matchers do not look at) -> ct_from_rig.

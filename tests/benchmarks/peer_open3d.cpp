@@ -18,7 +18,8 @@ namespace {
 namespace registration = open3d::pipelines::registration;
 using Cloud = open3d::geometry::PointCloud;
 
-std::shared_ptr<Cloud> cloud_of(const std::vector<Eigen::Vector3d>& points, const std::vector<Eigen::Vector3d>& normals) {
+std::shared_ptr<Cloud> cloud_of(const std::vector<Eigen::Vector3d>& points,
+                                const std::vector<Eigen::Vector3d>& normals) {
     auto cloud = std::make_shared<Cloud>(points);
     cloud->normals_ = normals;
     return cloud;
@@ -39,7 +40,8 @@ struct Featured {
 Featured featured(const Cloud& cloud, double voxel_mm) {
     Featured result{cloud.VoxelDownSample(voxel_mm), nullptr};
     result.cloud->NormalizeNormals();
-    result.feature = registration::ComputeFPFHFeature(*result.cloud, open3d::geometry::KDTreeSearchParamHybrid(5 * voxel_mm, 100));
+    result.feature =
+        registration::ComputeFPFHFeature(*result.cloud, open3d::geometry::KDTreeSearchParamHybrid(5 * voxel_mm, 100));
     return result;
 }
 
@@ -63,8 +65,8 @@ std::vector<PeerMatcher> open3d_global(const PeerSkin& skin) {
         open3d::utility::random::Seed(1);
         const auto source = featured(*cloud_of(scan.points_in_rig, scan.normals_in_rig), kVoxel_mm);
         const registration::FastGlobalRegistrationOption options(1.4, true, true, 1.5 * kVoxel_mm, 128, 0.95, 10000);
-        return rigid(registration::FastGlobalRegistrationBasedOnFeatureMatching(*source.cloud, *target.cloud, *source.feature,
-                                                                                *target.feature, options)
+        return rigid(registration::FastGlobalRegistrationBasedOnFeatureMatching(
+                         *source.cloud, *target.cloud, *source.feature, *target.feature, options)
                          .transformation_);
     };
     return {{"Open3D FPFH + RANSAC, 3 mm, 1M", ransac}, {"Open3D FGR, 3 mm, absolute scale", fgr}};
@@ -74,7 +76,8 @@ std::vector<PeerMatcher> open3d_icp(const PeerSkin& skin) {
     const auto target = cloud_of(skin.points_in_ct, skin.normals_in_ct);
     const auto plane = [target](const PointCloud& scan, const RigidTransform& start) {
         const auto source = cloud_of(scan.points_in_rig, {});
-        return rigid(registration::RegistrationICP(*source, *target, 20, start.matrix(), registration::TransformationEstimationPointToPlane(),
+        return rigid(registration::RegistrationICP(*source, *target, 20, start.matrix(),
+                                                   registration::TransformationEstimationPointToPlane(),
                                                    registration::ICPConvergenceCriteria(1e-7, 1e-7, 60))
                          .transformation_);
     };

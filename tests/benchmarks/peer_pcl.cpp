@@ -111,7 +111,8 @@ std::vector<PeerMatcher> pcl_global(const PeerSkin& skin) {
         match.align(moved);
         return rigid(match.getFinalTransformation());
     };
-    return {{"PCL FPFH + prerejective RANSAC, 3 mm, 300k", prerejective}, {"PCL FPFH + SAC-IA, 4 mm, 1000", initial_alignment}};
+    return {{"PCL FPFH + prerejective RANSAC, 3 mm, 300k", prerejective},
+            {"PCL FPFH + SAC-IA, 4 mm, 1000", initial_alignment}};
 }
 
 std::vector<PeerMatcher> pcl_icp(const PeerSkin& skin) {

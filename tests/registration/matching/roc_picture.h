@@ -6,7 +6,8 @@
 
 namespace planlight::test {
 
-/// One curve: trials that should be accepted against trials that must not be, by a number that should be high for the first.
+/// One curve: trials that should be accepted against trials that must not be, by a number that should be high for the
+/// first.
 struct RocCurve {
     std::string name;
     std::vector<double> right, wrong;
@@ -18,8 +19,8 @@ struct RocPoint {
     double right_share, wrong_share;
 };
 
-/// Shares accepted as the limit falls: x the wrong ones (logarithmic; the first mark is "none"), y the right ones; the points
-/// are ringed. PNG, 1100 x 800. Throws std::runtime_error when it cannot be written.
+/// Shares accepted as the limit falls: x the wrong ones (logarithmic; the first mark is "none"), y the right ones; the
+/// points are ringed. PNG, 1100 x 800. Throws std::runtime_error when it cannot be written.
 void write_roc(const std::vector<RocCurve>& curves, const std::vector<RocPoint>& points, const std::string& title,
                const std::filesystem::path& file);
 

@@ -78,7 +78,8 @@ TEST(TrialScan, MovesTheSkinByTheSizeGiven) {
 TEST(TrialScan, ScalesAndMirrorsTheHead) {
     TrialScanSettings settings = clean();
     settings.scale = 1.04;
-    for (const double off : off_sphere_mm(trial_scan(sphere_object(kRadius_mm), settings), 1.04 * kRadius_mm)) ASSERT_NEAR(off, 0, 0.02);
+    for (const double off : off_sphere_mm(trial_scan(sphere_object(kRadius_mm), settings), 1.04 * kRadius_mm))
+        ASSERT_NEAR(off, 0, 0.02);
     // A lump is not its own mirror image: every mirrored point, mirrored back, is one of the scan from the same side.
     settings = clean();
     const TrialSurface lump = lump_object(kRadius_mm, 3);
