@@ -201,21 +201,24 @@ void print_table(const std::vector<TrialRecord>& all) {
                 r.scale, r.bound_mm);
 }
 
-/// The whole certificate as one number, and each measure alone.
+/// The whole certificate as one number in two ways, and each measure alone.
 std::vector<RocCurve> curves_of(const std::vector<TrialRecord>& all) {
-    std::vector<RocCurve> curves{{"all evidence, least margin", {}, {}},
-                                 {"share on the skin", {}, {}},
-                                 {"runner-up ratio", {}, {}},
-                                 {"mirror ratio", {}, {}},
-                                 {"rms of the inliers", {}, {}},
-                                 {"predicted 95 % bound", {}, {}}};
-    for (const TrialRecord& r : all) {
-        const bool s = r.searched;
-        const double none = -1e9;
-        const double values[] = {s ? confidence(r) : none, s ? r.inliers : none, s ? r.runner_up : none,
-                                 s ? r.mirror : none,      s ? -r.rms_mm : none, s ? -r.bound_mm : none};
-        for (std::size_t i = 0; i < curves.size(); ++i)
-            (r.wrong() ? curves[i].wrong : curves[i].right).push_back(std::max(values[i], none));
+    using Measure = double (*)(const TrialRecord&);
+    const std::vector<std::pair<std::string, Measure>> measures{
+        {"rivals and predicted error", confidence},
+        {"least margin of all limits", least_margin},
+        {"runner-up ratio", [](const TrialRecord& r) { return r.runner_up; }},
+        {"mirror ratio", [](const TrialRecord& r) { return r.mirror; }},
+        {"predicted 95 % bound", [](const TrialRecord& r) { return -r.bound_mm; }},
+        {"share on the skin", [](const TrialRecord& r) { return r.inliers; }},
+        {"rms of the inliers", [](const TrialRecord& r) { return -r.rms_mm; }}};
+    std::vector<RocCurve> curves;
+    for (const auto& [name, measure] : measures) {
+        RocCurve& curve = curves.emplace_back(RocCurve{name, {}, {}});
+        for (const TrialRecord& r : all) {
+            const double value = r.searched ? measure(r) : -INFINITY;
+            (r.wrong() ? curve.wrong : curve.right).push_back(value);
+        }
     }
     return curves;
 }
@@ -255,9 +258,13 @@ int main(int argc, char** argv) {
     }
     print_table(log.records());
     const auto curves = curves_of(log.records());
+    fmt::print(
+        "\n| measure, {} right and {} wrong | area under its ROC | right ones accepted at no wrong one | at 1 % |\n"
+        "|---|---|---|---|\n",
+        curves[0].right.size(), curves[0].wrong.size());
     for (const RocCurve& curve : curves)
-        fmt::print("{}: area {:.4f} ({} right, {} wrong)\n", curve.name, area_under(curve), curve.right.size(),
-                   curve.wrong.size());
+        fmt::print("| {} | {:.3f} | {:.1f} % | {:.1f} % |\n", curve.name, area_under(curve),
+                   100 * accepted_at(curve, 0), 100 * accepted_at(curve, 0.01));
     if (!options.picture.empty())
         write_roc(curves, verdicts_of(log.records()), "Certificate: right against wrong matches", options.picture);
 }

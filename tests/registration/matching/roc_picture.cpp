@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -56,8 +57,8 @@ void draw_axes(cv::Mat& picture, double least, const std::string& title) {
 
 void write_roc(const std::vector<RocCurve>& curves, const std::vector<RocPoint>& points, const std::string& title,
                const std::filesystem::path& file) {
-    const std::vector<cv::Scalar> colours{{180, 90, 20},  {30, 120, 220}, {60, 150, 40},
-                                          {150, 40, 150}, {60, 60, 200},  {120, 120, 120}};
+    const std::vector<cv::Scalar> colours{{180, 90, 20}, {30, 120, 220},  {60, 150, 40}, {150, 40, 150},
+                                          {60, 60, 200}, {120, 120, 120}, {0, 190, 190}};
     cv::Mat picture(800, 1100, CV_8UC3, cv::Scalar(255, 255, 255));
     std::size_t most = 10;
     for (const RocCurve& curve : curves) most = std::max(most, curve.wrong.size());
@@ -96,6 +97,16 @@ double area_under(const RocCurve& curve) {
     }
     const double pairs = static_cast<double>(curve.right.size()) * static_cast<double>(wrong.size());
     return pairs > 0 ? sum / pairs : 0;
+}
+
+double accepted_at(const RocCurve& curve, double wrong_share) {
+    if (curve.wrong.empty() || curve.right.empty()) return 0;
+    std::vector<double> wrong = curve.wrong;
+    std::sort(wrong.begin(), wrong.end(), std::greater<>());
+    const double limit =
+        wrong[std::min(wrong.size() - 1, static_cast<std::size_t>(wrong_share * static_cast<double>(wrong.size())))];
+    const auto above = std::count_if(curve.right.begin(), curve.right.end(), [&](double r) { return r > limit; });
+    return static_cast<double>(above) / static_cast<double>(curve.right.size());
 }
 
 }  // namespace planlight::test

@@ -27,4 +27,7 @@ void write_roc(const std::vector<RocCurve>& curves, const std::vector<RocPoint>&
 /// Area under the curve: the probability that a right one has the higher number.
 double area_under(const RocCurve& curve);
 
+/// Share of the right ones above the limit that lets this share of the wrong ones pass (rounded down to whole ones).
+double accepted_at(const RocCurve& curve, double wrong_share);
+
 }  // namespace planlight::test

@@ -136,6 +136,8 @@ TEST(Roc, AreaIsTheProbabilityThatARightOneIsHigher) {
     EXPECT_EQ(area_under({"the other way", {0, 1}, {2, 3}}), 0);
     EXPECT_EQ(area_under({"alike", {1, 1}, {1}}), 0.5);
     EXPECT_EQ(area_under({"mixed", {1, 3}, {0, 2}}), 0.75);
+    EXPECT_EQ(accepted_at({"mixed", {1, 3}, {0, 2}}, 0), 0.5);
+    EXPECT_EQ(accepted_at({"mixed", {1, 3}, {0, 2}}, 0.5), 1);
 }
 
 }  // namespace

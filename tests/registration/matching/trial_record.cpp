@@ -101,6 +101,12 @@ void run_trial(const TrialScan& scan, const SkinLut& lut, TrialRecord& record) {
 }
 
 double confidence(const TrialRecord& r) {
+    constexpr double kNoise = 0.01, kNoise_mm = 0.05;
+    if (!r.searched) return -std::numeric_limits<double>::infinity();
+    return std::log(std::min(r.runner_up, r.mirror) + kNoise) - 0.1 * std::log(r.bound_mm + kNoise_mm);
+}
+
+double least_margin(const TrialRecord& r) {
     if (!r.searched) return -std::numeric_limits<double>::infinity();
     const auto margin = [](double value, double no, double yes) { return (value - no) / (yes - no); };
     return std::min({margin(r.inliers, 0.5, 0.7), margin(r.rms_mm, 1.0, 0.7), margin(r.runner_up, 1.05, 1.15),
