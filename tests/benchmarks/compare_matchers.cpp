@@ -87,7 +87,9 @@ double rms_over(const PointCloud& scan, const RigidTransform& a, const RigidTran
 void compete(const std::vector<PeerMatcher>& matchers, const TrialScan& scan, const RigidTransform& start, bool global,
              std::vector<Row>& rows) {
     rows.resize(matchers.size());
+    constexpr double kSlow_s = 4;
     for (std::size_t i = 0; i < matchers.size(); ++i) {
+        if (rows[i].seconds.size() >= 3 && quantile(rows[i].seconds, 0.5) > kSlow_s) continue;
         const double before = processor_seconds();
         const RigidTransform ct_from_rig = matchers[i].match(scan.cloud, start);
         rows[i].seconds.push_back(processor_seconds() - before);
@@ -102,13 +104,12 @@ void compete(const std::vector<PeerMatcher>& matchers, const TrialScan& scan, co
     }
 }
 
-void print_rows(const std::string& title, const std::string& error, unsigned trials, const std::vector<Row>& rows) {
+void print_rows(const std::string& title, const std::string& error, const std::vector<Row>& rows) {
     fmt::print(
-        "\n{}, {} scans\n\n| | within 3 degrees, 5 mm | processor s: median, 95 % | {}: median, worst "
-        "|\n|---|---|---|---|\n",
-        title, trials, error);
+        "\n{}\n\n| | within 3 degrees, 5 mm | processor s: median, 95 % | {}: median, worst |\n|---|---|---|---|\n",
+        title, error);
     for (const Row& row : rows)
-        fmt::print("| {} | {}/{} | {:.4f}, {:.4f} | {:.3f}, {:.3f} |\n", row.name, row.found, trials,
+        fmt::print("| {} | {} of {} | {:.4f}, {:.4f} | {:.3f}, {:.3f} |\n", row.name, row.found, row.seconds.size(),
                    quantile(row.seconds, 0.5), quantile(row.seconds, 0.95), quantile(row.error_mm, 0.5),
                    quantile(row.error_mm, 1));
 }
@@ -158,10 +159,11 @@ int main(int argc, char** argv) {
             compete(icp, good, disturbed(good.rig_from_ct.inverse(), good.middle_in_ct, seed), false, fine);
             fmt::print(stderr, "\r{}: scan {}   ", heads[h].name, i);
         }
+        print_rows("Global match, noise 0.3 mm, 5 % strays", "error at targets of those found, mm", clean);
+        print_rows("Global match, noise 0.5 mm, 20 % strays, skin moved by 0.8 mm",
+                   "error at targets of those found, mm", room);
+        print_rows("Fine match from 5 degrees and 10 mm off, about 20000 points, noise 0.3 mm, 5 % strays",
+                   "rms over the scan, mm", fine);
+        std::fflush(stdout);
     }
-    print_rows("Global match, noise 0.3 mm, 5 % strays", "error at targets of those found, mm", options.trials, clean);
-    print_rows("Global match, noise 0.5 mm, 20 % strays, skin moved by 0.8 mm", "error at targets of those found, mm",
-               options.trials, room);
-    print_rows("Fine match from 5 degrees and 10 mm off, about 20000 points, noise 0.3 mm, 5 % strays",
-               "rms over the scan, mm", options.trials, fine);
 }

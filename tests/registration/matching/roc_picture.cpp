@@ -83,7 +83,8 @@ void write_roc(const std::vector<RocCurve>& curves, const std::vector<RocPoint>&
         cv::circle(picture, where, 8, kInk, 2, cv::LINE_AA);
         write_text(picture, point.name, where + cv::Point(14, 22));
     }
-    if (!cv::imwrite(file.string(), picture)) throw std::runtime_error("cannot write " + file.string());
+    if (!cv::imwrite(file.string(), picture, {cv::IMWRITE_PNG_COMPRESSION, 9}))
+        throw std::runtime_error("cannot write " + file.string());
 }
 
 double area_under(const RocCurve& curve) {
