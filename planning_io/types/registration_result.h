@@ -30,6 +30,7 @@ struct RegistrationResult {
     double weakest_sigma_mm = 0;       ///< how far the patient could slide along the least determined way
     double mirror_ratio = 0;           ///< cost of the mirrored scan's best pose / cost of this one; > 1 is good; 0: not tried
     double scale = 1;                  ///< by which the scan would have to grow to fit best; 1 is good
+    double scale_sigma = 0;            ///< one standard deviation of that
     PoseCovariance covariance;         ///< how uncertain T_ini is, for `predicted_error` at any point
     double skin_movement_mm = 0;       ///< of the skin since the CT, rms, as the residuals tell it
     double skin_offset_mm = 0;         ///< of the whole skin; positive outside of the CT's

@@ -13,7 +13,7 @@ constexpr double kCell_mm = 4;
 
 }  // namespace
 
-CoarseDistance::CoarseDistance(const SkinLut& lut, double truncation_mm)
+CoarseDistance::CoarseDistance(const SkinLut& lut, double truncation_mm, double truncation_outside_mm)
     : origin_in_ct_(lut.origin_in_ct.cast<float>()),
       mm_per_step_(static_cast<float>(truncation_mm / 255)) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -28,7 +28,7 @@ CoarseDistance::CoarseDistance(const SkinLut& lut, double truncation_mm)
                 const Eigen::Vector3d centre = lut.origin_in_ct + kCell_mm * Eigen::Vector3d(i + 0.5, j + 0.5, k + 0.5);
                 double d = truncation_mm;
                 Eigen::Vector3d unused;
-                if (field.sample(centre, d, unused)) d = std::min(std::abs(d), truncation_mm);
+                if (field.sample(centre, d, unused)) d = d > 0 ? std::min(d, truncation_outside_mm) : std::min(-d, truncation_mm);
                 if (d < truncation_mm / 3) {
                     const SkinPoint* s = lut.nearest_skin(centre);
                     if (s && s->flags & kCutPlane) d = truncation_mm / 3;

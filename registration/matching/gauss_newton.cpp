@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 NormalEquations point_to_plane_equations(std::span<const Vector3d> points_in_rig, std::span<const std::uint8_t> skip,
                                          const DistanceField& field, const RigidTransform& ct_from_rig,
-                                         const Vector3d& centre_in_ct, double scale_mm, double max_pair_mm) {
+                                         const Vector3d& centre_in_ct, double scale_mm, double outside_mm, double max_pair_mm) {
     const Eigen::Matrix3d R = ct_from_rig.linear();
     const Vector3d t = ct_from_rig.translation();
     double sums[27] = {};  // upper triangle of H, then g
@@ -25,7 +25,7 @@ NormalEquations point_to_plane_equations(std::span<const Vector3d> points_in_rig
         if (length < 0.3) continue;  // a ridge of the field: no side to go to
         n /= length;
         ++result.used;
-        const double w = tukey_weight(d, scale_mm);
+        const double w = tukey_weight(d, d > 0 ? outside_mm : scale_mm);
         if (w == 0) continue;
         const Vector3d turn = (x - centre_in_ct).cross(n);
         const double J[6] = {turn.x(), turn.y(), turn.z(), n.x(), n.y(), n.z()};
@@ -62,11 +62,13 @@ RigidTransform after_step(const NormalEquations& equations, const RigidTransform
 RigidTransform refine_roughly(std::span<const Vector3d> points_in_rig, const Vector3d& centre_in_rig, const DistanceField& field,
                               const RigidTransform& ct_from_rig) {
     constexpr int kSteps = 12;
+    constexpr double kLeastScale_mm = 1, kOutside = 0.5;
     RigidTransform pose = ct_from_rig;
     for (int i = 0; i < kSteps; ++i) {
-        const double scale_mm = std::max(1.0, 5.0 * std::pow(0.8, i));
+        const double scale_mm = std::max(kLeastScale_mm, 5.0 * std::pow(0.8, i));
         const Vector3d centre_in_ct = pose * centre_in_rig;
-        const NormalEquations equations = point_to_plane_equations(points_in_rig, {}, field, pose, centre_in_ct, scale_mm, 20);
+        const NormalEquations equations = point_to_plane_equations(points_in_rig, {}, field, pose, centre_in_ct, scale_mm,
+                                                                   std::max(kLeastScale_mm, kOutside * scale_mm), 20);
         if (equations.used < 12) return pose;
         double moved_mm;
         pose = after_step(equations, pose, centre_in_ct, 20, moved_mm);

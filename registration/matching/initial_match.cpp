@@ -21,6 +21,7 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr double kDistinct_mm = 8, kDistinct_rad = 8 * std::numbers::pi / 180;
+constexpr double kCoarseSlack_mm = 2;  // a contact pose is not yet exact
 constexpr std::size_t kRefinePoints = 250, kRankPoints = 500;
 
 /// What all bases share: the scan as sites, in a random but fixed order, and the skin it is tried on.
@@ -39,7 +40,7 @@ bool same_pose(const Search& search, const RigidTransform& a, const RigidTransfo
 }
 
 Search prepare_search(const PointCloud& cloud, const SkinLut& lut, const InitialMatchSettings& settings) {
-    Search search{DistanceField(lut), CoarseDistance(lut, settings.truncation_mm),
+    Search search{DistanceField(lut), CoarseDistance(lut, settings.truncation_mm, settings.truncation_outside_mm + kCoarseSlack_mm),
                   sites_of_skin(lut, settings.model_spacing_mm, settings.seed), sites_of_cloud(cloud), {}, {},
                   Vector3d::Zero(), settings};
     std::mt19937 random(settings.seed);
@@ -80,7 +81,8 @@ std::vector<ScoredPose> best_contact_poses(const Search& search, const Base& bas
     return heap;
 }
 
-/// Mean truncated distance of up to `kRankPoints` sites, trilinear; a site that faces the wrong way counts in full.
+/// Mean truncated distance of up to `kRankPoints` sites, trilinear; a site that faces the wrong way counts in full, one that
+/// lies outside of the body little.
 double mean_failure(const Search& search, const RigidTransform& ct_from_rig) {
     const double truncation_mm = search.settings.truncation_mm;
     const std::size_t count = std::min(search.scan.size(), kRankPoints);
@@ -91,7 +93,7 @@ double mean_failure(const Search& search, const RigidTransform& ct_from_rig) {
         const SurfaceSite& site = search.scan[i];
         const bool inside = search.field.sample(ct_from_rig * site.position.cast<double>(), d, gradient);
         const bool faces = inside && gradient.dot(ct_from_rig.linear() * site.normal.cast<double>()) > 0;
-        sum += faces ? std::min(std::abs(d), truncation_mm) : truncation_mm;
+        sum += faces ? (d > 0 ? std::min(d, search.settings.truncation_outside_mm) : std::min(-d, truncation_mm)) : truncation_mm;
     }
     return sum / static_cast<double>(std::max<std::size_t>(count, 1));
 }

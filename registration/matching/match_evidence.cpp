@@ -7,7 +7,6 @@
 
 #include "planning_io/types/triangle_mesh.h"
 #include "registration/matching/distance_field.h"
-#include "registration/matching/gauss_newton.h"
 
 namespace planlight {
 namespace {
@@ -26,31 +25,6 @@ double median(std::vector<double>& values) {
     return *middle;
 }
 
-/// A scan point on the skin, as the linearised ICP sees it.
-struct Contact {
-    Vector3d x_in_ct, normal;
-    double distance_mm;
-    Vector6d J;
-};
-
-/// About `count` of the cloud's points that lie within 3 mm of real skin.
-std::vector<Contact> contacts(const PointCloud& cloud, const SkinLut& lut, const IcpResult& icp, std::size_t count) {
-    const DistanceField field(lut);
-    std::vector<Contact> all;
-    const std::size_t stride = std::max<std::size_t>(1, cloud.size() / std::max<std::size_t>(count, 1));
-    for (std::size_t i = 0; i < cloud.size(); i += stride) {
-        if (!cloud.points_in_rig[i].allFinite()) continue;
-        Contact c;
-        c.x_in_ct = icp.ct_from_rig * cloud.points_in_rig[i];
-        const SkinPoint* s = lut.nearest_skin(c.x_in_ct);
-        if (!s || s->flags != kSkin || !field.sample(c.x_in_ct, c.distance_mm, c.normal) || std::abs(c.distance_mm) > 3) continue;
-        c.normal.normalize();
-        c.J << (c.x_in_ct - icp.centre_in_ct).cross(c.normal), c.normal;
-        all.push_back(c);
-    }
-    return all;
-}
-
 std::string in_words(const Vector6d& scaled) {
     static const char* const kAxes[] = {"left-right", "front-back", "head-foot"};
     const bool turns = scaled.head<3>().norm() > scaled.tail<3>().norm();
@@ -61,7 +35,8 @@ std::string in_words(const Vector6d& scaled) {
 
 }  // namespace
 
-CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig, double inlier_distance_mm) {
+CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig, double inlier_distance_mm,
+                        double skin_offset_mm) {
     const DistanceField field(lut);
     const bool has_normals = cloud.normals_in_rig.size() == cloud.size();
     CloudOnSkin result;
@@ -76,8 +51,9 @@ CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const Rigid
         ++result.known;
         double d = std::numeric_limits<double>::infinity();
         Vector3d normal = Vector3d::Zero();
-        if (s) field.sample(x, d, normal);
+        if (s && field.sample(x, d, normal)) d -= skin_offset_mm;
         distances.push_back(std::abs(d));
+        if (d < -inlier_distance_mm) ++result.inside;
         if (std::abs(d) > inlier_distance_mm) continue;
         if (has_normals && normal.dot(ct_from_rig.linear() * cloud.normals_in_rig[i]) < 0) continue;
         ++result.inliers;
@@ -88,78 +64,16 @@ CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const Rigid
     return result;
 }
 
-WeakestWay weakest_way(const PointCloud& cloud, const SkinLut& lut, const IcpResult& icp, double least_deformation_mm,
-                       double correlation_mm) {
+WeakestWay weakest_way(const PoseCovariance& covariance) {
     WeakestWay way;
     way.sigma_mm = std::numeric_limits<double>::infinity();
-    const std::vector<Contact> on_skin = contacts(cloud, lut, icp, 500);
-    if (on_skin.size() < 12) {
-        way.in_words = "move freely";
-        return way;
-    }
-    const Vector6d scale = (Vector6d() << Vector3d::Constant(1 / kLever_mm), Vector3d::Ones()).finished();
-    Matrix6d H = Matrix6d::Zero(), S = Matrix6d::Zero();
-    double smooth_squares = 0;
-    for (const Contact& a : on_skin) {
-        const Vector6d Ja = a.J.cwiseProduct(scale);
-        H += Ja * Ja.transpose();
-        Vector6d alike = Vector6d::Zero();
-        double weights = 0, smooth = 0;
-        for (const Contact& b : on_skin) {
-            const double squared = (a.x_in_ct - b.x_in_ct).squaredNorm() / (2 * correlation_mm * correlation_mm);
-            if (squared > 9) continue;
-            const double k = std::exp(-squared);
-            alike += k * b.J;
-            weights += k;
-            smooth += k * b.distance_mm;
-        }
-        smooth_squares += smooth * smooth / (weights * weights);
-        S += Ja * alike.cwiseProduct(scale).transpose();
-    }
-    H.diagonal().array() += 1e-9 * H.trace();
-    const Matrix6d inverse = H.inverse();
-    way.deformation_mm = std::max(least_deformation_mm, std::sqrt(smooth_squares / static_cast<double>(on_skin.size())));
-    const Matrix6d covariance = way.deformation_mm * way.deformation_mm * inverse * (0.5 * (S + S.transpose())) * inverse;
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(covariance);
+    way.in_words = "move freely";
+    if (!covariance.known() || !covariance.of_turn_and_shift.allFinite()) return way;
+    const Vector6d scale = (Vector6d() << Vector3d::Constant(kLever_mm), Vector3d::Ones()).finished();
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scale.asDiagonal() * covariance.of_turn_and_shift * scale.asDiagonal());
     way.sigma_mm = std::sqrt(std::max(solver.eigenvalues()(5), 0.0));
     way.in_words = in_words(solver.eigenvectors().col(5));
-    way.covariance = scale.asDiagonal() * covariance * scale.asDiagonal();
     return way;
-}
-
-double best_scale(const PointCloud& cloud, const SkinLut& lut, const IcpResult& icp) {
-    using Vector7d = Eigen::Matrix<double, 7, 1>;
-    using Matrix7d = Eigen::Matrix<double, 7, 7>;
-    const std::vector<Contact> on_skin = contacts(cloud, lut, icp, 4000);
-    if (on_skin.size() < 50) return 1;
-    const DistanceField field(lut);
-    Matrix3d A = Matrix3d::Identity();  // ct from ct: turned and scaled about the centre
-    Vector3d moved = Vector3d::Zero();
-    double scale = 1;
-    for (int step = 0; step < 6; ++step) {
-        Matrix7d H = Matrix7d::Zero();
-        Vector7d g = Vector7d::Zero();
-        for (const Contact& c : on_skin) {
-            const Vector3d r = scale * A * (c.x_in_ct - icp.centre_in_ct);
-            double d;
-            Vector3d n;
-            if (!field.sample(icp.centre_in_ct + moved + r, d, n)) continue;
-            n.normalize();
-            Vector7d J;
-            J << r.cross(n) / kLever_mm, n, r.dot(n) / kLever_mm;
-            const double w = tukey_weight(d, 1);
-            H += w * J * J.transpose();
-            g += w * d * J;
-        }
-        H.diagonal().array() += 1e-6 * H.trace();
-        const Vector7d delta = -H.ldlt().solve(g);
-        if (!delta.allFinite()) return 1;
-        const Vector3d turn = delta.head<3>() / kLever_mm;
-        if (turn.norm() > 0) A = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix() * A;
-        moved += delta.segment<3>(3);
-        scale *= std::clamp(1 + delta(6) / kLever_mm, 0.9, 1.1);
-    }
-    return scale;
 }
 
 Vector3d extents_mm(const PointCloud& cloud) {

@@ -121,6 +121,7 @@ std::vector<Stage> stages_of(const IcpSettings& settings, std::size_t points) {
 }  // namespace
 
 IcpResult refine_icp(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig, const IcpSettings& settings) {
+    constexpr double kOutside = 0.5;  // cloth lies outside of the body: it is let go of sooner
     IcpResult result;
     result.ct_from_rig = ct_from_rig;
     const std::vector<Vector3d> points = shuffled_points(cloud, settings.max_points);
@@ -135,7 +136,8 @@ IcpResult refine_icp(const PointCloud& cloud, const SkinLut& lut, const RigidTra
             result.centre_in_ct = result.ct_from_rig * centre_in_rig;
             const NormalEquations equations =
                 settings.mode == IcpSettings::Mode::signed_distance
-                    ? point_to_plane_equations(some, skip, field, result.ct_from_rig, result.centre_in_ct, scale_mm, settings.max_pair_mm)
+                    ? point_to_plane_equations(some, skip, field, result.ct_from_rig, result.centre_in_ct, scale_mm,
+                                               std::max(settings.last_scale_mm, kOutside * scale_mm), settings.max_pair_mm)
                     : point_to_point_equations(some, lut, result.ct_from_rig, result.centre_in_ct, scale_mm, settings.max_pair_mm);
             if (equations.used < 6) return result;
             double moved_mm;

@@ -59,12 +59,20 @@ double mirror_ratio(const PointCloud& cloud, const SkinLut& lut, const InitialMa
     return (image.candidates[0].cost_mm + kNoise_mm) / (match.candidates[0].cost_mm + kNoise_mm);
 }
 
-void judge_fit(const RegistrationSettings& settings, const CloudOnSkin& fit, Judgement& judgement) {
+/// Half of the scan on the skin, or a third when the rest is explained: it lies outside of the body, as cloth does, and no
+/// other pose comes near.
+bool enough_on_skin(const CloudOnSkin& fit, const RegistrationResult& result) {
+    const double on = fit.inlier_fraction(), inside = fit.inside_fraction();
+    return on >= 0.5 || (on >= 0.3 && inside < 0.2 * on && result.runner_up_ratio >= 1.3 && result.agreeing_bases >= 2);
+}
+
+void judge_fit(const RegistrationSettings& settings, const CloudOnSkin& fit, const RegistrationResult& result, Judgement& judgement) {
     const double share = fit.inlier_fraction();
     const std::string on_skin = fmt::format("only {:.0f} % of the scan lies on the skin (within {:.1f} mm)", 100 * share,
                                             settings.inlier_distance_mm);
-    judgement.no_if(share < 0.5, on_skin);
-    judgement.ask_if(share >= 0.5 && share < settings.min_inlier_fraction, on_skin);
+    const bool enough = enough_on_skin(fit, result);
+    judgement.no_if(!enough, on_skin);
+    judgement.ask_if(enough && share < settings.min_inlier_fraction, on_skin);
     judgement.no_if(fit.inlier_rms_mm > settings.max_residual_rms_mm,
                     fmt::format("the scan lies {:.2f} mm (rms) from the skin; at most {:.2f} mm is good enough", fit.inlier_rms_mm,
                                 settings.max_residual_rms_mm));
@@ -89,7 +97,7 @@ void judge_mirror_and_scale(const RegistrationSettings& settings, const Registra
                     fmt::format("the mirror image of the scan fits better (ratio {:.2f}): left and right are exchanged", mirror));
     judgement.ask_if(mirror >= settings.mirror_fits_better && mirror < settings.min_mirror_ratio,
                      fmt::format("the mirror image of the scan fits nearly as well (ratio {:.2f})", mirror));
-    judgement.ask_if(std::abs(result.scale - 1) > settings.max_scale_error,
+    judgement.ask_if(std::abs(result.scale - 1) > settings.max_scale_error + 2 * result.scale_sigma,
                      fmt::format("the head of the scan is {:.1f} % {} than that of the CT: another patient, or a wrong calibration",
                                  100 * std::abs(1 / result.scale - 1), result.scale < 1 ? "larger" : "smaller"));
 }
@@ -126,19 +134,26 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
     result.refine_s = seconds_since(refine_start);
     result.patient_from_ct = icp.ct_from_rig.inverse();
 
-    const CloudOnSkin fit = lay_on_skin(cloud, lut, icp.ct_from_rig, settings.inlier_distance_mm);
+    const CloudOnSkin fit = lay_on_skin(cloud, lut, icp.ct_from_rig, settings.inlier_distance_mm, settings.moved_skin ? settled.offset_mm : 0);
     result.inlier_fraction = fit.inlier_fraction();
     result.residual_rms_mm = fit.inlier_rms_mm;
     result.residual_median_mm = fit.median_mm;
-    const WeakestWay weakest = weakest_way(cloud, lut, icp, settings.skin_movement_mm, settings.skin_correlation_mm);
+    const WeakestWay weakest = weakest_way(settled.covariance);
     result.weakest_sigma_mm = weakest.sigma_mm;
-    result.scale = best_scale(cloud, lut, icp);
+    result.scale = settled.scale;
+    result.scale_sigma = settled.scale_sigma;
     if (settings.mirror_test) result.mirror_ratio = mirror_ratio(cloud, lut, match, settings);
 
     Judgement judgement(result);
-    judge_fit(settings, fit, judgement);
+    judge_fit(settings, fit, result, judgement);
     judge_uniqueness(settings, result, judgement);
+    judgement.no_if(result.runner_up_ratio < settings.min_runner_up_ratio && fit.inlier_fraction() < settings.min_inlier_fraction &&
+                        result.mirror_ratio > 0 && result.mirror_ratio < settings.min_mirror_ratio,
+                    "poorly on the skin, and other poses fit nearly as well: three weak signs together");
     judge_mirror_and_scale(settings, result, judgement);
+    judgement.ask_if(std::abs(settled.offset_mm) > settings.max_skin_offset_mm,
+                     fmt::format("the whole skin lies {:.1f} mm {} that of the CT: swollen, or not the threshold of the skin", std::abs(settled.offset_mm),
+                                 settled.offset_mm > 0 ? "outside" : "inside"));
     judgement.ask_if(weakest.sigma_mm > settings.max_weakest_sigma_mm,
                      fmt::format("the patient could {} by {:.1f} mm unnoticed; scan more of the head", weakest.in_words, weakest.sigma_mm));
     return result;

@@ -19,13 +19,12 @@ struct RegistrationSettings {
     double min_inlier_fraction = 0.7;   ///< below: ask; below 0.5: no
     double max_residual_rms_mm = 1.0;   ///< of the inliers; above: no
     int min_agreeing_bases = 2;
-    double max_weakest_sigma_mm = 0.5;  ///< above: ask
-    double skin_movement_mm = 0.3;      ///< of the skin since the CT, rms, at least; more when the residuals show more
-    double skin_correlation_mm = 25;    ///< over which that movement is alike
+    double max_weakest_sigma_mm = 1;    ///< above: ask
+    double max_skin_offset_mm = 1.5;    ///< of the whole skin; above: ask
     bool mirror_test = true;            ///< match the mirrored scan too
     double min_mirror_ratio = 1.15;     ///< of the mirrored scan's cost; below: ask
     double mirror_fits_better = 0.87;   ///< below: no
-    double max_scale_error = 0.015;     ///< of the scan against the CT; above: ask
+    double max_scale_error = 0.015;     ///< of the scan against the CT, beyond two of its sigmas; above: ask
 };
 
 /// Finds the patient without help: initial match, ICP, verdict with evidence. `patient` equals `rig` at the scan instant,

@@ -75,18 +75,15 @@ std::vector<Patch> patches_of(const PointCloud& cloud, const SkinLut& lut, const
     return patches;
 }
 
-/// One possible skin: how far it is alike, and the share of each patch's own.
-struct Skin {
-    double correlation_mm, own;
-};
-
-/// Its likelihood, and what the pose and its covariance are if it is so.
+/// How likely one possible skin is (over what length it is alike, how large each patch's own part is), and what pose,
+/// covariance, offset and scale are if it is so.
 struct Plausible {
     double log_likelihood = -std::numeric_limits<double>::infinity();
     double variance = 0;  ///< of the field, mm^2
     Vector6d step = Vector6d::Zero();  ///< from the pose that was given to the best one under such a skin
     Matrix6d covariance = Matrix6d::Zero();
     double offset_mm = 0;
+    double scale = 1, scale_variance = 0;
 };
 
 /// How much of a patch's own it has: 1 near the skin, more the farther it lies off, so that what moved as a piece (a jaw,
@@ -108,6 +105,7 @@ struct Problem {
     MatrixXd J;                ///< patches x 6
     VectorXd residual_mm;
     VectorXd own;              ///< of each patch: more where it lies far off
+    VectorXd growth_mm;        ///< of the distance, when the scan grows to twice its size
     MatrixXd squared_mm2;      ///< distances of patches
 
     explicit Problem(const std::vector<Patch>& patches, const Vector3d& centre) {
@@ -115,10 +113,12 @@ struct Problem {
         J.resize(n, 6);
         residual_mm.resize(n);
         squared_mm2.resize(n, n);
+        growth_mm.resize(n);
         for (Eigen::Index i = 0; i < n; ++i) {
             const Patch& p = patches[static_cast<std::size_t>(i)];
             J.row(i) << (p.x_in_ct - centre).cross(p.normal).transpose(), p.normal.transpose();
             residual_mm[i] = p.distance_mm;
+            growth_mm[i] = (p.x_in_ct - centre).dot(p.normal);
             for (Eigen::Index j = 0; j < n; ++j) squared_mm2(i, j) = (p.x_in_ct - patches[static_cast<std::size_t>(j)].x_in_ct).squaredNorm();
         }
         own = own_parts(residual_mm);
@@ -127,13 +127,13 @@ struct Problem {
 };
 
 /// Generalised least squares of the pose and of an offset of the whole skin (another threshold, swelling all over), which
-/// has a prior of `offset_prior_mm`.
-Plausible judge(const Problem& problem, const Skin& skin, double offset_prior_mm) {
+/// has a prior. A field smaller than the least movement is not believed.
+Plausible judge(const Problem& problem, const MatrixXd& alike, double own, const MovedSkinSettings& settings) {
     using Matrix7d = Eigen::Matrix<double, 7, 7>;
     using Vector7d = Eigen::Matrix<double, 7, 1>;
     const auto n = problem.residual_mm.size();
-    MatrixXd K = problem.alike(skin.correlation_mm);
-    K.diagonal() += skin.own * problem.own;
+    MatrixXd K = alike;
+    K.diagonal() += own * problem.own;
     const Eigen::LLT<MatrixXd> factor(K);
     if (factor.info() != Eigen::Success) return {};
     MatrixXd X(n, 7);
@@ -153,7 +153,8 @@ Plausible judge(const Problem& problem, const Skin& skin, double offset_prior_mm
         const double log_M = 2 * small.matrixLLT().diagonal().array().log().sum();
         result.log_likelihood = -0.5 * (log_K + log_M + freedom * std::log(result.variance));
     }
-    M(6, 6) += result.variance / (offset_prior_mm * offset_prior_mm);
+    result.variance = std::max(result.variance, settings.least_movement_mm * settings.least_movement_mm);
+    M(6, 6) += result.variance / (settings.offset_prior_mm * settings.offset_prior_mm);
     const Eigen::LLT<Matrix7d> with_prior(M);
     if (with_prior.info() != Eigen::Success) return {};
     const Vector7d found = with_prior.solve(taken);
@@ -161,6 +162,15 @@ Plausible judge(const Problem& problem, const Skin& skin, double offset_prior_mm
     result.step = -found.head<6>();
     result.offset_mm = found[6];
     result.covariance = covariance.topLeftCorner<6, 6>();
+
+    // What a growing scan would explain beyond pose and offset.
+    const VectorXd Kg = factor.solve(problem.growth_mm);
+    const Vector7d shared = X.transpose() * Kg, explained = with_prior.solve(shared);
+    const double information = problem.growth_mm.dot(Kg) - shared.dot(explained);
+    if (information > 0) {
+        result.scale = 1 - (problem.growth_mm.dot(Kr) - shared.dot(found)) / information;
+        result.scale_variance = result.variance / information;
+    }
     return result;
 }
 
@@ -178,38 +188,46 @@ MovedSkinPose settle_on_moved_skin(const PointCloud& cloud, const SkinLut& lut, 
     for (const Patch& p : patches) centre += p.x_in_ct / static_cast<double>(patches.size());
     const Problem problem(patches, centre);
 
-    std::vector<Skin> skins;
-    for (const double correlation_mm : {10., 15., 22., 33., 50., 75.})
-        for (const double own : {0.01, 0.1, 1., 10.}) skins.push_back({correlation_mm, own});
-    std::vector<Plausible> judged(skins.size());
-    parallel_for(static_cast<int>(skins.size()), 2, [&](int i) {
-        judged[static_cast<std::size_t>(i)] = judge(problem, skins[static_cast<std::size_t>(i)], settings.offset_prior_mm);
+    constexpr std::array kCorrelations_mm{10., 15., 22., 33., 50., 75.};
+    constexpr std::array kOwns{0.01, 0.1, 1., 10.};
+    std::array<std::array<Plausible, kOwns.size()>, kCorrelations_mm.size()> judged;
+    parallel_for(static_cast<int>(kCorrelations_mm.size()), 2, [&](int i) {
+        const auto at = static_cast<std::size_t>(i);
+        const MatrixXd alike = problem.alike(kCorrelations_mm[at]);
+        for (std::size_t j = 0; j < kOwns.size(); ++j) judged[at][j] = judge(problem, alike, kOwns[j], settings);
     });
 
     double best = -std::numeric_limits<double>::infinity(), sum = 0;
-    for (const Plausible& p : judged) best = std::max(best, p.log_likelihood);
+    for (const auto& of_length : judged)
+        for (const Plausible& p : of_length) best = std::max(best, p.log_likelihood);
     if (!std::isfinite(best)) return result;
     Vector6d step = Vector6d::Zero();
     Matrix6d covariance = Matrix6d::Zero();
-    for (std::size_t i = 0; i < skins.size(); ++i) {
-        if (!std::isfinite(judged[i].log_likelihood)) continue;
-        const double share = std::exp(judged[i].log_likelihood - best);
-        sum += share;
-        step += share * judged[i].step;
-        covariance += share * (judged[i].covariance + judged[i].step * judged[i].step.transpose());
-        result.movement_mm += share * std::sqrt(judged[i].variance);
-        result.correlation_mm += share * skins[i].correlation_mm;
-        result.offset_mm += share * judged[i].offset_mm;
-    }
+    double scale = 0, scale_squares = 0;
+    for (std::size_t i = 0; i < judged.size(); ++i)
+        for (const Plausible& p : judged[i]) {
+            if (!std::isfinite(p.log_likelihood)) continue;
+            const double share = std::exp(p.log_likelihood - best);
+            sum += share;
+            step += share * p.step;
+            covariance += share * (p.covariance + p.step * p.step.transpose());
+            scale += share * p.scale;
+            scale_squares += share * (settings.caution * p.scale_variance + p.scale * p.scale);
+            result.movement_mm += share * std::sqrt(p.variance);
+            result.correlation_mm += share * kCorrelations_mm[i];
+            result.offset_mm += share * p.offset_mm;
+        }
+    result.scale = scale / sum;
+    result.scale_sigma = std::sqrt(std::max(scale_squares / sum - result.scale * result.scale, 0.));
     step /= sum;
     result.movement_mm /= sum;
     result.correlation_mm /= sum;
     result.offset_mm /= sum;
     result.covariance.centre_in_ct = centre;
-    result.covariance.of_turn_and_shift = covariance / sum - step * step.transpose();
-    const double pulled_mm = settings.pulled_share * result.movement_mm;
-    result.covariance.of_turn_and_shift.diagonal().tail<3>().array() +=
-        (pulled_mm * pulled_mm + settings.least_movement_mm * settings.least_movement_mm) / 3;
+    result.covariance.of_turn_and_shift = settings.caution * (covariance / sum - step * step.transpose());
+    const double pulled_mm = settings.pulled_share * result.movement_mm, from_offset_mm = settings.offset_share * result.offset_mm;
+    const double unseen_mm2 = pulled_mm * pulled_mm + from_offset_mm * from_offset_mm + settings.least_movement_mm * settings.least_movement_mm;
+    result.covariance.of_turn_and_shift.diagonal().tail<3>().array() += unseen_mm2 / 3;
     const Vector3d turn = step.head<3>();
     RigidTransform moved = RigidTransform::Identity();
     if (turn.norm() > 0) moved.linear() = Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();

@@ -9,8 +9,10 @@ namespace planlight {
 
 struct MovedSkinSettings {
     int max_patches = 240;          ///< the scan is gathered into at most about this many patches of equal size
-    double offset_prior_mm = 1;     ///< how far the whole skin may lie outside or inside of the CT's, one sigma
-    double pulled_share = 1.5;      ///< of the movement seen: how far skin may be pulled along unseen, one sigma
+    double offset_prior_mm = 2;     ///< how far the whole skin may lie outside or inside of the CT's, one sigma
+    double caution = 3;             ///< on the variance: no skin is quite a Gaussian field of one length
+    double pulled_share = 0.8;      ///< of the movement seen: how far skin may be pulled along unseen, one sigma
+    double offset_share = 0.3;      ///< the same, of the offset
     double least_movement_mm = 0.1; ///< that no residual could show, one sigma
 };
 
@@ -21,6 +23,8 @@ struct MovedSkinPose {
     double movement_mm = 0;      ///< of the skin along its normal, rms
     double correlation_mm = 0;   ///< over which the movement is alike
     double offset_mm = 0;        ///< of the whole skin; positive outside of the CT's
+    double scale = 1;            ///< by which the scan would have to grow to fit best
+    double scale_sigma = 0;      ///< one standard deviation of that
     int patches = 0;
 };
 
@@ -33,7 +37,8 @@ struct MovedSkinPose {
 /// not count what the pose has taken up; all plausible fields are averaged by their likelihood. The usual sigma^2 (J^T J)^-1
 /// takes the residuals of neighbours for independent, and is over-confident by an order.
 ///
-/// What no residual can show is added: skin that is pulled along as a whole, in proportion to the movement that is seen.
+/// What no residual can show is added: skin that is pulled along as a whole, in proportion to the movement and the offset that
+/// are seen. The shares were set on three models of movement; the bound is measured on others (matching/README.md).
 MovedSkinPose settle_on_moved_skin(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
                                    const MovedSkinSettings& settings = {});
 
