@@ -23,7 +23,8 @@ struct View {
     std::string name;
     double azimuth_deg, up_deg;
 };
-const std::vector<View> kViews{{"front", 0, 5}, {"half side", 45, 10}, {"side", 90, 5}, {"back", 170, 15}, {"front from above", 10, 45}};
+const std::vector<View> kViews{
+    {"front", 0, 5}, {"half side", 45, 10}, {"side", 90, 5}, {"back", 170, 15}, {"front from above", 10, 45}};
 
 TrialRecord run(const std::vector<TrialHead>& heads, unsigned seed) {
     std::mt19937 random(seed);
@@ -63,7 +64,8 @@ TrialRecord run(const std::vector<TrialHead>& heads, unsigned seed) {
     return record;
 }
 
-void print_row(const std::string& name, const std::vector<TrialRecord>& all, const std::function<bool(const TrialRecord&)>& in) {
+void print_row(const std::string& name, const std::vector<TrialRecord>& all,
+               const std::function<bool(const TrialRecord&)>& in) {
     std::vector<double> before, after, initial_s, processor_s;
     std::size_t n = 0, found = 0, good = 0, wrong[2] = {0, 0}, verdicts[3] = {0, 0, 0};
     for (const TrialRecord& r : all) {
@@ -79,16 +81,21 @@ void print_row(const std::string& name, const std::vector<TrialRecord>& all, con
     }
     if (n == 0) return;
     const auto percent = [&](std::size_t k) { return 100. * static_cast<double>(k) / static_cast<double>(n); };
-    fmt::print("| {} | {} | {:.1f} % | {:.1f} % | {:.0f} / {:.0f} / {:.0f} % | {} / {} | {:.2f}, {:.2f} | {:.2f}, {:.2f} | {:.2f}, {:.2f} | {:.2f} |\n", name, n,
-               percent(found), percent(good), percent(verdicts[0]), percent(verdicts[1]), percent(verdicts[2]), wrong[0], wrong[1],
-               quantile(before, 0.5), quantile(before, 0.95), quantile(after, 0.5), quantile(after, 0.95), quantile(initial_s, 0.5),
-               quantile(initial_s, 0.99), quantile(processor_s, 0.5));
+    fmt::print(
+        "| {} | {} | {:.1f} % | {:.1f} % | {:.0f} / {:.0f} / {:.0f} % | {} / {} | {:.2f}, {:.2f} | {:.2f}, {:.2f} | "
+        "{:.2f}, {:.2f} | {:.2f} |\n",
+        name, n, percent(found), percent(good), percent(verdicts[0]), percent(verdicts[1]), percent(verdicts[2]),
+        wrong[0], wrong[1], quantile(before, 0.5), quantile(before, 0.95), quantile(after, 0.5), quantile(after, 0.95),
+        quantile(initial_s, 0.5), quantile(initial_s, 0.99), quantile(processor_s, 0.5));
 }
 
 void print_table(const std::vector<TrialRecord>& all) {
-    fmt::print("| trials | number | found: within 3 degrees, 5 mm | found, and < 2 mm at targets | yes / ask / no | wrong (> 5 mm): yes / ask | "
-               "error of those found, mm, before: median, 95 % | after | initial match, s by the wall: median, 99 % | processor s in all: median |\n"
-               "|---|---|---|---|---|---|---|---|---|---|\n");
+    fmt::print(
+        "| trials | number | found: within 3 degrees, 5 mm | found, and < 2 mm at targets | yes / ask / no | wrong (> "
+        "5 mm): yes / ask | "
+        "error of those found, mm, before: median, 95 % | after | initial match, s by the wall: median, 99 % | "
+        "processor s in all: median |\n"
+        "|---|---|---|---|---|---|---|---|---|---|\n");
     const auto goal = [](const TrialRecord& r) { return r.width_mm >= 140 && r.movement_mm <= 1; };
     print_row("**at least 140 mm, at most 1 mm moved**", all, goal);
     print_row("same, at most 25 % strays, no cloth", all,
@@ -105,23 +112,49 @@ void print_table(const std::vector<TrialRecord>& all) {
         while (i + 1 < edges.size() && value >= edges[i]) ++i;
         return fmt::format("{:.3g} to {:.3g} {}", edges[i - 1], edges[i], unit);
     };
-    each("", [](const TrialRecord& r) { return r.head; }, false);
-    each("goal's, ", [](const TrialRecord& r) { return r.head; }, true);
-    each("goal's, from: ", [](const TrialRecord& r) { return r.view; }, true);
-    each("wide ", [&](const TrialRecord& r) { return within(r.width_mm, {90, 115, 140, 170, 200, 250}, "mm"); }, false);
-    each("moved ", [&](const TrialRecord& r) { return within(r.movement_mm, {0, 0.5, 1, 1.5, 2}, "mm"); }, false);
-    each("moved by ", [&](const TrialRecord& r) { return r.movement; }, false);
-    each("strays ", [&](const TrialRecord& r) { return within(100 * r.strays, {0, 10, 25, 40}, "%"); }, false);
-    each("under a cloth ", [&](const TrialRecord& r) { return r.drape == 0 ? "0" : within(100 * r.drape, {0, 10, 25, 40}, "%"); }, false);
+    each(
+        "", [](const TrialRecord& r) { return r.head; }, false);
+    each(
+        "goal's, ", [](const TrialRecord& r) { return r.head; }, true);
+    each(
+        "goal's, from: ", [](const TrialRecord& r) { return r.view; }, true);
+    each(
+        "wide ",
+        [&](const TrialRecord& r) {
+            return within(r.width_mm, {90, 115, 140, 170, 200, 250}, "mm");
+        },
+        false);
+    each(
+        "moved ",
+        [&](const TrialRecord& r) {
+            return within(r.movement_mm, {0, 0.5, 1, 1.5, 2}, "mm");
+        },
+        false);
+    each(
+        "moved by ", [&](const TrialRecord& r) { return r.movement; }, false);
+    each(
+        "strays ",
+        [&](const TrialRecord& r) {
+            return within(100 * r.strays, {0, 10, 25, 40}, "%");
+        },
+        false);
+    each(
+        "under a cloth ",
+        [&](const TrialRecord& r) {
+            return r.drape == 0 ? "0" : within(100 * r.drape, {0, 10, 25, 40}, "%");
+        },
+        false);
 }
 
 void print_misses(const std::vector<TrialRecord>& all) {
     fmt::print("\nOf the goal's trials, not found or wrong with a yes:\n");
     for (const TrialRecord& r : all)
         if (((r.width_mm >= 140 && r.movement_mm <= 1 && !r.found()) || (r.verdict == 0 && r.wrong())))
-            fmt::print("  seed {}: {}, {}, {:.0f} mm, {} points, noise {:.1f}, strays {:.0f} %, cloth {:.0f} %, {} {:.1f} mm: {:.1f} mm off, verdict {}: {}\n", r.seed,
-                       r.head, r.view, r.width_mm, r.points, r.noise_mm, 100 * r.strays, 100 * r.drape, r.movement, r.movement_mm,
-                       r.final.target_mm, r.verdict, r.reasons);
+            fmt::print(
+                "  seed {}: {}, {}, {:.0f} mm, {} points, noise {:.1f}, strays {:.0f} %, cloth {:.0f} %, {} {:.1f} mm: "
+                "{:.1f} mm off, verdict {}: {}\n",
+                r.seed, r.head, r.view, r.width_mm, r.points, r.noise_mm, 100 * r.strays, 100 * r.drape, r.movement,
+                r.movement_mm, r.final.target_mm, r.verdict, r.reasons);
 }
 
 }  // namespace

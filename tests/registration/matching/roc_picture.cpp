@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stdexcept>
@@ -26,7 +27,8 @@ double across(double wrong_share, double least) {
 }
 
 cv::Point at(double x, double y) {
-    return {kPlot.x + static_cast<int>(std::lround(x * kPlot.width)), kPlot.y + static_cast<int>(std::lround((1 - y) * kPlot.height))};
+    return {kPlot.x + static_cast<int>(std::lround(x * kPlot.width)),
+            kPlot.y + static_cast<int>(std::lround((1 - y) * kPlot.height))};
 }
 
 void write_text(cv::Mat& picture, const std::string& text, cv::Point where, double size = 0.5) {
@@ -46,7 +48,8 @@ void draw_axes(cv::Mat& picture, double least, const std::string& title) {
     }
     cv::rectangle(picture, kPlot, kInk, 1);
     write_text(picture, title, {kPlot.x, 40}, 0.65);
-    write_text(picture, "wrong ones accepted, share of those that must not be (logarithmic)", {kPlot.x + 200, kPlot.y + kPlot.height + 60}, 0.55);
+    write_text(picture, "wrong ones accepted, share of those that must not be (logarithmic)",
+               {kPlot.x + 200, kPlot.y + kPlot.height + 60}, 0.55);
     write_text(picture, "right ones accepted", {kPlot.x - 100, kPlot.y - 12}, 0.55);
 }
 
@@ -54,7 +57,8 @@ void draw_axes(cv::Mat& picture, double least, const std::string& title) {
 
 void write_roc(const std::vector<RocCurve>& curves, const std::vector<RocPoint>& points, const std::string& title,
                const std::filesystem::path& file) {
-    const std::vector<cv::Scalar> colours{{180, 90, 20}, {30, 120, 220}, {60, 150, 40}, {150, 40, 150}, {60, 60, 200}, {120, 120, 120}};
+    const std::vector<cv::Scalar> colours{{180, 90, 20}, {30, 120, 220},  {60, 150, 40}, {150, 40, 150},
+                                          {60, 60, 200}, {120, 120, 120}, {0, 190, 190}};
     cv::Mat picture(800, 1100, CV_8UC3, cv::Scalar(255, 255, 255));
     std::size_t most = 10;
     for (const RocCurve& curve : curves) most = std::max(most, curve.wrong.size());
@@ -71,14 +75,16 @@ void write_roc(const std::vector<RocCurve>& curves, const std::vector<RocPoint>&
         cv::polylines(picture, line, false, colour, 2, cv::LINE_AA);
         const cv::Point key = at(0.52, 0.06 + 0.05 * static_cast<double>(curves.size() - 1 - c));
         cv::line(picture, key, key + cv::Point(30, 0), colour, 3);
-        write_text(picture, fmt::format("{} (area {:.4f})", curves[c].name, area_under(curves[c])), key + cv::Point(40, 5));
+        write_text(picture, fmt::format("{} (area {:.4f})", curves[c].name, area_under(curves[c])),
+                   key + cv::Point(40, 5));
     }
     for (const RocPoint& point : points) {
         const cv::Point where = at(across(point.wrong_share, least), point.right_share);
         cv::circle(picture, where, 8, kInk, 2, cv::LINE_AA);
         write_text(picture, point.name, where + cv::Point(14, 22));
     }
-    if (!cv::imwrite(file.string(), picture)) throw std::runtime_error("cannot write " + file.string());
+    if (!cv::imwrite(file.string(), picture, {cv::IMWRITE_PNG_COMPRESSION, 9}))
+        throw std::runtime_error("cannot write " + file.string());
 }
 
 double area_under(const RocCurve& curve) {
@@ -92,6 +98,16 @@ double area_under(const RocCurve& curve) {
     }
     const double pairs = static_cast<double>(curve.right.size()) * static_cast<double>(wrong.size());
     return pairs > 0 ? sum / pairs : 0;
+}
+
+double accepted_at(const RocCurve& curve, double wrong_share) {
+    if (curve.wrong.empty() || curve.right.empty()) return 0;
+    std::vector<double> wrong = curve.wrong;
+    std::sort(wrong.begin(), wrong.end(), std::greater<>());
+    const double limit =
+        wrong[std::min(wrong.size() - 1, static_cast<std::size_t>(wrong_share * static_cast<double>(wrong.size())))];
+    const auto above = std::count_if(curve.right.begin(), curve.right.end(), [&](double r) { return r > limit; });
+    return static_cast<double>(above) / static_cast<double>(curve.right.size());
 }
 
 }  // namespace planlight::test

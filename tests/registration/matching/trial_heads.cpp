@@ -68,7 +68,8 @@ TrialHead head_of_volume(const std::string& name, const Volume& volume) {
 }
 
 /// The truth is the blended surface itself; only the table goes through voxels.
-TrialHead synthetic_head(const std::string& name, const std::vector<Ellipsoid>& parts, double blend_mm, double lowest_z_mm) {
+TrialHead synthetic_head(const std::string& name, const std::vector<Ellipsoid>& parts, double blend_mm,
+                         double lowest_z_mm) {
     const Volume volume = volume_of(parts, blend_mm, 1.4, lowest_z_mm);
     SkinSettings settings;
     settings.threshold = -300;
@@ -78,15 +79,15 @@ TrialHead synthetic_head(const std::string& name, const std::vector<Ellipsoid>& 
 
 // x: left, y: posterior, z: superior.
 const std::vector<Ellipsoid> kLongHead{
-    {{0, 5, 30}, {68, 102, 80}},     {{3, -50, -40}, {44, 46, 66}},  {{4, -104, -32}, {10, 20, 26}},
-    {{-3, -88, -96}, {19, 16, 15}},  {{72, 20, -20}, {7, 16, 31}},   {{-70, 14, -14}, {9, 19, 33}},
-    {{28, -84, 4}, {20, 11, 8}},     {{-25, -86, 2}, {22, 10, 9}},   {{46, -55, -36}, {16, 18, 14}},
-    {{-41, -58, -34}, {15, 20, 13}}, {{20, 30, -80}, {46, 50, 70}},  {{-30, -70, 48}, {14, 10, 12}},
+    {{0, 5, 30}, {68, 102, 80}},     {{3, -50, -40}, {44, 46, 66}}, {{4, -104, -32}, {10, 20, 26}},
+    {{-3, -88, -96}, {19, 16, 15}},  {{72, 20, -20}, {7, 16, 31}},  {{-70, 14, -14}, {9, 19, 33}},
+    {{28, -84, 4}, {20, 11, 8}},     {{-25, -86, 2}, {22, 10, 9}},  {{46, -55, -36}, {16, 18, 14}},
+    {{-41, -58, -34}, {15, 20, 13}}, {{20, 30, -80}, {46, 50, 70}}, {{-30, -70, 48}, {14, 10, 12}},
 };
 const std::vector<Ellipsoid> kRoundHead{
-    {{0, 0, 20}, {80, 88, 82}},      {{-2, -34, -38}, {60, 50, 52}}, {{-3, -84, -22}, {15, 14, 15}},
-    {{5, -70, -76}, {26, 18, 14}},   {{84, 8, -10}, {12, 14, 22}},   {{-83, 6, -16}, {11, 15, 21}},
-    {{40, -60, -44}, {24, 20, 20}},  {{-44, -56, -40}, {22, 24, 22}}, {{5, 28, -70}, {58, 52, 60}},
+    {{0, 0, 20}, {80, 88, 82}},     {{-2, -34, -38}, {60, 50, 52}},  {{-3, -84, -22}, {15, 14, 15}},
+    {{5, -70, -76}, {26, 18, 14}},  {{84, 8, -10}, {12, 14, 22}},    {{-83, 6, -16}, {11, 15, 21}},
+    {{40, -60, -44}, {24, 20, 20}}, {{-44, -56, -40}, {22, 24, 22}}, {{5, 28, -70}, {58, 52, 60}},
     {{35, -72, 30}, {24, 10, 14}},
 };
 
@@ -119,7 +120,8 @@ TriangleMesh closed(TriangleMesh mesh) {
     for (const auto& ring : rings) {
         const std::uint8_t flag = ring.size() == longest ? kCutPlane : kSeal;
         Vector3d middle = Vector3d::Zero();
-        for (const auto v : ring) middle += mesh.vertices_in_ct[static_cast<std::size_t>(v)] / static_cast<double>(ring.size());
+        for (const auto v : ring)
+            middle += mesh.vertices_in_ct[static_cast<std::size_t>(v)] / static_cast<double>(ring.size());
         const auto hub = static_cast<std::int32_t>(mesh.vertices_in_ct.size());
         mesh.vertices_in_ct.push_back(middle);
         mesh.flags.push_back(flag);
@@ -169,7 +171,8 @@ TriangleMesh blended_mesh(const std::vector<Ellipsoid>& parts, double blend_mm, 
             const double d = blended_distance(parts, blend_mm, p);
             Vector3d gradient;
             for (int axis = 0; axis < 3; ++axis)
-                gradient[axis] = (blended_distance(parts, blend_mm, p + kStep_mm * Vector3d::Unit(axis)) - d) / kStep_mm;
+                gradient[axis] =
+                    (blended_distance(parts, blend_mm, p + kStep_mm * Vector3d::Unit(axis)) - d) / kStep_mm;
             p -= std::clamp(d, -1.0, 1.0) / std::max(gradient.squaredNorm(), 0.04) * gradient;
         }
     mesh.flags.clear();
@@ -179,7 +182,8 @@ TriangleMesh blended_mesh(const std::vector<Ellipsoid>& parts, double blend_mm, 
 std::vector<TrialHead> trial_heads(const TrialHeadFiles& files) {
     std::vector<TrialHead> heads;
     const auto there = [](const std::filesystem::path& file) { return !file.empty() && std::filesystem::exists(file); };
-    if (const auto file = example_patient()) heads.push_back(head_of_volume("example patient (CT)", read_volume(*file)));
+    if (const auto file = example_patient())
+        heads.push_back(head_of_volume("example patient (CT)", read_volume(*file)));
     if (there(files.ch2)) heads.push_back(head_of_volume("ch2 (MR)", read_volume(files.ch2)));
     if (there(files.ct_head)) heads.push_back(head_of_volume("Slicer's CT head, 3.2 mm", read_volume(files.ct_head)));
     if (there(files.mannequin)) {

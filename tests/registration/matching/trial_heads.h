@@ -9,7 +9,8 @@
 
 namespace planlight::test {
 
-/// A head of the trials: what its CT or MR led to (the product's table, by segmentation), and the surface that is scanned.
+/// A head of the trials: what its CT or MR led to (the product's table, by segmentation), and the surface that is
+/// scanned.
 struct TrialHead {
     std::string name;
     SkinLut lut;           ///< made with the product's own settings: decimated mesh, 1 mm voxels, 2 mm distance field
@@ -23,9 +24,9 @@ struct TrialHeadFiles {
     std::filesystem::path ct_head;    ///< the DICOM folder of 3D Slicer's CTHeadAxialDicom
 };
 
-/// The example patient (if installed), those of the files, and four analytic heads: the one of tests/support, a long one
-/// and a round one that differ in every measure, and the long one with a CT that ends above the mouth (its scans go on below).
-/// About 3 s each.
+/// The example patient (if installed), those of the files, and four analytic heads: the one of tests/support, a long
+/// one and a round one that differ in every measure, and the long one with a CT that ends above the mouth (its scans go
+/// on below). About 3 s each.
 std::vector<TrialHead> trial_heads(const TrialHeadFiles& files);
 
 /// A part of an analytic head: an ellipsoid.

@@ -53,7 +53,8 @@ TrialSurface cylinder_object(double radius_mm, double height_mm) {
 }
 
 TrialSurface egg_object(const Vector3d& half_axes_mm) {
-    return blown_up(2, half_axes_mm.maxCoeff(), [=](const Vector3d& d) { return 1 / d.cwiseQuotient(half_axes_mm).norm(); });
+    return blown_up(2, half_axes_mm.maxCoeff(),
+                    [=](const Vector3d& d) { return 1 / d.cwiseQuotient(half_axes_mm).norm(); });
 }
 
 TrialSurface lump_object(double radius_mm, unsigned seed) {

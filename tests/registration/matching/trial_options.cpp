@@ -28,7 +28,10 @@ TrialOptions trial_options(int argc, char** argv, unsigned default_trials) {
         } else if (numbers < 2 && !word.empty() && word.find_first_not_of("0123456789") == std::string::npos) {
             (numbers++ == 0 ? options.trials : options.seed) = static_cast<unsigned>(std::stoul(word));
         } else {
-            fmt::print(stderr, "usage: {} [TRIALS [SEED]] [--ch2 FILE] [--mannequin FILE] [--ct-head FOLDER] [--log FILE] [--picture FILE]\n", argv[0]);
+            fmt::print(stderr,
+                       "usage: {} [TRIALS [SEED]] [--ch2 FILE] [--mannequin FILE] [--ct-head FOLDER] [--log FILE] "
+                       "[--picture FILE]\n",
+                       argv[0]);
             std::exit(2);
         }
     }

@@ -19,19 +19,31 @@ constexpr char kSeparator = ';';
 
 std::string line_of(const TrialRecord& r) {
     return fmt::format(
-        "{};{};{};{:d};{};{};{};{};{};{};{};{};{};{:d};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{}", r.seed, r.kind, r.head,
-        r.right_object, r.width_mm, r.noise_mm, r.strays, r.drape, r.movement_mm, r.view, r.movement, r.points, r.verdict, r.searched,
-        r.initial.turn_deg, r.initial.middle_mm, r.initial.target_mm, r.final.turn_deg, r.final.middle_mm, r.final.target_mm, r.bound_mm,
-        r.runner_up, r.mirror, r.inliers, r.rms_mm, r.median_mm, r.scale, r.weakest_mm, r.bases, r.initial_s, r.refine_s, r.processor_s,
-        r.reasons);
+        "{};{};{};{:d};{};{};{};{};{};{};{};{};{};{:d};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{}",
+        r.seed, r.kind, r.head, r.right_object, r.width_mm, r.noise_mm, r.strays, r.drape, r.movement_mm, r.view,
+        r.movement, r.points, r.verdict, r.searched, r.initial.turn_deg, r.initial.middle_mm, r.initial.target_mm,
+        r.final.turn_deg, r.final.middle_mm, r.final.target_mm, r.bound_mm, r.runner_up, r.mirror, r.inliers, r.rms_mm,
+        r.median_mm, r.scale, r.weakest_mm, r.bases, r.initial_s, r.refine_s, r.processor_s, r.reasons);
 }
 
-void take(const std::string& text, std::string& into) { into = text; }
-void take(const std::string& text, bool& into) { into = text == "1"; }
-void take(const std::string& text, double& into) { into = std::stod(text); }
-void take(const std::string& text, int& into) { into = std::stoi(text); }
-void take(const std::string& text, unsigned& into) { into = static_cast<unsigned>(std::stoul(text)); }
-void take(const std::string& text, std::size_t& into) { into = std::stoul(text); }
+void take(const std::string& text, std::string& into) {
+    into = text;
+}
+void take(const std::string& text, bool& into) {
+    into = text == "1";
+}
+void take(const std::string& text, double& into) {
+    into = std::stod(text);
+}
+void take(const std::string& text, int& into) {
+    into = std::stoi(text);
+}
+void take(const std::string& text, unsigned& into) {
+    into = static_cast<unsigned>(std::stoul(text));
+}
+void take(const std::string& text, std::size_t& into) {
+    into = std::stoul(text);
+}
 
 template <class... Fields>
 void take_all(std::istringstream& in, Fields&... fields) {
@@ -46,10 +58,11 @@ void take_all(std::istringstream& in, Fields&... fields) {
 TrialRecord record_of(const std::string& line) {
     TrialRecord r;
     std::istringstream in(line);
-    take_all(in, r.seed, r.kind, r.head, r.right_object, r.width_mm, r.noise_mm, r.strays, r.drape, r.movement_mm, r.view, r.movement,
-             r.points, r.verdict, r.searched, r.initial.turn_deg, r.initial.middle_mm, r.initial.target_mm, r.final.turn_deg,
-             r.final.middle_mm, r.final.target_mm, r.bound_mm, r.runner_up, r.mirror, r.inliers, r.rms_mm, r.median_mm, r.scale,
-             r.weakest_mm, r.bases, r.initial_s, r.refine_s, r.processor_s);
+    take_all(in, r.seed, r.kind, r.head, r.right_object, r.width_mm, r.noise_mm, r.strays, r.drape, r.movement_mm,
+             r.view, r.movement, r.points, r.verdict, r.searched, r.initial.turn_deg, r.initial.middle_mm,
+             r.initial.target_mm, r.final.turn_deg, r.final.middle_mm, r.final.target_mm, r.bound_mm, r.runner_up,
+             r.mirror, r.inliers, r.rms_mm, r.median_mm, r.scale, r.weakest_mm, r.bases, r.initial_s, r.refine_s,
+             r.processor_s);
     std::getline(in, r.reasons);
     return r;
 }
@@ -88,11 +101,17 @@ void run_trial(const TrialScan& scan, const SkinLut& lut, TrialRecord& record) {
 }
 
 double confidence(const TrialRecord& r) {
+    constexpr double kNoise = 0.01, kNoise_mm = 0.05;
+    if (!r.searched) return -std::numeric_limits<double>::infinity();
+    return std::log(std::min(r.runner_up, r.mirror) + kNoise) - 0.1 * std::log(r.bound_mm + kNoise_mm);
+}
+
+double least_margin(const TrialRecord& r) {
     if (!r.searched) return -std::numeric_limits<double>::infinity();
     const auto margin = [](double value, double no, double yes) { return (value - no) / (yes - no); };
     return std::min({margin(r.inliers, 0.5, 0.7), margin(r.rms_mm, 1.0, 0.7), margin(r.runner_up, 1.05, 1.15),
-                     margin(r.mirror, 0.87, 1.15), margin(std::abs(r.scale - 1), 0.03, 0.015), margin(r.weakest_mm, 1.5, 0.5),
-                     margin(r.bases, 0, 2)});
+                     margin(r.mirror, 0.87, 1.15), margin(std::abs(r.scale - 1), 0.03, 0.015),
+                     margin(r.weakest_mm, 1.5, 0.5), margin(r.bases, 0, 2)});
 }
 
 TrialLog::TrialLog(const std::filesystem::path& file) {
@@ -115,7 +134,8 @@ void TrialLog::add(const TrialRecord& record) {
 
 double quantile(std::vector<double> values, double share) {
     if (values.empty()) return 0;
-    const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::ceil(share * static_cast<double>(values.size() - 1)));
+    const auto at =
+        values.begin() + static_cast<std::ptrdiff_t>(std::ceil(share * static_cast<double>(values.size() - 1)));
     std::nth_element(values.begin(), at, values.end());
     return *at;
 }

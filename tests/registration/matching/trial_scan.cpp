@@ -25,7 +25,8 @@ struct Window {
 
     Window(const TrialSurface& surface, const TrialScanSettings& s) : width_mm(s.width_mm) {
         const Vector3d back = s.from_in_ct.normalized();
-        const Vector3d level = back.cross(Vector3d::UnitZ()).norm() > 0.1 ? back.cross(Vector3d::UnitZ()).normalized() : Vector3d::UnitX();
+        const Vector3d level =
+            back.cross(Vector3d::UnitZ()).norm() > 0.1 ? back.cross(Vector3d::UnitZ()).normalized() : Vector3d::UnitX();
         right = std::cos(s.roll) * level + std::sin(s.roll) * back.cross(level);
         down = right.cross(back);
         middle = surface.middle_in_ct() + s.aside_mm.x() * right + s.aside_mm.y() * down;
@@ -41,7 +42,7 @@ struct Window {
 /// A grid of rays: what each met.
 struct Grid {
     int columns = 0, rows = 0;
-    std::vector<Vector2d> window;     ///< of each ray
+    std::vector<Vector2d> window;  ///< of each ray
     std::vector<Vector3d> direction;
     std::vector<char> met;
     std::vector<Vector3d> p, normal;  ///< in ct
@@ -112,7 +113,8 @@ std::vector<char> lay_drape(Grid& grid, const Window& window, const TrialScanSet
     for (std::size_t k = 0; k < under; ++k) {
         const std::size_t i = skin[k];
         const Vector2d at_mm = window.width_mm * grid.window[i];
-        const double wave = std::sin(phase + 2 * std::numbers::pi * at_mm.dot(Vector2d(std::cos(fold_side), std::sin(fold_side))) / fold_mm);
+        const double wave = std::sin(
+            phase + 2 * std::numbers::pi * at_mm.dot(Vector2d(std::cos(fold_side), std::sin(fold_side))) / fold_mm);
         const double t = smooth[static_cast<Eigen::Index>(k)] - lift_mm + 0.15 * settings.drape_height_mm * wave;
         grid.p[i] = window.eye + t * grid.direction[i];
         draped[i] = 1;
@@ -145,11 +147,13 @@ Vector3d normal_of(const Grid& grid, std::size_t at, double spacing_mm) {
     return n.dot(grid.direction[at]) > 0 ? Vector3d(-n) : n;
 }
 
-void spoil(Grid& grid, const TrialScanSettings& settings, TrialScan& scan, const std::vector<char>& draped, std::mt19937& random) {
+void spoil(Grid& grid, const TrialScanSettings& settings, TrialScan& scan, const std::vector<char>& draped,
+           std::mt19937& random) {
     std::normal_distribution<double> noise(0, 1);
     std::uniform_real_distribution<double> unit;
     for (const auto i : met(grid)) {
-        const double off = settings.noise_mm * noise(random), stray = unit(random), way = unit(random), far = unit(random);
+        const double off = settings.noise_mm * noise(random), stray = unit(random), way = unit(random),
+                     far = unit(random);
         const bool is_stray = stray < settings.stray_share;
         const double thrown = is_stray ? (way < 0.5 ? -1 : 1) * (15 + 85 * far) : 0;
         grid.p[i] += (off + thrown) * grid.direction[i];

@@ -37,8 +37,8 @@ TrialSurface::TrialSurface(TriangleMesh mesh) : parts_(std::make_unique<Parts>()
                                                                  3 * sizeof(float), parts.mesh.vertices_in_ct.size()));
     for (const Vector3d& p : parts.mesh.vertices_in_ct)
         for (int axis = 0; axis < 3; ++axis) *vertices++ = static_cast<float>(p[axis]);
-    auto* corners = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                                                        3 * sizeof(std::uint32_t), parts.mesh.triangles.size()));
+    auto* corners = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), parts.mesh.triangles.size()));
     for (const auto& triangle : parts.mesh.triangles)
         for (const auto corner : triangle) *corners++ = static_cast<std::uint32_t>(corner);
     rtcCommitGeometry(geometry);
@@ -80,8 +80,14 @@ std::optional<TrialSurface::Hit> TrialSurface::first_hit(const Vector3d& origin,
     return hit;
 }
 
-Vector3d TrialSurface::low_in_ct() const { return parts_->low; }
-Vector3d TrialSurface::high_in_ct() const { return parts_->high; }
-const TriangleMesh& TrialSurface::mesh() const { return parts_->mesh; }
+Vector3d TrialSurface::low_in_ct() const {
+    return parts_->low;
+}
+Vector3d TrialSurface::high_in_ct() const {
+    return parts_->high;
+}
+const TriangleMesh& TrialSurface::mesh() const {
+    return parts_->mesh;
+}
 
 }  // namespace planlight::test
