@@ -51,6 +51,15 @@ void add_patterns(CLI::App& app, PatternsOptions& o) {
     json_flag(sub, o.json);
 }
 
+void add_board(CLI::App& app, BoardOptions& o) {
+    auto* sub = command(app, "board", "Draw the calibration board to print (PNG and PDF, true size, grey instead of black)",
+                        "board --board \"charuco 10x7 25 mm\" --out board");
+    sub->add_option("--board", o.board, "charuco COLUMNSxROWS (squares) or chessboard COLUMNSxROWS (inner corners), and the square in mm")
+        ->capture_default_str();
+    sub->add_option("--out", o.out, "File to write, without ending")->capture_default_str();
+    json_flag(sub, o.json);
+}
+
 void add_simulate(CLI::App& app, SimulateOptions& o) {
     auto* sub = command(app, "simulate", "Captures of a simulated room, with ground truth in a file of its own",
                         "simulate Cranium.inv3 --plan frontal_defect.mrk.json --preset paper --seed 3 --out room");
@@ -157,6 +166,7 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version", "planlight 0.1.0");
     PrepareOptions prepare;
     PatternsOptions patterns;
+    BoardOptions board;
     SimulateOptions simulate;
     ScanOptions scan;
     RegisterOptions registration;
@@ -168,6 +178,7 @@ int main(int argc, char** argv) {
     add_demo(app, demo);
     add_prepare(app, prepare);
     add_patterns(app, patterns);
+    add_board(app, board);
     add_scan(app, scan);
     add_register(app, registration);
     add_track(app, track);
@@ -185,6 +196,7 @@ int main(int argc, char** argv) {
         if (name == "demo") return run_demo(demo);
         if (name == "prepare") return run_prepare(prepare);
         if (name == "patterns") return run_patterns(patterns);
+        if (name == "board") return run_board(board);
         if (name == "scan") return run_scan(scan);
         if (name == "register") return run_register(registration);
         if (name == "track") return run_track(track);

@@ -25,6 +25,13 @@ struct PatternsOptions {
 };
 int run_patterns(const PatternsOptions& options);
 
+struct BoardOptions {
+    std::string board = "charuco 10x7 25 mm";
+    Path out = "board";  ///< without ending
+    bool json = false;
+};
+int run_board(const BoardOptions& options);
+
 struct SimulateOptions {
     Path volume, plan, out;
     std::string preset = "modern";
