@@ -102,4 +102,10 @@ BoardCorners find_board(const GrayImage& picture, const BoardSpec& board) {
     return found;
 }
 
+BoardCorners follow_board(const GrayImage& picture, const BoardCorners& corners, const BoardSpec& board) {
+    BoardCorners found = corners;
+    refine(cv::Mat(picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.pixels.data())), found, board);
+    return found;
+}
+
 }  // namespace planlight
