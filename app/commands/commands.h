@@ -32,8 +32,17 @@ struct BoardOptions {
 };
 int run_board(const BoardOptions& options);
 
+struct CalibrateOptions {
+    Path captures, out = "rig.json";
+    std::string board;
+    bool json = false;
+};
+int run_calibrate(const CalibrateOptions& options);
+
 struct SimulateOptions {
     Path volume, plan, out;
+    std::string board;  ///< captures of a calibration board instead of a patient
+    int poses = 15;
     std::string preset = "modern";
     unsigned seed = 1;
     int frames = 20;
@@ -41,6 +50,7 @@ struct SimulateOptions {
     bool json = false;
 };
 int run_simulate(const SimulateOptions& options);
+int run_simulate_board(const SimulateOptions& options);  ///< with `board` given
 
 struct ScanOptions {
     Path capture, rig, out, raw_out;
