@@ -18,7 +18,7 @@ struct CalibrationSettings {
     double max_saturated = 0.05;          ///< share of the board's pixels
     double min_contrast_grey = 12;        ///< white less black light on the board; of the white picture itself without coded light
     double max_moved_px = 0.25;           ///< of the board while a pose was captured
-    double min_decoded = 0.7;             ///< of the board's lit pixels
+    double min_decoded = 0.2;             ///< of the board's lit pixels (a board printed black decodes on its white squares only)
     double max_rms_px = 1.0;              ///< of a camera, of the light
     double max_left_out = 0.2;            ///< share of corners or lit pixels that may disagree with the rest
     double max_predicted_mm = 1.0;        ///< 95 % of the working volume
@@ -36,10 +36,13 @@ struct HeldOut {
     std::size_t lengths = 0;              ///< distances on the board measured by the rig, 150 to 250 mm where the board has them
     double length_rms_mm = 0;             ///< of a distance's error, taken to 200 mm
     double length_mean_mm = 0;            ///< the part that all share: scale
+    /// How much more the rig changes when poses are left out than its covariance says (1: as it says). Errors that are alike
+    /// within a pose make it more.
+    double uncertainty_factor = 1;
 };
 
 struct Calibration {
-    BundleResult bundle;                  ///< from all poses
+    BundleResult bundle;                  ///< from all poses; its covariance widened by `HeldOut::uncertainty_factor`
     HeldOut held_out;
     std::optional<VolumeError> volume;    ///< with two devices or more
     std::vector<std::string> warnings;

@@ -10,7 +10,7 @@
 namespace planlight {
 namespace {
 
-constexpr int kLeastDifference_grey = 8;
+constexpr int kLeastDifference_grey = 5;
 constexpr double kLeastShare = 0.15;  ///< of (white - black)
 
 int bits_for(int size) {
@@ -19,17 +19,27 @@ int bits_for(int size) {
     return bits;
 }
 
-/// The number behind a Gray code; -1 where a bit is in doubt or the number is not on the panel.
-int decode_pixel(std::span<const GrayImage> pairs, int bits, std::size_t pixel, double least, int size) {
-    int code = 0, last = 0;
+int number_of(int gray) {
+    for (int shift = 1; shift < 32; shift *= 2) gray ^= gray >> shift;
+    return gray;
+}
+
+/// The projector pixel behind a Gray code; a pixel at the border of two has one bit in doubt and lies between them. -1 where
+/// more is in doubt, a bit away from its own border, or the number is not on the panel.
+float decode_pixel(std::span<const GrayImage> pairs, int bits, std::size_t pixel, double least, int size) {
+    int gray = 0, doubt = 0;
     for (int b = 0; b < bits; ++b) {
         const auto i = static_cast<std::size_t>(2 * b);
-        const int difference = pairs[i].pixels[pixel] - pairs[i + 1].pixels[pixel];
-        if (std::abs(difference) < least) return -1;
-        last ^= difference > 0 ? 1 : 0;
-        code = code << 1 | last;
+        const int difference = pairs[i].pixels[pixel] - pairs[i + 1].pixels[pixel], bit = 1 << (bits - 1 - b);
+        if (difference > 0) gray |= bit;
+        if (std::abs(difference) < least) {
+            if (doubt) return -1;
+            doubt = bit;
+        }
     }
-    return code < size ? code : -1;
+    const int number = number_of(gray), other = doubt ? number_of(gray ^ doubt) : number;
+    if (number >= size || other >= size || std::abs(number - other) > 1) return -1;
+    return static_cast<float>(number + other) / 2;
 }
 
 }  // namespace
@@ -70,15 +80,15 @@ DecodedView decode_gray_code(std::span<const GrayImage> frames, int projector_wi
             continue;
         }
         const double least = std::max<double>(kLeastDifference_grey, kLeastShare * contrast);
-        const int column = decode_pixel(column_pairs, column_bits, i, least, projector_width);
-        const int row = decode_pixel(row_pairs, row_bits, i, least, projector_height);
+        const float column = decode_pixel(column_pairs, column_bits, i, least, projector_width);
+        const float row = decode_pixel(row_pairs, row_bits, i, least, projector_height);
         if (column < 0 || row < 0) {
             ++view.uncertain;
             continue;
         }
         ++view.decoded;
-        view.column[i] = static_cast<float>(column);
-        view.row[i] = static_cast<float>(row);
+        view.column[i] = column;
+        view.row[i] = row;
         view.sigma_px[i] = 0.29F;  // of an even spread over one pixel
     }
     return view;

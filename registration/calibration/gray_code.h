@@ -13,8 +13,8 @@ namespace planlight {
 /// columns and rows, coarsest bit first, each followed by its inverse; named as in `stripe_sequence`.
 std::vector<std::string> gray_code_names(int projector_width, int projector_height);
 
-/// Decodes such frames: whole projector pixels (half a pixel uncertain either way); NaN where a bit differs from its inverse
-/// by less than 8 grey or 15 % of (white - black). Throws std::invalid_argument when number or sizes do not fit.
+/// Decodes such frames to whole projector pixels, or between two of them where just the bit of their common border differs
+/// from its inverse by less than 5 grey or 15 % of (white - black); NaN where any other bit does. Throws std::invalid_argument when number or sizes do not fit.
 DecodedView decode_gray_code(std::span<const GrayImage> frames, int projector_width, int projector_height);
 
 }  // namespace planlight

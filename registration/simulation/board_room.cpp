@@ -23,7 +23,7 @@ using Eigen::Vector3d;
 namespace {
 
 constexpr double kRadians = M_PI / 180;
-constexpr int kSamplesAcrossEdge = 8;
+constexpr int kSamplesAcrossEdge = 6;
 
 bool in_view(const Optics& device, const Vector3d& p_in_room) {
     const Vector2d pixel = device.pixel_of(p_in_room);

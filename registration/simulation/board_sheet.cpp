@@ -8,6 +8,10 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 double BoardSheet::z_at(double x, double y, Vector2d* slope) const {
+    if (sag_mm == 0) {
+        if (slope) slope->setZero();
+        return 0;
+    }
     const Vector2d across(std::cos(bend_direction), std::sin(bend_direction));
     const double half = std::hypot(width_mm(), height_mm()) / 2;
     const double s = across.dot(Vector2d(x - width_mm() / 2, y - height_mm() / 2)) / half;
@@ -23,6 +27,7 @@ std::optional<Surface::Hit> SheetSurface::first_hit(const Vector3d& origin, cons
         const Vector3d p = origin + t * direction;
         const double off = p.z() - sheet_.z_at(p.x(), p.y(), &slope);
         t -= off / (direction.z() - slope.dot(direction.head<2>()));
+        if (std::abs(off) < 1e-9) break;
     }
     const Vector3d p = origin + t * direction;
     const double m = sheet_.margin_mm;
