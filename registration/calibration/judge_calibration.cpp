@@ -110,11 +110,19 @@ BundleResult camera_alone(const std::vector<PoseObservation>& poses, const Board
     return start.failure.empty() ? adjust_bundle(own, board, start.rig, corners) : BundleResult{};
 }
 
-/// The same poses as a mirrored right camera would have seen them.
+/// What the right camera would have seen without its mirror. In a mirrored chessboard the corners are named from the other
+/// side (one with a top: from below), so their names are turned back as well; the markers of a ChArUco board keep theirs.
 BundleResult with_right_mirrored(const std::vector<PoseObservation>& poses, const BoardSpec& board, const CalibrationSettings& settings) {
     std::vector<PoseObservation> mirrored = poses;
+    const int across = board.corners_across(), down = board.corners_down();
     for (PoseObservation& pose : mirrored)
-        for (Vector2d& p : pose.right.corners.pixels) p.x() = pose.right.width - 1 - p.x();
+        for (std::size_t i = 0; i < pose.right.corners.size(); ++i) {
+            pose.right.corners.pixels[i].x() = pose.right.width - 1 - pose.right.corners.pixels[i].x();
+            if (board.kind == BoardSpec::Kind::charuco) continue;
+            int& id = pose.right.corners.ids[i];
+            const int x = id % across, y = id / across;
+            id = board.has_a_top() ? (down - 1 - y) * across + x : y * across + across - 1 - x;
+        }
     const StartValues start = find_camera_start(mirrored, board);
     BundleSettings corners = settings.bundle;
     corners.light = false;

@@ -32,7 +32,7 @@ BundleResult judge_published(const test::RealCaptures& captures, const BundleRes
 
 /// As others model it: a flat board, k3 free.
 Calibration with_their_model(const test::RealCaptures& captures) {
-    CalibrationSettings settings;
+    CalibrationSettings settings = test::settings_for_real_captures();
     settings.bundle.bend = false;
     settings.bundle.sixth_order = true;
     return calibrate_rig(captures.poses, captures.board, captures.projector_width, captures.projector_height, settings);
@@ -40,7 +40,7 @@ Calibration with_their_model(const test::RealCaptures& captures) {
 
 void table(const char* name, const test::RealCaptures& captures) {
     fmt::print("{}\n", name);
-    const Calibration ours = calibrate_rig(captures.poses, captures.board, captures.projector_width, captures.projector_height);
+    const Calibration ours = calibrate_rig(captures.poses, captures.board, captures.projector_width, captures.projector_height, test::settings_for_real_captures());
     if (ours.refusal) {
         fmt::print("  refused: {} {}\n", ours.refusal->reason, ours.refusal->remedy);
         return;

@@ -29,6 +29,12 @@ CameraModel device(const cv::Mat& matrix, const cv::Mat& distortion, int width, 
 
 }  // namespace
 
+CalibrationSettings settings_for_real_captures() {
+    CalibrationSettings settings;
+    settings.max_predicted_mm = 3;
+    return settings;
+}
+
 std::optional<RealCaptures> stereo_pairs() {
     const auto folder = third_party_data("stereo_calib");
     if (!folder) return std::nullopt;

@@ -3,8 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "registration/calibration/observe_pose.h"
-#include "registration/calibration/rig_estimate.h"
+#include "registration/calibration/calibrate_rig.h"
 
 namespace planlight::test {
 
@@ -15,6 +14,9 @@ struct RealCaptures {
     int projector_width = 0, projector_height = 0;
     RigEstimate published;        ///< devices only
 };
+
+/// The usual ones, but three poses of a board whose unit is unknown (a third of a mm, if it is printed on A4) may leave more in doubt.
+CalibrationSettings settings_for_real_captures();
 
 /// 13 stereo pairs of OpenCV's documentation; the left camera's intrinsics are published. Empty when not on this machine.
 std::optional<RealCaptures> stereo_pairs();
