@@ -69,6 +69,14 @@ void add_calibrate(CLI::App& app, CalibrateOptions& o) {
     json_flag(sub, o.json);
 }
 
+void add_check(CLI::App& app, CheckOptions& o) {
+    auto* sub = command(app, "check", "One scan of anything against rig.json: has the rig moved? (exit 6 if so)", "check room/capture --rig room/rig.json");
+    sub->add_option("capture", o.capture, "Capture folder of a scan: a board, a phantom, the patient")->required();
+    sub->add_option("--rig", o.rig, "rig.json")->required();
+    sub->add_option("--log", o.log, "Where the checks are kept for the trend (default: beside rig.json)");
+    json_flag(sub, o.json);
+}
+
 void add_simulate(CLI::App& app, SimulateOptions& o) {
     auto* sub = command(app, "simulate", "Captures of a simulated room, with ground truth in a file of its own",
                         "simulate Cranium.inv3 --plan frontal_defect.mrk.json --preset paper --seed 3 --out room");
@@ -179,6 +187,7 @@ int main(int argc, char** argv) {
     PatternsOptions patterns;
     BoardOptions board;
     CalibrateOptions calibrate;
+    CheckOptions check;
     SimulateOptions simulate;
     ScanOptions scan;
     RegisterOptions registration;
@@ -192,6 +201,7 @@ int main(int argc, char** argv) {
     add_patterns(app, patterns);
     add_board(app, board);
     add_calibrate(app, calibrate);
+    add_check(app, check);
     add_scan(app, scan);
     add_register(app, registration);
     add_track(app, track);
@@ -211,6 +221,7 @@ int main(int argc, char** argv) {
         if (name == "patterns") return run_patterns(patterns);
         if (name == "board") return run_board(board);
         if (name == "calibrate") return run_calibrate(calibrate);
+        if (name == "check") return run_check(check);
         if (name == "scan") return run_scan(scan);
         if (name == "register") return run_register(registration);
         if (name == "track") return run_track(track);

@@ -39,6 +39,12 @@ struct CalibrateOptions {
 };
 int run_calibrate(const CalibrateOptions& options);
 
+struct CheckOptions {
+    Path capture, rig, log;  ///< log empty: beside the rig file
+    bool json = false;
+};
+int run_check(const CheckOptions& options);
+
 struct SimulateOptions {
     Path volume, plan, out;
     std::string board;  ///< captures of a calibration board instead of a patient
