@@ -53,15 +53,16 @@ Rgb heat(double share) {
     return {mix(54, 255, 2 * s - 1), mix(214, 80, 2 * s - 1), mix(138, 70, 2 * s - 1)};
 }
 
-/// Where the board's corners, or the light on it, lay in a device's picture, half as large.
+/// Where the board's corners, or the light on it, lay in a device's picture.
 RgbImage coverage(const CalibrationReport& report, DeviceName name) {
     const CameraModel& d = *report.calibration.device(name);
     const double shrink = 640.0 / d.width;
     RgbImage picture(640, std::max(1, static_cast<int>(d.height * shrink)), {17, 22, 29});
     const auto dot = [&](const Eigen::Vector2d& p, Rgb colour) {
         const int x = static_cast<int>(p.x() * shrink), y = static_cast<int>(p.y() * shrink);
-        for (int j = -1; j <= 1; ++j)
-            for (int i = -1; i <= 1; ++i)
+        const int r = name == DeviceName::projector ? 1 : 2;
+        for (int j = -r; j <= r; ++j)
+            for (int i = -r; i <= r; ++i)
                 if (x + i >= 0 && y + j >= 0 && x + i < picture.width && y + j < picture.height) picture.at(x + i, y + j) = colour;
     };
     for (std::size_t k = 0; k < report.poses.size(); ++k) {
@@ -92,6 +93,12 @@ std::string device_rows(const CalibrationReport& report) {
                             all > 0 ? 100 * static_cast<double>(c.bundle.left_out[i]) / all : 0, d->focal_x, sigma[0], d->centre_x, d->centre_y, sigma[2]);
     }
     return html + "</table>";
+}
+
+/// How far a layer of the volume's grid is from the projector (or the left camera).
+double depth_mm(const Calibration& c, int layer) {
+    const auto& from = c.device(DeviceName::projector) ? *c.device(DeviceName::projector) : *c.device(DeviceName::left_camera);
+    return (from.device_from_rig * c.volume->points[static_cast<std::size_t>(layer * c.volume->grid[0] * c.volume->grid[1])]).z();
 }
 
 std::string verdict(const Calibration& c) {
@@ -180,11 +187,11 @@ void write_calibration_html(const CalibrationReport& report, const std::filesyst
                             c.held_out.length_rms_mm, c.held_out.length_mean_mm);
     for (const std::string& change : report.changes) body += fmt::format("<p>{}</p>", html_escaped(change));
     if (c.volume) {
-        const double full = std::max(0.05, std::ceil(c.volume->worst_mm * 20) / 20);
+        const double full = std::max(0.02, std::ceil(c.volume->worst_mm * 50) / 50);
         std::vector<ReportPicture> pictures;
         int depth = 0;
         for (RgbImage& picture : volume_pictures(*c.volume, full))
-            pictures.push_back({fmt::format("Depth {} of {}", ++depth, c.volume->grid[2]), "", std::move(picture)});
+            pictures.push_back({fmt::format("{:.0f} mm away", depth_mm(c, depth++)), "", std::move(picture)});
         body += fmt::format("<h2>Predicted error over the working volume</h2><p>What the rig's own uncertainty does to a scanned point, one standard deviation: median "
                             "{:.3f}, 95 % {:.3f}, worst {:.3f} mm. Where light lands that is sent to a point: 95 % {:.3f} mm. Colours: dark blue 0, green {:.3f}, red {:.3f} mm; "
                             "seen from the projector, nearest first.</p>", c.volume->median_mm, c.volume->p95_mm, c.volume->worst_mm, c.volume->light_p95_mm, full / 2, full) +
@@ -192,7 +199,7 @@ void write_calibration_html(const CalibrationReport& report, const std::filesyst
     }
     std::vector<ReportPicture> where;
     for (const DeviceName name : kDevices)
-        if (c.device(name)) where.push_back({text_of(name), "Where the board was, a colour a pose; empty corners are guessed by the lens model.", coverage(report, name)});
+        if (c.device(name)) where.push_back({text_of(name), "A colour a pose. Where no board was, the lens is guessed.", coverage(report, name)});
     body += "<h2>Where the board was</h2>" + html_figures(where, file, 3);
     write_safely(file, html_page("Calibration", body));
 }

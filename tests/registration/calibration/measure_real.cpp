@@ -16,18 +16,29 @@ void print_device(const char* whose, const CameraModel& d, const BundleResult* b
                d.centre_x, sigma(2), d.centre_y, sigma(3), d.k1, d.k2, d.p1, d.p2, d.k3);
 }
 
-/// The published devices judged on the same captures: only the poses of the board are found.
-BundleResult judge_published(const test::RealCaptures& captures, const BundleResult& ours) {
-    RigEstimate rig = captures.published;
-    rig.rig_from_board = ours.rig.rig_from_board;
-    for (std::size_t i = 0; i < captures.poses.size(); ++i)
-        if (const auto pose = board_pose(*rig.device(DeviceName::left_camera), captures.poses[i].left.corners, captures.board)) rig.rig_from_board[i] = pose;
-    BundleSettings fixed;
-    fixed.rig_fixed = true;
-    std::vector<PoseObservation> poses = captures.poses;
-    if (!rig.device(DeviceName::right_camera))
-        for (auto& pose : poses) pose.right = {};
-    return adjust_bundle(poses, captures.board, rig, fixed);
+/// Devices judged by the same measure, whoever found them: the board's poses from the left camera's corners alone, flat; root
+/// mean square length of what is left of its corners, and of the light, nothing left out.
+struct Judged {
+    double corners_px = 0, light_px = 0;
+};
+Judged judge(const test::RealCaptures& captures, const RigEstimate& rig) {
+    const CameraModel& camera = *rig.device(DeviceName::left_camera);
+    Judged judged;
+    double corners = 0, lit = 0;
+    for (const PoseObservation& pose : captures.poses) {
+        const auto rig_from_board = board_pose(camera, pose.left.corners, captures.board);
+        if (!rig_from_board) continue;
+        for (std::size_t i = 0; i < pose.left.corners.size(); ++i, ++corners)
+            judged.corners_px += (*project(camera, *rig_from_board * captures.board.corner_in_board(pose.left.corners.ids[i])) - pose.left.corners.pixels[i]).squaredNorm();
+        for (const LightSample& sample : pose.left.light)
+            if (const auto p = board_point(camera, sample.pixel_in_camera, *rig_from_board, Eigen::Vector3d::Zero(), captures.board)) {
+                judged.light_px += (*project(*rig.device(DeviceName::projector), *rig_from_board * *p) - sample.pixel_in_projector).squaredNorm();
+                ++lit;
+            }
+    }
+    judged.corners_px = std::sqrt(judged.corners_px / corners);
+    judged.light_px = lit > 0 ? std::sqrt(judged.light_px / lit) : 0;
+    return judged;
 }
 
 /// As others model it: a flat board, k3 free.
@@ -46,14 +57,12 @@ void table(const char* name, const test::RealCaptures& captures) {
         return;
     }
     const Calibration theirs = with_their_model(captures);
-    const BundleResult published = judge_published(captures, ours.bundle);
     Eigen::Index at = 0;
     for (const DeviceName device : kDevices) {
         if (!ours.device(device)) continue;
         const auto d = static_cast<std::size_t>(device);
         fmt::print(" {}: ours {:.3f} px ({:.3f} on held-out poses, {} used, {} left out)", text_of(device), ours.bundle.rms_px[d], ours.held_out.rms_px[d],
                    ours.bundle.used[d], ours.bundle.left_out[d]);
-        if (captures.published.device(device)) fmt::print("; published on the same {:.3f} px ({} left out)", published.rms_px[d], published.left_out[d]);
         fmt::print("\n");
         print_device("ours", *ours.device(device), &ours.bundle, at);
         if (!theirs.refusal) {
@@ -63,6 +72,15 @@ void table(const char* name, const test::RealCaptures& captures) {
         if (captures.published.device(device)) print_device("published", *captures.published.device(device), nullptr, 0);
         at += device == DeviceName::left_camera ? 9 : 15;
     }
+    const auto line = [&](const char* whose, const RigEstimate& rig) {
+        const Judged judged = judge(captures, rig);
+        fmt::print(" board placed by the left camera alone, {:<9}: corners {:.3f} px", whose, judged.corners_px);
+        if (judged.light_px > 0) fmt::print(", light {:.3f} px", judged.light_px);
+        fmt::print("\n");
+    };
+    line("ours", ours.bundle.rig);
+    if (!theirs.refusal) line("flat, k3", theirs.bundle.rig);
+    line("published", captures.published);
     fmt::print(" lengths {:.3f} of 200 rms over {}, mean {:+.3f}; bend {:.3f} {:.3f} {:.3f}", ours.held_out.length_rms_mm, ours.held_out.lengths,
                ours.held_out.length_mean_mm, ours.bundle.rig.bend_mm.x(), ours.bundle.rig.bend_mm.y(), ours.bundle.rig.bend_mm.z());
     if (ours.volume) fmt::print("; predicted {:.3f} (95 %)", ours.volume->p95_mm);
