@@ -158,11 +158,11 @@ Calibration calibrate_rig(const std::vector<PoseObservation>& poses, const Board
         calibration.bundle = adjust_bundle(poses, board, start.rig, settings.bundle);
     }
     calibration.volume = predict_volume_error(calibration.bundle, board);
-    if (refused(judge_rig(poses, calibration, settings))) return calibration;
+    if (refused(judge_rig(poses, board, calibration, settings))) return calibration;
     calibration.held_out = hold_out(poses, board, calibration.bundle, settings);
     calibration.bundle.covariance *= calibration.held_out.uncertainty_factor * calibration.held_out.uncertainty_factor;
     calibration.volume = predict_volume_error(calibration.bundle, board);
-    if (refused(judge_rig(poses, calibration, settings))) return calibration;
+    if (refused(judge_rig(poses, board, calibration, settings))) return calibration;
     calibration.warnings = warnings_about(poses, calibration);
     return calibration;
 }

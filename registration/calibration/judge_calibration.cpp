@@ -135,6 +135,45 @@ bool fits(const BundleResult& bundle, const CalibrationSettings& s) {
            });
 }
 
+constexpr double kFloor_px = 0.02;  ///< below this a ratio of residuals says nothing
+
+/// Each camera alone fits this much better than both together.
+std::optional<Refusal> judge_pair(const std::vector<PoseObservation>& poses, const BoardSpec& board, const BundleResult& cameras, const CalibrationSettings& s) {
+    if (!cameras.rig.device(DeviceName::right_camera)) return std::nullopt;
+    for (const DeviceName camera : kCameras) {
+        const BundleResult alone = camera_alone(poses, board, camera, s);
+        const double by_itself = alone.sigma_px[0], together = cameras.sigma_px[static_cast<std::size_t>(camera)];
+        if (alone.converged && together > s.max_worse_together * by_itself + kFloor_px)
+            return Refusal{fmt::format("the {}'s corners fit to {:.2f} px by themselves, but to {:.2f} px together with the other camera's{}: a camera was moved between "
+                                       "poses, or left and right pictures are not of the same moment",
+                                       text_of(camera), by_itself, together, worst_poses(poses, cameras, camera)),
+                           "Fix the cameras to the rig, then capture all poses again."};
+    }
+    return std::nullopt;
+}
+
+/// The median over the poses of how well a pose's light fits a projector that may stand anywhere.
+double light_by_itself_px(const std::vector<PoseObservation>& poses, const BoardSpec& board, const RigEstimate& rig) {
+    std::vector<double> misfits;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        if (!rig.rig_from_board[i]) continue;
+        std::vector<Vector3d> points;
+        std::vector<Vector2d> pixels;
+        for (const DeviceName camera : kCameras) {
+            if (!rig.device(camera)) continue;
+            for (const LightSample& sample : view_of(poses[i], camera).light)
+                if (const auto p = board_point(*rig.device(camera), sample.pixel_in_camera, *rig.rig_from_board[i], rig.bend_mm, board)) {
+                    points.push_back(*rig.rig_from_board[i] * *p);
+                    pixels.push_back(sample.pixel_in_projector);
+                }
+        }
+        if (const auto misfit = misfit_anywhere(*rig.device(DeviceName::projector), points, pixels)) misfits.push_back(*misfit);
+    }
+    if (misfits.empty()) return 1e9;
+    std::nth_element(misfits.begin(), misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2), misfits.end());
+    return misfits[misfits.size() / 2];
+}
+
 std::optional<Refusal> judge_lens(const CameraModel& d, DeviceName name) {
     const double by_width = d.focal_x / d.width, aspect = d.focal_x / d.focal_y;
     const std::string what = text_of(name);
@@ -225,6 +264,7 @@ std::optional<Refusal> judge_cameras(const std::vector<PoseObservation>& poses, 
                                    worst_poses(poses, cameras, DeviceName::right_camera)),
                        "Fix the cameras to the rig, then capture all poses again."};
     }
+    if (auto refusal = judge_pair(poses, board, cameras, s)) return refusal;
     const auto& right = cameras.rig.device(DeviceName::right_camera);
     if (right && right->centre_in_rig().x() < 0)
         return Refusal{fmt::format("the right camera stands {:.0f} mm to the left of the left one: left and right are swapped", -right->centre_in_rig().x()),
@@ -235,7 +275,7 @@ std::optional<Refusal> judge_cameras(const std::vector<PoseObservation>& poses, 
     return std::nullopt;
 }
 
-std::optional<Refusal> judge_rig(const std::vector<PoseObservation>& poses, const Calibration& calibration, const CalibrationSettings& s) {
+std::optional<Refusal> judge_rig(const std::vector<PoseObservation>& poses, const BoardSpec& board, const Calibration& calibration, const CalibrationSettings& s) {
     const BundleResult& bundle = calibration.bundle;
     if (!bundle.converged) return Refusal{"the adjustment of the rig did not settle", "Capture the poses again."};
     if (bundle.rig.device(DeviceName::projector)) {
@@ -245,6 +285,11 @@ std::optional<Refusal> judge_rig(const std::vector<PoseObservation>& poses, cons
                                        "pictures of the sequence are late, or the projector's keystone correction is on",
                                        rms, 100 * out, worst_poses(poses, bundle, DeviceName::projector)),
                            "Fix all devices to the rig, switch keystone correction and digital zoom off, then capture all poses again."};
+        if (const double by_itself = light_by_itself_px(poses, board, bundle.rig); rms > s.max_worse_together * by_itself + kFloor_px)
+            return Refusal{fmt::format("the light of each pose fits to {:.2f} px by itself, that of all poses only to {:.2f} px{}: the projector, or a camera, was moved "
+                                       "between poses",
+                                       by_itself, rms, worst_poses(poses, bundle, DeviceName::projector)),
+                           "Fix all devices to the rig, then capture all poses again."};
         if (!fits(bundle, s)) return Refusal{"the cameras fit the board, but not together with the light", "Fix all devices to the rig, then capture all poses again."};
     }
     for (const DeviceName name : kDevices)

@@ -17,7 +17,7 @@ std::optional<Refusal> judge_cameras(const std::vector<PoseObservation>& poses, 
                                      const CalibrationSettings& settings);
 
 /// The whole: focal lengths, the light's residuals, the uncertainty.
-std::optional<Refusal> judge_rig(const std::vector<PoseObservation>& poses, const Calibration& calibration, const CalibrationSettings& settings);
+std::optional<Refusal> judge_rig(const std::vector<PoseObservation>& poses, const BoardSpec& board, const Calibration& calibration, const CalibrationSettings& settings);
 
 /// What a good calibration would rather not have.
 std::vector<std::string> warnings_about(const std::vector<PoseObservation>& poses, const Calibration& calibration);

@@ -172,6 +172,40 @@ std::optional<RigidTransform> board_pose(const CameraModel& camera, const BoardC
     return camera.device_from_rig.inverse() * transform_of(turn, shift);
 }
 
+std::optional<double> misfit_anywhere(const CameraModel& device, const std::vector<Vector3d>& points_in_rig, const std::vector<Vector2d>& pixels) {
+    const cv::Matx33d matrix(device.focal_x, 0, device.centre_x, 0, device.focal_y, device.centre_y, 0, 0, 1);
+    const std::vector<double> distortion{device.k1, device.k2, device.p1, device.p2, device.k3};
+    std::vector<cv::Point3d> object;
+    std::vector<cv::Point2d> picture;
+    for (std::size_t i = 0; i < points_in_rig.size(); ++i) {
+        const Vector3d p = device.device_from_rig * points_in_rig[i];
+        object.emplace_back(p.x(), p.y(), p.z());
+        picture.emplace_back(pixels[i].x(), pixels[i].y());
+    }
+    std::vector<double> lengths;
+    for (int round = 0; round < 2; ++round) {
+        if (object.size() < 30) return std::nullopt;
+        cv::Mat turn = cv::Mat::zeros(3, 1, CV_64F), shift = cv::Mat::zeros(3, 1, CV_64F);
+        if (!cv::solvePnP(object, picture, matrix, distortion, turn, shift, true)) return std::nullopt;
+        std::vector<cv::Point2d> expected;
+        cv::projectPoints(object, turn, shift, matrix, distortion, expected);
+        lengths.clear();
+        for (std::size_t i = 0; i < expected.size(); ++i) lengths.push_back(std::hypot(expected[i].x - picture[i].x, expected[i].y - picture[i].y));
+        std::vector<double> sorted = lengths;
+        std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+        const double limit = 4 * sorted[sorted.size() / 2];
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < lengths.size(); ++i)
+            if (lengths[i] <= limit) object[kept] = object[i], picture[kept] = picture[i], lengths[kept++] = lengths[i];
+        object.resize(kept);
+        picture.resize(kept);
+        lengths.resize(kept);
+    }
+    double square = 0;
+    for (const double length : lengths) square += length * length;
+    return lengths.size() < 30 ? std::nullopt : std::optional(std::sqrt(square / static_cast<double>(lengths.size())));
+}
+
 StartValues find_camera_start(const std::vector<PoseObservation>& poses, const BoardSpec& board) {
     StartValues start;
     const auto left = calibrate_camera(poses, DeviceName::left_camera, board);

@@ -24,6 +24,11 @@ void add_projector_start(const std::vector<PoseObservation>& poses, const BoardS
 /// Pose of the board before a device that is known, from its corners; empty when there are under 6.
 std::optional<RigidTransform> board_pose(const CameraModel& camera, const BoardCorners& corners, const BoardSpec& board);
 
+/// How well a device's pixels fit points when the device may stand anywhere: root mean square length, pixels, without what is
+/// beyond four medians. Empty when under 30 points are left.
+std::optional<double> misfit_anywhere(const CameraModel& device, const std::vector<Eigen::Vector3d>& points_in_rig,
+                                      const std::vector<Eigen::Vector2d>& pixels);
+
 /// 3x4 matrix with pixel ~ P (point, 1), from six or more points not in one plane; wrong points (a quarter at most) are left out.
 std::optional<Eigen::Matrix<double, 3, 4>> linear_projection(const std::vector<Eigen::Vector3d>& points, const std::vector<Eigen::Vector2d>& pixels);
 
