@@ -6,6 +6,7 @@
 #include <opencv2/aruco/charuco.hpp>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/imgproc.hpp>
+#include <set>
 
 namespace planlight {
 namespace {
@@ -97,9 +98,22 @@ BoardCorners find_chessboard(const cv::Mat& picture, const BoardSpec& spec) {
 BoardCorners find_board(const GrayImage& picture, const BoardSpec& board) {
     if (picture.empty()) return {};
     const cv::Mat view(picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.pixels.data()));
-    BoardCorners found = board.kind == BoardSpec::Kind::charuco ? find_charuco(view, board) : find_chessboard(view, board);
-    refine(view, found, board);
-    return found;
+    try {
+        BoardCorners found = board.kind == BoardSpec::Kind::charuco ? find_charuco(view, board) : find_chessboard(view, board);
+        refine(view, found, board);
+        return found;
+    } catch (const cv::Exception&) {  // pictures of a few pixels
+        return {};
+    }
+}
+
+bool spans_a_plane(const BoardCorners& corners, const BoardSpec& board) {
+    std::set<int> across, down;
+    for (const int id : corners.ids) {
+        across.insert(id % board.corners_across());
+        down.insert(id / board.corners_across());
+    }
+    return corners.size() >= 6 && across.size() >= 2 && down.size() >= 2;
 }
 
 BoardCorners follow_board(const GrayImage& picture, const BoardCorners& corners, const BoardSpec& board) {

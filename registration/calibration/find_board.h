@@ -19,6 +19,9 @@ struct BoardCorners {
 /// without a top (`BoardSpec::has_a_top`) is named so that its first corner is the one nearer to the picture's top left.
 BoardCorners find_board(const GrayImage& picture, const BoardSpec& board);
 
+/// Six corners or more, not all in one row or column of the board: enough to place it.
+bool spans_a_plane(const BoardCorners& corners, const BoardSpec& board);
+
 /// The same corners looked up again in a picture in which the board lies all but the same.
 BoardCorners follow_board(const GrayImage& picture, const BoardCorners& corners, const BoardSpec& board);
 

@@ -160,8 +160,8 @@ CameraObservation observe_board(std::span<const GrayImage> frames, const std::op
     seen.height = frames[0].height;
     seen.coded_light = stripes.has_value() && frames.size() > 1;
     seen.corners = find_board(frames[0], board);
-    if (seen.corners.size() < 6) {
-        if (board.kind == BoardSpec::Kind::charuco) seen.found_mirrored = mirrored_corners(frames[0], board).size() >= 6;
+    if (!spans_a_plane(seen.corners, board)) {
+        if (board.kind == BoardSpec::Kind::charuco) seen.found_mirrored = spans_a_plane(mirrored_corners(frames[0], board), board);
         seen.corners = {};
         return seen;
     }

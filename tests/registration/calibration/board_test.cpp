@@ -69,6 +69,21 @@ TEST(FindBoard, AnotherBoardOrNoneIsNotFound) {
     EXPECT_EQ(find_board(photographed(parse_board("chessboard 7x5 25 mm"), 40, 60), parse_board("chessboard 9x6 25 mm")).size(), 0u);
 }
 
+TEST(FindBoard, PicturesOfAFewPixelsAreNoBoard) {
+    for (const char* text : {"charuco 10x7 25 mm", "chessboard 9x6 25 mm"})
+        for (const auto& [w, h] : {std::pair{1, 1}, std::pair{3, 200}, std::pair{12, 9}}) EXPECT_EQ(find_board(GrayImage(w, h, 90), parse_board(text)).size(), 0u);
+}
+
+/// A row of corners alone leaves the board free to swing about it.
+TEST(FindBoard, ARowOfCornersDoesNotPlaceABoard) {
+    const BoardSpec board = parse_board("charuco 10x7 25 mm");
+    BoardCorners corners;
+    for (int id = 0; id < 9; ++id) corners.ids.push_back(id), corners.pixels.emplace_back(40 * id, 100);
+    EXPECT_FALSE(spans_a_plane(corners, board));
+    corners.ids.push_back(9), corners.pixels.emplace_back(0, 140);
+    EXPECT_TRUE(spans_a_plane(corners, board));
+}
+
 // What is printed measures what it says: by the PNG's own density, and by the PDF's rectangles.
 TEST(DrawBoard, TheSheetIsTrueToTheMillimetre) {
     const BoardSpec board = parse_board("chessboard 9x6 25 mm");
