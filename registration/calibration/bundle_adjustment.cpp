@@ -2,6 +2,7 @@
 
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
+#include <glog/logging.h>
 
 #include <Eigen/Dense>
 #include <Eigen/Sparse>
@@ -287,6 +288,7 @@ bool Bundle::solve() {
     options.function_tolerance = 1e-10;
     options.num_threads = 2;
     options.logging_type = ceres::SILENT;
+    FLAGS_minloglevel = google::GLOG_FATAL;  // a step that fails is tried again; the result says whether it settled
     ceres::Solver::Summary summary;
     ceres::Solve(options, problem_.get(), &summary);
     return summary.IsSolutionUsable() && std::isfinite(summary.final_cost);
