@@ -24,8 +24,10 @@ std::optional<fs::path> find_picture(const fs::path& without_ending) {
 GrayImage read_needed(const fs::path& without_ending) {
     const auto file = find_picture(without_ending);
     if (!file)
-        throw InputError(without_ending.parent_path(), fmt::format("the picture \"{}\" is missing (.png, .tif, .jpg or .bmp)", without_ending.filename().string()),
-                         "Capture this pose again, the whole sequence.");
+        throw InputError(
+            without_ending.parent_path(),
+            fmt::format("the picture \"{}\" is missing (.png, .tif, .jpg or .bmp)", without_ending.filename().string()),
+            "Capture this pose again, the whole sequence.");
     return read_gray(*file);
 }
 
@@ -38,14 +40,17 @@ std::vector<GrayImage> read_camera(const fs::path& pose, const char* camera, con
     for (const std::string& name : names) {
         pictures.push_back(read_needed(pose / camera / name));
         if (pictures.back().width != pictures.front().width || pictures.back().height != pictures.front().height)
-            throw InputError(pose / camera / name, fmt::format("is {} x {} pixels, the first picture of this pose is {} x {}", pictures.back().width,
-                                                               pictures.back().height, pictures.front().width, pictures.front().height),
+            throw InputError(pose / camera / name,
+                             fmt::format("is {} x {} pixels, the first picture of this pose is {} x {}", pictures.back().width,
+                                         pictures.back().height, pictures.front().width, pictures.front().height),
                              "Capture all pictures with the same settings.");
     }
     return pictures;
 }
 
-bool has_camera(const fs::path& pose, const char* camera) { return fs::is_directory(pose / camera) || find_picture(pose / camera).has_value(); }
+bool has_camera(const fs::path& pose, const char* camera) {
+    return fs::is_directory(pose / camera) || find_picture(pose / camera).has_value();
+}
 
 }  // namespace
 
@@ -55,7 +60,8 @@ std::vector<fs::path> pose_folders(const fs::path& captures) {
         for (const auto& entry : fs::directory_iterator(captures))
             if (entry.is_directory() && has_camera(entry.path(), "left")) poses.push_back(entry.path());
     if (poses.empty())
-        throw InputError(captures, "holds no pose folders with a left camera", "Give a folder that holds one folder a pose, each with left/ (and right/) pictures.");
+        throw InputError(captures, "holds no pose folders with a left camera",
+                         "Give a folder that holds one folder a pose, each with left/ (and right/) pictures.");
     std::sort(poses.begin(), poses.end());
     return poses;
 }

@@ -20,8 +20,8 @@ struct PosePictures {
     std::vector<GrayImage> left, right;  ///< right empty: no right camera
 };
 
-/// POSE/left/NAME.EXT and POSE/right/NAME.EXT, or POSE/left.EXT and POSE/right.EXT without coded light; EXT: png, tif, tiff, jpg,
-/// bmp. A missing right camera is no error, a missing picture of a camera is one. Throws InputError.
+/// POSE/left/NAME.EXT and POSE/right/NAME.EXT, or POSE/left.EXT and POSE/right.EXT without coded light; EXT: png, tif, tiff,
+/// jpg, bmp. A missing right camera is no error, a missing picture of a camera is one. Throws InputError.
 PosePictures read_pose(const std::filesystem::path& pose, const std::vector<std::string>& names);
 
 }  // namespace planlight

@@ -36,7 +36,8 @@ StripeSettings stripes_of(const CaptureFolder& settings, const Path& pose) {
     if (!stripes.rows)
         throw InputError(pose, "codes the projector's columns only", "Calibrate with a sequence that codes columns and rows.");
     if (stripes.phase_steps == 0 && !stripes.inverse)
-        throw InputError(pose, "is a Gray code without fringes and without inverse pictures", "Capture each Gray picture and its inverse.");
+        throw InputError(pose, "is a Gray code without fringes and without inverse pictures",
+                         "Capture each Gray picture and its inverse.");
     return stripes;
 }
 
@@ -66,17 +67,22 @@ Observed observe_captures(const CalibrateOptions& options, const BoardSpec& boar
         std::optional<StripeSettings> stripes;
         if (settings) stripes = stripes_of(*settings, folders[i]);
         if (i > 0 && (stripes ? stripes->width : 0) != observed.projector_width)
-            throw InputError(folders[i], "was captured under other light than the first pose", "Capture all poses with one sequence.");
+            throw InputError(folders[i], "was captured under other light than the first pose",
+                             "Capture all poses with one sequence.");
         if (stripes) observed.projector_width = stripes->width, observed.projector_height = stripes->height;
-        const PosePictures pictures = read_pose(folders[i], stripes ? names_of(*stripes, folders[i]) : std::vector<std::string>{});
-        observed.poses.push_back({folders[i].filename().string(), observe_board(pictures.left, stripes, board), observe_board(pictures.right, stripes, board)});
+        const PosePictures pictures =
+            read_pose(folders[i], stripes ? names_of(*stripes, folders[i]) : std::vector<std::string>{});
+        observed.poses.push_back({folders[i].filename().string(), observe_board(pictures.left, stripes, board),
+                                  observe_board(pictures.right, stripes, board)});
         bar.show("poses", static_cast<double>(i + 1) / static_cast<double>(folders.size()));
     }
     const bool right = observed.poses.front().right.width > 0;
     for (const PoseObservation& pose : observed.poses)
         if ((pose.right.width > 0) != right)
-            throw InputError(options.captures / pose.name, right ? "has no right pictures, the first pose has" : "has right pictures, the first pose has none",
-                             "Capture all poses with the same cameras.");
+            throw InputError(
+                options.captures / pose.name,
+                right ? "has no right pictures, the first pose has" : "has right pictures, the first pose has none",
+                "Capture all poses with the same cameras.");
     return observed;
 }
 
@@ -112,8 +118,10 @@ int run_calibrate(const CalibrateOptions& options) {
     const std::string text = calibration_json(report);
     write_safely(json, text);
     for (const std::string& warning : calibration.warnings) warn(warning);
-    if (options.json) std::cout << text;
-    else fmt::print("{}{} and {}.\n", calibration_summary(report), html.string(), json.string());
+    if (options.json)
+        std::cout << text;
+    else
+        fmt::print("{}{} and {}.\n", calibration_summary(report), html.string(), json.string());
     return 0;
 }
 

@@ -35,7 +35,8 @@ std::vector<EarlierCheck> earlier_checks(const Json& log, const std::string& rig
     try {
         for (const auto& entry : log.at("checks"))
             if (entry.at("rig_made_on") == rig_made_on && entry.at("verdict") != text_of(DriftCheck::Verdict::cannot_tell))
-                checks.push_back({entry.at("at_unix_s").get<double>() / 86400, entry.at("epipolar_rms_px").get<double>(), entry.at("projector_rms_px").get<double>()});
+                checks.push_back({entry.at("at_unix_s").get<double>() / 86400, entry.at("epipolar_rms_px").get<double>(),
+                                  entry.at("projector_rms_px").get<double>()});
     } catch (const Json::exception&) {
         throw DamagedFileError(file, "holds a check that is not whole", "Move it away; a new one is begun.");
     }
@@ -57,9 +58,16 @@ int run_check(const CheckOptions& options) {
     Json log = read_log(file);
     const DriftCheck check = check_drift(scan_from_capture(capture, rig), rig);
     const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-    const Json entry = {{"at_unix_s", now}, {"rig_made_on", rig.made_on}, {"verdict", text_of(check.verdict)}, {"points", check.points},
-                        {"epipolar_rms_px", check.epipolar_rms_px}, {"projector_rms_px", check.projector_rms_px}, {"projector_after_px", check.projector_after_px},
-                        {"light_off_mm", check.light_off_mm}, {"projector_moved_mm", check.moved_mm}, {"projector_turned_deg", check.turned * 180 / std::numbers::pi}};
+    const Json entry = {{"at_unix_s", now},
+                        {"rig_made_on", rig.made_on},
+                        {"verdict", text_of(check.verdict)},
+                        {"points", check.points},
+                        {"epipolar_rms_px", check.epipolar_rms_px},
+                        {"projector_rms_px", check.projector_rms_px},
+                        {"projector_after_px", check.projector_after_px},
+                        {"light_off_mm", check.light_off_mm},
+                        {"projector_moved_mm", check.moved_mm},
+                        {"projector_turned_deg", check.turned * 180 / std::numbers::pi}};
     log["checks"].push_back(entry);
     const auto trends = drift_trends(earlier_checks(log, rig.made_on, file));
     write_safely(file, log.dump(2) + "\n");
@@ -67,13 +75,19 @@ int run_check(const CheckOptions& options) {
     result["reason"] = check.reason;
     result["trends"] = Json::array();
     for (const DriftTrend& trend : trends) {
-        result["trends"].push_back({{"what", trend.what}, {"px_per_day", trend.px_per_day}, {"days_to_limit", trend.days_to_limit}});
-        warn(fmt::format("the {} grows by {:.3f} px a day; its limit is reached in about {:.0f} days", trend.what, trend.px_per_day, trend.days_to_limit));
+        result["trends"].push_back(
+            {{"what", trend.what}, {"px_per_day", trend.px_per_day}, {"days_to_limit", trend.days_to_limit}});
+        warn(fmt::format("the {} grows by {:.3f} px a day; its limit is reached in about {:.0f} days", trend.what,
+                         trend.px_per_day, trend.days_to_limit));
     }
-    if (options.json) std::cout << result.dump(2) << '\n';
+    if (options.json)
+        std::cout << result.dump(2) << '\n';
     else
-        fmt::print("{}: {} points, epipolar error {:.2f} px, projector {:.2f} px ({:.2f} mm of light), moved {:.2f} mm; check {} in {}.\n", text_of(check.verdict), check.points,
-                   check.epipolar_rms_px, check.projector_rms_px, check.light_off_mm, check.moved_mm, log["checks"].size(), file.string());
+        fmt::print(
+            "{}: {} points, epipolar error {:.2f} px, projector {:.2f} px ({:.2f} mm of light), moved {:.2f} mm; check {} in "
+            "{}.\n",
+            text_of(check.verdict), check.points, check.epipolar_rms_px, check.projector_rms_px, check.light_off_mm,
+            check.moved_mm, log["checks"].size(), file.string());
     if (check.verdict != DriftCheck::Verdict::good) throw CheckFailedError(check.reason, check.remedy);
     return 0;
 }

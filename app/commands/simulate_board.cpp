@@ -30,16 +30,22 @@ int run_simulate_board(const SimulateOptions& options) {
     ProgressBar bar;
     for (int pose = 0; pose < room.poses(); ++pose) {
         room.lay(pose);
-        const ScanCapture capture = capture_scan(room.projector(), room.cameras(), room.clock(), stripes, [&](int done, int of) {
-            bar.show("poses", (pose + static_cast<double>(done) / of) / room.poses());
-        });
+        const ScanCapture capture =
+            capture_scan(room.projector(), room.cameras(), room.clock(), stripes,
+                         [&](int done, int of) { bar.show("poses", (pose + static_cast<double>(done) / of) / room.poses()); });
         std::filesystem::create_directories(options.out / "captures");
         write_capture(capture_folder_from(capture), options.out / "captures" / fmt::format("pose-{:02}", pose));
     }
     write_safely(options.out / "truth.json", room.truth_json() + "\n");
-    const nlohmann::json result = {{"folder", options.out.string()}, {"preset", options.preset}, {"seed", options.seed}, {"board", text_of(board)}, {"poses", room.poses()}};
-    if (options.json) std::cout << result.dump(2) << '\n';
-    else fmt::print("{}: captures of {} poses of a {}, truth.json.\n", options.out.string(), room.poses(), text_of(board));
+    const nlohmann::json result = {{"folder", options.out.string()},
+                                   {"preset", options.preset},
+                                   {"seed", options.seed},
+                                   {"board", text_of(board)},
+                                   {"poses", room.poses()}};
+    if (options.json)
+        std::cout << result.dump(2) << '\n';
+    else
+        fmt::print("{}: captures of {} poses of a {}, truth.json.\n", options.out.string(), room.poses(), text_of(board));
     return 0;
 }
 

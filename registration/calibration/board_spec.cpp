@@ -23,16 +23,20 @@ Eigen::Vector3d BoardSpec::corner_in_board(int id) const {
 }
 
 BoardSpec parse_board(const std::string& text) {
-    static const std::regex kForm(R"(\s*([a-z]+)\s+(\d{1,3})\s*x\s*(\d{1,3})(?:\s+(?:squares|corners))?\s+(\d+(?:\.\d+)?)\s*([a-z]*)\s*)",
-                                  std::regex::icase);
+    static const std::regex kForm(
+        R"(\s*([a-z]+)\s+(\d{1,3})\s*x\s*(\d{1,3})(?:\s+(?:squares|corners))?\s+(\d+(?:\.\d+)?)\s*([a-z]*)\s*)",
+        std::regex::icase);
     std::smatch found;
     if (text.size() > 200 || !std::regex_match(text, found, kForm)) refuse(text.substr(0, 200), "is not understood");
     BoardSpec board;
     std::string kind = found[1];
     for (char& c : kind) c = static_cast<char>(std::tolower(c));
-    if (kind == "charuco") board.kind = BoardSpec::Kind::charuco;
-    else if (kind == "chessboard") board.kind = BoardSpec::Kind::chessboard;
-    else refuse(text, "is neither a charuco nor a chessboard");
+    if (kind == "charuco")
+        board.kind = BoardSpec::Kind::charuco;
+    else if (kind == "chessboard")
+        board.kind = BoardSpec::Kind::chessboard;
+    else
+        refuse(text, "is neither a charuco nor a chessboard");
     if (found[5] != "mm") refuse(text, "does not say its squares in mm");
     board.columns = std::stoi(found[2]);
     board.rows = std::stoi(found[3]);

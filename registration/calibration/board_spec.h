@@ -10,7 +10,7 @@ namespace planlight {
 /// along the sheet, z into the sheet, away from who looks at it.
 struct BoardSpec {
     enum class Kind { charuco, chessboard } kind = Kind::charuco;
-    int columns = 10, rows = 7;   ///< squares of a ChArUco board; inner corners of a chessboard (each as OpenCV counts)
+    int columns = 10, rows = 7;  ///< squares of a ChArUco board; inner corners of a chessboard (each as OpenCV counts)
     double square_mm = 25;
 
     int squares_across() const { return kind == Kind::charuco ? columns : columns + 1; }
@@ -24,7 +24,8 @@ struct BoardSpec {
     /// Inner corner `id` (rows from the top, 0 = first) on the flat board, z = 0.
     Eigen::Vector3d corner_in_board(int id) const;
 
-    /// False for a chessboard that looks the same when turned by half a turn: two cameras may then name its corners differently.
+    /// False for a chessboard that looks the same when turned by half a turn: two cameras may then name its corners
+    /// differently.
     bool has_a_top() const { return kind == Kind::charuco || (squares_across() + squares_down()) % 2 == 1; }
 };
 

@@ -1,7 +1,6 @@
 #include "registration/calibration/bundle_adjustment.h"
 
 #include <ceres/ceres.h>
-#include <ceres/rotation.h>
 #include <glog/logging.h>
 
 #include <Eigen/Dense>
@@ -9,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+
+#include "registration/calibration/bundle_costs.h"
 
 namespace planlight {
 namespace {
@@ -18,162 +19,9 @@ using Eigen::Vector3d;
 using Numbers9 = std::array<double, 9>;
 using Numbers6 = std::array<double, 6>;
 
-// ---- the geometry, for numbers and for Ceres' derivatives alike ----
-
-template <typename T>
-struct V3 {
-    T x, y, z;
-};
-
-template <typename T>
-V3<T> moved(const T* twist, const V3<T>& p) {
-    const T in[3] = {p.x, p.y, p.z};
-    T out[3];
-    ceres::AngleAxisRotatePoint(twist, in, out);
-    return {out[0] + twist[3], out[1] + twist[4], out[2] + twist[5]};
+Numbers9 lens_of(const CameraModel& d) {
+    return {d.focal_x, d.focal_y, d.centre_x, d.centre_y, d.k1, d.k2, d.p1, d.p2, d.k3};
 }
-
-template <typename T>
-V3<T> turned_back(const T* twist, const V3<T>& p) {
-    const T back[3] = {-twist[0], -twist[1], -twist[2]}, in[3] = {p.x, p.y, p.z};
-    T out[3];
-    ceres::AngleAxisRotatePoint(back, in, out);
-    return {out[0], out[1], out[2]};
-}
-
-template <typename T>
-void distort(const T* k, const T& x, const T& y, T* out) {
-    const T r2 = x * x + y * y;
-    const T radial = 1.0 + r2 * (k[4] + r2 * (k[5] + r2 * k[8]));
-    out[0] = x * radial + 2.0 * k[6] * x * y + k[7] * (r2 + 2.0 * x * x);
-    out[1] = y * radial + k[6] * (r2 + 2.0 * y * y) + 2.0 * k[7] * x * y;
-}
-
-template <typename T>
-void pixel_of(const T* k, const V3<T>& p, T* pixel) {
-    T d[2];
-    distort(k, T(p.x / p.z), T(p.y / p.z), d);
-    pixel[0] = k[0] * d[0] + k[2];
-    pixel[1] = k[1] * d[1] + k[3];
-}
-
-double plain(double v) { return v; }
-template <typename J, int N>
-double plain(const ceres::Jet<J, N>& v) { return v.a; }
-
-/// The normalised point that is seen at a pixel. Newton on plain numbers; one more step with derivatives gives those of
-/// the inverse function exactly.
-template <typename T>
-void undistorted(const T* k, const Vector2d& pixel, T* xy) {
-    double n[9];
-    for (int i = 0; i < 9; ++i) n[i] = plain(k[i]);
-    double x = (pixel.x() - n[2]) / n[0], y = (pixel.y() - n[3]) / n[1];
-    const double u = x, v = y;
-    Eigen::Matrix2d inverse = Eigen::Matrix2d::Identity();
-    for (int i = 0; i < 20; ++i) {
-        double d[2], dx[2], dy[2];
-        constexpr double kStep = 1e-6;
-        distort(n, x, y, d);
-        distort(n, x + kStep, y, dx);
-        distort(n, x, y + kStep, dy);
-        Eigen::Matrix2d J;
-        J << (dx[0] - d[0]) / kStep, (dy[0] - d[0]) / kStep, (dx[1] - d[1]) / kStep, (dy[1] - d[1]) / kStep;
-        inverse = J.inverse();
-        const Vector2d step = inverse * Vector2d(u - d[0], v - d[1]);
-        x += step.x();
-        y += step.y();
-        if (!(step.squaredNorm() > 1e-26)) break;
-    }
-    T d[2];
-    distort(k, T(x), T(y), d);
-    const T du = (pixel.x() - k[2]) / k[0] - d[0], dv = (pixel.y() - k[3]) / k[1] - d[1];
-    xy[0] = x + inverse(0, 0) * du + inverse(0, 1) * dv;
-    xy[1] = y + inverse(1, 0) * du + inverse(1, 1) * dv;
-}
-
-struct BoardShape {
-    double middle_x, middle_y, half;
-    explicit BoardShape(const BoardSpec& board)
-        : middle_x(board.width_mm() / 2), middle_y(board.height_mm() / 2), half(std::hypot(board.width_mm(), board.height_mm()) / 2) {}
-    template <typename T>
-    T z(const T* bend, const T& px, const T& py) const {
-        const T x = (px - middle_x) / half, y = (py - middle_y) / half;
-        return bend[0] * x * x + bend[1] * x * y + bend[2] * y * y;
-    }
-};
-
-/// A corner in a camera: camera numbers, camera_from_rig, rig_from_board, bend.
-struct CornerCost {
-    Vector2d seen;
-    Vector3d flat;
-    BoardShape shape;
-    double sigma;
-    template <typename T>
-    bool operator()(const T* camera, const T* camera_from_rig, const T* rig_from_board, const T* bend, T* residual) const {
-        const T x(flat.x()), y(flat.y());
-        const V3<T> p = moved(camera_from_rig, moved(rig_from_board, V3<T>{x, y, shape.z(bend, x, y)}));
-        T pixel[2];
-        pixel_of(camera, p, pixel);
-        residual[0] = (pixel[0] - seen.x()) / sigma;
-        residual[1] = (pixel[1] - seen.y()) / sigma;
-        return true;
-    }
-};
-
-/// A lit pixel: from the camera to the board, from there into the projector.
-struct LightCost {
-    LightSample sample;
-    BoardShape shape;
-    double sigma;
-    template <typename T>
-    bool operator()(const T* camera, const T* camera_from_rig, const T* projector, const T* projector_from_rig, const T* rig_from_board,
-                    const T* bend, T* residual) const {
-        T xy[2];
-        undistorted(camera, sample.pixel_in_camera, xy);
-        const V3<T> minus{-camera_from_rig[3], -camera_from_rig[4], -camera_from_rig[5]};
-        const V3<T> eye = turned_back(camera_from_rig, minus), way = turned_back(camera_from_rig, V3<T>{xy[0], xy[1], T(1.0)});
-        const V3<T> origin = turned_back(rig_from_board, V3<T>{eye.x - rig_from_board[3], eye.y - rig_from_board[4], eye.z - rig_from_board[5]});
-        const V3<T> d = turned_back(rig_from_board, way);
-        T s = -origin.z / d.z;
-        for (int i = 0; i < 2; ++i) s = (shape.z(bend, T(origin.x + s * d.x), T(origin.y + s * d.y)) - origin.z) / d.z;
-        const V3<T> on_board{origin.x + s * d.x, origin.y + s * d.y, origin.z + s * d.z};
-        T pixel[2];
-        pixel_of(projector, moved(projector_from_rig, moved(rig_from_board, on_board)), pixel);
-        residual[0] = (pixel[0] - sample.pixel_in_projector.x()) / sigma;
-        residual[1] = (pixel[1] - sample.pixel_in_projector.y()) / sigma;
-        return true;
-    }
-};
-
-/// What is known of any lens before: square pixels, and distortion terms of so many pixels in the picture's corner.
-struct LensPrior {
-    double aspect_sigma, corner, corner_px;  ///< normalised distance and pixels from the axis to the corner
-    bool sixth_order;
-    template <typename T>
-    bool operator()(const T* k, T* residual) const {
-        const double r2 = corner * corner;
-        residual[0] = (k[0] / k[1] - 1.0) / aspect_sigma;
-        residual[1] = k[4] * (r2 * corner_px / (0.25 * corner_px));
-        residual[2] = k[5] * (r2 * r2 * corner_px / 10.0);
-        residual[3] = k[6] * (corner * corner_px / 3.0);
-        residual[4] = k[7] * (corner * corner_px / 3.0);
-        residual[5] = sixth_order ? T(k[8] * (r2 * r2 * r2 * corner_px / 5.0)) : T(0.0);
-        return true;
-    }
-};
-
-struct BendPrior {
-    double sigma_mm;
-    template <typename T>
-    bool operator()(const T* bend, T* residual) const {
-        for (int i = 0; i < 3; ++i) residual[i] = bend[i] / sigma_mm;
-        return true;
-    }
-};
-
-// ---- the adjustment ----
-
-Numbers9 lens_of(const CameraModel& d) { return {d.focal_x, d.focal_y, d.centre_x, d.centre_y, d.k1, d.k2, d.p1, d.p2, d.k3}; }
 
 Numbers6 twist_of(const RigidTransform& t) {
     const Vector3d turn = rotation_vector(t.linear());
@@ -188,15 +36,16 @@ RigidTransform transform_of(const Numbers6& twist) {
 struct Measurement {
     std::size_t pose;
     DeviceName camera;
-    DeviceName judged_by;   ///< the camera for a corner, the projector for light
-    std::size_t index;      ///< of the corner or the light sample
+    DeviceName judged_by;  ///< the camera for a corner, the projector for light
+    std::size_t index;     ///< of the corner or the light sample
     bool used = true;
     Vector2d residual_px = Vector2d::Zero();
 };
 
 class Bundle {
 public:
-    Bundle(const std::vector<PoseObservation>& poses, const BoardSpec& board, const RigEstimate& start, const BundleSettings& settings);
+    Bundle(const std::vector<PoseObservation>& poses, const BoardSpec& board, const RigEstimate& start,
+           const BundleSettings& settings);
     BundleResult run();
 
 private:
@@ -227,7 +76,8 @@ private:
     std::unique_ptr<ceres::Problem> problem_;
 };
 
-Bundle::Bundle(const std::vector<PoseObservation>& poses, const BoardSpec& board, const RigEstimate& start, const BundleSettings& settings)
+Bundle::Bundle(const std::vector<PoseObservation>& poses, const BoardSpec& board, const RigEstimate& start,
+               const BundleSettings& settings)
     : poses_(poses), board_(board), rig_(start), settings_(settings), boards_(poses.size()) {
     for (const DeviceName name : kDevices)
         if (const auto& d = rig_.device(name)) {
@@ -252,13 +102,16 @@ ceres::CostFunction* Bundle::cost_of(const Measurement& m) const {
     const CameraObservation& seen = view_of(poses_[m.pose], m.camera);
     if (m.judged_by == m.camera)
         return new ceres::AutoDiffCostFunction<CornerCost, 2, 9, 6, 6, 3>(
-            new CornerCost{seen.corners.pixels[m.index], board_.corner_in_board(seen.corners.ids[m.index]), BoardShape(board_), sigma(m.camera)});
-    return new ceres::AutoDiffCostFunction<LightCost, 2, 9, 6, 9, 6, 6, 3>(new LightCost{seen.light[m.index], BoardShape(board_), sigma(DeviceName::projector)});
+            new CornerCost{seen.corners.pixels[m.index], board_.corner_in_board(seen.corners.ids[m.index]), BoardShape(board_),
+                           sigma(m.camera)});
+    return new ceres::AutoDiffCostFunction<LightCost, 2, 9, 6, 9, 6, 6, 3>(
+        new LightCost{seen.light[m.index], BoardShape(board_), sigma(DeviceName::projector)});
 }
 
 std::vector<double*> Bundle::blocks_of(const Measurement& m) {
     if (m.judged_by == m.camera) return {lens(m.camera), place(m.camera), boards_[m.pose].data(), bend_.data()};
-    return {lens(m.camera), place(m.camera), lens(DeviceName::projector), place(DeviceName::projector), boards_[m.pose].data(), bend_.data()};
+    return {lens(m.camera),         place(m.camera), lens(DeviceName::projector), place(DeviceName::projector),
+            boards_[m.pose].data(), bend_.data()};
 }
 
 void Bundle::build(double huber) {
@@ -268,16 +121,20 @@ void Bundle::build(double huber) {
     for (const DeviceName name : kDevices) {
         const auto& d = rig_.device(name);
         if (!d || !problem_->HasParameterBlock(lens(name))) continue;
-        const double diagonal = std::hypot(d->width, d->height), corner_px = (name == DeviceName::projector ? 0.8 : 0.5) * diagonal;
-        problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<LensPrior, 6, 9>(
-                                       new LensPrior{settings_.aspect_sigma, corner_px / d->focal_x, corner_px, settings_.sixth_order}),
+        const double diagonal = std::hypot(d->width, d->height),
+                     corner_px = (name == DeviceName::projector ? 0.8 : 0.5) * diagonal;
+        problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<LensPrior, 6, 9>(new LensPrior{
+                                       settings_.aspect_sigma, corner_px / d->focal_x, corner_px, settings_.sixth_order}),
                                    nullptr, lens(name));
-        if (settings_.rig_fixed) problem_->SetParameterBlockConstant(lens(name));
-        else if (!settings_.sixth_order) problem_->SetManifold(lens(name), new ceres::SubsetManifold(9, {8}));
+        if (settings_.rig_fixed)
+            problem_->SetParameterBlockConstant(lens(name));
+        else if (!settings_.sixth_order)
+            problem_->SetManifold(lens(name), new ceres::SubsetManifold(9, {8}));
         if (settings_.rig_fixed || name == DeviceName::left_camera) problem_->SetParameterBlockConstant(place(name));
     }
     if (!problem_->HasParameterBlock(bend_.data())) return;
-    problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<BendPrior, 3, 3>(new BendPrior{settings_.bend_sigma_mm}), nullptr, bend_.data());
+    problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<BendPrior, 3, 3>(new BendPrior{settings_.bend_sigma_mm}),
+                               nullptr, bend_.data());
     if (settings_.rig_fixed || !settings_.bend) problem_->SetParameterBlockConstant(bend_.data());
 }
 
@@ -350,13 +207,15 @@ Eigen::MatrixXd Bundle::covariance() {
     if (!problem_->IsParameterBlockConstant(bend_.data())) options.parameter_blocks.push_back(bend_.data());
     ceres::CRSMatrix crs;
     problem_->Evaluate(options, nullptr, nullptr, nullptr, &crs);
-    const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> J(crs.num_rows, crs.num_cols, static_cast<Eigen::Index>(crs.values.size()),
+    const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> J(crs.num_rows, crs.num_cols,
+                                                                           static_cast<Eigen::Index>(crs.values.size()),
                                                                            crs.rows.data(), crs.cols.data(), crs.values.data());
     const Eigen::SparseMatrix<double> columns = J;
     Eigen::MatrixXd normal = Eigen::MatrixXd(Eigen::SparseMatrix<double>(columns.transpose() * columns));
     const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
     normal = scale.asDiagonal() * normal * scale.asDiagonal();
-    const Eigen::MatrixXd inverse = scale.asDiagonal() * normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols())) * scale.asDiagonal();
+    const Eigen::MatrixXd inverse =
+        scale.asDiagonal() * normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols())) * scale.asDiagonal();
     Eigen::MatrixXd all = Eigen::MatrixXd::Zero(next, next);
     for (Eigen::Index r = 0; r < wanted; ++r)
         for (Eigen::Index c = 0; c < wanted; ++c)
@@ -382,7 +241,8 @@ BundleResult Bundle::result(bool converged) {
     out.sigma_px = sigma_px_;
     for (const Measurement& m : measurements_) {
         const auto d = static_cast<std::size_t>(m.judged_by);
-        auto entry = std::find_if(out.residuals.begin(), out.residuals.end(), [&](const PoseResidual& r) { return r.pose == m.pose && r.device == m.judged_by; });
+        auto entry = std::find_if(out.residuals.begin(), out.residuals.end(),
+                                  [&](const PoseResidual& r) { return r.pose == m.pose && r.device == m.judged_by; });
         if (entry == out.residuals.end()) entry = out.residuals.insert(entry, {m.pose, m.judged_by, 0, 0, 0});
         ++(m.used ? entry->used : entry->left_out);
         ++(m.used ? out.used[d] : out.left_out[d]);
@@ -391,7 +251,8 @@ BundleResult Bundle::result(bool converged) {
         out.rms_px[d] += m.residual_px.squaredNorm();
     }
     for (PoseResidual& r : out.residuals) r.rms_px = r.used ? std::sqrt(r.rms_px / static_cast<double>(r.used)) : 0;
-    for (std::size_t d = 0; d < 3; ++d) out.rms_px[d] = out.used[d] ? std::sqrt(out.rms_px[d] / static_cast<double>(out.used[d])) : 0;
+    for (std::size_t d = 0; d < 3; ++d)
+        out.rms_px[d] = out.used[d] ? std::sqrt(out.rms_px[d] / static_cast<double>(out.used[d])) : 0;
     return out;
 }
 
@@ -414,7 +275,8 @@ BundleResult Bundle::run() {
 
 }  // namespace
 
-BundleResult adjust_bundle(const std::vector<PoseObservation>& poses, const BoardSpec& board, const RigEstimate& start, const BundleSettings& settings) {
+BundleResult adjust_bundle(const std::vector<PoseObservation>& poses, const BoardSpec& board, const RigEstimate& start,
+                           const BundleSettings& settings) {
     return Bundle(poses, board, start, settings).run();
 }
 

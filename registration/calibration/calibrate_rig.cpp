@@ -20,10 +20,12 @@ struct Placed {
 };
 
 /// Corners that both cameras see; with one camera and a projector the lit pixels.
-std::vector<Placed> placed_on_board(const PoseObservation& pose, const RigEstimate& rig, const RigidTransform& rig_from_board, const BoardSpec& board) {
+std::vector<Placed> placed_on_board(const PoseObservation& pose, const RigEstimate& rig, const RigidTransform& rig_from_board,
+                                    const BoardSpec& board) {
     std::vector<Placed> placed;
     const auto add = [&](const PixelsOfPoint& pixels, const Vector3d& in_board) {
-        if (const auto p = triangulate_pixels(rig, pixels, kScanSigma_px, rig_from_board * in_board)) placed.push_back({in_board, *p});
+        if (const auto p = triangulate_pixels(rig, pixels, kScanSigma_px, rig_from_board * in_board))
+            placed.push_back({in_board, *p});
     };
     if (rig.device(DeviceName::right_camera)) {
         for (std::size_t i = 0; i < pose.left.corners.size(); ++i) {
@@ -31,12 +33,15 @@ std::vector<Placed> placed_on_board(const PoseObservation& pose, const RigEstima
             const auto& ids = pose.right.corners.ids;
             const auto other = std::lower_bound(ids.begin(), ids.end(), id);
             if (other == ids.end() || *other != id) continue;
-            add({pose.left.corners.pixels[i], pose.right.corners.pixels[static_cast<std::size_t>(other - ids.begin())], std::nullopt}, board.corner_in_board(id));
+            add({pose.left.corners.pixels[i], pose.right.corners.pixels[static_cast<std::size_t>(other - ids.begin())],
+                 std::nullopt},
+                board.corner_in_board(id));
         }
     } else if (rig.device(DeviceName::projector)) {
         for (std::size_t i = 0; i < pose.left.light.size(); i += 4) {
             const LightSample& sample = pose.left.light[i];
-            if (const auto p = board_point(*rig.device(DeviceName::left_camera), sample.pixel_in_camera, rig_from_board, rig.bend_mm, board))
+            if (const auto p = board_point(*rig.device(DeviceName::left_camera), sample.pixel_in_camera, rig_from_board,
+                                           rig.bend_mm, board))
                 add({sample.pixel_in_camera, std::nullopt, sample.pixel_in_projector}, *p);
         }
     }
@@ -76,10 +81,13 @@ double uncertainty_factor(const Eigen::MatrixXd& covariance, const std::vector<E
     Eigen::VectorXd mean = Eigen::VectorXd::Zero(covariance.rows());
     for (const auto& numbers : without_group) mean += numbers / groups;
     Eigen::MatrixXd correlation(n, n);
-    const auto sigma = [&](Eigen::Index i) { return std::sqrt(covariance(free[static_cast<std::size_t>(i)], free[static_cast<std::size_t>(i)])); };
+    const auto sigma = [&](Eigen::Index i) {
+        return std::sqrt(covariance(free[static_cast<std::size_t>(i)], free[static_cast<std::size_t>(i)]));
+    };
     for (Eigen::Index r = 0; r < n; ++r)
         for (Eigen::Index c = 0; c < n; ++c)
-            correlation(r, c) = covariance(free[static_cast<std::size_t>(r)], free[static_cast<std::size_t>(c)]) / (sigma(r) * sigma(c));
+            correlation(r, c) =
+                covariance(free[static_cast<std::size_t>(r)], free[static_cast<std::size_t>(c)]) / (sigma(r) * sigma(c));
     const Eigen::LDLT<Eigen::MatrixXd> solver(correlation);
     double sum = 0;
     for (const auto& numbers : without_group) {
@@ -91,7 +99,8 @@ double uncertainty_factor(const Eigen::MatrixXd& covariance, const std::vector<E
     return std::isfinite(square) ? std::max(1.0, std::sqrt(square)) : 1;
 }
 
-HeldOut hold_out(const std::vector<PoseObservation>& poses, const BoardSpec& board, const BundleResult& full, const CalibrationSettings& settings) {
+HeldOut hold_out(const std::vector<PoseObservation>& poses, const BoardSpec& board, const BundleResult& full,
+                 const CalibrationSettings& settings) {
     HeldOut out;
     LengthSum lengths;
     std::vector<std::size_t> seen;
@@ -116,9 +125,11 @@ HeldOut hold_out(const std::vector<PoseObservation>& poses, const BoardSpec& boa
             out.left_out[d] += judged.left_out[d];
         }
         for (std::size_t i = 0; i < poses.size(); ++i)
-            if (judged.rig.rig_from_board[i]) add_lengths(placed_on_board(poses[i], judged.rig, *judged.rig.rig_from_board[i], board), board, lengths);
+            if (judged.rig.rig_from_board[i])
+                add_lengths(placed_on_board(poses[i], judged.rig, *judged.rig.rig_from_board[i], board), board, lengths);
     }
-    for (std::size_t d = 0; d < 3; ++d) out.rms_px[d] = out.used[d] ? std::sqrt(square[d] / static_cast<double>(out.used[d])) : 0;
+    for (std::size_t d = 0; d < 3; ++d)
+        out.rms_px[d] = out.used[d] ? std::sqrt(square[d] / static_cast<double>(out.used[d])) : 0;
     out.uncertainty_factor = uncertainty_factor(full.covariance, without_fold);
     out.lengths = lengths.count;
     if (lengths.count > 0) {
@@ -130,8 +141,8 @@ HeldOut hold_out(const std::vector<PoseObservation>& poses, const BoardSpec& boa
 
 }  // namespace
 
-Calibration calibrate_rig(const std::vector<PoseObservation>& poses, const BoardSpec& board, int projector_width, int projector_height,
-                          const CalibrationSettings& settings) {
+Calibration calibrate_rig(const std::vector<PoseObservation>& poses, const BoardSpec& board, int projector_width,
+                          int projector_height, const CalibrationSettings& settings) {
     Calibration calibration;
     const auto refused = [&](std::optional<Refusal> refusal) {
         calibration.refusal = std::move(refusal);
@@ -151,10 +162,13 @@ Calibration calibrate_rig(const std::vector<PoseObservation>& poses, const Board
     if (projector_width > 0) {
         start.rig = calibration.bundle.rig;
         add_projector_start(poses, board, projector_width, projector_height, start);
-        if (start.projector_mirrored && refused(Refusal{"the projector's picture is mirrored",
-                                                        "Switch the projector from rear to front projection, then capture again."}))
+        if (start.projector_mirrored &&
+            refused(Refusal{"the projector's picture is mirrored",
+                            "Switch the projector from rear to front projection, then capture again."}))
             return calibration;
-        if (!start.failure.empty() && refused(Refusal{start.failure, "Let the projector light most of the board in every pose."})) return calibration;
+        if (!start.failure.empty() &&
+            refused(Refusal{start.failure, "Let the projector light most of the board in every pose."}))
+            return calibration;
         calibration.bundle = adjust_bundle(poses, board, start.rig, settings.bundle);
     }
     calibration.volume = predict_volume_error(calibration.bundle, board);
@@ -168,7 +182,8 @@ Calibration calibrate_rig(const std::vector<PoseObservation>& poses, const Board
 }
 
 RigCalibration rig_calibration_of(const Calibration& calibration, const std::string& made_on) {
-    if (!calibration.whole_rig() || calibration.refusal) throw std::invalid_argument("rig_calibration_of: not the calibration of a whole rig");
+    if (!calibration.whole_rig() || calibration.refusal)
+        throw std::invalid_argument("rig_calibration_of: not the calibration of a whole rig");
     RigCalibration rig;
     rig.left_camera = *calibration.device(DeviceName::left_camera);
     rig.right_camera = *calibration.device(DeviceName::right_camera);

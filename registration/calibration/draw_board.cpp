@@ -38,7 +38,8 @@ GrayImage board_modules(const BoardSpec& board) {
     const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_100);
     const auto charuco = cv::aruco::CharucoBoard::create(w, h, 8, 6, dictionary);
     cv::Mat drawn;
-    charuco->draw({w * kModulesPerSquare * 4, h * kModulesPerSquare * 4}, drawn, 0, 1);  // 4 pixels a module, its middle is read
+    charuco->draw({w * kModulesPerSquare * 4, h * kModulesPerSquare * 4}, drawn, 0,
+                  1);  // 4 pixels a module, its middle is read
     for (int y = 0; y < modules.height; ++y)
         for (int x = 0; x < modules.width; ++x) modules.at(x, y) = drawn.at<std::uint8_t>(4 * y + 2, 4 * x + 2);
     return modules;
@@ -59,13 +60,15 @@ std::string board_png(const BoardSpec& board) {
     const int square = static_cast<int>(std::lround(board.square_mm * kPngPxPerMm)), margin = std::max(square, 100);
     GrayImage drawn = draw_board(board, square);
     cv::Mat sheet(drawn.height + 2 * margin, drawn.width + 2 * margin, CV_8UC1, cv::Scalar(255));
-    cv::Mat(drawn.height, drawn.width, CV_8UC1, drawn.pixels.data()).copyTo(sheet(cv::Rect(margin, margin, drawn.width, drawn.height)));
-    const std::string text = fmt::format("Planlight board: {}. Print at 100 %, then measure: {} squares = {:.1f} mm.", text_of(board),
-                                         board.squares_across(), board.width_mm());
+    cv::Mat(drawn.height, drawn.width, CV_8UC1, drawn.pixels.data())
+        .copyTo(sheet(cv::Rect(margin, margin, drawn.width, drawn.height)));
+    const std::string text = fmt::format("Planlight board: {}. Print at 100 %, then measure: {} squares = {:.1f} mm.",
+                                         text_of(board), board.squares_across(), board.width_mm());
     int base = 0;
     const double wide = cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, 1, 2, &base).width;
     const double scale = std::min(1.6, 0.9 * drawn.width / wide);
-    cv::putText(sheet, text, {margin, sheet.rows - margin / 3}, cv::FONT_HERSHEY_SIMPLEX, scale, cv::Scalar(60), 2, cv::LINE_AA);
+    cv::putText(sheet, text, {margin, sheet.rows - margin / 3}, cv::FONT_HERSHEY_SIMPLEX, scale, cv::Scalar(60), 2,
+                cv::LINE_AA);
     std::vector<unsigned char> bytes;
     cv::imencode(".png", sheet, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6});
     std::string file(bytes.begin(), bytes.end());

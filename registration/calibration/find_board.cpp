@@ -14,7 +14,9 @@ namespace {
 using Eigen::Vector2d;
 
 /// A sub-pixel window that stays on the four squares round a corner, and inside the ring of white round a marker.
-int window_of(double square_px) { return std::clamp(static_cast<int>(std::floor(0.24 * square_px)), 2, 14); }
+int window_of(double square_px) {
+    return std::clamp(static_cast<int>(std::floor(0.24 * square_px)), 2, 14);
+}
 
 /// Typical distance of neighbouring corners, pixels.
 double square_px(const BoardCorners& found, const BoardSpec& board) {

@@ -57,10 +57,12 @@ std::vector<std::string> gray_code_names(int projector_width, int projector_heig
 DecodedView decode_gray_code(std::span<const GrayImage> frames, int projector_width, int projector_height) {
     const int column_bits = bits_for(projector_width), row_bits = bits_for(projector_height);
     if (frames.size() != static_cast<std::size_t>(2 + 2 * column_bits + 2 * row_bits))
-        throw std::invalid_argument(fmt::format("decode_gray_code: {} frames, {} are needed", frames.size(), 2 + 2 * column_bits + 2 * row_bits));
+        throw std::invalid_argument(
+            fmt::format("decode_gray_code: {} frames, {} are needed", frames.size(), 2 + 2 * column_bits + 2 * row_bits));
     const std::size_t count = frames[0].pixels.size();
     for (const GrayImage& frame : frames)
-        if (frame.width != frames[0].width || frame.pixels.size() != count) throw std::invalid_argument("decode_gray_code: frames of different size");
+        if (frame.width != frames[0].width || frame.pixels.size() != count)
+            throw std::invalid_argument("decode_gray_code: frames of different size");
     DecodedView view;
     view.width = frames[0].width;
     view.height = frames[0].height;

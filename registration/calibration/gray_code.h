@@ -14,7 +14,8 @@ namespace planlight {
 std::vector<std::string> gray_code_names(int projector_width, int projector_height);
 
 /// Decodes such frames to whole projector pixels, or between two of them where just the bit of their common border differs
-/// from its inverse by less than 5 grey or 15 % of (white - black); NaN where any other bit does. Throws std::invalid_argument when number or sizes do not fit.
+/// from its inverse by less than 5 grey or 15 % of (white - black); NaN where any other bit does. Throws std::invalid_argument
+/// when number or sizes do not fit.
 DecodedView decode_gray_code(std::span<const GrayImage> frames, int projector_width, int projector_height);
 
 }  // namespace planlight

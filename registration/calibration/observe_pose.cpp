@@ -26,7 +26,8 @@ Matrix3d board_from_pixel(const BoardCorners& corners, const BoardSpec& board) {
     const Eigen::VectorXd h = rows.jacobiSvd(Eigen::ComputeFullV).matrixV().col(8);
     Matrix3d board_from_thousandths;
     board_from_thousandths << h.segment<3>(0).transpose(), h.segment<3>(3).transpose(), h.segment<3>(6).transpose();
-    return Vector3d(board.width_mm(), board.width_mm(), 1).asDiagonal() * board_from_thousandths * Vector3d(1e-3, 1e-3, 1).asDiagonal();
+    return Vector3d(board.width_mm(), board.width_mm(), 1).asDiagonal() * board_from_thousandths *
+           Vector3d(1e-3, 1e-3, 1).asDiagonal();
 }
 
 bool even_around(const GrayImage& picture, int x, int y, double contrast) {
@@ -62,14 +63,17 @@ std::vector<BoardPixel> pixels_on_board(const CameraObservation& seen, const Boa
     }
     const Vector2d size = most - least, square = size / std::max(2.0, std::sqrt(static_cast<double>(seen.corners.size())) - 1);
     const int stride = std::max(1, static_cast<int>(std::sqrt(size.prod() / wanted)));
-    const int x0 = std::max(0, static_cast<int>(least.x() - square.x())), x1 = std::min(seen.width - 1, static_cast<int>(most.x() + square.x()));
-    const int y0 = std::max(0, static_cast<int>(least.y() - square.y())), y1 = std::min(seen.height - 1, static_cast<int>(most.y() + square.y()));
+    const int x0 = std::max(0, static_cast<int>(least.x() - square.x())),
+              x1 = std::min(seen.width - 1, static_cast<int>(most.x() + square.x()));
+    const int y0 = std::max(0, static_cast<int>(least.y() - square.y())),
+              y1 = std::min(seen.height - 1, static_cast<int>(most.y() + square.y()));
     const double rim = 0.1 * board.square_mm;
     std::vector<BoardPixel> pixels;
     for (int y = y0; y <= y1; y += stride)
         for (int x = x0; x <= x1; x += stride) {
             const Vector2d b = (to_board * Vector3d(x, y, 1)).hnormalized();
-            if (b.x() > rim && b.y() > rim && b.x() < board.width_mm() - rim && b.y() < board.height_mm() - rim) pixels.push_back({x, y});
+            if (b.x() > rim && b.y() > rim && b.x() < board.width_mm() - rim && b.y() < board.height_mm() - rim)
+                pixels.push_back({x, y});
         }
     return pixels;
 }
@@ -88,7 +92,8 @@ GrayImage even_light(std::span<const GrayImage> frames) {
 
 /// The last pictures of the sequence that together are even light: a direction's fringes, or a bit and its inverse.
 std::span<const GrayImage> last_even(std::span<const GrayImage> frames, const StripeSettings& stripes) {
-    return frames.last(std::min<std::size_t>(frames.size(), stripes.phase_steps > 0 ? static_cast<std::size_t>(stripes.phase_steps) : 2));
+    return frames.last(
+        std::min<std::size_t>(frames.size(), stripes.phase_steps > 0 ? static_cast<std::size_t>(stripes.phase_steps) : 2));
 }
 
 /// All of the sequence but the black picture, where every bit has its inverse; else the last fringes.
@@ -152,8 +157,8 @@ DecodedView decode_calibration_light(std::span<const GrayImage> frames, const St
     return stripes.phase_steps == 0 ? decode_gray_code(frames, stripes.width, stripes.height) : decode_stripes(frames, stripes);
 }
 
-CameraObservation observe_board(std::span<const GrayImage> frames, const std::optional<StripeSettings>& stripes, const BoardSpec& board,
-                                const ObserveSettings& settings) {
+CameraObservation observe_board(std::span<const GrayImage> frames, const std::optional<StripeSettings>& stripes,
+                                const BoardSpec& board, const ObserveSettings& settings) {
     CameraObservation seen;
     if (frames.empty()) return seen;
     seen.width = frames[0].width;
@@ -161,7 +166,8 @@ CameraObservation observe_board(std::span<const GrayImage> frames, const std::op
     seen.coded_light = stripes.has_value() && frames.size() > 1;
     seen.corners = find_board(frames[0], board);
     if (!spans_a_plane(seen.corners, board)) {
-        if (board.kind == BoardSpec::Kind::charuco) seen.found_mirrored = spans_a_plane(mirrored_corners(frames[0], board), board);
+        if (board.kind == BoardSpec::Kind::charuco)
+            seen.found_mirrored = spans_a_plane(mirrored_corners(frames[0], board), board);
         seen.corners = {};
         return seen;
     }
@@ -170,7 +176,8 @@ CameraObservation observe_board(std::span<const GrayImage> frames, const std::op
     if (!seen.coded_light) return seen;
     keep_light(frames, *stripes, pixels, settings, seen);
     seen.moved_px = moved_between(seen.corners, follow_board(even_light(last_even(frames, *stripes)), seen.corners, board));
-    if (seen.moved_px < settings.moved_px) seen.corners = follow_board(even_light(all_even(frames, *stripes)), seen.corners, board);
+    if (seen.moved_px < settings.moved_px)
+        seen.corners = follow_board(even_light(all_even(frames, *stripes)), seen.corners, board);
     return seen;
 }
 

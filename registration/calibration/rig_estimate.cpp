@@ -10,9 +10,12 @@ using Eigen::VectorXd;
 
 const char* text_of(DeviceName device) {
     switch (device) {
-        case DeviceName::left_camera: return "left camera";
-        case DeviceName::right_camera: return "right camera";
-        case DeviceName::projector: break;
+        case DeviceName::left_camera:
+            return "left camera";
+        case DeviceName::right_camera:
+            return "right camera";
+        case DeviceName::projector:
+            break;
     }
     return "projector";
 }
@@ -46,7 +49,8 @@ VectorXd numbers_of(const RigEstimate& rig) {
     for (const DeviceName name : kDevices) {
         const auto& d = rig.device(name);
         if (!d) continue;
-        for (const double v : {d->focal_x, d->focal_y, d->centre_x, d->centre_y, d->k1, d->k2, d->p1, d->p2, d->k3}) numbers.push_back(v);
+        for (const double v : {d->focal_x, d->focal_y, d->centre_x, d->centre_y, d->k1, d->k2, d->p1, d->p2, d->k3})
+            numbers.push_back(v);
         if (name == DeviceName::left_camera) continue;
         const Vector3d turn = rotation_vector(d->device_from_rig.linear()), shift = d->device_from_rig.translation();
         for (int i = 0; i < 3; ++i) numbers.push_back(turn[i]);
@@ -61,7 +65,8 @@ RigEstimate with_numbers(const RigEstimate& rig, const VectorXd& numbers) {
     for (const DeviceName name : kDevices) {
         auto& d = changed.device(name);
         if (!d) continue;
-        for (double* v : {&d->focal_x, &d->focal_y, &d->centre_x, &d->centre_y, &d->k1, &d->k2, &d->p1, &d->p2, &d->k3}) *v = *next++;
+        for (double* v : {&d->focal_x, &d->focal_y, &d->centre_x, &d->centre_y, &d->k1, &d->k2, &d->p1, &d->p2, &d->k3})
+            *v = *next++;
         if (name == DeviceName::left_camera) continue;
         Eigen::Matrix<double, 6, 1> twist = Eigen::Map<const Eigen::Matrix<double, 6, 1>>(next);
         next += 6;

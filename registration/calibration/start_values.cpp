@@ -49,7 +49,8 @@ std::optional<Zhang> calibrate_camera(const std::vector<PoseObservation>& poses,
         for (std::size_t c = 0; c < seen.corners.size(); ++c) {
             const Vector3d p = board.corner_in_board(seen.corners.ids[c]);
             objects.back().emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()), 0.0F);
-            pictures.back().emplace_back(static_cast<float>(seen.corners.pixels[c].x()), static_cast<float>(seen.corners.pixels[c].y()));
+            pictures.back().emplace_back(static_cast<float>(seen.corners.pixels[c].x()),
+                                         static_cast<float>(seen.corners.pixels[c].y()));
         }
     }
     if (objects.size() < 3) return std::nullopt;
@@ -57,7 +58,8 @@ std::optional<Zhang> calibrate_camera(const std::vector<PoseObservation>& poses,
     std::vector<cv::Mat> turns, shifts;
     try {
         cv::calibrateCamera(objects, pictures, {found.camera.width, found.camera.height}, matrix, distortion, turns, shifts,
-                            cv::CALIB_FIX_ASPECT_RATIO | cv::CALIB_ZERO_TANGENT_DIST | cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3 | cv::CALIB_FIX_PRINCIPAL_POINT);
+                            cv::CALIB_FIX_ASPECT_RATIO | cv::CALIB_ZERO_TANGENT_DIST | cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3 |
+                                cv::CALIB_FIX_PRINCIPAL_POINT);
     } catch (const cv::Exception&) {
         return std::nullopt;
     }
@@ -147,7 +149,8 @@ std::optional<Matrix34> linear_projection(const std::vector<Vector3d>& points, c
         if (!P.allFinite() || std::abs(P.leftCols<3>().determinant()) < 1e-300) return std::nullopt;
 
         std::vector<std::pair<double, std::size_t>> off;
-        for (std::size_t i = 0; i < points.size(); ++i) off.push_back({((P * points[i].homogeneous()).hnormalized() - pixels[i]).norm(), i});
+        for (std::size_t i = 0; i < points.size(); ++i)
+            off.push_back({((P * points[i].homogeneous()).hnormalized() - pixels[i]).norm(), i});
         std::sort(off.begin(), off.end());
         const double limit = std::max(2.0, 4 * off[off.size() / 2].first);
         used.clear();
@@ -168,11 +171,14 @@ std::optional<RigidTransform> board_pose(const CameraModel& camera, const BoardC
     }
     cv::Mat turn, shift;
     const cv::Matx33d matrix(camera.focal_x, 0, camera.centre_x, 0, camera.focal_y, camera.centre_y, 0, 0, 1);
-    if (!cv::solvePnP(object, picture, matrix, std::vector<double>{camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}, turn, shift)) return std::nullopt;
+    if (!cv::solvePnP(object, picture, matrix, std::vector<double>{camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}, turn,
+                      shift))
+        return std::nullopt;
     return camera.device_from_rig.inverse() * transform_of(turn, shift);
 }
 
-std::optional<double> misfit_anywhere(const CameraModel& device, const std::vector<Vector3d>& points_in_rig, const std::vector<Vector2d>& pixels) {
+std::optional<double> misfit_anywhere(const CameraModel& device, const std::vector<Vector3d>& points_in_rig,
+                                      const std::vector<Vector2d>& pixels) {
     const cv::Matx33d matrix(device.focal_x, 0, device.centre_x, 0, device.focal_y, device.centre_y, 0, 0, 1);
     const std::vector<double> distortion{device.k1, device.k2, device.p1, device.p2, device.k3};
     std::vector<cv::Point3d> object;
@@ -190,7 +196,8 @@ std::optional<double> misfit_anywhere(const CameraModel& device, const std::vect
         std::vector<cv::Point2d> expected;
         cv::projectPoints(object, turn, shift, matrix, distortion, expected);
         lengths.clear();
-        for (std::size_t i = 0; i < expected.size(); ++i) lengths.push_back(std::hypot(expected[i].x - picture[i].x, expected[i].y - picture[i].y));
+        for (std::size_t i = 0; i < expected.size(); ++i)
+            lengths.push_back(std::hypot(expected[i].x - picture[i].x, expected[i].y - picture[i].y));
         std::vector<double> sorted = lengths;
         std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
         const double limit = 4 * sorted[sorted.size() / 2];
@@ -225,7 +232,8 @@ StartValues find_camera_start(const std::vector<PoseObservation>& poses, const B
                     suggested.push_back(*right->camera_from_board[i] * left->camera_from_board[i]->inverse());
         const auto right_from_left = middle_of(suggested);
         if (!right_from_left) {
-            start.failure = right ? "no pose is seen by both cameras" : "the right camera's pictures do not determine the camera";
+            start.failure =
+                right ? "no pose is seen by both cameras" : "the right camera's pictures do not determine the camera";
             return start;
         }
         right->camera.device_from_rig = *right_from_left;
@@ -237,7 +245,8 @@ StartValues find_camera_start(const std::vector<PoseObservation>& poses, const B
     return start;
 }
 
-void add_projector_start(const std::vector<PoseObservation>& poses, const BoardSpec& board, int width, int height, StartValues& start) {
+void add_projector_start(const std::vector<PoseObservation>& poses, const BoardSpec& board, int width, int height,
+                         StartValues& start) {
     std::vector<Vector3d> points;
     std::vector<Vector2d> pixels;
     for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -245,7 +254,8 @@ void add_projector_start(const std::vector<PoseObservation>& poses, const BoardS
         for (const DeviceName name : {DeviceName::left_camera, DeviceName::right_camera}) {
             if (!start.rig.device(name)) continue;
             for (const LightSample& sample : view_of(poses[i], name).light)
-                if (const auto p = board_point(*start.rig.device(name), sample.pixel_in_camera, *start.rig.rig_from_board[i], Vector3d::Zero(), board)) {
+                if (const auto p = board_point(*start.rig.device(name), sample.pixel_in_camera, *start.rig.rig_from_board[i],
+                                               Vector3d::Zero(), board)) {
                     points.push_back(*start.rig.rig_from_board[i] * *p);
                     pixels.push_back(sample.pixel_in_projector);
                 }
@@ -253,7 +263,8 @@ void add_projector_start(const std::vector<PoseObservation>& poses, const BoardS
     }
     const auto P = linear_projection(points, pixels);
     if (!P) {
-        start.failure = fmt::format("the projector's light was decoded at {} places on the board, too few to find the projector", points.size());
+        start.failure = fmt::format(
+            "the projector's light was decoded at {} places on the board, too few to find the projector", points.size());
         return;
     }
     const Matrix34 positive = P->leftCols<3>().determinant() > 0 ? *P : Matrix34(-*P);

@@ -40,7 +40,8 @@ std::vector<Vector3d> corners_in_rig(const RigEstimate& rig, const BoardSpec& bo
 
 /// The 5 to 95 % box of the boards' corners along the axes of a device, as a grid.
 void lay_grid(const RigEstimate& rig, const BoardSpec& board, VolumeError& error) {
-    const auto& seen_from = rig.device(DeviceName::projector) ? *rig.device(DeviceName::projector) : *rig.device(DeviceName::left_camera);
+    const auto& seen_from =
+        rig.device(DeviceName::projector) ? *rig.device(DeviceName::projector) : *rig.device(DeviceName::left_camera);
     std::array<std::vector<double>, 3> along;
     for (const Vector3d& p : corners_in_rig(rig, board)) {
         const Vector3d q = seen_from.device_from_rig * p;
@@ -111,7 +112,8 @@ double share_of(std::vector<double> values, double share) {
 
 }  // namespace
 
-std::optional<Vector3d> triangulate_pixels(const RigEstimate& rig, const PixelsOfPoint& pixels, const std::array<double, 3>& sigma_px, const Vector3d& near) {
+std::optional<Vector3d> triangulate_pixels(const RigEstimate& rig, const PixelsOfPoint& pixels,
+                                           const std::array<double, 3>& sigma_px, const Vector3d& near) {
     int devices = 0;
     for (std::size_t d = 0; d < 3; ++d) devices += rig.devices[d] && pixels[d];
     if (devices < 2) return std::nullopt;

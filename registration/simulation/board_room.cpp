@@ -27,7 +27,8 @@ constexpr int kSamplesAcrossEdge = 6;
 
 bool in_view(const Optics& device, const Vector3d& p_in_room) {
     const Vector2d pixel = device.pixel_of(p_in_room);
-    return device.depth(p_in_room) > 0 && pixel.x() > 3 && pixel.y() > 3 && pixel.x() < device.columns - 4 && pixel.y() < device.rows - 4;
+    return device.depth(p_in_room) > 0 && pixel.x() > 3 && pixel.y() > 3 && pixel.x() < device.columns - 4 &&
+           pixel.y() < device.rows - 4;
 }
 
 }  // namespace
@@ -63,14 +64,16 @@ struct SimulatedBoardRoom::Room final : Projector, StereoCamera, Clock {
 };
 
 SimulatedBoardRoom::Room::Room(const BoardSheet& print, const BoardRoomSettings& given) : sheet(print), settings(given) {
-    std::mt19937 random(static_cast<unsigned>(mixed(static_cast<std::uint64_t>(settings.seed) * 64 + 1)));  // the rig of `SimulatedRig`
+    std::mt19937 random(
+        static_cast<unsigned>(mixed(static_cast<std::uint64_t>(settings.seed) * 64 + 1)));  // the rig of `SimulatedRig`
     rig = true_layout = build_rig(settings.preset, random);
     random.seed(static_cast<unsigned>(mixed(static_cast<std::uint64_t>(settings.seed) * 64 + 40)));
     for (int i = 0; i < settings.poses; ++i) room_from_board.push_back(random_pose(random));
     if (!room_from_board.empty()) room_from_board_now = room_from_board.front();
     schedule = LightSchedule(rig.projector.columns, rig.projector.rows, std::chrono::milliseconds(25));
     const auto sensor = [&](const Optics& camera, double blur_px, std::uint64_t number) {
-        return Sensor{camera.columns, camera.rows, blur_px, 0.85, settings.noise, mixed(2 * static_cast<std::uint64_t>(settings.seed) + 5000 + number)};
+        return Sensor{camera.columns, camera.rows,    blur_px,
+                      0.85,           settings.noise, mixed(2 * static_cast<std::uint64_t>(settings.seed) + 5000 + number)};
     };
     left_sensor = sensor(rig.left_camera, rig.left_blur_px, 0);
     right_sensor = sensor(rig.right_camera, rig.right_blur_px, 1);
@@ -99,7 +102,8 @@ RigidTransform SimulatedBoardRoom::Room::random_pose(std::mt19937& random) const
         const double way = between(0, 2 * M_PI), tilt = between(settings.min_tilt_deg, settings.max_tilt_deg) * kRadians;
         RigidTransform pose = RigidTransform::Identity();
         pose.linear() = (Eigen::AngleAxisd(tilt, Vector3d(std::cos(way), std::sin(way), 0)) *
-                         Eigen::AngleAxisd(between(0, 2 * M_PI), Vector3d::UnitZ())).toRotationMatrix();
+                         Eigen::AngleAxisd(between(0, 2 * M_PI), Vector3d::UnitZ()))
+                            .toRotationMatrix();
         const Vector3d at(between(-settings.shift_mm, settings.shift_mm), between(-settings.shift_mm, settings.shift_mm),
                           between(-settings.depth_mm, settings.depth_mm));
         pose.translation() = at - pose.linear() * Vector3d(sheet.width_mm() / 2, sheet.height_mm() / 2, 0);
@@ -111,7 +115,12 @@ RigidTransform SimulatedBoardRoom::Room::random_pose(std::mt19937& random) const
 void SimulatedBoardRoom::Room::look() {
     if (seen) return;
     const RigidTransform to_board = room_from_board_now.inverse();
-    Scene scene{surface, look_of_sheet, rig.left_camera.seen_from(to_board), rig.projector.seen_from(to_board), rig.working_distance_mm, kSamplesAcrossEdge};
+    Scene scene{surface,
+                look_of_sheet,
+                rig.left_camera.seen_from(to_board),
+                rig.projector.seen_from(to_board),
+                rig.working_distance_mm,
+                kSamplesAcrossEdge};
     left_view.look(scene);
     scene.camera = rig.right_camera.seen_from(to_board);
     right_view.look(scene);
@@ -127,7 +136,8 @@ GrayImage SimulatedBoardRoom::Room::expose(CameraView& view, const Sensor& senso
 
 Instant SimulatedBoardRoom::Room::show(const RgbImage& picture, Instant valid_until) {
     if (picture.width != width() || picture.height != height())
-        throw DeviceError("simulated projector", "a picture of another size was to be shown", "Draw the picture in the projector's own size.");
+        throw DeviceError("simulated projector", "a picture of another size was to be shown",
+                          "Draw the picture in the projector's own size.");
     schedule.show(picture, now_, valid_until);
     return now_ + std::chrono::milliseconds(25);
 }
@@ -136,7 +146,8 @@ StereoFrame SimulatedBoardRoom::Room::grab(Instant not_before, std::chrono::mill
     const Instant from = std::max(not_before, now_);
     const auto number = (from.count() + rig.frame_interval.count() - 1) / rig.frame_interval.count();
     const Instant begins = number * rig.frame_interval, ends = begins + rig.exposure;
-    if (ends - now_ > patience) throw DeviceError("simulated cameras", "no frame came in time", "Wait longer, or ask for an earlier frame.");
+    if (ends - now_ > patience)
+        throw DeviceError("simulated cameras", "no frame came in time", "Wait longer, or ask for an earlier frame.");
     StereoFrame frame;
     frame.at = begins + rig.exposure / 2;
     frame.exposure = rig.exposure;
@@ -153,10 +164,18 @@ SimulatedBoardRoom::SimulatedBoardRoom(const BoardSheet& sheet, const BoardRoomS
     : room_(std::make_unique<Room>(sheet, settings)) {}
 SimulatedBoardRoom::~SimulatedBoardRoom() = default;
 
-Projector& SimulatedBoardRoom::projector() { return *room_; }
-StereoCamera& SimulatedBoardRoom::cameras() { return *room_; }
-const Clock& SimulatedBoardRoom::clock() const { return *room_; }
-int SimulatedBoardRoom::poses() const { return static_cast<int>(room_->room_from_board.size()); }
+Projector& SimulatedBoardRoom::projector() {
+    return *room_;
+}
+StereoCamera& SimulatedBoardRoom::cameras() {
+    return *room_;
+}
+const Clock& SimulatedBoardRoom::clock() const {
+    return *room_;
+}
+int SimulatedBoardRoom::poses() const {
+    return static_cast<int>(room_->room_from_board.size());
+}
 
 void SimulatedBoardRoom::lay(int pose) {
     room_->room_from_board_now = room_->room_from_board.at(static_cast<std::size_t>(pose));
@@ -178,16 +197,20 @@ void SimulatedBoardRoom::knock_projector(double degrees) {
     room_->seen = false;
 }
 
-RigCalibration SimulatedBoardRoom::true_rig() const { return exported(room_->true_layout); }
+RigCalibration SimulatedBoardRoom::true_rig() const {
+    return exported(room_->true_layout);
+}
 
 RigidTransform SimulatedBoardRoom::true_rig_from_board(int pose) const {
     return room_->true_layout.room_from_rig.inverse() * room_->room_from_board.at(static_cast<std::size_t>(pose));
 }
 
 std::string SimulatedBoardRoom::truth_json() const {
-    nlohmann::json truth = {{"format", "planlight-board-truth"}, {"version", 1},
+    nlohmann::json truth = {{"format", "planlight-board-truth"},
+                            {"version", 1},
                             {"preset", room_->settings.preset == Preset::paper ? "paper" : "modern"},
-                            {"seed", room_->settings.seed},       {"sag_mm", room_->sheet.sag_mm},
+                            {"seed", room_->settings.seed},
+                            {"sag_mm", room_->sheet.sag_mm},
                             {"bend_direction", room_->sheet.bend_direction}};
     truth["true_rig"] = nlohmann::json::parse(rig_as_json(true_rig()));
     for (int i = 0; i < poses(); ++i) {

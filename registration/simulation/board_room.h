@@ -37,9 +37,9 @@ public:
     const Clock& clock() const;
 
     int poses() const;
-    void lay(int pose);                        ///< puts the board into a pose
-    void slip(const Eigen::Vector3d& by_mm);   ///< shifts the board (room frame) from now on, until the next `lay`
-    void knock_right_camera(double degrees);   ///< turns the right camera about its upright axis from now on
+    void lay(int pose);                       ///< puts the board into a pose
+    void slip(const Eigen::Vector3d& by_mm);  ///< shifts the board (room frame) from now on, until the next `lay`
+    void knock_right_camera(double degrees);  ///< turns the right camera about its upright axis from now on
     void knock_projector(double degrees);
 
     // ---- truth: nothing of the product reads what follows ----

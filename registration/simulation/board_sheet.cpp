@@ -31,7 +31,8 @@ std::optional<Surface::Hit> SheetSurface::first_hit(const Vector3d& origin, cons
     }
     const Vector3d p = origin + t * direction;
     const double m = sheet_.margin_mm;
-    if (t <= 0 || p.x() < -m || p.y() < -m || p.x() > sheet_.width_mm() + m || p.y() > sheet_.height_mm() + m) return std::nullopt;
+    if (t <= 0 || p.x() < -m || p.y() < -m || p.x() > sheet_.width_mm() + m || p.y() > sheet_.height_mm() + m)
+        return std::nullopt;
     sheet_.z_at(p.x(), p.y(), &slope);
     return Hit{p, Vector3d(slope.x(), slope.y(), -1).normalized(), t};
 }
@@ -45,7 +46,8 @@ Vector3d SheetSurface::high_in_ct() const {
 }
 
 Look SheetLook::at(const Vector3d& p) const {
-    const int x = static_cast<int>(std::floor(p.x() * sheet_.px_per_mm)), y = static_cast<int>(std::floor(p.y() * sheet_.px_per_mm));
+    const int x = static_cast<int>(std::floor(p.x() * sheet_.px_per_mm)),
+              y = static_cast<int>(std::floor(p.y() * sheet_.px_per_mm));
     const bool printed = x >= 0 && y >= 0 && x < sheet_.print.width && y < sheet_.print.height;
     const std::uint8_t value = printed ? sheet_.print.at(x, y) : std::uint8_t{255};
     return {value > 200 ? Material::paper : Material::ink, kPaperAlbedo * value / 255, 0.002, 0};

@@ -8,11 +8,11 @@ namespace planlight::simulation {
 /// A printed sheet as it lies before the rig. Its frame: origin at the print's top left corner, x right, y down, z into the
 /// sheet, mm. It may be bent: a cylinder of any direction, `sag_mm` deep over the print's diagonal.
 struct BoardSheet {
-    GrayImage print;               ///< what the printer was given: 255 white paper, darker where there is ink
+    GrayImage print;  ///< what the printer was given: 255 white paper, darker where there is ink
     double px_per_mm = 10;
-    double margin_mm = 15;         ///< white round the print
-    double sag_mm = 0;             ///< height of the middle above the corners that lie across the cylinder
-    double bend_direction = 0;     ///< radians, of the axis along which it is bent
+    double margin_mm = 15;      ///< white round the print
+    double sag_mm = 0;          ///< height of the middle above the corners that lie across the cylinder
+    double bend_direction = 0;  ///< radians, of the axis along which it is bent
 
     double width_mm() const { return print.width / px_per_mm; }
     double height_mm() const { return print.height / px_per_mm; }

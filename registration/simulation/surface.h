@@ -19,7 +19,8 @@ public:
     virtual std::optional<Hit> first_hit(const Eigen::Vector3d& origin_in_ct, const Eigen::Vector3d& direction) const = 0;
 
     /// True when the object lies between a point of it (moved off the surface by a little) and a light.
-    virtual bool in_shadow(const Eigen::Vector3d& p_in_ct, const Eigen::Vector3d& normal_in_ct, const Eigen::Vector3d& light_in_ct) const = 0;
+    virtual bool in_shadow(const Eigen::Vector3d& p_in_ct, const Eigen::Vector3d& normal_in_ct,
+                           const Eigen::Vector3d& light_in_ct) const = 0;
 
     virtual Eigen::Vector3d low_in_ct() const = 0;
     virtual Eigen::Vector3d high_in_ct() const = 0;
@@ -32,9 +33,9 @@ enum class Material : std::uint8_t { none, skin, paper, ink, blood };
 /// How a point of the object reflects.
 struct Look {
     Material material = Material::skin;
-    double albedo = 0;        ///< diffuse
-    double specular = 0;      ///< strength of the highlight
-    double translucent = 0;   ///< share of the light that leaves beside where it fell
+    double albedo = 0;       ///< diffuse
+    double specular = 0;     ///< strength of the highlight
+    double translucent = 0;  ///< share of the light that leaves beside where it fell
 };
 
 class SurfaceLook {

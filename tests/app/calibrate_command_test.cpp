@@ -22,7 +22,8 @@ void expect_refused(const CommandRun& run, int exit_code, const std::string& abo
     EXPECT_NE(run.err.find(about), std::string::npos) << run.err;
 }
 
-/// From simulated captures to rig.json; then what goes wrong leaves the good file alone. One test: the captures take their time.
+/// From simulated captures to rig.json; then what goes wrong leaves the good file alone. One test: the captures take their
+/// time.
 TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
     const TemporaryFolder folder;
     const fs::path& root = folder.path();
@@ -31,7 +32,8 @@ TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
     ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
     const auto run = run_planlight("calibrate room/captures" + board + " --out rig.json --json", root);
     ASSERT_EQ(run.exit_code, 0) << run.err;
-    const json report = json::parse(run.out), rig = json::parse(whole(root / "rig.json")), truth = json::parse(whole(root / "room" / "truth.json"))["true_rig"];
+    const json report = json::parse(run.out), rig = json::parse(whole(root / "rig.json")),
+               truth = json::parse(whole(root / "room" / "truth.json"))["true_rig"];
     for (const char* device : {"left_camera", "right_camera", "projector"}) {
         EXPECT_NEAR(rig[device]["focal_x"].get<double>(), truth[device]["focal_x"].get<double>(), 4) << device;
         EXPECT_LT(report["devices"][device]["held_out_rms_px"].get<double>(), 0.2) << device;
@@ -45,7 +47,8 @@ TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
     fs::create_directories(root / "few");
     fs::copy(root / "room" / "captures" / "pose-00", root / "few" / "pose-00", fs::copy_options::recursive);
     expect_refused(run_planlight("calibrate few" + board + " --out rig.json", root), 6, "in 1 of 1 poses");
-    expect_refused(run_planlight("calibrate room/captures --board 'chessboard 9x6 25 mm' --out rig.json", root), 6, "chessboard 9x6");
+    expect_refused(run_planlight("calibrate room/captures --board 'chessboard 9x6 25 mm' --out rig.json", root), 6,
+                   "chessboard 9x6");
     expect_refused(run_planlight("calibrate room/captures --board 'charuco' --out rig.json", root), 3, "charuco");
     expect_refused(run_planlight("calibrate nowhere" + board + " --out rig.json", root), 3, "nowhere");
     const fs::path missing = root / "room" / "captures" / "pose-02" / "right" / "row-phase-3.png";
@@ -60,13 +63,15 @@ TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
         const std::string name = "pose-0" + std::to_string(pose);
         fs::create_directories(root / "plain" / name);
         for (const char* side : {"left", "right"})
-            fs::copy(root / "room" / "captures" / name / side / "white.png", root / "plain" / name / (std::string(side) + ".png"));
+            fs::copy(root / "room" / "captures" / name / side / "white.png",
+                     root / "plain" / name / (std::string(side) + ".png"));
     }
     const auto pair = run_planlight("calibrate plain" + board + " --out pair.json --json", root);
     ASSERT_EQ(pair.exit_code, 0) << pair.err;
     EXPECT_FALSE(fs::exists(root / "pair.json")) << "no projector, no rig";
     EXPECT_FALSE(json::parse(pair.out)["devices"].contains("projector"));
-    EXPECT_NEAR(json::parse(pair.out)["devices"]["left_camera"]["focal_x"].get<double>(), truth["left_camera"]["focal_x"].get<double>(), 10);
+    EXPECT_NEAR(json::parse(pair.out)["devices"]["left_camera"]["focal_x"].get<double>(),
+                truth["left_camera"]["focal_x"].get<double>(), 10);
 }
 
 TEST(BoardCommand, WritesTheSheetTwice) {

@@ -23,8 +23,8 @@ StripeSettings stripes_of(const simulation::SimulatedBoardRoom& room) {
     return stripes;
 }
 
-std::vector<PoseObservation> observe_room(simulation::SimulatedBoardRoom& room, const BoardSpec& board, const std::function<void(int)>& before,
-                                          const std::function<void(int, int)>& during) {
+std::vector<PoseObservation> observe_room(simulation::SimulatedBoardRoom& room, const BoardSpec& board,
+                                          const std::function<void(int)>& before, const std::function<void(int, int)>& during) {
     const StripeSettings stripes = stripes_of(room);
     std::vector<PoseObservation> poses;
     for (int i = 0; i < room.poses(); ++i) {
@@ -33,7 +33,8 @@ std::vector<PoseObservation> observe_room(simulation::SimulatedBoardRoom& room, 
         const ScanCapture capture = capture_scan(room.projector(), room.cameras(), room.clock(), stripes, [&](int done, int) {
             if (during) during(i, done);
         });
-        poses.push_back({fmt::format("pose-{:02}", i), observe_board(capture.left, stripes, board), observe_board(capture.right, stripes, board)});
+        poses.push_back({fmt::format("pose-{:02}", i), observe_board(capture.left, stripes, board),
+                         observe_board(capture.right, stripes, board)});
     }
     return poses;
 }

@@ -20,8 +20,9 @@ TEST(BoardSpec, ReadsWhatItWrites) {
 }
 
 TEST(BoardSpec, RefusesWhatItCannotMean) {
-    for (const char* text : {"", "charuco", "charuco 10x7", "charuco 10x7 25", "charuco 10x7 25 cm", "circles 10x7 25 mm", "charuco 2x7 25 mm",
-                             "charuco 99x99 25 mm", "chessboard 9x6 0 mm", "charuco -10x7 25 mm", "charuco 10x7 nan mm"})
+    for (const char* text :
+         {"", "charuco", "charuco 10x7", "charuco 10x7 25", "charuco 10x7 25 cm", "circles 10x7 25 mm", "charuco 2x7 25 mm",
+          "charuco 99x99 25 mm", "chessboard 9x6 0 mm", "charuco -10x7 25 mm", "charuco 10x7 nan mm"})
         EXPECT_THROW(parse_board(text), InputError) << text;
 }
 
@@ -30,7 +31,8 @@ GrayImage photographed(const BoardSpec& board, int px_per_square, int margin) {
     GrayImage drawn = draw_board(board, px_per_square);
     GrayImage picture(drawn.width + 2 * margin, drawn.height + 2 * margin, 220);
     for (int y = 0; y < drawn.height; ++y)
-        for (int x = 0; x < drawn.width; ++x) picture.at(x + margin, y + margin) = static_cast<std::uint8_t>(drawn.at(x, y) * 220 / 255);
+        for (int x = 0; x < drawn.width; ++x)
+            picture.at(x + margin, y + margin) = static_cast<std::uint8_t>(drawn.at(x, y) * 220 / 255);
     cv::Mat view(picture.height, picture.width, CV_8UC1, picture.pixels.data());
     cv::GaussianBlur(view, view, {0, 0}, 0.7);
     return picture;
@@ -44,7 +46,8 @@ TEST(FindBoard, FindsEveryDrawnCornerWhereItWasDrawn) {
         const BoardCorners found = find_board(photographed(board, px, margin), board);
         ASSERT_EQ(found.size(), static_cast<std::size_t>(board.corner_count())) << text;
         for (std::size_t i = 0; i < found.size(); ++i) {
-            const Eigen::Vector2d drawn = board.corner_in_board(found.ids[i]).head<2>() * px / board.square_mm + Eigen::Vector2d::Constant(margin - 0.5);
+            const Eigen::Vector2d drawn =
+                board.corner_in_board(found.ids[i]).head<2>() * px / board.square_mm + Eigen::Vector2d::Constant(margin - 0.5);
             EXPECT_LT((found.pixels[i] - drawn).norm(), 0.03) << text << " corner " << found.ids[i];
         }
     }
@@ -66,12 +69,14 @@ TEST(FindBoard, AnotherBoardOrNoneIsNotFound) {
     const BoardSpec board = parse_board("charuco 10x7 25 mm");
     EXPECT_EQ(find_board(GrayImage(640, 480, 128), board).size(), 0u);
     EXPECT_EQ(find_board(photographed(parse_board("chessboard 9x6 25 mm"), 40, 60), board).size(), 0u);
-    EXPECT_EQ(find_board(photographed(parse_board("chessboard 7x5 25 mm"), 40, 60), parse_board("chessboard 9x6 25 mm")).size(), 0u);
+    EXPECT_EQ(find_board(photographed(parse_board("chessboard 7x5 25 mm"), 40, 60), parse_board("chessboard 9x6 25 mm")).size(),
+              0u);
 }
 
 TEST(FindBoard, PicturesOfAFewPixelsAreNoBoard) {
     for (const char* text : {"charuco 10x7 25 mm", "chessboard 9x6 25 mm"})
-        for (const auto& [w, h] : {std::pair{1, 1}, std::pair{3, 200}, std::pair{12, 9}}) EXPECT_EQ(find_board(GrayImage(w, h, 90), parse_board(text)).size(), 0u);
+        for (const auto& [w, h] : {std::pair{1, 1}, std::pair{3, 200}, std::pair{12, 9}})
+            EXPECT_EQ(find_board(GrayImage(w, h, 90), parse_board(text)).size(), 0u);
 }
 
 /// A row of corners alone leaves the board free to swing about it.
@@ -91,7 +96,8 @@ TEST(DrawBoard, TheSheetIsTrueToTheMillimetre) {
     const auto density = png.find("pHYs");
     ASSERT_NE(density, std::string::npos);
     EXPECT_EQ(png.substr(density + 4, 4), std::string("\x00\x00\x27\x10", 4));  // 10000 pixels a metre
-    const cv::Mat sheet = cv::imdecode(cv::Mat(1, static_cast<int>(png.size()), CV_8U, const_cast<char*>(png.data())), cv::IMREAD_GRAYSCALE);
+    const cv::Mat sheet =
+        cv::imdecode(cv::Mat(1, static_cast<int>(png.size()), CV_8U, const_cast<char*>(png.data())), cv::IMREAD_GRAYSCALE);
     ASSERT_FALSE(sheet.empty());
     GrayImage picture(sheet.cols, sheet.rows);
     std::copy(sheet.begin<std::uint8_t>(), sheet.end<std::uint8_t>(), picture.pixels.begin());

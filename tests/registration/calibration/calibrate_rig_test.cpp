@@ -33,7 +33,8 @@ TEST(CalibrateRig, WithoutNoiseTheRigComesBackExactly) {
     const CameraModel* truths[] = {&room.rig.left_camera, &room.rig.right_camera, &room.rig.projector};
     for (std::size_t d = 0; d < 3; ++d) {
         const CameraModel& device = *found.bundle.rig.devices[d];
-        // The weak priors (round pixels, small distortion) pull by about a thousandth of a pixel at the floor of sigma, 0.005 px.
+        // The weak priors (round pixels, small distortion) pull by about a thousandth of a pixel at the floor of sigma, 0.005
+        // px.
         EXPECT_NEAR(device.focal_x, truths[d]->focal_x, 0.02) << text_of(kDevices[d]);
         EXPECT_NEAR(device.centre_y, truths[d]->centre_y, 0.05) << text_of(kDevices[d]);
         EXPECT_NEAR(device.k1, truths[d]->k1, 1e-3);
@@ -82,7 +83,8 @@ TEST(CalibrateRig, ABentBoardIsFoundBent) {
             for (std::size_t c = 0; c < corners.size(); ++c) {
                 const Vector3d flat = room.board.corner_in_board(corners.ids[c]);
                 const Vector3d high = flat + Vector3d(0, 0, std::pow((flat.x() - 125) / std::hypot(125, 87.5), 2));
-                corners.pixels[c] += *project(camera, room.rig_from_board[i] * high) - *project(camera, room.rig_from_board[i] * flat);
+                corners.pixels[c] +=
+                    *project(camera, room.rig_from_board[i] * high) - *project(camera, room.rig_from_board[i] * flat);
             }
             (right ? poses[i].right : poses[i].left).light.clear();
         }
@@ -137,9 +139,13 @@ TEST(CalibrateRig, OutliersAreLeftOutAndCounted) {
 
 // ---- refusals: each has its reason and its remedy ----
 
-TEST(CalibrateRigRefuses, TooFewPoses) { expect_refused(calibrated(test::ideal_room(2), test::ideal_room(2).observe()), "2 of 2 poses"); }
+TEST(CalibrateRigRefuses, TooFewPoses) {
+    expect_refused(calibrated(test::ideal_room(2), test::ideal_room(2).observe()), "2 of 2 poses");
+}
 
-TEST(CalibrateRigRefuses, NoPoseAtAll) { expect_refused(calibrate_rig({}, parse_board("charuco 10x7 25 mm"), 800, 600), "0 of 0 poses"); }
+TEST(CalibrateRigRefuses, NoPoseAtAll) {
+    expect_refused(calibrate_rig({}, parse_board("charuco 10x7 25 mm"), 800, 600), "0 of 0 poses");
+}
 
 TEST(CalibrateRigRefuses, TheSamePoseAgainAndAgain) {
     test::IdealRoom room = test::ideal_room();
@@ -152,7 +158,8 @@ TEST(CalibrateRigRefuses, BoardsFlatOn) {
     for (auto& pose : room.rig_from_board) {  // flat on to the left camera
         const Vector3d middle = pose * Vector3d(125, 87.5, 0);
         pose.linear() = room.rig.left_camera.device_from_rig.linear().transpose() *
-                        Eigen::AngleAxisd(0.3 * static_cast<double>(&pose - room.rig_from_board.data()), Vector3d::UnitZ()).toRotationMatrix();
+                        Eigen::AngleAxisd(0.3 * static_cast<double>(&pose - room.rig_from_board.data()), Vector3d::UnitZ())
+                            .toRotationMatrix();
         pose.translation() = middle - pose.linear() * Vector3d(125, 87.5, 0);
     }
     expect_refused(calibrated(room, room.observe()), "flat on");
@@ -163,7 +170,9 @@ TEST(CalibrateRigRefuses, PosesTiltedAllTheSameWay) {
     for (std::size_t i = 0; i < room.rig_from_board.size(); ++i) {
         RigidTransform& pose = room.rig_from_board[i];
         const Vector3d middle = pose * Vector3d(125, 87.5, 0);
-        pose.linear() = (Eigen::AngleAxisd(0.5 + 0.01 * static_cast<double>(i), Vector3d(0.6, 0.8, 0)) * Eigen::AngleAxisd(0.3 * static_cast<double>(i), Vector3d::UnitZ())).toRotationMatrix();
+        pose.linear() = (Eigen::AngleAxisd(0.5 + 0.01 * static_cast<double>(i), Vector3d(0.6, 0.8, 0)) *
+                         Eigen::AngleAxisd(0.3 * static_cast<double>(i), Vector3d::UnitZ()))
+                            .toRotationMatrix();
         pose.translation() = middle - pose.linear() * Vector3d(125, 87.5, 0);
     }
     expect_refused(calibrated(room, room.observe()), "too similar");
@@ -175,7 +184,8 @@ TEST(CalibrateRigRefuses, ABoardOfAnotherCount) {
     auto poses = room.observe();
     for (auto& pose : poses)
         for (auto* seen : {&pose.left, &pose.right})
-            while (seen->corners.ids.back() >= wrong.corner_count()) seen->corners.ids.pop_back(), seen->corners.pixels.pop_back();
+            while (seen->corners.ids.back() >= wrong.corner_count())
+                seen->corners.ids.pop_back(), seen->corners.pixels.pop_back();
     expect_refused(calibrate_rig(poses, wrong, 800, 600), "do not lie as on a charuco 9x7");
 }
 
@@ -199,7 +209,8 @@ TEST(CalibrateRigRefuses, AMirroredCamera) {
             const auto at = std::find(c.ids.begin(), c.ids.end(), other);
             if (at == c.ids.end()) continue;
             mirrored.ids.push_back(id);
-            mirrored.pixels.emplace_back(pose.right.width - 1 - c.pixels[static_cast<std::size_t>(at - c.ids.begin())].x(), c.pixels[static_cast<std::size_t>(at - c.ids.begin())].y());
+            mirrored.pixels.emplace_back(pose.right.width - 1 - c.pixels[static_cast<std::size_t>(at - c.ids.begin())].x(),
+                                         c.pixels[static_cast<std::size_t>(at - c.ids.begin())].y());
         }
         pose.right.corners = mirrored;
     }
@@ -221,7 +232,8 @@ TEST(CalibrateRigRefuses, AMirroredProjector) {
     auto poses = room.observe();
     for (auto& pose : poses)
         for (auto* seen : {&pose.left, &pose.right})
-            for (LightSample& sample : seen->light) sample.pixel_in_projector.x() = room.rig.projector.width - 1 - sample.pixel_in_projector.x();
+            for (LightSample& sample : seen->light)
+                sample.pixel_in_projector.x() = room.rig.projector.width - 1 - sample.pixel_in_projector.x();
     expect_refused(calibrated(room, poses), "projector's picture is mirrored");
 }
 
@@ -229,7 +241,8 @@ TEST(CalibrateRigRefuses, AMirroredProjector) {
 TEST(CalibrateRigRefuses, ACameraMovedBetweenPoses) {
     const test::IdealRoom room = test::ideal_room();
     test::IdealRoom knocked = room;
-    knocked.rig.right_camera.device_from_rig = Eigen::AngleAxisd(0.1 * M_PI / 180, Vector3d::UnitY()) * room.rig.right_camera.device_from_rig;
+    knocked.rig.right_camera.device_from_rig =
+        Eigen::AngleAxisd(0.1 * M_PI / 180, Vector3d::UnitY()) * room.rig.right_camera.device_from_rig;
     auto poses = room.observe();
     const auto after = knocked.observe();
     for (std::size_t i = 5; i < poses.size(); ++i) poses[i] = after[i];
@@ -239,7 +252,8 @@ TEST(CalibrateRigRefuses, ACameraMovedBetweenPoses) {
 TEST(CalibrateRigRefuses, AProjectorMovedBetweenPoses) {
     const test::IdealRoom room = test::ideal_room();
     test::IdealRoom knocked = room;
-    knocked.rig.projector.device_from_rig = Eigen::AngleAxisd(0.2 * M_PI / 180, Vector3d::UnitY()) * room.rig.projector.device_from_rig;
+    knocked.rig.projector.device_from_rig =
+        Eigen::AngleAxisd(0.2 * M_PI / 180, Vector3d::UnitY()) * room.rig.projector.device_from_rig;
     auto poses = room.observe();
     const auto after = knocked.observe();
     for (std::size_t i = 4; i < poses.size(); ++i) poses[i] = after[i];
@@ -252,7 +266,8 @@ TEST(CalibrateRigRefuses, AHundredthOfADegreeOfACameraOrTheProjector) {
     for (const bool projector : {false, true}) {
         test::IdealRoom knocked = room;
         CameraModel& device = projector ? knocked.rig.projector : knocked.rig.right_camera;
-        device.device_from_rig = Eigen::AngleAxisd((projector ? 0.01 : 0.02) * M_PI / 180, Vector3d::UnitX()) * device.device_from_rig;
+        device.device_from_rig =
+            Eigen::AngleAxisd((projector ? 0.01 : 0.02) * M_PI / 180, Vector3d::UnitX()) * device.device_from_rig;
         auto poses = room.observe();
         const auto after = knocked.observe();
         for (std::size_t i = 4; i < poses.size(); ++i) poses[i] = after[i];

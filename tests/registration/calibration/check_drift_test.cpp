@@ -23,9 +23,13 @@ const Scanned& scanned() {
     return s;
 }
 
-DriftCheck checked(const RigCalibration& rig) { return check_drift(scan_from_capture(scanned().shot, rig), rig); }
+DriftCheck checked(const RigCalibration& rig) {
+    return check_drift(scan_from_capture(scanned().shot, rig), rig);
+}
 
-RigidTransform turned_by(double degrees, const Eigen::Vector3d& axis) { return RigidTransform(Eigen::AngleAxisd(degrees * M_PI / 180, axis)); }
+RigidTransform turned_by(double degrees, const Eigen::Vector3d& axis) {
+    return RigidTransform(Eigen::AngleAxisd(degrees * M_PI / 180, axis));
+}
 
 TEST(CheckDrift, AGoodRigIsGood) {
     const DriftCheck check = checked(scanned().rig);

@@ -16,13 +16,17 @@ Vector2d opencv_pixel(const CameraModel& d, const Vector3d& p_in_rig) {
     const Vector3d p = d.device_from_rig * p_in_rig;
     std::vector<cv::Point2d> pixels;
     cv::projectPoints(std::vector<cv::Point3d>{{p.x(), p.y(), p.z()}}, cv::Vec3d(0, 0, 0), cv::Vec3d(0, 0, 0),
-                      cv::Matx33d(d.focal_x, 0, d.centre_x, 0, d.focal_y, d.centre_y, 0, 0, 1), std::vector<double>{d.k1, d.k2, d.p1, d.p2, d.k3}, pixels);
+                      cv::Matx33d(d.focal_x, 0, d.centre_x, 0, d.focal_y, d.centre_y, 0, 0, 1),
+                      std::vector<double>{d.k1, d.k2, d.p1, d.p2, d.k3}, pixels);
     return {pixels[0].x, pixels[0].y};
 }
 
-bool inside(const CameraModel& d, const Vector2d& p) { return p.x() > 2 && p.y() > 2 && p.x() < d.width - 3 && p.y() < d.height - 3; }
+bool inside(const CameraModel& d, const Vector2d& p) {
+    return p.x() > 2 && p.y() > 2 && p.x() < d.width - 3 && p.y() < d.height - 3;
+}
 
-CameraModel device(int width, int height, double focal, double centre_x, double centre_y, const Vector3d& eye, const Vector3d& target) {
+CameraModel device(int width, int height, double focal, double centre_x, double centre_y, const Vector3d& eye,
+                   const Vector3d& target) {
     CameraModel d;
     d.width = width;
     d.height = height;
@@ -38,7 +42,8 @@ CameraModel device(int width, int height, double focal, double centre_x, double 
 }
 
 /// Pixels of the camera that look at the board, and what lights them.
-void light_up(const IdealRoom& room, const CameraModel& camera, const RigidTransform& rig_from_board, std::mt19937& random, CameraObservation& seen) {
+void light_up(const IdealRoom& room, const CameraModel& camera, const RigidTransform& rig_from_board, std::mt19937& random,
+              CameraObservation& seen) {
     std::normal_distribution<double> noise(0, room.light_noise_px);
     const RigidTransform board_from_camera = rig_from_board.inverse() * camera.device_from_rig.inverse();
     for (int y = 4; y < camera.height; y += 25)
@@ -46,9 +51,10 @@ void light_up(const IdealRoom& room, const CameraModel& camera, const RigidTrans
             std::vector<cv::Point2d> normal;
             cv::undistortPoints(std::vector<cv::Point2d>{{static_cast<double>(x), static_cast<double>(y)}}, normal,
                                 cv::Matx33d(camera.focal_x, 0, camera.centre_x, 0, camera.focal_y, camera.centre_y, 0, 0, 1),
-                                std::vector<double>{camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}, cv::noArray(), cv::noArray(),
-                                {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 60, 1e-12});
-            const Vector3d origin = board_from_camera.translation(), way = board_from_camera.linear() * Vector3d(normal[0].x, normal[0].y, 1);
+                                std::vector<double>{camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}, cv::noArray(),
+                                cv::noArray(), {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 60, 1e-12});
+            const Vector3d origin = board_from_camera.translation(),
+                           way = board_from_camera.linear() * Vector3d(normal[0].x, normal[0].y, 1);
             const Vector3d p = origin - way * (origin.z() / way.z());
             if (p.x() < 2 || p.y() < 2 || p.x() > room.board.width_mm() - 2 || p.y() > room.board.height_mm() - 2) continue;
             const Vector2d lit = opencv_pixel(room.rig.projector, rig_from_board * p);
@@ -100,7 +106,9 @@ IdealRoom ideal_room(int poses, double tilt_deg, const char* board) {
     for (int i = 0; i < poses; ++i) {
         const double way = 2 * M_PI * i / poses + 0.3, tilt = tilt_deg * M_PI / 180;
         RigidTransform pose = RigidTransform::Identity();
-        pose.linear() = (Eigen::AngleAxisd(tilt, Vector3d(std::cos(way), std::sin(way), 0)) * Eigen::AngleAxisd(0.7 * i, Vector3d::UnitZ())).toRotationMatrix();
+        pose.linear() =
+            (Eigen::AngleAxisd(tilt, Vector3d(std::cos(way), std::sin(way), 0)) * Eigen::AngleAxisd(0.7 * i, Vector3d::UnitZ()))
+                .toRotationMatrix();
         pose.translation() = target + Vector3d(20 * std::cos(3.0 * i), 15 * std::sin(2.0 * i), i % 2 ? 45 : -45) -
                              pose.linear() * Vector3d(room.board.width_mm() / 2, room.board.height_mm() / 2, 0);
         room.rig_from_board.push_back(pose);

@@ -2,8 +2,8 @@
 
 #include <random>
 
-#include "registration/calibration/observe_pose.h"
 #include "planning_io/types/rig_calibration.h"
+#include "registration/calibration/observe_pose.h"
 
 namespace planlight::test {
 

@@ -20,7 +20,8 @@ struct Room {
     bool refused = false;
     std::array<double, 3> held_out_px{};
     double length_mm = 0, scale_mm = 0;
-    double point_rms_mm = 0, point_p95_mm = 0, predicted_rms_mm = 0, light_p95_mm = 0, predicted_light_rms_mm = 0, light_rms_mm = 0;
+    double point_rms_mm = 0, point_p95_mm = 0, predicted_rms_mm = 0, light_p95_mm = 0, predicted_light_rms_mm = 0,
+           light_rms_mm = 0;
 };
 
 RigEstimate devices_of(const RigCalibration& rig) {
@@ -34,7 +35,8 @@ RigEstimate devices_of(const RigCalibration& rig) {
 void compare(const Calibration& calibration, const RigCalibration& truth, Room& room) {
     const VolumeError& volume = *calibration.volume;
     const RigEstimate true_rig = devices_of(truth);
-    const RigidTransform true_from_found = truth.left_camera.device_from_rig.inverse();  // the found rig frame is the left camera's
+    const RigidTransform true_from_found =
+        truth.left_camera.device_from_rig.inverse();  // the found rig frame is the left camera's
     std::vector<Vector3d> found, wanted;
     double predicted = 0, light_predicted = 0;
     std::vector<double> light;
@@ -52,7 +54,8 @@ void compare(const Calibration& calibration, const RigCalibration& truth, Room& 
         wanted.push_back(p);
         predicted += volume.sigma_mm[i] * volume.sigma_mm[i];
         if (!pixels[0] || !pixels[1] || !pixels[2] || std::isnan(volume.light_sigma_mm[i])) continue;
-        const auto by_cameras = triangulate_pixels(calibration.bundle.rig, {pixels[0], pixels[1], std::nullopt}, kScanSigma_px, volume.points[i]);
+        const auto by_cameras =
+            triangulate_pixels(calibration.bundle.rig, {pixels[0], pixels[1], std::nullopt}, kScanSigma_px, volume.points[i]);
         if (!by_cameras) continue;
         const double mm_per_px = (truth.projector.device_from_rig * p).z() / truth.projector.focal_x;
         light.push_back(mm_per_px * (*project(*calibration.device(DeviceName::projector), *by_cameras) - *pixels[2]).norm());
@@ -85,7 +88,8 @@ void compare(const Calibration& calibration, const RigCalibration& truth, Room& 
 void print_distribution(const std::string& name, std::vector<double> values) {
     if (values.empty()) return;
     std::sort(values.begin(), values.end());
-    fmt::print("{:<44} median {:.3f}   95 % {:.3f}   worst {:.3f}\n", name, values[values.size() / 2], values[values.size() * 95 / 100], values.back());
+    fmt::print("{:<44} median {:.3f}   95 % {:.3f}   worst {:.3f}\n", name, values[values.size() / 2],
+               values[values.size() * 95 / 100], values.back());
 }
 
 }  // namespace
@@ -110,7 +114,8 @@ int main(int argc, char** argv) {
         sheet.bend_direction = 0.3 * settings.seed;
         simulation::SimulatedBoardRoom simulated(sheet, settings);
         const auto poses = test::observe_room(simulated, board);
-        const Calibration calibration = calibrate_rig(poses, board, simulated.projector().width(), simulated.projector().height());
+        const Calibration calibration =
+            calibrate_rig(poses, board, simulated.projector().width(), simulated.projector().height());
         Room room;
         if (calibration.refusal) {
             room.refused = true;
@@ -120,11 +125,13 @@ int main(int argc, char** argv) {
             room.length_mm = calibration.held_out.length_rms_mm;
             room.scale_mm = calibration.held_out.length_mean_mm;
             compare(calibration, simulated.true_rig(), room);
-            fmt::print("seed {}: held out {:.3f} {:.3f} {:.3f} px; length {:.3f} mm a 200; points off {:.4f} mm rms, said {:.4f}; light off {:.4f}, said {:.4f}; bend {:.3f} {:.3f} {:.3f}; left out {} {} {}; factor {:.2f}\n",
-                       settings.seed, room.held_out_px[0], room.held_out_px[1], room.held_out_px[2], room.length_mm, room.point_rms_mm, room.predicted_rms_mm,
-                       room.light_rms_mm, room.predicted_light_rms_mm, calibration.bundle.rig.bend_mm.x(), calibration.bundle.rig.bend_mm.y(), calibration.bundle.rig.bend_mm.z(),
-                       calibration.bundle.left_out[0], calibration.bundle.left_out[1], calibration.bundle.left_out[2],
-                       calibration.held_out.uncertainty_factor);
+            fmt::print(
+                "seed {}: held out {:.3f} {:.3f} {:.3f} px; length {:.3f} mm a 200; points off {:.4f} mm rms, said {:.4f}; "
+                "light off {:.4f}, said {:.4f}; bend {:.3f} {:.3f} {:.3f}; left out {} {} {}; factor {:.2f}\n",
+                settings.seed, room.held_out_px[0], room.held_out_px[1], room.held_out_px[2], room.length_mm, room.point_rms_mm,
+                room.predicted_rms_mm, room.light_rms_mm, room.predicted_light_rms_mm, calibration.bundle.rig.bend_mm.x(),
+                calibration.bundle.rig.bend_mm.y(), calibration.bundle.rig.bend_mm.z(), calibration.bundle.left_out[0],
+                calibration.bundle.left_out[1], calibration.bundle.left_out[2], calibration.held_out.uncertainty_factor);
         }
         std::fflush(stdout);
         rooms.push_back(room);
@@ -135,13 +142,17 @@ int main(int argc, char** argv) {
             if (!room.refused) v.push_back(member(room));
         return v;
     };
-    fmt::print("{} rooms, {} refused\n", rooms.size(), std::count_if(rooms.begin(), rooms.end(), [](const Room& r) { return r.refused; }));
-    const char* names[] = {"left camera, held-out poses, px", "right camera, held-out poses, px", "projector, held-out poses, px"};
+    fmt::print("{} rooms, {} refused\n", rooms.size(),
+               std::count_if(rooms.begin(), rooms.end(), [](const Room& r) { return r.refused; }));
+    const char* names[] = {"left camera, held-out poses, px", "right camera, held-out poses, px",
+                           "projector, held-out poses, px"};
     for (std::size_t d = 0; d < 3; ++d) print_distribution(names[d], values([&](const Room& r) { return r.held_out_px[d]; }));
     print_distribution("length error, mm a 200 mm, rms of a room", values([](const Room& r) { return r.length_mm; }));
     print_distribution("points of the working volume, mm, 95 %", values([](const Room& r) { return r.point_p95_mm; }));
     print_distribution("light sent to a point, mm, 95 %", values([](const Room& r) { return r.light_p95_mm; }));
-    print_distribution("points: true rms by stated sigma", values([](const Room& r) { return r.point_rms_mm / r.predicted_rms_mm; }));
-    print_distribution("light: true rms by stated sigma", values([](const Room& r) { return r.light_rms_mm / r.predicted_light_rms_mm; }));
+    print_distribution("points: true rms by stated sigma",
+                       values([](const Room& r) { return r.point_rms_mm / r.predicted_rms_mm; }));
+    print_distribution("light: true rms by stated sigma",
+                       values([](const Room& r) { return r.light_rms_mm / r.predicted_light_rms_mm; }));
     return 0;
 }

@@ -50,12 +50,16 @@ int main(int argc, char** argv) {
         {"projector turned by 0.005 degrees half way", knocked(&RigCalibration::projector, 0.005)},
         {"projector turned by 0.01 degrees half way", knocked(&RigCalibration::projector, 0.01)},
         {"projector turned by 0.1 degrees half way", knocked(&RigCalibration::projector, 0.1)},
-        {"left and right swapped", [&](unsigned seed) { return for_each_view(room.observe(seed), [](PoseObservation& p) { std::swap(p.left, p.right); }); }},
+        {"left and right swapped",
+         [&](unsigned seed) {
+             return for_each_view(room.observe(seed), [](PoseObservation& p) { std::swap(p.left, p.right); });
+         }},
         {"projector mirrored",
          [&](unsigned seed) {
              return for_each_view(room.observe(seed), [&](PoseObservation& p) {
                  for (auto* seen : {&p.left, &p.right})
-                     for (LightSample& sample : seen->light) sample.pixel_in_projector.x() = room.rig.projector.width - 1 - sample.pixel_in_projector.x();
+                     for (LightSample& sample : seen->light)
+                         sample.pixel_in_projector.x() = room.rig.projector.width - 1 - sample.pixel_in_projector.x();
              });
          }},
         {"right pictures of the next pose",
@@ -69,7 +73,8 @@ int main(int argc, char** argv) {
         unsigned refused = 0;
         std::string example;
         for (unsigned seed = 1; seed <= seeds; ++seed) {
-            const Calibration calibration = calibrate_rig(make(seed), room.board, room.rig.projector.width, room.rig.projector.height);
+            const Calibration calibration =
+                calibrate_rig(make(seed), room.board, room.rig.projector.width, room.rig.projector.height);
             if (!calibration.refusal) continue;
             ++refused;
             example = calibration.refusal->reason;

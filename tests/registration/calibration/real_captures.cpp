@@ -70,8 +70,10 @@ std::optional<RealCaptures> camera_and_projector() {
     gray.phase_steps = 0;
     for (int pose = 0; pose < 3; ++pose) {
         std::vector<GrayImage> frames;
-        for (const int i : {40, 41}) frames.push_back(read_gray(*folder / fmt::format("capture_{}/graycode_{:02}.png", pose, i)));
-        for (int i = 0; i < 40; ++i) frames.push_back(read_gray(*folder / fmt::format("capture_{}/graycode_{:02}.png", pose, i)));
+        for (const int i : {40, 41})
+            frames.push_back(read_gray(*folder / fmt::format("capture_{}/graycode_{:02}.png", pose, i)));
+        for (int i = 0; i < 40; ++i)
+            frames.push_back(read_gray(*folder / fmt::format("capture_{}/graycode_{:02}.png", pose, i)));
         captures.poses.push_back({fmt::format("capture_{}", pose), observe_board(frames, gray, captures.board), {}});
     }
     const cv::FileStorage file((*folder / "calibration_result.xml").string(), cv::FileStorage::READ);

@@ -12,10 +12,11 @@ struct RealCaptures {
     BoardSpec board;
     std::vector<PoseObservation> poses;
     int projector_width = 0, projector_height = 0;
-    RigEstimate published;        ///< devices only
+    RigEstimate published;  ///< devices only
 };
 
-/// The usual ones, but three poses of a board whose unit is unknown (a third of a mm, if it is printed on A4) may leave more in doubt.
+/// The usual ones, but three poses of a board whose unit is unknown (a third of a mm, if it is printed on A4) may leave more in
+/// doubt.
 CalibrationSettings settings_for_real_captures();
 
 /// 13 stereo pairs of OpenCV's documentation; the left camera's intrinsics are published. Empty when not on this machine.

@@ -33,7 +33,9 @@ protected:
         static const auto seen = test::observe_room(room(), parse_board(kBoard));
         return seen;
     }
-    static Calibration calibrate(const std::vector<PoseObservation>& seen) { return calibrate_rig(seen, parse_board(kBoard), 800, 600); }
+    static Calibration calibrate(const std::vector<PoseObservation>& seen) {
+        return calibrate_rig(seen, parse_board(kBoard), 800, 600);
+    }
 };
 
 TEST_F(SimulatedCaptures, CornersAndLightAreWhereTheSimulatorPutThem) {
@@ -44,7 +46,9 @@ TEST_F(SimulatedCaptures, CornersAndLightAreWhereTheSimulatorPutThem) {
         std::vector<double> corner_off, light_off;
         const auto& seen = poses()[i].left;
         for (std::size_t c = 0; c < seen.corners.size(); ++c)
-            corner_off.push_back((seen.corners.pixels[c] - *project(truth.left_camera, rig_from_board * board.corner_in_board(seen.corners.ids[c]))).norm());
+            corner_off.push_back((seen.corners.pixels[c] -
+                                  *project(truth.left_camera, rig_from_board * board.corner_in_board(seen.corners.ids[c])))
+                                     .norm());
         for (const LightSample& sample : seen.light) {
             const auto p = board_point(truth.left_camera, sample.pixel_in_camera, rig_from_board, Vector3d::Zero(), board);
             light_off.push_back((sample.pixel_in_projector - *project(truth.projector, rig_from_board * *p)).norm());
@@ -66,7 +70,8 @@ TEST_F(SimulatedCaptures, FivePosesReachTheGoalsOnHeldOutPoses) {
     EXPECT_LT(found.held_out.rms_px[2], 0.20);
     EXPECT_LT(found.held_out.length_rms_mm, 0.15);
     const RigCalibration truth = room().true_rig();
-    EXPECT_NEAR(found.device(DeviceName::projector)->centre_y, truth.projector.centre_y, 4) << "the axis leaves near the picture's lower edge";
+    EXPECT_NEAR(found.device(DeviceName::projector)->centre_y, truth.projector.centre_y, 4)
+        << "the axis leaves near the picture's lower edge";
     const RigCalibration rig = rig_calibration_of(found, "2001-01-01");
     EXPECT_NEAR((rig.right_camera.centre_in_rig() - rig.left_camera.centre_in_rig()).norm(),
                 (truth.right_camera.centre_in_rig() - truth.left_camera.centre_in_rig()).norm(), 0.25);
@@ -96,7 +101,8 @@ TEST_F(SimulatedCaptures, SaturatedAndDimRoomsAreRefused) {
         all[0] = seen[0];
         const Calibration calibration = calibrate(all);
         ASSERT_TRUE(calibration.refusal) << brightness;
-        EXPECT_NE(calibration.refusal->reason.find(brightness > 1 ? "saturated" : "too dark"), std::string::npos) << calibration.refusal->reason;
+        EXPECT_NE(calibration.refusal->reason.find(brightness > 1 ? "saturated" : "too dark"), std::string::npos)
+            << calibration.refusal->reason;
     }
 }
 
@@ -105,7 +111,8 @@ TEST_F(SimulatedCaptures, ADoubledFrameIsNotDecodedInstead) {
     room().lay(0);
     const StripeSettings stripes = test::stripes_of(room());
     ScanCapture capture = capture_scan(room().projector(), room().cameras(), room().clock(), stripes);
-    for (std::size_t i = capture.left.size() - 1; i > 4; --i) capture.left[i] = capture.left[i - 1];  // one frame late from the fourth on
+    for (std::size_t i = capture.left.size() - 1; i > 4; --i)
+        capture.left[i] = capture.left[i - 1];  // one frame late from the fourth on
     const CameraObservation late = observe_board(capture.left, stripes, board);
     std::vector<PoseObservation> all = poses();
     all[0].left = late;
