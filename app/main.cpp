@@ -82,10 +82,38 @@ void add_patterns(CLI::App& app, PatternsOptions& o) {
     json_flag(sub, o.json);
 }
 
+void add_board(CLI::App& app, BoardOptions& o) {
+    auto* sub = command(app, "board", "Draw the calibration board to print (PNG and PDF, true size, grey instead of black)",
+                        "board --board \"charuco 10x7 25 mm\" --out board");
+    sub->add_option("--board", o.board, "charuco COLUMNSxROWS (squares) or chessboard COLUMNSxROWS (inner corners), and the square in mm")
+        ->capture_default_str();
+    sub->add_option("--out", o.out, "File to write, without ending")->capture_default_str();
+    json_flag(sub, o.json);
+}
+
+void add_calibrate(CLI::App& app, CalibrateOptions& o) {
+    auto* sub = command(app, "calibrate", "Captures of a board under coded light -> rig.json, or a refusal (exit 6)",
+                        "calibrate captures --board \"charuco 10x7 25 mm\" --out rig.json");
+    sub->add_option("captures", o.captures, "Folder with one folder a pose")->required();
+    sub->add_option("--board", o.board, "The board, its square as measured: \"charuco 10x7 24.98 mm\" or \"chessboard 9x6 25 mm\"")->required();
+    sub->add_option("--out", o.out, "rig.json to write; the report stands beside it")->capture_default_str();
+    json_flag(sub, o.json);
+}
+
+void add_check(CLI::App& app, CheckOptions& o) {
+    auto* sub = command(app, "check", "One scan of anything against rig.json: has the rig moved? (exit 6 if so)", "check room/capture --rig room/rig.json");
+    sub->add_option("capture", o.capture, "Capture folder of a scan: a board, a phantom, the patient")->required();
+    sub->add_option("--rig", o.rig, "rig.json")->required();
+    sub->add_option("--log", o.log, "Where the checks are kept for the trend (default: beside rig.json)");
+    json_flag(sub, o.json);
+}
+
 void add_simulate(CLI::App& app, SimulateOptions& o) {
     auto* sub = command(app, "simulate", "Captures of a simulated room, with ground truth in a file of its own",
                         "simulate Cranium.inv3 --plan frontal_defect.mrk.json --preset paper --seed 3 --out room");
-    sub->add_option("volume", o.volume, "The patient: DICOM folder or file, or InVesalius project")->required();
+    sub->add_option("volume", o.volume, "The patient: DICOM folder or file, or InVesalius project");
+    sub->add_option("--board", o.board, "Instead of a patient a calibration board, as for `calibrate`; writes captures/ and truth.json");
+    sub->add_option("--poses", o.poses, "Of the board")->capture_default_str()->check(CLI::Range(1, 1000));
     sub->add_option("--plan", o.plan, "Plan, so that markers keep clear of it");
     preset_option(sub, o.preset);
     sub->add_option("--seed", o.seed, "Of everything random")->capture_default_str();
@@ -194,6 +222,9 @@ int main(int argc, char** argv) {
     PrepareOptions prepare;
     PlanOptions plan;
     PatternsOptions patterns;
+    BoardOptions board;
+    CalibrateOptions calibrate;
+    CheckOptions check;
     SimulateOptions simulate;
     ScanOptions scan;
     RegisterOptions registration;
@@ -206,6 +237,9 @@ int main(int argc, char** argv) {
     add_prepare(app, prepare);
     add_plan(app, plan);
     add_patterns(app, patterns);
+    add_board(app, board);
+    add_calibrate(app, calibrate);
+    add_check(app, check);
     add_scan(app, scan);
     add_register(app, registration);
     add_track(app, track);
@@ -224,6 +258,9 @@ int main(int argc, char** argv) {
         if (name == "prepare") return run_prepare(prepare);
         if (name == "plan") return run_plan(plan);
         if (name == "patterns") return run_patterns(patterns);
+        if (name == "board") return run_board(board);
+        if (name == "calibrate") return run_calibrate(calibrate);
+        if (name == "check") return run_check(check);
         if (name == "scan") return run_scan(scan);
         if (name == "register") return run_register(registration);
         if (name == "track") return run_track(track);

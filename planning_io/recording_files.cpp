@@ -99,8 +99,7 @@ void write_capture(const CaptureFolder& capture, const fs::path& folder) {
     });
 }
 
-CaptureFolder read_capture(const fs::path& folder) {
-    const fs::path file = folder / "capture.json";
+CaptureFolder read_capture_settings(const fs::path& file) {
     const Json json = parse_file(file, "planlight capture");
     const JsonValue root(json, file);
     CaptureFolder capture;
@@ -112,13 +111,22 @@ CaptureFolder read_capture(const fs::path& folder) {
     capture.inverse = root.at("inverse").flag();
     if (const auto began = root.find("began_ns")) capture.began = instant_of(*began);
     if (const auto ended = root.find("ended_ns")) capture.ended = instant_of(*ended);
-    const JsonValue names = root.at("names");
-    if (names.size() == 0 || names.size() > 10000) names.refuse("must be a list of 1 to 10000 names");
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        capture.names.push_back(names[i].text());
-        const std::string& name = capture.names.back();
+    const auto names = root.find("names");
+    if (!names) return capture;
+    if (names->size() == 0 || names->size() > 10000) names->refuse("must be a list of 1 to 10000 names");
+    for (std::size_t i = 0; i < names->size(); ++i) {
+        const std::string name = (*names)[i].text();
         check_name(name, file);
-        if (std::count(capture.names.begin(), capture.names.end(), name) > 1) names[i].refuse("is named twice");
+        if (std::count(capture.names.begin(), capture.names.end(), name) > 0) (*names)[i].refuse("is named twice");
+        capture.names.push_back(name);
+    }
+    return capture;
+}
+
+CaptureFolder read_capture(const fs::path& folder) {
+    CaptureFolder capture = read_capture_settings(folder / "capture.json");
+    if (capture.names.empty()) throw InputError(folder / "capture.json", "has no list of names", "Name the pictures in the order of the sequence.");
+    for (const std::string& name : capture.names) {
         read_picture(capture.left, folder / "left" / (name + ".png"));
         read_picture(capture.right, folder / "right" / (name + ".png"));
     }

@@ -24,6 +24,9 @@ struct CaptureFolder {
 void write_capture(const CaptureFolder& capture, const std::filesystem::path& folder);
 CaptureFolder read_capture(const std::filesystem::path& folder);
 
+/// What capture.json says, without the pictures. `names` may be missing there (empty then).
+CaptureFolder read_capture_settings(const std::filesystem::path& file);
+
 /// A recorded run of stereo frames for tracking: frames.json (times, numbers) and left/NNNNNN.png, right/NNNNNN.png.
 struct RecordedFrame {
     GrayImage left, right;

@@ -30,6 +30,16 @@ ScanCapture scan_capture_from(const CaptureFolder& folder, const std::filesystem
     return capture;
 }
 
+void check_sizes(const ScanCapture& capture, const RigCalibration& rig, const std::filesystem::path& folder) {
+    const auto fits = [](const GrayImage& picture, const CameraModel& camera) {
+        return picture.width == camera.width && picture.height == camera.height;
+    };
+    if (!fits(capture.left.front(), rig.left_camera) || !fits(capture.right.front(), rig.right_camera) ||
+        capture.stripes.width != rig.projector.width || capture.stripes.height != rig.projector.height)
+        throw InputError(folder, "the pictures or the projector have another size than the rig file says",
+                         "Use the rig.json of the rig that this capture was made with.");
+}
+
 CaptureFolder capture_folder_from(const ScanCapture& capture) {
     CaptureFolder folder;
     folder.projector_width = capture.stripes.width;

@@ -10,4 +10,7 @@ namespace planlight {
 ScanCapture scan_capture_from(const CaptureFolder& folder, const std::filesystem::path& named);
 CaptureFolder capture_folder_from(const ScanCapture& capture);
 
+/// Throws InputError when the pictures or the projector have another size than the rig says.
+void check_sizes(const ScanCapture& capture, const RigCalibration& rig, const std::filesystem::path& folder);
+
 }  // namespace planlight

@@ -38,8 +38,30 @@ struct PatternsOptions {
 };
 int run_patterns(const PatternsOptions& options);
 
+struct BoardOptions {
+    std::string board = "charuco 10x7 25 mm";
+    Path out = "board";  ///< without ending
+    bool json = false;
+};
+int run_board(const BoardOptions& options);
+
+struct CalibrateOptions {
+    Path captures, out = "rig.json";
+    std::string board;
+    bool json = false;
+};
+int run_calibrate(const CalibrateOptions& options);
+
+struct CheckOptions {
+    Path capture, rig, log;  ///< log empty: beside the rig file
+    bool json = false;
+};
+int run_check(const CheckOptions& options);
+
 struct SimulateOptions {
     Path volume, plan, out;
+    std::string board;  ///< captures of a calibration board instead of a patient
+    int poses = 15;
     std::string preset = "modern";
     unsigned seed = 1;
     int frames = 20;
@@ -47,6 +69,7 @@ struct SimulateOptions {
     bool json = false;
 };
 int run_simulate(const SimulateOptions& options);
+int run_simulate_board(const SimulateOptions& options);  ///< with `board` given
 
 struct ScanOptions {
     Path capture, rig, out, raw_out;

@@ -10,6 +10,7 @@
 #include "planning_io/read_volume.h"
 #include "planning_io/rig_file.h"
 #include "planning_io/safe_write.h"
+#include "planning_io/types/error.h"
 #include "registration/simulation/simulated_rig.h"
 
 namespace planlight {
@@ -29,6 +30,8 @@ std::vector<RecordedFrame> record_frames(simulation::SimulatedRig& rig, const Si
 }  // namespace
 
 int run_simulate(const SimulateOptions& options) {
+    if (!options.board.empty()) return run_simulate_board(options);
+    if (options.volume.empty()) throw InputError({}, "neither a patient nor a board is given", "Name a volume, or a board with --board.");
     const Volume volume = read_volume(options.volume);
     const Plan plan = options.plan.empty() ? Plan{} : read_plan(options.plan);
     simulation::RoomSettings room;

@@ -14,7 +14,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 namespace {
-constexpr int kFiner = 4;                  ///< samples along each side of a pixel with an edge in it
 constexpr double kScatter_mm = 0.9;        ///< how far light wanders in the skin
 constexpr double kFocusDepth_mm = 90;      ///< from the focus to the full blur
 constexpr double kShine = 28;              ///< exponent of the highlight
@@ -105,17 +104,18 @@ void CameraView::keep_row(const Scene& scene, int y) {
             if (me.lit) row.samples.push_back(me.sample);
             translucency_[index(x, y)] = me.translucent;
         } else {
-            constexpr float kShare = 1.0F / (kFiner * kFiner);
+            const int finer = scene.finer;
+            const float share = 1.0F / static_cast<float>(finer * finer);
             float translucent = 0;
-            for (int s = 0; s < kFiner * kFiner; ++s) {
-                const Vector2d at(x + (s % kFiner + 0.5) / kFiner - 0.5, y + (s / kFiner + 0.5) / kFiner - 0.5);
+            for (int s = 0; s < finer * finer; ++s) {
+                const Vector2d at(x + (s % finer + 0.5) / finer - 0.5, y + (s / finer + 0.5) / finer - 0.5);
                 Traced fine = trace(scene, at);
-                pixel.ambient += kShare * fine.ambient;
-                pixel.soft_albedo += kShare * fine.soft_albedo;
-                translucent += kShare * fine.translucent;
+                pixel.ambient += share * fine.ambient;
+                pixel.soft_albedo += share * fine.soft_albedo;
+                translucent += share * fine.translucent;
                 if (!fine.lit) continue;
-                fine.sample.hard *= kShare;
-                fine.sample.soft *= kShare;
+                fine.sample.hard *= share;
+                fine.sample.soft *= share;
                 row.samples.push_back(fine.sample);
             }
             translucency_[index(x, y)] = translucent;
@@ -141,7 +141,8 @@ void CameraView::look(const Scene& scene) {
     tbb::parallel_for(all, [&](const tbb::blocked_range<int>& rows) {
         for (int y = rows.begin(); y < rows.end(); ++y) keep_row(scene, y);
     });
-    keep_translucency();
+    any_soft_ = std::any_of(traced_.begin(), traced_.end(), [](const Traced& t) { return t.translucent > 0; });
+    if (any_soft_) keep_translucency();
 }
 
 void CameraView::keep_translucency() {
@@ -168,6 +169,7 @@ void CameraView::expose(const LightMap& light, float lit, float ambient, std::ve
             }
         }
     });
+    if (!any_soft_) return;
     wide_blur(soft_, scratch_, width_, height_, std::max(1, static_cast<int>(std::lround(kScatter_mm / mm_per_px_))));
     tbb::parallel_for(tbb::blocked_range<int>(top_, bottom_, 8), [&](const tbb::blocked_range<int>& rows) {
         for (int y = rows.begin(); y < rows.end(); ++y)

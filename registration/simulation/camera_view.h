@@ -5,17 +5,17 @@
 
 #include "registration/simulation/light.h"
 #include "registration/simulation/optics.h"
-#include "registration/simulation/skin_look.h"
-#include "registration/simulation/true_surface.h"
+#include "registration/simulation/surface.h"
 
 namespace planlight::simulation {
 
 /// What is in the room, in ct at one moment.
 struct Scene {
-    const TrueSurface& skin;
-    const SkinLook& look;
+    const Surface& skin;
+    const SurfaceLook& look;
     Optics camera, projector;           ///< in ct
     double working_distance_mm = 900;   ///< where the projector is in focus and white is 1
+    int finer = 4;                      ///< samples along each side of a pixel with an edge in it
 };
 
 /// What one camera sees of the head at one pose: for every pixel where its light comes from on the projector's panel, and
@@ -68,6 +68,7 @@ private:
     std::vector<Traced> traced_;
     std::vector<Row> rows_;
     std::vector<float> translucency_;  ///< 1 / blurred coverage of translucent skin
+    bool any_soft_ = false;            ///< some of what is seen is translucent
     std::vector<float> soft_, scratch_;
 };
 

@@ -5,25 +5,19 @@
 #include <optional>
 
 #include "planning_io/types/volume.h"
+#include "registration/simulation/surface.h"
 
 namespace planlight::simulation {
 
 /// The true skin: the zero level of the CT field. Rays find it by a fine mesh first and are then refined on the field.
-class TrueSurface {
+class TrueSurface final : public Surface {
 public:
     /// Throws std::invalid_argument when no head surface is in the volume.
     TrueSurface(const Volume& volume, double threshold);
-    ~TrueSurface();
+    ~TrueSurface() override;
 
-    struct Hit {
-        Eigen::Vector3d p_in_ct, normal_in_ct;
-        double distance_mm = 0;
-    };
-    /// The first skin along a ray in ct (`direction` of unit length).
-    std::optional<Hit> first_hit(const Eigen::Vector3d& origin_in_ct, const Eigen::Vector3d& direction) const;
-
-    /// True when skin lies between a skin point (moved off the surface by a little) and a light.
-    bool in_shadow(const Eigen::Vector3d& p_in_ct, const Eigen::Vector3d& normal_in_ct, const Eigen::Vector3d& light_in_ct) const;
+    std::optional<Hit> first_hit(const Eigen::Vector3d& origin_in_ct, const Eigen::Vector3d& direction) const override;
+    bool in_shadow(const Eigen::Vector3d& p_in_ct, const Eigen::Vector3d& normal_in_ct, const Eigen::Vector3d& light_in_ct) const override;
 
     struct Nearest {
         Eigen::Vector3d p_in_ct;
@@ -33,10 +27,8 @@ public:
     /// The skin point nearest to `p_in_ct`, on the field itself.
     Nearest nearest(const Eigen::Vector3d& p_in_ct) const;
 
-    Eigen::Vector3d low_in_ct() const;
-    Eigen::Vector3d high_in_ct() const;
-    /// Middle of the box round the head.
-    Eigen::Vector3d middle_in_ct() const { return (low_in_ct() + high_in_ct()) / 2; }
+    Eigen::Vector3d low_in_ct() const override;
+    Eigen::Vector3d high_in_ct() const override;
     std::size_t triangle_count() const;
 
 private:

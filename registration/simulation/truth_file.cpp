@@ -32,6 +32,8 @@ json rig_json(const RigCalibration& rig) {
 
 }  // namespace
 
+std::string rig_as_json(const RigCalibration& rig) { return rig_json(rig).dump(); }
+
 std::string as_json(const TruthNumbers& truth) {
     json markers = json::array();
     for (std::size_t i = 0; i < truth.markers_in_ct.size(); ++i)

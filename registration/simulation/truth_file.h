@@ -20,4 +20,7 @@ struct TruthNumbers {
 /// The truth file's text (README.md of this room).
 std::string as_json(const TruthNumbers& truth);
 
+/// The devices of a rig, in the words of the truth file.
+std::string rig_as_json(const RigCalibration& rig);
+
 }  // namespace planlight::simulation

@@ -104,6 +104,9 @@ TEST_F(CommandsTest, StagesOnFilesFindThePatientWithinAMillimetreOfTheTruth) {
     ASSERT_EQ(simulated_.exit_code, 0) << simulated_.err;
     const auto scan = run_planlight("scan room/capture --rig room/rig.json --out cloud.ply --json", root());
     ASSERT_EQ(scan.exit_code, 0) << scan.err;
+    const auto check = run_planlight("check room/capture --rig room/rig.json --json", root());
+    ASSERT_EQ(check.exit_code, 0) << check.err;
+    EXPECT_EQ(json::parse(check.out)["verdict"], "good") << "the patient's own scan checks the rig";
     const auto found = run_planlight("register case --cloud cloud.ply --out registration.json --json", root());
     ASSERT_EQ(found.exit_code, 0) << found.err;
     const auto track = run_planlight("track room/frames --rig room/rig.json --capture room/capture --out poses.json --json", root());
@@ -361,7 +364,8 @@ TEST_F(CommandsTest, WrongUsageGivesExitTwo) {
 
 TEST_F(CommandsTest, EveryCommandExplainsItselfWithAnExample) {
     for (const char* name :
-         {"demo", "prepare", "plan", "patterns", "scan", "register", "track", "project", "session", "review", "simulate"}) {
+         {"demo", "prepare", "plan", "patterns", "scan", "register", "track", "project", "session", "review", "simulate",
+          "board", "calibrate", "check"}) {
         const auto run = run_planlight(std::string(name) + " --help", root());
         EXPECT_EQ(run.exit_code, 0) << name;
         EXPECT_NE(run.out.find("Example:"), std::string::npos) << name;

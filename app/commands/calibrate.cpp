@@ -1,0 +1,128 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <ctime>
+#include <iostream>
+
+#include "app/commands/commands.h"
+#include "app/console.h"
+#include "app/report/calibration_report.h"
+#include "planning_io/board_captures.h"
+#include "planning_io/rig_file.h"
+#include "planning_io/safe_write.h"
+#include "planning_io/types/error.h"
+#include "registration/calibration/gray_code.h"
+
+namespace planlight {
+namespace {
+
+std::string today() {
+    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return text;
+}
+
+StripeSettings stripes_of(const CaptureFolder& settings, const Path& pose) {
+    StripeSettings stripes;
+    stripes.width = settings.projector_width;
+    stripes.height = settings.projector_height;
+    stripes.phase_steps = settings.phase_steps;
+    stripes.phase_period_px = settings.phase_period_px;
+    stripes.rows = settings.rows;
+    stripes.inverse = settings.inverse;
+    if (!stripes.rows)
+        throw InputError(pose, "codes the projector's columns only", "Calibrate with a sequence that codes columns and rows.");
+    if (stripes.phase_steps == 0 && !stripes.inverse)
+        throw InputError(pose, "is a Gray code without fringes and without inverse pictures",
+                         "Capture each Gray picture and its inverse.");
+    return stripes;
+}
+
+std::vector<std::string> names_of(const StripeSettings& stripes, const Path& pose) {
+    if (stripes.phase_steps == 0) return gray_code_names(stripes.width, stripes.height);
+    try {
+        std::vector<std::string> names;
+        for (const StripePattern& pattern : stripe_sequence(stripes)) names.push_back(pattern.name);
+        return names;
+    } catch (const std::invalid_argument& error) {
+        throw InputError(pose, error.what(), "Correct capture.json.");
+    }
+}
+
+struct Observed {
+    std::vector<PoseObservation> poses;
+    int projector_width = 0, projector_height = 0;
+};
+
+/// One pose after the other, so that only one pose's pictures are in memory.
+Observed observe_captures(const CalibrateOptions& options, const BoardSpec& board) {
+    Observed observed;
+    ProgressBar bar;
+    const auto folders = pose_folders(options.captures);
+    for (std::size_t i = 0; i < folders.size(); ++i) {
+        const auto settings = pose_settings(folders[i]);
+        std::optional<StripeSettings> stripes;
+        if (settings) stripes = stripes_of(*settings, folders[i]);
+        if (i > 0 && (stripes ? stripes->width : 0) != observed.projector_width)
+            throw InputError(folders[i], "was captured under other light than the first pose",
+                             "Capture all poses with one sequence.");
+        if (stripes) observed.projector_width = stripes->width, observed.projector_height = stripes->height;
+        const PosePictures pictures =
+            read_pose(folders[i], stripes ? names_of(*stripes, folders[i]) : std::vector<std::string>{});
+        observed.poses.push_back({folders[i].filename().string(), observe_board(pictures.left, stripes, board),
+                                  observe_board(pictures.right, stripes, board)});
+        bar.show("poses", static_cast<double>(i + 1) / static_cast<double>(folders.size()));
+    }
+    const bool right = observed.poses.front().right.width > 0;
+    for (const PoseObservation& pose : observed.poses)
+        if ((pose.right.width > 0) != right)
+            throw InputError(
+                options.captures / pose.name,
+                right ? "has no right pictures, the first pose has" : "has right pictures, the first pose has none",
+                "Capture all poses with the same cameras.");
+    return observed;
+}
+
+/// The calibration that this one would take the place of, if it can be read.
+std::optional<RigCalibration> previous_rig(const Path& file) {
+    if (!std::filesystem::exists(file)) return std::nullopt;
+    try {
+        return read_rig(file);
+    } catch (const Error& error) {
+        warn(fmt::format("the rig file there cannot be read and will be replaced: {}", error.what()));
+        return std::nullopt;
+    }
+}
+
+}  // namespace
+
+int run_calibrate(const CalibrateOptions& options) {
+    const BoardSpec board = parse_board(options.board);
+    const Observed observed = observe_captures(options, board);
+    const Calibration calibration = calibrate_rig(observed.poses, board, observed.projector_width, observed.projector_height);
+    if (calibration.refusal) throw CheckFailedError(calibration.refusal->reason, calibration.refusal->remedy);
+    CalibrationReport report{calibration, observed.poses, board, today(), {}, {}};
+    if (calibration.whole_rig()) {
+        const RigCalibration rig = rig_calibration_of(calibration, report.made_on);
+        if (const auto before = previous_rig(options.out)) report.changes = changes_since(*before, rig);
+        write_rig(rig, options.out);
+        report.rig_file = options.out;
+    }
+    Path stem = options.out;
+    stem.replace_extension();
+    const Path html = Path(stem) += "-calibration.html", json = Path(stem) += "-calibration.json";
+    write_calibration_html(report, html);
+    const std::string text = calibration_json(report);
+    write_safely(json, text);
+    for (const std::string& warning : calibration.warnings) warn(warning);
+    if (options.json)
+        std::cout << text;
+    else
+        fmt::print("{}{} and {}.\n", calibration_summary(report), html.string(), json.string());
+    return 0;
+}
+
+}  // namespace planlight

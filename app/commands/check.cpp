@@ -1,0 +1,95 @@
+#include <fmt/format.h>
+
+#include <chrono>
+#include <ctime>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "app/commands/capture_conversion.h"
+#include "app/commands/commands.h"
+#include "app/console.h"
+#include "planning_io/rig_file.h"
+#include "planning_io/safe_write.h"
+#include "planning_io/types/error.h"
+#include "registration/calibration/check_drift.h"
+
+namespace planlight {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// The checks so far; those of another rig file are no part of the trend.
+Json read_log(const Path& file) {
+    if (!std::filesystem::exists(file)) return {{"format", "planlight checks"}, {"version", 1}, {"checks", Json::array()}};
+    try {
+        Json log = Json::parse(read_whole(file));
+        if (log.at("format") == "planlight checks" && log.at("version") == 1 && log.at("checks").is_array()) return log;
+    } catch (const Json::exception&) {
+    }
+    throw DamagedFileError(file, "is not a log of checks", "Move it away; a new one is begun.");
+}
+
+std::vector<EarlierCheck> earlier_checks(const Json& log, const std::string& rig_made_on, const Path& file) {
+    std::vector<EarlierCheck> checks;
+    try {
+        for (const auto& entry : log.at("checks"))
+            if (entry.at("rig_made_on") == rig_made_on && entry.at("verdict") != text_of(DriftCheck::Verdict::cannot_tell))
+                checks.push_back({entry.at("at_unix_s").get<double>() / 86400, entry.at("epipolar_rms_px").get<double>(),
+                                  entry.at("projector_rms_px").get<double>()});
+    } catch (const Json::exception&) {
+        throw DamagedFileError(file, "holds a check that is not whole", "Move it away; a new one is begun.");
+    }
+    return checks;
+}
+
+}  // namespace
+
+int run_check(const CheckOptions& options) {
+    const RigCalibration rig = read_rig(options.rig);
+    const ScanCapture capture = scan_capture_from(read_capture(options.capture), options.capture);
+    check_sizes(capture, rig, options.capture);
+    Path file = options.log;
+    if (file.empty()) {
+        file = options.rig;
+        file.replace_extension();
+        file += "-checks.json";
+    }
+    Json log = read_log(file);
+    const DriftCheck check = check_drift(scan_from_capture(capture, rig), rig);
+    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    const Json entry = {{"at_unix_s", now},
+                        {"rig_made_on", rig.made_on},
+                        {"verdict", text_of(check.verdict)},
+                        {"points", check.points},
+                        {"epipolar_rms_px", check.epipolar_rms_px},
+                        {"projector_rms_px", check.projector_rms_px},
+                        {"projector_after_px", check.projector_after_px},
+                        {"light_off_mm", check.light_off_mm},
+                        {"projector_moved_mm", check.moved_mm},
+                        {"projector_turned_deg", check.turned * 180 / std::numbers::pi}};
+    log["checks"].push_back(entry);
+    const auto trends = drift_trends(earlier_checks(log, rig.made_on, file));
+    write_safely(file, log.dump(2) + "\n");
+    Json result = entry;
+    result["reason"] = check.reason;
+    result["trends"] = Json::array();
+    for (const DriftTrend& trend : trends) {
+        result["trends"].push_back(
+            {{"what", trend.what}, {"px_per_day", trend.px_per_day}, {"days_to_limit", trend.days_to_limit}});
+        warn(fmt::format("the {} grows by {:.3f} px a day; its limit is reached in about {:.0f} days", trend.what,
+                         trend.px_per_day, trend.days_to_limit));
+    }
+    if (options.json)
+        std::cout << result.dump(2) << '\n';
+    else
+        fmt::print(
+            "{}: {} points, epipolar error {:.2f} px, projector {:.2f} px ({:.2f} mm of light), moved {:.2f} mm; check {} in "
+            "{}.\n",
+            text_of(check.verdict), check.points, check.epipolar_rms_px, check.projector_rms_px, check.light_off_mm,
+            check.moved_mm, log["checks"].size(), file.string());
+    if (check.verdict != DriftCheck::Verdict::good) throw CheckFailedError(check.reason, check.remedy);
+    return 0;
+}
+
+}  // namespace planlight

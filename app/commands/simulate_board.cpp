@@ -1,0 +1,52 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/capture_conversion.h"
+#include "app/commands/commands.h"
+#include "app/console.h"
+#include "planning_io/safe_write.h"
+#include "registration/calibration/draw_board.h"
+#include "registration/simulation/board_room.h"
+
+namespace planlight {
+
+int run_simulate_board(const SimulateOptions& options) {
+    constexpr int kPxPerSquare = 256;
+    const BoardSpec board = parse_board(options.board);
+    simulation::BoardSheet sheet;
+    sheet.print = draw_board(board, kPxPerSquare);
+    sheet.px_per_mm = kPxPerSquare / board.square_mm;
+    simulation::BoardRoomSettings settings;
+    settings.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
+    settings.seed = options.seed;
+    settings.poses = options.poses;
+    settings.whole = board.kind == BoardSpec::Kind::chessboard;
+    simulation::SimulatedBoardRoom room(sheet, settings);
+    StripeSettings stripes;
+    stripes.width = room.projector().width();
+    stripes.height = room.projector().height();
+    ProgressBar bar;
+    for (int pose = 0; pose < room.poses(); ++pose) {
+        room.lay(pose);
+        const ScanCapture capture =
+            capture_scan(room.projector(), room.cameras(), room.clock(), stripes,
+                         [&](int done, int of) { bar.show("poses", (pose + static_cast<double>(done) / of) / room.poses()); });
+        std::filesystem::create_directories(options.out / "captures");
+        write_capture(capture_folder_from(capture), options.out / "captures" / fmt::format("pose-{:02}", pose));
+    }
+    write_safely(options.out / "truth.json", room.truth_json() + "\n");
+    const nlohmann::json result = {{"folder", options.out.string()},
+                                   {"preset", options.preset},
+                                   {"seed", options.seed},
+                                   {"board", text_of(board)},
+                                   {"poses", room.poses()}};
+    if (options.json)
+        std::cout << result.dump(2) << '\n';
+    else
+        fmt::print("{}: captures of {} poses of a {}, truth.json.\n", options.out.string(), room.poses(), text_of(board));
+    return 0;
+}
+
+}  // namespace planlight

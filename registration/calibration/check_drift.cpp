@@ -1,0 +1,119 @@
+#include "registration/calibration/check_drift.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace planlight {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+
+/// What a projector pixel is on the points, mm.
+double mm_per_px(const Triangulation& raw, const CameraModel& projector) {
+    double sum = 0;
+    for (const auto& point : raw.by_cameras) sum += (projector.device_from_rig * point.p_in_rig).z() / projector.focal_x;
+    return raw.by_cameras.empty() ? 0 : sum / static_cast<double>(raw.by_cameras.size());
+}
+
+void decide(DriftCheck& check, const DriftLimits& limits) {
+    using Verdict = DriftCheck::Verdict;
+    if (check.epipolar_rms_px > limits.epipolar_px) {
+        check.verdict = Verdict::cameras_moved;
+        check.reason =
+            fmt::format("the cameras do not fit each other any more: {:.2f} px from the epipolar lines; {:.2f} is the limit",
+                        check.epipolar_rms_px, limits.epipolar_px);
+        check.remedy = "Calibrate the rig again.";
+    } else if (check.projector_after_px > limits.projector_after_px) {
+        check.verdict = Verdict::lens_changed;
+        check.reason = fmt::format(
+            "the projector fits from no place ({:.2f} px left; {:.2f} is the limit): its zoom, focus or keystone was changed",
+            check.projector_after_px, limits.projector_after_px);
+        check.remedy = "Set zoom, focus and keystone back, or calibrate the rig again.";
+    } else if (check.projector_rms_px > limits.projector_px) {
+        check.verdict = Verdict::projector_moved;
+        check.reason = fmt::format("the projector moved by {:.2f} mm and {:.3f} degrees: light would land {:.2f} mm off",
+                                   check.moved_mm, check.turned * kDegrees, check.light_off_mm);
+        check.remedy = "Scans place the projector anew by themselves; calibrate the rig again if it was not moved on purpose.";
+    } else {
+        check.verdict = Verdict::good;
+        check.reason = "the rig is as it was calibrated";
+    }
+}
+
+struct Line {
+    double slope = 0, slope_sigma = 0, at_last = 0;
+};
+
+Line fit_line(const std::vector<EarlierCheck>& checks, double EarlierCheck::*value) {
+    const auto n = static_cast<double>(checks.size());
+    double mean_day = 0, mean = 0, days = 0, both = 0, rest = 0;
+    for (const auto& c : checks) mean_day += c.day / n, mean += c.*value / n;
+    for (const auto& c : checks)
+        days += (c.day - mean_day) * (c.day - mean_day), both += (c.day - mean_day) * (c.*value - mean);
+    Line line;
+    line.slope = both / days;
+    for (const auto& c : checks) rest += std::pow(c.*value - mean - line.slope * (c.day - mean_day), 2);
+    line.slope_sigma = std::sqrt(rest / (n - 2) / days);
+    line.at_last = mean + line.slope * (checks.back().day - mean_day);
+    return line;
+}
+
+}  // namespace
+
+const char* text_of(DriftCheck::Verdict verdict) {
+    switch (verdict) {
+        case DriftCheck::Verdict::good:
+            return "good";
+        case DriftCheck::Verdict::projector_moved:
+            return "projector moved";
+        case DriftCheck::Verdict::cameras_moved:
+            return "cameras moved";
+        case DriftCheck::Verdict::lens_changed:
+            return "lens changed";
+        case DriftCheck::Verdict::cannot_tell:
+            break;
+    }
+    return "cannot tell";
+}
+
+DriftCheck check_drift(const ScanResult& scan, const RigCalibration& rig, const DriftLimits& limits) {
+    DriftCheck check;
+    check.points = scan.raw.by_cameras.size();
+    check.epipolar_rms_px = scan.raw.epipolar_rms_px;
+    if (check.points < limits.min_points || !scan.resection) {
+        check.reason = fmt::format(
+            "only {} points are seen by both cameras under the light; {} over a good part of the picture are needed",
+            check.points, limits.min_points);
+        check.remedy =
+            "Put the board or the patient where both cameras see it under the light. If it is there, calibrate the rig again.";
+        return check;
+    }
+    check.projector_rms_px = std::numbers::sqrt2 * scan.resection->rms_before_px;  // said per axis there
+    check.projector_after_px = std::numbers::sqrt2 * scan.resection->rms_after_px;
+    check.moved_mm = scan.resection->moved_mm;
+    check.turned = scan.resection->turned;
+    check.light_off_mm = check.projector_rms_px * mm_per_px(scan.raw, rig.projector);
+    decide(check, limits);
+    return check;
+}
+
+std::vector<DriftTrend> drift_trends(const std::vector<EarlierCheck>& checks, const DriftLimits& limits) {
+    if (checks.size() < 4) return {};
+    const auto [first, last] =
+        std::minmax_element(checks.begin(), checks.end(), [](const auto& a, const auto& b) { return a.day < b.day; });
+    if (last->day - first->day < 2) return {};
+    std::vector<DriftTrend> trends;
+    const auto add = [&](const char* what, double EarlierCheck::*value, double limit) {
+        const Line line = fit_line(checks, value);
+        if (line.slope > 2 * line.slope_sigma && line.slope > 1e-4)
+            trends.push_back({what, line.slope, std::max(0.0, (limit - line.at_last) / line.slope)});
+    };
+    add("epipolar error", &EarlierCheck::epipolar_rms_px, limits.epipolar_px);
+    add("projector", &EarlierCheck::projector_rms_px, limits.projector_px);
+    return trends;
+}
+
+}  // namespace planlight

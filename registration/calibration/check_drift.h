@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "registration/scan/scan_surface.h"
+
+namespace planlight {
+
+/// What a scan may show of a rig's age. The noise of a good rig is about a quarter of the limits.
+struct DriftLimits {
+    double epipolar_px = 0.4;  ///< rms distance of corresponding points from their epipolar line
+    double projector_px =
+        0.8;  ///< rms length between the decoded projector pixel and the rig's: a third of a mm on the patient
+    double projector_after_px = 0.5;  ///< the same once the projector is placed anew: more is another lens setting
+    std::size_t min_points = 500;     ///< seen by both cameras under the light
+};
+
+/// A rig checked against one scan of anything: a board, a phantom, the patient.
+struct DriftCheck {
+    enum class Verdict { good, projector_moved, cameras_moved, lens_changed, cannot_tell } verdict = Verdict::cannot_tell;
+    std::string reason, remedy;  ///< remedy empty when good
+    std::size_t points = 0;
+    double epipolar_rms_px = 0;
+    double projector_rms_px = 0;      ///< as calibrated
+    double projector_after_px = 0;    ///< placed anew by this scan
+    double light_off_mm = 0;          ///< what `projector_rms_px` is on the surface
+    double moved_mm = 0, turned = 0;  ///< of the projector against the rig file; radians
+};
+const char* text_of(DriftCheck::Verdict verdict);
+
+DriftCheck check_drift(const ScanResult& scan, const RigCalibration& rig, const DriftLimits& limits = {});
+
+/// A check of an earlier day.
+struct EarlierCheck {
+    double day = 0;  ///< any origin
+    double epipolar_rms_px = 0, projector_rms_px = 0;
+};
+
+/// Where the checks are heading: a straight line through them, where there are at least four over at least two days and it
+/// rises by more than twice its own standard error. Empty: no trend.
+struct DriftTrend {
+    std::string what;  ///< "epipolar error" or "projector"
+    double px_per_day = 0;
+    double days_to_limit = 0;  ///< from the last check; 0 when the limit is reached
+};
+std::vector<DriftTrend> drift_trends(const std::vector<EarlierCheck>& checks, const DriftLimits& limits = {});
+
+}  // namespace planlight

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "registration/calibration/rig_estimate.h"
+
+namespace planlight {
+
+/// A rig that is right to a few pixels, to begin the bundle adjustment with.
+struct StartValues {
+    RigEstimate rig;
+    std::string failure;              ///< not empty: no start was found, and why
+    bool projector_mirrored = false;  ///< the lit points fit only a projector whose picture is mirrored
+};
+
+/// Cameras by Zhang 2000 (OpenCV); the right camera from the poses that both see.
+StartValues find_camera_start(const std::vector<PoseObservation>& poses, const BoardSpec& board);
+
+/// Adds the projector to a start whose cameras are known: an inverse camera with a free principal point, by a direct linear
+/// transformation of all lit board points of all poses (Hartley & Zisserman, 7.1).
+void add_projector_start(const std::vector<PoseObservation>& poses, const BoardSpec& board, int width, int height,
+                         StartValues& start);
+
+/// Pose of the board before a device that is known, from its corners; empty when there are under 6.
+std::optional<RigidTransform> board_pose(const CameraModel& camera, const BoardCorners& corners, const BoardSpec& board);
+
+/// How well a device's pixels fit points when the device may stand anywhere: root mean square length, pixels, without what is
+/// beyond four medians. Empty when under 30 points are left.
+std::optional<double> misfit_anywhere(const CameraModel& device, const std::vector<Eigen::Vector3d>& points_in_rig,
+                                      const std::vector<Eigen::Vector2d>& pixels);
+
+/// 3x4 matrix with pixel ~ P (point, 1), from six or more points not in one plane; wrong points (a quarter at most) are left
+/// out.
+std::optional<Eigen::Matrix<double, 3, 4>> linear_projection(const std::vector<Eigen::Vector3d>& points,
+                                                             const std::vector<Eigen::Vector2d>& pixels);
+
+}  // namespace planlight

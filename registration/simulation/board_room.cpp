@@ -1,0 +1,225 @@
+#include "registration/simulation/board_room.h"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <random>
+#include <stdexcept>
+
+#include "planning_io/types/error.h"
+#include "registration/simulation/camera_view.h"
+#include "registration/simulation/hash.h"
+#include "registration/simulation/light.h"
+#include "registration/simulation/rig_layout.h"
+#include "registration/simulation/sensor.h"
+#include "registration/simulation/truth_file.h"
+
+namespace planlight::simulation {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr double kRadians = M_PI / 180;
+constexpr int kSamplesAcrossEdge = 6;
+
+bool in_view(const Optics& device, const Vector3d& p_in_room) {
+    const Vector2d pixel = device.pixel_of(p_in_room);
+    return device.depth(p_in_room) > 0 && pixel.x() > 3 && pixel.y() > 3 && pixel.x() < device.columns - 4 &&
+           pixel.y() < device.rows - 4;
+}
+
+}  // namespace
+
+struct SimulatedBoardRoom::Room final : Projector, StereoCamera, Clock {
+    Room(const BoardSheet& print, const BoardRoomSettings& given);
+
+    Instant now() const override { return now_; }
+    int width() const override { return rig.projector.columns; }
+    int height() const override { return rig.projector.rows; }
+    Instant show(const RgbImage& picture, Instant valid_until) override;
+    void go_dark() noexcept override { schedule.go_dark(now_); }
+    StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override;
+
+    RigidTransform random_pose(std::mt19937& random) const;
+    double share_in_view(const RigidTransform& room_from_board) const;
+    GrayImage expose(CameraView& view, const Sensor& sensor, const LightMap& light, std::uint64_t frame);
+    void look();
+
+    BoardSheet sheet;
+    BoardRoomSettings settings;
+    SheetSurface surface{sheet};
+    SheetLook look_of_sheet{sheet};
+    RigLayout rig, true_layout;
+    std::vector<RigidTransform> room_from_board;
+    RigidTransform room_from_board_now = RigidTransform::Identity();
+    LightSchedule schedule{0, 0, {}};
+    CameraView left_view, right_view;
+    Sensor left_sensor, right_sensor;
+    bool seen = false;
+    std::vector<float> light_buffer;
+    Instant now_{};
+};
+
+SimulatedBoardRoom::Room::Room(const BoardSheet& print, const BoardRoomSettings& given) : sheet(print), settings(given) {
+    std::mt19937 random(
+        static_cast<unsigned>(mixed(static_cast<std::uint64_t>(settings.seed) * 64 + 1)));  // the rig of `SimulatedRig`
+    rig = true_layout = build_rig(settings.preset, random);
+    random.seed(static_cast<unsigned>(mixed(static_cast<std::uint64_t>(settings.seed) * 64 + 40)));
+    for (int i = 0; i < settings.poses; ++i) room_from_board.push_back(random_pose(random));
+    if (!room_from_board.empty()) room_from_board_now = room_from_board.front();
+    schedule = LightSchedule(rig.projector.columns, rig.projector.rows, std::chrono::milliseconds(25));
+    const auto sensor = [&](const Optics& camera, double blur_px, std::uint64_t number) {
+        return Sensor{camera.columns, camera.rows,    blur_px,
+                      0.85,           settings.noise, mixed(2 * static_cast<std::uint64_t>(settings.seed) + 5000 + number)};
+    };
+    left_sensor = sensor(rig.left_camera, rig.left_blur_px, 0);
+    right_sensor = sensor(rig.right_camera, rig.right_blur_px, 1);
+}
+
+/// Of a grid over the print: the least share that a device sees. 0 when a device looks at it too flat.
+double SimulatedBoardRoom::Room::share_in_view(const RigidTransform& pose) const {
+    constexpr double kFlattest = 0.5;  // cosine: 60 degrees
+    double share = 1;
+    for (const Optics* device : {&rig.left_camera, &rig.right_camera, &rig.projector}) {
+        int seen_points = 0, points = 0;
+        for (double u = 0; u <= 1.001; u += 0.1)
+            for (double v = 0; v <= 1.001; v += 0.1, ++points)
+                seen_points += in_view(*device, pose * Vector3d(u * sheet.width_mm(), v * sheet.height_mm(), 0));
+        share = std::min(share, static_cast<double>(seen_points) / points);
+        const Vector3d middle = pose * Vector3d(sheet.width_mm() / 2, sheet.height_mm() / 2, 0);
+        if ((middle - device->eye).normalized().dot(pose.linear().col(2)) < kFlattest) return 0;
+        if (settings.whole && device != &rig.projector && share < 1) return 0;
+    }
+    return share;
+}
+
+RigidTransform SimulatedBoardRoom::Room::random_pose(std::mt19937& random) const {
+    const auto between = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+    for (int attempt = 0; attempt < 5000; ++attempt) {
+        const double way = between(0, 2 * M_PI), tilt = between(settings.min_tilt_deg, settings.max_tilt_deg) * kRadians;
+        RigidTransform pose = RigidTransform::Identity();
+        pose.linear() = (Eigen::AngleAxisd(tilt, Vector3d(std::cos(way), std::sin(way), 0)) *
+                         Eigen::AngleAxisd(between(0, 2 * M_PI), Vector3d::UnitZ()))
+                            .toRotationMatrix();
+        const Vector3d at(between(-settings.shift_mm, settings.shift_mm), between(-settings.shift_mm, settings.shift_mm),
+                          between(-settings.depth_mm, settings.depth_mm));
+        pose.translation() = at - pose.linear() * Vector3d(sheet.width_mm() / 2, sheet.height_mm() / 2, 0);
+        if (share_in_view(pose) >= (settings.whole ? 0.5 : 0.6)) return pose;
+    }
+    throw std::invalid_argument("no pose of the board is seen by all devices: it is too large for this room");
+}
+
+void SimulatedBoardRoom::Room::look() {
+    if (seen) return;
+    const RigidTransform to_board = room_from_board_now.inverse();
+    Scene scene{surface,
+                look_of_sheet,
+                rig.left_camera.seen_from(to_board),
+                rig.projector.seen_from(to_board),
+                rig.working_distance_mm,
+                kSamplesAcrossEdge};
+    left_view.look(scene);
+    scene.camera = rig.right_camera.seen_from(to_board);
+    right_view.look(scene);
+    seen = true;
+}
+
+GrayImage SimulatedBoardRoom::Room::expose(CameraView& view, const Sensor& sensor, const LightMap& light, std::uint64_t frame) {
+    const double gain = settings.brightness * (200.0 / 255 - settings.ambient) / SheetLook::kPaperAlbedo;
+    const double ambient = settings.ambient / SheetLook::kPaperAlbedo;
+    view.expose(light, static_cast<float>(gain), static_cast<float>(ambient), light_buffer);
+    return sense(sensor, light_buffer, frame);
+}
+
+Instant SimulatedBoardRoom::Room::show(const RgbImage& picture, Instant valid_until) {
+    if (picture.width != width() || picture.height != height())
+        throw DeviceError("simulated projector", "a picture of another size was to be shown",
+                          "Draw the picture in the projector's own size.");
+    schedule.show(picture, now_, valid_until);
+    return now_ + std::chrono::milliseconds(25);
+}
+
+StereoFrame SimulatedBoardRoom::Room::grab(Instant not_before, std::chrono::milliseconds patience) {
+    const Instant from = std::max(not_before, now_);
+    const auto number = (from.count() + rig.frame_interval.count() - 1) / rig.frame_interval.count();
+    const Instant begins = number * rig.frame_interval, ends = begins + rig.exposure;
+    if (ends - now_ > patience)
+        throw DeviceError("simulated cameras", "no frame came in time", "Wait longer, or ask for an earlier frame.");
+    StereoFrame frame;
+    frame.at = begins + rig.exposure / 2;
+    frame.exposure = rig.exposure;
+    frame.number = static_cast<std::uint64_t>(number);
+    look();
+    const auto light = schedule.at(frame.at);
+    frame.left = expose(left_view, left_sensor, *light, frame.number);
+    frame.right = expose(right_view, right_sensor, *light, frame.number);
+    now_ = ends;
+    return frame;
+}
+
+SimulatedBoardRoom::SimulatedBoardRoom(const BoardSheet& sheet, const BoardRoomSettings& settings)
+    : room_(std::make_unique<Room>(sheet, settings)) {}
+SimulatedBoardRoom::~SimulatedBoardRoom() = default;
+
+Projector& SimulatedBoardRoom::projector() {
+    return *room_;
+}
+StereoCamera& SimulatedBoardRoom::cameras() {
+    return *room_;
+}
+const Clock& SimulatedBoardRoom::clock() const {
+    return *room_;
+}
+int SimulatedBoardRoom::poses() const {
+    return static_cast<int>(room_->room_from_board.size());
+}
+
+void SimulatedBoardRoom::lay(int pose) {
+    room_->room_from_board_now = room_->room_from_board.at(static_cast<std::size_t>(pose));
+    room_->seen = false;
+}
+
+void SimulatedBoardRoom::slip(const Vector3d& by_mm) {
+    room_->room_from_board_now.translation() += by_mm;
+    room_->seen = false;
+}
+
+void SimulatedBoardRoom::knock_right_camera(double degrees) {
+    room_->rig.right_camera.turn({0, degrees * kRadians, 0});
+    room_->seen = false;
+}
+
+void SimulatedBoardRoom::knock_projector(double degrees) {
+    room_->rig.projector.turn({0, degrees * kRadians, 0});
+    room_->seen = false;
+}
+
+RigCalibration SimulatedBoardRoom::true_rig() const {
+    return exported(room_->true_layout);
+}
+
+RigidTransform SimulatedBoardRoom::true_rig_from_board(int pose) const {
+    return room_->true_layout.room_from_rig.inverse() * room_->room_from_board.at(static_cast<std::size_t>(pose));
+}
+
+std::string SimulatedBoardRoom::truth_json() const {
+    nlohmann::json truth = {{"format", "planlight-board-truth"},
+                            {"version", 1},
+                            {"preset", room_->settings.preset == Preset::paper ? "paper" : "modern"},
+                            {"seed", room_->settings.seed},
+                            {"sag_mm", room_->sheet.sag_mm},
+                            {"bend_direction", room_->sheet.bend_direction}};
+    truth["true_rig"] = nlohmann::json::parse(rig_as_json(true_rig()));
+    for (int i = 0; i < poses(); ++i) {
+        const RigidTransform pose = true_rig_from_board(i);
+        nlohmann::json rows = nlohmann::json::array();
+        for (int r = 0; r < 4; ++r) rows.push_back({pose(r, 0), pose(r, 1), pose(r, 2), pose(r, 3)});
+        truth["rig_from_board"].push_back(rows);
+    }
+    return truth.dump(2);
+}
+
+}  // namespace planlight::simulation

@@ -1,0 +1,93 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/run_command.h"
+#include "tests/support/test_data.h"
+
+namespace planlight::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::string whole(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void expect_refused(const CommandRun& run, int exit_code, const std::string& about) {
+    EXPECT_EQ(run.exit_code, exit_code) << run.err;
+    EXPECT_NE(run.err.find(about), std::string::npos) << run.err;
+}
+
+/// From simulated captures to rig.json; then what goes wrong leaves the good file alone. One test: the captures take their
+/// time.
+TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
+    const TemporaryFolder folder;
+    const fs::path& root = folder.path();
+    const std::string board = " --board 'charuco 10x7 25 mm'";
+    const auto simulated = run_planlight("simulate" + board + " --preset paper --seed 2 --poses 4 --out room --json", root);
+    ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
+    const auto run = run_planlight("calibrate room/captures" + board + " --out rig.json --json", root);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const json report = json::parse(run.out), rig = json::parse(whole(root / "rig.json")),
+               truth = json::parse(whole(root / "room" / "truth.json"))["true_rig"];
+    for (const char* device : {"left_camera", "right_camera", "projector"}) {
+        EXPECT_NEAR(rig[device]["focal_x"].get<double>(), truth[device]["focal_x"].get<double>(), 4) << device;
+        EXPECT_LT(report["devices"][device]["held_out_rms_px"].get<double>(), 0.2) << device;
+    }
+    EXPECT_EQ(report["poses"], 4);
+    const std::string page = whole(root / "rig-calibration.html");
+    EXPECT_NE(page.find("Predicted error over the working volume"), std::string::npos);
+    EXPECT_EQ(page.find("http"), std::string::npos) << "nothing comes from a network";
+
+    const std::string good = whole(root / "rig.json");
+    fs::create_directories(root / "few");
+    fs::copy(root / "room" / "captures" / "pose-00", root / "few" / "pose-00", fs::copy_options::recursive);
+    expect_refused(run_planlight("calibrate few" + board + " --out rig.json", root), 6, "in 1 of 1 poses");
+    expect_refused(run_planlight("calibrate room/captures --board 'chessboard 9x6 25 mm' --out rig.json", root), 6,
+                   "chessboard 9x6");
+    expect_refused(run_planlight("calibrate room/captures --board 'charuco' --out rig.json", root), 3, "charuco");
+    expect_refused(run_planlight("calibrate nowhere" + board + " --out rig.json", root), 3, "nowhere");
+    const fs::path missing = root / "room" / "captures" / "pose-02" / "right" / "row-phase-3.png";
+    fs::rename(missing, root / "kept.png");
+    expect_refused(run_planlight("calibrate room/captures" + board + " --out rig.json", root), 3, "row-phase-3");
+    std::ofstream(missing, std::ios::binary) << whole(root / "kept.png").substr(0, 5000);
+    expect_refused(run_planlight("calibrate room/captures" + board + " --out rig.json", root), 4, "row-phase-3");
+    EXPECT_EQ(whole(root / "rig.json"), good);
+
+    // The other way to lay captures out: one capture.json for all, one camera, plain pictures.
+    for (int pose = 0; pose < 4; ++pose) {
+        const std::string name = "pose-0" + std::to_string(pose);
+        fs::create_directories(root / "plain" / name);
+        for (const char* side : {"left", "right"})
+            fs::copy(root / "room" / "captures" / name / side / "white.png",
+                     root / "plain" / name / (std::string(side) + ".png"));
+    }
+    const auto pair = run_planlight("calibrate plain" + board + " --out pair.json --json", root);
+    ASSERT_EQ(pair.exit_code, 0) << pair.err;
+    EXPECT_FALSE(fs::exists(root / "pair.json")) << "no projector, no rig";
+    EXPECT_FALSE(json::parse(pair.out)["devices"].contains("projector"));
+    EXPECT_NEAR(json::parse(pair.out)["devices"]["left_camera"]["focal_x"].get<double>(),
+                truth["left_camera"]["focal_x"].get<double>(), 10);
+}
+
+TEST(BoardCommand, WritesTheSheetTwice) {
+    const TemporaryFolder folder;
+    const auto run = run_planlight("board --board 'chessboard 9x6 20 mm' --out sheet --json", folder.path());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(json::parse(run.out)["corners"], 54);
+    EXPECT_TRUE(whole(folder.path() / "sheet.pdf").starts_with("%PDF"));
+    EXPECT_TRUE(whole(folder.path() / "sheet.png").starts_with("\x89PNG"));
+    expect_refused(run_planlight("board --board 'chessboard 9x6 2 cm'", folder.path()), 3, "mm");
+}
+
+TEST(SimulateCommand, NeedsAPatientOrABoard) {
+    const TemporaryFolder folder;
+    expect_refused(run_planlight("simulate --out room", folder.path()), 3, "neither a patient nor a board");
+}
+
+}  // namespace
+}  // namespace planlight::test
