@@ -21,7 +21,9 @@ CLI::App* command(CLI::App& app, const std::string& name, const std::string& wha
 void json_flag(CLI::App* sub, bool& json) { sub->add_flag("--json", json, "Print the result as JSON on standard output"); }
 
 CLI::Option* preset_option(CLI::App* sub, std::string& preset) {
-    return sub->add_option("--preset", preset, "Simulated room: modern (1920x1080, two 1920x1200) or paper (800x600, two 744x576)")
+    return sub
+        ->add_option("--preset", preset,
+                     "Simulated room: modern (1920x1080, two 1920x1200) or paper (800x600, two 744x576)")
         ->check(CLI::IsMember({"modern", "paper"}))
         ->capture_default_str();
 }
@@ -50,7 +52,8 @@ void add_plan(CLI::App& app, PlanOptions& o) {
 void add_prepare(CLI::App& app, PrepareOptions& o) {
     auto* sub = command(app, "prepare", "CT or MR volume and plan -> case folder (skin, LUT, plan, checksums)",
                         "prepare Cranium.inv3 --plan frontal_defect.mrk.json --out case");
-    sub->add_option("volume", o.volume, "DICOM folder or file, NIfTI, NRRD, MetaImage, or InVesalius project (.inv3)")->required();
+    sub->add_option("volume", o.volume, "DICOM folder or file, NIfTI, NRRD, MetaImage, or InVesalius project (.inv3)")
+        ->required();
     sub->add_option("--plan", o.plan,
                     "Plan file, or a folder of them: .mrk.json, .fcsv, RTSTRUCT, tables, lines (see planning_io/README.md)")
         ->required();
@@ -65,7 +68,9 @@ void add_prepare(CLI::App& app, PrepareOptions& o) {
     sub->add_option("--series", o.series_uid, "UID or number of the DICOM series, where the folder holds several");
     sub->add_flag("--anonymous", o.anonymous, "Leave UIDs and file names of the volume out of the case folder");
     sub->add_option("--threshold", o.threshold, "Skin threshold, HU (default: found from the histogram)");
-    sub->add_option("--voxel-mm", o.voxel_mm, "Edge of the LUT's cubic voxels")->capture_default_str()->check(CLI::Range(0.25, 10.0));
+    sub->add_option("--voxel-mm", o.voxel_mm, "Edge of the LUT's cubic voxels")
+        ->capture_default_str()
+        ->check(CLI::Range(0.25, 10.0));
     sub->add_flag("--replace", o.replace, "Replace an existing case folder");
     sub->add_flag("--preview", o.preview, "Open the operator window on the result");
     json_flag(sub, o.json);
@@ -77,7 +82,9 @@ void add_patterns(CLI::App& app, PatternsOptions& o) {
     sub->add_option("--width", o.width, "Of the projector, pixels")->capture_default_str()->check(CLI::Range(64, 8192));
     sub->add_option("--height", o.height, "Of the projector, pixels")->capture_default_str()->check(CLI::Range(64, 8192));
     sub->add_option("--phase-steps", o.phase_steps, "Shifts a direction")->capture_default_str()->check(CLI::Range(3, 32));
-    sub->add_option("--phase-period-px", o.phase_period_px, "Projector pixels a fringe")->capture_default_str()->check(CLI::Range(4.0, 256.0));
+    sub->add_option("--phase-period-px", o.phase_period_px, "Projector pixels a fringe")
+        ->capture_default_str()
+        ->check(CLI::Range(4.0, 256.0));
     sub->add_option("--out", o.out, "Folder to write")->required();
     json_flag(sub, o.json);
 }
@@ -85,7 +92,8 @@ void add_patterns(CLI::App& app, PatternsOptions& o) {
 void add_board(CLI::App& app, BoardOptions& o) {
     auto* sub = command(app, "board", "Draw the calibration board to print (PNG and PDF, true size, grey instead of black)",
                         "board --board \"charuco 10x7 25 mm\" --out board");
-    sub->add_option("--board", o.board, "charuco COLUMNSxROWS (squares) or chessboard COLUMNSxROWS (inner corners), and the square in mm")
+    sub->add_option("--board", o.board,
+                    "charuco COLUMNSxROWS (squares) or chessboard COLUMNSxROWS (inner corners), and the square in mm")
         ->capture_default_str();
     sub->add_option("--out", o.out, "File to write, without ending")->capture_default_str();
     json_flag(sub, o.json);
@@ -95,13 +103,16 @@ void add_calibrate(CLI::App& app, CalibrateOptions& o) {
     auto* sub = command(app, "calibrate", "Captures of a board under coded light -> rig.json, or a refusal (exit 6)",
                         "calibrate captures --board \"charuco 10x7 25 mm\" --out rig.json");
     sub->add_option("captures", o.captures, "Folder with one folder a pose")->required();
-    sub->add_option("--board", o.board, "The board, its square as measured: \"charuco 10x7 24.98 mm\" or \"chessboard 9x6 25 mm\"")->required();
+    sub->add_option("--board", o.board,
+                    "The board, its square as measured: \"charuco 10x7 24.98 mm\" or \"chessboard 9x6 25 mm\"")
+        ->required();
     sub->add_option("--out", o.out, "rig.json to write; the report stands beside it")->capture_default_str();
     json_flag(sub, o.json);
 }
 
 void add_check(CLI::App& app, CheckOptions& o) {
-    auto* sub = command(app, "check", "One scan of anything against rig.json: has the rig moved? (exit 6 if so)", "check room/capture --rig room/rig.json");
+    auto* sub = command(app, "check", "One scan of anything against rig.json: has the rig moved? (exit 6 if so)",
+                        "check room/capture --rig room/rig.json");
     sub->add_option("capture", o.capture, "Capture folder of a scan: a board, a phantom, the patient")->required();
     sub->add_option("--rig", o.rig, "rig.json")->required();
     sub->add_option("--log", o.log, "Where the checks are kept for the trend (default: beside rig.json)");
@@ -112,13 +123,16 @@ void add_simulate(CLI::App& app, SimulateOptions& o) {
     auto* sub = command(app, "simulate", "Captures of a simulated room, with ground truth in a file of its own",
                         "simulate Cranium.inv3 --plan frontal_defect.mrk.json --preset paper --seed 3 --out room");
     sub->add_option("volume", o.volume, "The patient: DICOM folder or file, or InVesalius project");
-    sub->add_option("--board", o.board, "Instead of a patient a calibration board, as for `calibrate`; writes captures/ and truth.json");
+    sub->add_option("--board", o.board,
+                    "Instead of a patient a calibration board, as for `calibrate`; writes captures/ and truth.json");
     sub->add_option("--poses", o.poses, "Of the board")->capture_default_str()->check(CLI::Range(1, 1000));
     sub->add_option("--plan", o.plan, "Plan, so that markers keep clear of it");
     preset_option(sub, o.preset);
     sub->add_option("--seed", o.seed, "Of everything random")->capture_default_str();
     sub->add_option("--frames", o.frames, "Tracking frames after the scan")->capture_default_str()->check(CLI::Range(0, 10000));
-    sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head in the tracking frames")->capture_default_str()->check(CLI::Range(0.0, 500.0));
+    sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head in the tracking frames")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 500.0));
     sub->add_option("--out", o.out, "Folder to write: rig.json, capture/, frames/, truth.json")->required();
     json_flag(sub, o.json);
 }
@@ -138,10 +152,17 @@ void add_register(CLI::App& app, RegisterOptions& o) {
                         "register case --cloud cloud.ply --out registration.json");
     sub->add_option("case", o.case_folder, "Case folder")->required();
     auto* cloud = sub->add_option("--cloud", o.cloud, "Clean cloud (.ply), of `scan` or of any scanner");
-    sub->add_option("--unit", o.unit, "Unit of the cloud's numbers")->check(CLI::IsMember({"mm", "cm", "m", "um", "inch"}))->capture_default_str()->needs(cloud);
+    sub->add_option("--unit", o.unit, "Unit of the cloud's numbers")
+        ->check(CLI::IsMember({"mm", "cm", "m", "um", "inch"}))
+        ->capture_default_str()
+        ->needs(cloud);
     sub->add_flag("--in-rig", o.in_rig, "The cloud is in the rig's frame though it does not say so")->needs(cloud);
-    sub->add_option("--viewpoint", o.viewpoint_in_rig, "Where the scanner stood (rig, mm), for a cloud without normals")->expected(3)->needs(cloud);
-    sub->add_option("--pairs", o.pairs, "Landmarks (.csv: name, ct and rig coordinates): they check the cloud's match, or, without a cloud, are the match");
+    sub->add_option("--viewpoint", o.viewpoint_in_rig, "Where the scanner stood (rig, mm), for a cloud without normals")
+        ->expected(3)
+        ->needs(cloud);
+    sub->add_option("--pairs", o.pairs,
+                    "Landmarks (.csv: name, ct and rig coordinates): they check the cloud's match, or, without a "
+                    "cloud, are the match");
     sub->add_option("--out", o.out, "registration.json to write")->required();
     sub->add_option("--slicer", o.slicer_transform, "Transform for 3D Slicer to write (.tfm): it lays the cloud on the CT");
     sub->add_option("--icp", o.icp, "Fine match: signed-distance, or closest-point as in the paper")
@@ -155,7 +176,9 @@ void add_track(CLI::App& app, TrackOptions& o) {
                         "track room/frames --rig room/rig.json --capture room/capture --out poses.json");
     sub->add_option("frames", o.frames, "Folder of recorded frames")->required();
     sub->add_option("--rig", o.rig, "rig.json")->required();
-    sub->add_option("--capture", o.capture, "Capture folder of the scan: its white picture holds the reference markers (default: the first frame)");
+    sub->add_option(
+        "--capture", o.capture,
+        "Capture folder of the scan: its white picture holds the reference markers (default: the first frame)");
     sub->add_option("--out", o.out, "poses.json to write")->required();
     json_flag(sub, o.json);
 }
@@ -186,7 +209,9 @@ void add_session(CLI::App& app, SessionOptions& o) {
     sub->add_option("case", o.case_folder, "Case folder")->required();
     sub->add_option("--volume", o.volume, "The simulated patient: the volume that the case was made from")->required();
     preset_option(sub, o.preset);
-    sub->add_option("--projector", o.projector_monitor, "Monitor (name or number) that is the projector; without it the light is shown in the operator window only");
+    sub->add_option(
+        "--projector", o.projector_monitor,
+        "Monitor (name or number) that is the projector; without it the light is shown in the operator window only");
     sub->add_option("--operator", o.operator_monitor, "Monitor of the operator window (default: the primary one)");
     sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str();
     sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")->capture_default_str()->check(CLI::Range(0.0, 500.0));
@@ -200,7 +225,9 @@ void add_demo(CLI::App& app, DemoOptions& o) {
                         "demo --headless --seed 3 --out demo-3");
     sub->add_option("--volume", o.volume, "Patient")->capture_default_str();
     sub->add_option("--plan", o.plan, "Plan (default: the example plan)");
-    sub->add_option("--preset", o.preset, "modern, paper or both")->check(CLI::IsMember({"modern", "paper", "both"}))->capture_default_str();
+    sub->add_option("--preset", o.preset, "modern, paper or both")
+        ->check(CLI::IsMember({"modern", "paper", "both"}))
+        ->capture_default_str();
     sub->add_option("--seed", o.seed, "First seed of the simulated rooms")->capture_default_str();
     sub->add_option("--seeds", o.seeds, "Rooms a preset")->capture_default_str()->check(CLI::Range(1, 10000));
     sub->add_option("--jobs", o.jobs, "Rooms at a time (they slow each other down: read the times with one)")

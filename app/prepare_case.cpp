@@ -67,8 +67,8 @@ Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSetti
     the_case.warnings.insert(the_case.warnings.end(), mask.warnings.begin(), mask.warnings.end());
     if (volume.modality == "CT" && !volume.is_hu)
         the_case.warnings.push_back(fmt::format(
-            "the values of this CT are not HU; the skin threshold {:.0f} was {}: look at the skin before you use it", mask.threshold,
-            skin.threshold == 0 ? "found from their histogram" : "given"));
+            "the values of this CT are not HU; the skin threshold {:.0f} was {}: look at the skin before you use it",
+            mask.threshold, skin.threshold == 0 ? "found from their histogram" : "given"));
     finish(done, volume, plan, lut, created, progress);
     return done;
 }

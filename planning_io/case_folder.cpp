@@ -54,10 +54,12 @@ std::map<std::string, std::string> read_checksums(const fs::path& file) {
 class CheckedFolder {
 public:
     explicit CheckedFolder(const fs::path& folder) : folder_(folder) {
-        if (!fs::is_directory(folder)) throw InputError(folder, "is not a case folder", "Name a folder that `planlight prepare` made.");
+        if (!fs::is_directory(folder))
+            throw InputError(folder, "is not a case folder", "Name a folder that `planlight prepare` made.");
         for (const char* name : {kManifest, kSkinMesh, kLutFile, kPlanFile, kChecksums})
             if (!fs::exists(folder / name)) {
-                if (!fs::exists(folder / kManifest)) throw InputError(folder, "is not a case folder", "Name a folder that `planlight prepare` made.");
+                if (!fs::exists(folder / kManifest))
+                    throw InputError(folder, "is not a case folder", "Name a folder that `planlight prepare` made.");
                 throw DamagedFileError(folder / name, "is missing", kPrepare);
             }
         checksums_ = read_checksums(folder / kChecksums);
@@ -93,7 +95,8 @@ void write_case(const Case& prepared, const fs::path& folder, bool replace) {
         write_skin_lut(prepared.lut, into / kLutFile);
         write_plan(prepared.plan, into / kPlanFile);
         std::string checksums;
-        for (const char* name : {kManifest, kSkinMesh, kLutFile, kPlanFile}) checksums += content_hash(read_whole(into / name)) + "  " + name + "\n";
+        for (const char* name : {kManifest, kSkinMesh, kLutFile, kPlanFile})
+            checksums += content_hash(read_whole(into / name)) + "  " + name + "\n";
         write_safely(into / kChecksums, checksums);
     });
 }

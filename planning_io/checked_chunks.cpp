@@ -34,23 +34,26 @@ struct Slice {
 std::vector<Slice> slices_of(const std::vector<ChunkedArray>& arrays) {
     std::vector<Slice> slices;
     for (const ChunkedArray& a : arrays)
-        for (std::size_t at = 0; at < a.bytes; at += kChunkBytes) slices.push_back({a.data + at, std::min(kChunkBytes, a.bytes - at), a.element_bytes});
+        for (std::size_t at = 0; at < a.bytes; at += kChunkBytes)
+            slices.push_back({a.data + at, std::min(kChunkBytes, a.bytes - at), a.element_bytes});
     return slices;
 }
 
 /// Differences of 4-byte elements, first bytes first: neighbours in a table are alike, so most bytes become zero.
-__attribute__((target_clones("avx2", "default"))) void split_bytes(const std::uint32_t* values, std::size_t count, std::uint8_t* out) {
+__attribute__((target_clones("avx2", "default"))) void split_bytes(const std::uint32_t* values, std::size_t count,
+                                                                   std::uint8_t* out) {
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t difference = values[i] - (i > 0 ? values[i - 1] : 0);
         for (std::size_t byte = 0; byte < 4; ++byte) out[byte * count + i] = static_cast<std::uint8_t>(difference >> (8 * byte));
     }
 }
 
-__attribute__((target_clones("avx2", "default"))) void join_bytes(const std::uint8_t* in, std::size_t count, std::uint32_t* values) {
+__attribute__((target_clones("avx2", "default"))) void join_bytes(const std::uint8_t* in, std::size_t count,
+                                                                  std::uint32_t* values) {
     const std::uint8_t *b0 = in, *b1 = in + count, *b2 = b1 + count, *b3 = b2 + count;
     for (std::size_t i = 0; i < count; ++i)
-        values[i] = static_cast<std::uint32_t>(b0[i]) | static_cast<std::uint32_t>(b1[i]) << 8 | static_cast<std::uint32_t>(b2[i]) << 16 |
-                    static_cast<std::uint32_t>(b3[i]) << 24;
+        values[i] = static_cast<std::uint32_t>(b0[i]) | static_cast<std::uint32_t>(b1[i]) << 8 |
+                    static_cast<std::uint32_t>(b2[i]) << 16 | static_cast<std::uint32_t>(b3[i]) << 24;
     std::uint32_t sum = 0;
     for (std::size_t i = 0; i < count; ++i) values[i] = sum += values[i];
 }
@@ -104,7 +107,8 @@ void FieldReader::expect_end() const {
     if (!bytes_.empty()) damaged(file_, "goes on after its end");
 }
 
-void write_chunked(std::ostream& out, const ChunkedKind& kind, const std::string& fields, const std::vector<ChunkedArray>& arrays) {
+void write_chunked(std::ostream& out, const ChunkedKind& kind, const std::string& fields,
+                   const std::vector<ChunkedArray>& arrays) {
     const std::vector<Slice> slices = slices_of(arrays);
     std::vector<std::string> packed(slices.size());
     tbb::parallel_for(std::size_t{0}, slices.size(), [&](std::size_t i) { packed[i] = compress(slices[i]); });
@@ -132,7 +136,9 @@ ChunkedFile::ChunkedFile(std::string_view content, const ChunkedKind& kind, cons
     if (in.take(8) != std::string_view(kind.magic, 8)) damaged(file, "is not a file of this kind, or its beginning is damaged");
     const auto version = in.next<std::uint32_t>(), mark = in.next<std::uint32_t>();
     if (mark != kEndianMark) damaged(file, "was written on a machine of the other byte order, or is damaged");
-    if (version != kind.version) damaged(file, "is of version " + std::to_string(version) + "; this program reads version " + std::to_string(kind.version));
+    if (version != kind.version)
+        damaged(file, "is of version " + std::to_string(version) + "; this program reads version " +
+                          std::to_string(kind.version));
     fields_ = in.next_text();
     const auto count = in.next<std::uint32_t>();
     if (count > in.left() / sizeof(Chunk)) damaged(file, "is cut short");
@@ -147,7 +153,8 @@ ChunkedFile::ChunkedFile(std::string_view content, const ChunkedKind& kind, cons
         chunks_.push_back(chunk);
     }
     const XXH128_hash_t hash = XXH3_128bits(content.data(), content.size() - in.left());
-    if (in.next<std::uint64_t>() != hash.high64 || in.next<std::uint64_t>() != hash.low64) damaged(file, "is damaged in its header");
+    if (in.next<std::uint64_t>() != hash.high64 || in.next<std::uint64_t>() != hash.low64)
+        damaged(file, "is damaged in its header");
     if (in.left() != total) damaged(file, in.left() < total ? "is cut short" : "goes on after its end");
     stored_ = in.take(in.left());
 }
@@ -161,10 +168,12 @@ void ChunkedFile::read_into(const std::vector<ChunkedArray>& arrays) const {
     tbb::parallel_for(std::size_t{0}, chunks_.size(), [&](std::size_t i) {
         const std::string_view packed = stored_.substr(begins[i], chunks_[i].stored_bytes);
         const XXH128_hash_t hash = XXH3_128bits(packed.data(), packed.size());
-        const bool good = hash.high64 == chunks_[i].hash_high && hash.low64 == chunks_[i].hash_low && decompress(packed, slices[i]);
+        const bool good =
+            hash.high64 == chunks_[i].hash_high && hash.low64 == chunks_[i].hash_low && decompress(packed, slices[i]);
         if (!good) first_bad = std::min<std::size_t>(first_bad, i);
     });
-    if (first_bad < chunks_.size()) damaged(file_, "is damaged in chunk " + std::to_string(first_bad) + " of " + std::to_string(chunks_.size()));
+    if (first_bad < chunks_.size())
+        damaged(file_, "is damaged in chunk " + std::to_string(first_bad) + " of " + std::to_string(chunks_.size()));
 }
 
 }  // namespace planlight

@@ -63,7 +63,8 @@ struct ChunkedKind {
 };
 
 /// A file of header fields and arrays in chunks of 1 MiB, all under checksums; the layout stands in the room's README.
-void write_chunked(std::ostream& out, const ChunkedKind& kind, const std::string& fields, const std::vector<ChunkedArray>& arrays);
+void write_chunked(std::ostream& out, const ChunkedKind& kind, const std::string& fields,
+                   const std::vector<ChunkedArray>& arrays);
 
 /// Such a file in memory. Every flipped bit, cut or added byte is a DamagedFileError.
 class ChunkedFile {

@@ -159,13 +159,15 @@ std::vector<fs::path> files_in(const fs::path& folder, int depth) {
         std::error_code ignored;
         if (entry->is_regular_file(ignored)) files.push_back(entry->path());
         else if (entry->is_symlink(ignored) && !entry->exists(ignored))
-            throw InputError(entry->path(), "is a link to a file that is not there, and may be a slice", "Copy the whole series again.");
+            throw InputError(entry->path(), "is a link to a file that is not there, and may be a slice",
+                             "Copy the whole series again.");
         if (files.size() > kMostFiles)
             throw InputError(folder, fmt::format("holds more than {} files", kMostFiles),
                              "Name the folder of the study.");
     }
     if (error)  // slices may be there
-        throw InputError(folder, "cannot be searched to its end: " + error.message(), "Check the permissions of the folders in it.");
+        throw InputError(folder, "cannot be searched to its end: " + error.message(),
+                         "Check the permissions of the folders in it.");
     std::sort(files.begin(), files.end());
     return files;
 }
@@ -174,7 +176,9 @@ std::vector<fs::path> files_in(const fs::path& folder, int depth) {
 /// slice: InputError.
 bool says_dicom(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
-    if (!in) throw InputError(file, "cannot be opened, and may be a slice", "Check the permissions of the file, or move it elsewhere.");
+    if (!in)
+        throw InputError(file, "cannot be opened, and may be a slice",
+                         "Check the permissions of the file, or move it elsewhere.");
     std::string mark(4, '\0');
     return in.seekg(128) && in.read(mark.data(), 4) && mark == "DICM";
 }
@@ -185,7 +189,8 @@ std::string spacing_text(const DicomSeries& series) {
     if (slices.empty() || !std::isfinite(slices.front().column_spacing_mm)) return "-";
     std::string text = fmt::format("{:.3g} x {:.3g}", slices.front().column_spacing_mm, slices.front().row_spacing_mm);
     const Eigen::Vector3d normal = slices.front().row_direction.cross(slices.front().column_direction);
-    if (std::any_of(slices.begin(), slices.end(), [](const auto& s) { return !s.position_in_ct.allFinite(); }) || slices.size() < 2)
+    if (std::any_of(slices.begin(), slices.end(), [](const auto& s) { return !s.position_in_ct.allFinite(); }) ||
+        slices.size() < 2)
         return text + " mm";
     const auto [first, last] = std::minmax_element(slices.begin(), slices.end(), [&](const auto& a, const auto& b) {
         return normal.dot(a.position_in_ct) < normal.dot(b.position_in_ct);
@@ -286,7 +291,9 @@ DicomSeries choose_series(const DicomFolder& folder, const fs::path& path, const
                              table_of(folder.series),
                          "Name a folder with a CT or MR series of slices.");
     if (chosen.size() > 1 && wanted.empty() && chosen.front().slices() < kFewestSlices)
-        throw InputError(path, fmt::format("holds no CT or MR volume of {} slices or more; there is:", kFewestSlices) + table_of(folder.series),
+        throw InputError(path,
+                         fmt::format("holds no CT or MR volume of {} slices or more; there is:", kFewestSlices) +
+                             table_of(folder.series),
                          "Name a folder with a CT or MR series of thin slices.");
     if (chosen.size() > 1)
         throw InputError(path, "holds several series:" + table_of(wanted.empty() ? folder.series : chosen),

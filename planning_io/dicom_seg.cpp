@@ -103,7 +103,8 @@ Stack stack_of(vtkDICOMMetaData* meta, int segment, const fs::path& file) {
         frames.push_back({f, vector(meta->Get(0, f, DC::ImagePositionPatient), 0, file, "position")});
     }
     if (frames.size() < 2)
-        throw InputError(file, "holds " + counted(static_cast<long long>(frames.size()), "frame") + " of this segment", kExportAgain);
+        throw InputError(file, "holds " + counted(static_cast<long long>(frames.size()), "frame") + " of this segment",
+                         kExportAgain);
     if (!(row_mm > 0.01) || !(column_mm > 0.01) || row_mm > 20 || column_mm > 20 || std::abs(along_row->norm() - 1) > 1e-3 ||
         std::abs(along_column->norm() - 1) > 1e-3)
         throw InputError(file, "has a pixel spacing or an orientation that makes no sense", kExportAgain);

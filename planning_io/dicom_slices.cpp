@@ -124,10 +124,11 @@ std::optional<DicomRefusal> fault_of_stack(const std::vector<DicomSlice>& slices
                            "Keep one of them, or name one series.");
         const double steps = std::round(gaps[i] / usual);
         if (steps >= 2 && std::abs(gaps[i] - steps * usual) < 0.1 * usual)
-            return DicomRefusal{fmt::format("{} missing {}: the gap is {:.3f} mm, elsewhere {:.3f} mm",
-                                            counted(static_cast<int>(steps) - 1, "slice") + (steps == 2 ? " is" : " are"), between,
-                                            gaps[i], usual),
-                                "Export the whole series again."};
+            return DicomRefusal{
+                fmt::format("{} missing {}: the gap is {:.3f} mm, elsewhere {:.3f} mm",
+                            counted(static_cast<int>(steps) - 1, "slice") + (steps == 2 ? " is" : " are"), between,
+                            gaps[i], usual),
+                "Export the whole series again."};
         if (std::abs(gaps[i] - usual) > kEven_mm)
             return DicomRefusal{fmt::format("the slices are not evenly spaced: {:.3f} mm {}, elsewhere {:.3f} mm",
                                             gaps[i], between, usual),
@@ -154,7 +155,8 @@ std::optional<DicomRefusal> fault_of(std::vector<DicomSlice> slices) {
     for (const DicomSlice& s : slices)
         if (const auto fault = fault_of_slice(s)) return fault;
     if (slices.size() < static_cast<std::size_t>(kFewestSlices))
-        return DicomRefusal{fmt::format("the series has {}, fewer than {}", counted(static_cast<long long>(slices.size()), "slice"), kFewestSlices),
+        return DicomRefusal{fmt::format("the series has {}, fewer than {}",
+                                        counted(static_cast<long long>(slices.size()), "slice"), kFewestSlices),
                             "Give the whole series of thin slices."};
     for (const DicomSlice& s : slices)
         if (const auto fault = fault_of_pair(slices.front(), s)) return fault;

@@ -69,7 +69,9 @@ std::vector<double> numbers_of(std::string text) {
 std::vector<double> TextHeader::numbers(const std::string& name, std::size_t count) const {
     const auto numbers = numbers_of(at(name));
     if (numbers.size() != count)
-        throw DamagedFileError(file, fmt::format("has \"{}\" in its header that is not {}", name, counted(static_cast<long long>(count), "number")),
+        throw DamagedFileError(file,
+                               fmt::format("has \"{}\" in its header that is not {}", name,
+                                           counted(static_cast<long long>(count), "number")),
                                kCopyAgain);
     return numbers;
 }

@@ -55,7 +55,8 @@ plist_t value_of(plist_t dictionary, const char* key, const fs::path& file) {
 }
 
 std::string text_of(plist_t value, const char* key, const fs::path& file) {
-    if (plist_get_node_type(value) != PLIST_STRING) damaged(file, std::string("\"") + key + "\" in its property list is not a text");
+    if (plist_get_node_type(value) != PLIST_STRING)
+        damaged(file, std::string("\"") + key + "\" in its property list is not a text");
     char* text = nullptr;
     plist_get_string_val(value, &text);
     const std::string result = text ? text : "";
@@ -94,12 +95,15 @@ MatrixHeader read_header(const Entries& entries, const fs::path& file) {
     MatrixHeader header;
     header.file_name = fs::path(text_of(value_of(matrix, "filename", file), "filename", file)).filename().string();
     const std::string type = text_of(value_of(matrix, "dtype", file), "dtype", file);
-    if (type != "int16") throw InputError(file, "its matrix is of type " + type + ", not int16", "Import the slices into InVesalius again, or give their DICOM folder.");
+    if (type != "int16")
+        throw InputError(file, "its matrix is of type " + type + ", not int16",
+                         "Import the slices into InVesalius again, or give their DICOM folder.");
     const auto shape = three_numbers(value_of(matrix, "shape", file), "shape", file);  // z, y, x
     header.spacing_mm = three_numbers(value_of(main.get(), "spacing", file), "spacing", file);
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double count = shape[2 - axis], spacing = header.spacing_mm[axis];
-        if (!(count >= 2) || !(count <= 4096) || count != std::floor(count)) damaged(file, "the shape of its matrix makes no sense");
+        if (!(count >= 2) || !(count <= 4096) || count != std::floor(count))
+            damaged(file, "the shape of its matrix makes no sense");
         if (!(spacing > 0.01) || !(spacing < 50)) damaged(file, "the spacing of its matrix makes no sense");
         header.size[axis] = static_cast<int>(count);
     }
@@ -136,12 +140,14 @@ Volume read_invesalius_volume(const fs::path& file) {
     static const std::string kUsualName = "matrix.dat";
     Entries entries = read_tar_entries(file, [](const std::string& name) { return is_plist(name) || name == kUsualName; });
     const MatrixHeader header = read_header(entries, file);
-    if (header.file_name != kUsualName) entries.merge(read_tar_entries(file, [&](const std::string& name) { return name == header.file_name; }));
+    if (header.file_name != kUsualName)
+        entries.merge(read_tar_entries(file, [&](const std::string& name) { return name == header.file_name; }));
     const auto matrix = entries.find(header.file_name);
     if (matrix == entries.end()) damaged(file, "holds no matrix");
     const auto [nx, ny, nz] = header.size;
     const auto row = static_cast<std::size_t>(nx), rows = static_cast<std::size_t>(ny), slices = static_cast<std::size_t>(nz);
-    if (matrix->second.size() != row * rows * slices * sizeof(std::int16_t)) damaged(file, "its matrix does not have the size its shape says");
+    if (matrix->second.size() != row * rows * slices * sizeof(std::int16_t))
+        damaged(file, "its matrix does not have the size its shape says");
 
     Volume volume;
     volume.size = header.size;
@@ -164,12 +170,14 @@ Volume read_invesalius_volume(const fs::path& file) {
 }
 
 std::vector<TriangleMesh> read_invesalius_surfaces(const fs::path& file) {
-    const Entries entries = read_tar_entries(file, [](const std::string& name) { return is_plist(name) || name.ends_with(".vtp"); });
+    const Entries entries =
+        read_tar_entries(file, [](const std::string& name) { return is_plist(name) || name.ends_with(".vtp"); });
     std::vector<TriangleMesh> surfaces;
     for (const auto& [name, text] : entries) {
         if (!name.starts_with("surface_") || !is_plist(name)) continue;
         const PlistOwner surface = parse_plist(entries, name, file);
-        const std::string mesh_name = fs::path(text_of(value_of(surface.get(), "polydata", file), "polydata", file)).filename().string();
+        const std::string mesh_name =
+            fs::path(text_of(value_of(surface.get(), "polydata", file), "polydata", file)).filename().string();
         const auto mesh_entry = entries.find(mesh_name);
         if (mesh_entry == entries.end()) damaged(file, "holds no " + mesh_name);
 

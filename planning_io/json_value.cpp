@@ -26,7 +26,8 @@ std::array<double, N> numbers(const JsonValue& value) {
 }  // namespace
 
 Json parse_json(std::string_view text, const fs::path& file) {
-    if (text.size() > kMaxBytes) throw InputError(file, "is larger than 64 MiB", "Give the file that Planlight or 3D Slicer wrote.");
+    if (text.size() > kMaxBytes)
+        throw InputError(file, "is larger than 64 MiB", "Give the file that Planlight or 3D Slicer wrote.");
     std::vector<std::set<std::string>> names;
     const auto guard = [&](int depth, Json::parse_event_t event, Json& parsed) {
         if (depth > kMaxDepth) throw InputError(file, "is nested deeper than 32 levels", kCorrect);
@@ -41,13 +42,15 @@ Json parse_json(std::string_view text, const fs::path& file) {
     } catch (const Json::exception& e) {
         const std::string said = e.what(), before = "parse error at ";  // after the library's own number of the error
         const auto at = said.find(before);
-        throw DamagedFileError(file, "is not whole JSON (" + (at == std::string::npos ? said : said.substr(at + before.size())) + ")",
-                               "Write or copy the file again.");
+        throw DamagedFileError(
+            file, "is not whole JSON (" + (at == std::string::npos ? said : said.substr(at + before.size())) + ")",
+            "Write or copy the file again.");
     }
 }
 
 void JsonValue::refuse(const std::string& problem, const std::string& what_to_do) const {
-    throw InputError(*file_, (place_.empty() ? std::string("the file") : place_) + " " + problem, what_to_do.empty() ? kCorrect : what_to_do);
+    throw InputError(*file_, (place_.empty() ? std::string("the file") : place_) + " " + problem,
+                     what_to_do.empty() ? kCorrect : what_to_do);
 }
 
 std::optional<JsonValue> JsonValue::find(const char* key) const {
@@ -112,7 +115,8 @@ Eigen::Matrix3d JsonValue::matrix3() const {
 RigidTransform JsonValue::transform() const {
     const auto values = numbers<16>(*this);
     const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>(values.data());
-    if (!is_rigid(matrix)) refuse("is not a rotation and a translation (rows orthonormal to 1e-6, determinant +1, last row 0 0 0 1)");
+    if (!is_rigid(matrix))
+        refuse("is not a rotation and a translation (rows orthonormal to 1e-6, determinant +1, last row 0 0 0 1)");
     return RigidTransform(matrix);
 }
 
@@ -122,8 +126,9 @@ void check_format(const JsonValue& root, const char* format, int version, const 
         root.refuse(std::string("does not say \"format\": \"") + format + "\"");
     const auto number = root.at("version").integer(0, 1000000);
     if (number != version)
-        throw DamagedFileError(file, "is of version " + std::to_string(number) + "; this program reads version " + std::to_string(version),
-                               "Write it again with this version of Planlight.");
+        throw DamagedFileError(
+            file, "is of version " + std::to_string(number) + "; this program reads version " + std::to_string(version),
+            "Write it again with this version of Planlight.");
 }
 
 Json to_json(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }

@@ -44,7 +44,8 @@ std::string columns_of(const char* type, std::initializer_list<const char*> name
 template <class Column>
 void check_length(const Column& column, std::size_t count, const fs::path& file, const char* name) {
     if (!column.empty() && column.size() != count)
-        throw InputError(file, std::string("the column of ") + name + " is not as long as the points", "Give one value for each point, or none.");
+        throw InputError(file, std::string("the column of ") + name + " is not as long as the points",
+                         "Give one value for each point, or none.");
 }
 
 /// The column, which must be there and finite.
@@ -52,7 +53,9 @@ const std::vector<double>& column(const Ply& ply, const char* name, const fs::pa
     const auto* values = ply.column(name);
     if (!values) damaged(file, std::string("has no column \"") + name + "\"");
     for (const double value : *values)
-        if (!std::isfinite(value)) throw InputError(file, std::string("has a value in \"") + name + "\" that is not a finite number", "Repair the mesh or the scan and export it again.");
+        if (!std::isfinite(value))
+            throw InputError(file, std::string("has a value in \"") + name + "\" that is not a finite number",
+                             "Repair the mesh or the scan and export it again.");
     return *values;
 }
 
@@ -70,8 +73,9 @@ void write_mesh(const TriangleMesh& mesh, const fs::path& file) {
     check_length(mesh.normals_in_ct, count, file, "normals");
     check_length(mesh.flags, count, file, "flags");
     check_length(mesh.thickness_mm, count, file, "thickness");
-    std::string header = "ply\nformat binary_little_endian 1.0\ncomment Planlight skin mesh, mm. SPACE=LPS\nelement vertex " + std::to_string(count) + "\n" +
-                         columns_of("double", {"x", "y", "z"});
+    std::string header =
+        "ply\nformat binary_little_endian 1.0\ncomment Planlight skin mesh, mm. SPACE=LPS\nelement vertex " +
+        std::to_string(count) + "\n" + columns_of("double", {"x", "y", "z"});
     if (!mesh.normals_in_ct.empty()) header += columns_of("double", {"nx", "ny", "nz"});
     if (!mesh.flags.empty()) header += columns_of("uchar", {"flags"});
     if (!mesh.thickness_mm.empty()) header += columns_of("float", {"thickness"});
@@ -95,7 +99,8 @@ TriangleMesh read_mesh(const fs::path& file) {
     const bool lps = ply.says("SPACE=LPS"), ras = ply.says("SPACE=RAS");
     if (lps == ras)
         throw InputError(file, lps ? "says both SPACE=LPS and SPACE=RAS" : "does not say its coordinate system",
-                         "Export the mesh with its space (3D Slicer does), or add the line \"comment SPACE=LPS\" to its header if that is what it is.");
+                         "Export the mesh with its space (3D Slicer does), or add the line \"comment SPACE=LPS\" to "
+                         "its header if that is what it is.");
     const double sign_xy = ras ? -1 : 1;
     TriangleMesh mesh;
     mesh.vertices_in_ct = vectors(ply, {"x", "y", "z"}, sign_xy, file);
@@ -112,7 +117,8 @@ TriangleMesh read_mesh(const fs::path& file) {
         }
     for (const auto& face : ply.faces)
         for (std::size_t c = 2; c < face.size(); ++c)  // a polygon becomes a fan
-            mesh.triangles.push_back({static_cast<std::int32_t>(face[0]), static_cast<std::int32_t>(face[c - 1]), static_cast<std::int32_t>(face[c])});
+            mesh.triangles.push_back({static_cast<std::int32_t>(face[0]), static_cast<std::int32_t>(face[c - 1]),
+                                      static_cast<std::int32_t>(face[c])});
     return mesh;
 }
 
@@ -121,8 +127,9 @@ void write_cloud(const PointCloud& cloud, const fs::path& file) {
     check_length(cloud.normals_in_rig, count, file, "normals");
     check_length(cloud.sigma_mm, count, file, "sigma");
     check_length(cloud.pixels_in_projector, count, file, "projector pixels");
-    std::string header = "ply\nformat binary_little_endian 1.0\ncomment Planlight scan, mm. FRAME=rig\nelement vertex " + std::to_string(count) + "\n" +
-                         columns_of("double", {"x", "y", "z"});
+    std::string header =
+        "ply\nformat binary_little_endian 1.0\ncomment Planlight scan, mm. FRAME=rig\nelement vertex " +
+        std::to_string(count) + "\n" + columns_of("double", {"x", "y", "z"});
     if (!cloud.normals_in_rig.empty()) header += columns_of("double", {"nx", "ny", "nz"});
     if (!cloud.sigma_mm.empty()) header += columns_of("float", {"sigma"});
     if (!cloud.pixels_in_projector.empty()) header += columns_of("double", {"projector_x", "projector_y"});
@@ -131,7 +138,8 @@ void write_cloud(const PointCloud& cloud, const fs::path& file) {
         rows.add(cloud.points_in_rig[i]);
         if (!cloud.normals_in_rig.empty()) rows.add(cloud.normals_in_rig[i]);
         if (!cloud.sigma_mm.empty()) rows.add(cloud.sigma_mm[i]);
-        if (!cloud.pixels_in_projector.empty()) rows.add(cloud.pixels_in_projector[i].x()), rows.add(cloud.pixels_in_projector[i].y());
+        if (!cloud.pixels_in_projector.empty())
+            rows.add(cloud.pixels_in_projector[i].x()), rows.add(cloud.pixels_in_projector[i].y());
     }
     write_safely(file, rows.header_and_rows(header + "end_header\n"));
 }

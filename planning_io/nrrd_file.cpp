@@ -82,9 +82,10 @@ std::vector<Vector3d> vectors_of(const TextHeader& header, const std::string& na
         text.begin(), text.end(), [](char c) { return c == '(' || c == ')' || c == ','; }, ' ');
     const auto numbers = numbers_of(text);
     if (numbers.size() != 3 * count || opened != static_cast<std::ptrdiff_t>(count))
-        throw DamagedFileError(
-            header.file, fmt::format("has \"{}\" in its header that is not {} of three numbers", name, counted(static_cast<long long>(count), "vector")),
-            kSaveAgain);
+        throw DamagedFileError(header.file,
+                               fmt::format("has \"{}\" in its header that is not {} of three numbers", name,
+                                           counted(static_cast<long long>(count), "vector")),
+                               kSaveAgain);
     std::vector<Vector3d> vectors;
     for (std::size_t v = 0; v < count; ++v)
         vectors.emplace_back(numbers[3 * v], numbers[3 * v + 1], numbers[3 * v + 2]);

@@ -13,7 +13,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kSchema =
-    "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/markups-schema-v1.0.3.json#";
+    "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/"
+    "markups-schema-v1.0.3.json#";
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& name, const std::string& problem) {
     throw InputError(file, "\"" + name + "\" " + problem, "Correct this item of the plan.");
@@ -26,13 +27,18 @@ void check_plan_numbers(const Plan& plan, const fs::path& file) {
         if (!good) refuse(file, name, "has a coordinate or a size that is not a finite number or is negative");
     };
     const auto size = [](double mm) { return std::isfinite(mm) && mm >= 0; };
-    for (const auto& t : plan.trajectories) check(t.entry_in_ct.allFinite() && t.target_in_ct.allFinite() && size(t.diameter_mm), t.name);
+    for (const auto& t : plan.trajectories)
+        check(t.entry_in_ct.allFinite() && t.target_in_ct.allFinite() && size(t.diameter_mm), t.name);
     for (const auto& b : plan.boreholes)
-        check(b.position_in_ct.allFinite() && size(b.diameter_mm) && size(b.depth_mm) && (!b.axis_in_ct || b.axis_in_ct->allFinite()), b.name);
+        check(b.position_in_ct.allFinite() && size(b.diameter_mm) && size(b.depth_mm) &&
+                  (!b.axis_in_ct || b.axis_in_ct->allFinite()),
+              b.name);
     for (const auto& line : plan.osteotomy_lines)
         for (const auto& p : line.points_in_ct) check(p.allFinite(), line.name);
     for (const auto& c : plan.cut_planes)
-        check(c.origin_in_ct.allFinite() && c.normal_in_ct.allFinite() && c.first_axis_in_ct.allFinite() && size(c.width_mm) && size(c.height_mm), c.name);
+        check(c.origin_in_ct.allFinite() && c.normal_in_ct.allFinite() && c.first_axis_in_ct.allFinite() &&
+                  size(c.width_mm) && size(c.height_mm),
+              c.name);
 }
 
 Plan read_plan(const fs::path& file_or_folder) { return import_plan(file_or_folder).plan; }

@@ -31,7 +31,9 @@ bool ends(const fs::path& file, const char* ending) { return lower(file.filename
 
 /// The minor version of the schema 1.0.x that the file names.
 int schema_minor(const JsonValue& root) {
-    if (!root.find("@schema")) root.refuse("names no \"@schema\": it is no markups file of 3D Slicer", "Save the plan from 3D Slicer as .mrk.json.");
+    if (!root.find("@schema"))
+        root.refuse("names no \"@schema\": it is no markups file of 3D Slicer",
+                    "Save the plan from 3D Slicer as .mrk.json.");
     const std::string schema = root.at("@schema").text();
     const std::string before = "markups-schema-v1.0.";
     const auto at = schema.find(before);

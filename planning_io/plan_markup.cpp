@@ -27,15 +27,18 @@ struct MarkupSpace {
 MarkupSpace space_of(const JsonValue& markup, bool units_required) {
     MarkupSpace space;
     const std::string system = markup.at("coordinateSystem").text();
-    if (system != "LPS" && system != "RAS") markup.at("coordinateSystem").refuse("is \"" + system + "\", neither \"LPS\" nor \"RAS\"", kSaveAgain);
+    if (system != "LPS" && system != "RAS")
+        markup.at("coordinateSystem").refuse("is \"" + system + "\", neither \"LPS\" nor \"RAS\"", kSaveAgain);
     if (system == "RAS") space.sign_xy = -1;
     const auto units = markup.find("coordinateUnits");
     if (!units) {
         if (units_required) markup.refuse("has no \"coordinateUnits\"", kSaveAgain);
         return space;
     }
-    const std::string unit = units->is_text() ? units->text() : (*units)[units->size() > 0 ? 0 : (units->refuse("is empty"), 0)].text();
-    if (!units->is_text() && (units->size() != 3 || (*units)[1].text() != "UCUM")) units->refuse("is not a UCUM unit", kSaveAgain);
+    const std::string unit =
+        units->is_text() ? units->text() : (*units)[units->size() > 0 ? 0 : (units->refuse("is empty"), 0)].text();
+    if (!units->is_text() && (units->size() != 3 || (*units)[1].text() != "UCUM"))
+        units->refuse("is not a UCUM unit", kSaveAgain);
     if (unit != "mm" && unit != "um") units->refuse("is \"" + unit + "\", neither \"mm\" nor \"um\"", kSaveAgain);
     if (unit == "um") space.mm_per_unit = 1e-3;
     return space;
@@ -43,7 +46,8 @@ MarkupSpace space_of(const JsonValue& markup, bool units_required) {
 
 Vector3d point_in_ct(const JsonValue& position, const MarkupSpace& space) {
     const Vector3d p = space.point(position.vector3());
-    if (p.cwiseAbs().maxCoeff() > kMaxCoordinate_mm) position.refuse("is more than 5 m from the origin", "Check the units of the plan.");
+    if (p.cwiseAbs().maxCoeff() > kMaxCoordinate_mm)
+        position.refuse("is more than 5 m from the origin", "Check the units of the plan.");
     return p;
 }
 
@@ -70,7 +74,8 @@ std::optional<Colour> colour_of(const JsonValue& markup) {
     if (!list) list = display->find("color");
     if (!list) return std::nullopt;
     if (list->size() != 3) list->refuse("must be three numbers");
-    return Colour{static_cast<float>((*list)[0].number(0, 1)), static_cast<float>((*list)[1].number(0, 1)), static_cast<float>((*list)[2].number(0, 1))};
+    return Colour{static_cast<float>((*list)[0].number(0, 1)), static_cast<float>((*list)[1].number(0, 1)),
+                  static_cast<float>((*list)[2].number(0, 1))};
 }
 
 PlanSettings settings_of(const JsonValue& point) {
@@ -80,10 +85,14 @@ PlanSettings settings_of(const JsonValue& point) {
 
 std::size_t count_points(const JsonValue& points, std::size_t least) {
     const std::size_t count = points.size();
-    if (count < least) points.refuse("holds " + counted(static_cast<long long>(count), "point") + ", fewer than " + std::to_string(least), "Place its points in 3D Slicer.");
+    if (count < least)
+        points.refuse(
+            "holds " + counted(static_cast<long long>(count), "point") + ", fewer than " + std::to_string(least),
+            "Place its points in 3D Slicer.");
     for (std::size_t i = 0; i < count; ++i)
         if (const auto status = points[i].find("positionStatus"); status && status->text() != "defined")
-            points[i].refuse("is not placed (positionStatus \"" + status->text() + "\")", "Place or delete the point in 3D Slicer.");
+            points[i].refuse("is not placed (positionStatus \"" + status->text() + "\")",
+                             "Place or delete the point in 3D Slicer.");
     return count;
 }
 
@@ -102,7 +111,8 @@ void append_trajectory(Plan& plan, const JsonValue& markup, const MarkupSpace& s
     t.target_in_ct = point_in_ct(points[1].at("position"), space);
     t.diameter_mm = settings_of(points[0]).length_mm("diameter_mm", kMaxDiameter_mm);
     t.colour = colour_of(markup);
-    if (!(t.length_mm() > 1e-3)) markup.refuse("(\"" + t.name + "\") is a line of no length", "Place its entry and its target apart.");
+    if (!(t.length_mm() > 1e-3))
+        markup.refuse("(\"" + t.name + "\") is a line of no length", "Place its entry and its target apart.");
     plan.trajectories.push_back(std::move(t));
 }
 
@@ -167,7 +177,8 @@ void append_cut_plane(Plan& plan, const JsonValue& markup, const MarkupSpace& sp
     plane.width_mm = space.mm_per_unit * size[0].number(0, 1e7);
     plane.height_mm = space.mm_per_unit * size[1].number(0, 1e7);
     if (const auto bounds = markup.find("planeBounds"); bounds && bounds->size() == 4)
-        if (std::abs((*bounds)[0].number() + (*bounds)[1].number()) > 1e-3 || std::abs((*bounds)[2].number() + (*bounds)[3].number()) > 1e-3)
+        if (std::abs((*bounds)[0].number() + (*bounds)[1].number()) > 1e-3 ||
+            std::abs((*bounds)[2].number() + (*bounds)[3].number()) > 1e-3)
             bounds->refuse("is not centred on the plane's centre", "Give the plane a fixed size in 3D Slicer.");
     plane.colour = colour_of(markup);
     plan.cut_planes.push_back(std::move(plane));

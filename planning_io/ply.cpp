@@ -35,8 +35,9 @@ struct Element {
 }
 
 Type type_of(const std::string& word, const fs::path& file) {
-    static const std::vector<std::vector<std::string>> names{{"char", "int8"}, {"uchar", "uint8"}, {"short", "int16"}, {"ushort", "uint16"},
-                                                             {"int", "int32"}, {"uint", "uint32"}, {"float", "float32"}, {"double", "float64"}};
+    static const std::vector<std::vector<std::string>> names{
+        {"char", "int8"}, {"uchar", "uint8"}, {"short", "int16"},   {"ushort", "uint16"},
+        {"int", "int32"}, {"uint", "uint32"}, {"float", "float32"}, {"double", "float64"}};
     for (std::size_t i = 0; i < names.size(); ++i)
         if (std::find(names[i].begin(), names[i].end(), word) != names[i].end()) return static_cast<Type>(i);
     damaged(file, "has a column of the unknown type \"" + word + "\"");
@@ -104,7 +105,8 @@ struct Header {
 
 void add_element_line(Header& header, std::istringstream& words, const fs::path& file) {
     Element element;
-    if (!(words >> element.name >> element.count) || element.count > (std::size_t{1} << 30)) damaged(file, "has a damaged header");
+    if (!(words >> element.name >> element.count) || element.count > (std::size_t{1} << 30))
+        damaged(file, "has a damaged header");
     header.elements.push_back(std::move(element));
 }
 
@@ -136,7 +138,9 @@ Header parse_header(std::string_view content, const fs::path& file) {
         if (word == "format") {
             words >> format;
             has_format = format == "ascii" || format == "binary_little_endian" || format == "binary_big_endian";
-            header.encoding = format == "ascii" ? Encoding::ascii : format == "binary_big_endian" ? Encoding::big : Encoding::little;
+            header.encoding = format == "ascii"               ? Encoding::ascii
+                              : format == "binary_big_endian" ? Encoding::big
+                                                              : Encoding::little;
         } else if (word == "comment" || word == "obj_info") {
             header.comments.push_back(line.substr(std::min(line.size(), word.size() + 1)));
         } else if (word == "element") {
@@ -156,7 +160,8 @@ Header parse_header(std::string_view content, const fs::path& file) {
 
 std::size_t read_count(Reader& reader, Type type, const fs::path& file) {
     const double count = reader.next(type);
-    if (!(count >= 0) || count > 1000 || count != std::floor(count)) damaged(file, "has a face with a senseless number of corners");
+    if (!(count >= 0) || count > 1000 || count != std::floor(count))
+        damaged(file, "has a face with a senseless number of corners");
     return static_cast<std::size_t>(count);
 }
 
@@ -172,7 +177,8 @@ void read_row(Reader& reader, const Element& element, Ply& ply, const fs::path& 
         const bool corners = element.name == "face" && (property.name == "vertex_indices" || property.name == "vertex_index");
         for (auto& item : list) {
             const double value = reader.next(property.type);
-            if (corners && (!(value >= 0) || value >= static_cast<double>(ply.vertices))) damaged(file, "has a face with a corner that does not exist");
+            if (corners && (!(value >= 0) || value >= static_cast<double>(ply.vertices)))
+                damaged(file, "has a face with a corner that does not exist");
             item = corners ? static_cast<std::int64_t>(value) : 0;
         }
         if (corners) ply.faces.push_back(std::move(list));
@@ -188,7 +194,8 @@ const std::vector<double>* Ply::column(std::string_view name) const {
 }
 
 bool Ply::says(std::string_view words) const {
-    return std::any_of(comments.begin(), comments.end(), [&](const std::string& c) { return c.find(words) != std::string::npos; });
+    return std::any_of(comments.begin(), comments.end(),
+                       [&](const std::string& c) { return c.find(words) != std::string::npos; });
 }
 
 Ply parse_ply(std::string_view content, const fs::path& file) {
@@ -207,7 +214,8 @@ Ply parse_ply(std::string_view content, const fs::path& file) {
         }
         for (std::size_t row = 0; row < element.count; ++row) read_row(reader, element, ply, file);
     }
-    if (header.encoding == Encoding::ascii ? !reader.only_space_left() : reader.left() != 0) damaged(file, "goes on after its last row");
+    if (header.encoding == Encoding::ascii ? !reader.only_space_left() : reader.left() != 0)
+        damaged(file, "goes on after its last row");
     return ply;
 }
 

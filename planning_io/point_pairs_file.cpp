@@ -32,7 +32,8 @@ double number(const std::string& text, int line, const std::filesystem::path& fi
     double value = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() || !(std::abs(value) <= kMaxCoordinate_mm))
-        throw InputError(file, fmt::format("has \"{}\" in line {}, which is no coordinate in mm", text, line), "Write plain numbers, mm.");
+        throw InputError(file, fmt::format("has \"{}\" in line {}, which is no coordinate in mm", text, line),
+                         "Write plain numbers, mm.");
     return value;
 }
 
@@ -54,21 +55,27 @@ std::vector<PointPair> read_point_pairs(const std::filesystem::path& file) {
             continue;
         }
         if (!has_columns) {
-            if (line != kColumns) throw InputError(file, "does not begin with its columns", fmt::format("Write \"{}\" before the landmarks.", kColumns));
+            if (line != kColumns)
+                throw InputError(file, "does not begin with its columns",
+                                 fmt::format("Write \"{}\" before the landmarks.", kColumns));
             has_columns = true;
             continue;
         }
         const auto fields = fields_of(line);
         if (fields.size() != 7 || fields[0].empty())
-            throw InputError(file, fmt::format("has {} fields in line {}; a landmark has a name and six numbers", fields.size(), number_of_line),
+            throw InputError(file,
+                             fmt::format("has {} fields in line {}; a landmark has a name and six numbers",
+                                         fields.size(), number_of_line),
                              fmt::format("Write each landmark as {}.", kColumns));
         if (!names.insert(fields[0]).second)
-            throw InputError(file, fmt::format("names the landmark \"{}\" twice", fields[0]), "Give each landmark a name of its own.");
+            throw InputError(file, fmt::format("names the landmark \"{}\" twice", fields[0]),
+                             "Give each landmark a name of its own.");
         std::array<double, 6> v{};
         for (std::size_t i = 0; i < 6; ++i) v[i] = number(fields[i + 1], number_of_line, file);
         pairs.push_back({fields[0], {v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
     }
-    const Space of_ct = settled_space(space, std::nullopt, file, "Write the line \"# SPACE=LPS\" or \"# SPACE=RAS\" at its beginning.");
+    const Space of_ct =
+        settled_space(space, std::nullopt, file, "Write the line \"# SPACE=LPS\" or \"# SPACE=RAS\" at its beginning.");
     for (PointPair& pair : pairs) pair.in_ct = to_ct(pair.in_ct, of_ct);
     return pairs;
 }

@@ -53,13 +53,17 @@ struct GzipStream {
 std::string read_entry(archive* tar, archive_entry* entry, const fs::path& file, std::uint64_t max_bytes) {
     const auto size = archive_entry_size(entry);
     if (size < 0 || static_cast<std::uint64_t>(size) > max_bytes)
-        throw DamagedFileError(file, "holds an entry of " + std::to_string(size) + " bytes, more than the " + std::to_string(max_bytes) + " allowed",
+        throw DamagedFileError(file,
+                               "holds an entry of " + std::to_string(size) + " bytes, more than the " +
+                                   std::to_string(max_bytes) + " allowed",
                                kCopyAgain);
     std::string content;  // grows with what is really there: the size in the header may be a lie
     std::array<char, 1 << 16> block{};
     la_ssize_t got = 0;
-    while ((got = archive_read_data(tar, block.data(), block.size())) > 0) content.append(block.data(), static_cast<std::size_t>(got));
-    if (got < 0 || content.size() != static_cast<std::size_t>(size)) throw DamagedFileError(file, "is cut or damaged", kCopyAgain);
+    while ((got = archive_read_data(tar, block.data(), block.size())) > 0)
+        content.append(block.data(), static_cast<std::size_t>(got));
+    if (got < 0 || content.size() != static_cast<std::size_t>(size))
+        throw DamagedFileError(file, "is cut or damaged", kCopyAgain);
     return content;
 }
 
@@ -90,9 +94,11 @@ std::map<std::string, std::string> read_tar_entries(const fs::path& file, const 
     if (!stream.damaged && status == ARCHIVE_EOF)
         while (stream.next() > 0) {
         }
-    if (stream.damaged || (status != ARCHIVE_EOF && (gzip || headers > 0))) throw DamagedFileError(file, "is cut or damaged", kCopyAgain);
+    if (stream.damaged || (status != ARCHIVE_EOF && (gzip || headers > 0)))
+        throw DamagedFileError(file, "is cut or damaged", kCopyAgain);
     if (status != ARCHIVE_EOF || headers == 0)
-        throw InputError(file, "is not an archive of the kind an InVesalius project is (gzip tar)", "Name a project that InVesalius 3 saved (.inv3).");
+        throw InputError(file, "is not an archive of the kind an InVesalius project is (gzip tar)",
+                         "Name a project that InVesalius 3 saved (.inv3).");
     return entries;
 }
 

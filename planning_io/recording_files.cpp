@@ -23,12 +23,16 @@ void check_name(const std::string& name, const fs::path& file) {
     const bool plain = !name.empty() && name.size() <= 100 && std::all_of(name.begin(), name.end(), [](unsigned char c) {
         return std::isalnum(c) || c == '_' || c == '-';
     });
-    if (!plain) throw InputError(file, "names a pattern \"" + name + "\"", "Use letters, digits, _ and - in names of patterns only.");
+    if (!plain)
+        throw InputError(file, "names a pattern \"" + name + "\"",
+                         "Use letters, digits, _ and - in names of patterns only.");
 }
 
 void check_picture(const GrayImage& picture, const GrayImage& first, const fs::path& file) {
     if (picture.width != first.width || picture.height != first.height)
-        throw InputError(file, fmt::format("is {} x {} pixels, the first picture of this camera is {} x {}", picture.width, picture.height, first.width, first.height),
+        throw InputError(file,
+                         fmt::format("is {} x {} pixels, the first picture of this camera is {} x {}", picture.width,
+                                     picture.height, first.width, first.height),
                          "Capture all pictures with the same settings.");
 }
 
@@ -76,7 +80,8 @@ PoseCovariance covariance_of(const JsonValue& json) {
 
 void write_capture(const CaptureFolder& capture, const fs::path& folder) {
     if (capture.left.size() != capture.names.size() || capture.right.size() != capture.names.size())
-        throw InputError(folder, "the capture does not have one left and one right picture for each pattern", "Capture the sequence again.");
+        throw InputError(folder, "the capture does not have one left and one right picture for each pattern",
+                         "Capture the sequence again.");
     for (const std::string& name : capture.names) check_name(name, folder);
     write_folder_safely(folder, false, [&](const fs::path& into) {
         fs::create_directories(into / "left");
@@ -125,7 +130,9 @@ CaptureFolder read_capture_settings(const fs::path& file) {
 
 CaptureFolder read_capture(const fs::path& folder) {
     CaptureFolder capture = read_capture_settings(folder / "capture.json");
-    if (capture.names.empty()) throw InputError(folder / "capture.json", "has no list of names", "Name the pictures in the order of the sequence.");
+    if (capture.names.empty())
+        throw InputError(folder / "capture.json", "has no list of names",
+                         "Name the pictures in the order of the sequence.");
     for (const std::string& name : capture.names) {
         read_picture(capture.left, folder / "left" / (name + ".png"));
         read_picture(capture.right, folder / "right" / (name + ".png"));
@@ -142,9 +149,13 @@ void write_frames(const std::vector<RecordedFrame>& frames, const fs::path& fold
             const std::string name = fmt::format("{:06}.png", i);
             write_png(frames[i].left, into / "left" / name);
             write_png(frames[i].right, into / "right" / name);
-            list.push_back(Json{{"picture", name}, {"number", frames[i].number}, {"at_ns", frames[i].at.count()}, {"exposure_ns", frames[i].exposure.count()}});
+            list.push_back(Json{{"picture", name},
+                                {"number", frames[i].number},
+                                {"at_ns", frames[i].at.count()},
+                                {"exposure_ns", frames[i].exposure.count()}});
         }
-        write_safely(into / "frames.json", dump(Json{{"format", "planlight frames"}, {"version", kVersion}, {"frames", std::move(list)}}));
+        write_safely(into / "frames.json",
+                     dump(Json{{"format", "planlight frames"}, {"version", kVersion}, {"frames", std::move(list)}}));
     });
 }
 

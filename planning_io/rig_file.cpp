@@ -16,9 +16,18 @@ constexpr int kVersion = 1;
 constexpr const char* kCalibrate = "Calibrate the rig again.";
 
 Json json_of(const CameraModel& d) {
-    return Json{{"width", d.width},       {"height", d.height},     {"focal_x", d.focal_x}, {"focal_y", d.focal_y}, {"centre_x", d.centre_x},
-                {"centre_y", d.centre_y}, {"k1", d.k1},             {"k2", d.k2},           {"p1", d.p1},           {"p2", d.p2},
-                {"k3", d.k3},             {"device_from_rig", to_json(d.device_from_rig)}};
+    return Json{{"width", d.width},
+                {"height", d.height},
+                {"focal_x", d.focal_x},
+                {"focal_y", d.focal_y},
+                {"centre_x", d.centre_x},
+                {"centre_y", d.centre_y},
+                {"k1", d.k1},
+                {"k2", d.k2},
+                {"p1", d.p1},
+                {"p2", d.p2},
+                {"k3", d.k3},
+                {"device_from_rig", to_json(d.device_from_rig)}};
 }
 
 CameraModel device_of(const JsonValue& value) {
@@ -43,19 +52,23 @@ void check_device(const CameraModel& d, const std::string& name, const fs::path&
     if (d.width < 1 || d.height < 1) refuse("has no pixels");
     const double diagonal = std::hypot(d.width, d.height);
     for (const double focal : {d.focal_x, d.focal_y})
-        if (!(focal > 0.05 * diagonal) || !(focal < 500 * diagonal)) refuse("has a focal length of " + Json(focal).dump() + " pixels, which cannot be");
-    if (!(std::max(d.focal_x, d.focal_y) < 2 * std::min(d.focal_x, d.focal_y))) refuse("has pixels twice as wide as high, or the other way round");
+        if (!(focal > 0.05 * diagonal) || !(focal < 500 * diagonal))
+            refuse("has a focal length of " + Json(focal).dump() + " pixels, which cannot be");
+    if (!(std::max(d.focal_x, d.focal_y) < 2 * std::min(d.focal_x, d.focal_y)))
+        refuse("has pixels twice as wide as high, or the other way round");
     for (const double c : {d.centre_x, d.centre_y, d.k1, d.k2, d.p1, d.p2, d.k3})
         if (!std::isfinite(c)) refuse("has a number that is not finite");
     if (!is_rigid(d.device_from_rig.matrix())) refuse("has a device_from_rig that is not a rotation and a translation");
     if (d.device_from_rig.translation().norm() > 1e5) refuse("stands more than 100 m from the rig's origin");
-    if (!undistort(d, {(d.width - 1) / 2.0, (d.height - 1) / 2.0})) refuse("has a lens distortion that folds the middle of its picture");
+    if (!undistort(d, {(d.width - 1) / 2.0, (d.height - 1) / 2.0}))
+        refuse("has a lens distortion that folds the middle of its picture");
 }
 
 void check_pair(const CameraModel& a, const CameraModel& b, const std::string& names, const fs::path& file) {
     const double apart_mm = (a.centre_in_rig() - b.centre_in_rig()).norm();
     if (!(apart_mm > 5))
-        throw InputError(file, names + " stand " + Json(apart_mm).dump() + " mm apart, at one place", "Give positions in mm, or calibrate the rig again.");
+        throw InputError(file, names + " stand " + Json(apart_mm).dump() + " mm apart, at one place",
+                         "Give positions in mm, or calibrate the rig again.");
     const Eigen::Vector3d view_a = a.device_from_rig.linear().row(2), view_b = b.device_from_rig.linear().row(2);
     if (!(view_a.dot(view_b) > 0)) throw InputError(file, names + " look away from each other", kCalibrate);
 }
@@ -67,7 +80,8 @@ void check_rig(const RigCalibration& rig, const fs::path& file) {
     check_pair(rig.left_camera, rig.right_camera, "left_camera and right_camera", file);
     check_pair(rig.left_camera, rig.projector, "left_camera and projector", file);
     check_pair(rig.right_camera, rig.projector, "right_camera and projector", file);
-    if (!std::isfinite(rig.reprojection_rms_px) || rig.reprojection_rms_px < 0) throw InputError(file, "has a senseless reprojection_rms_px", kCalibrate);
+    if (!std::isfinite(rig.reprojection_rms_px) || rig.reprojection_rms_px < 0)
+        throw InputError(file, "has a senseless reprojection_rms_px", kCalibrate);
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ constexpr const char* kDiskRemedy = "Check the free space and the permissions of
 [[noreturn]] void refuse(const fs::path& file, const std::string& doing) {
     const int code = errno;
     if (code == ENOENT && !fs::exists(file.has_parent_path() ? file.parent_path() : fs::path(".")))
-        throw DiskError(file, doing + ": its folder does not exist", "Make the folder " + file.parent_path().string() + " first.");
+        throw DiskError(file, doing + ": its folder does not exist",
+                        "Make the folder " + file.parent_path().string() + " first.");
     throw DiskError(file, doing + (code ? std::string(": ") + std::strerror(code) : std::string()), kDiskRemedy);
 }
 
@@ -33,7 +34,8 @@ fs::path make_temporary_beside(const fs::path& file, bool folder = false) {
     for (int attempt = 0; attempt < 100; ++attempt) {
         fs::path temporary = file;
         temporary += ".part-" + std::to_string(random());
-        const int made = folder ? ::mkdir(temporary.c_str(), 0777) : ::open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+        const int made = folder ? ::mkdir(temporary.c_str(), 0777)
+                                : ::open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
         if (made >= 0) {
             if (!folder) ::close(made);
             return temporary;
@@ -104,7 +106,9 @@ void write_folder_safely(const fs::path& folder, bool replace, const std::functi
     if (!target.has_filename()) target = target.parent_path();  // "case/" means "case"
     const bool there = fs::exists(target), empty = there && fs::is_directory(target) && fs::is_empty(target);
     if (there && !fs::is_directory(target)) throw InputError(target, "is a file, not a folder", "Name another folder.");
-    if (there && !empty && !replace) throw InputError(target, "exists already and is not empty", "Name a new folder, remove this one, or give --replace if the command has it.");
+    if (there && !empty && !replace)
+        throw InputError(target, "exists already and is not empty",
+                         "Name a new folder, remove this one, or give --replace if the command has it.");
     RemoveFolder temporary{make_temporary_beside(target, true)};
     fill(temporary.path);
     sync(temporary.path, target);
@@ -132,7 +136,8 @@ std::string read_whole(const fs::path& file) {
     const auto size = fs::file_size(file, ignored);
     if (!ignored) content.reserve(size);
     std::array<char, 1 << 16> block{};
-    while (in.read(block.data(), block.size()) || in.gcount() > 0) content.append(block.data(), static_cast<std::size_t>(in.gcount()));
+    while (in.read(block.data(), block.size()) || in.gcount() > 0)
+        content.append(block.data(), static_cast<std::size_t>(in.gcount()));
     if (!in.eof()) throw InputError(file, "cannot be read", "Check the permissions of the file and the disk it is on.");
     return content;
 }

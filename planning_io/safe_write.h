@@ -13,7 +13,8 @@ void write_safely(const std::filesystem::path& file, const std::string& content)
 
 /// Makes a folder whole or not at all: `fill` writes into a temporary folder beside it, which is then renamed. An existing
 /// empty folder is taken; another existing one is exchanged for the new one in one step if `replace`, else InputError.
-void write_folder_safely(const std::filesystem::path& folder, bool replace, const std::function<void(const std::filesystem::path&)>& fill);
+void write_folder_safely(const std::filesystem::path& folder, bool replace,
+                         const std::function<void(const std::filesystem::path&)>& fill);
 
 /// The whole file. Throws InputError when it is missing, a folder or not readable.
 std::string read_whole(const std::filesystem::path& file);

@@ -125,16 +125,21 @@ __attribute__((target_clones("avx2", "default"))) std::uint32_t highest_of(const
 std::uint32_t highest_of(const LargeArray<std::uint32_t>& values) {
     return tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, values.size(), 1 << 18), std::uint32_t{0},
-        [&](const auto& range, std::uint32_t highest) { return std::max(highest, highest_of(values.data() + range.begin(), range.size())); },
+        [&](const auto& range, std::uint32_t highest) {
+            return std::max(highest, highest_of(values.data() + range.begin(), range.size()));
+        },
         [](std::uint32_t a, std::uint32_t b) { return std::max(a, b); });
 }
 
 /// What a reader of the table may rely on. The sentence says what is wrong; empty when nothing is.
 std::string fault_of(const SkinLut& lut) {
-    if (product(lut.size) == 0 || product(lut.size) != lut.nearest.size()) return "the table's size and its pointers do not agree";
+    if (product(lut.size) == 0 || product(lut.size) != lut.nearest.size())
+        return "the table's size and its pointers do not agree";
     if (product(lut.distance_size) != lut.distance_mm.size()) return "the distance field's size and its values do not agree";
-    if (!(lut.voxel_mm > 0) || !std::isfinite(lut.voxel_mm) || !lut.origin_in_ct.allFinite()) return "the table's geometry makes no sense";
-    if (!lut.distance_mm.empty() && (!(lut.distance_voxel_mm > 0) || !std::isfinite(lut.distance_voxel_mm))) return "the distance field's geometry makes no sense";
+    if (!(lut.voxel_mm > 0) || !std::isfinite(lut.voxel_mm) || !lut.origin_in_ct.allFinite())
+        return "the table's geometry makes no sense";
+    if (!lut.distance_mm.empty() && (!(lut.distance_voxel_mm > 0) || !std::isfinite(lut.distance_voxel_mm)))
+        return "the distance field's geometry makes no sense";
     if (highest_of(lut.nearest) >= lut.skin.size()) return "a pointer of the table points past the skin";
     for (const SkinPoint& p : lut.skin) {
         if (!p.position_in_ct.allFinite() || !p.normal_in_ct.allFinite()) return "a skin point is not finite";

@@ -68,15 +68,18 @@ void DepthPicture::draw_triangle(const std::array<Vector3d, 3>& p) {
     if (std::abs(area) < 1e-12) return;
     const auto [low_x, high_x] = std::minmax({p[0].x(), p[1].x(), p[2].x()});
     const auto [low_y, high_y] = std::minmax({p[0].y(), p[1].y(), p[2].y()});
-    const int x0 = static_cast<int>(std::ceil(std::max(0.0, low_x))), x1 = static_cast<int>(std::floor(std::min(width_ - 1.0, high_x)));
-    const int y0 = static_cast<int>(std::ceil(std::max(0.0, low_y))), y1 = static_cast<int>(std::floor(std::min(height_ - 1.0, high_y)));
+    const int x0 = static_cast<int>(std::ceil(std::max(0.0, low_x))),
+              x1 = static_cast<int>(std::floor(std::min(width_ - 1.0, high_x)));
+    const int y0 = static_cast<int>(std::ceil(std::max(0.0, low_y))),
+              y1 = static_cast<int>(std::floor(std::min(height_ - 1.0, high_y)));
     for (int y = y0; y <= y1; ++y)
         for (int x = x0; x <= x1; ++x) {
             const double b = ((x - p[0].x()) * (p[2].y() - p[0].y()) - (y - p[0].y()) * (p[2].x() - p[0].x())) / area;
             const double c = ((p[1].x() - p[0].x()) * (y - p[0].y()) - (p[1].y() - p[0].y()) * (x - p[0].x())) / area;
             if (b < -1e-9 || c < -1e-9 || b + c > 1 + 1e-9) continue;
             const double inverse_depth = (1 - b - c) * p[0].z() + b * p[1].z() + c * p[2].z();
-            float& depth = depth_mm_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+            float& depth =
+                depth_mm_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
             depth = std::min(depth, static_cast<float>(1 / inverse_depth));
         }
 }
@@ -88,7 +91,8 @@ DepthPicture::Answer DepthPicture::ask(const Eigen::Vector2d& pixel, double dept
     for (int y = row - 1; y <= row + 1; ++y)
         for (int x = column - 1; x <= column + 1; ++x) {
             if (x < 0 || y < 0 || x >= width_ || y >= height_) continue;
-            const float depth = depth_mm_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
+            const float depth =
+                depth_mm_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
             nearest = std::min(nearest, depth);
             farthest = std::max(farthest, depth);
         }

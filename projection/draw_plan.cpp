@@ -97,7 +97,8 @@ void Drawer::add(StrokeKind kind, int item_index, Rgb colour, double width_mm, c
 
 void Drawer::add_bar(StrokeKind kind, int item_index, Rgb colour, const Point& at, const Vector3d& direction, double back_mm,
                      double ahead_mm) {
-    add(kind, item_index, colour, 0.7 * settings_.line_width_mm, bar(skin_, at, direction, back_mm, ahead_mm, settings_.max_segment_mm));
+    add(kind, item_index, colour, 0.7 * settings_.line_width_mm,
+        bar(skin_, at, direction, back_mm, ahead_mm, settings_.max_segment_mm));
 }
 
 /// A tick every 10 mm along the line from its first point, every fifth twice as long.
@@ -108,7 +109,8 @@ void Drawer::add_ticks(int item_index, Rgb colour, const SkinLine& line) {
     for (int k = 0; k * settings_.tick_every_mm <= last_mm; ++k) {
         const LinePlace place = place_along(skin_, line, k * settings_.tick_every_mm);
         const double half_mm = settings_.tick_length_mm / 2 * (k % 5 == 0 ? 2 : 1);
-        add_bar(StrokeKind::tick, item_index, colour, place.at, place.at.normal_in_ct.cross(place.direction_in_ct), half_mm, half_mm);
+        add_bar(StrokeKind::tick, item_index, colour, place.at, place.at.normal_in_ct.cross(place.direction_in_ct),
+                half_mm, half_mm);
     }
 }
 
@@ -140,8 +142,9 @@ void Drawer::draw(const OsteotomyLine& line) {
             on_skin.push_back(skin_.nearest(p));
             far_mm = std::max(far_mm, (on_skin.back().p_in_ct - p).norm());
         }
-    const int i = begin(StrokeKind::osteotomy_line, line.name, on_skin.empty() ? Vector3d::Zero() : on_skin.front().p_in_ct, far_mm,
-                        faults(line, skin_, settings_));
+    const int i =
+        begin(StrokeKind::osteotomy_line, line.name, on_skin.empty() ? Vector3d::Zero() : on_skin.front().p_in_ct,
+              far_mm, faults(line, skin_, settings_));
     if (on_skin.size() < 2 || too_far(item(i))) return;
     const SkinLine way = join(skin_, on_skin, line.closed, settings_.max_segment_mm);
     if (way.points.size() < 2) return;
@@ -184,11 +187,14 @@ void Drawer::draw(const Trajectory& t) {
     }
     const Point nearest = skin_.nearest(t.entry_in_ct);
     const bool has_way = t.length_mm() > 1e-6;
-    const Vector3d inwards = has_way ? Vector3d((t.target_in_ct - t.entry_in_ct) / t.length_mm()) : Vector3d(-nearest.normal_in_ct);
+    const Vector3d inwards =
+        has_way ? Vector3d((t.target_in_ct - t.entry_in_ct) / t.length_mm()) : Vector3d(-nearest.normal_in_ct);
     const Point at = on_skin_along(skin_, t.entry_in_ct, inwards);
-    const int i = begin(StrokeKind::trajectory, t.name, at.p_in_ct, (nearest.p_in_ct - t.entry_in_ct).norm(), faults(t, skin_, settings_));
+    const int i = begin(StrokeKind::trajectory, t.name, at.p_in_ct, (nearest.p_in_ct - t.entry_in_ct).norm(),
+                        faults(t, skin_, settings_));
     if (too_far(item(i))) return;
-    item(i).label = fmt::format("{}{}  {} mm", t.name, t.diameter_mm > 0 ? fmt::format("  ⌀{}", mm(t.diameter_mm)) : "", mm(t.length_mm()));
+    item(i).label = fmt::format("{}{}  {} mm", t.name, t.diameter_mm > 0 ? fmt::format("  ⌀{}", mm(t.diameter_mm)) : "",
+                                mm(t.length_mm()));
     const Rgb colour = chosen(t.colour, kTrajectoryAmber);
     const double radius_mm = std::max(t.diameter_mm / 2, kSymbolRadius_mm), arm_mm = radius_mm + 2.5;
     add(StrokeKind::trajectory, i, colour, settings_.line_width_mm, circle(skin_, at, radius_mm, settings_.max_segment_mm));
@@ -199,7 +205,8 @@ void Drawer::draw(const Trajectory& t) {
     const Vector3d shadow = inwards - inwards.dot(at.normal_in_ct) * at.normal_in_ct;
     const double shadow_mm = std::min(20.0, shadow.norm() * t.length_mm());
     if (shadow.norm() > 0.05 && shadow_mm > radius_mm + 1)
-        add(StrokeKind::trajectory, i, colour, settings_.line_width_mm, bar(skin_, at, shadow, -radius_mm, shadow_mm, settings_.max_segment_mm));
+        add(StrokeKind::trajectory, i, colour, settings_.line_width_mm,
+            bar(skin_, at, shadow, -radius_mm, shadow_mm, settings_.max_segment_mm));
     wish(i, {at}, arm_mm);
 }
 
@@ -209,7 +216,8 @@ void Drawer::draw(const CutPlane& plane) {
                           std::abs(plane.first_axis_in_ct.norm() - 1) < 1e-3 &&
                           std::abs(plane.normal_in_ct.dot(plane.first_axis_in_ct)) < 1e-3;
     const std::vector<SkinLine> lines = drawable ? trace(skin_, plane, settings_.max_segment_mm) : std::vector<SkinLine>();
-    const int i = begin(StrokeKind::cut_plane, plane.name, lines.empty() ? Vector3d::Zero() : lines.front().points.front().p_in_ct, 0, warnings);
+    const int i = begin(StrokeKind::cut_plane, plane.name,
+                        lines.empty() ? Vector3d::Zero() : lines.front().points.front().p_in_ct, 0, warnings);
     if (lines.empty()) return;
     item(i).label = fmt::format("{}  {:.0f} mm", plane.name.empty() ? "Cut" : plane.name, length_mm(lines.front()));
     const Rgb colour = chosen(plane.colour, kCutPlaneMagenta);
@@ -236,7 +244,8 @@ void Drawer::draw_labels() {
             for (const Point& p : circle(skin_, centre, r, 1).points) occupied.add(p.p_in_ct);
     }
     // Points can be labelled in fewer places than lines: they choose first.
-    std::stable_sort(wishes_.begin(), wishes_.end(), [](const auto& a, const auto& b) { return a.anchors.size() < b.anchors.size(); });
+    std::stable_sort(wishes_.begin(), wishes_.end(),
+                     [](const auto& a, const auto& b) { return a.anchors.size() < b.anchors.size(); });
     for (const LabelWish& w : wishes_) {
         const auto strokes = place_label(w, skin_, settings_, occupied);
         drawing.strokes.insert(drawing.strokes.end(), strokes.begin(), strokes.end());

@@ -20,13 +20,16 @@ std::string registration_refusal(const RegistrationResult& registration, bool co
 
 /// Why this pose must not be drawn now; empty when it may.
 std::string pose_refusal(const TrackedPose& pose, Instant now, const OverlaySettings& s) {
-    if (!pose.rig_from_patient) return pose.reason.empty() ? "the patient is not tracked" : "the patient is not tracked: " + pose.reason;
+    if (!pose.rig_from_patient)
+        return pose.reason.empty() ? "the patient is not tracked" : "the patient is not tracked: " + pose.reason;
     if (!is_rigid(pose.rig_from_patient->matrix())) return "the tracked pose is not a rigid transform";
     const Instant age = now - pose.at;
-    if (age > s.max_pose_age) return fmt::format("the last pose is {:.0f} ms old (at most {:.0f} ms)", ms(age), ms(s.max_pose_age));
+    if (age > s.max_pose_age)
+        return fmt::format("the last pose is {:.0f} ms old (at most {:.0f} ms)", ms(age), ms(s.max_pose_age));
     if (age < -s.max_pose_age) return fmt::format("the pose is dated {:.0f} ms in the future: the clocks disagree", -ms(age));
     if (!(pose.predicted_error_mm <= s.max_predicted_error_mm))
-        return fmt::format("the pose is uncertain by {:.2f} mm (at most {:.2f} mm)", pose.predicted_error_mm, s.max_predicted_error_mm);
+        return fmt::format("the pose is uncertain by {:.2f} mm (at most {:.2f} mm)", pose.predicted_error_mm,
+                           s.max_predicted_error_mm);
     return "";
 }
 
@@ -70,17 +73,20 @@ struct OverlayLoop::Parts {
 };
 
 OverlayStep OverlayLoop::Parts::draw(const TrackedPose& pose) {
-    if (auto reason = registration_refusal(registration, settings.operator_confirmed); !reason.empty()) return dark(std::move(reason));
+    if (auto reason = registration_refusal(registration, settings.operator_confirmed); !reason.empty())
+        return dark(std::move(reason));
     const Instant now = clock.now();
     if (auto reason = pose_refusal(pose, now, settings); !reason.empty()) return dark(std::move(reason));
     const auto rig_from_patient = pose_at_light(pose, now);
-    if (!rig_from_patient || !is_rigid(rig_from_patient->matrix())) return dark("where the patient will be when the light arrives is not known");
+    if (!rig_from_patient || !is_rigid(rig_from_patient->matrix()))
+        return dark("where the patient will be when the light arrives is not known");
     OverlayStep step;
     step.rig_from_ct = *rig_from_patient * registration.patient_from_ct;  // T_global = T_cur T_ini
     step.counts = renderer.render_into(step.picture, drawing, step.rig_from_ct, *rig_from_patient, settings.render);
     if (step.counts.lit == 0) return dark("nothing of the plan lies in the projector's light");
     const Instant shown = clock.now();
-    if (auto reason = pose_refusal(pose, shown, settings); !reason.empty()) return dark(std::move(reason));  // rendering took too long
+    if (auto reason = pose_refusal(pose, shown, settings); !reason.empty())
+        return dark(std::move(reason));  // rendering took too long
     step.lit_from = projector.show(step.picture, shown + settings.picture_validity);
     step.lit = true;
     return step;

@@ -34,13 +34,15 @@ std::optional<Point> on_skin(const SkinSurface& skin, const TextFrame& f, const 
 }
 
 /// How many places of the text's outline are taken, bent away, or no skin.
-int count_overlaps(const SkinSurface& skin, const TextFrame& f, const TextBlock& block, const OccupiedSkin& occupied, int give_up) {
+int count_overlaps(const SkinSurface& skin, const TextFrame& f, const TextBlock& block, const OccupiedSkin& occupied,
+                   int give_up) {
     int bad = 0;
     const int nx = std::max(1, static_cast<int>(std::ceil(block.width_mm / 2.2)));
     const int ny = std::max(1, static_cast<int>(std::ceil(block.height_mm / 2.2)));
     for (int ix = 0; ix <= nx; ++ix)
         for (int iy = 0; iy <= ny && bad < give_up; ++iy) {
-            const Vector2d xy(block.width_mm * (static_cast<double>(ix) / nx - 0.5), block.height_mm * (static_cast<double>(iy) / ny - 0.5));
+            const Vector2d xy(block.width_mm * (static_cast<double>(ix) / nx - 0.5),
+                              block.height_mm * (static_cast<double>(iy) / ny - 0.5));
             const auto p = on_skin(skin, f, xy);
             const bool good = p && skin.real_skin(*p) && p->normal_in_ct.dot(f.at.normal_in_ct) > 0.7 &&
                               !occupied.within(p->p_in_ct, kClear_mm);
@@ -136,7 +138,8 @@ void try_ring(const LabelWish& wish, const SkinSurface& skin, const DrawingSetti
             const auto middle = on_skin(skin, at_anchor, way_mm * Vector2d(std::cos(angle), std::sin(angle)));
             if (!middle) continue;
             const Vector3d& from = wish.anchors[a].p_in_ct;
-            double cost = gap_mm + 0.3 * static_cast<double>(a) + 2 * std::abs(std::sin(angle)) + (std::cos(angle) < -0.1 ? 0.5 : 0) +
+            double cost = gap_mm + 0.3 * static_cast<double>(a) + 2 * std::abs(std::sin(angle)) +
+                          (std::cos(angle) < -0.1 ? 0.5 : 0) +
                           30 * (1 - middle->normal_in_ct.dot(wish.facing_in_ct.value_or(wish.anchors[a].normal_in_ct)));
             if (wish.away_from_in_ct && (middle->p_in_ct - *wish.away_from_in_ct).norm() < (from - *wish.away_from_in_ct).norm())
                 cost += 15;
@@ -193,7 +196,8 @@ TextBlock lay_out(const std::string& text, double text_height_mm) {
     while (from <= text.size()) {
         const auto two_blanks = std::min(text.find("  ", from), text.size());
         const std::u32string part = code_points(text.substr(from, two_blanks - from));
-        const bool joins = !block.lines.empty() && text_width(block.lines.back() + U" " + part) * text_height_mm < 0.75 * kMaxWidth_mm;
+        const bool joins =
+            !block.lines.empty() && text_width(block.lines.back() + U" " + part) * text_height_mm < 0.75 * kMaxWidth_mm;
         if (joins)
             block.lines.back() += U" " + part;
         else

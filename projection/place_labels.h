@@ -34,8 +34,9 @@ struct LabelWish {
 };
 
 /// The text's strokes where they overlap nothing and the skin is flat, the anchor's own surroundings first; a thin line
-/// leads to it when it had to go far. Adds them to `occupied`. Letters are mapped one by one by straight ways from the middle of the
-/// text (exponential map, at most half the text's width), so that they keep their size and shape on the skin.
+/// leads to it when it had to go far. Adds them to `occupied`. Letters are mapped one by one by straight ways from the
+/// middle of the text (exponential map, at most half the text's width), so that they keep their size and shape on the
+/// skin.
 std::vector<Stroke> place_label(const LabelWish& wish, const SkinSurface& skin, const DrawingSettings& settings,
                                 OccupiedSkin& occupied);
 

@@ -33,7 +33,8 @@ Rgb dimmed(Rgb colour, double brightness) {
 }
 
 /// The discs that no light may touch, black. A disc faces the projector, so that a sticker at any slant is covered.
-void darken_markers(const CameraModel& projector, const RigidTransform& rig_from_patient, const RenderSettings& s, RgbImage& picture) {
+void darken_markers(const CameraModel& projector, const RigidTransform& rig_from_patient, const RenderSettings& s,
+                    RgbImage& picture) {
     const double radius_mm = s.keep_dark_radius_mm + s.halo_mm;
     for (const Vector3d& marker : s.keep_dark_in_patient) {
         const Vector3d p = rig_from_patient * marker;
@@ -46,8 +47,10 @@ void darken_markers(const CameraModel& projector, const RigidTransform& rig_from
         const Eigen::Matrix2d disc_by_pixel = pixel_by_disc.inverse();
         const double reach = pixel_by_disc.norm() + 1;
         if (!disc_by_pixel.allFinite() || !(centre->norm() + reach < 1e6)) continue;
-        const int x0 = std::max(0, static_cast<int>(centre->x() - reach)), x1 = std::min(picture.width - 1, static_cast<int>(centre->x() + reach) + 1);
-        const int y0 = std::max(0, static_cast<int>(centre->y() - reach)), y1 = std::min(picture.height - 1, static_cast<int>(centre->y() + reach) + 1);
+        const int x0 = std::max(0, static_cast<int>(centre->x() - reach)),
+                  x1 = std::min(picture.width - 1, static_cast<int>(centre->x() + reach) + 1);
+        const int y0 = std::max(0, static_cast<int>(centre->y() - reach)),
+                  y1 = std::min(picture.height - 1, static_cast<int>(centre->y() + reach) + 1);
         for (int y = y0; y <= y1; ++y)
             for (int x = x0; x <= x1; ++x)
                 if ((disc_by_pixel * (Vector2d(x, y) - *centre)).squaredNorm() < 1) picture.at(x, y) = {0, 0, 0};
@@ -60,10 +63,12 @@ struct DrawingRenderer::Parts {
     Parts(const SkinSurface& s, const CameraModel& p) : skin(s), projector(p), depth(s.mesh()), raster(p.width, p.height) {}
 
     void light_points(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts);
-    LitPoint light_point(const Vector3d& p_in_ct, const Vector3d& normal_in_ct, double steepest_cosine, RenderCounts& counts) const;
+    LitPoint light_point(const Vector3d& p_in_ct, const Vector3d& normal_in_ct, double steepest_cosine,
+                         RenderCounts& counts) const;
     void add_ribbon(const Stroke& stroke);
     /// The two edge points of the ribbon at one end of a segment.
-    std::array<Vector2d, 2> edges(const Stroke& stroke, std::size_t at, const Vector3d& own, const Vector3d* other, double outwards) const;
+    std::array<Vector2d, 2> edges(const Stroke& stroke, std::size_t at, const Vector3d& own, const Vector3d* other,
+                                  double outwards) const;
 
     const SkinSurface& skin;
     CameraModel projector;
@@ -75,7 +80,8 @@ struct DrawingRenderer::Parts {
     std::vector<LitPoint> points;
 };
 
-LitPoint DrawingRenderer::Parts::light_point(const Vector3d& p, const Vector3d& normal, double steepest_cosine, RenderCounts& counts) const {
+LitPoint DrawingRenderer::Parts::light_point(const Vector3d& p, const Vector3d& normal, double steepest_cosine,
+                                             RenderCounts& counts) const {
     LitPoint point;
     ++counts.points;
     const Vector3d to_light = light_in_ct - p;
@@ -113,8 +119,8 @@ void DrawingRenderer::Parts::light_points(const Stroke& stroke, const RenderSett
         points.push_back(light_point(stroke.points_in_ct[i], stroke.normals_in_ct[i], steepest_cosine, counts));
 }
 
-std::array<Vector2d, 2> DrawingRenderer::Parts::edges(const Stroke& stroke, std::size_t at, const Vector3d& own, const Vector3d* other,
-                                                      double outwards) const {
+std::array<Vector2d, 2> DrawingRenderer::Parts::edges(const Stroke& stroke, std::size_t at, const Vector3d& own,
+                                                      const Vector3d* other, double outwards) const {
     const LitPoint& point = points[at];
     const bool smooth = other != nullptr && own.dot(*other) > kSmooth_turn;
     const Vector3d along = smooth ? Vector3d((own + *other).normalized()) : own;
@@ -156,8 +162,8 @@ DrawingRenderer::~DrawingRenderer() = default;
 int DrawingRenderer::width() const { return parts_->projector.width; }
 int DrawingRenderer::height() const { return parts_->projector.height; }
 
-RgbImage DrawingRenderer::render(const PlanDrawing& drawing, const RigidTransform& rig_from_ct, const RigidTransform& rig_from_patient,
-                                 const RenderSettings& settings) const {
+RgbImage DrawingRenderer::render(const PlanDrawing& drawing, const RigidTransform& rig_from_ct,
+                                 const RigidTransform& rig_from_patient, const RenderSettings& settings) const {
     RgbImage picture;
     render_into(picture, drawing, rig_from_ct, rig_from_patient, settings);
     return picture;

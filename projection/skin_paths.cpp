@@ -75,7 +75,8 @@ SkinLine straight_way(const SkinSurface& skin, const Point& from, const Point& t
 
 double length_mm(const SkinLine& line) {
     double length = 0;
-    for (std::size_t i = 0; i + 1 < line.points.size(); ++i) length += (line.points[i + 1].p_in_ct - line.points[i].p_in_ct).norm();
+    for (std::size_t i = 0; i + 1 < line.points.size(); ++i)
+        length += (line.points[i + 1].p_in_ct - line.points[i].p_in_ct).norm();
     if (line.closed && line.points.size() > 1) length += (line.points.front().p_in_ct - line.points.back().p_in_ct).norm();
     return length;
 }

@@ -104,7 +104,8 @@ SkinSurface::Point SkinSurface::nearest(const Vector3d& p_in_ct) const {
 
 bool SkinSurface::inside(const Vector3d& p_in_ct) const {
     int votes = 0;  // three skew rays, so that one that grazes an edge is outvoted
-    for (const Vector3d& direction : {Vector3d(0.832, 0.413, 0.371), Vector3d(-0.297, 0.871, 0.391), Vector3d(0.179, -0.354, 0.918)})
+    for (const Vector3d& direction :
+         {Vector3d(0.832, 0.413, 0.371), Vector3d(-0.297, 0.871, 0.391), Vector3d(0.179, -0.354, 0.918)})
         votes += parts_->tree.number_of_intersected_primitives(to_cgal(Ray{p_in_ct, direction})) % 2 == 1;
     return votes >= 2;
 }
@@ -121,7 +122,8 @@ std::optional<SkinSurface::Way> SkinSurface::walk_way(const Point& start, const 
     direction = (direction - direction.dot(face) * face).normalized();
     const auto segments = static_cast<std::size_t>(std::max(1.0, std::ceil(length_mm / max_segment_mm - 1e-9)));
     std::vector<double> stops_mm;
-    for (std::size_t i = 1; i <= segments; ++i) stops_mm.push_back(length_mm * static_cast<double>(i) / static_cast<double>(segments));
+    for (std::size_t i = 1; i <= segments; ++i)
+        stops_mm.push_back(length_mm * static_cast<double>(i) / static_cast<double>(segments));
     Way way{{start}, {}};
     way.points.reserve(segments + 1);
     const auto end = parts_->walk.go({start.triangle, start.p_in_ct, direction}, length_mm, stops_mm, [&](const auto& place) {

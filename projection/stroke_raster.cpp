@@ -72,7 +72,8 @@ void StrokeRaster::add_quad(const std::array<Eigen::Vector2d, 4>& corners) {
             sum += row[x];
             const int column = left + x;
             if (std::abs(sum) < 1e-4f || column < 0 || column >= width_) continue;
-            const auto i = static_cast<std::size_t>(top + y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
+            const auto i =
+                static_cast<std::size_t>(top + y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
             if (coverage_[i] == 0) touched_.push_back(i);
             coverage_[i] += std::abs(sum);
         }

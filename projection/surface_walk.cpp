@@ -24,7 +24,8 @@ SurfaceWalk::SurfaceWalk(const TriangleMesh& mesh) : mesh_(mesh) {
         const auto& v = mesh.triangles[t];
         const int i = static_cast<int>(t);
         face_normals_.push_back((corner(i, 1) - corner(i, 0)).cross(corner(i, 2) - corner(i, 0)).normalized());
-        for (std::size_t e = 0; e < 3; ++e) triangle_of_edge.emplace(edge_key(v[e], v[(e + 1) % 3]), static_cast<std::int32_t>(t));
+        for (std::size_t e = 0; e < 3; ++e)
+            triangle_of_edge.emplace(edge_key(v[e], v[(e + 1) % 3]), static_cast<std::int32_t>(t));
     }
     neighbours_.assign(mesh.triangles.size(), {-1, -1, -1});
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -64,7 +65,8 @@ bool SurfaceWalk::cross(Place& place, int edge) const {
     if (entry == 3) return false;  // three triangles at one edge: not a surface here
     const Vector3d along = (corner(place.triangle, edge + 1) - corner(place.triangle, edge)).normalized();
     const double forward = place.direction_in_ct.dot(outward(place.triangle, edge));
-    place.direction_in_ct = (place.direction_in_ct.dot(along) * along - forward * outward(next, static_cast<int>(entry))).normalized();
+    place.direction_in_ct =
+        (place.direction_in_ct.dot(along) * along - forward * outward(next, static_cast<int>(entry))).normalized();
     place.triangle = next;
     return true;
 }

@@ -43,7 +43,8 @@ std::vector<Sample> samples_of(const Volume& volume) {
         for (int j = stride / 2; j < volume.size[1]; j += stride)
             for (int i = stride / 2; i < volume.size[0]; i += stride)
                 if (const double value = static_cast<double>(volume.at(i, j, k)); value > 0 && std::isfinite(value))
-                    samples.push_back({terms(unit(i, volume.size[0]), unit(j, volume.size[1]), unit(k, volume.size[2])), std::log(value)});
+                    samples.push_back({terms(unit(i, volume.size[0]), unit(j, volume.size[1]), unit(k, volume.size[2])),
+                                       std::log(value)});
     return samples;
 }
 
@@ -126,7 +127,8 @@ Volume without_bias(Volume volume, const BiasField& bias) {
         for (int j = 0; j < volume.size[1]; ++j)
             for (int i = 0; i < volume.size[0]; ++i) {
                 const double at = log_bias.dot(terms(unit(i, volume.size[0]), unit(j, volume.size[1]), unit(k, volume.size[2])));
-                volume.values[volume.index(i, j, k)] *= static_cast<float>(std::exp(-std::clamp(at, bias.log_low, bias.log_high)));
+                volume.values[volume.index(i, j, k)] *=
+                    static_cast<float>(std::exp(-std::clamp(at, bias.log_low, bias.log_high)));
             }
     });
     return volume;

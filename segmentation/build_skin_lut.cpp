@@ -36,8 +36,10 @@ void check(const TriangleMesh& skin, const LutSettings& settings) {
 std::array<int, 3> size_for(const Vector3d& extent_mm, double voxel_mm) {
     const Vector3d n = (extent_mm / voxel_mm).array().ceil() + 1;
     if (!(n.maxCoeff() <= kMostVoxelsAlongAxis) || n.prod() * 4 > kMostBytes)
-        throw InputError({}, fmt::format("The table would have {:.0f} x {:.0f} x {:.0f} voxels, more than 2 GiB.", n.x(), n.y(), n.z()),
-                         "Use larger voxels or a smaller margin.");
+        throw InputError(
+            {},
+            fmt::format("The table would have {:.0f} x {:.0f} x {:.0f} voxels, more than 2 GiB.", n.x(), n.y(), n.z()),
+            "Use larger voxels or a smaller margin.");
     return {static_cast<int>(n.x()), static_cast<int>(n.y()), static_cast<int>(n.z())};
 }
 

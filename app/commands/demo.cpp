@@ -37,7 +37,8 @@ void print_summary(const PresetSummary& s) {
 
 int run_demo(const DemoOptions& options) {
     if (!std::filesystem::exists(options.volume))
-        throw InputError(options.volume, "the patient is not there", "Install the package invesalius-examples, or give --volume.");
+        throw InputError(options.volume, "the patient is not there",
+                         "Install the package invesalius-examples, or give --volume.");
     ProgressBar bar;
     const Plan plan = options.plan.empty() ? example_plan() : read_plan(options.plan);
     bar.show("volume", 0);

@@ -21,8 +21,9 @@ int run_prepare(const PrepareOptions& options) {
         import_plan(options.plan, plan_settings(options.frame, options.accept_frame, volume.frame_of_reference_uid));
     std::optional<SurfaceFile> surface;
     if (!options.surface.empty()) {
-        surface = read_surface(options.surface, {plan_settings(options.surface_frame, options.accept_frame, volume.frame_of_reference_uid),
-                                                 options.segment});
+        surface = read_surface(
+            options.surface, {plan_settings(options.surface_frame, options.accept_frame, volume.frame_of_reference_uid),
+                              options.segment});
         check_surface_fits(surface->mesh, volume, options.surface);
     }
     if (options.anonymous) make_anonymous(volume);
@@ -41,7 +42,8 @@ int run_prepare(const PrepareOptions& options) {
     const CaseDrawing drawing(the_case);
     bar.show("report", 0);
     std::string no_views;
-    write_preparation_report(options.out, done, drawing.drawing, preparation_pictures(volume, the_case, drawing.drawing, no_views));
+    write_preparation_report(options.out, done, drawing.drawing,
+                             preparation_pictures(volume, the_case, drawing.drawing, no_views));
     bar.show("report", 1);
     if (!no_views.empty()) warn(no_views);
     for (const auto& warning : the_case.warnings) warn(warning);
@@ -50,8 +52,9 @@ int run_prepare(const PrepareOptions& options) {
     } else {
         fmt::print("Case {} in {}: {}, {} triangles, LUT {} x {} x {} voxels of {:.2f} mm, {} plan items.\n",
                    the_case.code, options.out.string(),
-                   surface ? "on the surface given" : fmt::format("skin at {:.0f}", done.threshold), the_case.skin.triangles.size(), the_case.lut.size[0],
-                   the_case.lut.size[1], the_case.lut.size[2], the_case.lut.voxel_mm, the_case.plan.size());
+                   surface ? "on the surface given" : fmt::format("skin at {:.0f}", done.threshold),
+                   the_case.skin.triangles.size(), the_case.lut.size[0], the_case.lut.size[1], the_case.lut.size[2],
+                   the_case.lut.voxel_mm, the_case.plan.size());
         fmt::print("Report: {}\n", (options.out / "report.html").string());
     }
     if (options.preview) show_case(the_case, drawing);

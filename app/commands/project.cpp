@@ -26,16 +26,18 @@ RigidTransform pose_to_draw(const ProjectOptions& options) {
                          "Give --frame between 0 and the number of frames less one.");
     const TrackedPose& pose = poses[static_cast<std::size_t>(frame)];
     if (!pose.rig_from_patient)
-        throw CheckFailedError(fmt::format("frame {} has no pose: {}", frame, pose.reason), "Nothing is drawn without a pose; choose another frame.");
+        throw CheckFailedError(fmt::format("frame {} has no pose: {}", frame, pose.reason),
+                               "Nothing is drawn without a pose; choose another frame.");
     return *pose.rig_from_patient;
 }
 
 void check_verdict(const RegistrationResult& registration, const ProjectOptions& options) {
     const bool usable = registration.verdict == Verdict::yes || (registration.verdict == Verdict::ask && options.confirmed);
     if (usable) return;
-    throw CheckFailedError(
-        fmt::format("the registration may not be used: {}", fmt::join(registration.reasons, "; ")),
-        registration.verdict == Verdict::ask ? "Look at the overlay on landmarks and give --confirmed, or scan again." : "Scan again.");
+    throw CheckFailedError(fmt::format("the registration may not be used: {}", fmt::join(registration.reasons, "; ")),
+                           registration.verdict == Verdict::ask
+                               ? "Look at the overlay on landmarks and give --confirmed, or scan again."
+                               : "Scan again.");
 }
 
 }  // namespace
@@ -51,13 +53,19 @@ int run_project(const ProjectOptions& options) {
     const RgbImage picture =
         renderer.render(drawing.drawing, rig_from_patient * registration.patient_from_ct, rig_from_patient);  // T_global
     write_png(picture, options.out);
-    const auto lit = std::count_if(picture.pixels.begin(), picture.pixels.end(), [](const Rgb& p) { return p[0] + p[1] + p[2] > 0; });
+    const auto lit = std::count_if(picture.pixels.begin(), picture.pixels.end(),
+                                   [](const Rgb& p) { return p[0] + p[1] + p[2] > 0; });
     nlohmann::json items = nlohmann::json::array();
     for (const auto& item : drawing.drawing.items) {
-        items.push_back({{"name", item.name}, {"label", item.label}, {"distance_to_skin_mm", item.distance_to_skin_mm}, {"warnings", item.warnings}});
+        items.push_back({{"name", item.name},
+                         {"label", item.label},
+                         {"distance_to_skin_mm", item.distance_to_skin_mm},
+                         {"warnings", item.warnings}});
         for (const auto& warning : item.warnings) warn(warning);
     }
-    if (options.json) std::cout << nlohmann::json{{"picture", options.out.string()}, {"lit_pixels", lit}, {"items", items}}.dump(2) << '\n';
+    if (options.json)
+        std::cout << nlohmann::json{{"picture", options.out.string()}, {"lit_pixels", lit}, {"items", items}}.dump(2)
+                  << '\n';
     else fmt::print("{} items in {} ({} lit pixels).\n", items.size(), options.out.string(), lit);
     return 0;
 }

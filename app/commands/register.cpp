@@ -55,9 +55,11 @@ int run_register(const RegisterOptions& options) {
     const Case the_case = read_case(options.case_folder);
     const RegistrationResult result = match(options, the_case);
     write_registration(result, options.out);
-    if (!options.slicer_transform.empty() && result.verdict != Verdict::no) write_slicer_transform(result.patient_from_ct, options.slicer_transform);
+    if (!options.slicer_transform.empty() && result.verdict != Verdict::no)
+        write_slicer_transform(result.patient_from_ct, options.slicer_transform);
     const CaseDrawing drawing(the_case);
-    const std::vector<double> predicted = result.verdict == Verdict::no ? std::vector<double>{} : predicted_errors_mm(the_case.plan, result);
+    const std::vector<double> predicted =
+        result.verdict == Verdict::no ? std::vector<double>{} : predicted_errors_mm(the_case.plan, result);
     nlohmann::json items = nlohmann::json::array();
     for (std::size_t i = 0; i < predicted.size() && i < drawing.drawing.items.size(); ++i)
         items.push_back({{"name", drawing.drawing.items[i].name}, {"predicted_95_mm", predicted[i]}});
@@ -95,8 +97,9 @@ int run_register(const RegisterOptions& options) {
         for (const auto& reason : result.reasons) fmt::print("  {}\n", reason);
     }
     if (result.verdict == Verdict::no)
-        throw CheckFailedError("the patient was not found: " + fmt::format("{}", fmt::join(result.reasons, "; ")),
-                               "Scan again from a side that shows more of the head, and check that this is the patient of the case.");
+        throw CheckFailedError(
+            "the patient was not found: " + fmt::format("{}", fmt::join(result.reasons, "; ")),
+            "Scan again from a side that shows more of the head, and check that this is the patient of the case.");
     return 0;
 }
 

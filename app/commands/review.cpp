@@ -19,7 +19,10 @@ int run_review(const ReviewOptions& options) {
     const OperatorModel model = model_of_case(the_case, drawing);
     nlohmann::json items = nlohmann::json::array();
     for (const auto& item : drawing.drawing.items)
-        items.push_back({{"name", item.name}, {"label", item.label}, {"distance_to_skin_mm", item.distance_to_skin_mm}, {"warnings", item.warnings}});
+        items.push_back({{"name", item.name},
+                         {"label", item.label},
+                         {"distance_to_skin_mm", item.distance_to_skin_mm},
+                         {"warnings", item.warnings}});
     if (options.json)
         std::cout << nlohmann::json{{"case", the_case.code}, {"created", the_case.created},
                                     {"items", items}, {"warnings", the_case.warnings}}.dump(2) << '\n';

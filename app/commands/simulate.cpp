@@ -31,7 +31,8 @@ std::vector<RecordedFrame> record_frames(simulation::SimulatedRig& rig, const Si
 
 int run_simulate(const SimulateOptions& options) {
     if (!options.board.empty()) return run_simulate_board(options);
-    if (options.volume.empty()) throw InputError({}, "neither a patient nor a board is given", "Name a volume, or a board with --board.");
+    if (options.volume.empty())
+        throw InputError({}, "neither a patient nor a board is given", "Name a volume, or a board with --board.");
     const Volume volume = read_volume(options.volume);
     const Plan plan = options.plan.empty() ? Plan{} : read_plan(options.plan);
     simulation::RoomSettings room;
@@ -64,7 +65,9 @@ int run_simulate(const SimulateOptions& options) {
     const nlohmann::json result = {{"folder", options.out.string()}, {"preset", options.preset}, {"seed", options.seed},
                                    {"patterns", capture.left.size()}, {"frames", frames.size()}};
     if (options.json) std::cout << result.dump(2) << '\n';
-    else fmt::print("{}: rig.json, capture ({} pictures a camera), frames ({}), truth.json.\n", options.out.string(), capture.left.size(), frames.size());
+    else
+        fmt::print("{}: rig.json, capture ({} pictures a camera), frames ({}), truth.json.\n", options.out.string(),
+                   capture.left.size(), frames.size());
     return 0;
 }
 

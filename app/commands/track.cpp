@@ -46,10 +46,12 @@ int run_track(const TrackOptions& options) {
     double worst_px = 0;
     for (const auto& pose : poses) worst_px = std::max(worst_px, pose.residual_px);
     if (options.json) {
-        const nlohmann::json result = {{"frames", frames.size()}, {"poses", found}, {"markers", markers}, {"worst_residual_px", worst_px}};
+        const nlohmann::json result = {
+            {"frames", frames.size()}, {"poses", found}, {"markers", markers}, {"worst_residual_px", worst_px}};
         std::cout << result.dump(2) << '\n';
     } else {
-        fmt::print("{} of {} frames have a pose ({} markers, worst residual {:.3f} px).\n", found, frames.size(), markers, worst_px);
+        fmt::print("{} of {} frames have a pose ({} markers, worst residual {:.3f} px).\n", found, frames.size(),
+                   markers, worst_px);
     }
     return 0;
 }

@@ -92,8 +92,10 @@ void ChainPictures::take_scan(const Session& session) {
     };
     add("Coded light", "One Gray-code stripe picture and one phase picture as the left camera sees them (Fig. 2, left).",
         side_by_side(coloured(capture.left[named("column-gray-4")]), coloured(capture.left[named("column-phase-0")])));
-    add("Decoded projector columns", fmt::format("Left camera, colours repeat every 64 columns; {} pixels decoded, the rest dropped.",
-                                                 scan.left.decoded), code_map(scan.left));
+    add("Decoded projector columns",
+        fmt::format("Left camera, colours repeat every 64 columns; {} pixels decoded, the rest dropped.",
+                    scan.left.decoded),
+        code_map(scan.left));
 }
 
 void ChainPictures::take_match(const Session& session) {
@@ -128,10 +130,14 @@ void ChainPictures::take_light(const Session& session, const simulation::Simulat
                                const std::string& stage) {
     int& updates = stage == "at rest" ? rest_updates_ : moving_updates_;
     if (++updates != kSettled || !update.overlay.lit || (stage != "at rest" && stage != "moving")) return;
-    add("Cameras, " + stage, "Left and right camera: the plan as light on the patient, rings round the markers that were found (Fig. 4). Brightened for the page.",
+    add("Cameras, " + stage,
+        "Left and right camera: the plan as light on the patient, rings round the markers that were found (Fig. 4). "
+        "Brightened for the page.",
         side_by_side(with_markers(update.frame.left, session.tracker().seen_left()),
                      with_markers(update.frame.right, session.tracker().seen_right())));
-    if (stage == "at rest") add("Projector picture", "What the second window shows: the plan bent so that it lies true on the skin.", update.overlay.picture);
+    if (stage == "at rest")
+        add("Projector picture", "What the second window shows: the plan bent so that it lies true on the skin.",
+            update.overlay.picture);
     SceneModel scene;
     scene.skin = std::make_shared<TriangleMesh>(case_.skin);
     scene.plan = std::make_shared<PlanDrawing>(session.drawing());

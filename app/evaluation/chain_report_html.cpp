@@ -19,9 +19,13 @@ std::string preset_section(const PresetSummary& s) {
     html += "<table><tr><th>Error against the simulator's truth</th><th>median</th><th>95 %</th><th>worst</th><th>count</th>"
             "<th>to reach</th></tr>";
     for (const auto& r : s.rows)
-        html += fmt::format("<tr><td>{}</td><td>{:.2f} {}</td><td class=\"{}\">{:.2f}</td><td>{:.2f}</td><td>{}</td><td>{}</td></tr>",
-                            html_escaped(r.name), r.found.median, r.unit, r.goal.empty() ? "" : r.reached ? "yes" : "no", r.found.p95,
-                            r.found.worst, r.found.count, html_escaped(r.goal));
+        html += fmt::format(
+            "<tr><td>{}</td><td>{:.2f} {}</td><td class=\"{}\">{:.2f}</td><td>{:.2f}</td><td>{}</td><td>{}</td></tr>",
+            html_escaped(r.name), r.found.median, r.unit,
+            r.goal.empty() ? ""
+            : r.reached    ? "yes"
+                           : "no",
+            r.found.p95, r.found.worst, r.found.count, html_escaped(r.goal));
     html += fmt::format(
         "</table><p>Dark updates while following: {} of {}. One marker covered: lit in {} of {} updates. "
         "Two markers left: lit in {} of {} (must be none).</p>",

@@ -28,7 +28,9 @@ struct ChainSettings {
 struct ChainWatcher {
     std::function<void(const std::string& stage, double share)> progress;
     std::function<void(const Session&, const simulation::SimulatedRig&)> scanned, registered;
-    std::function<void(const Session&, const simulation::SimulatedRig&, const Session::Update&, const std::string& stage)> updated;
+    std::function<void(const Session&, const simulation::SimulatedRig&, const Session::Update&,
+                       const std::string& stage)>
+        updated;
     std::function<Projector&(Projector& simulated)> wrap_projector;  ///< e.g. to show the light in a window as well
 };
 

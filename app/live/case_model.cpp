@@ -42,10 +42,11 @@ OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing) {
     const auto counted = [](std::size_t count, const char* one, const char* many) {
         return fmt::format("{} {}", count, count == 1 ? one : many);
     };
-    model.case_subtitle = fmt::format("{} \u00b7 {}, {}, {}", the_case.created.substr(0, 10),
-                                      counted(plan.osteotomy_lines.size() + plan.cut_planes.size(), "cutting line", "cutting lines"),
-                                      counted(plan.boreholes.size(), "borehole", "boreholes"),
-                                      counted(plan.trajectories.size(), "trajectory", "trajectories"));
+    model.case_subtitle =
+        fmt::format("{} \u00b7 {}, {}, {}", the_case.created.substr(0, 10),
+                    counted(plan.osteotomy_lines.size() + plan.cut_planes.size(), "cutting line", "cutting lines"),
+                    counted(plan.boreholes.size(), "borehole", "boreholes"),
+                    counted(plan.trajectories.size(), "trajectory", "trajectories"));
     model.steps.fill(StepState::waiting);
     model.steps[0] = StepState::done;
     model.scene.skin = std::make_shared<TriangleMesh>(the_case.skin);
@@ -65,7 +66,8 @@ std::vector<double> predicted_errors_mm(const Plan& plan, const RegistrationResu
         errors.push_back(worst);
     };
     for (const auto& line : plan.osteotomy_lines) add(line.points_in_ct);
-    for (const auto& b : plan.boreholes) add({b.position_in_ct, b.position_in_ct + b.depth_mm * b.axis_in_ct.value_or(Eigen::Vector3d::Zero())});
+    for (const auto& b : plan.boreholes)
+        add({b.position_in_ct, b.position_in_ct + b.depth_mm * b.axis_in_ct.value_or(Eigen::Vector3d::Zero())});
     for (const auto& t : plan.trajectories) add({t.entry_in_ct, t.target_in_ct});
     for (const auto& c : plan.cut_planes) add({c.origin_in_ct});
     return errors;
@@ -73,12 +75,14 @@ std::vector<double> predicted_errors_mm(const Plan& plan, const RegistrationResu
 
 std::vector<std::string> evidence_of(const RegistrationResult& result) {
     std::vector<std::string> lines;
-    lines.push_back(fmt::format("Residual {:.2f} mm rms; {:.0f} % of {} points within {:.1f} mm of the skin.", result.residual_rms_mm,
-                                100 * result.inlier_fraction, result.points, result.inlier_distance_mm));
-    lines.push_back(fmt::format("Next best other pose fits {:.1f} times worse; {} independent bases agree.", result.runner_up_ratio,
-                                result.agreeing_bases));
-    lines.push_back(fmt::format("The skin lies {:.1f} mm {} that of the CT, and has moved by {:.1f} mm (rms).", std::abs(result.skin_offset_mm),
-                                result.skin_offset_mm < 0 ? "inside of" : "outside of", result.skin_movement_mm));
+    lines.push_back(fmt::format("Residual {:.2f} mm rms; {:.0f} % of {} points within {:.1f} mm of the skin.",
+                                result.residual_rms_mm, 100 * result.inlier_fraction, result.points,
+                                result.inlier_distance_mm));
+    lines.push_back(fmt::format("Next best other pose fits {:.1f} times worse; {} independent bases agree.",
+                                result.runner_up_ratio, result.agreeing_bases));
+    lines.push_back(fmt::format("The skin lies {:.1f} mm {} that of the CT, and has moved by {:.1f} mm (rms).",
+                                std::abs(result.skin_offset_mm), result.skin_offset_mm < 0 ? "inside of" : "outside of",
+                                result.skin_movement_mm));
     lines.push_back(fmt::format("Found in {:.2f} s, refined in {:.0f} ms.", result.initial_match_s, 1000 * result.refine_s));
     lines.insert(lines.end(), result.reasons.begin(), result.reasons.end());
     return lines;

@@ -236,7 +236,8 @@ void LiveSession::find_patient(Session& session) {
         set_status(StatusKind::ready, "The patient is found.", {"Look at the scan on the skin, then press Track."});
     } else {
         set_status(found.verdict == Verdict::ask ? StatusKind::check : StatusKind::refused,
-                   found.verdict == Verdict::ask ? "Not sure: scan again." : "The patient was not found: scan again.", found.reasons);
+                   found.verdict == Verdict::ask ? "Not sure: scan again." : "The patient was not found: scan again.",
+                   found.reasons);
     }
 }
 
@@ -255,7 +256,8 @@ void LiveSession::show_update(const Session& session, const simulation::Simulate
     if (update.pose.rig_from_patient) {
         const Eigen::Vector3d middle = session.tracker().markers().front().centre_in_patient;
         figures.head_moved_mm = (*update.pose.rig_from_patient * middle - middle).norm();
-        figures.head_turned_deg = angle_between(*update.pose.rig_from_patient, RigidTransform::Identity()) * 180 / std::numbers::pi;
+        figures.head_turned_deg =
+            angle_between(*update.pose.rig_from_patient, RigidTransform::Identity()) * 180 / std::numbers::pi;
     }
     if (!update.overlay.lit) figures.delay_to_light_ms.reset();
     change_model([&](OperatorModel& m) {
@@ -273,7 +275,8 @@ void LiveSession::show_update(const Session& session, const simulation::Simulate
                                 std::max(update.pose.markers_left, update.pose.markers_right), update.pose.residual_px),
                     "The light itself is not measured yet: look at it on landmarks before you use it."});
     else
-        set_status(StatusKind::dark, "Dark: " + update.overlay.reason + ".", {"The light comes back by itself when the pose is good."});
+        set_status(StatusKind::dark, "Dark: " + update.overlay.reason + ".",
+                   {"The light comes back by itself when the pose is good."});
 }
 
 }  // namespace planlight

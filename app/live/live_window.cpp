@@ -52,7 +52,9 @@ public:
         const auto light = session.light();
         if (light.number != number_) {
             number_ = light.number;
-            if (light.picture) window_.show(fitted(*light.picture, window_.width(), window_.height()), clock_.now() + kPictureValidity);
+            if (light.picture)
+                window_.show(fitted(*light.picture, window_.width(), window_.height()),
+                             clock_.now() + kPictureValidity);
             else window_.go_dark();
         }
         window_.refresh();
@@ -140,7 +142,9 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
         if (const auto fault = session.fault(); !fault.empty()) throw std::runtime_error(fault);
         const auto now = std::chrono::steady_clock::now();
         if (session.projecting() && !projecting_since) projecting_since = now;
-        if (options.end_after_s > 0 && projecting_since && now - *projecting_since > std::chrono::duration<double>(options.end_after_s)) return 0;
+        if (options.end_after_s > 0 && projecting_since &&
+            now - *projecting_since > std::chrono::duration<double>(options.end_after_s))
+            return 0;
     }
     return 0;
 }

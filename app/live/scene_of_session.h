@@ -14,7 +14,8 @@ std::shared_ptr<const std::vector<float>> distances_to_skin_mm(const PointCloud&
                                                                const SkinLut& lut);
 
 /// The markers where the scan found them.
-std::shared_ptr<const std::vector<SceneMarker>> markers_in_ct(const PatientTracker& tracker, const RigidTransform& ct_from_patient);
+std::shared_ptr<const std::vector<SceneMarker>> markers_in_ct(const PatientTracker& tracker,
+                                                              const RigidTransform& ct_from_patient);
 
 /// The light of a simulated room as it truly falls: every stroke through the product's projector model to its pixel, and
 /// from there by the room's own optics to the true skin.

@@ -62,8 +62,9 @@ std::string html_figures(const std::vector<ReportPicture>& pictures, const std::
     std::string html = columns == 0 ? "<div class=\"grid\">"
                                     : fmt::format("<div class=\"grid\" style=\"grid-template-columns:repeat({},1fr)\">", columns);
     for (const auto& p : pictures)
-        html += fmt::format("<figure><img alt=\"{}\" src=\"{}\"><figcaption><b>{}</b>{}</figcaption></figure>", html_escaped(p.title),
-                            embedded(p.picture, scratch), html_escaped(p.title), html_escaped(p.caption));
+        html += fmt::format("<figure><img alt=\"{}\" src=\"{}\"><figcaption><b>{}</b>{}</figcaption></figure>",
+                            html_escaped(p.title), embedded(p.picture, scratch), html_escaped(p.title),
+                            html_escaped(p.caption));
     return html + "</div>";
 }
 

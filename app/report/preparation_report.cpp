@@ -33,7 +33,10 @@ std::string place_of(SliceKind kind, const Vector3d& p) {
 nlohmann::json items_json(const PlanDrawing& drawing) {
     nlohmann::json items = nlohmann::json::array();
     for (const auto& item : drawing.items)
-        items.push_back({{"name", item.name}, {"label", item.label}, {"distance_to_skin_mm", item.distance_to_skin_mm}, {"warnings", item.warnings}});
+        items.push_back({{"name", item.name},
+                         {"label", item.label},
+                         {"distance_to_skin_mm", item.distance_to_skin_mm},
+                         {"warnings", item.warnings}});
     return items;
 }
 
@@ -46,20 +49,24 @@ std::string figures_table(const Preparation& done) {
     if (done.on_given_surface) {
         skin = row("Surface", "as given, not segmented here");
     } else {
-        skin = row("Skin threshold", fmt::format("{:.0f}", done.threshold)) + row("Body", fmt::format("{:.0f} ml", done.body_ml)) +
+        skin = row("Skin threshold", fmt::format("{:.0f}", done.threshold)) +
+               row("Body", fmt::format("{:.0f} ml", done.body_ml)) +
                row("Taken away (table, head holder, wires)",
-                   fmt::format("{} piece{}, {:.0f} ml", done.pieces_removed, done.pieces_removed == 1 ? "" : "s", done.removed_ml));
+                   fmt::format("{} piece{}, {:.0f} ml", done.pieces_removed, done.pieces_removed == 1 ? "" : "s",
+                               done.removed_ml));
         if (done.brightness_ratio > 1)
             skin += row("Brightness across the head, evened out", fmt::format("{:.1f} : 1", done.brightness_ratio));
-        if (c.skin_edge_sigma_mm > 0) skin += row("Skin's edge moved by noise", fmt::format("{:.2f} mm (1 sigma)", c.skin_edge_sigma_mm));
+        if (c.skin_edge_sigma_mm > 0)
+            skin += row("Skin's edge moved by noise", fmt::format("{:.2f} mm (1 sigma)", c.skin_edge_sigma_mm));
     }
     return "<h2>Figures</h2><table>" + row("Case", c.code) + row("Made", c.created) + skin +
-           row(done.on_given_surface ? "Mesh" : "Skin mesh", fmt::format("{} triangles, {} vertices", c.skin.triangles.size(), c.skin.vertices_in_ct.size())) +
-           row("LUT", fmt::format("{} x {} x {} voxels of {:.2f} mm, {} skin voxels", c.lut.size[0], c.lut.size[1], c.lut.size[2],
-                                  c.lut.voxel_mm, c.lut.skin.size())) +
+           row(done.on_given_surface ? "Mesh" : "Skin mesh",
+               fmt::format("{} triangles, {} vertices", c.skin.triangles.size(), c.skin.vertices_in_ct.size())) +
+           row("LUT", fmt::format("{} x {} x {} voxels of {:.2f} mm, {} skin voxels", c.lut.size[0], c.lut.size[1],
+                                  c.lut.size[2], c.lut.voxel_mm, c.lut.skin.size())) +
            row("Time", done.on_given_surface ? fmt::format("LUT {:.2f} s", done.lut_s)
-                                             : fmt::format("skin {:.2f} s, surface {:.2f} s, LUT {:.2f} s", done.segment_s,
-                                                           done.triangulate_s, done.lut_s)) +
+                                             : fmt::format("skin {:.2f} s, surface {:.2f} s, LUT {:.2f} s",
+                                                           done.segment_s, done.triangulate_s, done.lut_s)) +
            "</table>";
 }
 
@@ -73,8 +80,11 @@ std::string plan_table(const PlanDrawing& drawing) {
 }
 
 std::string warnings_section(const std::vector<std::string>& warnings) {
-    if (warnings.empty()) return "<div class=\"verdict yes\">&#10003; Prepared without a warning. Look at the pictures before you use it.</div>";
-    std::string html = fmt::format("<div class=\"verdict no\">&#9888; Prepared with {} warning{}.</div>", warnings.size(), warnings.size() == 1 ? "" : "s");
+    if (warnings.empty())
+        return "<div class=\"verdict yes\">&#10003; Prepared without a warning. Look at the pictures before you use "
+               "it.</div>";
+    std::string html = fmt::format("<div class=\"verdict no\">&#9888; Prepared with {} warning{}.</div>",
+                                   warnings.size(), warnings.size() == 1 ? "" : "s");
     for (const auto& warning : warnings) html += fmt::format("<p class=\"no\">{}</p>", html_escaped(warning));
     return html;
 }
@@ -105,7 +115,10 @@ std::vector<ReportPicture> preparation_pictures(const Volume& volume, const Case
     scene.plan = std::make_shared<PlanDrawing>(drawing);
     constexpr double kQuarter = std::numbers::pi / 2;
     try {
-        for (const auto& [name, azimuth] : {std::pair{"From the front", 0.0}, {"From the right", kQuarter}, {"From behind", 2 * kQuarter}, {"From the left", 3 * kQuarter}}) {
+        for (const auto& [name, azimuth] : {std::pair{"From the front", 0.0},
+                                            {"From the right", kQuarter},
+                                            {"From behind", 2 * kQuarter},
+                                            {"From the left", 3 * kQuarter}}) {
             SceneView view;
             view.azimuth = azimuth;
             view.elevation = 0.15;
@@ -144,11 +157,13 @@ void write_preparation_report(const std::filesystem::path& folder, const Prepara
     const auto file = folder / "report.html";
     const auto middle = pictures.begin() + std::min<std::ptrdiff_t>(3, static_cast<std::ptrdiff_t>(pictures.size()));
     const std::vector<ReportPicture> slices(pictures.begin(), middle), heads(middle, pictures.end());
-    const std::string body = fmt::format("<p class=\"muted\">Case {}. For research; not a medical device.</p>", html_escaped(done.prepared.code)) +
-                             warnings_section(done.prepared.warnings) + html_figures(slices, file, 3) +
-                             "<p class=\"muted\">Green: skin. Amber: lids over openings. Grey: ends of the scan. Pink: plan within 3 mm "
-                             "of the slice.</p>" + (heads.empty() ? "" : html_figures(heads, file, 4)) + plan_table(drawing) +
-                             figures_table(done);
+    const std::string body =
+        fmt::format("<p class=\"muted\">Case {}. For research; not a medical device.</p>",
+                    html_escaped(done.prepared.code)) +
+        warnings_section(done.prepared.warnings) + html_figures(slices, file, 3) +
+        "<p class=\"muted\">Green: skin. Amber: lids over openings. Grey: ends of the scan. Pink: plan within 3 mm "
+        "of the slice.</p>" +
+        (heads.empty() ? "" : html_figures(heads, file, 4)) + plan_table(drawing) + figures_table(done);
     write_safely(file, html_page("Preparation", body));
     write_safely(folder / "report.json", preparation_json(done, drawing));
 }

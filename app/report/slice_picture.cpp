@@ -36,7 +36,8 @@ struct Sheet {
     double mm_per_px;
     SliceSettings settings;
 
-    Sheet(const Volume& volume, SliceKind kind, const Vector3d& p_in_ct, const SliceSettings& s) : frame(frame_of(kind)), settings(s) {
+    Sheet(const Volume& volume, SliceKind kind, const Vector3d& p_in_ct, const SliceSettings& s)
+        : frame(frame_of(kind)), settings(s) {
         Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
         for (int corner = 0; corner < 8; ++corner) {
             const Vector3d voxel((corner & 1) * (volume.size[0] - 1), (corner >> 1 & 1) * (volume.size[1] - 1),
@@ -51,7 +52,8 @@ struct Sheet {
         mm_per_px = kMargin * std::max(std::abs(box.dot(frame.right)) / s.width, std::abs(box.dot(frame.down)) / s.height);
     }
     Vector3d p_in_ct(int x, int y) const {
-        return middle_in_ct + mm_per_px * ((x - 0.5 * (settings.width - 1)) * frame.right + (y - 0.5 * (settings.height - 1)) * frame.down);
+        return middle_in_ct + mm_per_px * ((x - 0.5 * (settings.width - 1)) * frame.right +
+                                           (y - 0.5 * (settings.height - 1)) * frame.down);
     }
     Vector2d pixel(const Vector3d& p) const {
         const Vector3d d = (p - middle_in_ct) / mm_per_px;
@@ -108,7 +110,8 @@ void paint_values(const Volume& volume, const Sheet& sheet, RgbImage& picture) {
 void draw_line(cv::Mat& canvas, const Vector2d& a, const Vector2d& b, const cv::Scalar& colour, int thickness) {
     constexpr int kShift = 4;
     const auto fixed = [](const Vector2d& p) {
-        return cv::Point(static_cast<int>(std::lround(p.x() * (1 << kShift))), static_cast<int>(std::lround(p.y() * (1 << kShift))));
+        return cv::Point(static_cast<int>(std::lround(p.x() * (1 << kShift))),
+                         static_cast<int>(std::lround(p.y() * (1 << kShift))));
     };
     cv::line(canvas, fixed(a), fixed(b), colour, thickness, cv::LINE_AA, kShift);
 }
@@ -137,7 +140,8 @@ void draw_near(const Vector3d& a, const Vector3d& b, const Sheet& sheet, cv::Mat
     constexpr int kPieces = 64;
     for (int i = 0; i < kPieces; ++i) {
         const Vector3d p = a + (b - a) * i / kPieces, q = a + (b - a) * (i + 1) / kPieces;
-        if (std::abs(sheet.above_mm((p + q) / 2)) <= sheet.settings.plan_within_mm) draw_line(canvas, sheet.pixel(p), sheet.pixel(q), kPlanLine, 2);
+        if (std::abs(sheet.above_mm((p + q) / 2)) <= sheet.settings.plan_within_mm)
+            draw_line(canvas, sheet.pixel(p), sheet.pixel(q), kPlanLine, 2);
     }
 }
 
@@ -146,10 +150,12 @@ void draw_plan_near(const Plan& plan, const Sheet& sheet, cv::Mat& canvas) {
         draw_near(t.entry_in_ct, t.target_in_ct, sheet, canvas);
         if (std::abs(sheet.above_mm(t.target_in_ct)) > sheet.settings.plan_within_mm) continue;
         const Vector2d at = sheet.pixel(t.target_in_ct);
-        cv::circle(canvas, {static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y()))}, 5, kPlanLine, 2, cv::LINE_AA);
+        cv::circle(canvas, {static_cast<int>(std::lround(at.x())), static_cast<int>(std::lround(at.y()))}, 5, kPlanLine,
+                   2, cv::LINE_AA);
     }
     for (const auto& b : plan.boreholes)
-        if (b.axis_in_ct) draw_near(b.position_in_ct, b.position_in_ct + std::max(b.depth_mm, 1.0) * *b.axis_in_ct, sheet, canvas);
+        if (b.axis_in_ct)
+            draw_near(b.position_in_ct, b.position_in_ct + std::max(b.depth_mm, 1.0) * *b.axis_in_ct, sheet, canvas);
     for (const auto& line : plan.osteotomy_lines) {
         const std::size_t n = line.points_in_ct.size();
         for (std::size_t i = 0; i + (line.closed ? 0 : 1) < n; ++i)

@@ -14,7 +14,8 @@ enum class SliceKind { axial, coronal, sagittal };
 struct SliceSettings {
     int width = 640, height = 640;       ///< pixels
     double plan_within_mm = 3;           ///< plan lines this near to the slice are drawn on it
-    double low = 0, high = 0;            ///< values shown black and white; both 0 = -800 to 800 HU, else the 1st to 99.5th percentile
+    double low = 0,
+           high = 0;  ///< values shown black and white; both 0 = -800 to 800 HU, else the 1st to 99.5th percentile
 };
 
 /// A slice of the volume (resampled trilinearly through its whole affine, so that a tilt or an oblique MR stands as the

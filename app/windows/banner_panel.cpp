@@ -19,10 +19,12 @@ const Look& look_of(StatusKind kind) {
         {"READY", IM_COL32(26, 31, 40, 255), IM_COL32(120, 134, 158, 255), IM_COL32(160, 172, 192, 255), theme::kText},
         {"SCANNING", IM_COL32(14, 36, 66, 255), theme::kBlue, theme::kBlue, IM_COL32(220, 236, 255, 255)},
         {"MATCHING", IM_COL32(14, 36, 66, 255), theme::kBlue, theme::kBlue, IM_COL32(220, 236, 255, 255)},
-        {"ALIGNED", IM_COL32(16, 58, 38, 255), IM_COL32(47, 190, 116, 255), theme::kGreen, IM_COL32(222, 255, 236, 255)},
+        {"ALIGNED", IM_COL32(16, 58, 38, 255), IM_COL32(47, 190, 116, 255), theme::kGreen,
+         IM_COL32(222, 255, 236, 255)},
         {"CHECK", IM_COL32(62, 46, 8, 255), theme::kAmber, theme::kAmber, IM_COL32(255, 240, 205, 255)},
         {"REFUSED", IM_COL32(70, 18, 20, 255), theme::kRed, theme::kRed, IM_COL32(255, 225, 225, 255)},
-        {"DARK", IM_COL32(38, 28, 31, 255), IM_COL32(158, 104, 110, 255), IM_COL32(168, 112, 118, 255), IM_COL32(240, 222, 224, 255)},
+        {"DARK", IM_COL32(38, 28, 31, 255), IM_COL32(158, 104, 110, 255), IM_COL32(168, 112, 118, 255),
+         IM_COL32(240, 222, 224, 255)},
     }};
     return looks[static_cast<std::size_t>(kind)];
 }
@@ -38,14 +40,14 @@ void draw_shape(const Pen& pen, StatusKind kind, ImVec2 middle, float radius, co
             break;
         case StatusKind::check:
             pen.triangle({middle.x, middle.y + 0.1F * radius}, 1.1F * radius, look.shape);
-            list.AddRectFilled({middle.x - 0.09F * radius, middle.y - 0.42F * radius}, {middle.x + 0.09F * radius, middle.y + 0.4F * radius},
-                               look.fill, 0.09F * radius);
+            list.AddRectFilled({middle.x - 0.09F * radius, middle.y - 0.42F * radius},
+                               {middle.x + 0.09F * radius, middle.y + 0.4F * radius}, look.fill, 0.09F * radius);
             list.AddCircleFilled({middle.x, middle.y + 0.65F * radius}, 0.12F * radius, look.fill, 24);
             break;
         case StatusKind::refused:
             pen.polygon(middle, 1.05F * radius, 8, kEighth, look.shape);
-            list.AddRectFilled({middle.x - 0.6F * radius, middle.y - 0.16F * radius}, {middle.x + 0.6F * radius, middle.y + 0.16F * radius},
-                               look.fill);
+            list.AddRectFilled({middle.x - 0.6F * radius, middle.y - 0.16F * radius},
+                               {middle.x + 0.6F * radius, middle.y + 0.16F * radius}, look.fill);
             break;
         case StatusKind::dark:
             pen.polygon(middle, 1.05F * radius, 8, kEighth, look.shape);
@@ -69,7 +71,8 @@ std::array<std::pair<const char*, std::string>, 4> figures_of(const Figures& f) 
     const bool moved = f.head_moved_mm || f.head_turned_deg;
     return {{{"Overlay error now", number_text(f.overlay_error_mm, "mm")},
              {"Updates", number_text(f.updates_per_s, "/ s")},
-             {"Head moved since scan", moved ? number_text(f.head_moved_mm, "mm") + " · " + number_text(f.head_turned_deg, "°") : "–"},
+             {"Head moved since scan",
+              moved ? number_text(f.head_moved_mm, "mm") + " · " + number_text(f.head_turned_deg, "°") : "–"},
              {"Delay to light, predicted", number_text(f.delay_to_light_ms, "ms")}}};
 }
 

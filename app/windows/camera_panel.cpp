@@ -26,9 +26,11 @@ void draw_camera(const Pen& pen, const Box& box, const CameraPicture& camera, Im
         pen.paragraph(pen.fonts.small, camera.note, {box.x + 16 * s, box.y + box.height / 2, box.width - 32 * s, box.height / 2},
                       theme::kQuiet, Pen::Side::centre);
     }
-    const std::string markers = " · " + std::to_string(camera.found.size()) + (camera.found.size() == 1 ? " marker" : " markers");
+    const std::string markers =
+        " · " + std::to_string(camera.found.size()) + (camera.found.size() == 1 ? " marker" : " markers");
     const std::string title = camera.picture ? camera.title + markers : camera.title;
-    const float height = line_height(pen.fonts.small) + 8 * s, width = std::min(text_width(pen.fonts.small, title) + 20 * s, box.width);
+    const float height = line_height(pen.fonts.small) + 8 * s,
+                width = std::min(text_width(pen.fonts.small, title) + 20 * s, box.width);
     pen.list->AddRectFilled({box.x + 1, box.y + 1}, {box.x + width, box.y + height}, IM_COL32(10, 12, 16, 225), 10 * s);
     pen.line(pen.fonts.small, title, box.x + 10 * s, box.y + height / 2, box.width - 20 * s, theme::kText);
 }

@@ -21,7 +21,8 @@ void draw_step(const Pen& pen, const Box& chip, std::size_t index, StepState sta
         pen.tick(middle, radius * 0.9F, IM_COL32_WHITE);
     } else if (state == StepState::attention) {
         pen.triangle({middle.x, middle.y + 0.1F * radius}, radius, theme::kAmber);
-        pen.line(pen.fonts.strong, "!", middle.x - radius, middle_y + 0.2F * radius, 2 * radius, IM_COL32_BLACK, Pen::Side::centre);
+        pen.line(pen.fonts.strong, "!", middle.x - radius, middle_y + 0.2F * radius, 2 * radius, IM_COL32_BLACK,
+                 Pen::Side::centre);
     } else {
         pen.list->AddCircleFilled(middle, radius, active ? theme::kBackground : theme::kControl, 32);
         pen.line(active ? pen.fonts.strong : pen.fonts.small, std::to_string(index + 1), middle.x - radius, middle_y, 2 * radius,
@@ -60,11 +61,15 @@ void draw_header(const Pen& pen, const WindowLayout& place, const OperatorModel&
 }
 
 void draw_button(const Pen& pen, const Box& box, const std::string& label, const ButtonState& state, bool hovered, bool held) {
-    const ImU32 fill = !state.enabled ? IM_COL32(22, 25, 32, 255) : held ? theme::kActive : hovered ? theme::kHovered : theme::kControl;
+    const ImU32 fill = !state.enabled ? IM_COL32(22, 25, 32, 255)
+                       : held         ? theme::kActive
+                       : hovered      ? theme::kHovered
+                                      : theme::kControl;
     pen.panel(box, fill, state.enabled ? IM_COL32(96, 112, 140, 255) : theme::kEdge, state.enabled ? 2 : 1);
     const float pad = 8 * pen.scale;
     if (state.enabled) {
-        pen.line(pen.fonts.title, label, box.x + pad, box.y + box.height / 2, box.width - 2 * pad, theme::kText, Pen::Side::centre);
+        pen.line(pen.fonts.title, label, box.x + pad, box.y + box.height / 2, box.width - 2 * pad, theme::kText,
+                 Pen::Side::centre);
         return;
     }
     const float height = line_height(pen.fonts.small);
@@ -79,7 +84,11 @@ void draw_button(const Pen& pen, const Box& box, const std::string& label, const
 }
 
 void draw_dark_button(const Pen& pen, const Box& box, bool hovered, bool held) {
-    pen.panel(box, held ? IM_COL32(150, 156, 168, 255) : hovered ? IM_COL32_WHITE : IM_COL32(222, 226, 234, 255), IM_COL32_WHITE, 2);
+    pen.panel(box,
+              held      ? IM_COL32(150, 156, 168, 255)
+              : hovered ? IM_COL32_WHITE
+                        : IM_COL32(222, 226, 234, 255),
+              IM_COL32_WHITE, 2);
     const float top = box.y + 0.38F * box.height;
     pen.line(pen.fonts.number, "DARK", box.x, top, box.width, IM_COL32(12, 14, 18, 255), Pen::Side::centre);
     pen.line(pen.fonts.small, "Space · B · Esc", box.x, box.y + 0.78F * box.height, box.width, IM_COL32(52, 58, 70, 255),

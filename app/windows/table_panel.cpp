@@ -68,7 +68,9 @@ void draw_evidence(const Pen& pen, const OperatorModel& model, Box box, bool cut
         box.height = end - box.y;
         box.y += pen.paragraph(pen.fonts.small, sentence, box, theme::kQuiet);
     }
-    if (cut) pen.line(pen.fonts.small, "… hold the mouse here for the rest", box.x, bottom - line / 2, box.width, theme::kAmber);
+    if (cut)
+        pen.line(pen.fonts.small, "… hold the mouse here for the rest", box.x, bottom - line / 2, box.width,
+                 theme::kAmber);
 }
 
 }  // namespace

@@ -35,7 +35,8 @@ public:
 private:
     using Cell = std::array<std::int64_t, 3>;
     Cell cell_of(const Vector3d& p) const {
-        return {static_cast<std::int64_t>(std::floor(p.x() / radius_mm_)), static_cast<std::int64_t>(std::floor(p.y() / radius_mm_)),
+        return {static_cast<std::int64_t>(std::floor(p.x() / radius_mm_)),
+                static_cast<std::int64_t>(std::floor(p.y() / radius_mm_)),
                 static_cast<std::int64_t>(std::floor(p.z() / radius_mm_))};
     }
     static std::int64_t key(const Cell& c) { return (c[0] * 2097169 + c[1]) * 2097169 + c[2]; }

@@ -11,8 +11,9 @@
 namespace planlight {
 
 /// The failure function's table: truncated distance to the skin on a 4 mm grid, small enough for the processor's cache.
-/// Nearest voxel, no interpolation; beyond the table is the truncation. Outside of the body less counts than inside. A point whose nearest skin is the end of the volume
-/// is unknown, not wrong: it counts at least a third of the truncation.
+/// Nearest voxel, no interpolation; beyond the table is the truncation. Outside of the body less counts than inside. A
+/// point whose nearest skin is the end of the volume is unknown, not wrong: it counts at least a third of the
+/// truncation.
 class CoarseDistance {
 public:
     CoarseDistance(const SkinLut& lut, double truncation_mm, double truncation_outside_mm);

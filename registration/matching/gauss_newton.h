@@ -25,9 +25,10 @@ inline double tukey_weight(double residual_mm, double scale_mm) {
 
 /// Point to plane on the signed distance (the gradient is the normal); points marked in `skip` (if not empty) and
 /// farther than `max_pair_mm` take no part. `outside_mm`: the robust scale of points outside of the body.
-NormalEquations point_to_plane_equations(std::span<const Eigen::Vector3d> points_in_rig, std::span<const std::uint8_t> skip,
-                                         const DistanceField& field, const RigidTransform& ct_from_rig,
-                                         const Eigen::Vector3d& centre_in_ct, double scale_mm, double outside_mm, double max_pair_mm);
+NormalEquations point_to_plane_equations(std::span<const Eigen::Vector3d> points_in_rig,
+                                         std::span<const std::uint8_t> skip, const DistanceField& field,
+                                         const RigidTransform& ct_from_rig, const Eigen::Vector3d& centre_in_ct,
+                                         double scale_mm, double outside_mm, double max_pair_mm);
 
 /// The pose after the step that the equations ask for, slightly damped so that a slippery shape does not run away.
 /// `largest_step_mm` bounds how far a point 100 mm from the centre moves. `moved_mm` (out): how far it did.

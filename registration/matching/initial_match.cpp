@@ -40,14 +40,20 @@ bool same_pose(const Search& search, const RigidTransform& a, const RigidTransfo
 }
 
 Search prepare_search(const PointCloud& cloud, const SkinLut& lut, const InitialMatchSettings& settings) {
-    Search search{DistanceField(lut), CoarseDistance(lut, settings.truncation_mm, settings.truncation_outside_mm + kCoarseSlack_mm),
-                  sites_of_skin(lut, settings.model_spacing_mm, settings.seed), sites_of_cloud(cloud), {}, {},
-                  Vector3d::Zero(), settings};
+    Search search{DistanceField(lut),
+                  CoarseDistance(lut, settings.truncation_mm, settings.truncation_outside_mm + kCoarseSlack_mm),
+                  sites_of_skin(lut, settings.model_spacing_mm, settings.seed),
+                  sites_of_cloud(cloud),
+                  {},
+                  {},
+                  Vector3d::Zero(),
+                  settings};
     std::mt19937 random(settings.seed);
     auto& scan = search.scan;
     for (std::size_t i = scan.size(); i > 1; --i) std::swap(scan[i - 1], scan[random() % i]);
     for (const SurfaceSite& s : scan) {
-        if (search.scoring.size() < static_cast<std::size_t>(std::max(settings.scoring_points, 8))) search.scoring.push_back(s.position);
+        if (search.scoring.size() < static_cast<std::size_t>(std::max(settings.scoring_points, 8)))
+            search.scoring.push_back(s.position);
         if (search.refining.size() < kRefinePoints) search.refining.push_back(s.position.cast<double>());
         search.centre_in_rig += s.position.cast<double>() / static_cast<double>(scan.size());
     }
@@ -105,7 +111,9 @@ std::vector<MatchCandidate> candidates_of_base(const Search& search, const Base&
         RigidTransform pose = RigidTransform::Identity();
         pose.linear() = scored_pose.pose.R.cast<double>();
         pose.translation() = scored_pose.pose.t.cast<double>();
-        if (std::any_of(starts.begin(), starts.end(), [&](const auto& other) { return same_pose(search, pose, other); })) continue;
+        if (std::any_of(starts.begin(), starts.end(),
+                        [&](const auto& other) { return same_pose(search, pose, other); }))
+            continue;
         starts.push_back(pose);
         if (starts.size() >= static_cast<std::size_t>(search.settings.candidates)) break;
     }

@@ -12,7 +12,8 @@ struct InitialMatchSettings {
     double model_spacing_mm = 10;     ///< of the skin samples that the contact points are tried on
     int scoring_points = 96;          ///< scan points in the failure function
     double truncation_mm = 10;        ///< a point deeper in the body than this counts as this deep
-    double truncation_outside_mm = 3; ///< the same, outside: cloth, hands and hair lie over skin, but no light comes from inside it
+    double truncation_outside_mm =
+        3;  ///< the same, outside: cloth, hands and hair lie over skin, but no light comes from inside it
     int candidates = 40;              ///< distinct poses that are refined
     int min_bases = 4, max_bases = 20;
     unsigned seed = 1;

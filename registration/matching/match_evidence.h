@@ -28,7 +28,8 @@ CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const Rigid
 
 /// The way in which the patient could move with the least change of the residuals.
 struct WeakestWay {
-    double sigma_mm = 0;   ///< one standard deviation of the movement 80 mm from the scan's centre; infinite when nothing is known
+    double sigma_mm =
+        0;  ///< one standard deviation of the movement 80 mm from the scan's centre; infinite when nothing is known
     std::string in_words;  ///< "turn about the head-foot axis"
 };
 WeakestWay weakest_way(const PoseCovariance& covariance);

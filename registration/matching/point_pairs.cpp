@@ -29,7 +29,8 @@ double spread_mm(const std::vector<PointPair>& pairs) {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     for (const PointPair& p : pairs) middle += p.in_ct / static_cast<double>(pairs.size());
     Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-    for (const PointPair& p : pairs) squares += (p.in_ct - middle) * (p.in_ct - middle).transpose() / static_cast<double>(pairs.size());
+    for (const PointPair& p : pairs)
+        squares += (p.in_ct - middle) * (p.in_ct - middle).transpose() / static_cast<double>(pairs.size());
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares);
     return std::sqrt(std::max(solver.eigenvalues()[0] + solver.eigenvalues()[1], 0.));
 }
@@ -80,7 +81,8 @@ RegistrationResult register_point_pairs(const std::vector<PointPair>& pairs, con
         return result;
     }
     if (const double spread = spread_mm(pairs); spread < settings.min_spread_mm) {
-        result.reasons.push_back(fmt::format("the landmarks lie nearly on one line ({:.0f} mm across it): take some further apart", spread));
+        result.reasons.push_back(
+            fmt::format("the landmarks lie nearly on one line ({:.0f} mm across it): take some further apart", spread));
         return result;
     }
     result.patient_from_ct = result.initial_patient_from_ct = fit(pairs);
@@ -94,10 +96,12 @@ RegistrationResult register_point_pairs(const std::vector<PointPair>& pairs, con
     result.verdict = Verdict::ask;
     result.reasons.push_back(fmt::format("registered by {} landmarks alone: look at the light on others", pairs.size()));
     const std::string odd = odd_one_out(pairs, result.residual_rms_mm);
-    if (!odd.empty()) result.reasons.push_back(fmt::format("the landmark \"{}\" does not fit the others: is it the right one?", odd));
+    if (!odd.empty())
+        result.reasons.push_back(fmt::format("the landmark \"{}\" does not fit the others: is it the right one?", odd));
     if (result.residual_rms_mm > settings.max_residual_mm)
         lower(result, Verdict::no,
-              fmt::format("the landmarks lie {:.1f} mm (rms) from where they should; at most {:.1f} mm: wrong names, sides, or another patient",
+              fmt::format("the landmarks lie {:.1f} mm (rms) from where they should; at most {:.1f} mm: wrong names, "
+                          "sides, or another patient",
                           result.residual_rms_mm, settings.max_residual_mm));
     return result;
 }

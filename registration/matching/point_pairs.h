@@ -23,6 +23,7 @@ RegistrationResult register_point_pairs(const std::vector<PointPair>& pairs, con
 std::vector<double> landmark_errors_mm(const std::vector<PointPair>& pairs, const RigidTransform& patient_from_ct);
 
 /// Holds landmarks against a pose that was found without them: one that is off lowers the verdict, with its name.
-void check_with_point_pairs(const std::vector<PointPair>& pairs, RegistrationResult& result, const PointPairSettings& settings = {});
+void check_with_point_pairs(const std::vector<PointPair>& pairs, RegistrationResult& result,
+                            const PointPairSettings& settings = {});
 
 }  // namespace planlight

@@ -51,8 +51,9 @@ std::vector<Vector3d> shuffled_points(const PointCloud& cloud, int max_points) {
 }
 
 /// The paper's equations: point to the skin point behind the table's pointer.
-NormalEquations point_to_point_equations(std::span<const Vector3d> points_in_rig, const SkinLut& lut, const RigidTransform& ct_from_rig,
-                                         const Vector3d& centre_in_ct, double scale_mm, double max_pair_mm) {
+NormalEquations point_to_point_equations(std::span<const Vector3d> points_in_rig, const SkinLut& lut,
+                                         const RigidTransform& ct_from_rig, const Vector3d& centre_in_ct,
+                                         double scale_mm, double max_pair_mm) {
     NormalEquations result;
     for (const Vector3d& p : points_in_rig) {
         const Vector3d x = ct_from_rig * p;
@@ -80,8 +81,8 @@ double distance_to_skin(const SkinLut& lut, const DistanceField& field, IcpSetti
     return field.sample(p_in_ct, d, unused) ? std::abs(d) : std::numeric_limits<double>::infinity();
 }
 
-void measure_residuals(std::span<const Vector3d> points, const SkinLut& lut, const DistanceField& field, const IcpSettings& settings,
-                       IcpResult& result) {
+void measure_residuals(std::span<const Vector3d> points, const SkinLut& lut, const DistanceField& field,
+                       const IcpSettings& settings, IcpResult& result) {
     std::vector<double> all;
     double sum = 0;
     result.used = result.inliers = 0;
@@ -115,12 +116,14 @@ std::vector<Stage> stages_of(const IcpSettings& settings, std::size_t points) {
     const int third = std::max(settings.max_iterations / 3, 1);
     return {{std::min<std::size_t>(points, 1500), settings.first_scale_mm, middle_mm, third, 0.02},
             {std::min<std::size_t>(points, 5000), middle_mm, settings.last_scale_mm, third, 0.005},
-            {points, settings.last_scale_mm, settings.last_scale_mm, std::max(settings.max_iterations - 2 * third, 1), settings.stop_mm}};
+            {points, settings.last_scale_mm, settings.last_scale_mm, std::max(settings.max_iterations - 2 * third, 1),
+             settings.stop_mm}};
 }
 
 }  // namespace
 
-IcpResult refine_icp(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig, const IcpSettings& settings) {
+IcpResult refine_icp(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
+                     const IcpSettings& settings) {
     constexpr double kOutside = 0.5;  // cloth lies outside of the body: it is let go of sooner
     IcpResult result;
     result.ct_from_rig = ct_from_rig;
@@ -137,8 +140,10 @@ IcpResult refine_icp(const PointCloud& cloud, const SkinLut& lut, const RigidTra
             const NormalEquations equations =
                 settings.mode == IcpSettings::Mode::signed_distance
                     ? point_to_plane_equations(some, skip, field, result.ct_from_rig, result.centre_in_ct, scale_mm,
-                                               std::max(settings.last_scale_mm, kOutside * scale_mm), settings.max_pair_mm)
-                    : point_to_point_equations(some, lut, result.ct_from_rig, result.centre_in_ct, scale_mm, settings.max_pair_mm);
+                                               std::max(settings.last_scale_mm, kOutside * scale_mm),
+                                               settings.max_pair_mm)
+                    : point_to_point_equations(some, lut, result.ct_from_rig, result.centre_in_ct, scale_mm,
+                                               settings.max_pair_mm);
             if (equations.used < 6) return result;
             double moved_mm;
             result.ct_from_rig = after_step(equations, result.ct_from_rig, result.centre_in_ct, 30, moved_mm);

@@ -44,13 +44,14 @@ std::string unfit(const PointCloud& cloud, const RegistrationSettings& settings,
         return "the scan has no normals; it must tell which side of the skin the cameras saw";
     const Eigen::Vector3d extents = extents_mm(cloud);
     if (extents[1] < settings.min_extent_mm)
-        return fmt::format("the scan covers only {:.0f} mm x {:.0f} mm; at least {:.0f} mm both ways are needed", extents[0], extents[1],
-                           settings.min_extent_mm);
+        return fmt::format("the scan covers only {:.0f} mm x {:.0f} mm; at least {:.0f} mm both ways are needed",
+                           extents[0], extents[1], settings.min_extent_mm);
     return {};
 }
 
 /// Cost of the best pose of the mirrored scan / cost of this pose, over the same points; below 1 the mirror image fits better.
-double mirror_ratio(const PointCloud& cloud, const SkinLut& lut, const InitialMatch& match, const RegistrationSettings& settings) {
+double mirror_ratio(const PointCloud& cloud, const SkinLut& lut, const InitialMatch& match,
+                    const RegistrationSettings& settings) {
     constexpr double kNoise_mm = 0.05;
     InitialMatchSettings search = settings.initial;
     search.max_bases = search.min_bases;
@@ -66,7 +67,8 @@ bool enough_on_skin(const CloudOnSkin& fit, const RegistrationResult& result) {
     return on >= 0.5 || (on >= 0.3 && inside < 0.2 * on && result.runner_up_ratio >= 1.3 && result.agreeing_bases >= 2);
 }
 
-void judge_fit(const RegistrationSettings& settings, const CloudOnSkin& fit, const RegistrationResult& result, Judgement& judgement) {
+void judge_fit(const RegistrationSettings& settings, const CloudOnSkin& fit, const RegistrationResult& result,
+               Judgement& judgement) {
     const double share = fit.inlier_fraction();
     const std::string on_skin = fmt::format("only {:.0f} % of the scan lies on the skin (within {:.1f} mm)", 100 * share,
                                             settings.inlier_distance_mm);
@@ -74,8 +76,8 @@ void judge_fit(const RegistrationSettings& settings, const CloudOnSkin& fit, con
     judgement.no_if(!enough, on_skin);
     judgement.ask_if(enough && share < settings.min_inlier_fraction, on_skin);
     judgement.no_if(fit.inlier_rms_mm > settings.max_residual_rms_mm,
-                    fmt::format("the scan lies {:.2f} mm (rms) from the skin; at most {:.2f} mm is good enough", fit.inlier_rms_mm,
-                                settings.max_residual_rms_mm));
+                    fmt::format("the scan lies {:.2f} mm (rms) from the skin; at most {:.2f} mm is good enough",
+                                fit.inlier_rms_mm, settings.max_residual_rms_mm));
     judgement.no_if(fit.known_fraction() < 0.5,
                     fmt::format("only {:.0f} % of the scan lies where the CT shows skin; the rest is beyond its ends",
                                 100 * fit.known_fraction()));
@@ -97,9 +99,10 @@ void judge_mirror_and_scale(const RegistrationSettings& settings, const Registra
                     fmt::format("the mirror image of the scan fits better (ratio {:.2f}): left and right are exchanged", mirror));
     judgement.ask_if(mirror >= settings.mirror_fits_better && mirror < settings.min_mirror_ratio,
                      fmt::format("the mirror image of the scan fits nearly as well (ratio {:.2f})", mirror));
-    judgement.ask_if(std::abs(result.scale - 1) > std::max(settings.max_scale_error, 1.5 * result.scale_sigma),
-                     fmt::format("the head of the scan is {:.1f} % {} than that of the CT: another patient, or a wrong calibration",
-                                 100 * std::abs(1 / result.scale - 1), result.scale < 1 ? "larger" : "smaller"));
+    judgement.ask_if(
+        std::abs(result.scale - 1) > std::max(settings.max_scale_error, 1.5 * result.scale_sigma),
+        fmt::format("the head of the scan is {:.1f} % {} than that of the CT: another patient, or a wrong calibration",
+                    100 * std::abs(1 / result.scale - 1), result.scale < 1 ? "larger" : "smaller"));
 }
 
 }  // namespace
@@ -134,7 +137,8 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
     result.refine_s = seconds_since(refine_start);
     result.patient_from_ct = icp.ct_from_rig.inverse();
 
-    const CloudOnSkin fit = lay_on_skin(cloud, lut, icp.ct_from_rig, settings.inlier_distance_mm, settings.moved_skin ? settled.offset_mm : 0);
+    const CloudOnSkin fit = lay_on_skin(cloud, lut, icp.ct_from_rig, settings.inlier_distance_mm,
+                                        settings.moved_skin ? settled.offset_mm : 0);
     result.inlier_fraction = fit.inlier_fraction();
     result.residual_rms_mm = fit.inlier_rms_mm;
     result.residual_median_mm = fit.median_mm;
@@ -147,15 +151,18 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
     Judgement judgement(result);
     judge_fit(settings, fit, result, judgement);
     judge_uniqueness(settings, result, judgement);
-    judgement.no_if(result.runner_up_ratio < settings.min_runner_up_ratio && fit.inlier_fraction() < settings.min_inlier_fraction &&
-                        result.mirror_ratio > 0 && result.mirror_ratio < settings.min_mirror_ratio,
+    judgement.no_if(result.runner_up_ratio < settings.min_runner_up_ratio &&
+                        fit.inlier_fraction() < settings.min_inlier_fraction && result.mirror_ratio > 0 &&
+                        result.mirror_ratio < settings.min_mirror_ratio,
                     "poorly on the skin, and other poses fit nearly as well: three weak signs together");
     judge_mirror_and_scale(settings, result, judgement);
-    judgement.ask_if(std::abs(settled.offset_mm) > settings.max_skin_offset_mm,
-                     fmt::format("the whole skin lies {:.1f} mm {} that of the CT: swollen, or not the threshold of the skin", std::abs(settled.offset_mm),
-                                 settled.offset_mm > 0 ? "outside" : "inside"));
+    judgement.ask_if(
+        std::abs(settled.offset_mm) > settings.max_skin_offset_mm,
+        fmt::format("the whole skin lies {:.1f} mm {} that of the CT: swollen, or not the threshold of the skin",
+                    std::abs(settled.offset_mm), settled.offset_mm > 0 ? "outside" : "inside"));
     judgement.ask_if(weakest.sigma_mm > settings.max_weakest_sigma_mm,
-                     fmt::format("the patient could {} by {:.1f} mm unnoticed; scan more of the head", weakest.in_words, weakest.sigma_mm));
+                     fmt::format("the patient could {} by {:.1f} mm unnoticed; scan more of the head", weakest.in_words,
+                                 weakest.sigma_mm));
     return result;
 }
 

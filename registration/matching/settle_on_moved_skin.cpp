@@ -119,11 +119,14 @@ struct Problem {
             J.row(i) << (p.x_in_ct - centre).cross(p.normal).transpose(), p.normal.transpose();
             residual_mm[i] = p.distance_mm;
             growth_mm[i] = (p.x_in_ct - centre).dot(p.normal);
-            for (Eigen::Index j = 0; j < n; ++j) squared_mm2(i, j) = (p.x_in_ct - patches[static_cast<std::size_t>(j)].x_in_ct).squaredNorm();
+            for (Eigen::Index j = 0; j < n; ++j)
+                squared_mm2(i, j) = (p.x_in_ct - patches[static_cast<std::size_t>(j)].x_in_ct).squaredNorm();
         }
         own = own_parts(residual_mm);
     }
-    MatrixXd alike(double correlation_mm) const { return (-squared_mm2.array() / (2 * correlation_mm * correlation_mm)).exp().matrix(); }
+    MatrixXd alike(double correlation_mm) const {
+        return (-squared_mm2.array() / (2 * correlation_mm * correlation_mm)).exp().matrix();
+    }
 };
 
 /// Generalised least squares of the pose and of an offset of the whole skin (another threshold, swelling all over), which
@@ -225,8 +228,10 @@ MovedSkinPose settle_on_moved_skin(const PointCloud& cloud, const SkinLut& lut, 
     result.offset_mm /= sum;
     result.covariance.centre_in_ct = centre;
     result.covariance.of_turn_and_shift = settings.caution * (covariance / sum - step * step.transpose());
-    const double pulled_mm = settings.pulled_share * result.movement_mm, from_offset_mm = settings.offset_share * result.offset_mm;
-    const double unseen_mm2 = pulled_mm * pulled_mm + from_offset_mm * from_offset_mm + settings.least_movement_mm * settings.least_movement_mm;
+    const double pulled_mm = settings.pulled_share * result.movement_mm,
+                 from_offset_mm = settings.offset_share * result.offset_mm;
+    const double unseen_mm2 = pulled_mm * pulled_mm + from_offset_mm * from_offset_mm +
+                              settings.least_movement_mm * settings.least_movement_mm;
     result.covariance.of_turn_and_shift.diagonal().tail<3>().array() += unseen_mm2 / 3;
     const Vector3d turn = step.head<3>();
     RigidTransform moved = RigidTransform::Identity();

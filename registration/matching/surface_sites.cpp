@@ -122,7 +122,8 @@ std::vector<SurfaceSite> sites_of_skin(const SkinLut& lut, double spacing_mm, un
     if (lut.skin.empty()) return chosen;
     CellMap map(lut.skin.front().position_in_ct);
     for (const SkinPoint& s : lut.skin)
-        if (s.flags == kSkin && s.position_in_ct.allFinite() && s.normal_in_ct.allFinite()) map.add(s.position_in_ct, s.normal_in_ct);
+        if (s.flags == kSkin && s.position_in_ct.allFinite() && s.normal_in_ct.allFinite())
+            map.add(s.position_in_ct, s.normal_in_ct);
     for (const Cell& cell : map.cells()) {
         const SurfaceSite site = site_of(map, cell, map.neighbourhood(cell));
         if (site.contact) all.push_back(site);

@@ -14,12 +14,14 @@ constexpr auto kPatience = 2000ms;            // for a frame once the picture is
 constexpr Instant kDisplayDelayAtMost = 1s;   // from show() to the light, for the picture's expiry
 
 /// The frame must have seen this picture and nothing else, or a code would be wrong without a sign of it.
-void check_frame(const StereoFrame& frame, const StereoFrame& first, Instant lit_from, Instant valid_until, const std::string& name) {
+void check_frame(const StereoFrame& frame, const StereoFrame& first, Instant lit_from, Instant valid_until,
+                 const std::string& name) {
     constexpr Instant kRounding = 2us;
     const Instant opened = frame.at - frame.exposure / 2, closed = frame.at + frame.exposure / 2;
     if (opened + kRounding < lit_from)
-        throw DeviceError("stereo camera", fmt::format("the frame for \"{}\" was exposed {:.1f} ms before the picture was lit", name,
-                                                       1e3 * seconds(lit_from - opened)),
+        throw DeviceError("stereo camera",
+                          fmt::format("the frame for \"{}\" was exposed {:.1f} ms before the picture was lit", name,
+                                      1e3 * seconds(lit_from - opened)),
                           "Check the camera's time stamps against the session's clock.");
     if (closed > valid_until)
         throw DeviceError("stereo camera", fmt::format("the frame for \"{}\" was exposed after the picture had expired", name),

@@ -28,7 +28,8 @@ Sums sum_neighbours(const DecodedView& view, int x, int y, const Eigen::Vector2d
         if (y + dy < 0 || y + dy >= view.height) continue;
         for (int dx = -kReach; dx <= kReach; ++dx) {
             if (x + dx < 0 || x + dx >= view.width) continue;
-            const std::size_t i = static_cast<std::size_t>(y + dy) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x + dx);
+            const std::size_t i = static_cast<std::size_t>(y + dy) * static_cast<std::size_t>(view.width) +
+                                  static_cast<std::size_t>(x + dx);
             const Eigen::Vector2d d(view.column[i] - centre.x(), rows ? view.row[i] - centre.y() : 0.0);
             if (!(std::abs(d.x()) <= max_jump_px && std::abs(d.y()) <= max_jump_px)) continue;  // NaN fails too
             s.n += 1;
@@ -72,7 +73,8 @@ std::optional<LocalCode> local_code(const DecodedView& view, int x, int y) {
     const double allowed = kRoughness_px * kRoughness_px + 9 * sigma * sigma;
     if (residual > directions * (s.n - 3) * allowed) return std::nullopt;
     if (fit.row(0).squaredNorm() > 9 * directions * allowed) return std::nullopt;  // the pixel itself stands off
-    return LocalCode{centre + fit.row(0).transpose(), fit.bottomRows<2>().transpose(), s.n > kWhole - 0.5, sigma * std::sqrt(inverse(0, 0))};
+    return LocalCode{centre + fit.row(0).transpose(), fit.bottomRows<2>().transpose(), s.n > kWhole - 0.5,
+                     sigma * std::sqrt(inverse(0, 0))};
 }
 
 CodeIndex::CodeIndex(const DecodedView& view, int projector_width, int projector_height)
@@ -96,7 +98,8 @@ std::int32_t CodeIndex::candidate(const Eigen::Vector2d& code) const {
                 if (std::max(std::abs(dr), std::abs(dc)) != ring) continue;
                 if (c + dc < 0 || r + dr < 0 || c + dc >= width_ || r + dr >= height_) continue;
                 const std::int32_t pixel =
-                    pixel_of_[static_cast<std::size_t>(r + dr) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(c + dc)];
+                    pixel_of_[static_cast<std::size_t>(r + dr) * static_cast<std::size_t>(width_) +
+                              static_cast<std::size_t>(c + dc)];
                 if (pixel >= 0) return pixel;
             }
     return -1;

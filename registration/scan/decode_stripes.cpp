@@ -188,10 +188,10 @@ DecodedView decode_stripes(std::span<const GrayImage> frames, const StripeSettin
     if (stripes.rows) view.row.resize(pixels);
     view.sigma_px.resize(pixels);
     view.noise_grey = settings.noise_grey > 0 ? settings.noise_grey : measure_noise(sorted.directions[0], pixels, settings);
-    const Limits limits{
-        static_cast<float>(settings.min_modulation), static_cast<float>(settings.min_direct_fraction),
-        static_cast<float>(stripes.phase_period_px / (2 * std::numbers::pi) * std::sqrt(2.0 / stripes.phase_steps) * view.noise_grey),
-        static_cast<float>(settings.max_phase_sigma_px), settings.saturated_at};
+    const Limits limits{static_cast<float>(settings.min_modulation), static_cast<float>(settings.min_direct_fraction),
+                        static_cast<float>(stripes.phase_period_px / (2 * std::numbers::pi) *
+                                           std::sqrt(2.0 / stripes.phase_steps) * view.noise_grey),
+                        static_cast<float>(settings.max_phase_sigma_px), settings.saturated_at};
     Counts counts;
     const std::size_t blocks = (pixels + kBlock - 1) / kBlock;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 16), [&](const tbb::blocked_range<std::size_t>& range) {

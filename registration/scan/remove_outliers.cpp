@@ -74,9 +74,11 @@ void mark_small_pieces(Work& work) {
     std::size_t largest = 0;
     for (std::size_t i = 0; i < work.size(); ++i)
         if (work.fate[i] == Fate::kept) largest = std::max(largest, ++count[root_of(parent, i)]);
-    const double needed = std::max<double>(work.settings.min_piece_points, work.settings.min_piece_fraction * static_cast<double>(largest));
+    const double needed = std::max<double>(work.settings.min_piece_points,
+                                           work.settings.min_piece_fraction * static_cast<double>(largest));
     for (std::size_t i = 0; i < work.size(); ++i)
-        if (work.fate[i] == Fate::kept && static_cast<double>(count[root_of(parent, i)]) < needed) work.fate[i] = Fate::small_piece;
+        if (work.fate[i] == Fate::kept && static_cast<double>(count[root_of(parent, i)]) < needed)
+            work.fate[i] = Fate::small_piece;
 }
 
 /// The normal of the plane through the neighbours, towards the projector; zero when they do not span one.
@@ -137,8 +139,13 @@ void keep(const Work& work, OutlierReport& report) {
 }  // namespace
 
 OutlierReport remove_outliers(const Triangulation& raw, const RigCalibration& rig, const OutlierSettings& settings) {
-    Work work{raw, rig, settings, rig.projector.centre_in_rig(), SurfaceGrid(raw.grid),
-              std::vector<Fate>(raw.cloud.size(), Fate::kept), std::vector<Eigen::Vector3d>(raw.cloud.size(), Eigen::Vector3d::Zero())};
+    Work work{raw,
+              rig,
+              settings,
+              rig.projector.centre_in_rig(),
+              SurfaceGrid(raw.grid),
+              std::vector<Fate>(raw.cloud.size(), Fate::kept),
+              std::vector<Eigen::Vector3d>(raw.cloud.size(), Eigen::Vector3d::Zero())};
     mark_jumps_and_lonely(work);
     find_normals(work);
     mark_small_pieces(work);

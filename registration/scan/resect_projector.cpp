@@ -77,7 +77,8 @@ CameraModel stepped(CameraModel projector, const Vector9d& step) {
 
 }  // namespace
 
-std::optional<Resection> resect_projector(const Triangulation& raw, const RigCalibration& rig, const ResectionSettings& settings) {
+std::optional<Resection> resect_projector(const Triangulation& raw, const RigCalibration& rig,
+                                          const ResectionSettings& settings) {
     const auto pairs = usable(raw, settings);
     if (pairs.size() < settings.min_points || !spread_enough(pairs, rig.projector, settings.min_spread)) return std::nullopt;
     const int free = settings.free_intrinsics ? 9 : 6;

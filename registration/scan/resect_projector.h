@@ -9,7 +9,8 @@
 namespace planlight {
 
 struct ResectionSettings {
-    bool free_intrinsics = false;     ///< also principal point and focal length (9 instead of 6 numbers): needs depth in the scene
+    bool free_intrinsics =
+        false;  ///< also principal point and focal length (9 instead of 6 numbers): needs depth in the scene
     double max_epipolar_px = 0.5;     ///< of the points used
     std::size_t min_points = 500;
     double min_spread = 0.15;         ///< of the points in the projector's picture: standard deviation by its width, either way
@@ -34,6 +35,7 @@ struct Resection {
 /// free recalibration of the projector against the cameras. It trusts the cameras: an error of theirs that keeps their
 /// epipolar lines in place goes into the projector, so `moved_mm` and `turned` are to be watched from scan to scan.
 /// Gauss-Newton with Huber weights. Empty when there are too few points, too close together.
-std::optional<Resection> resect_projector(const Triangulation& raw, const RigCalibration& rig, const ResectionSettings& settings = {});
+std::optional<Resection> resect_projector(const Triangulation& raw, const RigCalibration& rig,
+                                          const ResectionSettings& settings = {});
 
 }  // namespace planlight

@@ -24,8 +24,9 @@ private:
 
 void check_size(const DecodedView& view, const CameraModel& camera, const char* name) {
     if (view.width != camera.width || view.height != camera.height)
-        throw std::invalid_argument(fmt::format("scan_from_capture: {} frames of {} x {} for a camera calibrated at {} x {}", name,
-                                                view.width, view.height, camera.width, camera.height));
+        throw std::invalid_argument(
+            fmt::format("scan_from_capture: {} frames of {} x {} for a camera calibrated at {} x {}", name, view.width,
+                        view.height, camera.width, camera.height));
 }
 
 }  // namespace

@@ -22,7 +22,8 @@ public:
         const Eigen::Vector2i c = cell_of_[point];
         for (int y = std::max(0, c.y() - reach); y <= std::min(height_ - 1, c.y() + reach); ++y)
             for (int x = std::max(0, c.x() - reach); x <= std::min(width_ - 1, c.x() + reach); ++x) {
-                const std::size_t cell = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+                const std::size_t cell =
+                    static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
                 for (std::uint32_t k = begin_[cell]; k < begin_[cell + 1]; ++k)
                     if (sorted_[k] != point) visit(static_cast<std::size_t>(sorted_[k]));
             }

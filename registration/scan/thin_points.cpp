@@ -22,7 +22,8 @@ std::vector<std::size_t> one_per_cube(const std::vector<Eigen::Vector3d>& points
     std::vector<Entry> entries(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Eigen::Array3d scaled = ((points[i] - low) / edge_mm).array(), whole = scaled.floor();
-        const auto cube = static_cast<std::int64_t>(whole.x()) + kSide * (static_cast<std::int64_t>(whole.y()) + kSide * static_cast<std::int64_t>(whole.z()));
+        const auto cube = static_cast<std::int64_t>(whole.x()) +
+                          kSide * (static_cast<std::int64_t>(whole.y()) + kSide * static_cast<std::int64_t>(whole.z()));
         entries[i] = {cube, (scaled - whole - 0.5).square().sum(), i};
     }
     std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {

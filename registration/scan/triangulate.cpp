@@ -151,7 +151,8 @@ std::vector<PointOutcome> for_pixels(const DecodedView& view, int stride, const 
     tbb::parallel_for(0, rows, [&](int r) {
         for (int c = 0; c < columns; ++c) {
             const int x = c * stride, y = r * stride;
-            if (std::isnan(view.column[static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x)]))
+            if (std::isnan(view.column[static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) +
+                                       static_cast<std::size_t>(x)]))
                 continue;
             make(x, y, outcomes[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(c)]);
         }
@@ -167,10 +168,12 @@ Triangulation triangulate(const DecodedView& left, const DecodedView& right, con
         throw std::invalid_argument("triangulate: one view codes the rows, the other does not");
     for (const DecodedView* view : {&left, &right}) {
         const std::size_t pixels = static_cast<std::size_t>(view->width) * static_cast<std::size_t>(view->height);
-        if (view->column.size() != pixels || view->sigma_px.size() != pixels || (!view->row.empty() && view->row.size() != pixels))
+        if (view->column.size() != pixels || view->sigma_px.size() != pixels ||
+            (!view->row.empty() && view->row.size() != pixels))
             throw std::invalid_argument("triangulate: the arrays of a view do not have its size");
     }
-    if (rig.projector.width < 1 || rig.projector.height < 1) throw std::invalid_argument("triangulate: the projector has no size");
+    if (rig.projector.width < 1 || rig.projector.height < 1)
+        throw std::invalid_argument("triangulate: the projector has no size");
     if (left.row.empty()) return triangulate_columns(left, right, rig, settings);
 
     using Kind = PointOutcome::Kind;

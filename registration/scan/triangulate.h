@@ -21,12 +21,13 @@ struct TriangulationSettings {
 /// Points from all rays that agree, with counts by reason for those that do not (Fig. 2 of the paper, middle).
 struct Triangulation {
     enum class Seen : unsigned char { both, left_only, right_only };
-    PointCloud cloud;               ///< in rig; one point per left-camera pixel (or right, where only that sees it); no normals yet
+    PointCloud cloud;  ///< in rig; one point per left-camera pixel (or right, where only that sees it); no normals yet
     std::vector<Eigen::Vector2i> grid;  ///< per point: the rounded projector pixel (column, row), for neighbourhoods
     std::vector<Seen> seen;         ///< per point: by whom
     std::size_t three_view = 0, two_view = 0;
     std::size_t no_partner = 0, disagree = 0, outside_volume = 0;
-    std::size_t ragged = 0;         ///< the code is not smooth around the pixel: an edge, hair, a glint; with one camera also its rim
+    std::size_t ragged =
+        0;  ///< the code is not smooth around the pixel: an edge, hair, a glint; with one camera also its rim
     int stride = 1;                 ///< as used
 
     /// Evidence about the calibration, over the points that both cameras placed without the projector: the median of

@@ -35,8 +35,8 @@ struct Depth {
 };
 
 /// The depth at which the right view shows `column` on the epipolar line, looked for around `start`.
-std::optional<Depth> depth_from_right(const DecodedView& right, const CameraModel& camera, const Ray& sight, const LocalCode& left,
-                                      double start, double camera_sigma_px) {
+std::optional<Depth> depth_from_right(const DecodedView& right, const CameraModel& camera, const Ray& sight,
+                                      const LocalCode& left, double start, double camera_sigma_px) {
     double t = start;
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
         Eigen::Matrix<double, 2, 3> by_point;
@@ -104,9 +104,11 @@ Triangulation triangulate_columns(const DecodedView& left, const DecodedView& ri
     std::vector<PointOutcome> outcomes(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
     tbb::parallel_for(0, rows, [&](int r) {
         for (int c = 0; c < columns; ++c) {
-            PointOutcome& outcome = outcomes[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(c)];
+            PointOutcome& outcome =
+                outcomes[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(c)];
             const int x = c * stride, y = r * stride;
-            const float code = left.column[static_cast<std::size_t>(y) * static_cast<std::size_t>(left.width) + static_cast<std::size_t>(x)];
+            const float code = left.column[static_cast<std::size_t>(y) * static_cast<std::size_t>(left.width) +
+                                           static_cast<std::size_t>(x)];
             if (std::isnan(code)) continue;
             outcome.kind = PointOutcome::Kind::ragged;
             if (const auto local = local_code(left, x, y))

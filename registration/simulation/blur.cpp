@@ -11,7 +11,8 @@ namespace planlight::simulation {
 namespace {
 
 /// out[i] = sum of kernel[|k|] * in[i + k * stride], for a whole row, where all taps are inside `in`.
-__attribute__((target_clones("avx512f", "avx2", "default"))) void add_row(float* out, const float* in, float weight, std::size_t n) {
+__attribute__((target_clones("avx512f", "avx2", "default"))) void add_row(float* out, const float* in, float weight,
+                                                                          std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) out[i] += weight * in[i];
 }
 
@@ -37,7 +38,9 @@ void gaussian_blur(std::vector<float>& picture, std::vector<float>& scratch, int
     for (int k = 0; k <= radius; ++k)
         kernel[static_cast<std::size_t>(k)] = static_cast<float>(std::exp(-k * k / (2 * sigma_px * sigma_px)) / sum);
     scratch.resize(picture.size());
-    const auto row_of = [width](std::vector<float>& p, int y) { return p.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width); };
+    const auto row_of = [width](std::vector<float>& p, int y) {
+        return p.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
+    };
     tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const tbb::blocked_range<int>& rows) {
         for (int y = rows.begin(); y < rows.end(); ++y) {
             const float* in = row_of(picture, y);
@@ -46,7 +49,8 @@ void gaussian_blur(std::vector<float>& picture, std::vector<float>& scratch, int
             for (int k = -radius; k <= radius; ++k) {
                 const int from = std::max(0, -k), to = std::min(width, width - k);
                 if (to > from)
-                    add_row(out + from, in + from + k, kernel[static_cast<std::size_t>(std::abs(k))], static_cast<std::size_t>(to - from));
+                    add_row(out + from, in + from + k, kernel[static_cast<std::size_t>(std::abs(k))],
+                            static_cast<std::size_t>(to - from));
             }
         }
     });
@@ -56,7 +60,8 @@ void gaussian_blur(std::vector<float>& picture, std::vector<float>& scratch, int
             std::fill_n(out, width, 0.0F);
             for (int k = -radius; k <= radius; ++k)
                 if (y + k >= 0 && y + k < height)
-                    add_row(out, row_of(scratch, y + k), kernel[static_cast<std::size_t>(std::abs(k))], static_cast<std::size_t>(width));
+                    add_row(out, row_of(scratch, y + k), kernel[static_cast<std::size_t>(std::abs(k))],
+                            static_cast<std::size_t>(width));
         }
     });
 }
@@ -67,7 +72,8 @@ void wide_blur(std::vector<float>& picture, std::vector<float>& scratch, int wid
     for (int pass = 0; pass < 2; ++pass) {
         tbb::parallel_for(tbb::blocked_range<int>(0, height, 16), [&](const tbb::blocked_range<int>& rows) {
             for (int y = rows.begin(); y < rows.end(); ++y)
-                mean_row(picture.data() + static_cast<std::size_t>(y) * w, scratch.data() + static_cast<std::size_t>(y) * w, width, radius);
+                mean_row(picture.data() + static_cast<std::size_t>(y) * w,
+                         scratch.data() + static_cast<std::size_t>(y) * w, width, radius);
         });
         // Down the columns, a band of them at a time, with running sums.
         tbb::parallel_for(tbb::blocked_range<int>(0, width, 128), [&](const tbb::blocked_range<int>& band) {

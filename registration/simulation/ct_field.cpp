@@ -30,7 +30,8 @@ CtField::CtField(const Volume& volume, double threshold) {
                 const std::size_t v = volume.index(i, j, k);
                 const bool other_body = volume.values[v] > threshold && !head[v];
                 if (near_head[v] && !other_body)
-                    values_[index(i + kPad, j + kPad, k + kPad)] = static_cast<float>(static_cast<double>(volume.values[v]) - threshold);
+                    values_[index(i + kPad, j + kPad, k + kPad)] =
+                        static_cast<float>(static_cast<double>(volume.values[v]) - threshold);
             }
     smooth();
     find_room_air();

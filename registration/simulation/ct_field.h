@@ -56,7 +56,9 @@ inline double CtField::sample(const std::vector<float>& values, const Eigen::Vec
     const float* v = values.data() + index(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z));
     const double a = voxel.x() - x, b = voxel.y() - y, c = voxel.z() - z;
     const auto row = static_cast<std::size_t>(size_[0]), slice = row * static_cast<std::size_t>(size_[1]);
-    const auto along = [a](const float* p) { return static_cast<double>(p[0]) + a * (static_cast<double>(p[1]) - static_cast<double>(p[0])); };
+    const auto along = [a](const float* p) {
+        return static_cast<double>(p[0]) + a * (static_cast<double>(p[1]) - static_cast<double>(p[0]));
+    };
     const double low = along(v) + b * (along(v + row) - along(v));
     const double high = along(v + slice) + b * (along(v + slice + row) - along(v + slice));
     return low + c * (high - low);

@@ -23,7 +23,8 @@ public:
         if (!(x >= 0 && y >= 0 && x < static_cast<float>(width_ - 1) && y < static_cast<float>(height_ - 1))) return 0;
         const int i = static_cast<int>(x), j = static_cast<int>(y);
         const float a = x - static_cast<float>(i), b = y - static_cast<float>(j);
-        const auto* p = texels_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(i);
+        const auto* p = texels_.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(width_) +
+                        static_cast<std::size_t>(i);
         const auto* q = p + width_;
         const auto value = [&](std::size_t c) {
             const float top = p[0][c] + a * (p[1][c] - p[0][c]), low = q[0][c] + a * (q[1][c] - q[0][c]);

@@ -75,7 +75,8 @@ void disturb(Optics& device, double scale, double working_distance_mm, std::mt19
     device.turn(0.04 * scale / f_px * Vector3d(unit(random), unit(random), 0));
     device.turn(Vector3d(0, 0, 0.005 * scale * unit(random) * M_PI / 180));
     const double pixel_mm = working_distance_mm / f_px;
-    device.eye += scale * (0.04 * pixel_mm * (unit(random) * device.right + unit(random) * device.down) + 0.05 * unit(random) * device.forward);
+    device.eye += scale * (0.04 * pixel_mm * (unit(random) * device.right + unit(random) * device.down) +
+                           0.05 * unit(random) * device.forward);
 }
 
 double reprojection_rms_px(const RigLayout& truth, const RigLayout& found) {
@@ -112,7 +113,8 @@ RigLayout build_rig(Preset preset, std::mt19937& random) {
     std::normal_distribution<double> unit;
     const Eigen::Quaterniond turn(unit(random), unit(random), unit(random), unit(random));
     rig.room_from_rig.linear() = turn.normalized().toRotationMatrix();
-    rig.room_from_rig.translation() = Vector3d(between(random, -600, 600), between(random, -600, 600), between(random, -600, 600));
+    rig.room_from_rig.translation() =
+        Vector3d(between(random, -600, 600), between(random, -600, 600), between(random, -600, 600));
     return rig;
 }
 

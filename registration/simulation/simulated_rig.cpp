@@ -142,8 +142,9 @@ Instant SimulatedRig::Room::show(const RgbImage& picture, Instant valid_until) {
     if (picture.width != width() || picture.height != height() || picture.pixels.size() != pixels) {
         go_dark();
         throw DeviceError("simulated projector",
-                          "a picture of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) + " was to be shown on " +
-                              std::to_string(width()) + "x" + std::to_string(height()) + " pixels",
+                          "a picture of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
+                              " was to be shown on " + std::to_string(width()) + "x" + std::to_string(height()) +
+                              " pixels",
                           "Draw the picture in the projector's own size.");
     }
     schedule.show(picture, now_, valid_until);

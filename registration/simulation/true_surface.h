@@ -17,7 +17,8 @@ public:
     ~TrueSurface() override;
 
     std::optional<Hit> first_hit(const Eigen::Vector3d& origin_in_ct, const Eigen::Vector3d& direction) const override;
-    bool in_shadow(const Eigen::Vector3d& p_in_ct, const Eigen::Vector3d& normal_in_ct, const Eigen::Vector3d& light_in_ct) const override;
+    bool in_shadow(const Eigen::Vector3d& p_in_ct, const Eigen::Vector3d& normal_in_ct,
+                   const Eigen::Vector3d& light_in_ct) const override;
 
     struct Nearest {
         Eigen::Vector3d p_in_ct;

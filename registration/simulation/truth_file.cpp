@@ -18,9 +18,18 @@ json matrix_json(const RigidTransform& t) {
 }
 
 json device_json(const CameraModel& d) {
-    return {{"width", d.width},       {"height", d.height},     {"focal_x", d.focal_x}, {"focal_y", d.focal_y},
-            {"centre_x", d.centre_x}, {"centre_y", d.centre_y}, {"k1", d.k1},           {"k2", d.k2},
-            {"p1", d.p1},             {"p2", d.p2},             {"k3", d.k3},           {"device_from_rig", matrix_json(d.device_from_rig)}};
+    return {{"width", d.width},
+            {"height", d.height},
+            {"focal_x", d.focal_x},
+            {"focal_y", d.focal_y},
+            {"centre_x", d.centre_x},
+            {"centre_y", d.centre_y},
+            {"k1", d.k1},
+            {"k2", d.k2},
+            {"p1", d.p1},
+            {"p2", d.p2},
+            {"k3", d.k3},
+            {"device_from_rig", matrix_json(d.device_from_rig)}};
 }
 
 json rig_json(const RigCalibration& rig) {

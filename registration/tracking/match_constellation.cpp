@@ -146,8 +146,9 @@ ConstellationMatch match_constellation(const RigCalibration& rig, const std::vec
     std::erase_if(proposals, [&](const Proposal& p) { return p.markers < needed; });
     if (proposals.empty()) {
         result.reason = seen < settings.min_markers
-                            ? fmt::format("only {} of {} markers seen; {} are needed", std::min<int>(seen, static_cast<int>(markers.size())),
-                                          markers.size(), settings.min_markers)
+                            ? fmt::format("only {} of {} markers seen; {} are needed",
+                                          std::min<int>(seen, static_cast<int>(markers.size())), markers.size(),
+                                          settings.min_markers)
                             : fmt::format("{} discs seen, but not {} in the arrangement of the markers", seen, needed);
         return result;
     }

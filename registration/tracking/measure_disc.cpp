@@ -159,7 +159,8 @@ std::optional<MarkerObservation> measure_disc(const GrayImage& picture, const El
     const double half_width = std::clamp(0.45 * axes.y(), 1.5, 3.0);
     const auto fit = fit_ellipse_to_gradients(picture, *ellipse, half_width);
     if (!fit || (fit->centre - ellipse->centre).norm() > 0.5 + 0.02 * axes.x()) return std::nullopt;
-    if (trimmed_residual(*fit, edge) > std::max(settings.max_fit_residual_px, settings.max_bend * axes.mean())) return std::nullopt;
+    if (trimmed_residual(*fit, edge) > std::max(settings.max_fit_residual_px, settings.max_bend * axes.mean()))
+        return std::nullopt;
     const auto contrast = ring_contrast(picture, *fit, settings);
     if (!contrast) return std::nullopt;
     const Eigen::Vector2d fitted = fit->half_axes();

@@ -122,7 +122,8 @@ PatientTracker::Attempt PatientTracker::follow(const StereoFrame& frame) {
             const auto pixel = project(camera, p);
             if (!pixel || !in_picture(camera, *pixel)) continue;
             const double r = radius[k] > 0 ? radius[k] : expected_radius_px(camera, p, settings_.design);
-            const auto seen = measure_marker(is_left ? frame.left : frame.right, *pixel, r, settings_.search_px, settings_.markers);
+            const auto seen =
+                measure_marker(is_left ? frame.left : frame.right, *pixel, r, settings_.search_px, settings_.markers);
             if (seen) found.push_back({(seen->pixel - *pixel).norm(), {static_cast<int>(k), is_left, *seen}});
         }
         for (const Sighting& s : one_disc_one_marker(found)) {

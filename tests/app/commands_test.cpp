@@ -84,7 +84,9 @@ TEST_F(CommandsTest, PrepareEndsWithAReportThatNeedsNothingElse) {
     std::ifstream in(root() / "case" / "report.html");
     const std::string page((std::istreambuf_iterator<char>(in)), {});
     std::size_t pictures = 0;
-    for (auto at = page.find("data:image/png;base64,"); at != std::string::npos; at = page.find("data:image/png;base64,", at + 1)) ++pictures;
+    for (auto at = page.find("data:image/png;base64,"); at != std::string::npos;
+         at = page.find("data:image/png;base64,", at + 1))
+        ++pictures;
     EXPECT_EQ(pictures, 7u) << "three slices, the head from four sides";
     EXPECT_EQ(page.find("://"), std::string::npos) << "nothing comes from a network";
     const json report = read_json(root() / "case" / "report.json");
@@ -109,10 +111,13 @@ TEST_F(CommandsTest, StagesOnFilesFindThePatientWithinAMillimetreOfTheTruth) {
     EXPECT_EQ(json::parse(check.out)["verdict"], "good") << "the patient's own scan checks the rig";
     const auto found = run_planlight("register case --cloud cloud.ply --out registration.json --json", root());
     ASSERT_EQ(found.exit_code, 0) << found.err;
-    const auto track = run_planlight("track room/frames --rig room/rig.json --capture room/capture --out poses.json --json", root());
+    const auto track =
+        run_planlight("track room/frames --rig room/rig.json --capture room/capture --out poses.json --json", root());
     ASSERT_EQ(track.exit_code, 0) << track.err;
     EXPECT_EQ(json::parse(track.out)["poses"], 4);
-    const auto picture = run_planlight("project case --rig room/rig.json --registration registration.json --poses poses.json --out light.png --json", root());
+    const auto picture = run_planlight(
+        "project case --rig room/rig.json --registration registration.json --poses poses.json --out light.png --json",
+        root());
     ASSERT_EQ(picture.exit_code, 0) << picture.err;
     EXPECT_GT(json::parse(picture.out)["lit_pixels"].get<int>(), 500);
 
@@ -129,7 +134,8 @@ TEST_F(CommandsTest, StagesOnFilesFindThePatientWithinAMillimetreOfTheTruth) {
 /// The cloud of a PLY file as another scanner would write it: ascii, metres, no normals, no frame.
 void write_as_a_foreign_scanner(const PointCloud& cloud, const fs::path& file) {
     std::ofstream out(file);
-    out << "ply\nformat ascii 1.0\nelement vertex " << cloud.size() << "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+    out << "ply\nformat ascii 1.0\nelement vertex " << cloud.size()
+        << "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
     for (const auto& p : cloud.points_in_rig) out << p.x() / 1000 << ' ' << p.y() / 1000 << ' ' << p.z() / 1000 << '\n';
 }
 
@@ -138,12 +144,14 @@ TEST_F(CommandsTest, ACloudOfAnotherScannerIsRegisteredOnceItsUnitFrameAndViewpo
     ASSERT_EQ(scan.exit_code, 0) << scan.err;
     write_as_a_foreign_scanner(read_cloud(root() / "scanned.ply"), root() / "foreign.ply");
     expect_one_clear_sentence(run_planlight("register case --cloud foreign.ply --out refused.json", root()), 3, "rig's frame");
-    expect_one_clear_sentence(run_planlight("register case --cloud foreign.ply --in-rig --unit m --out refused.json", root()), 3, "normals");
+    expect_one_clear_sentence(
+        run_planlight("register case --cloud foreign.ply --in-rig --unit m --out refused.json", root()), 3, "normals");
     const Eigen::Matrix4d rig_from_camera = read_rig(root() / "room" / "rig.json").left_camera.device_from_rig.matrix().inverse();
-    const auto found = run_planlight(fmt::format("register case --cloud foreign.ply --in-rig --unit m --viewpoint {} {} {} --slicer match.tfm "
-                                                 "--out foreign.json --json",
-                                                 rig_from_camera(0, 3), rig_from_camera(1, 3), rig_from_camera(2, 3)),
-                                     root());
+    const auto found = run_planlight(
+        fmt::format("register case --cloud foreign.ply --in-rig --unit m --viewpoint {} {} {} --slicer match.tfm "
+                    "--out foreign.json --json",
+                    rig_from_camera(0, 3), rig_from_camera(1, 3), rig_from_camera(2, 3)),
+        root());
     ASSERT_EQ(found.exit_code, 0) << found.err;
     const Eigen::Matrix4d truth = matrix_of(read_json(root() / "room" / "truth.json")["scan_rig_from_ct"]);
     const Eigen::Matrix4d measured = matrix_of(json::parse(found.out)["patient_from_ct"]);
@@ -169,8 +177,8 @@ TEST_F(CommandsTest, LandmarksAloneAreAskedForAndWrongOnesAreRefused) {
         out << space << "name,ct_x,ct_y,ct_z,rig_x,rig_y,rig_z\n";
         for (std::size_t i = 0; i < landmarks.size(); ++i) {
             const Eigen::Vector4d p = truth * landmarks[i].homogeneous();
-            out << 'L' << i << ',' << landmarks[i].x() << ',' << landmarks[i].y() << ',' << landmarks[i].z() << ',' << p.x() + shift * static_cast<double>(i % 2)
-                << ',' << p.y() << ',' << p.z() << '\n';
+            out << 'L' << i << ',' << landmarks[i].x() << ',' << landmarks[i].y() << ',' << landmarks[i].z() << ','
+                << p.x() + shift * static_cast<double>(i % 2) << ',' << p.y() << ',' << p.z() << '\n';
         }
     };
     write("good.csv", "# SPACE=LPS\n", 1);
@@ -198,7 +206,9 @@ bool folder_says(const fs::path& folder, const std::string& text) {
         std::ifstream in(entry.path(), std::ios::binary);
         std::stringstream all;
         all << in.rdbuf();
-        if (all.str().find(text) != std::string::npos || entry.path().filename().string().find(text) != std::string::npos) return true;
+        if (all.str().find(text) != std::string::npos ||
+            entry.path().filename().string().find(text) != std::string::npos)
+            return true;
     }
     return false;
 }
@@ -206,15 +216,18 @@ bool folder_says(const fs::path& folder, const std::string& text) {
 TEST_F(CommandsTest, AnAnonymousCaseHoldsNoNameIdOrPathOfTheSeries) {
     const SeriesLook look{.patient = "Mustermann^Erika", .patient_id = "ID-4711", .description = "Kopf duenn"};
     write_series(synthetic_series({}, look), root() / "Mustermann");
-    std::ofstream(root() / "hole.mrk.json") << R"({"@schema": "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/markups-schema-v1.0.3.json#",
+    std::ofstream(root() / "hole.mrk.json")
+        << R"({"@schema": "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/markups-schema-v1.0.3.json#",
         "markups": [{"type": "Fiducial", "coordinateSystem": "LPS", "coordinateUnits": "mm",
         "controlPoints": [{"id": "1", "label": "B1", "position": [71, 4, 20], "description": "diameter_mm=7 depth_mm=6", "positionStatus": "defined"}]}]})";
     const std::string frame_uid = "1.2.826.0.1.3680043.9.9999.5";
-    const std::vector<std::string> identity = {"Mustermann", "Erika", "ID-4711", "Kopf duenn", look.uid, frame_uid, root().string()};
+    const std::vector<std::string> identity = {"Mustermann", "Erika",   "ID-4711",      "Kopf duenn",
+                                               look.uid,     frame_uid, root().string()};
     const auto named = run_planlight("prepare Mustermann --plan hole.mrk.json --voxel-mm 4 --out named_case --json", root());
     ASSERT_EQ(named.exit_code, 0) << named.err;
     EXPECT_TRUE(folder_says(root() / "named_case", look.uid)) << "the search finds what is there";
-    const auto run = run_planlight("prepare Mustermann --plan hole.mrk.json --voxel-mm 4 --out anonymous_case --anonymous --json", root());
+    const auto run = run_planlight(
+        "prepare Mustermann --plan hole.mrk.json --voxel-mm 4 --out anonymous_case --anonymous --json", root());
     ASSERT_EQ(run.exit_code, 0) << run.err;
     for (const auto& text : identity) {
         EXPECT_FALSE(folder_says(root() / "anonymous_case", text)) << text;
@@ -241,14 +254,16 @@ TEST_F(CommandsTest, APlanInAnUnknownFrameIsRefusedNotGuessed) {
     json plan = read_json(kPlan);
     plan["markups"][0]["coordinateSystem"] = "lps";  // 3D Slicer reads a mistyped frame as RAS without a word
     std::ofstream(root() / "odd.mrk.json") << plan;
-    expect_one_clear_sentence(run_planlight("prepare " + example_patient()->string() + " --plan odd.mrk.json --out new", root()), 3, "lps");
+    expect_one_clear_sentence(
+        run_planlight("prepare " + example_patient()->string() + " --plan odd.mrk.json --out new", root()), 3, "lps");
 }
 
 TEST_F(CommandsTest, APlanReadInTheWrongFrameIsRefusedByNameAndLeavesNothing) {
     json plan = read_json(kPlan);
     for (auto& markup : plan["markups"]) markup["coordinateSystem"] = "RAS";  // turned by 180 degrees about z
     std::ofstream(root() / "turned.mrk.json") << plan;
-    const auto run = run_planlight("prepare " + example_patient()->string() + " --plan turned.mrk.json --out turned --json", root());
+    const auto run =
+        run_planlight("prepare " + example_patient()->string() + " --plan turned.mrk.json --out turned --json", root());
     expect_one_clear_sentence(run, 3, "does not fit this patient");
     for (const char* item : {"Osteotomy", "outside the volume"}) EXPECT_NE(run.err.find(item), std::string::npos) << run.err;
     EXPECT_FALSE(fs::exists(root() / "turned"));
@@ -299,7 +314,11 @@ TEST_F(CommandsTest, AnotherProgramsSurfaceCanBeProjectedOn) {
 }
 
 TEST_F(CommandsTest, ALutOfAnotherCaseIsRefused) {
-    ASSERT_EQ(run_planlight("prepare " + example_patient()->string() + " --plan " + kPlan + " --threshold -200 --voxel-mm 2 --out other", root()).exit_code, 0);
+    ASSERT_EQ(run_planlight("prepare " + example_patient()->string() + " --plan " + kPlan +
+                                " --threshold -200 --voxel-mm 2 --out other",
+                            root())
+                  .exit_code,
+              0);
     fs::copy_file(root() / "other" / "skin.lut", root() / "mixed.lut", fs::copy_options::overwrite_existing);
     fs::remove_all(root() / "mixed");
     fs::copy(root() / "case", root() / "mixed", fs::copy_options::recursive);
@@ -347,7 +366,8 @@ TEST_F(CommandsTest, ARigFileWithNonsenseIsRefused) {
 
 TEST_F(CommandsTest, AnotherHeadOrNoHeadGivesExitSixAndAReason) {
     std::ofstream ply(root() / "plane.ply");
-    ply << "ply\nformat ascii 1.0\ncomment FRAME=rig\nelement vertex 2500\nproperty double x\nproperty double y\nproperty double z\n"
+    ply << "ply\nformat ascii 1.0\ncomment FRAME=rig\nelement vertex 2500\nproperty double x\nproperty double "
+           "y\nproperty double z\n"
            "property double nx\nproperty double ny\nproperty double nz\nend_header\n";
     for (int i = 0; i < 50; ++i)
         for (int j = 0; j < 50; ++j) ply << 4 * i << ' ' << 4 * j << " 900 0 0 -1\n";

@@ -20,7 +20,8 @@ std::string content_of(const std::filesystem::path& file) {
 
 CommandRun run_planlight(const std::string& arguments, const std::filesystem::path& folder) {
     const auto out = folder / ".stdout", err = folder / ".stderr";
-    const std::string line = "cd '" + folder.string() + "' && '" PLANLIGHT_PROGRAM "' " + arguments + " >'" + out.string() + "' 2>'" + err.string() + "' </dev/null";
+    const std::string line = "cd '" + folder.string() + "' && '" PLANLIGHT_PROGRAM "' " + arguments + " >'" +
+                             out.string() + "' 2>'" + err.string() + "' </dev/null";
     const int status = std::system(line.c_str());
     CommandRun run;
     run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -19,7 +19,10 @@ protected:
     static void SetUpTestSuite() {
         if (!test::example_patient()) return;
         volume_ = read_volume(*test::example_patient());
-        prepared_ = prepare_case(*volume_, read_plan(std::string(PLANLIGHT_EXAMPLE_FOLDER) + "/frontal_defect.mrk.json"), {}, {}, "2001-10-14").prepared;
+        prepared_ =
+            prepare_case(*volume_, read_plan(std::string(PLANLIGHT_EXAMPLE_FOLDER) + "/frontal_defect.mrk.json"), {},
+                         {}, "2001-10-14")
+                .prepared;
     }
     void SetUp() override {
         if (!volume_) GTEST_SKIP() << "the package invesalius-examples is not installed";

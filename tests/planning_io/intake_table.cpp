@@ -107,7 +107,8 @@ std::vector<Row> on_head() {
     std::vector<Row> rows;
     for (const auto& c : plans_on_head()) {
         const PlanVerdict verdict = check_plan(c.plan, skin, box_of_head());
-        std::string sentence = verdict.stops.empty() ? fmt::format("a median of {:.1f} mm from the skin", verdict.median_to_skin_mm) : "";
+        std::string sentence =
+            verdict.stops.empty() ? fmt::format("a median of {:.1f} mm from the skin", verdict.median_to_skin_mm) : "";
         for (const auto& stop : verdict.stops) sentence += (sentence.empty() ? "" : "; ") + stop;
         rows.push_back({c.name, verdict.stops.empty(), one_line(sentence, "", "")});
     }

@@ -109,7 +109,8 @@ void add_sound_markups(std::vector<PlanCase>& list) {
                             })));
     list.push_back(text("markups, Plane", "", "p.mrk.json", markup([](Markup& m) {
                             m.type = "Plane", m.points = "[-10, -20, 30]";
-                            m.more = R"("center": [-10, -20, 30], "orientation": [1, 0, 0, 0, 1, 0, 0, 0, 1], "size": [80, 40, 0],)";
+                            m.more =
+                                R"("center": [-10, -20, 30], "orientation": [1, 0, 0, 0, 1, 0, 0, 0, 1], "size": [80, 40, 0],)";
                         })));
 }
 
@@ -134,7 +135,8 @@ void add_spoilt_markups(std::vector<PlanCase>& list) {
         m.type = "Curve", m.points = "[1, 2, 3]|[9, 9, 9]|[9, 9, 9]";
     });
     add("a point that is not placed", "not placed", [](Markup& m) { m.status = "preview"; });
-    add("metres called millimetres", "cannot be millimetres", [](Markup& m) { m.points = "[0.01, 0.02, 0.03]|[0.01, 0.02, 0.09]"; });
+    add("metres called millimetres", "cannot be millimetres",
+        [](Markup& m) { m.points = "[0.01, 0.02, 0.03]|[0.01, 0.02, 0.09]"; });
     add("a ROI", "a box", [](Markup& m) { m.type = "ROI"; });
     add("a kind that no plan has", "means nothing in a plan", [](Markup& m) { m.type = "Spiral"; });
     add("a diameter of 900 mm", "diameter_mm", [](Markup& m) {
@@ -223,18 +225,25 @@ std::vector<PlanCase> sound_plans() {
     std::vector<PlanCase> list;
     add_sound_markups(list);
     for (const char* ras : {"0", "RAS"})
-        list.push_back(text(fmt::format(".fcsv, CoordinateSystem = {}", ras), "", "p.fcsv", fcsv(ras, "id_0,10,20,30,0,0,0,1,1,1,0,P1,,\n")));
+        list.push_back(text(fmt::format(".fcsv, CoordinateSystem = {}", ras), "", "p.fcsv",
+                            fcsv(ras, "id_0,10,20,30,0,0,0,1,1,1,0,P1,,\n")));
     for (const char* lps : {"1", "LPS"})
-        list.push_back(text(fmt::format(".fcsv, CoordinateSystem = {}", lps), "", "p.fcsv", fcsv(lps, "id_0,-10,-20,30,0,0,0,1,1,1,0,P1,,\n")));
-    list.push_back(text(".fcsv that does not say its frame, --frame RAS", "", "p.fcsv", fcsv("", "id_0,10,20,30,0,0,0,1,1,1,0,P1,,\n", "4.4"), kRas));
-    list.push_back(text("table of trajectories, SPACE=RAS, micrometres", "", "p.tsv",
-                        "# SPACE=RAS\n# units=um\nname\tentry_x\tentry_y\tentry_z\ttarget_x\ttarget_y\ttarget_z\nA\t10000\t20000\t30000\t1\t2\t3\n"));
+        list.push_back(text(fmt::format(".fcsv, CoordinateSystem = {}", lps), "", "p.fcsv",
+                            fcsv(lps, "id_0,-10,-20,30,0,0,0,1,1,1,0,P1,,\n")));
+    list.push_back(text(".fcsv that does not say its frame, --frame RAS", "", "p.fcsv",
+                        fcsv("", "id_0,10,20,30,0,0,0,1,1,1,0,P1,,\n", "4.4"), kRas));
+    list.push_back(text(
+        "table of trajectories, SPACE=RAS, micrometres", "", "p.tsv",
+        "# SPACE=RAS\n# "
+        "units=um\nname\tentry_x\tentry_y\tentry_z\ttarget_x\ttarget_y\ttarget_z\nA\t10000\t20000\t30000\t1\t2\t3\n"));
     list.push_back(text("table of trajectories, --frame LPS", "", "p.csv", kTable + "A,-10,-20,30,1,2,3\n", kLps));
     list.push_back(text("lines of an .obj, SPACE=RAS", "", "p.obj", "# SPACE=RAS\nv 10 20 30\nv 10 2 3\nv 10 20 3\nl 1 2 3\n"));
     list.push_back(text("lines of a .vtk, SPACE=LPS", "", "p.vtk", vtk("3D Slicer output. SPACE=LPS")));
     list.push_back(text("the edge of an open surface (.ply), SPACE=LPS", "", "p.ply",
-                        "ply\nformat ascii 1.0\ncomment SPACE=LPS\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-                        "element face 2\nproperty list uchar int vertex_indices\nend_header\n-10 -20 30\n20 -20 30\n20 20 30\n-10 20 30\n3 0 1 2\n3 0 2 3\n"));
+                        "ply\nformat ascii 1.0\ncomment SPACE=LPS\nelement vertex 4\nproperty float x\nproperty float "
+                        "y\nproperty float z\n"
+                        "element face 2\nproperty list uchar int vertex_indices\nend_header\n-10 -20 30\n20 -20 30\n20 "
+                        "20 30\n-10 20 30\n3 0 1 2\n3 0 2 3\n"));
     list.push_back({"our own .vtp", "",
                     [](const fs::path& folder) {
                         write_plan_vtp(small_plan(), folder / "p.vtp");
@@ -282,7 +291,8 @@ std::vector<PlanOnHead> plans_on_head() {
     };
     add("a named side that is right", "", [](Plan& p) { p.boreholes[0].name = "B1 right"; });  // LPS: x < 0 is right
     add("a side in a name that is the other one", "it is named left", [](Plan& p) { p.boreholes[0].name = "B1 left"; });
-    add("entry and target swapped", "swapped", [](Plan& p) { std::swap(p.trajectories[0].entry_in_ct, p.trajectories[0].target_in_ct); });
+    add("entry and target swapped", "swapped",
+        [](Plan& p) { std::swap(p.trajectories[0].entry_in_ct, p.trajectories[0].target_in_ct); });
     add("a target outside the body", "its target lies outside the body", [&](Plan& p) {
         p.trajectories[0].target_in_ct = entry + 25 * analytic_head_normal(entry);
     });
@@ -297,11 +307,13 @@ std::vector<PlanOnHead> plans_on_head() {
         p.trajectories[0].entry_in_ct = entry + 15 * analytic_head_normal(entry);
     });
     add("a borehole 250 mm deep", "250 mm deep", [](Plan& p) { p.boreholes[0].depth_mm = 250; });
-    add("an axis that points out of the body", "out of the body", [&](Plan& p) { p.boreholes[0].axis_in_ct = analytic_head_normal(hole); });
+    add("an axis that points out of the body", "out of the body",
+        [&](Plan& p) { p.boreholes[0].axis_in_ct = analytic_head_normal(hole); });
     add("a coordinate that is not a number", "not finite", [](Plan& p) {
         p.boreholes[0].position_in_ct.x() = std::numeric_limits<double>::quiet_NaN();
     });
-    add("a line outside the scanned volume", "outside the volume", [](Plan& p) { p.osteotomy_lines[0].points_in_ct[1].z() = 190; });
+    add("a line outside the scanned volume", "outside the volume",
+        [](Plan& p) { p.osteotomy_lines[0].points_in_ct[1].z() = 190; });
     add("x and y of all points exchanged", "", [](Plan& p) {
         const auto turn = [](Vector3d& v) { v = Vector3d(v.y(), v.x(), v.z()); };
         turn(p.trajectories[0].entry_in_ct), turn(p.trajectories[0].target_in_ct), turn(p.boreholes[0].position_in_ct);

@@ -107,8 +107,10 @@ TEST(MeshFile, AnotherProgramsPlyNeedsItsSpace) {
     const test::TemporaryFolder folder;
     const fs::path file = folder.path() / "m.ply";
     const auto text = [](const std::string& comment) {
-        return "ply\nformat ascii 1.0\n" + comment + "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
-               "element face 1\nproperty list uchar uint vertex_index\nend_header\n1 2 3 9\n2 2 3 9\n2 3 3 9\n1 3 3.5 9\n4 0 1 2 3\n";
+        return "ply\nformat ascii 1.0\n" + comment +
+               "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+               "element face 1\nproperty list uchar uint vertex_index\nend_header\n1 2 3 9\n2 2 3 9\n2 3 3 9\n1 3 3.5 "
+               "9\n4 0 1 2 3\n";
     };
     write_safely(file, text(""));
     EXPECT_THROW(read_mesh(file), InputError);
@@ -183,7 +185,9 @@ TEST(RigFile, ReadsBackValueForValueAndRefusesNonsense) {
     refused([](RigCalibration& r) { r.right_camera.device_from_rig.linear() *= 1.001; });
     refused([](RigCalibration& r) { r.right_camera.device_from_rig.linear().row(0) *= -1; });
     refused([](RigCalibration& r) { r.right_camera = r.left_camera; });
-    refused([](RigCalibration& r) { r.projector.device_from_rig = Eigen::AngleAxisd(3.1, Vector3d::UnitY()) * r.projector.device_from_rig; });
+    refused([](RigCalibration& r) {
+        r.projector.device_from_rig = Eigen::AngleAxisd(3.1, Vector3d::UnitY()) * r.projector.device_from_rig;
+    });
     std::string text = read_whole(file);
     text.replace(text.find("\"focal_x\""), 9, "\"focal_X\"");
     write_safely(file, text);
@@ -204,7 +208,8 @@ TEST(Recordings, CaptureFramesRegistrationAndPosesReadBack) {
     capture.projector_height = 1080;
     capture.rows = false;
     capture.names = {"white", "gray_0", "phase_0"};
-    for (std::uint8_t i = 0; i < 3; ++i) capture.left.emplace_back(8, 6, i), capture.right.emplace_back(8, 6, static_cast<std::uint8_t>(100 + i));
+    for (std::uint8_t i = 0; i < 3; ++i)
+        capture.left.emplace_back(8, 6, i), capture.right.emplace_back(8, 6, static_cast<std::uint8_t>(100 + i));
     capture.began = Instant(123456789012345);
     write_capture(capture, folder.path() / "capture");
     const CaptureFolder back = read_capture(folder.path() / "capture");
@@ -244,7 +249,8 @@ TEST(Recordings, CaptureFramesRegistrationAndPosesReadBack) {
     EXPECT_EQ(result_back.reasons, result.reasons);
     EXPECT_EQ(result_back.covariance.of_turn_and_shift, result.covariance.of_turn_and_shift);
     EXPECT_EQ(result_back.covariance.centre_in_ct, result.covariance.centre_in_ct);
-    EXPECT_EQ(predicted_error(result_back.covariance, {0, 0, 50}).bound_95_mm, predicted_error(result.covariance, {0, 0, 50}).bound_95_mm);
+    EXPECT_EQ(predicted_error(result_back.covariance, {0, 0, 50}).bound_95_mm,
+              predicted_error(result.covariance, {0, 0, 50}).bound_95_mm);
     EXPECT_GT(result_back.runner_up_ratio, 1e100);
 
     std::vector<TrackedPose> poses(2);

@@ -15,7 +15,8 @@ using Eigen::Vector3d;
 
 Plan a_plan() {
     Plan plan;
-    plan.trajectories.push_back({"Biopsy α", {0.1, -1.0 / 3, 1e-7}, {12.3456789012345678, 40, -17}, 2.1, Colour{0.1F, 0.2F, 1.0F / 3}});
+    plan.trajectories.push_back(
+        {"Biopsy α", {0.1, -1.0 / 3, 1e-7}, {12.3456789012345678, 40, -17}, 2.1, Colour{0.1F, 0.2F, 1.0F / 3}});
     plan.trajectories.push_back({"bare", {1, 2, 3}, {4, 5, 6}, 0, std::nullopt});
     plan.boreholes.push_back({"B1", {30.1, -60.2, 70.3}, Vector3d(0.48, -0.6, 0.64), 7, 6.25, std::nullopt});
     plan.boreholes.push_back({"B2", {-30.1, -60.2, 70.3}, std::nullopt, 1.0 / 3, 0, Colour{1, 0, 0}});
@@ -64,10 +65,12 @@ TEST(PlanFile, ReadsBackValueForValue) {
 
 /// A file of one markup, in the words of 3D Slicer 5.
 std::string line_file(const std::string& system = R"("LPS")", const std::string& units = R"("coordinateUnits": "mm",)",
-                      const std::string& entry = "[10, -20, 30]", const std::string& schema = "v1.0.3", const std::string& type = "Line") {
-    return R"({"@schema": "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/markups-schema-)" + schema +
-           R"(.json#", "markups": [{"type": ")" + type + R"(", "name": "T", "coordinateSystem": )" + system + ", " + units +
-           R"( "controlPoints": [{"label": "a", "position": )" + entry + R"(, "positionStatus": "defined"}, {"position": [1, 2, 3]}],
+                      const std::string& entry = "[10, -20, 30]", const std::string& schema = "v1.0.3",
+                      const std::string& type = "Line") {
+    return R"({"@schema": "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/markups-schema-)" +
+           schema + R"(.json#", "markups": [{"type": ")" + type + R"(", "name": "T", "coordinateSystem": )" + system +
+           ", " + units + R"( "controlPoints": [{"label": "a", "position": )" + entry +
+           R"(, "positionStatus": "defined"}, {"position": [1, 2, 3]}],
            "display": {"color": [0.4, 1, 1], "selectedColor": [1, 0.5, 0.5]}}]})";
 }
 
@@ -83,16 +86,21 @@ protected:
 TEST_F(PlanText, RasIsTurnedHalfwayAboutZAndMicrometresAreThousandths) {
     EXPECT_EQ(read(line_file()).trajectories[0].entry_in_ct, Vector3d(10, -20, 30));
     EXPECT_EQ(read(line_file(R"("RAS")")).trajectories[0].entry_in_ct, Vector3d(-10, 20, 30));
-    EXPECT_TRUE(read(line_file(R"("LPS")", R"("coordinateUnits": "um",)", "[10000, -20000, 30000]")).trajectories[0].entry_in_ct.isApprox(Vector3d(10, -20, 30), 1e-12));
-    EXPECT_EQ(read(line_file(R"("LPS")", R"("coordinateUnits": ["mm", "UCUM", "millimeter"],)")).trajectories[0].entry_in_ct, Vector3d(10, -20, 30));
+    EXPECT_TRUE(read(line_file(R"("LPS")", R"("coordinateUnits": "um",)", "[10000, -20000, 30000]"))
+                    .trajectories[0]
+                    .entry_in_ct.isApprox(Vector3d(10, -20, 30), 1e-12));
+    EXPECT_EQ(
+        read(line_file(R"("LPS")", R"("coordinateUnits": ["mm", "UCUM", "millimeter"],)")).trajectories[0].entry_in_ct,
+        Vector3d(10, -20, 30));
     EXPECT_EQ(read(line_file(R"("LPS")", "", "[10, -20, 30]", "v1.0.2")).trajectories[0].entry_in_ct, Vector3d(10, -20, 30));
     EXPECT_EQ((*read(line_file()).trajectories[0].colour)[1], 0.5F);
 }
 
 TEST_F(PlanText, WhatDoesNotSayItsFrameOrUnitIsRefused) {
-    for (const char* system : {R"("lps")", R"("SRA")", R"("")", R"("LPS ")", "null", "0", "1"}) EXPECT_THROW(read(line_file(system)), InputError) << system;
-    for (const char* units : {R"("coordinateUnits": "m",)", R"("coordinateUnits": "cm",)", R"("coordinateUnits": "",)", R"("coordinateUnits": [],)",
-                              R"("coordinateUnits": ["in", "UCUM", "inch"],)", ""})
+    for (const char* system : {R"("lps")", R"("SRA")", R"("")", R"("LPS ")", "null", "0", "1"})
+        EXPECT_THROW(read(line_file(system)), InputError) << system;
+    for (const char* units : {R"("coordinateUnits": "m",)", R"("coordinateUnits": "cm",)", R"("coordinateUnits": "",)",
+                              R"("coordinateUnits": [],)", R"("coordinateUnits": ["in", "UCUM", "inch"],)", ""})
         EXPECT_THROW(read(line_file(R"("LPS")", units)), InputError) << units;
 }
 

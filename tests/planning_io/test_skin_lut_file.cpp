@@ -129,7 +129,8 @@ TEST(SkinLutFile, LoadsAPatientSizedTable) {
     lut.distance_voxel_mm = 2;
     std::vector<std::uint32_t> skin_of(256 * 256);
     const auto direction_cell = [](const Eigen::Vector3d& d) {
-        const auto a = static_cast<int>(255.99 * (d.z() / 2 + 0.5)), b = static_cast<int>(255.99 * (std::atan2(d.y(), d.x()) / 6.2831854 + 0.5));
+        const auto a = static_cast<int>(255.99 * (d.z() / 2 + 0.5)),
+                   b = static_cast<int>(255.99 * (std::atan2(d.y(), d.x()) / 6.2831854 + 0.5));
         return static_cast<std::size_t>(a * 256 + b);
     };
     for (std::size_t c = 0; c < skin_of.size(); ++c) {
@@ -141,11 +142,15 @@ TEST(SkinLutFile, LoadsAPatientSizedTable) {
     std::size_t at = 0;
     for (int k = 0; k < 256; ++k)
         for (int j = 0; j < 256; ++j)
-            for (int i = 0; i < 256; ++i) lut.nearest[at++] = skin_of[direction_cell((Eigen::Vector3d(i, j, k) - Eigen::Vector3d::Constant(127.5)).normalized())];
+            for (int i = 0; i < 256; ++i)
+                lut.nearest[at++] =
+                    skin_of[direction_cell((Eigen::Vector3d(i, j, k) - Eigen::Vector3d::Constant(127.5)).normalized())];
     at = 0;
     for (int k = 0; k < 128; ++k)
         for (int j = 0; j < 128; ++j)
-            for (int i = 0; i < 128; ++i) lut.distance_mm[at++] = static_cast<float>((Eigen::Vector3d(i, j, k) - Eigen::Vector3d::Constant(63.5)).norm() * 2 - 90);
+            for (int i = 0; i < 128; ++i)
+                lut.distance_mm[at++] =
+                    static_cast<float>((Eigen::Vector3d(i, j, k) - Eigen::Vector3d::Constant(63.5)).norm() * 2 - 90);
     const test::TemporaryFolder folder;
     write_skin_lut(lut, folder.path() / "skin.lut");
     double best_s = 1e9, best_processor_s = 1e9;
@@ -158,7 +163,8 @@ TEST(SkinLutFile, LoadsAPatientSizedTable) {
         EXPECT_EQ(back.nearest, lut.nearest);
     }
     RecordProperty("load_s", std::to_string(best_s));
-    std::cout << "load and verify 256^3: " << best_s << " s (" << best_processor_s << " s of all processors), file " << static_cast<double>(std::filesystem::file_size(folder.path() / "skin.lut")) / 1e6 << " MB\n";
+    std::cout << "load and verify 256^3: " << best_s << " s (" << best_processor_s << " s of all processors), file "
+              << static_cast<double>(std::filesystem::file_size(folder.path() / "skin.lut")) / 1e6 << " MB\n";
 }
 
 }  // namespace

@@ -23,7 +23,8 @@ const SkinSurface& ball() {
 }
 
 Vector3d on_ball(double longitude, double latitude) {
-    return kRadius_mm * Vector3d(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude), std::sin(latitude));
+    return kRadius_mm * Vector3d(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude),
+                                 std::sin(latitude));
 }
 
 double great_circle_mm(const Vector3d& a, const Vector3d& b) {
@@ -68,7 +69,8 @@ TEST(DrawPlan, TicksStandSquareToTheLineAndAreAsLongAsAsked) {
     const PlanDrawing drawing = draw_plan(plan, ball());
     for (const Stroke& tick : strokes_of(drawing, StrokeKind::tick, 0)) {
         const Vector3d run = (tick.points_in_ct.back() - tick.points_in_ct.front()).normalized();
-        EXPECT_GT(std::abs(run.z()), std::cos(std::numbers::pi / 180));  // the line runs along the equator: ticks along z, to 1 degree
+        EXPECT_GT(std::abs(run.z()),
+                  std::cos(std::numbers::pi / 180));  // the line runs along the equator: ticks along z, to 1 degree
         const double length_mm = great_circle_mm(tick.points_in_ct.front(), tick.points_in_ct.back());
         EXPECT_TRUE(std::abs(length_mm - 2) < 0.02 || std::abs(length_mm - 4) < 0.02) << length_mm;
     }
@@ -133,7 +135,8 @@ TEST(DrawPlan, AWholeCutIsOneClosedLine) {
     const auto lines = strokes_of(drawing, StrokeKind::cut_plane, 0);
     ASSERT_EQ(lines.size(), 1u);
     EXPECT_TRUE(lines[0].closed);
-    EXPECT_EQ(drawing.items[0].label, "C1  " + std::to_string(std::lround(2 * std::numbers::pi * std::sqrt(80.0 * 80 - 100))) + " mm");
+    EXPECT_EQ(drawing.items[0].label,
+              "C1  " + std::to_string(std::lround(2 * std::numbers::pi * std::sqrt(80.0 * 80 - 100))) + " mm");
 }
 
 TEST(DrawPlan, TextRunsToTheRightAndStandsUpSeenFromOutside) {
@@ -176,8 +179,15 @@ Plan forehead_plan() {
         return p;
     };
     Plan plan;
-    plan.osteotomy_lines.push_back({"Osteotomy", {at(-32, 26), at(0, 24), at(32, 26), at(33, 50), at(30, 76), at(0, 78), at(-30, 76), at(-33, 50)}, true, {}});
-    plan.boreholes = {{"B1", at(-32, 26), {}, 7, 6, {}}, {"B2", at(32, 26), {}, 7, 6, {}}, {"B3", at(30, 76), {}, 7, 6, {}}, {"B4", at(-30, 76), {}, 7, 6, {}}};
+    plan.osteotomy_lines.push_back(
+        {"Osteotomy",
+         {at(-32, 26), at(0, 24), at(32, 26), at(33, 50), at(30, 76), at(0, 78), at(-30, 76), at(-33, 50)},
+         true,
+         {}});
+    plan.boreholes = {{"B1", at(-32, 26), {}, 7, 6, {}},
+                      {"B2", at(32, 26), {}, 7, 6, {}},
+                      {"B3", at(30, 76), {}, 7, 6, {}},
+                      {"B4", at(-30, 76), {}, 7, 6, {}}};
     plan.trajectories.push_back({"T1", at(4, 52), at(4, 52) + Vector3d(18, 55, -12), 0, {}});
     return plan;
 }

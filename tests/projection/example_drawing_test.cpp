@@ -24,11 +24,13 @@ Vector3d on_face(double x, double z) {
 /// A closed cut round 60 x 50 mm of the forehead, four boreholes at its corners, a trajectory in its middle.
 Plan forehead_plan() {
     Plan plan;
-    plan.osteotomy_lines.push_back({"Osteotomy", {on_face(-30, 26), on_face(30, 26), on_face(30, 76), on_face(-30, 76)}, true, {}});
+    plan.osteotomy_lines.push_back(
+        {"Osteotomy", {on_face(-30, 26), on_face(30, 26), on_face(30, 76), on_face(-30, 76)}, true, {}});
     plan.boreholes = {{"B1", on_face(-30, 26), {}, 7, 6, {}}, {"B2", on_face(30, 26), {}, 7, 6, {}},
                       {"B3", on_face(30, 76), {}, 7, 6, {}}, {"B4", on_face(-30, 76), {}, 7, 6, {}}};
     plan.trajectories.push_back({"T1", on_face(4, 52), on_face(4, 52) + Vector3d(18, 55, -12), 0, {}});
-    plan.cut_planes.push_back({"C1", on_face(3, -85), Vector3d(0.1, 0, 1).normalized(), Vector3d(1, 0, -0.1).normalized(), 60, 60, {}});
+    plan.cut_planes.push_back(
+        {"C1", on_face(3, -85), Vector3d(0.1, 0, 1).normalized(), Vector3d(1, 0, -0.1).normalized(), 60, 60, {}});
     return plan;
 }
 
@@ -48,8 +50,9 @@ TEST(ExampleDrawing, AForeheadPlanIsLitByAFrontalProjectorWithinTheFrameBudget) 
     }
     const double cpu_ms = 1e3 * static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC / 12;
     test::keep_picture(picture, "forehead.png");
-    std::printf("picture 1920x1080: %.2f ms (%.2f ms of processor time), %zu points, %zu lit, %zu too steep, %zu hidden\n", best_ms, cpu_ms, counts.points, counts.lit,
-                counts.too_steep, counts.hidden);
+    std::printf(
+        "picture 1920x1080: %.2f ms (%.2f ms of processor time), %zu points, %zu lit, %zu too steep, %zu hidden\n",
+        best_ms, cpu_ms, counts.points, counts.lit, counts.too_steep, counts.hidden);
     RecordProperty("picture_ms", std::to_string(best_ms));
     EXPECT_GT(counts.lit, 0.95 * static_cast<double>(counts.points));
     EXPECT_LT(cpu_ms, 20);  // slack for a shared machine; the printed figure is the one to look at

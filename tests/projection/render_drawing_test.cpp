@@ -29,10 +29,12 @@ public:
           d_((cv::Mat_<double>(1, 5) << p.k1, p.k2, p.p1, p.p2, p.k3)),
           ball_from_device_((p.device_from_rig * rig_from_ball).inverse()) {}
 
-    std::optional<Vector3d> on_ball(const Vector2d& pixel, double radius_mm = kRadius_mm, const Vector3d& centre = Vector3d::Zero()) const {
+    std::optional<Vector3d> on_ball(const Vector2d& pixel, double radius_mm = kRadius_mm,
+                                    const Vector3d& centre = Vector3d::Zero()) const {
         const std::vector<cv::Point2d> in{{pixel.x(), pixel.y()}};
         std::vector<cv::Point2d> out;
-        cv::undistortPoints(in, out, k_, d_, cv::noArray(), cv::noArray(), cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 50, 1e-12));
+        cv::undistortPoints(in, out, k_, d_, cv::noArray(), cv::noArray(),
+                            cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 50, 1e-12));
         const Vector3d o = ball_from_device_.translation() - centre;
         const Vector3d d = (ball_from_device_.linear() * Vector3d(out[0].x, out[0].y, 1)).normalized();
         const double b = o.dot(d), c = o.squaredNorm() - radius_mm * radius_mm, root = b * b - c;
@@ -83,7 +85,8 @@ Stroke arc(const Vector3d& pole, double angle, double from, double to, double wi
 
 struct Scene {
     SkinSurface skin{test::ball_mesh(kRadius_mm, 5)};
-    RigidTransform rig_from_ct = RigidTransform(Eigen::Translation3d(40, -25, 600) * Eigen::AngleAxisd(0.7, Vector3d(1, 2, -1).normalized()));
+    RigidTransform rig_from_ct =
+        RigidTransform(Eigen::Translation3d(40, -25, 600) * Eigen::AngleAxisd(0.7, Vector3d(1, 2, -1).normalized()));
     CameraModel projector = test::projector_looking_at({45, -10, 600}, {0.2, -0.3, -1}, 640, {0, -1, 0});
     DrawingRenderer renderer{skin, projector};
     CastBack eye{projector, rig_from_ct};
@@ -152,7 +155,8 @@ TEST(RenderDrawing, LightFallsOnTheLineItWasMeantForWithoutBias) {
         const Vector3d pole = Eigen::AngleAxisd(turn, f) * f.unitOrthogonal();
         const Vector3d x = pole.unitOrthogonal(), y = pole.cross(x);
         const double middle = std::atan2(f.dot(y), f.dot(x));
-        const auto lit = lit_pixels(scene().render({arc(pole, std::numbers::pi / 2, middle - 0.5, middle + 0.5, 0.8)}), scene().eye);
+        const auto lit =
+            lit_pixels(scene().render({arc(pole, std::numbers::pi / 2, middle - 0.5, middle + 0.5, 0.8)}), scene().eye);
         ASSERT_GT(lit.size(), 400u);
         double sum = 0, moment_mm = 0, farthest_mm = 0;
         for (const auto& p : lit) {
@@ -197,13 +201,16 @@ TEST(RenderDrawing, ALineIsAsWideOnASlopeAsInFront) {
     for (const double slope : {0.0, 30.0, 50.0, 65.0}) {
         const Vector3d f = scene().facing();
         const Vector3d pole = f;  // a line of constant slope: the slope squeezes its width, not its length
-        const auto picture = scene().render({slope > 0 ? arc(pole, slope * kDegree, 0.3, 1.0, 1.6)
-                                                       : arc(f.unitOrthogonal(), std::numbers::pi / 2, 0, 2 * std::numbers::pi, 1.6)});
+        const auto picture =
+            scene().render({slope > 0 ? arc(pole, slope * kDegree, 0.3, 1.0, 1.6)
+                                      : arc(f.unitOrthogonal(), std::numbers::pi / 2, 0, 2 * std::numbers::pi, 1.6)});
         // Light on the skin: each lit pixel's own area on the ball, by its four corners.
         double area_mm2 = 0;
         for (const auto& p : lit_pixels(picture, scene().eye)) {
-            const auto a = scene().eye.on_ball(p.pixel + Vector2d(-0.5, -0.5)), b = scene().eye.on_ball(p.pixel + Vector2d(0.5, -0.5));
-            const auto c = scene().eye.on_ball(p.pixel + Vector2d(0.5, 0.5)), d = scene().eye.on_ball(p.pixel + Vector2d(-0.5, 0.5));
+            const auto a = scene().eye.on_ball(p.pixel + Vector2d(-0.5, -0.5)),
+                       b = scene().eye.on_ball(p.pixel + Vector2d(0.5, -0.5));
+            const auto c = scene().eye.on_ball(p.pixel + Vector2d(0.5, 0.5)),
+                       d = scene().eye.on_ball(p.pixel + Vector2d(-0.5, 0.5));
             ASSERT_TRUE(a && b && c && d);
             area_mm2 += p.share * 0.5 * (*c - *a).cross(*d - *b).norm();
         }
@@ -229,7 +236,8 @@ TEST(RenderDrawing, ACircleKeepsItsDiameterUpTo65DegreesOfSlope) {
             std::map<int, std::pair<double, double>> by_direction;  // light-weighted distance from the centre, 12 directions
             for (const auto& p : lit) {
                 const double far_mm = kRadius_mm * std::acos(std::min(1.0, p.on_ball.normalized().dot(n)));
-                const int direction = static_cast<int>(std::floor(std::atan2(p.on_ball.dot(y), p.on_ball.dot(x)) / (30 * kDegree)));
+                const int direction =
+                    static_cast<int>(std::floor(std::atan2(p.on_ball.dot(y), p.on_ball.dot(x)) / (30 * kDegree)));
                 by_direction[direction].first += p.share;
                 by_direction[direction].second += p.share * far_mm;
             }
@@ -237,7 +245,8 @@ TEST(RenderDrawing, ACircleKeepsItsDiameterUpTo65DegreesOfSlope) {
             ASSERT_EQ(by_direction.size(), 12u);
             for (const auto& [direction, light] : by_direction) {
                 const double mean_mm = 2 * light.second / light.first;
-                EXPECT_NEAR(mean_mm, diameter_mm, 0.1 + 0.01 * diameter_mm) << slope << " " << direction;  // pixel sampling of one sector
+                EXPECT_NEAR(mean_mm, diameter_mm, 0.1 + 0.01 * diameter_mm)
+                    << slope << " " << direction;  // pixel sampling of one sector
                 sum_mm += mean_mm / 12;
             }
             EXPECT_NEAR(sum_mm, diameter_mm, 0.02 * diameter_mm) << slope;
@@ -258,7 +267,8 @@ TEST(RenderDrawing, TicksAreTenMillimetresApartAsLightUpTo65Degrees) {
         PlanDrawing alone;
         alone.strokes = {tick};
         Vector3d sum = Vector3d::Zero();
-        for (const auto& p : lit_pixels(scene().renderer.render(alone, scene().rig_from_ct), scene().eye)) sum += p.share * p.on_ball;
+        for (const auto& p : lit_pixels(scene().renderer.render(alone, scene().rig_from_ct), scene().eye))
+            sum += p.share * p.on_ball;
         middles.push_back(sum.normalized());
     }
     ASSERT_GT(middles.size(), 16u);
@@ -301,7 +311,8 @@ TEST(RenderDrawing, SkinInTheShadowOfOtherSkinIsNotLit) {
             if ((to_centre - to_centre.dot(d) * d).norm() < kSmall_mm + 1) continue;
             const auto pixel = project(scene().projector, scene().rig_from_ct * p);
             ASSERT_TRUE(pixel);
-            wrongly_dark += picture.at(static_cast<int>(std::lround(pixel->x())), static_cast<int>(std::lround(pixel->y())))[0] == 0;
+            wrongly_dark += picture.at(static_cast<int>(std::lround(pixel->x())),
+                                       static_cast<int>(std::lround(pixel->y())))[0] == 0;
         }
     EXPECT_EQ(wrongly_dark, 0u);
     EXPECT_GT(lit, 3000u);

@@ -16,17 +16,20 @@ using Eigen::Vector3d;
 TriangleMesh ball_mesh(double radius_mm, int halvings) {
     TriangleMesh mesh;
     const double g = std::numbers::phi;
-    for (const auto& v : {Vector3d(-1, g, 0), Vector3d(1, g, 0), Vector3d(-1, -g, 0), Vector3d(1, -g, 0), Vector3d(0, -1, g), Vector3d(0, 1, g),
-                          Vector3d(0, -1, -g), Vector3d(0, 1, -g), Vector3d(g, 0, -1), Vector3d(g, 0, 1), Vector3d(-g, 0, -1), Vector3d(-g, 0, 1)})
+    for (const auto& v : {Vector3d(-1, g, 0), Vector3d(1, g, 0), Vector3d(-1, -g, 0), Vector3d(1, -g, 0),
+                          Vector3d(0, -1, g), Vector3d(0, 1, g), Vector3d(0, -1, -g), Vector3d(0, 1, -g),
+                          Vector3d(g, 0, -1), Vector3d(g, 0, 1), Vector3d(-g, 0, -1), Vector3d(-g, 0, 1)})
         mesh.vertices_in_ct.push_back(radius_mm * v.normalized());
-    mesh.triangles = {{0, 11, 5}, {0, 5, 1}, {0, 1, 7}, {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4}, {11, 10, 2}, {10, 7, 6}, {7, 1, 8},
-                      {3, 9, 4}, {3, 4, 2}, {3, 2, 6}, {3, 6, 8}, {3, 8, 9}, {4, 9, 5}, {2, 4, 11}, {6, 2, 10}, {8, 6, 7}, {9, 8, 1}};
+    mesh.triangles = {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
+                      {11, 10, 2}, {10, 7, 6}, {7, 1, 8},  {3, 9, 4},  {3, 4, 2},   {3, 2, 6}, {3, 6, 8},
+                      {3, 8, 9},   {4, 9, 5},  {2, 4, 11}, {6, 2, 10}, {8, 6, 7},   {9, 8, 1}};
     for (int h = 0; h < halvings; ++h) {
         std::map<std::pair<int, int>, std::int32_t> middles;
         const auto middle = [&](std::int32_t a, std::int32_t b) {
             const auto [entry, fresh] = middles.emplace(std::minmax(a, b), static_cast<std::int32_t>(mesh.vertices_in_ct.size()));
             if (fresh) {
-                const Vector3d m = mesh.vertices_in_ct[static_cast<std::size_t>(a)] + mesh.vertices_in_ct[static_cast<std::size_t>(b)];
+                const Vector3d m =
+                    mesh.vertices_in_ct[static_cast<std::size_t>(a)] + mesh.vertices_in_ct[static_cast<std::size_t>(b)];
                 mesh.vertices_in_ct.push_back(radius_mm * m.normalized());
             }
             return entry->second;
@@ -67,7 +70,8 @@ TriangleMesh tube_mesh(double radius_mm, double length_mm, double edge_mm) {
     const int along = static_cast<int>(std::ceil(length_mm / edge_mm)) + 1;
     return grid(around, along, true, [&](int u, int v) {
         const double angle = 2 * std::numbers::pi * u / around;
-        return Vector3d(radius_mm * std::cos(angle), radius_mm * std::sin(angle), length_mm * (static_cast<double>(v) / (along - 1) - 0.5));
+        return Vector3d(radius_mm * std::cos(angle), radius_mm * std::sin(angle),
+                        length_mm * (static_cast<double>(v) / (along - 1) - 0.5));
     });
 }
 
@@ -75,11 +79,13 @@ TriangleMesh sheet_mesh(double side_mm, double edge_mm) {
     const int n = static_cast<int>(std::ceil(side_mm / edge_mm)) + 1;
     return grid(n, n, false, [&](int u, int v) {
         const double wobble = u % 3 == 1 && v % 2 == 1 ? 0.3 * edge_mm : 0;
-        return Vector3d(side_mm * (static_cast<double>(u) / (n - 1) - 0.5) + wobble, side_mm * (static_cast<double>(v) / (n - 1) - 0.5), 0);
+        return Vector3d(side_mm * (static_cast<double>(u) / (n - 1) - 0.5) + wobble,
+                        side_mm * (static_cast<double>(v) / (n - 1) - 0.5), 0);
     });
 }
 
-CameraModel projector_looking_at(const Vector3d& target_in_rig, const Vector3d& from_direction, double distance_mm, const Vector3d& up) {
+CameraModel projector_looking_at(const Vector3d& target_in_rig, const Vector3d& from_direction, double distance_mm,
+                                 const Vector3d& up) {
     CameraModel p;
     p.width = 1920;
     p.height = 1080;

@@ -24,7 +24,8 @@ TriangleMesh sphere(double radius, int splits) {
         std::map<std::pair<int, int>, std::int32_t> middles;
         std::vector<std::array<std::int32_t, 3>> finer;
         const auto middle = [&](std::int32_t a, std::int32_t b) {
-            const auto [found, fresh] = middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(mesh.vertices_in_ct.size()));
+            const auto [found, fresh] =
+                middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(mesh.vertices_in_ct.size()));
             if (fresh)
                 mesh.vertices_in_ct.push_back((mesh.vertices_in_ct[static_cast<std::size_t>(a)] +
                                                mesh.vertices_in_ct[static_cast<std::size_t>(b)]).normalized());
@@ -72,8 +73,10 @@ struct PlainSkin {
 };
 
 int squared_to_pointer(const SkinLut& lut, int i, int j, int k) {
-    const std::size_t index = (static_cast<std::size_t>(k) * static_cast<std::size_t>(lut.size[1]) + static_cast<std::size_t>(j)) *
-                                  static_cast<std::size_t>(lut.size[0]) + static_cast<std::size_t>(i);
+    const std::size_t index =
+        (static_cast<std::size_t>(k) * static_cast<std::size_t>(lut.size[1]) + static_cast<std::size_t>(j)) *
+            static_cast<std::size_t>(lut.size[0]) +
+        static_cast<std::size_t>(i);
     const auto& v = lut.skin.at(lut.nearest.at(index)).voxel;
     return (v[0] - i) * (v[0] - i) + (v[1] - j) * (v[1] - j) + (v[2] - k) * (v[2] - k);
 }
@@ -113,7 +116,8 @@ TEST(BuildSkinLut, SkinVoxelsAreThoseTheTrianglesPassThrough) {
     const SkinLut lut = build_skin_lut(soup, settings);
     std::vector<double> closest(lut.skin.size(), 1e9);  // how far outside its cube the nearest sample of the surface lies
     std::map<std::array<int, 3>, std::size_t> skin_of;
-    for (std::size_t s = 0; s < lut.skin.size(); ++s) skin_of[{lut.skin[s].voxel[0], lut.skin[s].voxel[1], lut.skin[s].voxel[2]}] = s;
+    for (std::size_t s = 0; s < lut.skin.size(); ++s)
+        skin_of[{lut.skin[s].voxel[0], lut.skin[s].voxel[1], lut.skin[s].voxel[2]}] = s;
     std::size_t missed = 0;
     constexpr int kSteps = 150;  // of at most 17/150 mm: samples are within 0.12 mm of any point of the surface
     for (const auto& t : soup.triangles)
@@ -143,7 +147,8 @@ TEST(BuildSkinLut, SkinVoxelsAreThoseTheTrianglesPassThrough) {
 
 TEST(BuildSkinLut, PointersOfASphereCarryItsSkinAndNormals) {
     const double radius = 40;
-    const SkinLut lut = build_skin_lut(sphere(radius, 6));  // edges up to 1.6 mm: middles of triangles lie e^2/(6 R) = 0.011 mm inside
+    const SkinLut lut =
+        build_skin_lut(sphere(radius, 6));  // edges up to 1.6 mm: middles of triangles lie e^2/(6 R) = 0.011 mm inside
     for (const auto& s : lut.skin) {
         ASSERT_NEAR(s.position_in_ct.norm(), radius, 0.011);
         ASSERT_GT(s.normal_in_ct.dot(s.position_in_ct.normalized()), 0.9999F);
@@ -190,7 +195,8 @@ TEST(BuildSkinLut, SignedDistanceVanishesOnTheAnalyticHead) {
         ASSERT_TRUE(found);
         errors.push_back(std::abs(found->mm));
         turned += found->gradient.normalized().dot(analytic_head_normal(p)) < 0.99;
-        const auto outside = lut.signed_distance(p + 2 * analytic_head_normal(p)), inside = lut.signed_distance(p - 2 * analytic_head_normal(p));
+        const auto outside = lut.signed_distance(p + 2 * analytic_head_normal(p)),
+                   inside = lut.signed_distance(p - 2 * analytic_head_normal(p));
         ASSERT_GT(outside->mm, 0);
         ASSERT_LT(inside->mm, 0);
     }
@@ -207,8 +213,11 @@ TEST(BuildSkinLut, SignIsRightEverywhereAndCornersAreOutside) {
     for (int k = 0; k < lut.distance_size[2]; k += 2)
         for (int j = 0; j < lut.distance_size[1]; j += 2)
             for (int i = 0; i < lut.distance_size[0]; ++i) {
-                const std::size_t index = (static_cast<std::size_t>(k) * static_cast<std::size_t>(lut.distance_size[1]) +
-                                           static_cast<std::size_t>(j)) * static_cast<std::size_t>(lut.distance_size[0]) + static_cast<std::size_t>(i);
+                const std::size_t index =
+                    (static_cast<std::size_t>(k) * static_cast<std::size_t>(lut.distance_size[1]) +
+                     static_cast<std::size_t>(j)) *
+                        static_cast<std::size_t>(lut.distance_size[0]) +
+                    static_cast<std::size_t>(i);
                 const double truth = analytic_head_distance(lut.origin_in_ct + lut.distance_voxel_mm * Vector3d(i, j, k));
                 if (std::abs(truth) < 0.3) continue;  // chords of 3 mm edges in creases
                 ++n;

@@ -165,7 +165,8 @@ TEST(TriangulateSkin, DecimatesWithinTheBound) {
     for (const auto& t : few.triangles) {
         Vector3d centre = Vector3d::Zero();
         for (const auto c : t) centre += few.vertices_in_ct[static_cast<std::size_t>(c)] / 3;
-        if (centre.z() > kCutZ_mm + 3) worst = std::max(worst, std::abs(analytic_head_distance(centre) - crossing_distance_mm(mask.threshold)));
+        if (centre.z() > kCutZ_mm + 3)
+            worst = std::max(worst, std::abs(analytic_head_distance(centre) - crossing_distance_mm(mask.threshold)));
     }
     EXPECT_LT(worst, 0.15 + before.worst);
 }

@@ -71,7 +71,8 @@ Vector3d on_analytic_head(const Vector3d& p_in_ct) {
         const double d = analytic_head_distance(p);
         if (std::abs(d) < 1e-9) break;
         const Vector3d n = analytic_head_normal(p);
-        const double slope = (analytic_head_distance(p + kStep_mm * n) - analytic_head_distance(p - kStep_mm * n)) / (2 * kStep_mm);
+        const double slope =
+            (analytic_head_distance(p + kStep_mm * n) - analytic_head_distance(p - kStep_mm * n)) / (2 * kStep_mm);
         p -= std::clamp(d / std::max(slope, 0.2), -5.0, 5.0) * n;
     }
     return p;
@@ -104,7 +105,8 @@ TriangleMesh analytic_head_mesh(double edge_mm) {
                 mesh.normals_in_ct.push_back(analytic_head_normal(p));
             }
     const auto quad = [&](std::size_t a, std::size_t b, std::size_t c, std::size_t d, bool flip) {
-        const std::int32_t va = vertex_of_cell.at(a), vb = vertex_of_cell.at(b), vc = vertex_of_cell.at(c), vd = vertex_of_cell.at(d);
+        const std::int32_t va = vertex_of_cell.at(a), vb = vertex_of_cell.at(b), vc = vertex_of_cell.at(c),
+                           vd = vertex_of_cell.at(d);
         if (flip) {
             mesh.triangles.push_back({va, vc, vb});
             mesh.triangles.push_back({va, vd, vc});
@@ -153,8 +155,11 @@ SkinLut analytic_head_lut(double voxel_mm, double margin_mm) {
         auto& pointer = lut.nearest[index(v)];
         if (pointer != kNone) continue;
         pointer = static_cast<std::uint32_t>(lut.skin.size());
-        lut.skin.push_back({p.cast<float>(), mesh.normals_in_ct[i].cast<float>(),
-                            {static_cast<std::uint16_t>(v.x()), static_cast<std::uint16_t>(v.y()), static_cast<std::uint16_t>(v.z())}, 0});
+        lut.skin.push_back(
+            {p.cast<float>(),
+             mesh.normals_in_ct[i].cast<float>(),
+             {static_cast<std::uint16_t>(v.x()), static_cast<std::uint16_t>(v.y()), static_cast<std::uint16_t>(v.z())},
+             0});
     }
     // Pointers spread from voxel to voxel until none improves (vector distance propagation, swept to a fixed point).
     const auto squared = [&](const Eigen::Vector3i& v, std::uint32_t s) {

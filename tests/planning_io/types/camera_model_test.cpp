@@ -37,8 +37,9 @@ Eigen::Vector2d by_opencv(const CameraModel& c, const Eigen::Vector3d& p) {
     const Eigen::Vector3d w = rotation_vector(c.device_from_rig.linear());
     const Eigen::Vector3d t = c.device_from_rig.translation();
     std::vector<cv::Point2d> pixel;
-    cv::projectPoints(std::vector<cv::Point3d>{{p.x(), p.y(), p.z()}}, cv::Vec3d(w.x(), w.y(), w.z()), cv::Vec3d(t.x(), t.y(), t.z()), K,
-                      cv::Mat_<double>({1, 5}, {c.k1, c.k2, c.p1, c.p2, c.k3}), pixel);
+    cv::projectPoints(std::vector<cv::Point3d>{{p.x(), p.y(), p.z()}}, cv::Vec3d(w.x(), w.y(), w.z()),
+                      cv::Vec3d(t.x(), t.y(), t.z()), K, cv::Mat_<double>({1, 5}, {c.k1, c.k2, c.p1, c.p2, c.k3}),
+                      pixel);
     return {pixel[0].x, pixel[0].y};
 }
 

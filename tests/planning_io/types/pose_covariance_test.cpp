@@ -17,7 +17,8 @@ PoseCovariance shifts_of(const Eigen::Vector3d& sigma_mm) {
 }
 
 TEST(PoseCovariance, TheBoundIsThatOfTheKnownDistributions) {
-    // 95 % quantiles of |x| of one Gaussian number (1.960) and of the length of three (Maxwell, 2.795); the approximation's error is 1.5 %.
+    // 95 % quantiles of |x| of one Gaussian number (1.960) and of the length of three (Maxwell, 2.795); the
+    // approximation's error is 1.5 %.
     const Eigen::Vector3d anywhere(-70, 5, 200);
     EXPECT_NEAR(predicted_error(shifts_of({2, 0, 0}), anywhere).bound_95_mm, 2 * 1.960, 0.06);
     EXPECT_NEAR(predicted_error(shifts_of({2, 2, 2}), anywhere).bound_95_mm, 2 * 2.795, 0.08);

@@ -70,7 +70,8 @@ PointCloud scan_of_ct(const Volume& volume, const Vector3d& eye_in_ct, double wi
         while (t < far_mm && at(eye_in_ct + t * direction) < kSkin_hu) t += kStep_mm;
         if (t >= far_mm || t == near_mm) continue;
         double low = t - kStep_mm, high = t;
-        for (int i = 0; i < 20; ++i) (at(eye_in_ct + 0.5 * (low + high) * direction) < kSkin_hu ? low : high) = 0.5 * (low + high);
+        for (int i = 0; i < 20; ++i)
+            (at(eye_in_ct + 0.5 * (low + high) * direction) < kSkin_hu ? low : high) = 0.5 * (low + high);
         const Vector3d p = eye_in_ct + high * direction;
         const double slice = (voxel_from_ct * p).z();
         if (slice < end_slices || slice > size.z() - 1 - end_slices) continue;

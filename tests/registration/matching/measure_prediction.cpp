@@ -113,9 +113,10 @@ void print_row(const std::string& name, const std::array<unsigned, 3>& verdicts,
     const auto error = [](const Target& t) { return t.error_mm; };
     const auto ratio = [](const Target& t) { return t.error_mm / t.bound_mm; };
     const auto bound = [](const Target& t) { return t.bound_mm; };
-    fmt::print("| {} | {} / {} / {} | {} | {:.1f} % | {:.2f} | {:.2f} / {:.2f} / {:.2f} | {:.2f} / {:.2f} | {:.2f} |\n", name, verdicts[0], verdicts[1], verdicts[2], targets.size(),
-               100. * static_cast<double>(covered) / static_cast<double>(targets.size()), correlation, at(0.5, error), at(0.95, error),
-               at(1, error), at(0.5, bound), at(0.95, bound), at(1, ratio));
+    fmt::print("| {} | {} / {} / {} | {} | {:.1f} % | {:.2f} | {:.2f} / {:.2f} / {:.2f} | {:.2f} / {:.2f} | {:.2f} |\n",
+               name, verdicts[0], verdicts[1], verdicts[2], targets.size(),
+               100. * static_cast<double>(covered) / static_cast<double>(targets.size()), correlation, at(0.5, error),
+               at(0.95, error), at(1, error), at(0.5, bound), at(0.95, bound), at(1, ratio));
 }
 
 }  // namespace
@@ -135,7 +136,9 @@ int main(int argc, char** argv) {
         ++verdicts[done.movement][done.verdict == planlight::Verdict::yes ? 0 : done.verdict == planlight::Verdict::ask ? 1 : 2];
     }
     std::array<unsigned, 3> of_others{};
-    fmt::print("| skin moved by | yes / ask / no | targets | within the 95 % bound | rank correlation | true error mm: median / 95 % / worst | bound mm: median / 95 % | worst error / bound |\n|---|---|---|---|---|---|---|---|\n");
+    fmt::print(
+        "| skin moved by | yes / ask / no | targets | within the 95 % bound | rank correlation | true error mm: median "
+        "/ 95 % / worst | bound mm: median / 95 % | worst error / bound |\n|---|---|---|---|---|---|---|---|\n");
     for (const auto& movement : skin_movements()) {
         const auto& targets = by_movement[movement.name];
         if (targets.empty()) continue;

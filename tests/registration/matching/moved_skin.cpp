@@ -111,9 +111,11 @@ std::vector<double> along_normals(const PointCloud& cloud, const std::string& mo
 }  // namespace
 
 const std::vector<SkinMovement>& skin_movements() {
-    static const std::vector<SkinMovement> all{{"waves of 25 mm", true},  {"swellings", true},             {"sag", true},
-                                               {"waves of 12 mm", false}, {"waves of 50 mm", false}, {"waves of 8 and 40 mm", false},
-                                               {"soft parts pulled", false},            {"pressed flat", false},   {"jaw", false},            {"thicker all over", false}};
+    static const std::vector<SkinMovement> all{
+        {"waves of 25 mm", true},     {"swellings", true},       {"sag", true},
+        {"waves of 12 mm", false},    {"waves of 50 mm", false}, {"waves of 8 and 40 mm", false},
+        {"soft parts pulled", false}, {"pressed flat", false},   {"jaw", false},
+        {"thicker all over", false}};
     return all;
 }
 
@@ -124,7 +126,8 @@ PointCloud with_moved_skin(const PointCloud& cloud_in_ct, const std::string& mov
     for (const double m : moved) squares += m * m;
     const double unit = std::sqrt(squares / static_cast<double>(moved.size()));
     PointCloud cloud = cloud_in_ct;
-    for (std::size_t i = 0; i < moved.size(); ++i) cloud.points_in_rig[i] += rms_mm * moved[i] / std::max(unit, 1e-9) * cloud.normals_in_rig[i];
+    for (std::size_t i = 0; i < moved.size(); ++i)
+        cloud.points_in_rig[i] += rms_mm * moved[i] / std::max(unit, 1e-9) * cloud.normals_in_rig[i];
     return cloud;
 }
 

@@ -44,8 +44,8 @@ Trial trial(const CtHead& head, unsigned i, double width_mm, double noise_mm, do
 std::string spread(const std::string& name, std::vector<double> values) {
     std::sort(values.begin(), values.end());
     const auto n = values.size();
-    return fmt::format("  {}: median {:.3f}, 95 % {:.3f}, worst {:.3f}\n", name, values[n / 2], values[std::min(n - 1, n * 95 / 100)],
-                       values[n - 1]);
+    return fmt::format("  {}: median {:.3f}, 95 % {:.3f}, worst {:.3f}\n", name, values[n / 2],
+                       values[std::min(n - 1, n * 95 / 100)], values[n - 1]);
 }
 
 TEST(CtHead, IsFoundFromTwentyOfTwentyPoses) {
@@ -75,7 +75,8 @@ TEST(CtHead, MirroredIsNotAYes) {
 TEST(CtHead, DISABLED_Figures) {
     const CtHead* head = ct_head();
     if (!head) GTEST_SKIP() << "the package invesalius-examples is not installed";
-    for (const auto& [width_mm, noise_mm, strays] : {std::tuple{190., 0.3, 0.05}, {190., 0.5, 0.25}, {140., 0.4, 0.15}, {100., 0.4, 0.15}}) {
+    for (const auto& [width_mm, noise_mm, strays] :
+         {std::tuple{190., 0.3, 0.05}, {190., 0.5, 0.25}, {140., 0.4, 0.15}, {100., 0.4, 0.15}}) {
         std::vector<double> errors, starts, match_s, icp_s;
         int found = 0, verdicts[3] = {}, wrong_yes = 0;
         std::string reasons;
@@ -90,8 +91,8 @@ TEST(CtHead, DISABLED_Figures) {
             icp_s.push_back(t.icp_s);
             if (t.verdict != Verdict::yes) reasons += fmt::format("    {}: {:.2f} mm, {}\n", i, t.error_mm, t.reasons);
         }
-        fmt::print("{} mm wide, noise {} mm, {:.0f} % strays: found {}/40, yes {} ask {} no {}, wrong yes {}\n", width_mm, noise_mm,
-                   100 * strays, found, verdicts[0], verdicts[1], verdicts[2], wrong_yes);
+        fmt::print("{} mm wide, noise {} mm, {:.0f} % strays: found {}/40, yes {} ask {} no {}, wrong yes {}\n",
+                   width_mm, noise_mm, 100 * strays, found, verdicts[0], verdicts[1], verdicts[2], wrong_yes);
         fmt::print("{}{}{}{}", spread("error at targets 60 mm deep, mm", errors), spread("same before the ICP, mm", starts),
                    spread("initial match, s", match_s), spread("ICP, s", icp_s));
         if (std::getenv("PLANLIGHT_REASONS")) fmt::print("{}", reasons);

@@ -72,7 +72,8 @@ TEST(PointPairs, LeftAndRightExchangedIsRefused) {
 TEST(PointPairs, TwoLandmarksOrAllOnALineAreRefused) {
     auto pairs = touched(random_pose(10), 0.5, 4);
     EXPECT_EQ(register_point_pairs({pairs[0], pairs[1]}).verdict, Verdict::no);
-    for (std::size_t i = 0; i < pairs.size(); ++i) pairs[i].in_ct = pairs[i].in_rig = Vector3d(20. * static_cast<double>(i), 1, 2);
+    for (std::size_t i = 0; i < pairs.size(); ++i)
+        pairs[i].in_ct = pairs[i].in_rig = Vector3d(20. * static_cast<double>(i), 1, 2);
     EXPECT_TRUE(says(register_point_pairs(pairs), "on one line"));
 }
 

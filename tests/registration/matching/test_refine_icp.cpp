@@ -26,7 +26,8 @@ TEST(LutIcp, RecoversAKnownPoseToATenthOfAMillimetre) {
     // 0.4 mm of noise over 20000 points averages to some 0.01 mm; the 2 mm field is good to 0.03 mm on the prototype.
     for (unsigned i = 0; i < 8; ++i) {
         const RigidTransform truth = random_pose(i + 50).inverse();
-        const PointCloud cloud = spoiled(moved(head_view(static_cast<View>(i % 4), 200, 20000, i), truth.inverse()), 0.4, 0.05 + 0.1 * (i % 3), i);
+        const PointCloud cloud = spoiled(moved(head_view(static_cast<View>(i % 4), 200, 20000, i), truth.inverse()),
+                                         0.4, 0.05 + 0.1 * (i % 3), i);
         const IcpResult icp = refine_icp(cloud, head_lut(), disturbed(truth, cloud, i));
         EXPECT_LT(target_error_mm(icp.ct_from_rig, truth, cloud), 0.1) << "start " << i;
         EXPECT_TRUE(icp.converged);

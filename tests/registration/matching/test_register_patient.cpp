@@ -15,7 +15,9 @@ std::string told(const RegistrationResult& result) {
     return text;
 }
 
-bool mentions(const RegistrationResult& result, const std::string& words) { return told(result).find(words) != std::string::npos; }
+bool mentions(const RegistrationResult& result, const std::string& words) {
+    return told(result).find(words) != std::string::npos;
+}
 
 PointCloud mirror_image(PointCloud cloud) {
     for (auto& p : cloud.points_in_rig) p.x() = -p.x();
@@ -43,7 +45,8 @@ TEST(RegisterPatient, AWrongPoseIsNeverAYes) {
     // Hard scans: 90 to 150 mm, 0.5 mm of noise, 25 % strays, all views.
     for (unsigned i = 0; i < 16; ++i) {
         const RigidTransform rig_from_ct = random_pose(i + 200);
-        const PointCloud cloud = spoiled(moved(head_view(static_cast<View>(i % 4), 90 + 20 * (i % 4), 6000, i), rig_from_ct), 0.5, 0.25, i);
+        const PointCloud cloud =
+            spoiled(moved(head_view(static_cast<View>(i % 4), 90 + 20 * (i % 4), 6000, i), rig_from_ct), 0.5, 0.25, i);
         const RegistrationResult result = register_patient(cloud, head_lut());
         if (result.verdict == Verdict::yes)
             EXPECT_LT(target_error_mm(result.patient_from_ct.inverse(), rig_from_ct.inverse(), cloud), 1.0) << i;

@@ -23,7 +23,8 @@ Settled settle(const std::string& movement, double rms_mm, double noise_mm, unsi
     if (rms_mm > 0) in_ct = with_moved_skin(in_ct, movement, rms_mm, seed);
     const PointCloud cloud = moved(spoiled(in_ct, noise_mm, 0.1, seed), rig_from_ct);
     const IcpResult icp = refine_icp(cloud, head_lut(), ct_from_rig);
-    Settled result{settle_on_moved_skin(cloud, head_lut(), icp.ct_from_rig), target_error_mm(icp.ct_from_rig, ct_from_rig, cloud), 0, 0};
+    Settled result{settle_on_moved_skin(cloud, head_lut(), icp.ct_from_rig),
+                   target_error_mm(icp.ct_from_rig, ct_from_rig, cloud), 0, 0};
     result.after_mm = target_error_mm(result.pose.ct_from_rig, ct_from_rig, cloud);
     Eigen::Vector3d target = result.pose.covariance.centre_in_ct;
     target += (view == View::front ? Eigen::Vector3d(0, 60, 0) : Eigen::Vector3d(60, 0, 0));

@@ -103,7 +103,10 @@ TEST_F(CaptureScan, DarkAfterTheProjectorFails) {
 }
 
 TEST_F(CaptureScan, DarkAfterTheCallerThrows) {
-    EXPECT_THROW(capture_scan(projector, cameras, clock, stripes, [](int done, int) { if (done == 3) throw std::runtime_error("cancelled"); }),
+    EXPECT_THROW(capture_scan(projector, cameras, clock, stripes,
+                              [](int done, int) {
+                                  if (done == 3) throw std::runtime_error("cancelled");
+                              }),
                  std::runtime_error);
     EXPECT_TRUE(projector.dark);
 }

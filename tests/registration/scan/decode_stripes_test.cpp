@@ -96,7 +96,9 @@ TEST(DecodeStripes, NoiseIsMeasuredAndSigmaIsHonest) {
 TEST(DecodeStripes, EveryPixelIsAccountedFor) {
     const DecodedView& v = plane_shot().view;
     EXPECT_EQ(v.decoded + v.dark + v.saturated + v.uncertain, v.column.size());
-    EXPECT_EQ(static_cast<std::size_t>(std::count_if(v.column.begin(), v.column.end(), [](float c) { return !std::isnan(c); })), v.decoded);
+    EXPECT_EQ(static_cast<std::size_t>(
+                  std::count_if(v.column.begin(), v.column.end(), [](float c) { return !std::isnan(c); })),
+              v.decoded);
 }
 
 TEST(DecodeStripes, WithoutInversesToo) {
@@ -133,7 +135,9 @@ TEST(DecodeStripes, ShadowAndDarknessAreDropped) {
     std::size_t unlit = 0, far_from_light = 0;
     for (int y = 0; y < v.height; ++y)
         for (int x = 0; x < v.width; ++x) {
-            const auto at = [&](int px, int py) { return static_cast<std::size_t>(py) * static_cast<std::size_t>(v.width) + static_cast<std::size_t>(px); };
+            const auto at = [&](int px, int py) {
+                return static_cast<std::size_t>(py) * static_cast<std::size_t>(v.width) + static_cast<std::size_t>(px);
+            };
             if (!std::isnan(truth.code[at(x, y)].x())) continue;
             ++unlit;
             if (std::isnan(v.column[at(x, y)])) continue;

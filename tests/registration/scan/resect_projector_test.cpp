@@ -105,7 +105,8 @@ TEST(ResectProjector, TheScanUsesItForPointsOfOneCamera) {
     const RigCalibration rig = knocked({0.0004, -0.0006, 0.0003}, {0.3, -0.2, 0.2});
     ScanSettings as_calibrated;
     as_calibrated.use_resection = false;
-    const ScanResult without = scan_from_capture(scanned().shot, rig, as_calibrated), with = scan_from_capture(scanned().shot, rig);
+    const ScanResult without = scan_from_capture(scanned().shot, rig, as_calibrated),
+                     with = scan_from_capture(scanned().shot, rig);
     EXPECT_FALSE(without.resection_used);
     ASSERT_TRUE(with.resection_used);
     EXPECT_GT(with.raw.two_view, without.raw.two_view + 300);  // the gate drops what the knocked projector would misplace

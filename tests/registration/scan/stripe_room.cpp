@@ -35,7 +35,8 @@ void set_lens(Optics& o, int width, int height, double focal, double cx, double 
 /// Two cameras beside a projector, all looking at a place 900 mm away; the room's axes are those of no device.
 Room room_of(Surface surface) {
     const Eigen::Vector3d target(120, -40, 300), back = Eigen::Vector3d(0.1, 0.35, -1).normalized();
-    const Eigen::Vector3d side = Eigen::Vector3d(1, 0.05, 0).cross(back).cross(back).normalized() * -1, down = back.cross(side).normalized() * -1;
+    const Eigen::Vector3d side = Eigen::Vector3d(1, 0.05, 0).cross(back).cross(back).normalized() * -1,
+                          down = back.cross(side).normalized() * -1;
     Room room;
     room.projector = looking_at(target + 900 * back, target, down);
     room.left = looking_at(target + 880 * back - 210 * side + 15 * down, target, down);
@@ -50,7 +51,8 @@ public:
     Profile(const std::vector<double>& values, double blur_px) : size_(static_cast<int>(values.size())) {
         const int fine = size_ * kFine + 2 * kMargin;
         std::vector<double> sharp(static_cast<std::size_t>(fine), 0.0);
-        for (int i = 0; i < size_ * kFine; ++i) sharp[static_cast<std::size_t>(i + kMargin)] = values[static_cast<std::size_t>(i / kFine)];
+        for (int i = 0; i < size_ * kFine; ++i)
+            sharp[static_cast<std::size_t>(i + kMargin)] = values[static_cast<std::size_t>(i / kFine)];
         cv::Mat(1, fine, CV_64F, sharp.data()).copyTo(fine_);
         if (blur_px > 0) cv::GaussianBlur(fine_, fine_, cv::Size(0, 0), blur_px * kFine, 1e-6, cv::BORDER_CONSTANT);
     }
@@ -186,7 +188,8 @@ Truth truth_of(const Room& room, const Optics& camera) {
                          samples[i].v < static_cast<float>(room.projector.height) - 0.5f;
         const auto hit = room.surface(camera.eye(), directions[i]);
         truth.code.push_back(lit ? Eigen::Vector2d(samples[i].u, samples[i].v) : Eigen::Vector2d(kNaN, kNaN));
-        truth.point.push_back(hit ? Eigen::Vector3d(camera.eye() + hit->distance * directions[i]) : Eigen::Vector3d(kNaN, kNaN, kNaN));
+        truth.point.push_back(hit ? Eigen::Vector3d(camera.eye() + hit->distance * directions[i])
+                                  : Eigen::Vector3d(kNaN, kNaN, kNaN));
     }
     return truth;
 }
@@ -208,7 +211,9 @@ std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const 
         for (int i = 0; i < length; ++i)
             values.push_back(std::pow((pattern.along_rows ? picture.at(0, i) : picture.at(i, 0))[1] / 255.0, light.gamma));
         const Profile profile(values, light.projector_blur_px);
-        const Profile edge(std::vector<double>(static_cast<std::size_t>(pattern.along_rows ? stripes.width : stripes.height), 1.0), light.projector_blur_px);
+        const Profile edge(
+            std::vector<double>(static_cast<std::size_t>(pattern.along_rows ? stripes.width : stripes.height), 1.0),
+            light.projector_blur_px);
         cv::Mat seen(camera.height, camera.width, CV_32F);
         auto* pixel = seen.ptr<float>();
         for (std::size_t i = 0; i < samples[0].size(); ++i) {

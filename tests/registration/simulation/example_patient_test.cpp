@@ -37,7 +37,8 @@ TEST(ExamplePatient, CarriesSixMarkersOffThePlan) {
     const TrueSurface skin(volume, settings.skin_threshold_hu);
     const Vector3d front(skin.middle_in_ct().x(), skin.low_in_ct().y(), skin.low_in_ct().z() + 105);
     std::vector<Vector3d> plan;
-    for (const Vector3d& way : {Vector3d(0, 0, 0), Vector3d(20, 0, 0), Vector3d(0, 0, 20)}) plan.push_back(skin.nearest(front + way).p_in_ct);
+    for (const Vector3d& way : {Vector3d(0, 0, 0), Vector3d(20, 0, 0), Vector3d(0, 0, 20)})
+        plan.push_back(skin.nearest(front + way).p_in_ct);
     const SimulatedRig rig(volume, plan, settings);
     const auto& markers = rig.true_markers_in_ct();
     ASSERT_GE(markers.size(), 6U);

@@ -98,7 +98,9 @@ TEST_P(Picture, ALitProjectorPixelIsSeenWhereOpenCvSays) {
         const auto cosine = [&](const Vector3d& from) { return n.dot((from - in_rig(light->p_in_ct)).normalized()); };
         if (cosine(eye) < 0.6) continue;
         const auto& markers = rig().true_markers_in_ct();  // their edges would pull the centroid
-        if (std::any_of(markers.begin(), markers.end(), [&](const Vector3d& m) { return (m - light->p_in_ct).norm() < 12; })) continue;
+        if (std::any_of(markers.begin(), markers.end(),
+                        [&](const Vector3d& m) { return (m - light->p_in_ct).norm() < 12; }))
+            continue;
         for (const auto* side : {&calibration.left_camera, &calibration.right_camera}) {
             if (cosine(side->centre_in_rig()) < 0.6) continue;
             const bool left = side == &calibration.left_camera;
@@ -181,7 +183,9 @@ TEST_P(Picture, WhatTheHeadHidesFromTheProjectorIsInShadow) {
     for (int i = 0; i < 30000; ++i) {
         const Vector3d s = rig().nearest_true_skin(95 * Vector3d(unit(random), unit(random), unit(random)).normalized());
         const Vector2d in_left = opencv_pixel(calibration.left_camera, in_rig(s));
-        if (in_left.x() < 5 || in_left.y() < 5 || in_left.x() > white.left.width - 6 || in_left.y() > white.left.height - 6) continue;
+        if (in_left.x() < 5 || in_left.y() < 5 || in_left.x() > white.left.width - 6 ||
+            in_left.y() > white.left.height - 6)
+            continue;
         if (dark.left.at(static_cast<int>(std::lround(in_left.x())), static_cast<int>(std::lround(in_left.y()))) < 4) continue;
         const auto first = surface.first_hit(eye_in_ct, (s - eye_in_ct).normalized());
         if (!first || (first->p_in_ct - s).norm() > 0.3) continue;  // the camera itself does not see it

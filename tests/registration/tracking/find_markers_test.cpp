@@ -145,7 +145,7 @@ GrayImage clutter(unsigned seed) {
         cv::ellipse(m, p, {24, 9}, 0, 0, 360, cv::Scalar(205), cv::FILLED, cv::LINE_AA);
         cv::ellipse(m, p, {9, 9}, 0, 0, 360, cv::Scalar(40), cv::FILLED, cv::LINE_AA);
     }
-    for (int k = 0; k < 5; ++k) {                                                                                  // squares on white
+    for (int k = 0; k < 5; ++k) {  // squares on white
         const cv::Point p = place();
         cv::rectangle(m, {p.x - 18, p.y - 18, 36, 36}, cv::Scalar(200), cv::FILLED);
         cv::rectangle(m, {p.x - 8, p.y - 8, 16, 16}, cv::Scalar(30), cv::FILLED);
@@ -155,9 +155,9 @@ GrayImage clutter(unsigned seed) {
         cv::ellipse(m, p, {18, 18}, rng.uniform(0, 360), 0, 220, cv::Scalar(200), cv::FILLED, cv::LINE_AA);
         cv::ellipse(m, p, {9, 9}, 0, 0, 360, cv::Scalar(30), cv::FILLED, cv::LINE_AA);
     }
-    cv::rectangle(m, {560, 380, 184, 196}, cv::Scalar(210), cv::FILLED);                                           // a white drape,
+    cv::rectangle(m, {560, 380, 184, 196}, cv::Scalar(210), cv::FILLED);  // a white drape,
     ellipse({650, 470}, 9, 9, 30);                                                                                 // with a hole
-    for (int k = 0; k < 5; ++k) cv::circle(m, place(), 12, cv::Scalar(230), 3, cv::LINE_AA);                       // drawn boreholes
+    for (int k = 0; k < 5; ++k) cv::circle(m, place(), 12, cv::Scalar(230), 3, cv::LINE_AA);  // drawn boreholes
     cv::GaussianBlur(m, m, {0, 0}, 0.8);
     cv::Mat noise(m.size(), CV_16S), sum;
     rng.fill(noise, cv::RNG::NORMAL, 0, 2);

@@ -126,7 +126,8 @@ TEST(PosePredictor, PredictsNothingBeforeAMeasurementAndNothingPastItsReach) {
 TEST(PosePredictor, CarriesNoVelocityAcrossAGap) {
     std::mt19937 random(1);
     PosePredictor predictor;
-    for (int k = 0; k < 60; ++k) predictor.add(measured(head_move({0, 0, 0}, {0.8 * k, 0, 0}), k * kFrameS, random), head_centre());
+    for (int k = 0; k < 60; ++k)
+        predictor.add(measured(head_move({0, 0, 0}, {0.8 * k, 0, 0}), k * kFrameS, random), head_centre());
     const TrackedPose after = measured(head_move({0, 0, 0}, {48, 0, 0}), 59 * kFrameS + 0.2, random);
     predictor.add(after, head_centre());
     EXPECT_NEAR(off_mm(*predictor.rig_from_patient_at(after.at + milliseconds(100)), *after.rig_from_patient), 0, 1e-9);

@@ -62,7 +62,8 @@ TEST(TrackingMutations, ATransposedCameraRotationIsRefused) {
 
 TEST(TrackingMutations, ACameraKnockedByHalfADegreeIsRefused) {
     RigCalibration mutant = paper_rig();
-    mutant.right_camera.device_from_rig = Eigen::AngleAxisd(0.0087, Eigen::Vector3d::UnitX()) * mutant.right_camera.device_from_rig;
+    mutant.right_camera.device_from_rig =
+        Eigen::AngleAxisd(0.0087, Eigen::Vector3d::UnitX()) * mutant.right_camera.device_from_rig;
     EXPECT_FALSE(track_with(mutant, paper_rig()).pose);
 }
 

@@ -231,8 +231,11 @@ TEST(PatientTracker, WithoutMarkersHasNoReferenceAndSaysSo) {
 TEST_P(BothOptics, TimeOfAFrame) {
     Tracked t(rig());
     const StereoFrame frame = render_frame(t.rig, stickers_in_rig(), {}, milliseconds(17), t.random);
-    const StereoFrame nothing{GrayImage(frame.left.width, frame.left.height, 90), GrayImage(frame.left.width, frame.left.height, 90),
-                              milliseconds(18), {}, 0};
+    const StereoFrame nothing{GrayImage(frame.left.width, frame.left.height, 90),
+                              GrayImage(frame.left.width, frame.left.height, 90),
+                              milliseconds(18),
+                              {},
+                              0};
     std::vector<double> followed, searched;
     const auto timed = [&](const StereoFrame& f, std::vector<double>& ms) {
         const std::clock_t start = std::clock();
