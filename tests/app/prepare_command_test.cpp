@@ -1,0 +1,135 @@
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/on_example_patient.h"
+#include "tests/planning_io/synthetic_series.h"
+
+namespace planlight::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+TEST_F(CommandsTest, PrepareMakesACaseThatSaysWhatItHolds) {
+    const json result = json::parse(prepared().out);
+    EXPECT_EQ(result["plan_items"], 6);
+    // An adult head down to the upper lip: 2 to 5 litres.
+    EXPECT_GT(result["body_ml"].get<double>(), 2000);
+    EXPECT_LT(result["body_ml"].get<double>(), 5000);
+    EXPECT_TRUE(fs::exists(root() / "case" / "case.json"));
+}
+
+TEST_F(CommandsTest, PrepareEndsWithAReportThatNeedsNothingElse) {
+    prepared();
+    const std::string page = read_text(root() / "case" / "report.html");
+    std::size_t pictures = 0;
+    for (auto at = page.find("data:image/png;base64,"); at != std::string::npos;
+         at = page.find("data:image/png;base64,", at + 1))
+        ++pictures;
+    EXPECT_EQ(pictures, 7u) << "three slices, the head from four sides";
+    EXPECT_EQ(page.find("://"), std::string::npos) << "nothing comes from a network";
+    const json report = read_json(root() / "case" / "report.json");
+    EXPECT_EQ(report["case"], json::parse(prepared().out)["case"]);
+    ASSERT_EQ(report["items"].size(), 6u);
+    for (const auto& item : report["items"]) EXPECT_LT(item["distance_to_skin_mm"].get<double>(), 10) << item["name"];
+}
+
+TEST_F(CommandsTest, TheExamplePlanRaisesNoWarningOnItsPatient) {
+    for (const auto& warning : json::parse(prepared().out)["warnings"])
+        for (const char* item : {"Osteotomy", "B1", "B2", "B3", "B4", "T1"})
+            EXPECT_EQ(warning.get<std::string>().find(item), std::string::npos) << warning;
+}
+
+TEST_F(CommandsTest, PlanListsChecksAndConverts) {
+    prepared();
+    std::ofstream(root() / "t.csv") << "name,ex,ey,ez,tx,ty,tz,diameter_mm\nT1,-139.68,190.04,120.85,-132.49,134.29,99.87,2.5\n";
+    expect_one_clear_sentence(run_planlight("plan t.csv --case case", root()), 3, "does not say its coordinate system");
+    expect_one_clear_sentence(run_planlight("plan t.csv --frame LPS --case case", root()), 3, "T1");
+    const auto run = run_planlight("plan t.csv --frame RAS --case case --out t.mrk.json --json", root());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const json item = json::parse(run.out)["items"][0];
+    EXPECT_EQ(item["kind"], "trajectory");
+    EXPECT_LT(item["to_skin_mm"].get<double>(), 3);          // the example plan's own entry
+    EXPECT_GT(item["left_of_middle_mm"].get<double>(), 10);  // at x = 139.68, the head's middle near 124
+    const auto position = read_json(root() / "t.mrk.json")["markups"][0]["controlPoints"][0]["position"];
+    EXPECT_EQ(position[0], 139.68);
+    // An InVesalius project has no frame of reference: no RTSTRUCT can be written for it.
+    expect_one_clear_sentence(run_planlight("plan t.mrk.json --case case --out t.dcm", root()), 3, "frame of reference");
+    EXPECT_FALSE(fs::exists(root() / "t.dcm"));
+    ASSERT_EQ(run_planlight("plan " + plan() + " --case case --out all.vtp", root()).exit_code, 0);
+    const auto again = run_planlight("plan all.vtp --case case --json", root());
+    ASSERT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_EQ(json::parse(again.out)["items"].size(), 6U);
+}
+
+TEST_F(CommandsTest, AnotherProgramsSurfaceCanBeProjectedOn) {
+    prepared();
+    // The case's own skin, given back as a surface: the same case, without a segmentation.
+    const std::string prepare = "prepare " + patient() + " --plan " + plan();
+    const auto run = run_planlight(prepare + " --surface case/skin.ply --out on_skin --json", root());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const json own = json::parse(prepared().out), result = json::parse(run.out);
+    EXPECT_EQ(result["skin"], own["skin"]);
+    EXPECT_EQ(result["case"], own["case"]);
+    EXPECT_EQ(run_planlight("review on_skin --picture on_skin.png", root()).exit_code, 0);
+    // The same with the frame not said, said wrongly, and said rightly.
+    std::string ply = read_text(root() / "case" / "skin.ply");
+    ply.replace(ply.find("SPACE=LPS"), 9, "no space ");
+    std::ofstream(root() / "unsaid.ply", std::ios::binary) << ply;
+    expect_one_clear_sentence(run_planlight(prepare + " --surface unsaid.ply --out never", root()), 3,
+                              "does not say its coordinate system");
+    expect_one_clear_sentence(run_planlight(prepare + " --surface unsaid.ply --surface-frame RAS --out never", root()), 3,
+                              "outside the volume");
+    EXPECT_EQ(run_planlight(prepare + " --surface unsaid.ply --surface-frame LPS --out said", root()).exit_code, 0);
+    EXPECT_FALSE(fs::exists(root() / "never"));
+}
+
+TEST_F(CommandsTest, ACaseOnAGivenSurfaceSpeaksOfNoThreshold) {
+    prepared();
+    const CommandRun run = run_planlight("prepare " + patient() + " --plan " + plan() +
+                                             " --surface case/skin.ply --out on_surface --json", root());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const json report = read_json(root() / "on_surface" / "report.json");
+    EXPECT_TRUE(report["surface_given"].get<bool>());
+    EXPECT_FALSE(report.contains("threshold"));
+    const std::string html = read_text(root() / "on_surface" / "report.html");
+    EXPECT_EQ(html.find("Skin threshold"), std::string::npos);
+    EXPECT_NE(html.find("as given"), std::string::npos);
+    EXPECT_GT(json::parse(prepared().out)["edge_sigma_mm"].get<double>(), 0);
+}
+
+/// Whether any file of the folder holds the text, or is named so.
+bool folder_says(const fs::path& folder, const std::string& text) {
+    for (const auto& entry : fs::recursive_directory_iterator(folder))
+        if (read_text(entry.path()).find(text) != std::string::npos ||
+            entry.path().filename().string().find(text) != std::string::npos)
+            return true;
+    return false;
+}
+
+TEST_F(CommandsTest, AnAnonymousCaseHoldsNoNameIdOrPathOfTheSeries) {
+    const SeriesLook look{.patient = "Mustermann^Erika", .patient_id = "ID-4711", .description = "Kopf duenn"};
+    write_series(synthetic_series({}, look), root() / "Mustermann");
+    std::ofstream(root() / "hole.mrk.json")
+        << R"({"@schema": "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/markups-schema-v1.0.3.json#",
+        "markups": [{"type": "Fiducial", "coordinateSystem": "LPS", "coordinateUnits": "mm",
+        "controlPoints": [{"id": "1", "label": "B1", "position": [71, 4, 20], "description": "diameter_mm=7 depth_mm=6", "positionStatus": "defined"}]}]})";
+    const std::string frame_uid = "1.2.826.0.1.3680043.9.9999.5";
+    const std::vector<std::string> identity = {"Mustermann", "Erika",   "ID-4711",      "Kopf duenn",
+                                               look.uid,     frame_uid, root().string()};
+    const auto named = run_planlight("prepare Mustermann --plan hole.mrk.json --voxel-mm 4 --out named_case --json", root());
+    ASSERT_EQ(named.exit_code, 0) << named.err;
+    EXPECT_TRUE(folder_says(root() / "named_case", look.uid)) << "the search finds what is there";
+    const auto run = run_planlight(
+        "prepare Mustermann --plan hole.mrk.json --voxel-mm 4 --out anonymous_case --anonymous --json", root());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    for (const auto& text : identity) {
+        EXPECT_FALSE(folder_says(root() / "anonymous_case", text)) << text;
+        const bool is_uid = text == look.uid || text == frame_uid;  // no case holds more than these
+        EXPECT_EQ(folder_says(root() / "named_case", text), is_uid) << text;
+        EXPECT_EQ(run.out.find(text), std::string::npos) << text;
+    }
+}
+
+}  // namespace
+}  // namespace planlight::test
