@@ -83,7 +83,7 @@ struct RegisterOptions {
     Path slicer_transform;  ///< to write; empty: not wanted
     std::string unit = "mm";
     bool in_rig = false;
-    std::vector<double> viewpoint_in_rig;  ///< 3 numbers, mm; for a cloud without normals
+    std::vector<double> viewpoint_in_rig;  ///< 3 numbers, mm; empty: not said
     std::string icp = "signed-distance";
     unsigned seed = 1;
     bool json = false;

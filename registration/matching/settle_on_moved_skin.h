@@ -13,6 +13,9 @@ struct MovedSkinSettings {
     double caution = 3;             ///< on the variance: no skin is quite a Gaussian field of one length
     double pulled_share = 0.8;      ///< of the movement seen: how far skin may be pulled along unseen, one sigma
     double offset_share = 0.3;      ///< the same, of the offset
+    /// Skin is taken to move in proportion to its thickness over the bone and this much, where the table knows the
+    /// thickness; infinite: alike everywhere.
+    double thickness_floor_mm = 5;
     double least_movement_mm = 0.1; ///< that no residual could show, one sigma
 };
 
