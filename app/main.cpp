@@ -198,8 +198,16 @@ void add_project(CLI::App& app, ProjectOptions& o) {
 }
 
 void add_review(CLI::App& app, ReviewOptions& o) {
-    auto* sub = command(app, "review", "Look at a prepared case: skin and plan in the operator window", "review case");
+    auto* sub = command(app, "review", "Look at a prepared case, or at a match on it, in the operator window",
+                        "review case --registration registration.json --cloud cloud.ply");
     sub->add_option("case", o.case_folder, "Case folder")->required();
+    auto* match = sub->add_option("--registration", o.registration, "A match to look at (registration.json of `register`)");
+    sub->add_option("--cloud", o.cloud, "The scan it was found with (.ply, mm), shown on the skin, coloured by distance")
+        ->needs(match);
+    sub->add_option("--view", o.view, "before or after the fine match, or error: how far off the match may be")
+        ->check(CLI::IsMember({"before", "after", "error"}))
+        ->capture_default_str()
+        ->needs(match);
     sub->add_option("--picture", o.picture, "Write a picture (.png) instead of opening a window; needs no display");
     json_flag(sub, o.json);
 }

@@ -83,6 +83,7 @@ void Session::check_still_there() {
 
 const RegistrationResult& Session::find_patient() {
     if (!scanned_) throw CheckFailedError("there is no scan to find the patient in", "Scan first.");
+    settings_.overlay.operator_confirmed = false;  // what was looked at was another match
     RegistrationSettings settings = settings_.registration;
     settings.viewpoint_in_rig = rig_.projector.centre_in_rig();
     registration_ = register_patient(scanned_->clean.kept, case_.lut, settings);

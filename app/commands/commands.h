@@ -104,7 +104,8 @@ struct ProjectOptions {
 int run_project(const ProjectOptions& options);
 
 struct ReviewOptions {
-    Path case_folder, picture;
+    Path case_folder, picture, registration, cloud;
+    std::string view = "after";  ///< before, after, error
     bool json = false;
 };
 int run_review(const ReviewOptions& options);

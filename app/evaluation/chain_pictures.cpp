@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/live/case_model.h"
 #include "app/live/scene_of_session.h"
 #include "app/windows/scene_view.h"
 
@@ -124,6 +125,12 @@ void ChainPictures::take_match(const Session& session) {
         fmt::format("Residual {:.2f} mm rms, {:.0f} % of the points on the skin (Fig. 3).", found.residual_rms_mm,
                     100 * found.inlier_fraction),
         side_by_side(before, render_scene(scene, view, kSceneWidth, kSceneHeight)));
+    scene.cloud = nullptr;
+    scene.cloud_distance_mm = nullptr;
+    scene.skin_error_mm = predicted_on_skin_mm(case_.skin, found);
+    add("How far off the match may be",
+        "95 % bound at every point of the skin, from how far the skin moved since the CT as the residuals tell it.",
+        render_scene(scene, view, kSceneWidth, kSceneHeight));
 }
 
 void ChainPictures::take_light(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update,
