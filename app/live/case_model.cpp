@@ -84,12 +84,13 @@ std::shared_ptr<const std::vector<float>> predicted_on_skin_mm(const TriangleMes
 }
 
 std::shared_ptr<const std::vector<float>> distances_to_skin_mm(const PointCloud& cloud, const RigidTransform& ct_from_rig,
-                                                               const SkinLut& lut) {
+                                                               const SkinLut& lut, double skin_offset_mm) {
     auto distances = std::make_shared<std::vector<float>>();
     distances->reserve(cloud.size());
     for (const auto& p_in_rig : cloud.points_in_rig) {
         const auto distance = lut.signed_distance(ct_from_rig * p_in_rig);
-        distances->push_back(distance ? static_cast<float>(std::abs(distance->mm)) : std::numeric_limits<float>::infinity());
+        distances->push_back(distance ? static_cast<float>(std::abs(distance->mm - skin_offset_mm))
+                                     : std::numeric_limits<float>::infinity());
     }
     return distances;
 }
@@ -128,8 +129,9 @@ void show_match(const Case& the_case, const RegistrationResult& found, const std
     model.scene.ct_from_rig = found.patient_from_ct.inverse();
     model.scene.cloud = cloud;
     if (cloud) {
-        model.scene.cloud_distance_mm = distances_to_skin_mm(*cloud, model.scene.ct_from_rig, the_case.lut);
-        fit.before_distance_mm = distances_to_skin_mm(*cloud, fit.before_ct_from_rig, the_case.lut);
+        const double offset_mm = model.scene.skin_offset_mm = found.skin_offset_mm;
+        model.scene.cloud_distance_mm = distances_to_skin_mm(*cloud, model.scene.ct_from_rig, the_case.lut, offset_mm);
+        fit.before_distance_mm = distances_to_skin_mm(*cloud, fit.before_ct_from_rig, the_case.lut, offset_mm);
     }
     model.fit = fit;
 }

@@ -40,6 +40,7 @@ struct SceneModel {
     std::shared_ptr<const std::vector<SceneMarker>> markers;
     std::shared_ptr<const PlanDrawing> plan;
     std::shared_ptr<const std::vector<LightLine>> light;          ///< drawn white, above the plan
+    double skin_offset_mm = 0;               ///< the distances are counted from this far outside of the CT's skin
     double largest_distance_mm = 1.5;                             ///< the red end of the colour scale
     /// Per vertex of the skin, how far off it may be (95 %), mm; null: the skin has its own colour.
     std::shared_ptr<const std::vector<float>> skin_error_mm;
