@@ -204,6 +204,21 @@ Plausible judge(const Problem& problem, const MatrixXd& alike, double own, const
     return result;
 }
 
+double median_size(const VectorXd& values) {
+    std::vector<double> sizes;
+    for (const double v : values) sizes.push_back(std::abs(v));
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    return *middle;
+}
+
+/// Whether the patches would lie much farther from the skin after the step than before it.
+bool leaves_the_skin(const Problem& problem, const Vector6d& step, double offset_mm) {
+    constexpr double kMuch = 2, kAlways_mm = 0.2;
+    const VectorXd after_mm = problem.residual_mm + problem.J * step - VectorXd::Constant(problem.residual_mm.size(), offset_mm);
+    return median_size(after_mm) > kMuch * median_size(problem.residual_mm) + kAlways_mm;
+}
+
 }  // namespace
 
 MovedSkinPose settle_on_moved_skin(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
@@ -255,6 +270,12 @@ MovedSkinPose settle_on_moved_skin(const PointCloud& cloud, const SkinLut& lut, 
     result.offset_mm /= sum;
     result.covariance.centre_in_ct = centre;
     result.covariance.of_turn_and_shift = settings.caution * (covariance / sum - step * step.transpose());
+    if (leaves_the_skin(problem, step, result.offset_mm)) {
+        // Long waves that the pose takes up nearly whole can be had of any height: then the residuals tell nothing of it.
+        result.covariance.of_turn_and_shift += step * step.transpose();
+        step.setZero();
+        result.offset_mm = 0;
+    }
     const double pulled_mm = settings.pulled_share * result.movement_mm,
                  from_offset_mm = settings.offset_share * result.offset_mm;
     const double unseen_mm2 = pulled_mm * pulled_mm + from_offset_mm * from_offset_mm +
