@@ -133,10 +133,13 @@ struct Stage {
 
 std::vector<Stage> stages_of(const IcpSettings& settings, const Sample& sample) {
     const double middle_mm = std::sqrt(settings.first_scale_mm * settings.last_scale_mm);
-    const int third = std::max(settings.max_iterations / 3, 1);
+    const int iterations = settings.max_iterations > 0                          ? settings.max_iterations
+                           : settings.mode == IcpSettings::Mode::closest_point ? 300
+                                                                                : 60;
+    const int third = std::max(iterations / 3, 1);
     return {{sample.few, settings.first_scale_mm, middle_mm, third, 0.02},
             {sample.some, middle_mm, settings.last_scale_mm, third, 0.005},
-            {sample.points.size(), settings.last_scale_mm, settings.last_scale_mm, std::max(settings.max_iterations - 2 * third, 1),
+            {sample.points.size(), settings.last_scale_mm, settings.last_scale_mm, std::max(iterations - 2 * third, 1),
              settings.stop_mm}};
 }
 

@@ -11,7 +11,7 @@ struct IcpSettings {
         signed_distance,  ///< point to plane on the trilinear signed distance, annealed robust weights (default)
         closest_point,    ///< the paper's: point to the skin point behind the table's pointer (Besl & McKay 1992)
     } mode = Mode::signed_distance;
-    int max_iterations = 60;
+    int max_iterations = 0;  ///< 0: 60, and 300 for closest points, which crawl
     double first_scale_mm = 5, last_scale_mm = 0.5;  ///< of the robust weight, annealed
     double max_pair_mm = 15;                         ///< a point farther from the skin takes no part
     double stop_mm = 1e-4;                           ///< largest movement of a point in the last step

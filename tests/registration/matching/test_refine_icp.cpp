@@ -44,7 +44,6 @@ TEST(LutIcp, ClosestPointsRecoverThePoseMoreLoosely) {
         const PointCloud cloud = spoiled(moved(head_view(static_cast<View>(i), 200, 8000, i), truth.inverse()), 0.3, 0.05, i);
         IcpSettings settings;
         settings.mode = IcpSettings::Mode::closest_point;
-        settings.max_iterations = 300;
         const RigidTransform start = disturbed(truth, cloud, i);
         const double before = target_error_mm(start, truth, cloud);
         const double after = target_error_mm(refine_icp(cloud, lut, start, settings).ct_from_rig, truth, cloud);
