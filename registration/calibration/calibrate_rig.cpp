@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "registration/calibration/judge_calibration.h"
+#include "registration/calibration/judge_pictures.h"
 #include "registration/calibration/start_values.h"
 
 namespace planlight {

@@ -5,13 +5,6 @@
 
 namespace planlight {
 
-/// What is wrong with the pictures themselves.
-std::optional<Refusal> judge_pictures(const std::vector<PoseObservation>& poses, const BoardSpec& board,
-                                      const CalibrationSettings& settings);
-
-/// What is wrong with the poses of the board: too alike, flat on.
-std::optional<Refusal> judge_poses(const RigEstimate& rig, const BoardSpec& board, const CalibrationSettings& settings);
-
 /// Cameras adjusted on their corners: each alone, and both together. Says which one does not fit, or that they do not fit
 /// each other (mirrored, swapped, moved), and which poses.
 std::optional<Refusal> judge_cameras(const std::vector<PoseObservation>& poses, const BoardSpec& board,
