@@ -164,6 +164,7 @@ void add_register(CLI::App& app, RegisterOptions& o) {
     sub->add_option("--pairs", o.pairs,
                     "Landmarks (.csv: name, ct and rig coordinates): they check the cloud's match, or, without a "
                     "cloud, are the match");
+    sub->add_option("--certificate", o.certificate, "Write a page (.html) with what the match is worth, in words and pictures");
     sub->add_option("--out", o.out, "registration.json to write")->required();
     sub->add_option("--slicer", o.slicer_transform, "Transform for 3D Slicer to write (.tfm): it lays the cloud on the CT");
     sub->add_option("--icp", o.icp, "Fine match: signed-distance, or closest-point as in the paper")
@@ -217,6 +218,7 @@ void add_session(CLI::App& app, SessionOptions& o) {
                         "session case --volume Cranium.inv3 --projector HDMI-2");
     sub->add_option("case", o.case_folder, "Case folder")->required();
     sub->add_option("--volume", o.volume, "The simulated patient: the volume that the case was made from")->required();
+    sub->add_option("--keep", o.keep, "Folder that keeps every match and its scan (default: CASE/registrations)");
     preset_option(sub, o.preset);
     sub->add_option(
         "--projector", o.projector_monitor,

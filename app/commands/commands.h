@@ -81,6 +81,7 @@ struct RegisterOptions {
     Path case_folder, cloud, out;
     Path pairs;             ///< landmarks: a check of the cloud's match, or, without a cloud, the match
     Path slicer_transform;  ///< to write; empty: not wanted
+    Path certificate;       ///< page to write; empty: not wanted
     std::string unit = "mm";
     bool in_rig = false;
     std::vector<double> viewpoint_in_rig;  ///< 3 numbers, mm; empty: not said
@@ -112,6 +113,7 @@ int run_review(const ReviewOptions& options);
 
 struct SessionOptions {
     Path case_folder, volume;
+    Path keep;  ///< folder for every match; empty: CASE/registrations
     std::string preset = "paper", projector_monitor, operator_monitor;
     unsigned seed = 1;
     double speed_mm_s = 20;

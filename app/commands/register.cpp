@@ -1,10 +1,12 @@
 #include <fmt/format.h>
 
 #include <iostream>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "app/commands/commands.h"
 #include "app/live/case_model.h"
+#include "app/report/registration_certificate.h"
 #include "planning_io/case_folder.h"
 #include "planning_io/mesh_file.h"
 #include "planning_io/point_pairs_file.h"
@@ -36,7 +38,7 @@ PointCloud cloud_of(const RegisterOptions& options) {
     return with_normals(cloud, Eigen::Vector3d(options.viewpoint_in_rig.data()));
 }
 
-RegistrationResult match(const RegisterOptions& options, const Case& the_case) {
+RegistrationResult match(const RegisterOptions& options, const Case& the_case, std::shared_ptr<const PointCloud>& cloud) {
     if (options.cloud.empty() && options.pairs.empty())
         throw Error(ExitCode::usage, "neither --cloud nor --pairs is given", "Give the scan, landmarks, or both.");
     const std::vector<PointPair> pairs = options.pairs.empty() ? std::vector<PointPair>{} : read_point_pairs(options.pairs);
@@ -45,7 +47,8 @@ RegistrationResult match(const RegisterOptions& options, const Case& the_case) {
     settings.initial.seed = options.seed;
     if (options.icp == "closest-point") settings.icp.mode = IcpSettings::Mode::closest_point;
     if (!options.viewpoint_in_rig.empty()) settings.viewpoint_in_rig = Eigen::Vector3d(options.viewpoint_in_rig.data());
-    RegistrationResult result = register_patient(cloud_of(options), the_case.lut, settings);
+    cloud = std::make_shared<PointCloud>(cloud_of(options));
+    RegistrationResult result = register_patient(*cloud, the_case.lut, settings);
     check_with_point_pairs(pairs, result);
     return result;
 }
@@ -54,11 +57,13 @@ RegistrationResult match(const RegisterOptions& options, const Case& the_case) {
 
 int run_register(const RegisterOptions& options) {
     const Case the_case = read_case(options.case_folder);
-    const RegistrationResult result = match(options, the_case);
+    std::shared_ptr<const PointCloud> cloud;
+    const RegistrationResult result = match(options, the_case, cloud);
     write_registration(result, options.out);
     if (!options.slicer_transform.empty() && result.verdict != Verdict::no)
         write_slicer_transform(result.patient_from_ct, options.slicer_transform);
     const CaseDrawing drawing(the_case);
+    if (!options.certificate.empty()) write_certificate_html(the_case, drawing, result, cloud, options.certificate);
     const std::vector<double> predicted =
         result.verdict == Verdict::no ? std::vector<double>{} : predicted_errors_mm(the_case.plan, result);
     nlohmann::json items = nlohmann::json::array();

@@ -8,6 +8,7 @@
 
 #include "app/live/case_model.h"
 #include "app/live/scene_of_session.h"
+#include "app/report/registration_certificate.h"
 #include "planning_io/plan_file.h"
 #include "planning_io/types/error.h"
 
@@ -226,6 +227,7 @@ void LiveSession::find_patient(Session& session) {
         shown.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
         shown.track = {found.verdict == Verdict::yes, found.verdict == Verdict::yes ? "" : "look at the fit first"};
     }
+    shown.evidence.push_back(keep(found, session.scanned()->clean.kept));
     change_model([&](OperatorModel& m) { m = std::move(shown); });
     set_steps(3, found.verdict == Verdict::yes ? StepState::done : StepState::attention);
     if (found.verdict == Verdict::yes) {
@@ -236,6 +238,16 @@ void LiveSession::find_patient(Session& session) {
                    found.verdict == Verdict::ask ? "Not sure: look whether the scan fits the skin, or scan again."
                                                  : "The patient was not found: scan again.",
                    found.reasons);
+    }
+}
+
+/// Keeps the match and its scan; what became of it, in a sentence. A full disk does not end a session.
+std::string LiveSession::keep(const RegistrationResult& found, const PointCloud& cloud) const {
+    if (settings_.keep_matches_in.empty()) return "This match is not kept.";
+    try {
+        return "Kept in " + keep_match(found, &cloud, settings_.keep_matches_in).string() + ".";
+    } catch (const std::exception& fault) {
+        return std::string("This match could not be kept: ") + fault.what() + ".";
     }
 }
 

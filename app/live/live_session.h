@@ -3,6 +3,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <deque>
+#include <filesystem>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -20,6 +21,7 @@ struct LiveSettings {
     simulation::Preset preset = simulation::Preset::paper;
     unsigned seed = 1;
     double speed_mm_s = 20;  ///< peak speed of the head while it is tracked
+    std::filesystem::path keep_matches_in;  ///< every match and its scan in a folder of its own there; empty: not kept
 };
 
 /// A session on the simulated room that runs in a thread of its own, so that the windows answer while it computes.
@@ -55,6 +57,7 @@ private:
     void scan(Session& session);
     void find_patient(Session& session);
     void confirm(Session& session);
+    std::string keep(const RegistrationResult& found, const PointCloud& cloud) const;
     void follow(Session& session, simulation::SimulatedRig& rig);
     void show_update(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update);
     void set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details = {});

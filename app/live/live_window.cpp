@@ -125,7 +125,7 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
     OperatorWindow window(window_settings);
     std::unique_ptr<LightWindow> light;
     if (const std::string monitor = light_monitor(options); !monitor.empty()) light = std::make_unique<LightWindow>(monitor);
-    LiveSession session(volume, the_case, drawing, {options.preset, options.seed, options.speed_mm_s});
+    LiveSession session(volume, the_case, drawing, {options.preset, options.seed, options.speed_mm_s, options.keep_matches_in});
     Autoplay autoplay;
     Screenshots screenshots(options.screenshots);
     std::optional<std::chrono::steady_clock::time_point> projecting_since;

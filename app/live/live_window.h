@@ -18,6 +18,7 @@ struct LiveOptions {
     std::string operator_monitor;   ///< empty: the primary one
     bool autoplay = false;          ///< scan, register and track without a person
     double end_after_s = 0;         ///< of projecting, wall time; 0 = until the window is closed
+    std::filesystem::path keep_matches_in;  ///< folder for every match and its scan; empty = none
     std::filesystem::path screenshots;  ///< folder for a picture of the operator window a step; empty = none
 };
 

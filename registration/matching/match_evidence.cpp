@@ -33,6 +33,18 @@ std::string in_words(const Vector6d& scaled) {
     return (turns ? std::string("turn about the ") : std::string("slide along the ")) + kAxes[axis] + " axis";
 }
 
+/// What stands out so that this movement would be seen.
+std::string advice_against(const Vector6d& scaled) {
+    static const char* const kAgainstTurns[] = {"forehead and chin, or an ear", "both ears, or forehead and chin",
+                                                "the bridge of the nose or an ear"};
+    static const char* const kAgainstSlides[] = {"a side of the head", "the face, or the back of the head",
+                                                 "the chin, the brows or the crown"};
+    const bool turns = scaled.head<3>().norm() > scaled.tail<3>().norm();
+    int axis = 0;
+    (turns ? scaled.head<3>() : scaled.tail<3>()).cwiseAbs().maxCoeff(&axis);
+    return turns ? kAgainstTurns[axis] : kAgainstSlides[axis];
+}
+
 }  // namespace
 
 CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig, double inlier_distance_mm,
@@ -68,11 +80,13 @@ WeakestWay weakest_way(const PoseCovariance& covariance) {
     WeakestWay way;
     way.sigma_mm = std::numeric_limits<double>::infinity();
     way.in_words = "move freely";
+    way.advice = "more of the head";
     if (!covariance.known() || !covariance.of_turn_and_shift.allFinite()) return way;
     const Vector6d scale = (Vector6d() << Vector3d::Constant(kLever_mm), Vector3d::Ones()).finished();
     const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scale.asDiagonal() * covariance.of_turn_and_shift * scale.asDiagonal());
     way.sigma_mm = std::sqrt(std::max(solver.eigenvalues()(5), 0.0));
     way.in_words = in_words(solver.eigenvectors().col(5));
+    way.advice = advice_against(solver.eigenvectors().col(5));
     return way;
 }
 

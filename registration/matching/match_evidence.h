@@ -31,6 +31,7 @@ struct WeakestWay {
     double sigma_mm =
         0;  ///< one standard deviation of the movement 80 mm from the scan's centre; infinite when nothing is known
     std::string in_words;  ///< "turn about the head-foot axis"
+    std::string advice;    ///< what a further scan should show: "the bridge of the nose or an ear"
 };
 WeakestWay weakest_way(const PoseCovariance& covariance);
 

@@ -97,7 +97,8 @@ void judge_uniqueness(const RegistrationSettings& settings, const RegistrationRe
 void judge_free_space(const RegistrationSettings& settings, const RegistrationResult& result, Judgement& judgement) {
     if (!result.blocked_fraction) return;
     const double blocked = *result.blocked_fraction;
-    const std::string through = fmt::format("{:.0f} % of the scan was seen through what is body in the CT", 100 * blocked);
+    const std::string through =
+        fmt::format("{:.0f} % of the scan was seen through what is body in the CT, if the viewpoint is right", 100 * blocked);
     judgement.no_if(blocked > settings.far_too_many_blocked, through);
     judgement.ask_if(blocked > settings.max_blocked && blocked <= settings.far_too_many_blocked, through);
 }
@@ -174,8 +175,8 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
         fmt::format("the whole skin lies {:.1f} mm {} that of the CT: swollen, or not the threshold of the skin",
                     std::abs(settled.offset_mm), settled.offset_mm > 0 ? "outside" : "inside"));
     judgement.ask_if(weakest.sigma_mm > settings.max_weakest_sigma_mm,
-                     fmt::format("the patient could {} by {:.1f} mm unnoticed; scan more of the head", weakest.in_words,
-                                 weakest.sigma_mm));
+                     fmt::format("the patient could {} by {:.1f} mm unnoticed: scan {} as well", weakest.in_words,
+                                 weakest.sigma_mm, weakest.advice));
     return result;
 }
 

@@ -1,0 +1,82 @@
+#include "app/report/registration_certificate.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "app/live/case_model.h"
+#include "app/report/html_page.h"
+#include "app/windows/scene_view.h"
+#include "planning_io/mesh_file.h"
+#include "planning_io/recording_files.h"
+#include "planning_io/safe_write.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string verdict_html(const RegistrationResult& found) {
+    std::string html = found.verdict == Verdict::yes
+                           ? "<div class=\"verdict yes\">&#10003; Yes: the match may be used.</div>"
+                       : found.verdict == Verdict::ask
+                           ? "<div class=\"verdict no\">&#9888; Ask: look whether the scan fits the skin before it is used.</div>"
+                           : "<div class=\"verdict no\">&#10007; No: the patient was not found.</div>";
+    for (const std::string& reason : found.reasons) html += fmt::format("<p class=\"no\">{}</p>", html_escaped(reason));
+    return html;
+}
+
+std::string items_html(const OperatorModel& model) {
+    std::string html = "<table><tr><th>Plan item</th><th>may be off by (95 %)</th></tr>";
+    for (const PlanRow& row : model.rows) {
+        const bool known = row.predicted_error_mm.has_value();
+        const char* mark = !known                                           ? ""
+                           : *row.predicted_error_mm <= model.warn_above_mm ? "&#10003;"
+                           : *row.predicted_error_mm <= model.stop_above_mm ? "&#9888;"
+                                                                            : "&#10007;";
+        html += fmt::format("<tr><td>{}</td><td>{}</td></tr>", html_escaped(row.name),
+                            known ? fmt::format("{} {:.1f} mm", mark, *row.predicted_error_mm) : "not known");
+    }
+    return html + "</table>";
+}
+
+}  // namespace
+
+void write_certificate_html(const Case& the_case, const CaseDrawing& drawing, const RegistrationResult& found,
+                            const std::shared_ptr<const PointCloud>& cloud, const fs::path& file) {
+    constexpr int kWidth = 960, kHeight = 720;
+    OperatorModel model = model_of_case(the_case, drawing);
+    show_match(the_case, found, cloud, model);
+    std::string body = verdict_html(found);
+    for (const std::string& line : evidence_of(found)) body += fmt::format("<p>{}</p>", html_escaped(line));
+    if (found.verdict != Verdict::no) {
+        body += items_html(model);
+        const SceneView view = view_of_plan(drawing.drawing);
+        const auto picture = [&](FitView shown) { return render_scene(scene_of_fit(model, shown), view, kWidth, kHeight); };
+        std::vector<ReportPicture> pictures;
+        if (cloud) {
+            pictures.push_back({"Before the fine match", "The scan on the skin, coloured by its distance.", picture(FitView::before)});
+            pictures.push_back({"After it", "The same points. They must lie on the skin, above all round the plan.",
+                                picture(FitView::after)});
+        }
+        pictures.push_back({"How far off the match may be",
+                            "95 % bound at every point of the skin; deeper points may be further off.",
+                            picture(FitView::predicted_error)});
+        body += html_figures(pictures, file, 2);
+    }
+    write_safely(file, html_page("Match of case " + the_case.code, body));
+}
+
+fs::path keep_match(const RegistrationResult& found, const PointCloud* cloud, const fs::path& folder) {
+    fs::create_directories(folder);
+    fs::path kept;
+    for (int number = 1; kept.empty(); ++number) {
+        const fs::path wanted = folder / fmt::format("{:04d}", number);
+        if (fs::create_directory(wanted)) kept = wanted;  // false: it is there already
+    }
+    if (cloud) write_cloud(*cloud, kept / "cloud.ply");
+    write_registration(found, kept / "registration.json");
+    return kept;
+}
+
+}  // namespace planlight
