@@ -64,9 +64,7 @@ NormalEquations point_to_point_equations(std::span<const Vector3d> points_in_rig
         if (distance_mm > max_pair_mm) continue;
         ++result.used;
         const double w = tukey_weight(distance_mm, scale_mm);
-        const Vector3d r = x - centre_in_ct;
-        Eigen::Matrix<double, 3, 6> J;  // of x by (rotation vector, translation): -[r]x, I
-        J << 0, r.z(), -r.y(), 1, 0, 0, -r.z(), 0, r.x(), 0, 1, 0, r.y(), -r.x(), 0, 0, 0, 1;
+        const Eigen::Matrix<double, 3, 6> J = movement_by_twist(x - centre_in_ct);
         result.H.noalias() += w * J.transpose() * J;
         result.g.noalias() += w * J.transpose() * residual;
     }
