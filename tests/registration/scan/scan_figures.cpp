@@ -54,28 +54,35 @@ private:
     std::unordered_map<std::uint64_t, std::vector<std::size_t>> cubes_;
 };
 
-void split_error(const std::vector<Vector3d>& points, const std::vector<double>& errors, CloudFigures& figures) {
+/// The distances to the skin as their mean in small cubes and what scatters about it.
+void split_error(const std::vector<Vector3d>& points, const std::vector<double>& errors, const std::vector<bool>& facing,
+                 CloudFigures& figures) {
     constexpr double kCube_mm = 4;
     constexpr std::size_t kLeast = 6;
-    double squares = 0, free = 0, slow = 0, cubes = 0, sum = 0;
+    double squares = 0, squares_facing = 0, all = 0, all_facing = 0, slow = 0, cubes = 0, sum = 0;
     std::vector<double> sizes;
     const Cubes in_cubes(points, kCube_mm);
     for (const auto& [key, members] : in_cubes.all()) {
         if (members.size() < kLeast) continue;
         double mean = 0;
         for (const std::size_t i : members) mean += errors[i] / static_cast<double>(members.size());
-        const double widened = std::sqrt(static_cast<double>(members.size()) / static_cast<double>(members.size() - 1));
+        const double widened = static_cast<double>(members.size()) / static_cast<double>(members.size() - 1);
         for (const std::size_t i : members) {
-            squares += (errors[i] - mean) * (errors[i] - mean);
-            sizes.push_back(widened * std::abs(errors[i] - mean));
+            const double square = widened * (errors[i] - mean) * (errors[i] - mean);
+            squares += square;
+            ++all;
+            sizes.push_back(std::sqrt(square));
+            if (!facing[i]) continue;
+            squares_facing += square;
+            ++all_facing;
         }
-        free += static_cast<double>(members.size() - 1);
         slow += mean * mean;
         ++cubes;
     }
     for (const double e : errors) sum += e;
     figures.bias_mm = sum / std::max<double>(1, static_cast<double>(errors.size()));
-    figures.noise_mm = std::sqrt(squares / std::max(1.0, free));
+    figures.noise_mm = std::sqrt(squares_facing / std::max(1.0, all_facing));
+    figures.noise_all_mm = std::sqrt(squares / std::max(1.0, all));
     figures.noise_usual_mm = 1.4826 * median(sizes);
     figures.slow_mm = std::sqrt(slow / std::max(1.0, cubes));
 }
@@ -93,6 +100,12 @@ void judge_covariance(const PointCloud& cloud, const std::vector<double>& errors
     }
     figures.chi_square = sum / std::max<double>(1, static_cast<double>(squares.size()));
     figures.chi_square_median = median(squares) / 0.455;
+}
+
+/// Less than 65 degrees between the normal and the way to a device.
+bool faces(const CameraModel& device, const Vector3d& p_in_rig, const Vector3d& normal_in_rig) {
+    static const double least_cosine = std::cos(65 * M_PI / 180);
+    return normal_in_rig.dot((device.centre_in_rig() - p_in_rig).normalized()) > least_cosine;
 }
 
 bool on_sticker(const SimulatedRig& room, const Vector3d& p_in_ct) {
@@ -121,7 +134,12 @@ CloudFigures cloud_figures(const ScanResult& scan, const SimulatedRig& room, con
     CloudFigures figures;
     figures.points = cloud.size();
     const std::vector<double> errors = room.scan_errors_mm(cloud.points_in_rig, at);
-    split_error(cloud.points_in_rig, errors, figures);
+    const RigidTransform ct_from_rig = room.true_rig_from_ct(at).inverse();
+    std::vector<bool> facing;
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+        facing.push_back(faces(rig.projector, cloud.points_in_rig[i], cloud.normals_in_rig[i]) &&
+                         !on_sticker(room, ct_from_rig * cloud.points_in_rig[i]));
+    split_error(cloud.points_in_rig, errors, facing, figures);
     judge_covariance(cloud, errors, rig, figures);
     figures.completeness = completeness(cloud.points_in_rig, room, room.true_rig(), at);
     return figures;
@@ -130,7 +148,6 @@ CloudFigures cloud_figures(const ScanResult& scan, const SimulatedRig& room, con
 double completeness(const std::vector<Vector3d>& points_in_rig, const SimulatedRig& room, const RigCalibration& true_rig,
                     Instant at) {
     constexpr double kReach_mm = 2;
-    const double least_cosine = std::cos(65 * M_PI / 180);
     const Cubes cubes(points_in_rig, kReach_mm);
     const RigidTransform rig_from_ct = room.true_rig_from_ct(at);
     const int step = std::max(2, true_rig.projector.width / 240);
@@ -141,10 +158,9 @@ double completeness(const std::vector<Vector3d>& points_in_rig, const SimulatedR
             const auto light = room.true_light(Vector2d(c + 0.5, r + 0.5) * step, at);
             if (!light || on_sticker(room, light->p_in_ct)) continue;
             const Vector3d p = rig_from_ct * light->p_in_ct, n = rig_from_ct.linear() * light->normal_in_ct;
-            const auto faces = [&](const CameraModel& d) { return n.dot((d.centre_in_rig() - p).normalized()) > least_cosine; };
-            if (!faces(true_rig.projector)) continue;
-            if (!(faces(true_rig.left_camera) && room.truly_seen(SimulatedRig::Camera::left, *light, at)) &&
-                !(faces(true_rig.right_camera) && room.truly_seen(SimulatedRig::Camera::right, *light, at)))
+            if (!faces(true_rig.projector, p, n)) continue;
+            if (!(faces(true_rig.left_camera, p, n) && room.truly_seen(SimulatedRig::Camera::left, *light, at)) &&
+                !(faces(true_rig.right_camera, p, n) && room.truly_seen(SimulatedRig::Camera::right, *light, at)))
                 continue;
             ++there;
             if (cubes.any_near(p)) ++found;
@@ -156,7 +172,9 @@ double completeness(const std::vector<Vector3d>& points_in_rig, const SimulatedR
 CodeFigures code_figures(const DecodedView& view, const SimulatedRig& room, SimulatedRig::Camera camera,
                          const RigCalibration& true_rig, Instant at) {
     constexpr double kWrong_px = 2;
-    std::atomic<std::size_t> looked_at{0}, wrong{0}, inside{0};
+    const RigidTransform rig_from_ct = room.true_rig_from_ct(at);
+    const CameraModel& eye = camera == SimulatedRig::Camera::left ? true_rig.left_camera : true_rig.right_camera;
+    std::atomic<std::size_t> looked_at{0}, wrong{0}, inside{0}, facing{0};
     tbb::parallel_for(0, view.height / 2, [&](int half) {
         const int y = 2 * half;
         for (int x = 0; x < view.width; x += 2) {
@@ -169,10 +187,13 @@ CodeFigures code_figures(const DecodedView& view, const SimulatedRig& room, Simu
             ++wrong;
             const Vector2d last(true_rig.projector.width - 4, true_rig.projector.height - 4);
             const bool at_rim = code.minCoeff() < 3 || (last - code).minCoeff() < 0;
-            if (!at_rim && !by_an_edge(room, camera, Vector2d(x, y), at)) ++inside;
+            if (at_rim || by_an_edge(room, camera, Vector2d(x, y), at)) continue;
+            ++inside;
+            const Vector3d p = rig_from_ct * sight->p_in_ct, n = rig_from_ct.linear() * sight->normal_in_ct;
+            if (faces(eye, p, n) && faces(true_rig.projector, p, n)) ++facing;
         }
     });
-    return {looked_at, wrong, inside};
+    return {looked_at, wrong, inside, facing};
 }
 
 double fitted_radius_mm(const std::vector<Vector3d>& points) {

@@ -11,7 +11,9 @@ namespace planlight::scan_rooms {
 
 struct CloudFigures {
     std::size_t points = 0;
-    double noise_mm = 0;        ///< rms of the distance to the true skin about its own mean in cubes of 4 mm
+    double noise_mm = 0;        ///< rms of the distance to the true skin about its own mean in cubes of 4 mm, of skin that faces
+                                ///< the projector at less than 65 degrees, off the stickers
+    double noise_all_mm = 0;    ///< the same of all points
     double noise_usual_mm = 0;  ///< the same from the median of its size (of a normal distribution): without the tails
     double bias_mm = 0;         ///< mean signed distance, positive outside
     double slow_mm = 0;         ///< rms of the means of the cubes: what calibration and the light in the skin bend
@@ -29,7 +31,8 @@ double completeness(const std::vector<Eigen::Vector3d>& points_in_rig, const sim
 struct CodeFigures {
     std::size_t looked_at = 0;    ///< decoded pixels, every second one of every second row
     std::size_t wrong = 0;        ///< more than 2 projector pixels off, or lit by nothing
-    std::size_t wrong_inside = 0; ///< of these: no silhouette, shadow edge or rim of the picture within 3 pixels
+    std::size_t wrong_inside = 0;  ///< of these: no silhouette, shadow edge or rim of the picture within 3 pixels
+    std::size_t wrong_facing = 0;  ///< of these again: on skin that faces camera and projector at less than 65 degrees
 };
 CodeFigures code_figures(const DecodedView& view, const simulation::SimulatedRig& room, simulation::SimulatedRig::Camera camera,
                          const RigCalibration& true_rig, Instant at);
