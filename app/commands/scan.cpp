@@ -10,6 +10,7 @@
 #include "planning_io/mesh_file.h"
 #include "planning_io/rig_file.h"
 #include "planning_io/types/error.h"
+#include "registration/tracking/markers_in_scan.h"
 
 namespace planlight {
 namespace {
@@ -42,6 +43,32 @@ void warn_of(const ScanResult& scan, const RigCalibration& rig) {
                          scan.resection->moved_mm, scan.resection->turned * 180 / std::numbers::pi, rig.made_on.empty() ? "the rig file" : "the calibration of " + rig.made_on));
 }
 
+nlohmann::json json_of(const ScanMovement& movement) {
+    if (movement.by == ScanMovement::By::nothing) return nullptr;
+    return {{"by", movement.by == ScanMovement::By::markers ? "markers" : "pictures"},
+            {"moved_mm", movement.moved_mm},
+            {"turned_deg", movement.turned * 180 / std::numbers::pi},
+            {"from", movement.from},
+            {"to", movement.to},
+            {"moments", movement.moments},
+            {"markers", movement.markers}};
+}
+
+void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
+    if (movement.by == ScanMovement::By::nothing) {
+        warn("whether the patient moved during the scan is not known: too little is seen under even light");
+        return;
+    }
+    if (movement.moved_mm <= options.max_movement_mm) return;
+    const std::string problem = fmt::format("the patient moved {:.2f} mm during the scan (between {} and {}, by {}); {:g} mm is the limit",
+                                            movement.moved_mm, movement.from, movement.to,
+                                            movement.by == ScanMovement::By::markers ? "the markers" : "the skin in the pictures",
+                                            options.max_movement_mm);
+    if (!options.accept_movement)
+        throw CheckFailedError(problem, "Scan again, or take the cloud as it is with --accept-movement.");
+    warn(problem);
+}
+
 }  // namespace
 
 int run_scan(const ScanOptions& options) {
@@ -54,6 +81,8 @@ int run_scan(const ScanOptions& options) {
                                            scan.left.decoded, scan.left.width * scan.left.height),
                                "Check that the projector lights the patient and that rig.json belongs to this capture.");
     warn_of(scan, rig);
+    const ScanMovement movement = movement_in_scan(capture, rig, scan.clean.kept);
+    judge_movement(movement, options);
     write_cloud(scan.clean.kept, options.out);
     if (!options.raw_out.empty()) write_cloud(scan.raw.cloud, options.raw_out);
     if (options.json) {
@@ -73,6 +102,7 @@ int run_scan(const ScanOptions& options) {
             {"epipolar_rms_px", scan.raw.epipolar_rms_px},
             {"projector_offset_px", {scan.raw.projector_offset_px.x(), scan.raw.projector_offset_px.y()}},
             {"projector", projector_of(scan)},
+            {"movement", json_of(movement)},
             {"seconds", {{"decode", scan.decode_s}, {"triangulate", scan.triangulate_s}, {"outliers", scan.outliers_s}}}};
         std::cout << result.dump(2) << '\n';
     } else {
