@@ -161,7 +161,7 @@ RgbImage picture_of(const PointCloud& cloud) {
     for (const double z : depth) colours.push_back(sequential_colour((high - z) / (high - low)));
     std::vector<RgbImage> views;
     for (const double turned : {-0.6, 0.0, 0.6})
-        views.push_back(draw_cloud(cloud, colours, Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitY()).toRotationMatrix(), 0.75, 330, 420, 1));
+        views.push_back(draw_cloud(cloud, colours, Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitY()).toRotationMatrix(), 1.2, 205, 262, 1));
     return with_legend(side_by_side(views, 3), "far to near; the scale is chosen, not known", 0, 1, sequential_colour);
 }
 
