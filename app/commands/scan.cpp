@@ -59,10 +59,12 @@ void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
         warn("whether the patient moved during the scan is not known: too little is seen under even light");
         return;
     }
-    if (movement.moved_mm <= options.max_movement_mm) return;
+    // Pictures show about half of a way (scan_movement.h).
+    const bool by_markers = movement.by == ScanMovement::By::markers;
+    if (movement.moved_mm <= (by_markers ? 1 : 0.5) * options.max_movement_mm) return;
     const std::string problem = fmt::format("the patient moved {:.2f} mm during the scan (between {} and {}, by {}); {:g} mm is the limit",
                                             movement.moved_mm, movement.from, movement.to,
-                                            movement.by == ScanMovement::By::markers ? "the markers" : "the skin in the pictures",
+                                            by_markers ? "the markers" : "the skin in the pictures, which show about half of it",
                                             options.max_movement_mm);
     if (!options.accept_movement)
         throw CheckFailedError(problem, "Scan again, or take the cloud as it is with --accept-movement.");
