@@ -130,7 +130,8 @@ TEST_F(CommandsTest, ScansOfFewerDevicesAndOfAGrayCodeAlone) {
     const auto scan = [&](const std::string& capture, const std::string& rig_file) {
         return run_planlight("scan " + capture + " --rig " + rig_file + " --out fewer.ply --json", root());
     };
-    const auto whole = scan("room/capture", "room/rig.json"), one = scan("room/capture", "one.json"), two = scan("room/capture", "two.json");
+    const auto whole = scan("room/capture", "room/rig.json"), one = scan("room/capture", "one.json"),
+               two = scan("room/capture", "two.json");
     ASSERT_EQ(whole.exit_code, 0) << whole.err;
     ASSERT_EQ(one.exit_code, 0) << one.err;
     ASSERT_EQ(two.exit_code, 0) << two.err;
@@ -149,7 +150,8 @@ TEST_F(CommandsTest, ScansOfFewerDevicesAndOfAGrayCodeAlone) {
     const auto without = [&](const std::string& name, const std::function<bool(const std::string&)>& leave_out) {
         fs::create_directories(root() / name);
         for (const char* side : {"left", "right"})
-            if (!fs::exists(root() / name / side)) fs::create_directory_symlink(root() / "room" / "capture" / side, root() / name / side);
+            if (!fs::exists(root() / name / side))
+                fs::create_directory_symlink(root() / "room" / "capture" / side, root() / name / side);
         json settings = read_json(root() / "room" / "capture" / "capture.json");
         json names = json::array();
         for (const auto& n : settings["names"])

@@ -73,7 +73,8 @@ TEST_F(WholeChain, APatientWhoMovesDuringTheScanIsScannedAgain) {
     Session session(prepared_, drawing, room.calibration(), room.projector(), room.cameras(), room.clock());
     bool moving = true;
     session.scan([&](int done, int of) {
-        if (moving && done == of) room.set_motion({0, room.clock().now()}), moving = false;  // after the first scan's last picture
+        if (moving && done == of)
+            room.set_motion({0, room.clock().now()}), moving = false;  // after the first scan's last picture
     });
     EXPECT_EQ(session.scans_repeated(), 1);
     EXPECT_LE(session.motion_in_scan_mm(), 0.15);

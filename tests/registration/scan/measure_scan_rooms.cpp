@@ -196,7 +196,8 @@ Json print_spoilt(const std::vector<Spoilt>& table) {
     for (const Spoilt& row : table) {
         const double n = row.rooms;
         std::string said;
-        for (const auto& [verdict, count] : row.verdicts) said += fmt::format("{}{} {}", said.empty() ? "" : ", ", count, verdict);
+        for (const auto& [verdict, count] : row.verdicts)
+            said += fmt::format("{}{} {}", said.empty() ? "" : ", ", count, verdict);
         fmt::print("{:42}{:>3} of {:>2}{:>10.3f}{:>11.3f}{:>8.3f}{:>9.3f}{:>10.3f}  {}\n", row.what, row.noticed, row.rooms,
                    row.epipolar_px / n, row.projector_px / n, row.after_px / n, row.offset_px / n, row.error_mm / n, said);
         json.push_back({{"what", row.what}, {"rooms", row.rooms}, {"noticed", row.noticed},

@@ -15,7 +15,8 @@ constexpr int kWidth = 320, kHeight = 240, kBits = 6;
 
 /// Skin with patches of a few pixels to a few tens, as it looks when moved by (dx, dy) pixels.
 double skin(double x, double y) {
-    return 120 + 18 * std::sin(0.31 * x + 0.2 * y) + 14 * std::sin(0.23 * y - 0.11 * x + 1) + 10 * std::sin(0.9 * x) * std::sin(0.8 * y);
+    return 120 + 18 * std::sin(0.31 * x + 0.2 * y) + 14 * std::sin(0.23 * y - 0.11 * x + 1) +
+           10 * std::sin(0.9 * x) * std::sin(0.8 * y);
 }
 
 /// A Gray code of columns whose patient is at `at(share)` (pixels) when a share of the pictures is taken.

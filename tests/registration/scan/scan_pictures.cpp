@@ -76,8 +76,10 @@ RgbImage volume_sigma(const RigCalibration& rig) {
         auto& plane = planes.emplace_back();
         for (int y = 0; y < h; ++y)
             for (int x = 0; x < w; ++x) {
-                const Eigen::Vector3d p = rig_from_projector * Eigen::Vector3d(depth * way.x() / way.z() + (x + 0.5) * kStep_mm - kHalfWidth_mm,
-                                                                               depth * way.y() / way.z() + (y + 0.5) * kStep_mm - kHalfHeight_mm, depth);
+                const Eigen::Vector3d p =
+                    rig_from_projector * Eigen::Vector3d(depth * way.x() / way.z() + (x + 0.5) * kStep_mm - kHalfWidth_mm,
+                                                         depth * way.y() / way.z() + (y + 0.5) * kStep_mm - kHalfHeight_mm,
+                                                         depth);
                 const auto seen = [&](const CameraModel& d) {
                     const auto pixel = project(d, p);
                     return pixel && in_picture(d, *pixel);
@@ -100,10 +102,11 @@ RgbImage volume_sigma(const RigCalibration& rig) {
         write_words(picture, fmt::format("{:g} mm before the projector", depths[k]));
         pictures.push_back(std::move(picture));
     }
-    return with_legend(side_by_side(pictures, 3),
-                       fmt::format("one sigma in depth (mm), from the calibration alone; each {:g} x {:g} mm; grey: not all three see it",
-                                   2 * kHalfWidth_mm, 2 * kHalfHeight_mm),
-                       0, top, sequential_colour);
+    return with_legend(
+        side_by_side(pictures, 3),
+        fmt::format("one sigma in depth (mm), from the calibration alone; each {:g} x {:g} mm; grey: not all three see it",
+                    2 * kHalfWidth_mm, 2 * kHalfHeight_mm),
+        0, top, sequential_colour);
 }
 
 }  // namespace
