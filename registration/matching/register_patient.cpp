@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "registration/matching/free_space.h"
 #include "registration/matching/match_evidence.h"
 
 namespace planlight {
@@ -50,12 +51,12 @@ std::string unfit(const PointCloud& cloud, const RegistrationSettings& settings,
 }
 
 /// Cost of the best pose of the mirrored scan / cost of this pose, over the same points; below 1 the mirror image fits better.
-double mirror_ratio(const PointCloud& cloud, const SkinLut& lut, const InitialMatch& match,
+double mirror_ratio(const PointCloud& cloud, const MatchingSkin& skin, const InitialMatch& match,
                     const RegistrationSettings& settings) {
     constexpr double kNoise_mm = 0.05;
     InitialMatchSettings search = settings.initial;
     search.max_bases = search.min_bases;
-    const InitialMatch image = find_initial_match(mirrored(cloud), lut, search);
+    const InitialMatch image = find_initial_match(mirrored(cloud), skin, search);
     if (image.candidates.empty()) return 0;
     return (image.candidates[0].cost_mm + kNoise_mm) / (match.candidates[0].cost_mm + kNoise_mm);
 }
@@ -93,6 +94,14 @@ void judge_uniqueness(const RegistrationSettings& settings, const RegistrationRe
                                  settings.min_agreeing_bases));
 }
 
+void judge_free_space(const RegistrationSettings& settings, const RegistrationResult& result, Judgement& judgement) {
+    if (!result.blocked_fraction) return;
+    const double blocked = *result.blocked_fraction;
+    const std::string through = fmt::format("{:.0f} % of the scan was seen through what is body in the CT", 100 * blocked);
+    judgement.no_if(blocked > settings.far_too_many_blocked, through);
+    judgement.ask_if(blocked > settings.max_blocked && blocked <= settings.far_too_many_blocked, through);
+}
+
 void judge_mirror_and_scale(const RegistrationSettings& settings, const RegistrationResult& result, Judgement& judgement) {
     const double mirror = result.mirror_ratio;
     judgement.no_if(mirror > 0 && mirror < settings.mirror_fits_better,
@@ -116,7 +125,8 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
         return result;
     }
     const auto start = std::chrono::steady_clock::now();
-    const InitialMatch match = find_initial_match(cloud, lut, settings.initial);
+    const MatchingSkin skin(lut, settings.initial);
+    const InitialMatch match = find_initial_match(cloud, skin, settings.initial);
     result.initial_match_s = seconds_since(start);
     if (match.candidates.empty()) {
         result.reasons.push_back("no three points of the scan fit the skin together: this is not the surface that the CT shows");
@@ -146,7 +156,9 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
     result.weakest_sigma_mm = weakest.sigma_mm;
     result.scale = settled.scale;
     result.scale_sigma = settled.scale_sigma;
-    if (settings.mirror_test) result.mirror_ratio = mirror_ratio(cloud, lut, match, settings);
+    if (settings.viewpoint_in_rig)
+        result.blocked_fraction = look_along_rays(cloud, lut, icp.ct_from_rig, *settings.viewpoint_in_rig).blocked_fraction();
+    if (settings.mirror_test) result.mirror_ratio = mirror_ratio(cloud, skin, match, settings);
 
     Judgement judgement(result);
     judge_fit(settings, fit, result, judgement);
@@ -155,6 +167,7 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
                         fit.inlier_fraction() < settings.min_inlier_fraction && result.mirror_ratio > 0 &&
                         result.mirror_ratio < settings.min_mirror_ratio,
                     "poorly on the skin, and other poses fit nearly as well: three weak signs together");
+    judge_free_space(settings, result, judgement);
     judge_mirror_and_scale(settings, result, judgement);
     judgement.ask_if(
         std::abs(settled.offset_mm) > settings.max_skin_offset_mm,
