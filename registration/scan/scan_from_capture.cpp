@@ -3,6 +3,7 @@
 #include <chrono>
 #include <stdexcept>
 
+#include "registration/scan/place_matches.h"
 #include "registration/scan/scan_surface.h"
 
 namespace planlight {
@@ -29,6 +30,28 @@ void check_size(const DecodedView& view, const CameraModel& camera, const char* 
                         view.height, camera.width, camera.height));
 }
 
+bool use_resection(const ScanSettings& settings, ScanResult& result, RigCalibration& rig) {
+    if (!settings.use_resection || !result.resection || !result.resection->believable) return false;
+    rig.projector = result.resection->projector;
+    return true;
+}
+
+/// The codes are matched once; where the projector stands is found from a part of the matches, then all are placed.
+void triangulate_and_resect(const ScanSettings& settings, ScanResult& result, RigCalibration& rig) {
+    if (result.left.row.empty() || result.right.row.empty()) {
+        result.raw = triangulate(result.left, result.right, rig, settings.triangulation);
+        return;
+    }
+    constexpr std::size_t kEnough = 20000;
+    const ViewMatches matches = match_views(result.left, result.right, rig, settings.triangulation);
+    TriangulationSettings by_cameras = settings.triangulation;
+    by_cameras.one_camera = false;
+    result.resection =
+        resect_projector(place_matches(matches, rig, by_cameras, 1 + matches.both.size() / kEnough), rig, settings.resection);
+    result.resection_used = use_resection(settings, result, rig);
+    result.raw = place_matches(matches, rig, settings.triangulation);
+}
+
 }  // namespace
 
 ScanResult scan_from_capture(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings) {
@@ -44,13 +67,7 @@ ScanResult scan_from_capture(const ScanCapture& capture, const RigCalibration& r
     check_size(result.right, rig.right_camera, "right");
     result.decode_s = watch.lap_s();
     RigCalibration rig_now = rig;
-    result.raw = triangulate(result.left, result.right, rig, settings.triangulation);
-    if (capture.stripes.rows) result.resection = resect_projector(result.raw, rig, settings.resection);
-    if (settings.use_resection && result.resection && result.resection->believable) {
-        rig_now.projector = result.resection->projector;
-        result.raw = triangulate(result.left, result.right, rig_now, settings.triangulation);
-        result.resection_used = true;
-    }
+    triangulate_and_resect(settings, result, rig_now);
     result.triangulate_s = watch.lap_s();
     result.clean = remove_outliers(result.raw, rig_now, settings.outliers);
     result.outliers_s = watch.lap_s();
