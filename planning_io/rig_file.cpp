@@ -111,4 +111,6 @@ RigCalibration read_rig(const fs::path& file) {
     return rig;
 }
 
+std::string as_json(const CameraModel& device) { return json_of(device).dump(); }
+
 }  // namespace planlight

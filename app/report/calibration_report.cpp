@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "app/report/html_page.h"
+#include "planning_io/rig_file.h"
 #include "planning_io/safe_write.h"
 
 namespace planlight {
@@ -17,28 +18,6 @@ using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kKeys[] = {"left_camera", "right_camera", "projector"};
-
-Json rows_of(const RigidTransform& t) {
-    Json numbers = Json::array();
-    for (int r = 0; r < 4; ++r)
-        for (int c = 0; c < 4; ++c) numbers.push_back(t.matrix()(r, c));
-    return numbers;
-}
-
-Json device_json(const CameraModel& d) {
-    return {{"width", d.width},
-            {"height", d.height},
-            {"focal_x", d.focal_x},
-            {"focal_y", d.focal_y},
-            {"centre_x", d.centre_x},
-            {"centre_y", d.centre_y},
-            {"k1", d.k1},
-            {"k2", d.k2},
-            {"p1", d.p1},
-            {"p2", d.p2},
-            {"k3", d.k3},
-            {"device_from_rig", rows_of(d.device_from_rig)}};
-}
 
 /// One standard deviation of a device's lens numbers, in the order of `numbers_of`.
 std::vector<double> lens_sigmas(const BundleResult& bundle, DeviceName wanted) {
@@ -189,7 +168,7 @@ std::string calibration_json(const CalibrationReport& report) {
         const auto& d = c.device(name);
         if (!d) continue;
         const auto i = static_cast<std::size_t>(name);
-        Json device = device_json(*d);
+        Json device = Json::parse(as_json(*d));
         device["lens_sigmas"] = lens_sigmas(c.bundle, name);
         device["held_out_rms_px"] = c.held_out.rms_px[i];
         device["rms_px"] = c.bundle.rms_px[i];

@@ -3,12 +3,12 @@
 #include <cmath>
 #include <limits>
 
+#include "planning_io/types/rigid_transform.h"
+
 namespace planlight {
 
 PredictedError predicted_error(const PoseCovariance& covariance, const Eigen::Vector3d& p_in_ct) {
-    const Eigen::Vector3d r = p_in_ct - covariance.centre_in_ct;
-    Eigen::Matrix<double, 3, 6> J;  // of p by (turn, shift): -[r]x, I
-    J << 0, r.z(), -r.y(), 1, 0, 0, -r.z(), 0, r.x(), 0, 1, 0, r.y(), -r.x(), 0, 0, 0, 1;
+    const Eigen::Matrix<double, 3, 6> J = movement_by_twist(p_in_ct - covariance.centre_in_ct);
     const Eigen::Matrix3d C = J * covariance.of_turn_and_shift * J.transpose();
     const double mean = C.trace();
     if (!std::isfinite(mean)) return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};

@@ -11,6 +11,12 @@ RigidTransform transform_from_twist(const Eigen::Matrix<double, 6, 1>& twist) {
     return result;
 }
 
+Eigen::Matrix<double, 3, 6> movement_by_twist(const Eigen::Vector3d& r) {
+    Eigen::Matrix<double, 3, 6> J;
+    J << 0, r.z(), -r.y(), 1, 0, 0, -r.z(), 0, r.x(), 0, 1, 0, r.y(), -r.x(), 0, 0, 0, 1;
+    return J;
+}
+
 Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& R) {
     const Eigen::AngleAxisd angle_axis(R);
     return angle_axis.angle() * angle_axis.axis();

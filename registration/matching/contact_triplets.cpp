@@ -3,7 +3,11 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
+#include <utility>
+
+#include "registration/matching/match_kernels.h"
 
 namespace planlight {
 namespace {
@@ -45,27 +49,6 @@ Matrix3f triangle_axes(const Vector3f& a, const Vector3f& b, const Vector3f& c) 
     return axes;
 }
 
-struct PairShape {
-    float length, first, second, between;  // side; cosines of both normals with it and with each other
-};
-
-PairShape shape_of(const SurfaceSite& a, const SurfaceSite& b) {
-    const Vector3f side = b.position - a.position;
-    const float length = side.norm();
-    return {length, a.normal.dot(side) / length, b.normal.dot(side) / length, a.normal.dot(b.normal)};
-}
-
-bool alike(const PairShape& wanted, const SurfaceSite& a, const SurfaceSite& b, float tolerance_mm) {
-    const Vector3f side = b.position - a.position;
-    const float low = wanted.length - tolerance_mm, high = wanted.length + tolerance_mm;
-    const float squared = side.squaredNorm();
-    if (squared < low * low || squared > high * high) return false;
-    const float length = std::sqrt(squared);
-    return std::abs(a.normal.dot(side) - wanted.first * length) < kNormalTolerance * length &&
-           std::abs(b.normal.dot(side) - wanted.second * length) < kNormalTolerance * length &&
-           std::abs(a.normal.dot(b.normal) - wanted.between) < kNormalTolerance;
-}
-
 }  // namespace
 
 std::vector<Base> choose_bases(const std::vector<SurfaceSite>& sites, int count, unsigned seed) {
@@ -91,34 +74,84 @@ std::vector<Base> choose_bases(const std::vector<SurfaceSite>& sites, int count,
     return bases;
 }
 
-void for_each_contact_triplet(const Base& base, std::span<const SurfaceSite> skin, double tolerance_mm,
+SkinPairs::Shape SkinPairs::shape_of(const SurfaceSite& a, const SurfaceSite& b) {
+    const Vector3f side = b.position - a.position;
+    const float length_mm = side.norm();
+    const Vector3f way = length_mm > 0 ? Vector3f(side / length_mm) : Vector3f::Zero();
+    return {length_mm, a.normal.dot(way), b.normal.dot(way), a.normal.dot(b.normal)};
+}
+
+SkinPairs::SkinPairs(std::vector<SurfaceSite> skin) : skin_(std::move(skin)) {
+    const std::size_t n = skin_.size();
+    for (auto* values : {&length_, &first_, &second_, &between_}) values->reserve(n * n);
+    for (const SurfaceSite& a : skin_)
+        for (const SurfaceSite& b : skin_) {
+            const Shape shape = shape_of(a, b);
+            length_.push_back(shape.length_mm);
+            first_.push_back(shape.first);
+            second_.push_back(shape.second);
+            between_.push_back(shape.between);
+        }
+}
+
+void SkinPairs::find_alike(const Shape& wanted, std::size_t a, float tolerance_mm, std::vector<int>& found) const {
+    constexpr std::size_t kBlock = 256;
+    const std::size_t n = skin_.size(), row = a * n;
+    std::uint8_t marks[kBlock];
+    for (std::size_t from = 0; from < n; from += kBlock) {
+        const std::size_t m = std::min(kBlock, n - from), at = row + from;
+        match_kernels::mark_alike(&length_[at], &first_[at], &second_[at], &between_[at], m,
+                                  {wanted.length_mm, wanted.first, wanted.second, wanted.between, tolerance_mm, kNormalTolerance},
+                                  marks);
+        for (std::size_t i = 0; i < m; ++i)
+            if (marks[i]) found.push_back(static_cast<int>(from + i));
+    }
+}
+
+void SkinPairs::find_alike(const Shape& wanted, std::size_t a, float tolerance_mm, std::span<const int> among,
+                           std::vector<int>& found) const {
+    const std::size_t row = a * skin_.size();
+    for (const int b : among) {
+        const std::size_t at = row + static_cast<std::size_t>(b);
+        if (std::abs(length_[at] - wanted.length_mm) < tolerance_mm && std::abs(first_[at] - wanted.first) < kNormalTolerance &&
+            std::abs(second_[at] - wanted.second) < kNormalTolerance &&
+            std::abs(between_[at] - wanted.between) < kNormalTolerance)
+            found.push_back(b);
+    }
+}
+
+void for_each_contact_triplet(const Base& base, const SkinPairs& pairs, double tolerance_mm,
                               const std::function<void(const ContactPose&)>& found) {
     const auto& [a, b, c] = base;
     const auto tolerance = static_cast<float>(tolerance_mm);
-    const PairShape ab = shape_of(a, b), ac = shape_of(a, c), bc = shape_of(b, c);
+    const auto ab = SkinPairs::shape_of(a, b), ac = SkinPairs::shape_of(a, c), bc = SkinPairs::shape_of(b, c);
     const Matrix3f axes = triangle_axes(a.position, b.position, c.position);
     const Vector3f centre = (a.position + b.position + c.position) / 3;
     const Vector3f across(a.normal.dot(axes.col(2)), b.normal.dot(axes.col(2)), c.normal.dot(axes.col(2)));
-    std::vector<const SurfaceSite*> ring_b, ring_c;
-    for (const SurfaceSite& A : skin) {
+    const auto& skin = pairs.skin();
+    std::vector<int> ring_b, ring_c, thirds;
+    for (std::size_t i = 0; i < skin.size(); ++i) {
+        const SurfaceSite& A = skin[i];
         ring_b.clear();
         ring_c.clear();
-        for (const SurfaceSite& other : skin) {
-            if (alike(ab, A, other, tolerance)) ring_b.push_back(&other);
-            if (alike(ac, A, other, tolerance)) ring_c.push_back(&other);
-        }
-        for (const SurfaceSite* B : ring_b)
-            for (const SurfaceSite* C : ring_c) {
-                if (!alike(bc, *B, *C, tolerance)) continue;
-                const Matrix3f skin_axes = triangle_axes(A.position, B->position, C->position);
-                const Vector3f skin_across(A.normal.dot(skin_axes.col(2)), B->normal.dot(skin_axes.col(2)),
-                                           C->normal.dot(skin_axes.col(2)));
+        pairs.find_alike(ab, i, tolerance, ring_b);
+        if (!ring_b.empty()) pairs.find_alike(ac, i, tolerance, ring_c);
+        for (const int j : ring_b) {
+            const SurfaceSite& B = skin[static_cast<std::size_t>(j)];
+            thirds.clear();
+            pairs.find_alike(bc, static_cast<std::size_t>(j), tolerance, ring_c, thirds);
+            for (const int k : thirds) {
+                const SurfaceSite& C = skin[static_cast<std::size_t>(k)];
+                const Matrix3f skin_axes = triangle_axes(A.position, B.position, C.position);
+                const Vector3f skin_across(A.normal.dot(skin_axes.col(2)), B.normal.dot(skin_axes.col(2)),
+                                           C.normal.dot(skin_axes.col(2)));
                 if ((skin_across - across).cwiseAbs().maxCoeff() > kNormalTolerance) continue;
                 ContactPose pose;
                 pose.R = skin_axes * axes.transpose();
-                pose.t = (A.position + B->position + C->position) / 3 - pose.R * centre;
+                pose.t = (A.position + B.position + C.position) / 3 - pose.R * centre;
                 found(pose);
             }
+        }
     }
 }
 

@@ -23,10 +23,33 @@ struct ContactPose {
     Eigen::Vector3f t;
 };
 
+/// The skin samples with how each pair of them stands to each other, worked out once for all bases.
+class SkinPairs {
+public:
+    explicit SkinPairs(std::vector<SurfaceSite> skin);
+
+    const std::vector<SurfaceSite>& skin() const { return skin_; }
+
+    /// How a pair looks: its side, the cosines of both normals with it, and of the normals with each other.
+    struct Shape {
+        float length_mm, first, second, between;
+    };
+    static Shape shape_of(const SurfaceSite& a, const SurfaceSite& b);
+
+    /// The samples that stand to sample `a` as `wanted` says, to a tolerance; all of them, or of those in `among`.
+    void find_alike(const Shape& wanted, std::size_t a, float tolerance_mm, std::vector<int>& found) const;
+    void find_alike(const Shape& wanted, std::size_t a, float tolerance_mm, std::span<const int> among,
+                    std::vector<int>& found) const;
+
+private:
+    std::vector<SurfaceSite> skin_;
+    std::vector<float> length_, first_, second_, between_;  ///< row a: of the pairs (a, b)
+};
+
 /// Calls `found` for every triplet of skin samples that looks like the base: three side lengths to `tolerance_mm`, and how
 /// each normal stands to the sides and to the triangle's own normal (which tells a triangle from its mirror image).
 /// Pairs are matched along a ring round each first sample, then joined over the third side.
-void for_each_contact_triplet(const Base& base, std::span<const SurfaceSite> skin, double tolerance_mm,
+void for_each_contact_triplet(const Base& base, const SkinPairs& pairs, double tolerance_mm,
                               const std::function<void(const ContactPose&)>& found);
 
 }  // namespace planlight

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "planning_io/types/skin_lut.h"
+#include "registration/matching/match_kernels.h"
 
 namespace planlight {
 
@@ -37,6 +38,13 @@ public:
                                              (1 - fz) * (e10 - e00) + fz * (e11 - e01), high - low);
         return true;
     }
+
+    /// The same field for the kernels; its first node lies at `origin_in_ct()`.
+    match_kernels::Field plain() const {
+        return {values_, static_cast<int>(stride_y_), static_cast<int>(stride_z_), static_cast<float>(size_.x() - 1),
+                static_cast<float>(size_.y() - 1), static_cast<float>(size_.z() - 1), static_cast<float>(per_mm_)};
+    }
+    const Eigen::Vector3d& origin_in_ct() const { return origin_in_ct_; }
 
 private:
     const float* values_;

@@ -8,32 +8,27 @@ namespace planlight {
 
 using Eigen::Vector3d;
 
-NormalEquations point_to_plane_equations(std::span<const Vector3d> points_in_rig, std::span<const std::uint8_t> skip,
+match_kernels::Placing placing_of(const RigidTransform& ct_from_rig, const Vector3d& points_centre_in_rig,
+                                  const DistanceField& field, const Vector3d& centre_in_ct) {
+    match_kernels::Placing placing;
+    const Vector3d centre = ct_from_rig * points_centre_in_rig;
+    for (int r = 0; r < 3; ++r) {
+        for (int c = 0; c < 3; ++c) placing.R[3 * r + c] = static_cast<float>(ct_from_rig.linear()(r, c));
+        placing.shift[r] = static_cast<float>(centre[r] - field.origin_in_ct()[r]);
+        placing.arm_shift[r] = static_cast<float>(centre[r] - centre_in_ct[r]);
+    }
+    return placing;
+}
+
+NormalEquations point_to_plane_equations(const PointArrays& points, std::size_t count, std::span<const std::uint8_t> skip,
                                          const DistanceField& field, const RigidTransform& ct_from_rig,
                                          const Vector3d& centre_in_ct, double scale_mm, double outside_mm, double max_pair_mm) {
-    const Eigen::Matrix3d R = ct_from_rig.linear();
-    const Vector3d t = ct_from_rig.translation();
     double sums[27] = {};  // upper triangle of H, then g
     NormalEquations result;
-    for (std::size_t i = 0; i < points_in_rig.size(); ++i) {
-        if (!skip.empty() && skip[i]) continue;
-        const Vector3d x = R * points_in_rig[i] + t;
-        double d;
-        Vector3d n;
-        if (!field.sample(x, d, n) || std::abs(d) > max_pair_mm) continue;
-        const double length = n.norm();
-        if (length < 0.3) continue;  // a ridge of the field: no side to go to
-        n /= length;
-        ++result.used;
-        const double w = tukey_weight(d, d > 0 ? outside_mm : scale_mm);
-        if (w == 0) continue;
-        const Vector3d turn = (x - centre_in_ct).cross(n);
-        const double J[6] = {turn.x(), turn.y(), turn.z(), n.x(), n.y(), n.z()};
-        int s = 0;
-        for (int a = 0; a < 6; ++a)
-            for (int b = a; b < 6; ++b) sums[s++] += w * J[a] * J[b];
-        for (int a = 0; a < 6; ++a) sums[s++] += w * J[a] * d;
-    }
+    result.used = match_kernels::add_point_to_plane(
+        points.x.data(), points.y.data(), points.z.data(), skip.empty() ? nullptr : skip.data(), count, field.plain(),
+        placing_of(ct_from_rig, points.centre, field, centre_in_ct),
+        {static_cast<float>(scale_mm), static_cast<float>(outside_mm), static_cast<float>(max_pair_mm)}, sums);
     int s = 0;
     for (int a = 0; a < 6; ++a)
         for (int b = a; b < 6; ++b) result.H(a, b) = result.H(b, a) = sums[s++];
@@ -59,15 +54,15 @@ RigidTransform after_step(const NormalEquations& equations, const RigidTransform
     return Eigen::Translation3d(centre_in_ct) * about_centre * Eigen::Translation3d(-centre_in_ct) * ct_from_rig;
 }
 
-RigidTransform refine_roughly(std::span<const Vector3d> points_in_rig, const Vector3d& centre_in_rig, const DistanceField& field,
-                              const RigidTransform& ct_from_rig) {
+RigidTransform refine_roughly(const PointArrays& points_in_rig, const DistanceField& field, const RigidTransform& ct_from_rig) {
     constexpr int kSteps = 12;
     constexpr double kLeastScale_mm = 1, kOutside = 0.5;
     RigidTransform pose = ct_from_rig;
     for (int i = 0; i < kSteps; ++i) {
         const double scale_mm = std::max(kLeastScale_mm, 5.0 * std::pow(0.8, i));
-        const Vector3d centre_in_ct = pose * centre_in_rig;
-        const NormalEquations equations = point_to_plane_equations(points_in_rig, {}, field, pose, centre_in_ct, scale_mm,
+        const Vector3d centre_in_ct = pose * points_in_rig.centre;
+        const NormalEquations equations = point_to_plane_equations(points_in_rig, points_in_rig.size(), {}, field, pose,
+                                                                   centre_in_ct, scale_mm,
                                                                    std::max(kLeastScale_mm, kOutside * scale_mm), 20);
         if (equations.used < 12) return pose;
         double moved_mm;

@@ -6,6 +6,7 @@
 
 #include "planning_io/types/rigid_transform.h"
 #include "registration/matching/distance_field.h"
+#include "registration/matching/point_arrays.h"
 
 namespace planlight {
 
@@ -23,9 +24,13 @@ inline double tukey_weight(double residual_mm, double scale_mm) {
     return v > 0 ? v * v : 0;
 }
 
-/// Point to plane on the signed distance (the gradient is the normal); points marked in `skip` (if not empty) and
-/// farther than `max_pair_mm` take no part. `outside_mm`: the robust scale of points outside of the body.
-NormalEquations point_to_plane_equations(std::span<const Eigen::Vector3d> points_in_rig,
+/// How the kernels place points given about `points_centre_in_rig`; the step turns about `centre_in_ct`.
+match_kernels::Placing placing_of(const RigidTransform& ct_from_rig, const Eigen::Vector3d& points_centre_in_rig,
+                                  const DistanceField& field, const Eigen::Vector3d& centre_in_ct);
+
+/// Point to plane on the signed distance (the gradient is the normal) of the first `count` points; those marked in `skip` (if
+/// not empty) and farther than `max_pair_mm` take no part. `outside_mm`: the robust scale of points outside of the body.
+NormalEquations point_to_plane_equations(const PointArrays& points_in_rig, std::size_t count,
                                          std::span<const std::uint8_t> skip, const DistanceField& field,
                                          const RigidTransform& ct_from_rig, const Eigen::Vector3d& centre_in_ct,
                                          double scale_mm, double outside_mm, double max_pair_mm);
@@ -37,7 +42,6 @@ RigidTransform after_step(const NormalEquations& equations, const RigidTransform
 
 /// A few such steps on few points with a falling robust scale, half as large outside of the body, where cloth lies: from a
 /// rough pose (some mm and degrees) to near the minimum.
-RigidTransform refine_roughly(std::span<const Eigen::Vector3d> points_in_rig, const Eigen::Vector3d& centre_in_rig,
-                              const DistanceField& field, const RigidTransform& ct_from_rig);
+RigidTransform refine_roughly(const PointArrays& points_in_rig, const DistanceField& field, const RigidTransform& ct_from_rig);
 
 }  // namespace planlight

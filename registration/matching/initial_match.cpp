@@ -15,22 +15,41 @@
 #include "registration/matching/surface_sites.h"
 
 namespace planlight {
+
+namespace {
+constexpr double kCoarseSlack_mm = 2;  // a contact pose is not yet exact
+}
+
+struct MatchingSkin::Parts {
+    DistanceField field;
+    CoarseDistance coarse;
+    SkinPairs pairs;
+    Parts(const SkinLut& lut, const InitialMatchSettings& settings)
+        : field(lut),
+          coarse(lut, settings.truncation_mm, settings.truncation_outside_mm + kCoarseSlack_mm),
+          pairs(sites_of_skin(lut, settings.model_spacing_mm, settings.seed)) {}
+};
+
+MatchingSkin::MatchingSkin(const SkinLut& lut, const InitialMatchSettings& settings)
+    : parts_(std::make_unique<const Parts>(lut, settings)) {}
+MatchingSkin::~MatchingSkin() = default;
+MatchingSkin::MatchingSkin(MatchingSkin&&) noexcept = default;
+
 namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr double kDistinct_mm = 8, kDistinct_rad = 8 * std::numbers::pi / 180;
-constexpr double kCoarseSlack_mm = 2;  // a contact pose is not yet exact
 constexpr std::size_t kRefinePoints = 250, kRankPoints = 500;
 
 /// What all bases share: the scan as sites, in a random but fixed order, and the skin it is tried on.
 struct Search {
-    const DistanceField field;
-    const CoarseDistance coarse;
-    std::vector<SurfaceSite> skin, scan;
+    const MatchingSkin::Parts& skin;
+    std::vector<SurfaceSite> scan;
     std::vector<Vector3f> scoring;
-    std::vector<Vector3d> refining;
+    PointArrays refining, ranking;  // about the scan's centre
+    PointArrays ranking_normals;
     Vector3d centre_in_rig = Vector3d::Zero();
     InitialMatchSettings settings;
 };
@@ -39,24 +58,25 @@ bool same_pose(const Search& search, const RigidTransform& a, const RigidTransfo
     return (a * search.centre_in_rig - b * search.centre_in_rig).norm() < kDistinct_mm && angle_between(a, b) < kDistinct_rad;
 }
 
-Search prepare_search(const PointCloud& cloud, const SkinLut& lut, const InitialMatchSettings& settings) {
-    Search search{DistanceField(lut),
-                  CoarseDistance(lut, settings.truncation_mm, settings.truncation_outside_mm + kCoarseSlack_mm),
-                  sites_of_skin(lut, settings.model_spacing_mm, settings.seed),
-                  sites_of_cloud(cloud),
-                  {},
-                  {},
-                  Vector3d::Zero(),
-                  settings};
+Search prepare_search(const PointCloud& cloud, const MatchingSkin& skin, const InitialMatchSettings& settings) {
+    Search search{skin.parts(), sites_of_cloud(cloud), {}, {}, {}, {}, Vector3d::Zero(), settings};
     std::mt19937 random(settings.seed);
     auto& scan = search.scan;
     for (std::size_t i = scan.size(); i > 1; --i) std::swap(scan[i - 1], scan[random() % i]);
     for (const SurfaceSite& s : scan) {
         if (search.scoring.size() < static_cast<std::size_t>(std::max(settings.scoring_points, 8)))
             search.scoring.push_back(s.position);
-        if (search.refining.size() < kRefinePoints) search.refining.push_back(s.position.cast<double>());
         search.centre_in_rig += s.position.cast<double>() / static_cast<double>(scan.size());
     }
+    std::vector<Vector3d> positions, normals;
+    for (std::size_t i = 0; i < std::min(scan.size(), kRankPoints); ++i) {
+        positions.push_back(scan[i].position.cast<double>());
+        normals.push_back(scan[i].normal.cast<double>());
+    }
+    search.ranking = PointArrays(positions, search.centre_in_rig);
+    search.ranking_normals = PointArrays(normals, Vector3d::Zero());
+    positions.resize(std::min(positions.size(), kRefinePoints));
+    search.refining = PointArrays(positions, search.centre_in_rig);
     return search;
 }
 
@@ -72,9 +92,9 @@ std::vector<ScoredPose> best_contact_poses(const Search& search, const Base& bas
     const auto points = static_cast<float>(search.scoring.size());
     std::vector<ScoredPose> heap;
     float limit = 0.8f * static_cast<float>(search.settings.truncation_mm) * points;
-    for_each_contact_triplet(base, search.skin, 0.75 * search.settings.model_spacing_mm, [&](const ContactPose& pose) {
+    for_each_contact_triplet(base, search.skin.pairs, 0.75 * search.settings.model_spacing_mm, [&](const ContactPose& pose) {
         ++scored;
-        const float cost = search.coarse.sum(search.scoring, pose.R, pose.t, limit);
+        const float cost = search.skin.coarse.sum(search.scoring, pose.R, pose.t, limit);
         if (cost >= limit) return;
         heap.push_back({cost, pose});
         std::push_heap(heap.begin(), heap.end(), better);
@@ -90,18 +110,12 @@ std::vector<ScoredPose> best_contact_poses(const Search& search, const Base& bas
 /// Mean truncated distance of up to `kRankPoints` sites, trilinear; a site that faces the wrong way counts in full, one that
 /// lies outside of the body little.
 double mean_failure(const Search& search, const RigidTransform& ct_from_rig) {
-    const double truncation_mm = search.settings.truncation_mm;
-    const std::size_t count = std::min(search.scan.size(), kRankPoints);
-    double sum = 0;
-    for (std::size_t i = 0; i < count; ++i) {
-        double d;
-        Vector3d gradient;
-        const SurfaceSite& site = search.scan[i];
-        const bool inside = search.field.sample(ct_from_rig * site.position.cast<double>(), d, gradient);
-        const bool faces = inside && gradient.dot(ct_from_rig.linear() * site.normal.cast<double>()) > 0;
-        sum += faces ? (d > 0 ? std::min(d, search.settings.truncation_outside_mm) : std::min(-d, truncation_mm)) : truncation_mm;
-    }
-    return sum / static_cast<double>(std::max<std::size_t>(count, 1));
+    const PointArrays &p = search.ranking, &n = search.ranking_normals;
+    const double sum = match_kernels::sum_failure(
+        p.x.data(), p.y.data(), p.z.data(), n.x.data(), n.y.data(), n.z.data(), p.size(), search.skin.field.plain(),
+        placing_of(ct_from_rig, p.centre, search.skin.field, ct_from_rig * p.centre),
+        static_cast<float>(search.settings.truncation_mm), static_cast<float>(search.settings.truncation_outside_mm));
+    return sum / static_cast<double>(std::max<std::size_t>(p.size(), 1));
 }
 
 /// The distinct minima that one base leads to.
@@ -119,7 +133,7 @@ std::vector<MatchCandidate> candidates_of_base(const Search& search, const Base&
     }
     std::vector<MatchCandidate> candidates;
     for (const RigidTransform& start : starts) {
-        RigidTransform pose = refine_roughly(search.refining, search.centre_in_rig, search.field, start);
+        RigidTransform pose = refine_roughly(search.refining, search.skin.field, start);
         pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
         candidates.push_back({pose, mean_failure(search, pose), 1});
     }
@@ -173,11 +187,15 @@ double runner_up_ratio(const std::vector<MatchCandidate>& sorted) {
 }  // namespace
 
 InitialMatch find_initial_match(const PointCloud& cloud, const SkinLut& lut, const InitialMatchSettings& settings) {
+    if (lut.distance_mm.empty() || lut.skin.empty()) return {};
+    return find_initial_match(cloud, MatchingSkin(lut, settings), settings);
+}
+
+InitialMatch find_initial_match(const PointCloud& cloud, const MatchingSkin& skin, const InitialMatchSettings& settings) {
     constexpr double kClearRatio = 1.15;
     constexpr int kAgreeing = 2, kBatch = 2;
     InitialMatch match;
-    if (lut.distance_mm.empty() || lut.skin.empty()) return match;
-    const Search search = prepare_search(cloud, lut, settings);
+    const Search search = prepare_search(cloud, skin, settings);
     const std::vector<Base> bases = choose_bases(search.scan, settings.max_bases, settings.seed);
     const auto count = static_cast<int>(bases.size());
     const int threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 4);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "planning_io/types/point_cloud.h"
@@ -34,9 +35,25 @@ struct InitialMatch {
     double runner_up_ratio = 0;  ///< cost of the second / cost of the first distinct pose; 0 when there is no second
 };
 
+/// The skin as the search needs it, worked out once for all scans of a patient. Refers to the table, which must outlive it.
+class MatchingSkin {
+public:
+    explicit MatchingSkin(const SkinLut& lut, const InitialMatchSettings& settings = {});
+    ~MatchingSkin();
+    MatchingSkin(MatchingSkin&&) noexcept;
+
+    struct Parts;
+    const Parts& parts() const { return *parts_; }
+
+private:
+    std::unique_ptr<const Parts> parts_;
+};
+
 /// The paper's search (Hoppe 2001, 2.2): three scan points are kept in contact with the skin; the table sums the
 /// distances of the rest; the global minimum over all such poses wins. From any pose, without a start value.
 /// The cloud needs normals (towards the devices): a contact must face the same way on both surfaces.
 InitialMatch find_initial_match(const PointCloud& cloud, const SkinLut& lut, const InitialMatchSettings& settings = {});
+/// The same on a skin that was made ready with the same settings.
+InitialMatch find_initial_match(const PointCloud& cloud, const MatchingSkin& skin, const InitialMatchSettings& settings = {});
 
 }  // namespace planlight

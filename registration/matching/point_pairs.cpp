@@ -40,9 +40,7 @@ PoseCovariance covariance_of(const std::vector<PointPair>& pairs, double error_r
     for (const PointPair& p : pairs) covariance.centre_in_ct += p.in_ct / static_cast<double>(pairs.size());
     Eigen::Matrix<double, 6, 6> H = Eigen::Matrix<double, 6, 6>::Zero();
     for (const PointPair& p : pairs) {
-        const Eigen::Vector3d r = p.in_ct - covariance.centre_in_ct;
-        Eigen::Matrix<double, 3, 6> J;
-        J << 0, r.z(), -r.y(), 1, 0, 0, -r.z(), 0, r.x(), 0, 1, 0, r.y(), -r.x(), 0, 0, 0, 1;
+        const Eigen::Matrix<double, 3, 6> J = movement_by_twist(p.in_ct - covariance.centre_in_ct);
         H += J.transpose() * J;
     }
     covariance.of_turn_and_shift = error_rms_mm * error_rms_mm / 3 * H.inverse();

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
+#include <cstdint>
 
 #include "planning_io/types/triangle_mesh.h"
 #include "registration/matching/gauss_newton.h"
@@ -30,24 +30,47 @@ Vector3d mean_of_unmarked(std::span<const Vector3d> points, std::span<const std:
     Vector3d sum = Vector3d::Zero();
     double count = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
-        if (marks[i]) continue;
+        if (!marks.empty() && marks[i]) continue;
         sum += points[i];
         ++count;
     }
     return sum / std::max(count, 1.0);
 }
 
-/// Up to `max_points` of the finite points in a random, fixed order, so that any first few are an even sample.
-std::vector<Vector3d> shuffled_points(const PointCloud& cloud, int max_points) {
+/// How many points take part in an iteration: few while the pose is far, all at the end.
+constexpr std::size_t kFew = 1500, kSome = 5000;
+
+/// Up to `max_points` of the finite points: a random, fixed sample of about `kFew` first, then more up to about `kSome`, then
+/// the rest. Within each the points stay in the order of the scan, where neighbours follow each other and lie close
+/// together in the table too.
+struct Sample {
     std::vector<Vector3d> points;
-    points.reserve(cloud.size());
-    for (const Vector3d& p : cloud.points_in_rig)
-        if (p.allFinite()) points.push_back(p);
-    std::mt19937 random(1);
-    const std::size_t keep = std::min(points.size(), static_cast<std::size_t>(std::max(max_points, 0)));
-    for (std::size_t i = 0; i < keep; ++i) std::swap(points[i], points[i + random() % (points.size() - i)]);
-    points.resize(keep);
-    return points;
+    std::size_t few = 0, some = 0;
+};
+
+Sample sample_of(const PointCloud& cloud, int max_points) {
+    std::vector<std::size_t> finite;
+    finite.reserve(cloud.size());
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+        if (cloud.points_in_rig[i].allFinite()) finite.push_back(i);
+    const auto draw = [](std::size_t i) {  // even in [0, 1), the same for the same point
+        std::uint64_t h = (i + 1) * 0x9E3779B97F4A7C15u;
+        h = (h ^ (h >> 29)) * 0xBF58476D1CE4E5B9u;
+        return static_cast<double>((h ^ (h >> 32)) >> 11) * 0x1p-53;
+    };
+    const auto all = static_cast<double>(std::max<std::size_t>(finite.size(), 1));
+    const double few = kFew / all, some = kSome / all, most = std::max(max_points, 0) / all;
+    Sample sample;
+    sample.points.reserve(finite.size());
+    const auto take = [&](double from, double to) {
+        for (const std::size_t i : finite)
+            if (const double u = draw(i); u >= from && u < to) sample.points.push_back(cloud.points_in_rig[i]);
+        return sample.points.size();
+    };
+    sample.few = take(0, std::min(few, most));
+    sample.some = take(few, std::min(some, most));
+    take(some, most);
+    return sample;
 }
 
 /// The paper's equations: point to the skin point behind the table's pointer.
@@ -64,9 +87,7 @@ NormalEquations point_to_point_equations(std::span<const Vector3d> points_in_rig
         if (distance_mm > max_pair_mm) continue;
         ++result.used;
         const double w = tukey_weight(distance_mm, scale_mm);
-        const Vector3d r = x - centre_in_ct;
-        Eigen::Matrix<double, 3, 6> J;  // of x by (rotation vector, translation): -[r]x, I
-        J << 0, r.z(), -r.y(), 1, 0, 0, -r.z(), 0, r.x(), 0, 1, 0, r.y(), -r.x(), 0, 0, 0, 1;
+        const Eigen::Matrix<double, 3, 6> J = movement_by_twist(x - centre_in_ct);
         result.H.noalias() += w * J.transpose() * J;
         result.g.noalias() += w * J.transpose() * residual;
     }
@@ -103,7 +124,6 @@ void measure_residuals(std::span<const Vector3d> points, const SkinLut& lut, con
     result.residual_median_mm = *middle;
 }
 
-/// How many points take part in an iteration: few while the pose is far, all at the end.
 struct Stage {
     std::size_t points;
     double first_scale_mm, last_scale_mm;
@@ -111,12 +131,12 @@ struct Stage {
     double stop_mm;
 };
 
-std::vector<Stage> stages_of(const IcpSettings& settings, std::size_t points) {
+std::vector<Stage> stages_of(const IcpSettings& settings, const Sample& sample) {
     const double middle_mm = std::sqrt(settings.first_scale_mm * settings.last_scale_mm);
     const int third = std::max(settings.max_iterations / 3, 1);
-    return {{std::min<std::size_t>(points, 1500), settings.first_scale_mm, middle_mm, third, 0.02},
-            {std::min<std::size_t>(points, 5000), middle_mm, settings.last_scale_mm, third, 0.005},
-            {points, settings.last_scale_mm, settings.last_scale_mm, std::max(settings.max_iterations - 2 * third, 1),
+    return {{sample.few, settings.first_scale_mm, middle_mm, third, 0.02},
+            {sample.some, middle_mm, settings.last_scale_mm, third, 0.005},
+            {sample.points.size(), settings.last_scale_mm, settings.last_scale_mm, std::max(settings.max_iterations - 2 * third, 1),
              settings.stop_mm}};
 }
 
@@ -127,10 +147,12 @@ IcpResult refine_icp(const PointCloud& cloud, const SkinLut& lut, const RigidTra
     constexpr double kOutside = 0.5;  // cloth lies outside of the body: it is let go of sooner
     IcpResult result;
     result.ct_from_rig = ct_from_rig;
-    const std::vector<Vector3d> points = shuffled_points(cloud, settings.max_points);
+    const Sample sample = sample_of(cloud, settings.max_points);
+    const std::vector<Vector3d>& points = sample.points;
     if (points.size() < 6 || lut.skin.empty() || lut.distance_mm.empty()) return result;
     const DistanceField field(lut);
-    for (const Stage& stage : stages_of(settings, points.size())) {
+    const PointArrays arrays(points, mean_of_unmarked(points, {}));
+    for (const Stage& stage : stages_of(settings, sample)) {
         const std::span<const Vector3d> some(points.data(), stage.points);
         const auto skip = mark_off_the_skin(some, lut, result.ct_from_rig);
         const Vector3d centre_in_rig = mean_of_unmarked(some, skip);
@@ -139,7 +161,7 @@ IcpResult refine_icp(const PointCloud& cloud, const SkinLut& lut, const RigidTra
             result.centre_in_ct = result.ct_from_rig * centre_in_rig;
             const NormalEquations equations =
                 settings.mode == IcpSettings::Mode::signed_distance
-                    ? point_to_plane_equations(some, skip, field, result.ct_from_rig, result.centre_in_ct, scale_mm,
+                    ? point_to_plane_equations(arrays, some.size(), skip, field, result.ct_from_rig, result.centre_in_ct, scale_mm,
                                                std::max(settings.last_scale_mm, kOutside * scale_mm),
                                                settings.max_pair_mm)
                     : point_to_point_equations(some, lut, result.ct_from_rig, result.centre_in_ct, scale_mm,

@@ -50,12 +50,12 @@ std::string unfit(const PointCloud& cloud, const RegistrationSettings& settings,
 }
 
 /// Cost of the best pose of the mirrored scan / cost of this pose, over the same points; below 1 the mirror image fits better.
-double mirror_ratio(const PointCloud& cloud, const SkinLut& lut, const InitialMatch& match,
+double mirror_ratio(const PointCloud& cloud, const MatchingSkin& skin, const InitialMatch& match,
                     const RegistrationSettings& settings) {
     constexpr double kNoise_mm = 0.05;
     InitialMatchSettings search = settings.initial;
     search.max_bases = search.min_bases;
-    const InitialMatch image = find_initial_match(mirrored(cloud), lut, search);
+    const InitialMatch image = find_initial_match(mirrored(cloud), skin, search);
     if (image.candidates.empty()) return 0;
     return (image.candidates[0].cost_mm + kNoise_mm) / (match.candidates[0].cost_mm + kNoise_mm);
 }
@@ -116,7 +116,8 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
         return result;
     }
     const auto start = std::chrono::steady_clock::now();
-    const InitialMatch match = find_initial_match(cloud, lut, settings.initial);
+    const MatchingSkin skin(lut, settings.initial);
+    const InitialMatch match = find_initial_match(cloud, skin, settings.initial);
     result.initial_match_s = seconds_since(start);
     if (match.candidates.empty()) {
         result.reasons.push_back("no three points of the scan fit the skin together: this is not the surface that the CT shows");
@@ -146,7 +147,7 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
     result.weakest_sigma_mm = weakest.sigma_mm;
     result.scale = settled.scale;
     result.scale_sigma = settled.scale_sigma;
-    if (settings.mirror_test) result.mirror_ratio = mirror_ratio(cloud, lut, match, settings);
+    if (settings.mirror_test) result.mirror_ratio = mirror_ratio(cloud, skin, match, settings);
 
     Judgement judgement(result);
     judge_fit(settings, fit, result, judgement);

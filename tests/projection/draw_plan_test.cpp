@@ -15,17 +15,9 @@ namespace planlight {
 namespace {
 
 using Eigen::Vector3d;
-constexpr double kRadius_mm = 80;
-
-const SkinSurface& ball() {
-    static const SkinSurface kBall(test::ball_mesh(kRadius_mm, 5));
-    return kBall;
-}
-
-Vector3d on_ball(double longitude, double latitude) {
-    return kRadius_mm * Vector3d(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude),
-                                 std::sin(latitude));
-}
+using test::ball;
+using test::on_ball;
+constexpr double kRadius_mm = test::kBallRadius_mm;
 
 double great_circle_mm(const Vector3d& a, const Vector3d& b) {
     return kRadius_mm * std::atan2(a.cross(b).norm(), a.dot(b));

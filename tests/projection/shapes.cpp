@@ -65,6 +65,16 @@ TriangleMesh grid(int nu, int nv, bool closed_u, const auto& vertex) {
 
 }  // namespace
 
+const SkinSurface& ball() {
+    static const SkinSurface kBall(ball_mesh(kBallRadius_mm, 5));
+    return kBall;
+}
+
+Vector3d on_ball(double longitude, double latitude) {
+    return kBallRadius_mm *
+           Vector3d(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude), std::sin(latitude));
+}
+
 TriangleMesh tube_mesh(double radius_mm, double length_mm, double edge_mm) {
     const int around = static_cast<int>(std::ceil(2 * std::numbers::pi * radius_mm / edge_mm));
     const int along = static_cast<int>(std::ceil(length_mm / edge_mm)) + 1;

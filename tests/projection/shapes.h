@@ -3,11 +3,17 @@
 #include "planning_io/types/camera_model.h"
 #include "planning_io/types/image.h"
 #include "planning_io/types/triangle_mesh.h"
+#include "projection/skin_surface.h"
 
 namespace planlight::test {
 
 /// A ball of that radius at the origin, from an icosahedron halved `halvings` times (edges about 1.1 r / 2^halvings).
 TriangleMesh ball_mesh(double radius_mm, int halvings);
+
+/// A ball of 80 mm as a skin, made once, and a point on it (radians).
+constexpr double kBallRadius_mm = 80;
+const SkinSurface& ball();
+Eigen::Vector3d on_ball(double longitude, double latitude);
 
 /// A tube along z, open at both ends, its outside out.
 TriangleMesh tube_mesh(double radius_mm, double length_mm, double edge_mm);

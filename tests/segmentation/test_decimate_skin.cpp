@@ -1,9 +1,4 @@
 #include <gtest/gtest.h>
-#include <vtkCellArray.h>
-#include <vtkNew.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkStaticCellLocator.h>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -15,6 +10,7 @@
 #include "segmentation/collapse_bound.h"
 #include "segmentation/decimate_skin.h"
 #include "segmentation/segment_skin.h"
+#include "tests/segmentation/distance_to_mesh.h"
 #include "tests/segmentation/mesh_facts.h"
 
 namespace planlight::test {
@@ -25,39 +21,10 @@ using Triangle = std::array<Vector3d, 3>;
 
 constexpr double kBound_mm = 0.15, kTolerance_mm = 0.01;
 
-class DistanceTo {
-public:
-    explicit DistanceTo(const TriangleMesh& mesh) {
-        vtkNew<vtkPoints> points;
-        points->SetDataTypeToDouble();
-        for (const auto& p : mesh.vertices_in_ct) points->InsertNextPoint(p.data());
-        vtkNew<vtkCellArray> cells;
-        for (const auto& t : mesh.triangles) {
-            const vtkIdType ids[3] = {t[0], t[1], t[2]};
-            cells->InsertNextCell(3, ids);
-        }
-        surface_->SetPoints(points);
-        surface_->SetPolys(cells);
-        locator_->SetDataSet(surface_);
-        locator_->BuildLocator();
-    }
-    double operator()(const Vector3d& p) {
-        double closest[3], squared = 0;
-        vtkIdType cell = 0;
-        int part = 0;
-        locator_->FindClosestPoint(p.data(), closest, cell, part, squared);
-        return std::sqrt(squared);
-    }
-
-private:
-    vtkNew<vtkPolyData> surface_;
-    vtkNew<vtkStaticCellLocator> locator_;
-};
-
 /// The greatest distance of any point of `from` to `to`, over-estimated by kTolerance_mm at most: a distance changes by no
 /// more than its point moves, so a triangle holds none above that of its middle plus its radius; larger ones are split.
 double furthest(const TriangleMesh& from, const TriangleMesh& to) {
-    DistanceTo distance(to);
+    DistanceToMesh distance(to);
     double least = 0;  // of what the answer can be
     std::vector<Triangle> left;
     for (const auto& t : from.triangles) {

@@ -1,9 +1,4 @@
 #include <gtest/gtest.h>
-#include <vtkCellArray.h>
-#include <vtkNew.h>
-#include <vtkPoints.h>
-#include <vtkPolyData.h>
-#include <vtkStaticCellLocator.h>
 
 #include <algorithm>
 #include <array>
@@ -12,6 +7,7 @@
 #include "planning_io/invesalius_project.h"
 #include "planning_io/read_volume.h"
 #include "segmentation/segment_skin.h"
+#include "tests/segmentation/distance_to_mesh.h"
 #include "tests/segmentation/mesh_facts.h"
 #include "tests/support/test_data.h"
 
@@ -22,28 +18,9 @@ using Eigen::Vector3d;
 
 /// Distances of points from the nearest triangle of `mesh`, mm.
 std::vector<double> distances(const std::vector<Vector3d>& from, const TriangleMesh& mesh) {
-    vtkNew<vtkPoints> points;
-    points->SetDataTypeToDouble();
-    for (const auto& p : mesh.vertices_in_ct) points->InsertNextPoint(p.data());
-    vtkNew<vtkCellArray> cells;
-    for (const auto& t : mesh.triangles) {
-        const vtkIdType ids[3] = {t[0], t[1], t[2]};
-        cells->InsertNextCell(3, ids);
-    }
-    vtkNew<vtkPolyData> surface;
-    surface->SetPoints(points);
-    surface->SetPolys(cells);
-    vtkNew<vtkStaticCellLocator> locator;
-    locator->SetDataSet(surface);
-    locator->BuildLocator();
+    const DistanceToMesh distance(mesh);
     std::vector<double> result;
-    for (const Vector3d& p : from) {
-        double closest[3], squared = 0;
-        vtkIdType cell = 0;
-        int part = 0;
-        locator->FindClosestPoint(p.data(), closest, cell, part, squared);
-        result.push_back(std::sqrt(squared));
-    }
+    for (const Vector3d& p : from) result.push_back(distance(p));
     return result;
 }
 

@@ -2,28 +2,18 @@
 
 #include <gtest/gtest.h>
 
-#include <opencv2/calib3d.hpp>
 #include <random>
 
 #include "registration/simulation/rig_layout.h"
+#include "tests/registration/opencv_pixel.h"
 
 namespace planlight::simulation {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using test::opencv_pixel;
 
 namespace {
-
-/// The third party's opinion: OpenCV's projection with the exported numbers.
-Vector2d opencv_pixel(const CameraModel& d, const Vector3d& p_in_rig) {
-    const Vector3d p = d.device_from_rig * p_in_rig;
-    const std::vector<cv::Point3d> points{{p.x(), p.y(), p.z()}};
-    const cv::Matx33d K(d.focal_x, 0, d.centre_x, 0, d.focal_y, d.centre_y, 0, 0, 1);
-    const std::vector<double> bend{d.k1, d.k2, d.p1, d.p2, d.k3};
-    std::vector<cv::Point2d> pixels;
-    cv::projectPoints(points, cv::Vec3d(0, 0, 0), cv::Vec3d(0, 0, 0), K, bend, pixels);
-    return {pixels[0].x, pixels[0].y};
-}
 
 class OpticsOfPreset : public testing::TestWithParam<Preset> {
 protected:

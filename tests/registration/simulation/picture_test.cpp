@@ -4,31 +4,22 @@
 #include <chrono>
 #include <map>
 #include <memory>
-#include <opencv2/calib3d.hpp>
 #include <random>
 
 #include "registration/simulation/simulated_rig.h"
 #include "registration/simulation/true_surface.h"
 #include "tests/registration/simulation/analytic_volume.h"
+#include "tests/registration/opencv_pixel.h"
 
 namespace planlight::simulation {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using test::opencv_pixel;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 namespace {
-
-/// OpenCV's pixel of a point in rig.
-Vector2d opencv_pixel(const CameraModel& d, const Vector3d& p_in_rig) {
-    const Vector3d p = d.device_from_rig * p_in_rig;
-    std::vector<cv::Point2d> pixels;
-    cv::projectPoints(std::vector<cv::Point3d>{{p.x(), p.y(), p.z()}}, cv::Vec3d(0, 0, 0), cv::Vec3d(0, 0, 0),
-                      cv::Matx33d(d.focal_x, 0, d.centre_x, 0, d.focal_y, d.centre_y, 0, 0, 1),
-                      std::vector<double>{d.k1, d.k2, d.p1, d.p2, d.k3}, pixels);
-    return {pixels[0].x, pixels[0].y};
-}
 
 class Picture : public testing::TestWithParam<Preset> {
 protected:
