@@ -102,8 +102,18 @@ PLANLIGHT_CLONES void doubt_below_contrast(const std::uint8_t* white, const std:
                                            std::uint8_t* __restrict limit, std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) {
         const float wanted = part * static_cast<float>(white[i] - black[i]), most = wanted > floor ? wanted : floor;
-        limit[i] = static_cast<std::uint8_t>(static_cast<int>(most < 254.f ? most : 254.f));
+        // Rounded up, less one: a difference that reaches `most` is none in doubt. (256 - x rounds down what x rounds up.)
+        limit[i] = static_cast<std::uint8_t>(255 - static_cast<int>(256.f - (most < 255.f ? most : 255.f)));
     }
+}
+
+PLANLIGHT_CLONES void contrast_of(const std::uint8_t* white, const std::uint8_t* black, float* __restrict contrast,
+                                  std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) contrast[i] = static_cast<float>(white[i] - black[i]);
+}
+
+PLANLIGHT_CLONES void set_where_known(const float* pixel, float value, float* __restrict out, std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) out[i] = pixel[i] == pixel[i] ? value : kNaN;  // NaN is not equal to itself
 }
 
 PLANLIGHT_CLONES void decide_bit(const std::uint8_t* frame, const std::uint8_t* inverse, const std::uint8_t* limit,

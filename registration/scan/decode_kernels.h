@@ -32,9 +32,11 @@ void finish_phase(const float* sine_sum, const float* cosine_sum, float amplitud
 /// The grey difference below which a Gray bit is in doubt: a part of the fringe amplitude, at least `floor`.
 void doubt_below(const float* amplitude, float part, float floor, std::uint8_t* limit, std::size_t n);
 
-/// The same from the contrast, for a code without fringes.
+/// For a code without fringes: the difference below which, by (white - black) and in grey, a bit is in doubt, less one.
 void doubt_below_contrast(const std::uint8_t* white, const std::uint8_t* black, float part, float floor, std::uint8_t* limit,
                           std::size_t n);
+
+void contrast_of(const std::uint8_t* white, const std::uint8_t* black, float* contrast, std::size_t n);
 
 /// Decides one bit (a bit of a byte of `code`) by the frame against its inverse, or against another threshold.
 void decide_bit(const std::uint8_t* frame, const std::uint8_t* inverse, const std::uint8_t* limit, std::uint8_t bit,
@@ -70,6 +72,9 @@ struct DirectionBlock {
 /// Writes column, row (if coded: `rows` and `row` not null) and sigma of the believable pixels, NaN for the rest, counted.
 Counts keep_good(const DirectionBlock& columns, const DirectionBlock* rows, const std::uint8_t* white,
                  const std::uint8_t* black, const Limits& limits, float* column, float* row, float* sigma_px, std::size_t n);
+
+/// `value` where `pixel` is known, NaN elsewhere.
+void set_where_known(const float* pixel, float value, float* out, std::size_t n);
 
 /// A block without light: all NaN; dark, or saturated where white is.
 Counts keep_none(const std::uint8_t* white, int saturated_at, float* column, float* row, float* sigma_px, std::size_t n);

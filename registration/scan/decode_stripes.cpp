@@ -1,18 +1,14 @@
 #include "registration/scan/decode_stripes.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <memory>
 #include <numbers>
 #include <stdexcept>
 
-#include "registration/scan/decode_kernels.h"
+#include "registration/scan/decode_blocks.h"
 
 namespace planlight {
 namespace {
@@ -172,35 +168,16 @@ kernels::Counts decode_into(const Frames& frames, const StripeSettings& stripes,
 
 DecodedView decode_stripes(std::span<const GrayImage> frames, const StripeSettings& stripes, const DecodeSettings& settings) {
     const Frames sorted = sort_frames(frames, stripes);
-    DecodedView view;
-    view.width = frames[0].width;
-    view.height = frames[0].height;
+    DecodedView view = empty_view(frames[0].width, frames[0].height, stripes.rows);
     const std::size_t pixels = frames[0].pixels.size();
-    view.column.resize(pixels);
-    if (stripes.rows) view.row.resize(pixels);
-    view.sigma_px.resize(pixels);
     view.noise_grey = settings.noise_grey > 0 ? settings.noise_grey : measure_noise(sorted.directions[0], pixels, settings);
     const kernels::Limits limits{static_cast<float>(settings.min_modulation), static_cast<float>(settings.min_direct_fraction),
                                  static_cast<float>(stripes.phase_period_px / (2 * std::numbers::pi) *
                                                     std::sqrt(2.0 / stripes.phase_steps) * view.noise_grey),
                                  static_cast<float>(settings.max_phase_sigma_px), settings.saturated_at};
-    std::atomic<std::size_t> decoded{0}, dark{0}, saturated{0}, uncertain{0};
-    const std::size_t blocks = (pixels + kernels::kBlock - 1) / kernels::kBlock;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 32), [&](const tbb::blocked_range<std::size_t>& range) {
-        const auto work = std::make_unique<std::array<Block, 2>>();
-        for (std::size_t block = range.begin(); block < range.end(); ++block) {
-            const std::size_t begin = block * kernels::kBlock, n = std::min(kernels::kBlock, pixels - begin);
-            const kernels::Counts counts = decode_into(sorted, stripes, limits, begin, n, *work, view);
-            decoded += counts.decoded;
-            dark += counts.dark;
-            saturated += counts.saturated;
-            uncertain += counts.uncertain;
-        }
+    decode_by_blocks<std::array<Block, 2>>(view, [&](std::size_t begin, std::size_t n, std::array<Block, 2>& work) {
+        return decode_into(sorted, stripes, limits, begin, n, work, view);
     });
-    view.decoded = decoded;
-    view.dark = dark;
-    view.saturated = saturated;
-    view.uncertain = uncertain;
     return view;
 }
 
