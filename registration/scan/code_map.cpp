@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#define PLANLIGHT_CLONES __attribute__((target_clones("arch=x86-64-v3", "default")))
+#include "registration/scan/processor_clones.h"
 
 namespace planlight {
 namespace {

@@ -13,7 +13,7 @@ namespace {
 namespace kernels = decode_kernels;
 
 struct Block {
-    alignas(64) std::array<float, kernels::kBlock> contrast, column, row, sigma;
+    alignas(64) std::array<float, kernels::kBlock> contrast, column, row;
     alignas(64) std::array<std::uint8_t, kernels::kBlock> limit;
     alignas(64) kernels::CodeBytes code;
 };
@@ -34,8 +34,10 @@ void decode_direction(std::span<const GrayImage> pairs, int size, std::size_t be
     const std::size_t bits = pairs.size() / 2;
     for (std::size_t k = 0; k < bits; ++k) {
         const std::size_t place = bits - 1 - k;
-        kernels::decide_bit(pairs[2 * k].pixels.data() + begin, pairs[2 * k + 1].pixels.data() + begin, b.limit.data(),
-                            static_cast<std::uint8_t>(1u << (place % 8)), place < 8 ? b.code.low : b.code.high,
+        const std::uint8_t *frame = pairs[2 * k].pixels.data() + begin, *inverse = pairs[2 * k + 1].pixels.data() + begin;
+        kernels::expect_next(frame);
+        kernels::expect_next(inverse);
+        kernels::decide_bit(frame, inverse, b.limit.data(), static_cast<std::uint8_t>(1u << (place % 8)), place < 8 ? b.code.low : b.code.high,
                             place < 8 ? b.code.doubt_low : b.code.doubt_high, n);
     }
     kernels::place_code(b.code, 1, static_cast<float>(size), pixel, n);
@@ -44,6 +46,8 @@ void decode_direction(std::span<const GrayImage> pairs, int size, std::size_t be
 kernels::Counts decode_block(const GrayPairs& frames, const GrayLimits& limits, std::size_t begin, std::size_t n, Block& b,
                              DecodedView& view) {
     const std::uint8_t *white = frames.white.pixels.data() + begin, *black = frames.black.pixels.data() + begin;
+    kernels::expect_next(white);
+    kernels::expect_next(black);
     float *column = view.column.data() + begin, *row = view.row.data() + begin, *sigma = view.sigma_px.data() + begin;
     if (kernels::highest_contrast(white, black, n) < limits.least_grey)
         return kernels::keep_none(white, limits.saturated_at, column, row, sigma, n);

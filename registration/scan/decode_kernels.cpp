@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 
-#define PLANLIGHT_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#define PLANLIGHT_INLINE inline __attribute__((always_inline))
+#include "registration/scan/processor_clones.h"
 
 namespace planlight::decode_kernels {
 namespace {

@@ -109,11 +109,15 @@ struct Block {
     kernels::DirectionBlock result() const { return {amplitude.data(), pixel.data(), top.data()}; }
 };
 
+struct Work {
+    Block columns, rows;
+};
+
 void decode_phase(const Direction& direction, const StripeSettings& stripes, std::size_t begin, std::size_t n, Block& b) {
     const std::size_t steps = direction.phase.size();
     if (steps == 8) {
         std::array<Bytes, 8> frames;
-        for (std::size_t k = 0; k < steps; ++k) frames[k] = direction.phase[k] + begin;
+        for (std::size_t k = 0; k < steps; ++k) frames[k] = direction.phase[k] + begin, kernels::expect_next(frames[k]);
         kernels::sum_eight_phases(frames.data(), b.sine_sum.data(), b.cosine_sum.data(), b.top.data(), n);
     } else {
         b.sine_sum.fill(0);
@@ -141,6 +145,8 @@ void decode_block(const Frames& frames, const Direction& direction, const Stripe
     for (std::size_t k = 0; k < bits; ++k) {
         const std::size_t place = bits - 1 - k;
         const auto bit = static_cast<std::uint8_t>(1u << (place % 8));
+        kernels::expect_next(direction.gray[k] + begin);
+        if (stripes.inverse) kernels::expect_next(direction.inverse[k] + begin);
         kernels::decide_bit(direction.gray[k] + begin, stripes.inverse ? direction.inverse[k] + begin : b.middle.data(),
                             stripes.inverse ? b.limit.data() : b.half_limit.data(), bit, place < 8 ? b.code.low : b.code.high,
                             place < 8 ? b.code.doubt_low : b.code.doubt_high, n);
@@ -151,16 +157,18 @@ void decode_block(const Frames& frames, const Direction& direction, const Stripe
 
 /// Decodes the pixels [begin, begin + n) of the view.
 kernels::Counts decode_into(const Frames& frames, const StripeSettings& stripes, const kernels::Limits& limits,
-                            std::size_t begin, std::size_t n, std::array<Block, 2>& b, DecodedView& view) {
+                            std::size_t begin, std::size_t n, Work& work, DecodedView& view) {
     const Bytes white = frames.white + begin, black = frames.black + begin;
+    kernels::expect_next(white);
+    kernels::expect_next(black);
     float *column = view.column.data() + begin, *row = stripes.rows ? view.row.data() + begin : nullptr,
           *sigma = view.sigma_px.data() + begin;
     // A fringe is never stronger than the light itself; most of a picture shows what no light falls on.
     if (static_cast<float>(kernels::highest_contrast(white, black, n)) < limits.min_modulation)
         return kernels::keep_none(white, limits.saturated_at, column, row, sigma, n);
-    decode_block(frames, frames.directions[0], stripes, view.noise_grey, begin, n, b[0]);
-    if (stripes.rows) decode_block(frames, frames.directions[1], stripes, view.noise_grey, begin, n, b[1]);
-    const kernels::DirectionBlock columns = b[0].result(), rows = b[1].result();
+    decode_block(frames, frames.directions[0], stripes, view.noise_grey, begin, n, work.columns);
+    if (stripes.rows) decode_block(frames, frames.directions[1], stripes, view.noise_grey, begin, n, work.rows);
+    const kernels::DirectionBlock columns = work.columns.result(), rows = work.rows.result();
     return kernels::keep_good(columns, stripes.rows ? &rows : nullptr, white, black, limits, column, row, sigma, n);
 }
 
@@ -175,7 +183,7 @@ DecodedView decode_stripes(std::span<const GrayImage> frames, const StripeSettin
                                  static_cast<float>(stripes.phase_period_px / (2 * std::numbers::pi) *
                                                     std::sqrt(2.0 / stripes.phase_steps) * view.noise_grey),
                                  static_cast<float>(settings.max_phase_sigma_px), settings.saturated_at};
-    decode_by_blocks<std::array<Block, 2>>(view, [&](std::size_t begin, std::size_t n, std::array<Block, 2>& work) {
+    decode_by_blocks<Work>(view, [&](std::size_t begin, std::size_t n, Work& work) {
         return decode_into(sorted, stripes, limits, begin, n, work, view);
     });
     return view;

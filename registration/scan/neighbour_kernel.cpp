@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#define PLANLIGHT_CLONES __attribute__((target_clones("arch=x86-64-v3", "default")))
+#include "registration/scan/processor_clones.h"
 
 namespace planlight::neighbour_kernel {
 namespace {

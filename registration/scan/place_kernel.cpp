@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#define PLANLIGHT_CLONES __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#define PLANLIGHT_INLINE inline __attribute__((always_inline))
+#include "registration/scan/processor_clones.h"
 
 // Written without branches and with plain numbers, or the compiler could not put points side by side.
 namespace planlight::place_kernel {

@@ -42,7 +42,7 @@ void triangulate_and_resect(const ScanSettings& settings, ScanResult& result, Ri
         result.raw = triangulate(result.left, result.right, rig, settings.triangulation);
         return;
     }
-    constexpr std::size_t kEnough = 20000;
+    constexpr std::size_t kEnough = 10000;
     const ViewMatches matches = match_views(result.left, result.right, rig, settings.triangulation);
     TriangulationSettings by_cameras = settings.triangulation;
     by_cameras.one_camera = false;
