@@ -8,9 +8,6 @@
 namespace planlight::place_kernel {
 namespace {
 
-struct Pair {
-    double x, y;
-};
 struct Triple {
     double x, y, z;
 };

@@ -1,8 +1,11 @@
 #include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
 
 #include <chrono>
 #include <stdexcept>
+#include <utility>
 
+#include "planning_io/types/error.h"
 #include "registration/scan/place_matches.h"
 #include "registration/scan/scan_surface.h"
 
@@ -28,6 +31,23 @@ void check_size(const DecodedView& view, const CameraModel& camera, const char* 
         throw std::invalid_argument(
             fmt::format("scan_from_capture: {} frames of {} x {} for a camera calibrated at {} x {}", name, view.width,
                         view.height, camera.width, camera.height));
+}
+
+/// The check of one camera's frames; empty where they are not the whole sequence.
+SequenceCheck sequence_of(const std::vector<GrayImage>& frames, const StripeSettings& stripes) {
+    const bool whole = stripes.phase_steps >= 3 && frames.size() == stripe_sequence(stripes).size();
+    return whole ? check_sequence(frames, stripes) : SequenceCheck{};
+}
+
+void refuse_wrong_sequence(const ScanCapture& capture, ScanResult& result) {
+    tbb::parallel_invoke([&] { result.left_sequence = sequence_of(capture.left, capture.stripes); },
+                         [&] { result.right_sequence = sequence_of(capture.right, capture.stripes); });
+    for (const auto& [check, camera] : {std::pair{&result.left_sequence, "left"}, {&result.right_sequence, "right"}})
+        if (!check->problems.empty())
+            throw CheckFailedError(fmt::format("the {} camera's frames do not show the sequence: {} ({:.0f} % of the lit pixels)",
+                                               camera, check->problems[0].what, 100 * check->problems[0].share),
+                                   "Scan again; if it comes back, check the delay between projector and cameras and the "
+                                   "names of the pictures.");
 }
 
 bool use_resection(const ScanSettings& settings, ScanResult& result, RigCalibration& rig) {
@@ -61,6 +81,8 @@ ScanResult scan_from_capture(const ScanCapture& capture, const RigCalibration& r
                                                 rig.projector.height));
     ScanResult result;
     Stopwatch watch;
+    if (settings.check_sequence) refuse_wrong_sequence(capture, result);
+    result.sequence_s = watch.lap_s();
     result.left = decode_stripes(capture.left, capture.stripes, settings.decode);
     result.right = decode_stripes(capture.right, capture.stripes, settings.decode);
     check_size(result.left, rig.left_camera, "left");

@@ -8,6 +8,7 @@
 #include "planning_io/types/rig_calibration.h"
 #include "registration/devices/projector.h"
 #include "registration/devices/stereo_camera.h"
+#include "registration/scan/check_sequence.h"
 #include "registration/scan/decode_stripes.h"
 #include "registration/scan/remove_outliers.h"
 #include "registration/scan/resect_projector.h"
@@ -35,19 +36,22 @@ struct ScanSettings {
     /// Take the projector from where the scan finds it, if that is believable (`Resection::believable`): without it an
     /// error of the projector's calibration goes straight into the points that only one camera sees.
     bool use_resection = true;
+    bool check_sequence = true;  ///< refuse a capture in which a frame does not show its own picture
 };
 
 /// A scan from pictures to clean cloud, with everything in between for the report (Fig. 2).
 struct ScanResult {
     DecodedView left, right;
+    SequenceCheck left_sequence, right_sequence;  ///< not checked: too few lit pixels, or not asked for
     Triangulation raw;
     OutlierReport clean;
     std::optional<Resection> resection;  ///< empty: too few points, or columns only
     bool resection_used = false;         ///< then `raw` and `clean` are made with `resection->projector`
-    double decode_s = 0, triangulate_s = 0, outliers_s = 0;
+    double sequence_s = 0, decode_s = 0, triangulate_s = 0, outliers_s = 0;
 };
 
-/// The cloud of a capture. An empty cloud is a value (nothing was lit); the counts say why.
+/// The cloud of a capture. An empty cloud is a value (nothing was lit); the counts say why. Throws CheckFailedError, naming
+/// the picture, when a frame is late, doubled, missing or swapped (`ScanSettings::check_sequence`).
 ScanResult scan_from_capture(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings = {});
 
 }  // namespace planlight

@@ -1,0 +1,259 @@
+#include "registration/scan/check_sequence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+
+namespace planlight {
+namespace {
+
+constexpr int kLit_grey = 16;         // white - black of a pixel to look at
+constexpr int kBright_grey = 250;     // above it a sum says nothing
+constexpr int kFlat_px = 3;           // as far a pixel's neighbours must agree with it: no edge, no blur
+constexpr double kNoise_grey = 2;     // of one frame; what else is allowed goes with the contrast
+constexpr std::size_t kSample = 16000, kEnough = 200;
+
+/// The frames of one direction, by place in the sequence.
+struct Direction {
+    std::vector<std::size_t> gray, inverse, phase;
+};
+
+struct Capture {
+    std::span<const GrayImage> frames;
+    std::vector<StripePattern> sequence;
+    const StripeSettings& stripes;
+    std::size_t white = 0, black = 1;
+    std::array<Direction, 2> directions;
+    std::vector<std::size_t> lit;  ///< pixels to look at; kFlat_px from the rim or more
+
+    int at(std::size_t frame, std::size_t pixel) const { return frames[frame].pixels[pixel]; }
+    int contrast(std::size_t pixel) const { return at(white, pixel) - at(black, pixel); }
+    const std::string& name(std::size_t frame) const { return sequence[frame].name; }
+};
+
+Capture sorted(std::span<const GrayImage> frames, const StripeSettings& stripes) {
+    Capture capture{frames, stripe_sequence(stripes), stripes, 0, 1, {}, {}};
+    if (frames.size() != capture.sequence.size())
+        throw std::invalid_argument(fmt::format("check_sequence: {} frames for {} pictures", frames.size(), capture.sequence.size()));
+    for (const GrayImage& f : frames)
+        if (f.width != frames[0].width || f.pixels.size() != frames[0].pixels.size() || f.empty())
+            throw std::invalid_argument("check_sequence: frames of different size");
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+        Direction& direction = capture.directions[capture.sequence[i].along_rows ? 1 : 0];
+        switch (capture.sequence[i].kind) {
+            case StripePattern::Kind::white: capture.white = i; break;
+            case StripePattern::Kind::black: capture.black = i; break;
+            case StripePattern::Kind::gray_bit: direction.gray.push_back(i); break;
+            case StripePattern::Kind::gray_bit_inverse: direction.inverse.push_back(i); break;
+            case StripePattern::Kind::phase: direction.phase.push_back(i); break;
+        }
+    }
+    return capture;
+}
+
+/// Calls `visit(pixel)` for a sample of the pixels, evenly over the picture, away from its rim.
+template <class Visit>
+void for_sample(const GrayImage& picture, const Visit& visit) {
+    const std::size_t step = std::max<std::size_t>(1, static_cast<std::size_t>(std::sqrt(static_cast<double>(picture.pixels.size()) / kSample)));
+    for (int y = kFlat_px; y < picture.height - kFlat_px; y += static_cast<int>(step))
+        for (int x = kFlat_px; x < picture.width - kFlat_px; x += static_cast<int>(step)) visit(picture.index(x, y));
+}
+
+double share_of(std::size_t part, std::size_t all) { return all == 0 ? 0 : static_cast<double>(part) / static_cast<double>(all); }
+
+/// White must be the brightest frame and black the darkest wherever any light changes; the rest needs them.
+void check_ends(Capture& capture, SequenceCheck& check) {
+    std::size_t changing = 0, not_white = 0, not_black = 0;
+    for_sample(capture.frames[0], [&](std::size_t pixel) {
+        int low = 255, high = 0;
+        for (std::size_t i = 0; i < capture.frames.size(); ++i) {
+            low = std::min(low, capture.at(i, pixel));
+            high = std::max(high, capture.at(i, pixel));
+        }
+        if (high - low < kLit_grey) return;
+        ++changing;
+        const int allowed = (high - low) / 3;
+        const bool white = high - capture.at(capture.white, pixel) <= allowed, black = capture.at(capture.black, pixel) - low <= allowed;
+        not_white += !white;
+        not_black += !black;
+        if (white && black && capture.contrast(pixel) >= kLit_grey && capture.at(capture.white, pixel) < kBright_grey)
+            capture.lit.push_back(pixel);
+    });
+    check.pixels = changing;
+    check.checked = changing >= kEnough;
+    constexpr double kMost = 0.05;
+    if (check.checked && share_of(not_white, changing) > kMost)
+        check.problems.push_back({capture.white, "white is not the brightest", share_of(not_white, changing)});
+    if (check.checked && share_of(not_black, changing) > kMost)
+        check.problems.push_back({capture.black, "black is not the darkest", share_of(not_black, changing)});
+}
+
+/// Whether a pixel's neighbours in all four directions have the same difference of two frames.
+bool flat(const Capture& capture, std::size_t a, std::size_t b, std::size_t pixel) {
+    const auto difference = [&](std::size_t p) { return capture.at(a, p) - capture.at(b, p); };
+    const int here = difference(pixel), allowed = capture.contrast(pixel) / 4 + 4;
+    const auto line = static_cast<std::size_t>(capture.frames[0].width) * kFlat_px;
+    for (const std::size_t p : {pixel - kFlat_px, pixel + kFlat_px, pixel - line, pixel + line})
+        if (std::abs(difference(p) - here) > allowed) return false;
+    return true;
+}
+
+/// Another frame that looks just like this one although its picture is another; what happened, in words.
+std::string explain(const Capture& capture, std::size_t frame) {
+    std::optional<std::size_t> twin;
+    double best = 0.02;
+    for (std::size_t other = 0; other < capture.frames.size(); ++other) {
+        if (other == frame) continue;
+        std::size_t differ = 0;
+        for (const std::size_t pixel : capture.lit)
+            differ += std::abs(capture.at(frame, pixel) - capture.at(other, pixel)) > capture.contrast(pixel) / 6 + 4 * kNoise_grey;
+        if (const double share = share_of(differ, capture.lit.size()); share < best) {
+            best = share;
+            twin = other;
+        }
+    }
+    return twin ? fmt::format("; {} looks like {}", capture.name(frame), capture.name(*twin)) : "";
+}
+
+void check_pairs(const Capture& capture, const Direction& direction, SequenceCheck& check) {
+    for (std::size_t k = 0; k < direction.inverse.size(); ++k) {
+        const std::size_t gray = direction.gray[k], inverse = direction.inverse[k];
+        std::size_t looked = 0, wrong = 0;
+        for (const std::size_t pixel : capture.lit) {
+            if (!flat(capture, gray, inverse, pixel)) continue;
+            ++looked;
+            const int sum = capture.at(gray, pixel) + capture.at(inverse, pixel);
+            const int wanted = capture.at(capture.white, pixel) + capture.at(capture.black, pixel);
+            wrong += std::abs(sum - wanted) > 0.35 * capture.contrast(pixel) + 4 * kNoise_grey;
+        }
+        constexpr double kMost = 0.02;
+        if (looked < kEnough || share_of(wrong, looked) <= kMost) continue;
+        check.problems.push_back({gray, fmt::format("{} and its inverse do not complete each other{}{}", capture.name(gray),
+                                                    explain(capture, gray), explain(capture, inverse)), share_of(wrong, looked)});
+    }
+}
+
+/// Amplitude, phase and what is left over of the fringes at a pixel.
+struct Fringe {
+    double amplitude = 0, phase = 0;  ///< phase of the shift at the crest, radians
+    double residual_grey = 0;         ///< rms by degree of freedom of what a fringe and its second harmonic cannot make
+};
+Fringe fringe_at(const Capture& capture, const std::vector<std::size_t>& phases, std::size_t pixel) {
+    const auto n = static_cast<double>(phases.size());
+    double mean = 0, s1 = 0, c1 = 0, s2 = 0, c2 = 0, squares = 0;
+    for (std::size_t k = 0; k < phases.size(); ++k) {
+        const double shift = 2 * std::numbers::pi * static_cast<double>(k) / n, value = capture.at(phases[k], pixel);
+        mean += value / n;
+        s1 += value * std::sin(shift) * 2 / n;
+        c1 += value * std::cos(shift) * 2 / n;
+        s2 += value * std::sin(2 * shift) * 2 / n;
+        c2 += value * std::cos(2 * shift) * 2 / n;
+        squares += value * value;
+    }
+    Fringe fringe{std::hypot(s1, c1), std::atan2(s1, c1), 0};
+    const double in_phase = c2 * std::cos(2 * fringe.phase) + s2 * std::sin(2 * fringe.phase);
+    const double modelled = n * mean * mean + n / 2 * (fringe.amplitude * fringe.amplitude + in_phase * in_phase);
+    fringe.residual_grey = std::sqrt(std::max(0.0, squares - modelled) / std::max(1.0, n - 4));
+    return fringe;
+}
+
+void check_fringes(const Capture& capture, const Direction& direction, SequenceCheck& check) {
+    if (direction.phase.size() < 6) return;  // too few for anything to be left over
+    std::size_t looked = 0, wrong = 0;
+    for (const std::size_t pixel : capture.lit) {
+        const Fringe fringe = fringe_at(capture, direction.phase, pixel);
+        // Out of order frames may leave hardly any fringe: what a fringe of this light can have is its measure.
+        const double strength = std::max(fringe.amplitude, 0.25 * capture.contrast(pixel));
+        ++looked;
+        wrong += fringe.residual_grey > 0.12 * strength + 2 * kNoise_grey;
+    }
+    constexpr double kMost = 0.12;
+    if (looked < kEnough || share_of(wrong, looked) <= kMost) return;
+    std::string twins;
+    for (const std::size_t frame : direction.phase) twins += explain(capture, frame);
+    check.problems.push_back({direction.phase[0], fmt::format("{} to {} are no fringes in order{}", capture.name(direction.phase.front()),
+                                                              capture.name(direction.phase.back()), twins), share_of(wrong, looked)});
+}
+
+/// A Gray code's number is odd where an odd number of its bits is set; the fringe says the same of its two halves.
+void check_parity(const Capture& capture, const Direction& direction, SequenceCheck& check) {
+    if (direction.phase.size() < 3 || direction.inverse.empty()) return;
+    const double half_px = capture.stripes.phase_period_px / 2;
+    std::size_t looked = 0, wrong = 0;
+    for (const std::size_t pixel : capture.lit) {
+        const Fringe fringe = fringe_at(capture, direction.phase, pixel);
+        if (fringe.amplitude < 0.1 * capture.contrast(pixel) + 2 * kNoise_grey) continue;
+        const double pixel_in_period = fringe.phase * half_px / std::numbers::pi + 0.5;  // from the edge of pixel 0
+        const double cell = std::floor(pixel_in_period / half_px), in_cell = pixel_in_period / half_px - cell;
+        if (in_cell < 0.3 || in_cell > 0.7) continue;  // near its borders a bit may go either way
+        bool odd = false, clear = true;
+        for (std::size_t k = 0; k < direction.gray.size(); ++k) {
+            const int difference = capture.at(direction.gray[k], pixel) - capture.at(direction.inverse[k], pixel);
+            clear = clear && 3 * std::abs(difference) > capture.contrast(pixel);
+            odd ^= difference > 0;
+        }
+        if (!clear) continue;
+        ++looked;
+        wrong += odd != (static_cast<int>(cell) % 2 != 0);
+    }
+    constexpr double kMost = 0.03;
+    if (looked < kEnough || share_of(wrong, looked) <= kMost) return;
+    check.problems.push_back({direction.gray[0], fmt::format("the code of {} to {} contradicts {} to {}", capture.name(direction.gray.front()),
+                                                             capture.name(direction.gray.back()), capture.name(direction.phase.front()),
+                                                             capture.name(direction.phase.back())), share_of(wrong, looked)});
+}
+
+/// Of two bits the finer one changes more often: looked for between pixels and their neighbours to the right and below.
+void check_order(const Capture& capture, const Direction& direction, SequenceCheck& check) {
+    if (direction.inverse.empty()) return;
+    const auto line = static_cast<std::size_t>(capture.frames[0].width) * kFlat_px;
+    std::vector<double> changes;
+    std::size_t looked = 0;
+    for (std::size_t k = 0; k < direction.gray.size(); ++k) {
+        std::size_t changed = 0;
+        looked = 0;
+        for (const std::size_t pixel : capture.lit)
+            for (const std::size_t next : {pixel + kFlat_px, pixel + line}) {
+                if (capture.contrast(next) < kLit_grey) continue;
+                const int here = capture.at(direction.gray[k], pixel) - capture.at(direction.inverse[k], pixel);
+                const int there = capture.at(direction.gray[k], next) - capture.at(direction.inverse[k], next);
+                ++looked;
+                changed += (here > 0) != (there > 0) && std::min(std::abs(here), std::abs(there)) * 4 > capture.contrast(pixel);
+            }
+        changes.push_back(static_cast<double>(changed));
+    }
+    // The finest bit changes every other half period; the one before half as often, and so on.
+    const double lines = changes.empty() ? 0 : *std::max_element(changes.begin(), changes.end());
+    for (std::size_t k = 0; k + 1 < changes.size(); ++k) {
+        const double expected = lines / std::pow(2.0, static_cast<double>(changes.size() - 1 - k));
+        if (expected < lines / 32 || expected < 60) continue;  // too few stripes over the surface to count on
+        if (changes[k] > 1.25 * changes[k + 1])
+            check.problems.push_back({direction.gray[k], fmt::format("{} has finer stripes than {}", capture.name(direction.gray[k]),
+                                                                     capture.name(direction.gray[k + 1])), share_of(static_cast<std::size_t>(changes[k]), looked)});
+    }
+}
+
+}  // namespace
+
+SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes) {
+    Capture capture = sorted(frames, stripes);
+    SequenceCheck check;
+    check_ends(capture, check);
+    check.checked = check.checked && (capture.lit.size() >= kEnough || !check.problems.empty());
+    if (!check.checked || !check.problems.empty()) return check;
+    for (const Direction& direction : capture.directions) {
+        check_pairs(capture, direction, check);
+        check_fringes(capture, direction, check);
+        check_parity(capture, direction, check);
+        check_order(capture, direction, check);
+    }
+    return check;
+}
+
+}  // namespace planlight
