@@ -34,6 +34,11 @@ struct Capture {
 
     int at(std::size_t frame, std::size_t pixel) const { return frames[frame].pixels[pixel]; }
     int contrast(std::size_t pixel) const { return at(white, pixel) - at(black, pixel); }
+    /// How clearly a bit is set (above 0) or not: against its inverse, or against the middle of white and black.
+    int difference(const Direction& direction, std::size_t bit, std::size_t pixel) const {
+        if (!direction.inverse.empty()) return at(direction.gray[bit], pixel) - at(direction.inverse[bit], pixel);
+        return 2 * at(direction.gray[bit], pixel) - at(white, pixel) - at(black, pixel);
+    }
     const std::string& name(std::size_t frame) const { return sequence[frame].name; }
 };
 
@@ -164,7 +169,7 @@ Fringe fringe_at(const Capture& capture, const std::vector<std::size_t>& phases,
 }
 
 void check_fringes(const Capture& capture, const Direction& direction, SequenceCheck& check) {
-    if (direction.phase.size() < 6) return;  // too few for anything to be left over
+    if (direction.phase.size() < 5) return;  // too few for anything to be left over
     std::size_t looked = 0, wrong = 0;
     for (const std::size_t pixel : capture.lit) {
         const Fringe fringe = fringe_at(capture, direction.phase, pixel);
@@ -175,7 +180,7 @@ void check_fringes(const Capture& capture, const Direction& direction, SequenceC
     }
     constexpr double kMost = 0.12;
     if (looked < kEnough || share_of(wrong, looked) <= kMost) return;
-    std::string twins;
+    std::string twins;  // which frame it is, where that can be seen
     for (const std::size_t frame : direction.phase) twins += explain(capture, frame);
     check.problems.push_back({direction.phase[0], fmt::format("{} to {} are no fringes in order{}", capture.name(direction.phase.front()),
                                                               capture.name(direction.phase.back()), twins), share_of(wrong, looked)});
@@ -183,7 +188,7 @@ void check_fringes(const Capture& capture, const Direction& direction, SequenceC
 
 /// A Gray code's number is odd where an odd number of its bits is set; the fringe says the same of its two halves.
 void check_parity(const Capture& capture, const Direction& direction, SequenceCheck& check) {
-    if (direction.phase.size() < 3 || direction.inverse.empty()) return;
+    if (direction.phase.size() < 3 || direction.gray.empty()) return;
     const double half_px = capture.stripes.phase_period_px / 2;
     std::size_t looked = 0, wrong = 0;
     for (const std::size_t pixel : capture.lit) {
@@ -194,7 +199,7 @@ void check_parity(const Capture& capture, const Direction& direction, SequenceCh
         if (in_cell < 0.3 || in_cell > 0.7) continue;  // near its borders a bit may go either way
         bool odd = false, clear = true;
         for (std::size_t k = 0; k < direction.gray.size(); ++k) {
-            const int difference = capture.at(direction.gray[k], pixel) - capture.at(direction.inverse[k], pixel);
+            const int difference = capture.difference(direction, k, pixel);
             clear = clear && 3 * std::abs(difference) > capture.contrast(pixel);
             odd ^= difference > 0;
         }
@@ -211,7 +216,7 @@ void check_parity(const Capture& capture, const Direction& direction, SequenceCh
 
 /// Of two bits the finer one changes more often: looked for between pixels and their neighbours to the right and below.
 void check_order(const Capture& capture, const Direction& direction, SequenceCheck& check) {
-    if (direction.inverse.empty()) return;
+    if (direction.gray.empty()) return;
     const auto line = static_cast<std::size_t>(capture.frames[0].width) * kFlat_px;
     std::vector<double> changes;
     std::size_t looked = 0;
@@ -221,8 +226,7 @@ void check_order(const Capture& capture, const Direction& direction, SequenceChe
         for (const std::size_t pixel : capture.lit)
             for (const std::size_t next : {pixel + kFlat_px, pixel + line}) {
                 if (capture.contrast(next) < kLit_grey) continue;
-                const int here = capture.at(direction.gray[k], pixel) - capture.at(direction.inverse[k], pixel);
-                const int there = capture.at(direction.gray[k], next) - capture.at(direction.inverse[k], next);
+                const int here = capture.difference(direction, k, pixel), there = capture.difference(direction, k, next);
                 ++looked;
                 changed += (here > 0) != (there > 0) && std::min(std::abs(here), std::abs(there)) * 4 > capture.contrast(pixel);
             }

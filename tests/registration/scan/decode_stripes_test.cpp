@@ -113,6 +113,31 @@ TEST(DecodeStripes, WithoutInversesToo) {
     EXPECT_LT(static_cast<double>(e.wrong), 1e-4 * static_cast<double>(e.column.size()));
 }
 
+TEST(DecodeStripes, TheFastSetHasAsFewWrongCodes) {
+    Shot s = plane_shot();
+    s.stripes = fast_stripes(s.room.projector.width, s.room.projector.height);
+    ASSERT_EQ(stripe_sequence(s.stripes).size(), 14u);
+    ASSERT_EQ(stripe_sequence(fast_stripes(1920, 1080)).size(), 15u);
+    std::size_t decoded = 0, wrong = 0, lit = 0;
+    std::vector<double> errors;
+    for (const double white_grey : {190.0, 60.0}) {
+        s.room.light.white_grey = white_grey;
+        const DecodedView v = decode_stripes(photograph(s.room, s.room.left, s.stripes, 9), s.stripes);
+        for (std::size_t i = 0; i < s.truth.code.size(); ++i) {
+            lit += !std::isnan(s.truth.code[i].x());
+            if (std::isnan(v.column[i])) continue;
+            ++decoded;
+            const double e = v.column[i] - s.truth.code[i].x();
+            if (std::abs(e) > 4) ++wrong;
+            else errors.push_back(e);
+        }
+    }
+    EXPECT_GT(static_cast<double>(decoded), 0.95 * static_cast<double>(lit));
+    EXPECT_LT(static_cast<double>(wrong), 1e-4 * static_cast<double>(decoded));
+    EXPECT_LT(median_size(errors), 0.1);
+    EXPECT_LT(std::abs(mean(errors)), 0.02);
+}
+
 TEST(DecodeStripes, ColumnsOnly) {
     Shot s = plane_shot();
     s.stripes.rows = false;
