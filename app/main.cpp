@@ -147,6 +147,10 @@ void add_scan(CLI::App& app, ScanOptions& o) {
     sub->add_option("--rig", o.rig, "rig.json")->required();
     sub->add_option("--out", o.out, "Clean cloud (.ply)")->required();
     sub->add_option("--raw", o.raw_out, "Also the cloud before the outliers were removed (.ply)");
+    sub->add_option("--max-movement-mm", o.max_movement_mm, "Of the patient during the scan; more is refused (exit 6)")
+        ->capture_default_str()
+        ->check(CLI::Range(0.01, 100.0));
+    sub->add_flag("--accept-movement", o.accept_movement, "Write the cloud of a patient who moved; only warn");
     json_flag(sub, o.json);
 }
 

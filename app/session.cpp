@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "planning_io/types/error.h"
+#include "registration/tracking/markers_in_scan.h"
 
 namespace planlight {
 namespace {
@@ -47,9 +48,17 @@ const ScanResult& Session::scan(const std::function<void(int, int)>& progress) {
     StripeSettings stripes;
     stripes.width = projector_.width();
     stripes.height = projector_.height();
-    capture_ = capture_scan(projector_, cameras_, clock_, stripes, progress);
-    take_reference(*capture_);
-    check_still_there();
+    for (scans_repeated_ = 0;; ++scans_repeated_) {
+        capture_ = capture_scan(projector_, cameras_, clock_, stripes, progress);
+        take_reference(*capture_);
+        motion_in_scan_mm_ =
+            std::max(moved_at_the_end_mm(), movement_of_markers(*capture_, rig_, settings_.tracking).moved_mm);
+        if (motion_in_scan_mm_ <= settings_.max_motion_in_scan_mm) break;
+        if (scans_repeated_ + 1 >= settings_.max_scans)
+            throw CheckFailedError(fmt::format("the patient moved {:.2f} mm during the scan, and in the {} before it as well",
+                                               motion_in_scan_mm_, scans_repeated_),
+                                   "Have the patient lie still and scan again.");
+    }
     scanned_ = scan_from_capture(*capture_, rig_, settings_.scan);
     return *scanned_;
 }
@@ -65,20 +74,19 @@ void Session::take_reference(const ScanCapture& capture) {
 }
 
 /// The paper's patient must not move during the scan; ours is asked once more under white light after the last picture.
-void Session::check_still_there() {
+double Session::moved_at_the_end_mm() {
     const DarkOnExit dark(projector_);
     const RgbImage white(projector_.width(), projector_.height(), {255, 255, 255});
     const Instant lit_from = projector_.show(white, clock_.now() + settings_.patience);
     const TrackedPose pose = tracker_.update(cameras_.grab(lit_from, settings_.patience));
     if (!pose.rig_from_patient)
         throw CheckFailedError("the markers were lost during the scan: " + pose.reason, "Free the markers and scan again.");
-    motion_in_scan_mm_ = 0;
+    double moved_mm = 0;
     for (const auto& marker : tracker_.markers()) {
         const Eigen::Vector3d& p_in_patient = marker.centre_in_patient;
-        motion_in_scan_mm_ = std::max(motion_in_scan_mm_, (*pose.rig_from_patient * p_in_patient - p_in_patient).norm());
+        moved_mm = std::max(moved_mm, (*pose.rig_from_patient * p_in_patient - p_in_patient).norm());
     }
-    if (motion_in_scan_mm_ > settings_.max_motion_in_scan_mm)
-        throw CheckFailedError(fmt::format("the patient moved {:.1f} mm during the scan", motion_in_scan_mm_), "Scan again.");
+    return moved_mm;
 }
 
 const RegistrationResult& Session::find_patient() {

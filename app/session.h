@@ -22,7 +22,8 @@ struct SessionSettings {
     TrackingSettings tracking;
     OverlaySettings overlay;
     DrawingSettings drawing;
-    double max_motion_in_scan_mm = 0.3;  ///< of any marker between the first and last picture of a scan; above: scan again
+    double max_motion_in_scan_mm = 0.15;  ///< of any marker between two moments of a scan; above: the scan is repeated
+    int max_scans = 3;                    ///< so often at most, then refused
     int min_reference_markers = 5;       ///< found in both pictures at the scan
     std::chrono::milliseconds patience{1000};
     /// Called between seeing and showing, so that a simulated clock can be told how long the computing took. May be empty.
@@ -50,8 +51,10 @@ public:
             StereoCamera& cameras, const Clock& clock, SessionSettings settings = {});
     ~Session();
 
-    /// SCAN: shows the stripes, makes the cloud, takes the markers of the first picture as reference.
-    /// Throws CheckFailedError when the patient moved during the scan or too few markers were found.
+    /// SCAN: shows the stripes, makes the cloud, takes the markers of the first picture as reference. Repeats it when the
+    /// patient moved (the markers are looked at in every picture that is even light when summed with its inverse, and once
+    /// more under white light at the end). Throws CheckFailedError when the patient did not lie still in `max_scans` scans,
+    /// or too few markers were found.
     const ScanResult& scan(const std::function<void(int, int)>& progress = {});
 
     /// MATCH: T_ini from the last scan. Throws CheckFailedError without one.
@@ -82,10 +85,11 @@ public:
     const PlanDrawing& drawing() const { return drawing_; }
     const RenderSettings& render_settings() const { return settings_.overlay.render; }
     double motion_in_scan_mm() const { return motion_in_scan_mm_; }
+    int scans_repeated() const { return scans_repeated_; }  ///< in the last `scan`, because the patient moved
 
 private:
     void take_reference(const ScanCapture& capture);
-    void check_still_there();
+    double moved_at_the_end_mm();
     void draw_beside_markers();
     void start_overlay();
 
@@ -104,6 +108,7 @@ private:
     std::optional<RegistrationResult> registration_;
     std::unique_ptr<OverlayLoop> overlay_;
     double motion_in_scan_mm_ = 0;
+    int scans_repeated_ = 0;
 };
 
 }  // namespace planlight

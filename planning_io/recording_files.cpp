@@ -36,6 +36,13 @@ void check_picture(const GrayImage& picture, const GrayImage& first, const fs::p
                          "Capture all pictures with the same settings.");
 }
 
+/// NAME.png, or NAME.tif, NAME.tiff where that is there instead.
+fs::path picture_file(const fs::path& folder, const std::string& name) {
+    for (const char* ending : {".tif", ".tiff"})
+        if (!fs::exists(folder / (name + ".png")) && fs::exists(folder / (name + ending))) return folder / (name + ending);
+    return folder / (name + ".png");
+}
+
 /// The picture at left/ or right/ of a recording; one size for all.
 void read_picture(std::vector<GrayImage>& pictures, const fs::path& file) {
     pictures.push_back(read_gray(file));
@@ -79,16 +86,17 @@ PoseCovariance covariance_of(const JsonValue& json) {
 }  // namespace
 
 void write_capture(const CaptureFolder& capture, const fs::path& folder) {
-    if (capture.left.size() != capture.names.size() || capture.right.size() != capture.names.size())
-        throw InputError(folder, "the capture does not have one left and one right picture for each pattern",
+    const bool right = !capture.right.empty();
+    if (capture.left.size() != capture.names.size() || (right && capture.right.size() != capture.names.size()))
+        throw InputError(folder, "the capture does not have one picture of each camera for each pattern",
                          "Capture the sequence again.");
     for (const std::string& name : capture.names) check_name(name, folder);
     write_folder_safely(folder, false, [&](const fs::path& into) {
         fs::create_directories(into / "left");
-        fs::create_directories(into / "right");
+        if (right) fs::create_directories(into / "right");
         for (std::size_t i = 0; i < capture.names.size(); ++i) {
             write_png(capture.left[i], into / "left" / (capture.names[i] + ".png"));
-            write_png(capture.right[i], into / "right" / (capture.names[i] + ".png"));
+            if (right) write_png(capture.right[i], into / "right" / (capture.names[i] + ".png"));
         }
         write_safely(into / "capture.json", dump(Json{{"format", "planlight capture"},
                                                       {"version", kVersion},
@@ -133,9 +141,10 @@ CaptureFolder read_capture(const fs::path& folder) {
     if (capture.names.empty())
         throw InputError(folder / "capture.json", "has no list of names",
                          "Name the pictures in the order of the sequence.");
+    const bool right = fs::is_directory(folder / "right");
     for (const std::string& name : capture.names) {
-        read_picture(capture.left, folder / "left" / (name + ".png"));
-        read_picture(capture.right, folder / "right" / (name + ".png"));
+        read_picture(capture.left, picture_file(folder / "left", name));
+        if (right) read_picture(capture.right, picture_file(folder / "right", name));
     }
     return capture;
 }

@@ -11,14 +11,15 @@
 
 namespace planlight {
 
-/// A capture folder: capture.json and left/NAME.png, right/NAME.png, one per pattern (format in the room's README).
+/// A capture folder: capture.json and left/NAME.png, right/NAME.png, one per pattern (format in the room's README). Read are
+/// .png, .tif and .tiff, written .png.
 struct CaptureFolder {
     int projector_width = 0, projector_height = 0;
     int phase_steps = 8;
     double phase_period_px = 16;
     bool rows = true, inverse = true;
     std::vector<std::string> names;       ///< of the patterns, in order
-    std::vector<GrayImage> left, right;   ///< one per name
+    std::vector<GrayImage> left, right;   ///< one per name; `right` empty: one camera, no folder right/
     Instant began{}, ended{};
 };
 void write_capture(const CaptureFolder& capture, const std::filesystem::path& folder);

@@ -1,5 +1,7 @@
 #include "planning_io/rig_file.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "planning_io/json_value.h"
@@ -75,11 +77,18 @@ void check_pair(const CameraModel& a, const CameraModel& b, const std::string& n
 
 void check_rig(const RigCalibration& rig, const fs::path& file) {
     check_device(rig.left_camera, "left_camera", file);
-    check_device(rig.right_camera, "right_camera", file);
-    check_device(rig.projector, "projector", file);
-    check_pair(rig.left_camera, rig.right_camera, "left_camera and right_camera", file);
-    check_pair(rig.left_camera, rig.projector, "left_camera and projector", file);
-    check_pair(rig.right_camera, rig.projector, "right_camera and projector", file);
+    const bool right = present(rig.right_camera), light = present(rig.projector);
+    if (!right && !light)
+        throw InputError(file, "has a camera and nothing else", "A rig needs a second camera or a projector: calibrate with it.");
+    if (right) {
+        check_device(rig.right_camera, "right_camera", file);
+        check_pair(rig.left_camera, rig.right_camera, "left_camera and right_camera", file);
+    }
+    if (light) {
+        check_device(rig.projector, "projector", file);
+        check_pair(rig.left_camera, rig.projector, "left_camera and projector", file);
+    }
+    if (right && light) check_pair(rig.right_camera, rig.projector, "right_camera and projector", file);
     if (!std::isfinite(rig.reprojection_rms_px) || rig.reprojection_rms_px < 0)
         throw InputError(file, "has a senseless reprojection_rms_px", kCalibrate);
 }
@@ -88,23 +97,33 @@ void check_rig(const RigCalibration& rig, const fs::path& file) {
 
 void write_rig(const RigCalibration& rig, const fs::path& file) {
     check_rig(rig, file);
-    write_safely(file, dump(Json{{"format", kFormat},
-                                 {"version", kVersion},
-                                 {"made_on", rig.made_on},
-                                 {"reprojection_rms_px", rig.reprojection_rms_px},
-                                 {"left_camera", json_of(rig.left_camera)},
-                                 {"right_camera", json_of(rig.right_camera)},
-                                 {"projector", json_of(rig.projector)}}));
+    Json json{{"format", kFormat},
+              {"version", kVersion},
+              {"made_on", rig.made_on},
+              {"reprojection_rms_px", rig.reprojection_rms_px},
+              {"left_camera", json_of(rig.left_camera)}};
+    if (present(rig.right_camera)) json["right_camera"] = json_of(rig.right_camera);
+    if (present(rig.projector)) json["projector"] = json_of(rig.projector);
+    write_safely(file, dump(json));
 }
 
 RigCalibration read_rig(const fs::path& file) {
+    const RigCalibration rig = read_partial_rig(file);
+    if (!rig.whole())
+        throw InputError(file, fmt::format("has no {}; this needs both cameras and the projector",
+                                           present(rig.projector) ? "right_camera" : "projector"),
+                         "Calibrate the whole rig; a rig of two devices is for `scan`.");
+    return rig;
+}
+
+RigCalibration read_partial_rig(const fs::path& file) {
     const Json json = parse_json(read_whole(file), file);
     const JsonValue root(json, file);
     check_format(root, kFormat, kVersion, file);
     RigCalibration rig;
     rig.left_camera = device_of(root.at("left_camera"));
-    rig.right_camera = device_of(root.at("right_camera"));
-    rig.projector = device_of(root.at("projector"));
+    if (const auto right = root.find("right_camera")) rig.right_camera = device_of(*right);
+    if (const auto light = root.find("projector")) rig.projector = device_of(*light);
     rig.made_on = root.at("made_on").text();
     rig.reprojection_rms_px = root.at("reprojection_rms_px").number();
     check_rig(rig, file);

@@ -11,7 +11,7 @@
 #include "planning_io/rig_file.h"
 #include "planning_io/safe_write.h"
 #include "planning_io/types/error.h"
-#include "registration/calibration/gray_code.h"
+#include "registration/scan/gray_code.h"
 
 namespace planlight {
 namespace {
@@ -90,7 +90,7 @@ Observed observe_captures(const CalibrateOptions& options, const BoardSpec& boar
 std::optional<RigCalibration> previous_rig(const Path& file) {
     if (!std::filesystem::exists(file)) return std::nullopt;
     try {
-        return read_rig(file);
+        return read_partial_rig(file);
     } catch (const Error& error) {
         warn(fmt::format("the rig file there cannot be read and will be replaced: {}", error.what()));
         return std::nullopt;
@@ -105,9 +105,10 @@ int run_calibrate(const CalibrateOptions& options) {
     const Calibration calibration = calibrate_rig(observed.poses, board, observed.projector_width, observed.projector_height);
     if (calibration.refusal) throw CheckFailedError(calibration.refusal->reason, calibration.refusal->remedy);
     CalibrationReport report{calibration, observed.poses, board, today(), {}, {}};
-    if (calibration.whole_rig()) {
+    if (calibration.makes_a_rig()) {
         const RigCalibration rig = rig_calibration_of(calibration, report.made_on);
-        if (const auto before = previous_rig(options.out)) report.changes = changes_since(*before, rig);
+        if (const auto before = previous_rig(options.out); before && before->whole() && rig.whole())
+            report.changes = changes_since(*before, rig);
         write_rig(rig, options.out);
         report.rig_file = options.out;
     }

@@ -7,23 +7,84 @@
 #include "planning_io/types/error.h"
 
 namespace planlight {
+namespace {
+
+using Kind = StripePattern::Kind;
+
+bool is_there(const CaptureFolder& folder, const std::string& name) {
+    return std::find(folder.names.begin(), folder.names.end(), name) != folder.names.end();
+}
+
+/// The sequence that the capture's settings make; without fringes: white, black and the Gray bits.
+std::vector<StripePattern> wanted_patterns(StripeSettings stripes, const std::filesystem::path& named) {
+    const bool fringes = stripes.phase_steps > 0;
+    if (!fringes) {
+        stripes.phase_steps = 3;
+        stripes.phase_period_px = 4;  // the least that makes a sequence; its bits are one fewer a direction
+    }
+    std::vector<StripePattern> patterns;
+    try {
+        patterns = stripe_sequence(stripes);
+    } catch (const std::invalid_argument& error) {
+        throw InputError(named, error.what(), "Correct capture.json.");
+    }
+    if (fringes) return patterns;
+    patterns.clear();
+    for (const bool along_rows : {false, true}) {
+        if (along_rows && !stripes.rows) continue;
+        stripes.phase_period_px = 2;
+        for (int bit = 0; bit < gray_bits(stripes, along_rows); ++bit) {
+            const std::string name = fmt::format("{}-gray-{}", along_rows ? "row" : "column", bit);
+            patterns.push_back({Kind::gray_bit, along_rows, bit, name});
+            if (stripes.inverse) patterns.push_back({Kind::gray_bit_inverse, along_rows, bit, name + "-inverse"});
+        }
+    }
+    patterns.insert(patterns.begin(), {{Kind::white, false, 0, "white"}, {Kind::black, false, 0, "black"}});
+    return patterns;
+}
+
+/// What of the Gray code was captured: all but, maybe, the finest bits of a direction. Refused where a coarser one is
+/// missing: nothing can be read without it.
+std::vector<StripePattern> gray_code_there(const std::vector<StripePattern>& wanted, const CaptureFolder& folder,
+                                           const std::filesystem::path& named) {
+    std::vector<StripePattern> there;
+    for (const StripePattern& pattern : wanted) {
+        if (pattern.kind == Kind::phase) continue;
+        if (is_there(folder, pattern.name)) there.push_back(pattern);
+        const bool bit = pattern.kind == Kind::gray_bit || pattern.kind == Kind::gray_bit_inverse;
+        const bool finer_is_there = std::any_of(wanted.begin(), wanted.end(), [&](const StripePattern& other) {
+            const bool other_bit = other.kind == Kind::gray_bit || other.kind == Kind::gray_bit_inverse;
+            return other_bit && other.along_rows == pattern.along_rows && other.index >= pattern.index &&
+                   is_there(folder, other.name);
+        });
+        if (!is_there(folder, pattern.name) && (!bit || finer_is_there || pattern.index < 2))
+            throw InputError(named, fmt::format("the picture of pattern \"{}\" is missing", pattern.name),
+                             "Capture the whole sequence that `planlight patterns` writes; only fringes and the finest bits of the "
+                             "Gray code may be missing.");
+    }
+    return there;
+}
+
+}  // namespace
 
 ScanCapture scan_capture_from(const CaptureFolder& folder, const std::filesystem::path& named) {
     ScanCapture capture;
     capture.stripes.width = folder.projector_width;
     capture.stripes.height = folder.projector_height;
     capture.stripes.phase_steps = folder.phase_steps;
-    capture.stripes.phase_period_px = folder.phase_period_px;
+    // A Gray code without fringes counts single projector pixels; its finest cell is half a period.
+    capture.stripes.phase_period_px = folder.phase_steps > 0 ? folder.phase_period_px : 2;
     capture.stripes.rows = folder.rows;
     capture.stripes.inverse = folder.inverse;
-    for (const auto& pattern : stripe_sequence(capture.stripes)) {
+    auto patterns = wanted_patterns(capture.stripes, named);
+    const bool whole = capture.stripes.phase_steps > 0 &&
+                       std::all_of(patterns.begin(), patterns.end(), [&](const auto& p) { return is_there(folder, p.name); });
+    if (!whole) capture.partial = patterns = gray_code_there(patterns, folder, named);
+    for (const auto& pattern : patterns) {
         const auto found = std::find(folder.names.begin(), folder.names.end(), pattern.name);
-        if (found == folder.names.end())
-            throw InputError(named, fmt::format("the picture of pattern \"{}\" is missing", pattern.name),
-                             "Capture the whole sequence that `planlight patterns` writes.");
         const auto index = static_cast<std::size_t>(found - folder.names.begin());
         capture.left.push_back(folder.left.at(index));
-        capture.right.push_back(folder.right.at(index));
+        if (!folder.right.empty()) capture.right.push_back(folder.right.at(index));
     }
     capture.began = folder.began;
     capture.ended = folder.ended;
@@ -31,13 +92,18 @@ ScanCapture scan_capture_from(const CaptureFolder& folder, const std::filesystem
 }
 
 void check_sizes(const ScanCapture& capture, const RigCalibration& rig, const std::filesystem::path& folder) {
-    const auto fits = [](const GrayImage& picture, const CameraModel& camera) {
-        return picture.width == camera.width && picture.height == camera.height;
+    const auto fits = [](const std::vector<GrayImage>& pictures, const CameraModel& camera) {
+        return pictures.empty() || !present(camera) ||
+               (pictures.front().width == camera.width && pictures.front().height == camera.height);
     };
-    if (!fits(capture.left.front(), rig.left_camera) || !fits(capture.right.front(), rig.right_camera) ||
-        capture.stripes.width != rig.projector.width || capture.stripes.height != rig.projector.height)
+    const bool light_fits = !present(rig.projector) || (capture.stripes.width == rig.projector.width &&
+                                                        capture.stripes.height == rig.projector.height);
+    if (!fits(capture.left, rig.left_camera) || !fits(capture.right, rig.right_camera) || !light_fits)
         throw InputError(folder, "the pictures or the projector have another size than the rig file says",
                          "Use the rig.json of the rig that this capture was made with.");
+    if (!present(rig.projector) && capture.right.empty())
+        throw InputError(folder, "has the left camera's pictures only, and the rig file has no projector",
+                         "Capture with both cameras, or calibrate the projector with the camera.");
 }
 
 CaptureFolder capture_folder_from(const ScanCapture& capture) {

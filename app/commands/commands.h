@@ -74,7 +74,8 @@ int run_simulate_board(const SimulateOptions& options);  ///< with `board` given
 
 struct ScanOptions {
     Path capture, rig, out, raw_out;
-    bool json = false;
+    double max_movement_mm = 0.15;  ///< of the patient during the scan
+    bool accept_movement = false, json = false;
 };
 int run_scan(const ScanOptions& options);
 

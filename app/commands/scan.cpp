@@ -2,12 +2,15 @@
 
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 
 #include "app/commands/capture_conversion.h"
 #include "app/commands/commands.h"
+#include "app/console.h"
 #include "planning_io/mesh_file.h"
 #include "planning_io/rig_file.h"
 #include "planning_io/types/error.h"
+#include "registration/tracking/markers_in_scan.h"
 
 namespace planlight {
 namespace {
@@ -16,10 +19,60 @@ nlohmann::json counts(const DecodedView& view) {
     return {{"decoded", view.decoded}, {"dark", view.dark}, {"saturated", view.saturated}, {"uncertain", view.uncertain}};
 }
 
+std::string devices_of(const ScanResult& scan, const RigCalibration& rig) {
+    if (!present(rig.projector)) return "two cameras";
+    return scan.right.width > 1 ? "two cameras and the projector" : "one camera and the projector";
+}
+
+/// Where the scan found the projector; null where it could not tell.
+nlohmann::json projector_of(const ScanResult& scan) {
+    if (!scan.resection) return nullptr;
+    return {{"rms_before_px", scan.resection->rms_before_px}, {"rms_after_px", scan.resection->rms_after_px},
+            {"moved_mm", scan.resection->moved_mm},           {"turned_deg", scan.resection->turned * 180 / std::numbers::pi},
+            {"used", scan.resection_used}};
+}
+
+void warn_of(const ScanResult& scan, const RigCalibration& rig) {
+    if (scan.code_step_px > 0)
+        warn(fmt::format("the light was read to {:g} projector pixels only: there are no fringes that the cameras resolve; the "
+                         "cloud is coarser",
+                         scan.code_step_px));
+    constexpr double kMoved_mm = 1, kTurned = 0.0035;  // 0.2 degrees
+    if (scan.resection_used && (scan.resection->moved_mm > kMoved_mm || scan.resection->turned > kTurned))
+        warn(fmt::format("the projector was found {:.1f} mm and {:.2f} degrees from where {} has it; `planlight check` tells more",
+                         scan.resection->moved_mm, scan.resection->turned * 180 / std::numbers::pi, rig.made_on.empty() ? "the rig file" : "the calibration of " + rig.made_on));
+}
+
+nlohmann::json json_of(const ScanMovement& movement) {
+    if (movement.by == ScanMovement::By::nothing) return nullptr;
+    return {{"by", movement.by == ScanMovement::By::markers ? "markers" : "pictures"},
+            {"moved_mm", movement.moved_mm},
+            {"turned_deg", movement.turned * 180 / std::numbers::pi},
+            {"from", movement.from},
+            {"to", movement.to},
+            {"moments", movement.moments},
+            {"markers", movement.markers}};
+}
+
+void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
+    if (movement.by == ScanMovement::By::nothing) {
+        warn("whether the patient moved during the scan is not known: too little is seen under even light");
+        return;
+    }
+    if (movement.moved_mm <= options.max_movement_mm) return;
+    const std::string problem = fmt::format("the patient moved {:.2f} mm during the scan (between {} and {}, by {}); {:g} mm is the limit",
+                                            movement.moved_mm, movement.from, movement.to,
+                                            movement.by == ScanMovement::By::markers ? "the markers" : "the skin in the pictures",
+                                            options.max_movement_mm);
+    if (!options.accept_movement)
+        throw CheckFailedError(problem, "Scan again, or take the cloud as it is with --accept-movement.");
+    warn(problem);
+}
+
 }  // namespace
 
 int run_scan(const ScanOptions& options) {
-    const RigCalibration rig = read_rig(options.rig);
+    const RigCalibration rig = read_partial_rig(options.rig);
     const ScanCapture capture = scan_capture_from(read_capture(options.capture), options.capture);
     check_sizes(capture, rig, options.capture);
     const ScanResult scan = scan_from_capture(capture, rig);
@@ -27,6 +80,9 @@ int run_scan(const ScanOptions& options) {
         throw CheckFailedError(fmt::format("no skin was found in the capture ({} of {} pixels of the left picture decoded)",
                                            scan.left.decoded, scan.left.width * scan.left.height),
                                "Check that the projector lights the patient and that rig.json belongs to this capture.");
+    warn_of(scan, rig);
+    const ScanMovement movement = movement_in_scan(capture, rig, scan.clean.kept);
+    judge_movement(movement, options);
     write_cloud(scan.clean.kept, options.out);
     if (!options.raw_out.empty()) write_cloud(scan.raw.cloud, options.raw_out);
     if (options.json) {
@@ -41,11 +97,17 @@ int run_scan(const ScanOptions& options) {
                          {"outside_volume", scan.raw.outside_volume}, {"jump", scan.clean.jump},
                          {"grazing", scan.clean.grazing}, {"small_piece", scan.clean.small_piece},
                          {"lonely", scan.clean.lonely}, {"thinned", scan.clean.thinned}}},
+            {"devices", devices_of(scan, rig)},
+            {"code_step_px", scan.code_step_px},
+            {"epipolar_rms_px", scan.raw.epipolar_rms_px},
+            {"projector_offset_px", {scan.raw.projector_offset_px.x(), scan.raw.projector_offset_px.y()}},
+            {"projector", projector_of(scan)},
+            {"movement", json_of(movement)},
             {"seconds", {{"decode", scan.decode_s}, {"triangulate", scan.triangulate_s}, {"outliers", scan.outliers_s}}}};
         std::cout << result.dump(2) << '\n';
     } else {
-        fmt::print("{} points in {} (raw {}; off the rays {}, jumps {}, grazing {}, small pieces {}, lonely {}).\n",
-                   scan.clean.kept.size(), options.out.string(), scan.raw.cloud.size(), scan.raw.disagree, scan.clean.jump,
+        fmt::print("{} points by {} in {} (raw {}; off the rays {}, jumps {}, grazing {}, small pieces {}, lonely {}).\n",
+                   scan.clean.kept.size(), devices_of(scan, rig), options.out.string(), scan.raw.cloud.size(), scan.raw.disagree, scan.clean.jump,
                    scan.clean.grazing, scan.clean.small_piece, scan.clean.lonely);
     }
     return 0;

@@ -22,6 +22,8 @@ StereoFrame stereo_frame(const RecordedFrame& recorded) {
 StereoFrame reference_frame(const TrackOptions& options, const std::vector<RecordedFrame>& frames) {
     if (options.capture.empty()) return stereo_frame(frames.front());
     const ScanCapture capture = scan_capture_from(read_capture(options.capture), options.capture);
+    if (capture.right.empty())
+        throw InputError(options.capture, "has the left camera's pictures only", "Markers need both cameras: capture with both.");
     return {capture.left.front(), capture.right.front(), capture.began, Instant{}, 0};
 }
 

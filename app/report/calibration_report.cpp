@@ -154,7 +154,7 @@ std::string calibration_summary(const CalibrationReport& report) {
     for (const std::string& change : report.changes) text += "  " + change + "\n";
     return text +
            (report.rig_file.empty()
-                ? std::string("No rig file: that needs two cameras and a projector. The devices found are in the report: ")
+                ? std::string("No rig file: that needs a second camera or a projector. The camera found is in the report: ")
                 : report.rig_file.string() + "; the report: ");
 }
 

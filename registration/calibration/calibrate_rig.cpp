@@ -182,12 +182,12 @@ Calibration calibrate_rig(const std::vector<PoseObservation>& poses, const Board
 }
 
 RigCalibration rig_calibration_of(const Calibration& calibration, const std::string& made_on) {
-    if (!calibration.whole_rig() || calibration.refusal)
-        throw std::invalid_argument("rig_calibration_of: not the calibration of a whole rig");
+    if (!calibration.makes_a_rig() || calibration.refusal)
+        throw std::invalid_argument("rig_calibration_of: not the calibration of a rig");
     RigCalibration rig;
     rig.left_camera = *calibration.device(DeviceName::left_camera);
-    rig.right_camera = *calibration.device(DeviceName::right_camera);
-    rig.projector = *calibration.device(DeviceName::projector);
+    rig.right_camera = calibration.device(DeviceName::right_camera).value_or(CameraModel{});
+    rig.projector = calibration.device(DeviceName::projector).value_or(CameraModel{});
     rig.made_on = made_on;
     double square = 0;
     std::size_t count = 0;

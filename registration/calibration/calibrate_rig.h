@@ -52,6 +52,10 @@ struct Calibration {
     std::optional<Refusal> refusal;  ///< then nothing else may be used
 
     const std::optional<CameraModel>& device(DeviceName name) const { return bundle.rig.device(name); }
+    /// What rig.json is written of: the left camera and another device.
+    bool makes_a_rig() const {
+        return device(DeviceName::left_camera) && (device(DeviceName::right_camera) || device(DeviceName::projector));
+    }
     bool whole_rig() const {
         return device(DeviceName::left_camera) && device(DeviceName::right_camera) && device(DeviceName::projector);
     }
@@ -62,7 +66,7 @@ struct Calibration {
 Calibration calibrate_rig(const std::vector<PoseObservation>& poses, const BoardSpec& board, int projector_width,
                           int projector_height, const CalibrationSettings& settings = {});
 
-/// For rig.json; the calibration must be of a whole rig. `made_on`: ISO 8601.
+/// For rig.json; the calibration must be of two devices at least. `made_on`: ISO 8601.
 RigCalibration rig_calibration_of(const Calibration& calibration, const std::string& made_on);
 
 }  // namespace planlight

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "registration/calibration/gray_code.h"
+#include "registration/scan/gray_code.h"
 
 namespace planlight {
 namespace {

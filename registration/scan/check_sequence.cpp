@@ -219,24 +219,28 @@ void check_order(const Capture& capture, const Direction& direction, SequenceChe
     if (direction.gray.empty()) return;
     const auto line = static_cast<std::size_t>(capture.frames[0].width) * kFlat_px;
     std::vector<double> changes;
+    std::vector<bool> resolved;  // a bit too fine for the optics changes where noise will
     std::size_t looked = 0;
     for (std::size_t k = 0; k < direction.gray.size(); ++k) {
-        std::size_t changed = 0;
+        std::size_t changed = 0, clear = 0;
         looked = 0;
-        for (const std::size_t pixel : capture.lit)
+        for (const std::size_t pixel : capture.lit) {
+            clear += 2 * std::abs(capture.difference(direction, k, pixel)) > capture.contrast(pixel);
             for (const std::size_t next : {pixel + kFlat_px, pixel + line}) {
                 if (capture.contrast(next) < kLit_grey) continue;
                 const int here = capture.difference(direction, k, pixel), there = capture.difference(direction, k, next);
                 ++looked;
                 changed += (here > 0) != (there > 0) && std::min(std::abs(here), std::abs(there)) * 4 > capture.contrast(pixel);
             }
+        }
         changes.push_back(static_cast<double>(changed));
+        resolved.push_back(share_of(clear, capture.lit.size()) > 0.6);
     }
     // The finest bit changes every other half period; the one before half as often, and so on.
     const double lines = changes.empty() ? 0 : *std::max_element(changes.begin(), changes.end());
     for (std::size_t k = 0; k + 1 < changes.size(); ++k) {
         const double expected = lines / std::pow(2.0, static_cast<double>(changes.size() - 1 - k));
-        if (expected < lines / 32 || expected < 60) continue;  // too few stripes over the surface to count on
+        if (expected < lines / 32 || expected < 60 || !resolved[k + 1]) continue;  // too few stripes over the surface to count on
         if (changes[k] > 1.25 * changes[k + 1])
             check.problems.push_back({direction.gray[k], fmt::format("{} has finer stripes than {}", capture.name(direction.gray[k]),
                                                                      capture.name(direction.gray[k + 1])), share_of(static_cast<std::size_t>(changes[k]), looked)});

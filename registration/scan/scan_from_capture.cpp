@@ -1,13 +1,18 @@
 #include <fmt/format.h>
 #include <tbb/parallel_invoke.h>
 
+#include <algorithm>
 #include <chrono>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
 #include "planning_io/types/error.h"
+#include "registration/scan/decode_capture.h"
+#include "registration/scan/merge_exposures.h"
 #include "registration/scan/place_matches.h"
 #include "registration/scan/scan_surface.h"
+#include "registration/scan/triangulate_cameras.h"
 
 namespace planlight {
 namespace {
@@ -72,28 +77,84 @@ void triangulate_and_resect(const ScanSettings& settings, ScanResult& result, Ri
     result.raw = place_matches(matches, rig, settings.triangulation);
 }
 
-}  // namespace
+/// A view in which nothing is seen, for the camera that is not there.
+DecodedView blind_view(bool rows) {
+    constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+    DecodedView view;
+    view.width = view.height = 1;
+    view.column = view.sigma_px = {kNaN};
+    if (rows) view.row = {kNaN};
+    return view;
+}
 
-ScanResult scan_from_capture(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings) {
+void check_devices(const ScanCapture& capture, const RigCalibration& rig) {
+    if (!present(rig.projector) && (capture.right.empty() || !present(rig.right_camera)))
+        throw std::invalid_argument("scan_from_capture: one camera and no projector");
+    if (!present(rig.projector)) return;
     if (capture.stripes.width != rig.projector.width || capture.stripes.height != rig.projector.height)
         throw std::invalid_argument(fmt::format("scan_from_capture: stripes of {} x {} for a projector calibrated at {} x {}",
                                                 capture.stripes.width, capture.stripes.height, rig.projector.width,
                                                 rig.projector.height));
+}
+
+void decode(const ScanCapture& capture, const RigCalibration& rig, const DecodeSettings& settings, ScanResult& result) {
+    DecodedCapture decoded = decode_capture(capture, present(rig.right_camera), settings);
+    result.left = std::move(decoded.left);
+    check_size(result.left, rig.left_camera, "left");
+    result.code_step_px = decoded.step_px;
+    if (decoded.right) {
+        result.right = std::move(*decoded.right);
+        check_size(result.right, rig.right_camera, "right");
+    } else {
+        result.right = blind_view(!result.left.row.empty());
+    }
+}
+
+/// The points, and the rig they were made with: its projector may be one that the scan placed anew.
+RigCalibration place_points(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings,
+                            ScanResult& result) {
+    RigCalibration rig_now = rig;
+    if (!present(rig.projector)) {
+        result.raw = triangulate_cameras(result.left, result.right, rig, capture.stripes.width, capture.stripes.height,
+                                         settings.triangulation);
+        rig_now.projector = rig.left_camera;  // for what asks where the surface is looked at from
+        return rig_now;
+    }
+    triangulate_and_resect(settings, result, rig_now);
+    return rig_now;
+}
+
+}  // namespace
+
+ScanResult scan_from_exposures(std::span<const ScanCapture> captures, const RigCalibration& rig, const ScanSettings& settings) {
+    if (captures.empty()) throw std::invalid_argument("scan_from_exposures: no capture");
     ScanResult result;
     Stopwatch watch;
-    if (settings.check_sequence) refuse_wrong_sequence(capture, result);
-    result.sequence_s = watch.lap_s();
-    result.left = decode_stripes(capture.left, capture.stripes, settings.decode);
-    result.right = decode_stripes(capture.right, capture.stripes, settings.decode);
-    check_size(result.left, rig.left_camera, "left");
-    check_size(result.right, rig.right_camera, "right");
-    result.decode_s = watch.lap_s();
-    RigCalibration rig_now = rig;
-    triangulate_and_resect(settings, result, rig_now);
+    for (const ScanCapture& capture : captures) {
+        check_devices(capture, rig);
+        ScanResult one;
+        if (settings.check_sequence) refuse_wrong_sequence(capture, one);
+        result.sequence_s += watch.lap_s();
+        decode(capture, rig, settings.decode, one);
+        if (&capture == &captures.front()) {
+            std::swap(result, one);
+            result.sequence_s = one.sequence_s;
+        } else {
+            take_better(result.left, one.left);
+            take_better(result.right, one.right);
+            result.code_step_px = std::max(result.code_step_px, one.code_step_px);
+        }
+        result.decode_s += watch.lap_s();
+    }
+    const RigCalibration rig_now = place_points(captures.front(), rig, settings, result);
     result.triangulate_s = watch.lap_s();
     result.clean = remove_outliers(result.raw, rig_now, settings.outliers);
     result.outliers_s = watch.lap_s();
     return result;
+}
+
+ScanResult scan_from_capture(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings) {
+    return scan_from_exposures(std::span(&capture, 1), rig, settings);
 }
 
 }  // namespace planlight

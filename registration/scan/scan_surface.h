@@ -19,8 +19,11 @@ namespace planlight {
 /// The frames of one scan: one per pattern, in the order of the sequence.
 struct ScanCapture {
     StripeSettings stripes;
-    std::vector<GrayImage> left, right;
-    Instant began{}, ended{};  ///< mid-exposure of the first and last frame
+    std::vector<GrayImage> left, right;  ///< `right` empty: one camera
+    Instant began{}, ended{};            ///< mid-exposure of the first and last frame
+    /// What was captured, when it is not the whole of `stripe_sequence(stripes)`: a Gray code without fringes
+    /// (`stripes.phase_steps` 0), or without its finest bits. Empty: the whole sequence.
+    std::vector<StripePattern> partial;
 };
 
 /// Shows every pattern and keeps the frame that saw it. The projector is dark afterwards, however it ends.
@@ -47,11 +50,18 @@ struct ScanResult {
     OutlierReport clean;
     std::optional<Resection> resection;  ///< empty: too few points, or columns only
     bool resection_used = false;         ///< then `raw` and `clean` are made with `resection->projector`
+    /// How finely the light could be read, projector pixels: 0 by the fringes, to fractions of one; else the finest cell
+    /// of the Gray code, because there were no fringes, or none that the optics resolved.
+    double code_step_px = 0;
     double sequence_s = 0, decode_s = 0, triangulate_s = 0, outliers_s = 0;
 };
 
-/// The cloud of a capture. An empty cloud is a value (nothing was lit); the counts say why. Throws CheckFailedError, naming
-/// the picture, when a frame is late, doubled, missing or swapped (`ScanSettings::check_sequence`).
+/// The cloud of a capture. An empty cloud is a value (nothing was lit); the counts say why.
+///
+/// Of three devices any two do: a rig without a right camera, or a capture without its pictures, is scanned by the left
+/// camera and the projector; a rig without a projector by both cameras, which find partners by the code (normals then look
+/// towards the left camera). `resection` needs all three. Throws std::invalid_argument when less is there; CheckFailedError,
+/// naming the picture, when a frame is late, doubled, missing or swapped (`ScanSettings::check_sequence`).
 ScanResult scan_from_capture(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings = {});
 
 }  // namespace planlight

@@ -23,6 +23,14 @@ namespace planlight::simulation {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+namespace {
+
+bool in_picture(const Optics& device, const Vector2d& pixel) {
+    return pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < device.columns - 0.5 && pixel.y() < device.rows - 0.5;
+}
+
+}  // namespace
+
 struct SimulatedRig::Room final : Projector, StereoCamera, Clock {
     Room(const Volume& volume, const std::vector<Vector3d>& keep_clear_in_ct, const RoomSettings& given);
 
@@ -208,6 +216,27 @@ std::optional<SimulatedRig::Lit> SimulatedRig::true_light(const Vector2d& pixel_
     const auto hit = room_->skin.first_hit(projector.eye, projector.direction_of(pixel_in_projector));
     if (!hit) return std::nullopt;
     return Lit{hit->p_in_ct, hit->normal_in_ct};
+}
+
+std::optional<SimulatedRig::Sight> SimulatedRig::true_sight(Camera camera, const Vector2d& pixel, Instant at) const {
+    const RigidTransform to_ct = room_->ct_from_room(at);
+    const RigLayout& rig = room_->rig;
+    const Optics eye = (camera == Camera::left ? rig.left_camera : rig.right_camera).seen_from(to_ct);
+    const auto hit = room_->skin.first_hit(eye.eye, eye.direction_of(pixel));
+    if (!hit) return std::nullopt;
+    Sight sight{hit->p_in_ct, hit->normal_in_ct, std::nullopt};
+    const Optics lamp = rig.projector.seen_from(to_ct);
+    if (hit->normal_in_ct.dot(lamp.eye - hit->p_in_ct) <= 0 || lamp.depth(hit->p_in_ct) <= 0) return sight;
+    const Vector2d lit_by = lamp.pixel_of(hit->p_in_ct);
+    if (in_picture(lamp, lit_by) && !room_->skin.in_shadow(hit->p_in_ct, hit->normal_in_ct, lamp.eye)) sight.lit_by = lit_by;
+    return sight;
+}
+
+bool SimulatedRig::truly_seen(Camera camera, const Lit& skin, Instant at) const {
+    const RigLayout& rig = room_->rig;
+    const Optics eye = (camera == Camera::left ? rig.left_camera : rig.right_camera).seen_from(room_->ct_from_room(at));
+    return eye.depth(skin.p_in_ct) > 0 && in_picture(eye, eye.pixel_of(skin.p_in_ct)) &&
+           !room_->skin.in_shadow(skin.p_in_ct, skin.normal_in_ct, eye.eye);
 }
 
 const std::vector<Vector3d>& SimulatedRig::true_markers_in_ct() const { return room_->markers_in_ct; }

@@ -84,6 +84,19 @@ public:
     };
     std::optional<Lit> true_light(const Eigen::Vector2d& pixel_in_projector, Instant at) const;
 
+    enum class Camera { left, right };
+    /// What a camera pixel (sub-pixel) looks at when the head is where it was at `at`: the first true skin, ct, mm, and the
+    /// projector pixel whose light falls there; empty where none does (shadow, turned away, beside the panel).
+    struct Sight {
+        Eigen::Vector3d p_in_ct, normal_in_ct;
+        std::optional<Eigen::Vector2d> lit_by;
+    };
+    /// Empty when the pixel misses the head.
+    std::optional<Sight> true_sight(Camera camera, const Eigen::Vector2d& pixel, Instant at) const;
+
+    /// True when a camera sees this point of the true skin: in its picture and nothing before it.
+    bool truly_seen(Camera camera, const Lit& skin, Instant at) const;
+
     /// Centres of the markers on the true skin, ct, mm.
     const std::vector<Eigen::Vector3d>& true_markers_in_ct() const;
 

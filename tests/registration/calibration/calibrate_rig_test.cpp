@@ -102,7 +102,9 @@ TEST(CalibrateRig, OneCameraAndAProjectorAreEnough) {
     const Calibration found = calibrated(room, poses);
     ASSERT_FALSE(found.refusal) << found.refusal->reason;
     EXPECT_FALSE(found.whole_rig());
-    EXPECT_THROW(rig_calibration_of(found, "2001-01-01"), std::invalid_argument);
+    const RigCalibration rig = rig_calibration_of(found, "2001-01-01");
+    EXPECT_TRUE(present(rig.left_camera) && present(rig.projector));
+    EXPECT_FALSE(present(rig.right_camera)) << "a rig of two devices";
     EXPECT_NEAR(found.device(DeviceName::projector)->focal_x, 2215, 4);
     EXPECT_LT(found.held_out.rms_px[2], 0.15);
     EXPECT_GT(found.held_out.lengths, 100u);

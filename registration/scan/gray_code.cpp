@@ -1,4 +1,4 @@
-#include "registration/calibration/gray_code.h"
+#include "registration/scan/gray_code.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,203 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+#include "registration/scan/scan_surface.h"
+#include "tests/registration/scan/stripe_room.h"
+
+namespace planlight {
+namespace {
+
+using namespace stripe_room;
+
+const Eigen::Vector3d kCentre(120, -40, 360);
+constexpr double kRadius_mm = 80;
+
+struct Shot {
+    Room room;
+    ScanCapture capture;
+    RigCalibration rig;
+};
+
+Shot shot_of(Room room, const StripeSettings& stripes) {
+    Shot shot{std::move(room), {}, {}};
+    shot.capture = capture(shot.room, stripes);
+    shot.rig = rig_of(shot.room);
+    return shot;
+}
+
+const Shot& ball() {
+    static const Shot shot = [] {
+        Room room = paper_room(sphere(kCentre, kRadius_mm));
+        const StripeSettings stripes = stripes_of(room);
+        return shot_of(std::move(room), stripes);
+    }();
+    return shot;
+}
+
+/// Gray bits down to 2 projector pixels, with fringes of 4 pixels.
+const Shot& fine_ball(double blur_px) {
+    static std::map<double, Shot> shots;
+    const auto found = shots.find(blur_px);
+    if (found != shots.end()) return found->second;
+    Room room = paper_room(sphere(kCentre, kRadius_mm));
+    room.light.projector_blur_px = blur_px;
+    StripeSettings stripes = stripes_of(room);
+    stripes.phase_period_px = 4;
+    stripes.phase_steps = 3;
+    return shots.emplace(blur_px, shot_of(std::move(room), stripes)).first->second;
+}
+
+/// Without the fringes and the `bits_less` finest bits of either direction.
+ScanCapture gray_only(const ScanCapture& whole, int bits_less = 0) {
+    ScanCapture gray;
+    gray.stripes = whole.stripes;
+    const auto sequence = stripe_sequence(whole.stripes);
+    for (std::size_t i = 0; i < sequence.size(); ++i) {
+        const auto kind = sequence[i].kind;
+        const bool bit = kind == StripePattern::Kind::gray_bit || kind == StripePattern::Kind::gray_bit_inverse;
+        if (kind == StripePattern::Kind::phase) continue;
+        if (bit && sequence[i].index >= gray_bits(whole.stripes, sequence[i].along_rows) - bits_less) continue;
+        gray.partial.push_back(sequence[i]);
+        gray.left.push_back(whole.left[i]);
+        gray.right.push_back(whole.right[i]);
+    }
+    return gray;
+}
+
+struct Off {
+    double mean = 0, rms = 0, p99 = 0;
+};
+
+Off off_the_sphere(const PointCloud& cloud) {
+    Off off;
+    std::vector<double> sizes;
+    for (const auto& p : cloud.points_in_rig) {
+        const double e = (p - kCentre).norm() - kRadius_mm;
+        off.mean += e / static_cast<double>(cloud.size());
+        off.rms += e * e / static_cast<double>(cloud.size());
+        sizes.push_back(std::abs(e));
+    }
+    off.rms = std::sqrt(off.rms);
+    std::sort(sizes.begin(), sizes.end());
+    if (!sizes.empty()) off.p99 = sizes[sizes.size() * 99 / 100];
+    return off;
+}
+
+TEST(FewerDevices, OneCameraAndTheProjectorPlaceTheBall) {
+    RigCalibration rig = ball().rig;
+    rig.right_camera = {};
+    const ScanResult scan = scan_from_capture(ball().capture, rig);
+    EXPECT_GT(scan.clean.kept.size(), 20000u);
+    EXPECT_EQ(scan.raw.three_view, 0u);
+    EXPECT_FALSE(scan.resection) << "nothing says where the projector stands";
+    // 0.02 px of code over 13 degrees of angle at 0.44 mm a pixel: 0.04 mm; edges are kept away from.
+    const Off off = off_the_sphere(scan.clean.kept);
+    EXPECT_LT(std::abs(off.mean), 0.02);
+    EXPECT_LT(off.rms, 0.04);
+    ScanCapture left_only = ball().capture;
+    left_only.right.clear();
+    EXPECT_EQ(scan_from_capture(left_only, ball().rig).clean.kept.size(), scan.clean.kept.size())
+        << "it is the same whether the rig or the capture lacks the right camera";
+}
+
+TEST(FewerDevices, TwoCamerasDoWithoutKnowingTheProjector) {
+    RigCalibration rig = ball().rig;
+    rig.projector = {};
+    const ScanResult scan = scan_from_capture(ball().capture, rig);
+    EXPECT_GT(scan.clean.kept.size(), 15000u);
+    const Off off = off_the_sphere(scan.clean.kept);
+    EXPECT_LT(std::abs(off.mean), 0.02);
+    EXPECT_LT(off.rms, 0.08);
+    EXPECT_LT(scan.raw.epipolar_rms_px, 0.2);
+    for (std::size_t i = 0; i < scan.clean.kept.size(); i += 100)
+        EXPECT_GT(scan.clean.kept.normals_in_rig[i].dot(scan.clean.kept.points_in_rig[i] - kCentre), 0) << "towards the cameras";
+}
+
+TEST(FewerDevices, TwoCamerasAndColumnsOnlyMeetOnTheEpipolarLine) {
+    RigCalibration rig = ball().rig;
+    rig.projector = {};
+    ScanCapture columns = ball().capture;
+    columns.stripes.rows = false;
+    const std::size_t n = stripe_sequence(columns.stripes).size();
+    columns.left.resize(n);
+    columns.right.resize(n);
+    const ScanResult scan = scan_from_capture(columns, rig);
+    EXPECT_GT(scan.clean.kept.size(), 15000u);
+    const Off off = off_the_sphere(scan.clean.kept);
+    EXPECT_LT(std::abs(off.mean), 0.02);
+    EXPECT_LT(off.rms, 0.15);
+}
+
+TEST(FewerDevices, OneCameraWithoutAProjectorIsRefused) {
+    RigCalibration rig = ball().rig;
+    rig.projector = rig.right_camera = {};
+    EXPECT_THROW(scan_from_capture(ball().capture, rig), std::invalid_argument);
+}
+
+TEST(GrayOnly, IsReadToItsFinestCellAndSaysSo) {
+    const Shot& shot = fine_ball(0.6);
+    double last_rms = 0;
+    for (const int less : {0, 1, 2}) {
+        const ScanResult scan = scan_from_capture(gray_only(shot.capture, less), shot.rig);
+        const double step = 2 << less;
+        EXPECT_EQ(scan.code_step_px, step);
+        EXPECT_GT(scan.clean.kept.size(), 10000u) << less;
+        const Off off = off_the_sphere(scan.clean.kept);
+        // A cell is 0.42 mm a pixel wide; both cameras see its borders alike, so little of it goes into depth.
+        EXPECT_LT(off.rms, 0.05 * step) << less;
+        EXPECT_LT(std::abs(off.mean), 0.045 * step) << "the ball is flattened over three cells";
+        EXPECT_GT(off.rms, last_rms) << "coarser with every bit less";
+        last_rms = off.rms;
+    }
+}
+
+TEST(GrayOnly, TheCodeIsRightToItsCell) {
+    const Shot& shot = fine_ball(0.6);
+    const ScanResult scan = scan_from_capture(gray_only(shot.capture, 1), shot.rig);
+    const Truth truth = truth_of(shot.room, shot.room.left);
+    std::size_t decoded = 0, wrong = 0;
+    double squares = 0;
+    for (std::size_t i = 0; i < truth.code.size(); ++i) {
+        if (std::isnan(scan.left.column[i]) || std::isnan(truth.code[i].x())) continue;
+        ++decoded;
+        const double off = scan.left.column[i] - truth.code[i].x();
+        wrong += std::abs(off) > 4;  // a cell
+        squares += off * off;
+    }
+    EXPECT_GT(decoded, 50000u);
+    EXPECT_LT(static_cast<double>(wrong), 1e-4 * static_cast<double>(decoded));
+    const double rms = std::sqrt(squares / static_cast<double>(decoded));
+    EXPECT_LT(rms, 0.3 * 0.29 * 4) << "smoothed, it is better than the bare cell by far";
+}
+
+TEST(GrayOnly, BitsTooFineForTheOpticsAreLeftOut) {
+    const ScanResult scan = scan_from_capture(gray_only(fine_ball(3).capture), fine_ball(3).rig);
+    EXPECT_GE(scan.code_step_px, 4);
+    EXPECT_LE(scan.code_step_px, 16);
+    EXPECT_GT(scan.clean.kept.size(), 5000u);
+    EXPECT_LT(off_the_sphere(scan.clean.kept).rms, 0.05 * scan.code_step_px);
+}
+
+TEST(GrayOnly, FringesTooFineForTheOpticsFallBackToTheGrayCode) {
+    const ScanResult fine = scan_from_capture(fine_ball(0.6).capture, fine_ball(0.6).rig);
+    EXPECT_EQ(fine.code_step_px, 0) << "these are resolved";
+    const ScanResult coarse = scan_from_capture(fine_ball(3).capture, fine_ball(3).rig);
+    EXPECT_GE(coarse.code_step_px, 4);
+    EXPECT_GT(coarse.clean.kept.size(), 5000u);
+}
+
+TEST(GrayOnly, OneCameraToo) {
+    RigCalibration rig = fine_ball(0.6).rig;
+    rig.right_camera = {};
+    const ScanResult scan = scan_from_capture(gray_only(fine_ball(0.6).capture), rig);
+    EXPECT_EQ(scan.code_step_px, 2);
+    EXPECT_GT(scan.clean.kept.size(), 10000u);
+    EXPECT_LT(off_the_sphere(scan.clean.kept).rms, 0.12);
+}
+
+}  // namespace
+}  // namespace planlight

@@ -1,0 +1,43 @@
+#include "tests/registration/scan/spoilt_rigs.h"
+
+#include <utility>
+
+namespace planlight::scan_rooms {
+namespace {
+
+/// Turned about its own upright axis, where it stands.
+void turn(CameraModel& device, double degrees) {
+    const Eigen::AngleAxisd by(degrees * M_PI / 180, Eigen::Vector3d::UnitY());
+    device.device_from_rig = RigidTransform(by) * device.device_from_rig;
+}
+
+void stretch(CameraModel& device, double by) {
+    device.focal_x *= by;
+    device.focal_y *= by;
+}
+
+void flip_distortion(CameraModel& device) {
+    for (double* k : {&device.k1, &device.k2, &device.k3, &device.p1, &device.p2}) *k = -*k;
+}
+
+}  // namespace
+
+std::vector<SpoiltRig> spoilt_rigs() {
+    return {
+        {"nothing wrong", [](RigCalibration&) {}},
+        {"projector turned 0.2 degrees", [](RigCalibration& r) { turn(r.projector, 0.2); }},
+        {"right camera turned 0.1 degrees sideways", [](RigCalibration& r) { turn(r.right_camera, 0.1); }},
+        {"left focal length +1 %", [](RigCalibration& r) { stretch(r.left_camera, 1.01); }},
+        {"both cameras' focal lengths +1 %",
+         [](RigCalibration& r) {
+             stretch(r.left_camera, 1.01);
+             stretch(r.right_camera, 1.01);
+         }},
+        {"projector focal length +1 %", [](RigCalibration& r) { stretch(r.projector, 1.01); }},
+        {"left distortion sign flipped", [](RigCalibration& r) { flip_distortion(r.left_camera); }},
+        {"projector distortion sign flipped", [](RigCalibration& r) { flip_distortion(r.projector); }},
+        {"left and right camera swapped", [](RigCalibration& r) { std::swap(r.left_camera, r.right_camera); }},
+    };
+}
+
+}  // namespace planlight::scan_rooms
