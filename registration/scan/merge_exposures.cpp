@@ -43,20 +43,18 @@ void take_better(DecodedView& view, const DecodedView& other) {
     view.uncertain = left_over;
 }
 
-std::vector<ScanCapture> capture_exposures(Projector& projector, StereoCamera& cameras, const Clock& clock,
-                                           const StripeSettings& stripes, const std::function<void(int, int)>& progress,
-                                           const ExposureSettings& settings) {
-    std::vector<ScanCapture> captures{capture_scan(projector, cameras, clock, stripes, progress)};
-    StripeSettings darker = stripes;
+void add_darker_captures(Projector& projector, StereoCamera& cameras, const Clock& clock, std::vector<ScanCapture>& captures,
+                         const std::function<void(int, int)>& progress, const ExposureSettings& settings) {
+    if (captures.empty()) throw std::invalid_argument("add_darker_captures: no capture to judge by");
+    StripeSettings darker = captures.back().stripes;
     while (static_cast<int>(captures.size()) < settings.most) {
         const ScanCapture& last = captures.back();  // white and black are the first two pictures
-        if (std::max(saturated_share(last.left[0], last.left[1]), saturated_share(last.right[0], last.right[1])) <= settings.max_saturated)
-            break;
+        const double left = saturated_share(last.left[0], last.left[1]), right = saturated_share(last.right[0], last.right[1]);
+        if (std::max(left, right) <= settings.max_saturated) break;
         darker.brightness = static_cast<int>(std::lround(settings.darker * darker.brightness));
         if (darker.brightness < 16) break;
         captures.push_back(capture_scan(projector, cameras, clock, darker, progress));
     }
-    return captures;
 }
 
 }  // namespace planlight

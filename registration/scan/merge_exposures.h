@@ -21,9 +21,8 @@ struct ExposureSettings {
     double darker = 0.6;          ///< brightness of the next white by this one's: about a third of the light at a gamma of 2.2
 };
 
-/// Captures the scan, and again with a darker white while skin saturates. Throws as `capture_scan`.
-std::vector<ScanCapture> capture_exposures(Projector& projector, StereoCamera& cameras, const Clock& clock,
-                                           const StripeSettings& stripes, const std::function<void(int, int)>& progress = {},
-                                           const ExposureSettings& settings = {});
+/// Adds captures with a darker and darker white while skin saturates in the last one. Throws as `capture_scan`.
+void add_darker_captures(Projector& projector, StereoCamera& cameras, const Clock& clock, std::vector<ScanCapture>& captures,
+                         const std::function<void(int, int)>& progress = {}, const ExposureSettings& settings = {});
 
 }  // namespace planlight
