@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <numbers>
 #include <optional>
@@ -62,12 +63,22 @@ Capture sorted(std::span<const GrayImage> frames, const StripeSettings& stripes)
     return capture;
 }
 
-/// Calls `visit(pixel)` for a sample of the pixels, evenly over the picture, away from its rim.
+/// Calls `visit(pixel)` for a sample of the pixels, away from the picture's rim: short runs (they share what is fetched of
+/// each frame), one a square, at places in it that follow no pattern, for the stripes do.
 template <class Visit>
 void for_sample(const GrayImage& picture, const Visit& visit) {
-    const std::size_t step = std::max<std::size_t>(1, static_cast<std::size_t>(std::sqrt(static_cast<double>(picture.pixels.size()) / kSample)));
-    for (int y = kFlat_px; y < picture.height - kFlat_px; y += static_cast<int>(step))
-        for (int x = kFlat_px; x < picture.width - kFlat_px; x += static_cast<int>(step)) visit(picture.index(x, y));
+    constexpr int kRun = 4, kStep_px = 4;
+    const double squares = static_cast<double>(kSample) / kRun;
+    const int side = std::max(1, static_cast<int>(std::sqrt(static_cast<double>(picture.pixels.size()) / squares)));
+    std::uint32_t random = 1;
+    for (int top = 0; top < picture.height; top += side)
+        for (int left = 0; left < picture.width; left += side) {
+            random = random * 1664525u + 1013904223u;
+            const int y = top + static_cast<int>(random >> 20) % side, x = left + static_cast<int>((random >> 8) & 4095u) % side;
+            if (y < kFlat_px || y >= picture.height - kFlat_px) continue;
+            for (int k = 0; k < kRun; ++k)
+                if (const int at = x + k * kStep_px; at >= kFlat_px && at < picture.width - kFlat_px) visit(picture.index(at, y));
+        }
 }
 
 double share_of(std::size_t part, std::size_t all) { return all == 0 ? 0 : static_cast<double>(part) / static_cast<double>(all); }
@@ -149,33 +160,43 @@ struct Fringe {
     double amplitude = 0, phase = 0;  ///< phase of the shift at the crest, radians
     double residual_grey = 0;         ///< rms by degree of freedom of what a fringe and its second harmonic cannot make
 };
-Fringe fringe_at(const Capture& capture, const std::vector<std::size_t>& phases, std::size_t pixel) {
+/// The fringes at all lit pixels; empty where there are none.
+std::vector<Fringe> fringes_of(const Capture& capture, const std::vector<std::size_t>& phases) {
+    if (phases.size() < 3) return {};
     const auto n = static_cast<double>(phases.size());
-    double mean = 0, s1 = 0, c1 = 0, s2 = 0, c2 = 0, squares = 0;
+    std::vector<std::array<double, 4>> weights;
     for (std::size_t k = 0; k < phases.size(); ++k) {
-        const double shift = 2 * std::numbers::pi * static_cast<double>(k) / n, value = capture.at(phases[k], pixel);
-        mean += value / n;
-        s1 += value * std::sin(shift) * 2 / n;
-        c1 += value * std::cos(shift) * 2 / n;
-        s2 += value * std::sin(2 * shift) * 2 / n;
-        c2 += value * std::cos(2 * shift) * 2 / n;
-        squares += value * value;
+        const double shift = 2 * std::numbers::pi * static_cast<double>(k) / n;
+        weights.push_back({std::sin(shift) * 2 / n, std::cos(shift) * 2 / n, std::sin(2 * shift) * 2 / n, std::cos(2 * shift) * 2 / n});
     }
-    Fringe fringe{std::hypot(s1, c1), std::atan2(s1, c1), 0};
-    const double in_phase = c2 * std::cos(2 * fringe.phase) + s2 * std::sin(2 * fringe.phase);
-    const double modelled = n * mean * mean + n / 2 * (fringe.amplitude * fringe.amplitude + in_phase * in_phase);
-    fringe.residual_grey = std::sqrt(std::max(0.0, squares - modelled) / std::max(1.0, n - 4));
-    return fringe;
+    std::vector<Fringe> fringes;
+    fringes.reserve(capture.lit.size());
+    for (const std::size_t pixel : capture.lit) {
+        double mean = 0, squares = 0;
+        std::array<double, 4> sum{};  // sine and cosine of the first and second harmonic
+        for (std::size_t k = 0; k < phases.size(); ++k) {
+            const double value = capture.at(phases[k], pixel);
+            mean += value / n;
+            squares += value * value;
+            for (std::size_t h = 0; h < 4; ++h) sum[h] += weights[k][h] * value;
+        }
+        Fringe fringe{std::hypot(sum[0], sum[1]), std::atan2(sum[0], sum[1]), 0};
+        const double in_phase = sum[3] * std::cos(2 * fringe.phase) + sum[2] * std::sin(2 * fringe.phase);
+        const double modelled = n * mean * mean + n / 2 * (fringe.amplitude * fringe.amplitude + in_phase * in_phase);
+        fringe.residual_grey = std::sqrt(std::max(0.0, squares - modelled) / std::max(1.0, n - 4));
+        fringes.push_back(fringe);
+    }
+    return fringes;
 }
 
-void check_fringes(const Capture& capture, const Direction& direction, SequenceCheck& check) {
+void check_fringes(const Capture& capture, const Direction& direction, const std::vector<Fringe>& fringes, SequenceCheck& check) {
     if (direction.phase.size() < 5) return;  // too few for anything to be left over
-    std::size_t looked = 0, wrong = 0;
-    for (const std::size_t pixel : capture.lit) {
-        const Fringe fringe = fringe_at(capture, direction.phase, pixel);
+    const std::size_t looked = capture.lit.size();
+    std::size_t wrong = 0;
+    for (std::size_t i = 0; i < looked; ++i) {
+        const Fringe& fringe = fringes[i];
         // Out of order frames may leave hardly any fringe: what a fringe of this light can have is its measure.
-        const double strength = std::max(fringe.amplitude, 0.25 * capture.contrast(pixel));
-        ++looked;
+        const double strength = std::max(fringe.amplitude, 0.25 * capture.contrast(capture.lit[i]));
         wrong += fringe.residual_grey > 0.12 * strength + 2 * kNoise_grey;
     }
     constexpr double kMost = 0.12;
@@ -187,12 +208,13 @@ void check_fringes(const Capture& capture, const Direction& direction, SequenceC
 }
 
 /// A Gray code's number is odd where an odd number of its bits is set; the fringe says the same of its two halves.
-void check_parity(const Capture& capture, const Direction& direction, SequenceCheck& check) {
+void check_parity(const Capture& capture, const Direction& direction, const std::vector<Fringe>& fringes, SequenceCheck& check) {
     if (direction.phase.size() < 3 || direction.gray.empty()) return;
     const double half_px = capture.stripes.phase_period_px / 2;
     std::size_t looked = 0, wrong = 0;
-    for (const std::size_t pixel : capture.lit) {
-        const Fringe fringe = fringe_at(capture, direction.phase, pixel);
+    for (std::size_t i = 0; i < capture.lit.size(); ++i) {
+        const std::size_t pixel = capture.lit[i];
+        const Fringe& fringe = fringes[i];
         if (fringe.amplitude < 0.1 * capture.contrast(pixel) + 2 * kNoise_grey) continue;
         const double pixel_in_period = fringe.phase * half_px / std::numbers::pi + 0.5;  // from the edge of pixel 0
         const double cell = std::floor(pixel_in_period / half_px), in_cell = pixel_in_period / half_px - cell;
@@ -256,9 +278,10 @@ SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSett
     check.checked = check.checked && (capture.lit.size() >= kEnough || !check.problems.empty());
     if (!check.checked || !check.problems.empty()) return check;
     for (const Direction& direction : capture.directions) {
+        const std::vector<Fringe> fringes = fringes_of(capture, direction.phase);
         check_pairs(capture, direction, check);
-        check_fringes(capture, direction, check);
-        check_parity(capture, direction, check);
+        check_fringes(capture, direction, fringes, check);
+        check_parity(capture, direction, fringes, check);
         check_order(capture, direction, check);
     }
     return check;
