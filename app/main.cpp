@@ -82,7 +82,8 @@ void add_patterns(CLI::App& app, PatternsOptions& o) {
     sub->add_option("--width", o.width, "Of the projector, pixels")->capture_default_str()->check(CLI::Range(64, 8192));
     sub->add_option("--height", o.height, "Of the projector, pixels")->capture_default_str()->check(CLI::Range(64, 8192));
     sub->add_option("--phase-steps", o.phase_steps, "Shifts a direction")->capture_default_str()->check(CLI::Range(3, 32));
-    sub->add_option("--set", o.set, "full: columns and rows, each bit with its inverse; fast: a third of the pictures, columns only, 5 shifts")
+    sub->add_option("--set", o.set,
+                    "full: columns and rows, each bit with its inverse; fast: a third of the pictures, columns only, 5 shifts")
         ->capture_default_str()
         ->check(CLI::IsMember({"full", "fast"}));
     sub->add_option("--phase-period-px", o.phase_period_px, "Projector pixels a fringe")

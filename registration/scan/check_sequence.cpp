@@ -46,7 +46,8 @@ struct Capture {
 Capture sorted(std::span<const GrayImage> frames, const StripeSettings& stripes) {
     Capture capture{frames, stripe_sequence(stripes), stripes, 0, 1, {}, {}};
     if (frames.size() != capture.sequence.size())
-        throw std::invalid_argument(fmt::format("check_sequence: {} frames for {} pictures", frames.size(), capture.sequence.size()));
+        throw std::invalid_argument(
+            fmt::format("check_sequence: {} frames for {} pictures", frames.size(), capture.sequence.size()));
     for (const GrayImage& f : frames)
         if (f.width != frames[0].width || f.pixels.size() != frames[0].pixels.size() || f.empty())
             throw std::invalid_argument("check_sequence: frames of different size");
@@ -95,7 +96,8 @@ void check_ends(Capture& capture, SequenceCheck& check) {
         if (high - low < kLit_grey) return;
         ++changing;
         const int allowed = (high - low) / 3;
-        const bool white = high - capture.at(capture.white, pixel) <= allowed, black = capture.at(capture.black, pixel) - low <= allowed;
+        const bool white = high - capture.at(capture.white, pixel) <= allowed,
+                   black = capture.at(capture.black, pixel) - low <= allowed;
         not_white += !white;
         not_black += !black;
         if (white && black && capture.contrast(pixel) >= kLit_grey && capture.at(capture.white, pixel) < kBright_grey)
@@ -128,7 +130,8 @@ std::string explain(const Capture& capture, std::size_t frame) {
         if (other == frame) continue;
         std::size_t differ = 0;
         for (const std::size_t pixel : capture.lit)
-            differ += std::abs(capture.at(frame, pixel) - capture.at(other, pixel)) > capture.contrast(pixel) / 6 + 4 * kNoise_grey;
+            differ +=
+                std::abs(capture.at(frame, pixel) - capture.at(other, pixel)) > capture.contrast(pixel) / 6 + 4 * kNoise_grey;
         if (const double share = share_of(differ, capture.lit.size()); share < best) {
             best = share;
             twin = other;
@@ -167,7 +170,8 @@ std::vector<Fringe> fringes_of(const Capture& capture, const std::vector<std::si
     std::vector<std::array<double, 4>> weights;
     for (std::size_t k = 0; k < phases.size(); ++k) {
         const double shift = 2 * std::numbers::pi * static_cast<double>(k) / n;
-        weights.push_back({std::sin(shift) * 2 / n, std::cos(shift) * 2 / n, std::sin(2 * shift) * 2 / n, std::cos(2 * shift) * 2 / n});
+        weights.push_back(
+            {std::sin(shift) * 2 / n, std::cos(shift) * 2 / n, std::sin(2 * shift) * 2 / n, std::cos(2 * shift) * 2 / n});
     }
     std::vector<Fringe> fringes;
     fringes.reserve(capture.lit.size());
@@ -203,8 +207,10 @@ void check_fringes(const Capture& capture, const Direction& direction, const std
     if (looked < kEnough || share_of(wrong, looked) <= kMost) return;
     std::string twins;  // which frame it is, where that can be seen
     for (const std::size_t frame : direction.phase) twins += explain(capture, frame);
-    check.problems.push_back({direction.phase[0], fmt::format("{} to {} are no fringes in order{}", capture.name(direction.phase.front()),
-                                                              capture.name(direction.phase.back()), twins), share_of(wrong, looked)});
+    check.problems.push_back({direction.phase[0],
+                              fmt::format("{} to {} are no fringes in order{}", capture.name(direction.phase.front()),
+                                          capture.name(direction.phase.back()), twins),
+                              share_of(wrong, looked)});
 }
 
 /// A Gray code's number is odd where an odd number of its bits is set; the fringe says the same of its two halves.
@@ -231,9 +237,11 @@ void check_parity(const Capture& capture, const Direction& direction, const std:
     }
     constexpr double kMost = 0.03;
     if (looked < kEnough || share_of(wrong, looked) <= kMost) return;
-    check.problems.push_back({direction.gray[0], fmt::format("the code of {} to {} contradicts {} to {}", capture.name(direction.gray.front()),
-                                                             capture.name(direction.gray.back()), capture.name(direction.phase.front()),
-                                                             capture.name(direction.phase.back())), share_of(wrong, looked)});
+    check.problems.push_back({direction.gray[0],
+                              fmt::format("the code of {} to {} contradicts {} to {}", capture.name(direction.gray.front()),
+                                          capture.name(direction.gray.back()), capture.name(direction.phase.front()),
+                                          capture.name(direction.phase.back())),
+                              share_of(wrong, looked)});
 }
 
 /// Of two bits the finer one changes more often: looked for between pixels and their neighbours to the right and below.
@@ -264,8 +272,10 @@ void check_order(const Capture& capture, const Direction& direction, SequenceChe
         const double expected = lines / std::pow(2.0, static_cast<double>(changes.size() - 1 - k));
         if (expected < lines / 32 || expected < 60 || !resolved[k + 1]) continue;  // too few stripes over the surface to count on
         if (changes[k] > 1.25 * changes[k + 1])
-            check.problems.push_back({direction.gray[k], fmt::format("{} has finer stripes than {}", capture.name(direction.gray[k]),
-                                                                     capture.name(direction.gray[k + 1])), share_of(static_cast<std::size_t>(changes[k]), looked)});
+            check.problems.push_back({direction.gray[k],
+                                      fmt::format("{} has finer stripes than {}", capture.name(direction.gray[k]),
+                                                  capture.name(direction.gray[k + 1])),
+                                      share_of(static_cast<std::size_t>(changes[k]), looked)});
     }
 }
 

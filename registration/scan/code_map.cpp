@@ -149,7 +149,8 @@ CodeIndex::CodeIndex(const DecodedView& view, int projector_width, int projector
         for (int x = 0; x < view.width; x += 2) {
             const std::size_t i = line + static_cast<std::size_t>(x);
             if (!(view.column[i] >= -0.5f && view.row[i] >= -0.5f)) continue;  // NaN as well
-            const int c = static_cast<int>((view.column[i] + 0.5f) * kByCell), r = static_cast<int>((view.row[i] + 0.5f) * kByCell);
+            const int c = static_cast<int>((view.column[i] + 0.5f) * kByCell),
+                      r = static_cast<int>((view.row[i] + 0.5f) * kByCell);
             if (c >= columns_ || r >= rows_) continue;
             pixel_in_[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c)] =
                 static_cast<std::int32_t>(i);

@@ -37,8 +37,8 @@ void decode_direction(std::span<const GrayImage> pairs, int size, std::size_t be
         const std::uint8_t *frame = pairs[2 * k].pixels.data() + begin, *inverse = pairs[2 * k + 1].pixels.data() + begin;
         kernels::expect_next(frame);
         kernels::expect_next(inverse);
-        kernels::decide_bit(frame, inverse, b.limit.data(), static_cast<std::uint8_t>(1u << (place % 8)), place < 8 ? b.code.low : b.code.high,
-                            place < 8 ? b.code.doubt_low : b.code.doubt_high, n);
+        kernels::decide_bit(frame, inverse, b.limit.data(), static_cast<std::uint8_t>(1u << (place % 8)),
+                            place < 8 ? b.code.low : b.code.high, place < 8 ? b.code.doubt_low : b.code.doubt_high, n);
     }
     kernels::place_code(b.code, 1, static_cast<float>(size), pixel, n);
 }
@@ -57,7 +57,8 @@ kernels::Counts decode_block(const GrayPairs& frames, const GrayLimits& limits, 
     decode_direction(frames.columns, frames.projector_width, begin, n, b, b.column.data());
     decode_direction(frames.rows, frames.projector_height, begin, n, b, b.row.data());
     kernels::contrast_of(white, black, b.contrast.data(), n);
-    const kernels::DirectionBlock columns{b.contrast.data(), b.column.data(), white}, rows{b.contrast.data(), b.row.data(), white};
+    const kernels::DirectionBlock columns{b.contrast.data(), b.column.data(), white},
+        rows{b.contrast.data(), b.row.data(), white};
     const kernels::Limits good{static_cast<float>(limits.least_grey), 0, 0, 1, limits.saturated_at};
     const kernels::Counts counts = kernels::keep_good(columns, &rows, white, black, good, column, row, sigma, n);
     kernels::set_where_known(column, 0.29f, sigma, n);

@@ -74,7 +74,8 @@ double measure_noise(const Direction& direction, std::size_t pixels, const Decod
     std::vector<Eigen::Array4f> weights;  // sine and cosine of the first and second harmonic
     for (std::size_t k = 0; k < steps; ++k) {
         const double shift = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(steps);
-        weights.push_back(Eigen::Array4d(std::sin(shift), std::cos(shift), std::sin(2 * shift), std::cos(2 * shift)).cast<float>());
+        weights.push_back(
+            Eigen::Array4d(std::sin(shift), std::cos(shift), std::sin(2 * shift), std::cos(2 * shift)).cast<float>());
     }
     std::vector<float> off;
     for_sample(pixels, [&](std::size_t i) {

@@ -63,9 +63,12 @@ PLANLIGHT_INLINE Seen see(const Device& d, const Triple& p, double& good) {
     good = (qz > 1e-6) & (at.xx > 0) & (at.xx * at.yy > at.xy * at.xy) ? good : 0;
     const double ux = d.fx * at.xx * by_z, uy = d.fx * at.xy * by_z, uz = -(ux * x + uy * y);
     const double vx = d.fy * at.xy * by_z, vy = d.fy * at.yy * by_z, vz = -(vx * x + vy * y);
-    return {d.fx * at.x + d.cx, d.fy * at.y + d.cy,
-            {ux * d.r[0] + uy * d.r[3] + uz * d.r[6], ux * d.r[1] + uy * d.r[4] + uz * d.r[7], ux * d.r[2] + uy * d.r[5] + uz * d.r[8]},
-            {vx * d.r[0] + vy * d.r[3] + vz * d.r[6], vx * d.r[1] + vy * d.r[4] + vz * d.r[7], vx * d.r[2] + vy * d.r[5] + vz * d.r[8]}};
+    return {d.fx * at.x + d.cx,
+            d.fy * at.y + d.cy,
+            {ux * d.r[0] + uy * d.r[3] + uz * d.r[6], ux * d.r[1] + uy * d.r[4] + uz * d.r[7],
+             ux * d.r[2] + uy * d.r[5] + uz * d.r[8]},
+            {vx * d.r[0] + vy * d.r[3] + vz * d.r[6], vx * d.r[1] + vy * d.r[4] + vz * d.r[7],
+             vx * d.r[2] + vy * d.r[5] + vz * d.r[8]}};
 }
 
 /// The middle of the shortest way between two rays; `along` is how far the first one goes to it.
@@ -197,7 +200,8 @@ PLANLIGHT_CLONES void adjust_three(const Device& left, const Device& right, cons
         Normal n;
         add_row(n, scaled(in_left.du, by_camera), (p.pixel_x[i] - in_left.u) * by_camera);
         add_row(n, scaled(in_left.dv, by_camera), (p.pixel_y[i] - in_left.v) * by_camera);
-        const double left_code = p.sigma[i] * p.sigma[i], lamp_variance = lamp + left_code, by_lamp = 1 / std::sqrt(lamp_variance);
+        const double left_code = p.sigma[i] * p.sigma[i], lamp_variance = lamp + left_code,
+                     by_lamp = 1 / std::sqrt(lamp_variance);
         const double rx = p.code_x[i] - lit.u, ry = p.code_y[i] - lit.v;
         add_row(n, scaled(lit.du, by_lamp), rx * by_lamp);
         add_row(n, scaled(lit.dv, by_lamp), ry * by_lamp);

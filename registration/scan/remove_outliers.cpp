@@ -186,7 +186,8 @@ void mark_small_pieces(Work& work) {
     const double needed = std::max<double>(work.settings.min_piece_points,
                                            work.settings.min_piece_fraction * static_cast<double>(largest));
     for (std::uint32_t k = 0; k < work.size(); ++k)
-        if (work.fate[k] == Fate::kept && static_cast<double>(count[root_of(parent, k)]) < needed) work.fate[k] = Fate::small_piece;
+        if (work.fate[k] == Fate::kept && static_cast<double>(count[root_of(parent, k)]) < needed)
+            work.fate[k] = Fate::small_piece;
 }
 
 void keep(const Work& work, OutlierReport& report) {

@@ -4,7 +4,8 @@ namespace planlight {
 namespace {
 
 /// How many of the 8 cells around an occupied cell are occupied, on average.
-double occupied_around(const std::vector<Eigen::Vector2i>& pixels, const Eigen::Vector2i& low, int cell_px, int columns, int rows) {
+double occupied_around(const std::vector<Eigen::Vector2i>& pixels, const Eigen::Vector2i& low, int cell_px, int columns,
+                       int rows) {
     const int width = columns + 2;  // an empty cell all around
     const auto by_cell = static_cast<float>(1.0 / cell_px);
     std::vector<std::uint8_t> occupied(static_cast<std::size_t>(width) * static_cast<std::size_t>(rows + 2), 0);
@@ -19,7 +20,8 @@ double occupied_around(const std::vector<Eigen::Vector2i>& pixels, const Eigen::
                            *below = line + width;
         unsigned cells_here = 0, around_here = 0;
         for (int x = 1; x <= columns; ++x) {
-            const int sum = above[x - 1] + above[x] + above[x + 1] + line[x - 1] + line[x + 1] + below[x - 1] + below[x] + below[x + 1];
+            const int sum =
+                above[x - 1] + above[x] + above[x + 1] + line[x - 1] + line[x + 1] + below[x - 1] + below[x] + below[x + 1];
             cells_here += line[x];
             around_here += static_cast<unsigned>(line[x] * sum);
         }

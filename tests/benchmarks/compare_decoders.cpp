@@ -124,7 +124,9 @@ struct Score {
         if (!is_lit) ++unlit;
         else wrong += (found - truth).cwiseAbs().maxCoeff() > kWrong_px;
     }
-    std::string tell() const { return fmt::format("{} of {} lit, {} wrong, {} at unlit places", decoded - unlit, lit, wrong, unlit); }
+    std::string tell() const {
+        return fmt::format("{} of {} lit, {} wrong, {} at unlit places", decoded - unlit, lit, wrong, unlit);
+    }
 };
 
 Score score_of(const std::vector<DecodedView>& views, const std::vector<Truth>& truth) {
@@ -242,6 +244,7 @@ int main(int count, char** words) {
     fmt::print("{} processors\n", std::thread::hardware_concurrency());
     const Eigen::Vector3d centre(120, -40, 360), place(120, -40, 300);
     compare(make_scene("ball of 80 mm radius", sphere(centre, 80)), rounds, with_peers);
-    compare(make_scene("plane over the whole picture", plane(place, Eigen::Vector3d(0.35, 0.2, -1).normalized())), rounds, with_peers);
+    compare(make_scene("plane over the whole picture", plane(place, Eigen::Vector3d(0.35, 0.2, -1).normalized())), rounds,
+            with_peers);
     return 0;
 }

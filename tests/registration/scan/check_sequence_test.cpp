@@ -190,7 +190,8 @@ TEST(CheckSequence, FaultsOfTheFastSetAreNoticed) {
             if (changed(fast.frames, spoilt) < 0.05) continue;
             // Neighbouring bits swapped keep the parity; the coarse ones among them change too seldom to be told apart.
             const auto sequence = stripe_sequence(fast.stripes);
-            if (fault == Fault::swapped_with_next && sequence[m].kind == StripePattern::Kind::gray_bit && sequence[m].index < 4) continue;
+            if (fault == Fault::swapped_with_next && sequence[m].kind == StripePattern::Kind::gray_bit && sequence[m].index < 4)
+                continue;
             const SequenceCheck check = check_sequence(with_noise(spoilt, 1.5, static_cast<unsigned>(m)), fast.stripes);
             EXPECT_FALSE(check.problems.empty()) << static_cast<int>(fault) << " at " << sequence[m].name;
             noticed += !check.problems.empty();

@@ -213,7 +213,8 @@ TEST(DecodeStripes, LightByWayOfAnotherWallIsDropped) {
         for (int y = 0; y < frame.height; ++y)
             for (int x = 0; x < frame.width; ++x) {
                 const float detour = 0.6f * wall[frame.index(std::min(x + kAside_px, frame.width - 1), y)];
-                frame.at(x, y) = static_cast<std::uint8_t>(std::min(255L, std::lround(static_cast<float>(frame.at(x, y)) + detour)));
+                frame.at(x, y) =
+                    static_cast<std::uint8_t>(std::min(255L, std::lround(static_cast<float>(frame.at(x, y)) + detour)));
             }
     }
     const Truth truth = truth_of(room, room.left);
@@ -224,7 +225,8 @@ TEST(DecodeStripes, LightByWayOfAnotherWallIsDropped) {
         std::size_t wrong = 0;
         for (int y = 0; y < v.height; ++y)
             for (int x = 0; x < v.width; ++x) {
-                const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(v.width) + static_cast<std::size_t>(x);
+                const std::size_t i =
+                    static_cast<std::size_t>(y) * static_cast<std::size_t>(v.width) + static_cast<std::size_t>(x);
                 if (std::isnan(v.column[i])) continue;
                 if (!std::isnan(truth.code[i].x())) continue;
                 bool near_light = false;  // the rim of the shadow, where blur mixes both

@@ -142,7 +142,8 @@ TEST(ScanSurface, ColumnsAloneSufficeWhereThreeViewsMeet) {
 
 TEST(ScanSurface, TheFastSetFindsTheSphere) {
     const Room& room = on_sphere().room;
-    const ScanResult result = scan_from_capture(capture(room, fast_stripes(room.projector.width, room.projector.height)), rig_of(room));
+    const ScanResult result =
+        scan_from_capture(capture(room, fast_stripes(room.projector.width, room.projector.height)), rig_of(room));
     ASSERT_GT(result.clean.kept.size(), 20000u);
     const Eigen::Vector4d found = fit_sphere(result.clean.kept.points_in_rig);
     EXPECT_NEAR(found(3), 80, 0.05);
