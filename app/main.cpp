@@ -165,7 +165,8 @@ void add_register(CLI::App& app, RegisterOptions& o) {
         ->capture_default_str()
         ->needs(cloud);
     sub->add_flag("--in-rig", o.in_rig, "The cloud is in the rig's frame though it does not say so")->needs(cloud);
-    sub->add_option("--viewpoint", o.viewpoint_in_rig, "Where the scanner stood (rig, mm), for a cloud without normals")
+    sub->add_option("--viewpoint", o.viewpoint_in_rig, "Where the scanner stood (rig, mm): then the space it looked through must be free in the CT too; a cloud "
+                    "without normals needs it")
         ->expected(3)
         ->needs(cloud);
     sub->add_option("--pairs", o.pairs,
@@ -205,8 +206,16 @@ void add_project(CLI::App& app, ProjectOptions& o) {
 }
 
 void add_review(CLI::App& app, ReviewOptions& o) {
-    auto* sub = command(app, "review", "Look at a prepared case: skin and plan in the operator window", "review case");
+    auto* sub = command(app, "review", "Look at a prepared case, or at a match on it, in the operator window",
+                        "review case --registration registration.json --cloud cloud.ply");
     sub->add_option("case", o.case_folder, "Case folder")->required();
+    auto* match = sub->add_option("--registration", o.registration, "A match to look at (registration.json of `register`)");
+    sub->add_option("--cloud", o.cloud, "The scan it was found with (.ply, mm), shown on the skin, coloured by distance")
+        ->needs(match);
+    sub->add_option("--view", o.view, "before or after the fine match, or error: how far off the match may be")
+        ->check(CLI::IsMember({"before", "after", "error"}))
+        ->capture_default_str()
+        ->needs(match);
     sub->add_option("--picture", o.picture, "Write a picture (.png) instead of opening a window; needs no display");
     json_flag(sub, o.json);
 }

@@ -99,7 +99,10 @@ double Session::moved_at_the_end_mm() {
 
 const RegistrationResult& Session::find_patient() {
     if (!scanned_) throw CheckFailedError("there is no scan to find the patient in", "Scan first.");
-    registration_ = register_patient(scanned_->clean.kept, case_.lut, settings_.registration);
+    settings_.overlay.operator_confirmed = false;  // what was looked at was another match
+    RegistrationSettings settings = settings_.registration;
+    settings.viewpoint_in_rig = rig_.projector.centre_in_rig();
+    registration_ = register_patient(scanned_->clean.kept, case_.lut, settings);
     if (registration_->verdict != Verdict::no) draw_beside_markers();
     start_overlay();
     return *registration_;

@@ -58,9 +58,10 @@ std::vector<StripePattern> gray_code_there(const std::vector<StripePattern>& wan
                    is_there(folder, other.name);
         });
         if (!is_there(folder, pattern.name) && (!bit || finer_is_there || pattern.index < 2))
-            throw InputError(named, fmt::format("the picture of pattern \"{}\" is missing", pattern.name),
-                             "Capture the whole sequence that `planlight patterns` writes; only fringes and the finest bits of the "
-                             "Gray code may be missing.");
+            throw InputError(
+                named, fmt::format("the picture of pattern \"{}\" is missing", pattern.name),
+                "Capture the whole sequence that `planlight patterns` writes; only fringes and the finest bits of the "
+                "Gray code may be missing.");
     }
     return there;
 }

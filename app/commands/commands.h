@@ -85,7 +85,7 @@ struct RegisterOptions {
     Path slicer_transform;  ///< to write; empty: not wanted
     std::string unit = "mm";
     bool in_rig = false;
-    std::vector<double> viewpoint_in_rig;  ///< 3 numbers, mm; for a cloud without normals
+    std::vector<double> viewpoint_in_rig;  ///< 3 numbers, mm; empty: not said
     std::string icp = "signed-distance";
     unsigned seed = 1;
     bool json = false;
@@ -106,7 +106,8 @@ struct ProjectOptions {
 int run_project(const ProjectOptions& options);
 
 struct ReviewOptions {
-    Path case_folder, picture;
+    Path case_folder, picture, registration, cloud;
+    std::string view = "after";  ///< before, after, error
     bool json = false;
 };
 int run_review(const ReviewOptions& options);

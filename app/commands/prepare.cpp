@@ -6,6 +6,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/plan_options.h"
 #include "app/console.h"
+#include "app/live/case_model.h"
 #include "app/live/live_window.h"
 #include "app/prepare_case.h"
 #include "app/report/preparation_report.h"
@@ -57,7 +58,7 @@ int run_prepare(const PrepareOptions& options) {
                    the_case.lut.voxel_mm, the_case.plan.size());
         fmt::print("Report: {}\n", (options.out / "report.html").string());
     }
-    if (options.preview) show_case(the_case, drawing);
+    if (options.preview) show_model(model_of_case(the_case, drawing));
     return 0;
 }
 

@@ -44,6 +44,7 @@ RegistrationResult match(const RegisterOptions& options, const Case& the_case) {
     RegistrationSettings settings;
     settings.initial.seed = options.seed;
     if (options.icp == "closest-point") settings.icp.mode = IcpSettings::Mode::closest_point;
+    if (!options.viewpoint_in_rig.empty()) settings.viewpoint_in_rig = Eigen::Vector3d(options.viewpoint_in_rig.data());
     RegistrationResult result = register_patient(cloud_of(options), the_case.lut, settings);
     check_with_point_pairs(pairs, result);
     return result;
@@ -78,6 +79,7 @@ int run_register(const RegisterOptions& options) {
                                     {"agreeing_bases", result.agreeing_bases},
                                     {"weakest_sigma_mm", result.weakest_sigma_mm},
                                     {"mirror_ratio", result.mirror_ratio},
+                                    {"blocked_fraction", result.blocked_fraction ? nlohmann::json(*result.blocked_fraction) : nlohmann::json()},
                                     {"scale", result.scale},
                                     {"scale_sigma", result.scale_sigma},
                                     {"skin_movement_mm", result.skin_movement_mm},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "app/live/case_model.h"
 #include "app/live/scene_of_session.h"
 #include "app/windows/scene_view.h"
 
@@ -115,15 +116,23 @@ void ChainPictures::take_match(const Session& session) {
     if (found.verdict == Verdict::no) return;
     scene.skin = std::make_shared<TriangleMesh>(case_.skin);
     const RigidTransform after = scene.ct_from_rig;
+    scene.skin_offset_mm = found.skin_offset_mm;
     scene.ct_from_rig = found.initial_patient_from_ct.inverse();
-    scene.cloud_distance_mm = distances_to_skin_mm(*scene.cloud, scene.ct_from_rig, case_.lut);
+    scene.cloud_distance_mm = distances_to_skin_mm(*scene.cloud, scene.ct_from_rig, case_.lut, found.skin_offset_mm);
     RgbImage before = render_scene(scene, view, kSceneWidth, kSceneHeight);
     scene.ct_from_rig = after;
-    scene.cloud_distance_mm = distances_to_skin_mm(*scene.cloud, scene.ct_from_rig, case_.lut);
+    scene.cloud_distance_mm = distances_to_skin_mm(*scene.cloud, scene.ct_from_rig, case_.lut, found.skin_offset_mm);
     add("Scan on skin before and after the fine match",
-        fmt::format("Residual {:.2f} mm rms, {:.0f} % of the points on the skin (Fig. 3).", found.residual_rms_mm,
-                    100 * found.inlier_fraction),
+        fmt::format("Residual {:.2f} mm rms, {:.0f} % of the points on the skin (Fig. 3). Distances are to the skin where this scan "
+                    "found it as a whole: {:+.2f} mm outside of the CT's.",
+                    found.residual_rms_mm, 100 * found.inlier_fraction, found.skin_offset_mm),
         side_by_side(before, render_scene(scene, view, kSceneWidth, kSceneHeight)));
+    scene.cloud = nullptr;
+    scene.cloud_distance_mm = nullptr;
+    scene.skin_error_mm = predicted_on_skin_mm(case_.skin, found);
+    add("How far off the match may be",
+        "95 % bound at every point of the skin, from how far the skin moved since the CT as the residuals tell it.",
+        render_scene(scene, view, kSceneWidth, kSceneHeight));
 }
 
 void ChainPictures::take_light(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update,

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <memory>
 
 namespace planlight {
 namespace {
@@ -73,6 +75,26 @@ std::vector<double> predicted_errors_mm(const Plan& plan, const RegistrationResu
     return errors;
 }
 
+std::shared_ptr<const std::vector<float>> predicted_on_skin_mm(const TriangleMesh& skin, const RegistrationResult& found) {
+    auto errors = std::make_shared<std::vector<float>>();
+    errors->reserve(skin.vertices_in_ct.size());
+    for (const auto& p : skin.vertices_in_ct)
+        errors->push_back(static_cast<float>(predicted_error(found.covariance, p).bound_95_mm));
+    return errors;
+}
+
+std::shared_ptr<const std::vector<float>> distances_to_skin_mm(const PointCloud& cloud, const RigidTransform& ct_from_rig,
+                                                               const SkinLut& lut, double skin_offset_mm) {
+    auto distances = std::make_shared<std::vector<float>>();
+    distances->reserve(cloud.size());
+    for (const auto& p_in_rig : cloud.points_in_rig) {
+        const auto distance = lut.signed_distance(ct_from_rig * p_in_rig);
+        distances->push_back(distance ? static_cast<float>(std::abs(distance->mm - skin_offset_mm))
+                                     : std::numeric_limits<float>::infinity());
+    }
+    return distances;
+}
+
 std::vector<std::string> evidence_of(const RegistrationResult& result) {
     std::vector<std::string> lines;
     lines.push_back(fmt::format("Residual {:.2f} mm rms; {:.0f} % of {} points within {:.1f} mm of the skin.",
@@ -80,12 +102,38 @@ std::vector<std::string> evidence_of(const RegistrationResult& result) {
                                 result.inlier_distance_mm));
     lines.push_back(fmt::format("Next best other pose fits {:.1f} times worse; {} independent bases agree.",
                                 result.runner_up_ratio, result.agreeing_bases));
+    if (result.mirror_ratio > 0)
+        lines.push_back(fmt::format("The mirror image fits {:.1f} times worse; size of the head {:+.1f} ± {:.1f} %.",
+                                    result.mirror_ratio, 100 * (1 / result.scale - 1), 100 * result.scale_sigma));
+    if (result.blocked_fraction)
+        lines.push_back(fmt::format("{:.0f} % of the scan was seen through what is body in the CT.", 100 * *result.blocked_fraction));
     lines.push_back(fmt::format("The skin lies {:.1f} mm {} that of the CT, and has moved by {:.1f} mm (rms).",
                                 std::abs(result.skin_offset_mm), result.skin_offset_mm < 0 ? "inside of" : "outside of",
                                 result.skin_movement_mm));
     lines.push_back(fmt::format("Found in {:.2f} s, refined in {:.0f} ms.", result.initial_match_s, 1000 * result.refine_s));
     lines.insert(lines.end(), result.reasons.begin(), result.reasons.end());
     return lines;
+}
+
+void show_match(const Case& the_case, const RegistrationResult& found, const std::shared_ptr<const PointCloud>& cloud,
+                OperatorModel& model) {
+    model.evidence = evidence_of(found);
+    model.fit = std::nullopt;
+    if (found.verdict == Verdict::no) return;
+    const auto predicted = predicted_errors_mm(the_case.plan, found);
+    for (std::size_t i = 0; i < model.rows.size() && i < predicted.size(); ++i)
+        if (std::isfinite(predicted[i]) && predicted[i] > 0) model.rows[i].predicted_error_mm = predicted[i];
+    FitViews fit;
+    fit.before_ct_from_rig = found.initial_patient_from_ct.inverse();
+    fit.predicted_mm = predicted_on_skin_mm(the_case.skin, found);
+    model.scene.ct_from_rig = found.patient_from_ct.inverse();
+    model.scene.cloud = cloud;
+    if (cloud) {
+        const double offset_mm = model.scene.skin_offset_mm = found.skin_offset_mm;
+        model.scene.cloud_distance_mm = distances_to_skin_mm(*cloud, model.scene.ct_from_rig, the_case.lut, offset_mm);
+        fit.before_distance_mm = distances_to_skin_mm(*cloud, fit.before_ct_from_rig, the_case.lut, offset_mm);
+    }
+    model.fit = fit;
 }
 
 }  // namespace planlight

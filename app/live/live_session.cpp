@@ -172,6 +172,7 @@ void LiveSession::act(OperatorAction action, Session& session, simulation::Simul
             moving_ = true;
             set_steps(5);
             break;
+        case OperatorAction::confirm: confirm(session); return;
         case OperatorAction::dark:
         case OperatorAction::stop:
             following_ = projecting_ = false;
@@ -195,6 +196,9 @@ void LiveSession::scan(Session& session) {
         m.scene.cloud = nullptr;
         m.scene.light = nullptr;
         m.scene.markers = nullptr;
+        m.fit = std::nullopt;
+        m.confirm = false;
+        m.track = {false, "register first"};
     });
     const ScanResult& scan = session.scan([&](int done, int of) {
         set_status(StatusKind::scanning, fmt::format("Scanning: picture {} of {}.", done, of), {"Keep the patient still."});
@@ -214,31 +218,38 @@ void LiveSession::scan(Session& session) {
 void LiveSession::find_patient(Session& session) {
     set_status(StatusKind::matching, "Finding the patient.");
     const RegistrationResult& found = session.find_patient();
-    auto cloud = std::make_shared<PointCloud>(session.scanned()->clean.kept);
-    const RigidTransform ct_from_rig = found.patient_from_ct.inverse();
-    const auto distances = distances_to_skin_mm(*cloud, ct_from_rig, case_.lut);
-    change_model([&](OperatorModel& m) {
-        m.evidence = evidence_of(found);
-        if (found.verdict == Verdict::no) return;
-        const auto predicted = predicted_errors_mm(case_.plan, found);
-        for (std::size_t i = 0; i < m.rows.size() && i < predicted.size(); ++i)
-            if (std::isfinite(predicted[i]) && predicted[i] > 0) m.rows[i].predicted_error_mm = predicted[i];
-        m.scene.cloud = cloud;
-        m.scene.cloud_distance_mm = distances;
-        m.scene.ct_from_rig = ct_from_rig;
-        m.scene.markers = markers_in_ct(session.tracker(), ct_from_rig);
-        m.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
-        m.track = {found.verdict == Verdict::yes, found.verdict == Verdict::yes ? "" : "not sure enough"};
-    });
+    OperatorModel shown = model();
+    show_match(case_, found, std::make_shared<PointCloud>(session.scanned()->clean.kept), shown);
+    shown.confirm = found.verdict == Verdict::ask;
+    if (found.verdict != Verdict::no) {
+        shown.scene.markers = markers_in_ct(session.tracker(), shown.scene.ct_from_rig);
+        shown.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
+        shown.track = {found.verdict == Verdict::yes, found.verdict == Verdict::yes ? "" : "look at the fit first"};
+    }
+    change_model([&](OperatorModel& m) { m = std::move(shown); });
     set_steps(3, found.verdict == Verdict::yes ? StepState::done : StepState::attention);
     if (found.verdict == Verdict::yes) {
         set_steps(4);
         set_status(StatusKind::ready, "The patient is found.", {"Look at the scan on the skin, then press Track."});
     } else {
         set_status(found.verdict == Verdict::ask ? StatusKind::check : StatusKind::refused,
-                   found.verdict == Verdict::ask ? "Not sure: scan again." : "The patient was not found: scan again.",
+                   found.verdict == Verdict::ask ? "Not sure: look whether the scan fits the skin, or scan again."
+                                                 : "The patient was not found: scan again.",
                    found.reasons);
     }
+}
+
+void LiveSession::confirm(Session& session) {
+    if (session.registration() == nullptr || session.registration()->verdict != Verdict::ask) return;
+    session.confirm();
+    change_model([](OperatorModel& m) {
+        m.confirm = false;
+        m.track = {true, {}};
+        m.evidence.insert(m.evidence.begin(), "Confirmed by the operator, who looked at the fit.");
+    });
+    set_steps(4);
+    set_status(StatusKind::ready, "The match is used on your word.",
+               {"Press Track, and look at the light on two landmarks before you use it."});
 }
 
 void LiveSession::follow(Session& session, simulation::SimulatedRig& rig) {

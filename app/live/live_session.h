@@ -54,6 +54,7 @@ private:
     void act(OperatorAction action, Session& session, simulation::SimulatedRig& rig);
     void scan(Session& session);
     void find_patient(Session& session);
+    void confirm(Session& session);
     void follow(Session& session, simulation::SimulatedRig& rig);
     void show_update(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update);
     void set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details = {});

@@ -149,9 +149,9 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
     return 0;
 }
 
-void show_case(const Case& the_case, const CaseDrawing& drawing) {
-    const OperatorModel model = model_of_case(the_case, drawing);
+void show_model(const OperatorModel& model, FitView view) {
     OperatorWindow window;
+    window.set_fit_view(view);
     while (window.frame(model) != OperatorAction::quit) {
     }
 }

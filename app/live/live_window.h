@@ -4,6 +4,7 @@
 #include <string>
 
 #include "app/session.h"
+#include "app/windows/operator_model.h"
 #include "planning_io/types/volume.h"
 #include "registration/simulation/simulated_rig.h"
 
@@ -27,7 +28,7 @@ bool display_is_there();
 /// Throws DeviceError when a monitor is missing or a window does not land where it should.
 int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, const LiveOptions& options);
 
-/// The operator window on a case, before anything is scanned, until it is closed. Throws DeviceError without a display.
-void show_case(const Case& the_case, const CaseDrawing& drawing);
+/// The operator window on a model that does not change, until it is closed. Throws DeviceError without a display.
+void show_model(const OperatorModel& model, FitView view = FitView::after);
 
 }  // namespace planlight

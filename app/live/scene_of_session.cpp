@@ -7,17 +7,6 @@
 
 namespace planlight {
 
-std::shared_ptr<const std::vector<float>> distances_to_skin_mm(const PointCloud& cloud, const RigidTransform& ct_from_rig,
-                                                               const SkinLut& lut) {
-    auto distances = std::make_shared<std::vector<float>>();
-    distances->reserve(cloud.size());
-    for (const auto& p_in_rig : cloud.points_in_rig) {
-        const auto distance = lut.signed_distance(ct_from_rig * p_in_rig);
-        distances->push_back(distance ? static_cast<float>(std::abs(distance->mm)) : std::numeric_limits<float>::infinity());
-    }
-    return distances;
-}
-
 std::shared_ptr<const std::vector<SceneMarker>> markers_in_ct(const PatientTracker& tracker,
                                                               const RigidTransform& ct_from_patient) {
     auto markers = std::make_shared<std::vector<SceneMarker>>();

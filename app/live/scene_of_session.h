@@ -10,9 +10,6 @@
 namespace planlight {
 
 /// The parts of the 3-D view that a session gives; all in ct.
-std::shared_ptr<const std::vector<float>> distances_to_skin_mm(const PointCloud& cloud, const RigidTransform& ct_from_rig,
-                                                               const SkinLut& lut);
-
 /// The markers where the scan found them.
 std::shared_ptr<const std::vector<SceneMarker>> markers_in_ct(const PatientTracker& tracker,
                                                               const RigidTransform& ct_from_patient);

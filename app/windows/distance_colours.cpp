@@ -18,4 +18,9 @@ Rgb distance_colour(double distance_mm, double largest_mm) {
     return colour;
 }
 
+Rgb error_colour(double error_mm, double warn_mm, double stop_mm) {
+    if (!std::isfinite(error_mm)) return {150, 150, 150};
+    return error_mm <= warn_mm ? Rgb{56, 190, 122} : error_mm <= stop_mm ? Rgb{250, 194, 60} : Rgb{235, 70, 70};
+}
+
 }  // namespace planlight

@@ -8,4 +8,7 @@ namespace planlight {
 /// when it is not finite. The sign does not matter.
 Rgb distance_colour(double distance_mm, double largest_mm);
 
+/// Green up to `warn_mm`, amber up to `stop_mm`, red above; grey when it is not finite.
+Rgb error_colour(double error_mm, double warn_mm, double stop_mm);
+
 }  // namespace planlight

@@ -40,7 +40,21 @@ struct SceneModel {
     std::shared_ptr<const std::vector<SceneMarker>> markers;
     std::shared_ptr<const PlanDrawing> plan;
     std::shared_ptr<const std::vector<LightLine>> light;          ///< drawn white, above the plan
+    double skin_offset_mm = 0;               ///< the distances are counted from this far outside of the CT's skin
     double largest_distance_mm = 1.5;                             ///< the red end of the colour scale
+    /// Per vertex of the skin, how far off it may be (95 %), mm; null: the skin has its own colour.
+    std::shared_ptr<const std::vector<float>> skin_error_mm;
+    double warn_above_mm = 1, stop_above_mm = 2;                  ///< its colours: green, amber above, red above
+};
+
+/// What the 3-D view shows of a match.
+enum class FitView { after, before, predicted_error };
+
+/// What the 3-D view needs of a match beyond the scan as it lies after the fine match (which the scene has).
+struct FitViews {
+    RigidTransform before_ct_from_rig = RigidTransform::Identity();    ///< of the initial match
+    std::shared_ptr<const std::vector<float>> before_distance_mm;      ///< per point of the cloud
+    std::shared_ptr<const std::vector<float>> predicted_mm;            ///< per vertex of the skin, 95 %
 };
 
 /// From where the head is looked at. Turning never tilts it: S stays up.
@@ -95,6 +109,7 @@ struct OperatorModel {
     std::string case_title, case_subtitle;
     std::array<StepState, 6> steps{};       ///< Case, Rig, Scan, Match, Verify, Project
     SceneModel scene;
+    std::optional<FitViews> fit;            ///< there is a match to be looked at: the 3-D view gets buttons for it
     CameraPicture left{"Left camera", nullptr, {}, "no picture yet"};
     CameraPicture right{"Right camera", nullptr, {}, "no picture yet"};
     std::vector<PlanRow> rows;
@@ -104,6 +119,10 @@ struct OperatorModel {
     Status status;
     Figures figures;
     ButtonState scan, do_register, track, stop;  ///< DARK is always enabled
+    bool confirm = false;  ///< the match needs a person's look: a button says that it fits
 };
+
+/// The scene as that view shows it. Without a match it is the scene as it is.
+SceneModel scene_of_fit(const OperatorModel& model, FitView view);
 
 }  // namespace planlight

@@ -83,6 +83,8 @@ struct OperatorWindow::Parts {
     float rows_scrolled = 0;
     int rows_shown = 1;
     std::map<OperatorAction, Box> controls;
+    FitView fit_view = FitView::after;
+    std::map<FitView, Box> fit_buttons;
 
     explicit Parts(const OperatorWindowSettings& settings) : window(open_window(settings)) {
         glfwSetWindowSizeLimits(window, kLeastWidth, kLeastHeight, GLFW_DONT_CARE, GLFW_DONT_CARE);
@@ -141,11 +143,13 @@ struct OperatorWindow::Parts {
     }
 
     /// The mouse over the 3-D view: left turns, right or middle shifts, wheel zooms, a double click goes back.
-    void turn_view() {
+    void turn_view(bool with_buttons, bool with_confirm) {
         constexpr double kRadiansPerPixel = 0.007;
         const ImGuiIO& io = ImGui::GetIO();
-        ImGui::SetCursorScreenPos({place.scene.x, place.scene.y});
-        ImGui::InvisibleButton("scene", {place.scene.width, place.scene.height},
+        const float strip = fit_box().height + 24 * pen.scale;  // of buttons, which a finger must meet at once
+        const float above = with_buttons ? strip : 0, below = with_confirm ? strip : 0;
+        ImGui::SetCursorScreenPos({place.scene.x, place.scene.y + above});
+        ImGui::InvisibleButton("scene", {place.scene.width, place.scene.height - above - below},
                                ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                                    ImGuiButtonFlags_MouseButtonMiddle);
         if (ImGui::IsItemHovered()) {
@@ -162,9 +166,11 @@ struct OperatorWindow::Parts {
         }
     }
 
-    void draw_scene(const SceneModel& model) {
+    void draw_scene(const OperatorModel& shown) {
         pen.panel(place.scene);
-        turn_view();
+        if (!shown.fit) fit_view = FitView::after;
+        const SceneModel model = scene_of_fit(shown, fit_view);
+        turn_view(shown.fit.has_value(), shown.fit && shown.confirm);
         const int width = static_cast<int>(place.scene.width) - 4, height = static_cast<int>(place.scene.height) - 4;
         if (scene->update(model, view, width, height, place.scale)) {
             target->SetSize(width, height);
@@ -179,7 +185,9 @@ struct OperatorWindow::Parts {
                                   {low.x + static_cast<float>(width), low.y + static_cast<float>(height)}, {0, 1}, {1, 0},
                                   IM_COL32_WHITE, 10 * pen.scale);
         std::string title = "Skin from CT";
+        if (model.skin_error_mm) title += " coloured by how far off the match may be";
         if (model.cloud) title += model.cloud_distance_mm ? " · scan coloured by distance" : " · scan";
+        if (shown.fit && fit_view == FitView::before) title += " before the fine match";
         if (model.plan) title += " · plan";
         if (model.light) title += " · light as it falls (white)";
         const float indent = 18 * pen.scale;
@@ -187,6 +195,35 @@ struct OperatorWindow::Parts {
                       {place.scene.x + indent, place.scene.y + 14 * pen.scale, 0.44F * place.scene.width - indent,
                        2.2F * line_height(pen.fonts.small)},
                       theme::kText);
+    }
+
+    /// Right half of the view's upper edge, so that the letters at the middle of its edges stay free.
+    Box fit_box() const {
+        const float height = std::max(72.0F, 76 * pen.scale), from = place.scene.x + 0.5F * place.scene.width + 44 * pen.scale;
+        return {from, place.scene.y + 12 * pen.scale, place.scene.right() - 12 * pen.scale - from, height};
+    }
+
+    OperatorAction draw_fit_buttons(const OperatorModel& model) {
+        fit_buttons.clear();
+        controls.erase(OperatorAction::confirm);
+        if (!model.fit) return OperatorAction::none;
+        const std::array<std::pair<FitView, const char*>, 3> row{
+            {{FitView::before, "Before"}, {FitView::after, "After"}, {FitView::predicted_error, "Error"}}};
+        const Box all = fit_box();
+        const float gap = 8 * pen.scale;
+        Box box{all.x, all.y, (all.width - 2 * gap) / 3, all.height};
+        for (const auto& [shown, label] : row) {
+            fit_buttons[shown] = box;
+            ImGui::SetCursorScreenPos({box.x, box.y});
+            if (ImGui::InvisibleButton(label, {box.width, box.height})) fit_view = shown;
+            draw_button(pen, box, label, {true, {}}, ImGui::IsItemHovered(), fit_view == shown || ImGui::IsItemActive());
+            box.x += box.width + gap;
+        }
+        if (!model.confirm) return OperatorAction::none;
+        const Box corner{place.scene.x + 12 * pen.scale, place.scene.bottom() - 12 * pen.scale - all.height, 0.7F * all.width,
+                         all.height};
+        return button(OperatorAction::confirm, corner, "It fits: use it", {true, {}}) ? OperatorAction::confirm
+                                                                                     : OperatorAction::none;
     }
 
     bool button(OperatorAction action, const Box& box, const std::string& label, const ButtonState& state) {
@@ -243,7 +280,8 @@ struct OperatorWindow::Parts {
         pen.list = ImGui::GetWindowDrawList();
         const auto texture = [](unsigned name) { return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(name)); };
         draw_header(pen, place, model);
-        draw_scene(model.scene);
+        draw_scene(model);
+        const OperatorAction confirmed = draw_fit_buttons(model);
         draw_camera(pen, place.left_camera, model.left, texture(left.take(model.left.picture)));
         draw_camera(pen, place.right_camera, model.right, texture(right.take(model.right.picture)));
         draw_plan_table(model);
@@ -251,7 +289,7 @@ struct OperatorWindow::Parts {
         draw_banner(pen, place.banner, model);
         ImGui::End();
         ImGui::PopStyleVar(2);
-        return wanted;
+        return wanted == OperatorAction::none ? confirmed : wanted;
     }
 
     void paint() {
@@ -314,11 +352,22 @@ SceneView OperatorWindow::view() const { return parts_->view; }
 
 void OperatorWindow::set_view(const SceneView& view) { parts_->view = parts_->first_view = view; }
 
-std::array<int, 4> OperatorWindow::place_of(OperatorAction control) const {
-    const auto found = parts_->controls.find(control);
-    if (found == parts_->controls.end()) return {0, 0, 0, 0};
+FitView OperatorWindow::fit_view() const { return parts_->fit_view; }
+
+void OperatorWindow::set_fit_view(FitView view) { parts_->fit_view = view; }
+
+namespace {
+template <class Key>
+std::array<int, 4> place_in(const std::map<Key, Box>& places, Key key) {
+    const auto found = places.find(key);
+    if (found == places.end()) return {0, 0, 0, 0};
     const Box& box = found->second;
     return {static_cast<int>(box.x), static_cast<int>(box.y), static_cast<int>(box.width), static_cast<int>(box.height)};
 }
+}  // namespace
+
+std::array<int, 4> OperatorWindow::place_of(OperatorAction control) const { return place_in(parts_->controls, control); }
+
+std::array<int, 4> OperatorWindow::place_of(FitView button) const { return place_in(parts_->fit_buttons, button); }
 
 }  // namespace planlight

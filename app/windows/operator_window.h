@@ -8,7 +8,7 @@
 
 namespace planlight {
 
-enum class OperatorAction { none, scan, do_register, track, stop, dark, quit };
+enum class OperatorAction { none, scan, do_register, track, stop, dark, quit, confirm };
 
 struct OperatorWindowSettings {
     std::string title = "Planlight";
@@ -32,12 +32,17 @@ public:
     /// What the last frame showed.
     RgbImage screenshot();
 
+    /// What the 3-D view shows of a match; the person changes it with the buttons over the view.
+    FitView fit_view() const;
+    void set_fit_view(FitView view);
+
     /// From where the head is looked at; the person turns it with the mouse.
     SceneView view() const;
     void set_view(const SceneView& view);
 
     /// Where a control is, in window pixels (x, y, width, height), as the last frame drew it; for tests by mouse.
     std::array<int, 4> place_of(OperatorAction control) const;
+    std::array<int, 4> place_of(FitView button) const;
 
 private:
     struct Parts;

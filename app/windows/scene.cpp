@@ -110,9 +110,12 @@ struct Scene::Parts {
         const bool new_skin = replace(shown.skin, scene.skin);
         if (new_skin) {
             if (shown.skin) measure(shown.skin->vertices_in_ct, RigidTransform::Identity());
-            skin.show(shown.skin ? skin_shape(*shown.skin) : nullptr);
         }
-        if (!replace(shown.markers, scene.markers) && !new_skin) return false;
+        const bool other_colours = replace(shown.skin_error_mm, scene.skin_error_mm) |
+                                   replace(shown.warn_above_mm, scene.warn_above_mm) |
+                                   replace(shown.stop_above_mm, scene.stop_above_mm);
+        if (new_skin || other_colours) skin.show(shown.skin ? skin_shape(shown) : nullptr);
+        if (!replace(shown.markers, scene.markers) && !new_skin) return other_colours;
         markers.show(shown.markers ? marker_shape(*shown.markers, middle) : nullptr);
         return true;
     }

@@ -16,6 +16,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <string>
 
 #include "app/windows/distance_colours.h"
 #include "app/windows/orientation.h"
@@ -101,17 +103,41 @@ struct SceneOverlay::Parts {
         letters[3].place(direction_letters(-axes.up_in_ct), 0.5 * width, gap, size);
     }
 
+    /// Three fields: up to the first limit, up to the second, above.
+    void legend_of_errors(const SceneModel& scene, double x, double y, double w, double scale) {
+        const double bar = w - 48 * scale, third = bar / 3;
+        const std::array<double, 3> examples{0, scene.stop_above_mm, 2 * scene.stop_above_mm};
+        for (int i = 0; i < 3; ++i)
+            boxes.add(x + 24 * scale + i * third, y + 36 * scale, third - 2, 14 * scale,
+                      error_colour(examples[static_cast<std::size_t>(i)], scene.warn_above_mm, scene.stop_above_mm), 255);
+        title.place("The match may be off by, mm (95 %)", x + w / 2, y + 72 * scale, static_cast<int>(16 * scale));
+        const std::array<std::string, 3> words{fmt::format("≤ {:.1f}", scene.warn_above_mm),
+                                               fmt::format("≤ {:.1f}", scene.stop_above_mm),
+                                               fmt::format("> {:.1f}", scene.stop_above_mm)};
+        for (std::size_t i = 0; i < 3; ++i)
+            values[i].place(words[i], x + 24 * scale + (static_cast<double>(i) + 0.5) * third, y + 18 * scale,
+                            static_cast<int>(16 * scale));
+        values[3].actor->SetVisibility(0);
+    }
+
     void legend(const SceneModel& scene, int width, double scale) {
-        const bool shown = scene.cloud != nullptr && scene.cloud_distance_mm != nullptr;
+        const bool errors = scene.skin_error_mm != nullptr;
+        const bool shown = errors || (scene.cloud != nullptr && scene.cloud_distance_mm != nullptr);
         title.actor->SetVisibility(shown);
         for (Text& value : values) value.actor->SetVisibility(shown);
         if (!shown) return;
         const double w = 320 * scale, x = width - w - 16 * scale, y = 16 * scale, bar = w - 48 * scale;
+        if (errors) {
+            legend_of_errors(scene, x, y, w, scale);
+            return;
+        }
         constexpr int kSteps = 64;
         for (int i = 0; i < kSteps; ++i)
             boxes.add(x + 24 * scale + bar * i / kSteps, y + 36 * scale, bar / kSteps + 0.5, 14 * scale,
                       distance_colour(i + 0.5, kSteps), 255);
-        title.place("Distance of the scan to the skin, mm", x + w / 2, y + 72 * scale, static_cast<int>(16 * scale));
+        title.place(std::abs(scene.skin_offset_mm) < 0.05
+                        ? std::string("Distance of the scan to the skin, mm")
+                        : fmt::format("Distance of the scan to the skin {:+.1f} mm", scene.skin_offset_mm), x + w / 2, y + 72 * scale, static_cast<int>(16 * scale));
         for (int i = 0; i < 4; ++i)
             values[static_cast<std::size_t>(i)].place(
                 fmt::format("{}{:.1f}", i == 3 ? "≥ " : "", scene.largest_distance_mm * i / 3), x + 24 * scale + bar * i / 3,

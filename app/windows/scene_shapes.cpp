@@ -94,20 +94,28 @@ void add_disc(Shape& shape, const Eigen::Vector3d& centre, const Eigen::Vector3d
     }
 }
 
-void add_vertex_colours(const TriangleMesh& skin, vtkPolyData& data) {
+/// The skin's own colour, or that of its predicted error; lids have none.
+void add_vertex_colours(const SceneModel& scene, vtkPolyData& data) {
+    const TriangleMesh& skin = *scene.skin;
+    const std::vector<float>* errors = scene.skin_error_mm.get();
     vtkNew<vtkUnsignedCharArray> colours;
     colours->SetNumberOfComponents(3);
     colours->SetNumberOfTuples(static_cast<vtkIdType>(skin.vertices_in_ct.size()));
     for (std::size_t i = 0; i < skin.vertices_in_ct.size(); ++i) {
         const bool lid = i < skin.flags.size() && skin.flags[i] != kSkin;
-        colours->SetTypedTuple(static_cast<vtkIdType>(i), (lid ? kLidColour : kSkinColour).data());
+        const bool known = errors != nullptr && i < errors->size();
+        const Rgb colour = lid     ? kLidColour
+                           : known ? error_colour(static_cast<double>((*errors)[i]), scene.warn_above_mm, scene.stop_above_mm)
+                                   : kSkinColour;
+        colours->SetTypedTuple(static_cast<vtkIdType>(i), colour.data());
     }
     data.GetPointData()->SetScalars(colours);
 }
 
 }  // namespace
 
-vtkSmartPointer<vtkPolyData> skin_shape(const TriangleMesh& skin) {
+vtkSmartPointer<vtkPolyData> skin_shape(const SceneModel& scene) {
+    const TriangleMesh& skin = *scene.skin;
     vtkNew<vtkPoints> points;
     for (const Eigen::Vector3d& p : skin.vertices_in_ct) points->InsertNextPoint(p.data());
     vtkNew<vtkCellArray> cells;
@@ -118,7 +126,7 @@ vtkSmartPointer<vtkPolyData> skin_shape(const TriangleMesh& skin) {
     vtkNew<vtkPolyData> data;
     data->SetPoints(points);
     data->SetPolys(cells);
-    add_vertex_colours(skin, *data);
+    add_vertex_colours(scene, *data);
     if (skin.normals_in_ct.size() == skin.vertices_in_ct.size()) {
         vtkNew<vtkFloatArray> normals;
         normals->SetNumberOfComponents(3);

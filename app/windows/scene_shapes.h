@@ -9,7 +9,7 @@ class vtkPolyData;
 namespace planlight {
 
 /// The skin with normals; lids and cut planes are greyer than skin.
-vtkSmartPointer<vtkPolyData> skin_shape(const TriangleMesh& skin);
+vtkSmartPointer<vtkPolyData> skin_shape(const SceneModel& scene);
 
 /// The scanned points (in rig) with colours; of a large cloud every n-th.
 vtkSmartPointer<vtkPolyData> cloud_shape(const PointCloud& cloud, const std::vector<float>* distance_mm, double largest_mm);

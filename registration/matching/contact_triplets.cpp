@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
+#include <optional>
 #include <random>
 #include <utility>
 
@@ -49,27 +51,50 @@ Matrix3f triangle_axes(const Vector3f& a, const Vector3f& b, const Vector3f& c) 
     return axes;
 }
 
+/// The best of `tries` random triples.
+std::optional<Base> best_of(const std::vector<SurfaceSite>& sites, int tries, std::mt19937& random) {
+    std::optional<Base> best;
+    if (sites.size() < 10) return best;
+    const float half = half_width(sites);
+    float best_quality = 0;
+    for (int t = 0; t < tries; ++t) {
+        const Base base{sites[random() % sites.size()], sites[random() % sites.size()], sites[random() % sites.size()]};
+        const float quality = base_quality(base, half);
+        if (quality <= best_quality) continue;
+        best = base;
+        best_quality = quality;
+    }
+    return best;
+}
+
+/// The sites on one side of a plane through their middle, of random direction.
+std::vector<SurfaceSite> random_half(const std::vector<SurfaceSite>& sites, std::mt19937& random) {
+    std::normal_distribution<float> any;
+    const float x = any(random), y = any(random), z = any(random);
+    const Vector3f way(x, y, z);
+    std::vector<float> along;
+    for (const SurfaceSite& s : sites) along.push_back(s.position.dot(way));
+    std::vector<float> sorted = along;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    std::vector<SurfaceSite> half;
+    for (std::size_t i = 0; i < sites.size(); ++i)
+        if (along[i] >= *middle) half.push_back(sites[i]);
+    return half;
+}
+
 }  // namespace
 
 std::vector<Base> choose_bases(const std::vector<SurfaceSite>& sites, int count, unsigned seed) {
-    constexpr int kTries = 400;
+    constexpr int kWide = 4, kManyTries = 400, kFewTries = 30;
     std::vector<Base> bases;
     std::vector<SurfaceSite> usable;
     std::copy_if(sites.begin(), sites.end(), std::back_inserter(usable), [](const SurfaceSite& s) { return s.contact; });
-    if (usable.size() < 10) return bases;
-    const float half = half_width(usable);
     std::mt19937 random(seed);
     for (int i = 0; i < count; ++i) {
-        Base best;
-        float best_quality = 0;
-        for (int t = 0; t < kTries; ++t) {
-            const Base base{usable[random() % usable.size()], usable[random() % usable.size()], usable[random() % usable.size()]};
-            const float quality = base_quality(base, half);
-            if (quality <= best_quality) continue;
-            best = base;
-            best_quality = quality;
-        }
-        if (best_quality > 0) bases.push_back(best);
+        const bool of_all = i < kWide || i % 2 == 0;
+        const auto base = best_of(of_all ? usable : random_half(usable, random), i < kWide ? kManyTries : kFewTries, random);
+        if (base) bases.push_back(*base);
     }
     return bases;
 }

@@ -14,7 +14,9 @@ namespace planlight {
 using Base = std::array<SurfaceSite, 3>;
 
 /// Bases that determine a pose well: sides of about the scan's half width, of unequal length, normals that differ.
-/// The best of many random triples each. Fewer than `count` when the sites do not hold that many.
+/// The first are the best of many random triples each. The widest triples lie at the scan's rim, where cloth is: the others
+/// are the best of few, every second one in a half of the scan, which may be bare. Fewer than `count` when the sites do not
+/// hold that many.
 std::vector<Base> choose_bases(const std::vector<SurfaceSite>& sites, int count, unsigned seed);
 
 /// A pose that puts the three base points on (or near) three skin samples.

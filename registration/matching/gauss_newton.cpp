@@ -69,6 +69,7 @@ RigidTransform refine_roughly(const PointArrays& points_in_rig, const DistanceFi
         pose = after_step(equations, pose, centre_in_ct, 20, moved_mm);
         if (moved_mm < 0.02 && i > 6) break;
     }
+    pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
     return pose;
 }
 

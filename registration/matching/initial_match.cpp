@@ -108,14 +108,27 @@ std::vector<ScoredPose> best_contact_poses(const Search& search, const Base& bas
 }
 
 /// Mean truncated distance of up to `kRankPoints` sites, trilinear; a site that faces the wrong way counts in full, one that
-/// lies outside of the body little.
+/// lies outside of the body little, one beyond the table half: a stray, or the patient beyond the CT's end.
 double mean_failure(const Search& search, const RigidTransform& ct_from_rig) {
+    constexpr double kBeyond = 0.5;
     const PointArrays &p = search.ranking, &n = search.ranking_normals;
     const double sum = match_kernels::sum_failure(
         p.x.data(), p.y.data(), p.z.data(), n.x.data(), n.y.data(), n.z.data(), p.size(), search.skin.field.plain(),
         placing_of(ct_from_rig, p.centre, search.skin.field, ct_from_rig * p.centre),
-        static_cast<float>(search.settings.truncation_mm), static_cast<float>(search.settings.truncation_outside_mm));
+        static_cast<float>(search.settings.truncation_mm), static_cast<float>(search.settings.truncation_outside_mm),
+        static_cast<float>(kBeyond * search.settings.truncation_mm));
     return sum / static_cast<double>(std::max<std::size_t>(p.size(), 1));
+}
+
+/// Improves the best few further, on more points: the first steps may stop short where much of the scan is cloth.
+void polish(const Search& search, std::vector<MatchCandidate>& candidates) {
+    constexpr std::size_t kBest = 5;
+    std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.cost_mm < b.cost_mm; });
+    for (std::size_t i = 0; i < std::min(candidates.size(), kBest); ++i) {
+        const RigidTransform pose = refine_roughly(search.ranking, search.skin.field, candidates[i].ct_from_rig);
+        const double cost_mm = mean_failure(search, pose);
+        if (cost_mm < candidates[i].cost_mm) candidates[i] = {pose, cost_mm, 1};
+    }
 }
 
 /// The distinct minima that one base leads to.
@@ -133,10 +146,10 @@ std::vector<MatchCandidate> candidates_of_base(const Search& search, const Base&
     }
     std::vector<MatchCandidate> candidates;
     for (const RigidTransform& start : starts) {
-        RigidTransform pose = refine_roughly(search.refining, search.skin.field, start);
-        pose.linear() = Eigen::Quaterniond(pose.linear()).normalized().toRotationMatrix();
+        const RigidTransform pose = refine_roughly(search.refining, search.skin.field, start);
         candidates.push_back({pose, mean_failure(search, pose), 1});
     }
+    polish(search, candidates);
     return candidates;
 }
 

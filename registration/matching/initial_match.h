@@ -16,7 +16,7 @@ struct InitialMatchSettings {
     double truncation_outside_mm =
         3;  ///< the same, outside: cloth, hands and hair lie over skin, but no light comes from inside it
     int candidates = 40;              ///< distinct poses that are refined
-    int min_bases = 4, max_bases = 20;
+    int min_bases = 4, max_bases = 40;
     unsigned seed = 1;
 };
 

@@ -102,7 +102,7 @@ __attribute__((target_clones("avx512f", "avx2", "default"))) std::size_t add_poi
 
 __attribute__((target_clones("avx512f", "avx2", "default"))) double sum_failure(
     const float* x, const float* y, const float* z, const float* nx, const float* ny, const float* nz, std::size_t n,
-    const Field& field, const Placing& placing, float inside_mm, float outside_mm) {
+    const Field& field, const Placing& placing, float inside_mm, float outside_mm, float beyond_mm) {
     const float* R = placing.R;
     Samples s;
     double sum = 0;
@@ -117,7 +117,7 @@ __attribute__((target_clones("avx512f", "avx2", "default"))) double sum_failure(
                                  s.gz[i] * (R[6] * nx[k] + R[7] * ny[k] + R[8] * nz[k]);
             const float d = s.mm[i];
             const float off = d > 0 ? std::min(d, outside_mm) : std::min(-d, inside_mm);
-            of_block += (s.holds[i] > 0) & (facing > 0) ? off : inside_mm;
+            of_block += s.holds[i] > 0 ? (facing > 0 ? off : inside_mm) : beyond_mm;
         }
         sum += static_cast<double>(of_block);
     }

@@ -31,10 +31,11 @@ struct Gate {
 std::size_t add_point_to_plane(const float* x, const float* y, const float* z, const std::uint8_t* skip, std::size_t n,
                                const Field& field, const Placing& placing, const Gate& gate, double* sums);
 
-/// Sum of the truncated distances: at most `inside_mm` in the body, `outside_mm` outside of it, `inside_mm` beyond the field
-/// and where the normal (nx, ny, nz; turned by R) does not face as the skin does.
+/// Sum of the truncated distances: at most `inside_mm` in the body, `outside_mm` outside of it, `beyond_mm` beyond the field
+/// and `inside_mm` where the normal (nx, ny, nz; turned by R) does not face as the skin does.
 double sum_failure(const float* x, const float* y, const float* z, const float* nx, const float* ny, const float* nz,
-                   std::size_t n, const Field& field, const Placing& placing, float inside_mm, float outside_mm);
+                   std::size_t n, const Field& field, const Placing& placing, float inside_mm, float outside_mm,
+                   float beyond_mm);
 
 /// What a pair of sites must look like, and how exactly.
 struct PairGate {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "registration/matching/free_space.h"
 #include "registration/matching/match_evidence.h"
 
 namespace planlight {
@@ -93,6 +94,14 @@ void judge_uniqueness(const RegistrationSettings& settings, const RegistrationRe
                                  settings.min_agreeing_bases));
 }
 
+void judge_free_space(const RegistrationSettings& settings, const RegistrationResult& result, Judgement& judgement) {
+    if (!result.blocked_fraction) return;
+    const double blocked = *result.blocked_fraction;
+    const std::string through = fmt::format("{:.0f} % of the scan was seen through what is body in the CT", 100 * blocked);
+    judgement.no_if(blocked > settings.far_too_many_blocked, through);
+    judgement.ask_if(blocked > settings.max_blocked && blocked <= settings.far_too_many_blocked, through);
+}
+
 void judge_mirror_and_scale(const RegistrationSettings& settings, const RegistrationResult& result, Judgement& judgement) {
     const double mirror = result.mirror_ratio;
     judgement.no_if(mirror > 0 && mirror < settings.mirror_fits_better,
@@ -147,6 +156,8 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
     result.weakest_sigma_mm = weakest.sigma_mm;
     result.scale = settled.scale;
     result.scale_sigma = settled.scale_sigma;
+    if (settings.viewpoint_in_rig)
+        result.blocked_fraction = look_along_rays(cloud, lut, icp.ct_from_rig, *settings.viewpoint_in_rig).blocked_fraction();
     if (settings.mirror_test) result.mirror_ratio = mirror_ratio(cloud, skin, match, settings);
 
     Judgement judgement(result);
@@ -156,6 +167,7 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
                         fit.inlier_fraction() < settings.min_inlier_fraction && result.mirror_ratio > 0 &&
                         result.mirror_ratio < settings.min_mirror_ratio,
                     "poorly on the skin, and other poses fit nearly as well: three weak signs together");
+    judge_free_space(settings, result, judgement);
     judge_mirror_and_scale(settings, result, judgement);
     judgement.ask_if(
         std::abs(settled.offset_mm) > settings.max_skin_offset_mm,

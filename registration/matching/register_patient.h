@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "planning_io/types/registration_result.h"
 #include "registration/matching/initial_match.h"
 #include "registration/matching/refine_icp.h"
@@ -24,6 +26,10 @@ struct RegistrationSettings {
     bool mirror_test = true;            ///< match the mirrored scan too
     double min_mirror_ratio = 1.15;     ///< of the mirrored scan's cost; below: ask
     double mirror_fits_better = 0.87;   ///< below: no
+    /// Where the scan was lit or seen from (a device that all points were seen by), rig frame: then the way back from every
+    /// point must be free in the CT too.
+    std::optional<Eigen::Vector3d> viewpoint_in_rig;
+    double max_blocked = 0.1, far_too_many_blocked = 0.3;  ///< share of the ways that are not; above: ask, no
     double max_scale_error = 0.015;     ///< of the scan against the CT, and 1.5 of its sigmas; above: ask
 };
 

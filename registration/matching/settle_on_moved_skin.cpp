@@ -28,6 +28,8 @@ struct Patch {
     Vector3d x_in_ct = Vector3d::Zero(), normal = Vector3d::Zero();
     double distance_mm = 0;
     std::vector<double> distances_mm;
+    double thickness_mm = 0;  ///< mean over the points for which it is known
+    double known_thickness = 0;
 };
 
 /// The scan in patches of about equal size, about `count` of them; those of fewer than a few points are left out.
@@ -42,7 +44,9 @@ std::vector<Patch> patches_of(const PointCloud& cloud, const SkinLut& lut, const
         p.x_in_ct = ct_from_rig * cloud.points_in_rig[i];
         const SkinPoint* s = lut.nearest_skin(p.x_in_ct);
         if (!s || s->flags != kSkin || !field.sample(p.x_in_ct, p.distance_mm, p.normal)) continue;
-        if (std::abs(p.distance_mm) < kFar_mm) points.push_back(p);
+        if (!(std::abs(p.distance_mm) < kFar_mm)) continue;
+        if (std::isfinite(s->thickness_mm)) p.thickness_mm = s->thickness_mm, p.known_thickness = 1;
+        points.push_back(p);
     }
     const auto gathered = [&](double cell_mm) {
         std::map<std::array<int, 3>, Patch> cells;
@@ -52,6 +56,8 @@ std::vector<Patch> patches_of(const PointCloud& cloud, const SkinLut& lut, const
             into.x_in_ct += p.x_in_ct;
             into.normal += p.normal;
             into.distances_mm.push_back(p.distance_mm);
+            into.thickness_mm += p.thickness_mm;
+            into.known_thickness += p.known_thickness;
         }
         std::vector<Patch> patches;
         for (auto& [cell, patch] : cells) {
@@ -62,6 +68,7 @@ std::vector<Patch> patches_of(const PointCloud& cloud, const SkinLut& lut, const
             patch.distance_mm = *middle;  // strays do not move the median
             patch.x_in_ct /= static_cast<double>(n);
             patch.normal.normalize();
+            if (patch.known_thickness > 0) patch.thickness_mm /= patch.known_thickness;
             patches.push_back(patch);
         }
         return patches;
@@ -101,14 +108,33 @@ VectorXd own_parts(const VectorXd& residual_mm) {
     });
 }
 
+/// How far each patch's skin is likely to move, against the typical patch: the more the thicker the soft tissue is over
+/// the bone, where the table knows. 1 for all where it does not (MRI).
+VectorXd softness(const std::vector<Patch>& patches, double given_mm) {
+    constexpr double kLeast = 0.4, kMost = 2.5;
+    std::vector<double> known;
+    for (const Patch& p : patches)
+        if (p.known_thickness > 0) known.push_back(p.thickness_mm + given_mm);
+    VectorXd soft = VectorXd::Ones(static_cast<Eigen::Index>(patches.size()));
+    if (known.size() < patches.size() / 4 || !(given_mm >= 0) || !std::isfinite(given_mm)) return soft;
+    const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
+    std::nth_element(known.begin(), middle, known.end());
+    for (std::size_t i = 0; i < patches.size(); ++i)
+        if (patches[i].known_thickness > 0)
+            soft[static_cast<Eigen::Index>(i)] = std::clamp((patches[i].thickness_mm + given_mm) / *middle, kLeast, kMost);
+    return soft;
+}
+
 struct Problem {
     MatrixXd J;                ///< patches x 6
     VectorXd residual_mm;
     VectorXd own;              ///< of each patch: more where it lies far off
     VectorXd growth_mm;        ///< of the distance, when the scan grows to twice its size
     MatrixXd squared_mm2;      ///< distances of patches
+    VectorXd soft;             ///< how far each is likely to move, against the typical one
 
-    explicit Problem(const std::vector<Patch>& patches, const Vector3d& centre) {
+    Problem(const std::vector<Patch>& patches, const Vector3d& centre, const MovedSkinSettings& settings)
+        : soft(softness(patches, settings.thickness_floor_mm)) {
         const auto n = static_cast<Eigen::Index>(patches.size());
         J.resize(n, 6);
         residual_mm.resize(n);
@@ -122,10 +148,11 @@ struct Problem {
             for (Eigen::Index j = 0; j < n; ++j)
                 squared_mm2(i, j) = (p.x_in_ct - patches[static_cast<std::size_t>(j)].x_in_ct).squaredNorm();
         }
-        own = own_parts(residual_mm);
+        own = own_parts(residual_mm).cwiseProduct(soft.cwiseAbs2());
     }
     MatrixXd alike(double correlation_mm) const {
-        return (-squared_mm2.array() / (2 * correlation_mm * correlation_mm)).exp().matrix();
+        return soft.asDiagonal() * (-squared_mm2.array() / (2 * correlation_mm * correlation_mm)).exp().matrix() *
+               soft.asDiagonal();
     }
 };
 
@@ -177,6 +204,21 @@ Plausible judge(const Problem& problem, const MatrixXd& alike, double own, const
     return result;
 }
 
+double median_size(const VectorXd& values) {
+    std::vector<double> sizes;
+    for (const double v : values) sizes.push_back(std::abs(v));
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    return *middle;
+}
+
+/// Whether the patches would lie much farther from the skin after the step than before it.
+bool leaves_the_skin(const Problem& problem, const Vector6d& step, double offset_mm) {
+    constexpr double kMuch = 2, kAlways_mm = 0.2;
+    const VectorXd after_mm = problem.residual_mm + problem.J * step - VectorXd::Constant(problem.residual_mm.size(), offset_mm);
+    return median_size(after_mm) > kMuch * median_size(problem.residual_mm) + kAlways_mm;
+}
+
 }  // namespace
 
 MovedSkinPose settle_on_moved_skin(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
@@ -189,7 +231,7 @@ MovedSkinPose settle_on_moved_skin(const PointCloud& cloud, const SkinLut& lut, 
     if (patches.size() < 24) return result;
     Vector3d centre = Vector3d::Zero();
     for (const Patch& p : patches) centre += p.x_in_ct / static_cast<double>(patches.size());
-    const Problem problem(patches, centre);
+    const Problem problem(patches, centre, settings);
 
     constexpr std::array kCorrelations_mm{10., 15., 22., 33., 50., 75.};
     constexpr std::array kOwns{0.01, 0.1, 1., 10.};
@@ -228,6 +270,12 @@ MovedSkinPose settle_on_moved_skin(const PointCloud& cloud, const SkinLut& lut, 
     result.offset_mm /= sum;
     result.covariance.centre_in_ct = centre;
     result.covariance.of_turn_and_shift = settings.caution * (covariance / sum - step * step.transpose());
+    if (leaves_the_skin(problem, step, result.offset_mm)) {
+        // Long waves that the pose takes up nearly whole can be had of any height: then the residuals tell nothing of it.
+        result.covariance.of_turn_and_shift += step * step.transpose();
+        step.setZero();
+        result.offset_mm = 0;
+    }
     const double pulled_mm = settings.pulled_share * result.movement_mm,
                  from_offset_mm = settings.offset_share * result.offset_mm;
     const double unseen_mm2 = pulled_mm * pulled_mm + from_offset_mm * from_offset_mm +

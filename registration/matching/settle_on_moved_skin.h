@@ -9,10 +9,13 @@ namespace planlight {
 
 struct MovedSkinSettings {
     int max_patches = 240;          ///< the scan is gathered into at most about this many patches of equal size
-    double offset_prior_mm = 2;     ///< how far the whole skin may lie outside or inside of the CT's, one sigma
+    double offset_prior_mm = 1;     ///< how far the whole skin may lie outside or inside of the CT's, one sigma
     double caution = 3;             ///< on the variance: no skin is quite a Gaussian field of one length
     double pulled_share = 0.8;      ///< of the movement seen: how far skin may be pulled along unseen, one sigma
     double offset_share = 0.3;      ///< the same, of the offset
+    /// Skin is taken to move in proportion to its thickness over the bone and this much, where the table knows the
+    /// thickness; infinite: alike everywhere.
+    double thickness_floor_mm = 5;
     double least_movement_mm = 0.1; ///< that no residual could show, one sigma
 };
 

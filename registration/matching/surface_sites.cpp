@@ -53,6 +53,7 @@ public:
                     const auto found = index_.find(key(cell.at + Vector3i(i, j, k)));
                     if (found == index_.end()) continue;
                     const Cell& other = cells_[static_cast<std::size_t>(found->second)];
+                    sum.position_sum += other.position_sum;
                     sum.normal_sum += other.normal_sum;
                     sum.count += other.count;
                 }
@@ -74,6 +75,15 @@ SurfaceSite site_of(const CellMap& map, const Cell& cell, const Cell& around) {
     SurfaceSite site{map.mean_position(cell), Vector3f::Zero(), length > 0.75f * static_cast<float>(around.count)};
     if (length > 0) site.normal = around.normal_sum / length;
     return site;
+}
+
+/// Whether a cell's points lie on the surface of the cells round it: strays near the skin do not.
+bool on_surface(const Cell& cell, const Cell& around) {
+    constexpr float kOff_mm = 3;
+    const float length = around.normal_sum.norm();
+    if (length == 0) return true;
+    const Vector3f between = cell.position_sum / static_cast<float>(cell.count) - around.position_sum / static_cast<float>(around.count);
+    return std::abs(between.dot(around.normal_sum)) < kOff_mm * length;
 }
 
 /// Coordinate-wise median: strays, however far, do not move it.
@@ -113,7 +123,8 @@ std::vector<SurfaceSite> sites_of_cloud(const PointCloud& cloud) {
     const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
     std::nth_element(counts.begin(), middle, counts.end());
     for (std::size_t i = 0; i < around.size(); ++i)
-        if (around[i].count >= 0.2 * *middle) sites.push_back(site_of(map, map.cells()[i], around[i]));
+        if (around[i].count >= 0.2 * *middle && on_surface(map.cells()[i], around[i]))
+            sites.push_back(site_of(map, map.cells()[i], around[i]));
     return sites;
 }
 

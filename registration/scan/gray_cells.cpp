@@ -99,7 +99,8 @@ std::optional<float> smoothed(const std::vector<float>& code, int width, int hei
             ++asked;
             if (x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height) continue;
             const double d =
-                code[static_cast<std::size_t>(y + dy) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x + dx)] - centre;
+                code[static_cast<std::size_t>(y + dy) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x + dx)] -
+                centre;
             if (!(std::abs(d) <= jump)) continue;
             const Eigen::Vector3d row(1, dx, dy);
             A += row * row.transpose();
@@ -184,7 +185,8 @@ GrayCells decode_gray_cells(const GrayFrames& frames, const GrayCellSettings& se
     view.sigma_px.assign(count, kNaN);
     if (with_rows) view.row.assign(count, kNaN);
     for (std::size_t i = 0; i < count; ++i) {
-        if (fate[i] == Fate::lit && (std::isnan(columns.code[i]) || (with_rows && std::isnan(rows.code[i])))) fate[i] = Fate::uncertain;
+        if (fate[i] == Fate::lit && (std::isnan(columns.code[i]) || (with_rows && std::isnan(rows.code[i]))))
+            fate[i] = Fate::uncertain;
         view.dark += fate[i] == Fate::dark;
         view.saturated += fate[i] == Fate::saturated;
         view.uncertain += fate[i] == Fate::uncertain;

@@ -11,7 +11,8 @@ namespace planlight {
 struct GrayDirection {
     int size = 0;        ///< of the projector along it, pixels
     double cell_px = 1;  ///< of the finest bit that was captured, projector pixels
-    std::vector<const GrayImage*> bits, inverses;  ///< equally many; inverses empty: a bit is decided by the mean of white and black
+    std::vector<const GrayImage*> bits,
+        inverses;  ///< equally many; inverses empty: a bit is decided by the mean of white and black
 };
 
 /// A Gray code without fringes: someone else's sequence, or what is left of ours where the fringes or the finest bits are

@@ -15,16 +15,22 @@ void add_information(const CameraModel& device, const Eigen::Vector3d& p, double
 
 }  // namespace
 
-Eigen::Matrix3d point_covariance(const Eigen::Vector3d& p_in_rig, const RigCalibration& rig, double worst_sigma_mm,
-                                 Triangulation::Seen seen, const TriangulationSettings& settings) {
+Eigen::Matrix3d expected_covariance(const Eigen::Vector3d& p_in_rig, const RigCalibration& rig, Triangulation::Seen seen,
+                                    const TriangulationSettings& settings) {
     using Seen = Triangulation::Seen;
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), shape;
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), shape = information;
     if (seen != Seen::right_only) add_information(rig.left_camera, p_in_rig, settings.camera_sigma_px, information);
     if (seen != Seen::left_only) add_information(rig.right_camera, p_in_rig, settings.camera_sigma_px, information);
     add_information(rig.projector, p_in_rig, settings.projector_sigma_px, information);
     bool determined = false;
     information.computeInverseWithCheck(shape, determined, 1e-12);
-    const double worst = determined ? worst_sigma(shape) : 0;
+    return determined ? shape : Eigen::Matrix3d::Zero();
+}
+
+Eigen::Matrix3d point_covariance(const Eigen::Vector3d& p_in_rig, const RigCalibration& rig, double worst_sigma_mm,
+                                 Triangulation::Seen seen, const TriangulationSettings& settings) {
+    const Eigen::Matrix3d shape = expected_covariance(p_in_rig, rig, seen, settings);
+    const double worst = worst_sigma(shape);
     if (!(worst > 0)) return Eigen::Matrix3d::Zero();
     return shape * (worst_sigma_mm * worst_sigma_mm / (worst * worst));
 }

@@ -13,7 +13,7 @@ struct ResectionSettings {
         false;  ///< also principal point and focal length (9 instead of 6 numbers): needs depth in the scene
     double max_epipolar_px = 0.5;     ///< of the points used
     std::size_t min_points = 500;
-    double min_spread = 0.15;         ///< of the points in the projector's picture: standard deviation by its width, either way
+    double min_spread = 0.10;         ///< of the points in the projector's picture: standard deviation by its width, either way
 
     // What makes a resection believable.
     double max_rms_after_px = 0.35;

@@ -39,7 +39,9 @@ Vector7d by_map(const Template& t, const Template::Pixel& p) {
 /// A 3 x 3 mean, so that noise does not pass for slope.
 std::vector<float> softened(const std::vector<float>& picture, int width, int height) {
     std::vector<float> soft(picture.size(), 0);
-    const auto at = [&](int x, int y) { return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x); };
+    const auto at = [&](int x, int y) {
+        return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+    };
     for (int y = 1; y + 1 < height; ++y)
         for (int x = 1; x + 1 < width; ++x) {
             float sum = 0;
@@ -86,7 +88,8 @@ Template make_template(const std::vector<float>& first, const GrayImage& white, 
 /// The map that lays a later picture on the first, as the numbers of `by_map`.
 Vector7d laid_on(const Template& t, const std::vector<float>& first, const std::vector<float>& later, int width) {
     Vector7d map = Vector7d::Zero();
-    for (const double huber_grey : {1e9, 24.0, 12.0}) {  // what does not fit a map (an edge, a hand) is given less and less weight
+    for (const double huber_grey :
+         {1e9, 24.0, 12.0}) {  // what does not fit a map (an edge, a hand) is given less and less weight
         Vector7d b = Vector7d::Zero();
         for (const auto& p : t.pixels) {
             const std::size_t i = static_cast<std::size_t>(p.y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(p.x);

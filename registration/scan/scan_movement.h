@@ -19,8 +19,8 @@ struct ScanMovement {
 
 /// From the skin itself, without markers: every even picture of the left camera (`even_moments`) is laid on the first by an
 /// affine map of least squares over the lit pixels (Lucas & Kanade 1981, one map for all). `mm_per_px`: of the skin in the
-/// left picture. It sees what moves across the line of sight. `by` is `nothing` with under three moments or too little
-/// that could move in the picture.
+/// left picture. It sees what moves across the line of sight: of a head's way a third to three quarters. `by` is `nothing`
+/// with under three moments or too little that could move in the picture.
 ScanMovement movement_in_pictures(const ScanCapture& capture, double mm_per_px);
 
 /// What a left camera pixel is on the scanned points, mm (median); 0 without points.

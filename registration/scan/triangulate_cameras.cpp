@@ -33,7 +33,8 @@ public:
         });
         for (std::size_t i = 0; i < seen.size(); ++i) {
             const long column = seen[i].x < 0 ? -1 : std::lround(view.column[i]);
-            if (column >= 0 && column < static_cast<long>(pixels_.size())) pixels_[static_cast<std::size_t>(column)].push_back(seen[i]);
+            if (column >= 0 && column < static_cast<long>(pixels_.size()))
+                pixels_[static_cast<std::size_t>(column)].push_back(seen[i]);
         }
     }
     /// The pixel of this code (or one beside it) nearest to a line a x + b y + c = 0 of normalised coordinates.

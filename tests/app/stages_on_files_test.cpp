@@ -115,6 +115,63 @@ TEST_F(CommandsTest, LandmarksAloneAreAskedForAndWrongOnesAreRefused) {
     EXPECT_EQ(run_planlight("register case --out refused3.json", root()).exit_code, 2);
 }
 
+TEST_F(CommandsTest, ScansOfFewerDevicesAndOfAGrayCodeAlone) {
+    simulated();
+    const json whole_rig = read_json(root() / "room" / "rig.json");
+    const auto write = [&](const fs::path& file, const json& content) { std::ofstream(file) << content.dump(); };
+    json rig = whole_rig;
+    rig.erase("right_camera");
+    write(root() / "one.json", rig);
+    rig = whole_rig;
+    rig.erase("projector");
+    write(root() / "two.json", rig);
+    rig.erase("right_camera");
+    write(root() / "none.json", rig);
+    const auto scan = [&](const std::string& capture, const std::string& rig_file) {
+        return run_planlight("scan " + capture + " --rig " + rig_file + " --out fewer.ply --json", root());
+    };
+    const auto whole = scan("room/capture", "room/rig.json"), one = scan("room/capture", "one.json"),
+               two = scan("room/capture", "two.json");
+    ASSERT_EQ(whole.exit_code, 0) << whole.err;
+    ASSERT_EQ(one.exit_code, 0) << one.err;
+    ASSERT_EQ(two.exit_code, 0) << two.err;
+    EXPECT_EQ(json::parse(whole.out)["devices"], "two cameras and the projector");
+    EXPECT_EQ(json::parse(one.out)["devices"], "one camera and the projector");
+    EXPECT_EQ(json::parse(two.out)["devices"], "two cameras");
+    EXPECT_GT(json::parse(one.out)["points"].get<int>(), 10000);
+    EXPECT_GT(json::parse(two.out)["points"].get<int>(), 10000);
+    EXPECT_EQ(json::parse(whole.out)["movement"]["by"], "markers");
+    EXPECT_LT(json::parse(whole.out)["movement"]["moved_mm"].get<double>(), 0.06) << "the simulated patient lies still";
+    EXPECT_EQ(json::parse(one.out)["movement"]["by"], "pictures");
+    EXPECT_LT(json::parse(one.out)["movement"]["moved_mm"].get<double>(), 0.06);
+    expect_one_clear_sentence(scan("room/capture", "none.json"), 3, "nothing else");
+    expect_one_clear_sentence(run_planlight("check room/capture --rig one.json", root()), 3, "has no right_camera");
+
+    const auto without = [&](const std::string& name, const std::function<bool(const std::string&)>& leave_out) {
+        fs::create_directories(root() / name);
+        for (const char* side : {"left", "right"})
+            if (!fs::exists(root() / name / side))
+                fs::create_directory_symlink(root() / "room" / "capture" / side, root() / name / side);
+        json settings = read_json(root() / "room" / "capture" / "capture.json");
+        json names = json::array();
+        for (const auto& n : settings["names"])
+            if (!leave_out(n.get<std::string>())) names.push_back(n);
+        settings["names"] = names;
+        write(root() / name / "capture.json", settings);
+    };
+    const auto has = [](const std::string& name, const char* part) { return name.find(part) != std::string::npos; };
+    without("gray", [&](const std::string& n) { return has(n, "phase"); });
+    without("coarse", [&](const std::string& n) { return has(n, "phase") || has(n, "column-gray-6") || has(n, "row-gray-6"); });
+    without("hole", [&](const std::string& n) { return n == "column-gray-2"; });
+    const auto gray = scan("gray", "room/rig.json"), coarse = scan("coarse", "room/rig.json");
+    ASSERT_EQ(gray.exit_code, 0) << gray.err;
+    ASSERT_EQ(coarse.exit_code, 0) << coarse.err;
+    EXPECT_NE(gray.err.find("to 8 projector pixels"), std::string::npos) << gray.err;
+    EXPECT_NE(coarse.err.find("to 16 projector pixels"), std::string::npos) << coarse.err;
+    EXPECT_GT(json::parse(coarse.out)["points"].get<int>(), 10000);
+    expect_one_clear_sentence(scan("hole", "room/rig.json"), 3, "\"column-gray-2\" is missing");
+}
+
 TEST_F(CommandsTest, ATableIsNoPatient) {
     prepared();
     std::ofstream ply(root() / "plane.ply");

@@ -8,6 +8,7 @@
 #include "app/prepare_case.h"
 #include "planning_io/plan_file.h"
 #include "planning_io/read_volume.h"
+#include "planning_io/types/error.h"
 #include "tests/support/test_data.h"
 
 namespace planlight {
@@ -59,6 +60,31 @@ TEST_F(WholeChain, PutsThePlanOnTheSkinInThePapersRoom) {
                                << distribution_of(figures.moving.position_mm).p95;
     EXPECT_EQ(figures.lost_marker_lit, figures.lost_marker_updates) << "a lost marker is survived";
     EXPECT_EQ(figures.too_few_lit, 0) << "too few markers give no light";
+}
+
+TEST_F(WholeChain, APatientWhoMovesDuringTheScanIsScannedAgain) {
+    simulation::RoomSettings settings;
+    settings.preset = simulation::Preset::paper;
+    settings.seed = 1;
+    simulation::SimulatedRig room(*volume_, {}, settings);
+    room.set_motion({1, room.clock().now()});
+    room.wait(std::chrono::seconds(1));
+    const CaseDrawing drawing(prepared_);
+    Session session(prepared_, drawing, room.calibration(), room.projector(), room.cameras(), room.clock());
+    bool moving = true;
+    session.scan([&](int done, int of) {
+        if (moving && done == of)
+            room.set_motion({0, room.clock().now()}), moving = false;  // after the first scan's last picture
+    });
+    EXPECT_EQ(session.scans_repeated(), 1);
+    EXPECT_LE(session.motion_in_scan_mm(), 0.15);
+    EXPECT_GT(session.scanned()->clean.kept.size(), 10000u);
+
+    SessionSettings once;
+    once.max_scans = 1;
+    Session hurried(prepared_, drawing, room.calibration(), room.projector(), room.cameras(), room.clock(), once);
+    room.set_motion({1, room.clock().now()});
+    EXPECT_THROW(hurried.scan(), CheckFailedError);
 }
 
 TEST_F(WholeChain, AMirroredPatientIsNeverProjectedOn) {

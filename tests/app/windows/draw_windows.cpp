@@ -5,7 +5,7 @@
 #include "fake_model.h"
 #include "write_picture.h"
 
-/// draw_windows scene FILE [azimuth elevation], or draw_windows window FILE [width height status]
+/// draw_windows scene FILE [azimuth elevation], or draw_windows window FILE [width height status [view of the match: 0 to 2]]
 int main(int argc, char** argv) {
     using namespace planlight;
     OperatorModel model = test::fake_model();
@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
     if (argc > 5) model = test::fake_model_with(static_cast<StatusKind>(std::stoi(argv[5])));
     OperatorWindow window(settings);
     window.set_view(view);
+    if (argc > 6) window.set_fit_view(static_cast<FitView>(std::stoi(argv[6])));
     for (int i = 0; i < 3; ++i) window.frame(model);
     test::write_picture(argv[2], window.screenshot());
 }

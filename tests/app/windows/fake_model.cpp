@@ -84,6 +84,17 @@ SceneModel scene() {
     return result;
 }
 
+/// A match 4 mm aside before the fine match; its predicted error grows with the distance from the face.
+FitViews fit_of(const SceneModel& scene) {
+    FitViews fit;
+    fit.before_ct_from_rig = Eigen::Translation3d(-4, 0, 0) * scene.ct_from_rig;
+    fit.before_distance_mm = std::make_shared<std::vector<float>>(scene.cloud->size(), 1.2F);
+    auto predicted = std::make_shared<std::vector<float>>();
+    for (const Eigen::Vector3d& p : scene.skin->vertices_in_ct) predicted->push_back(static_cast<float>(0.5 + (p.y() + 90) / 60));
+    fit.predicted_mm = predicted;
+    return fit;
+}
+
 }  // namespace
 
 OperatorModel fake_model() {
@@ -108,6 +119,8 @@ OperatorModel fake_model() {
     model.do_register = {true, ""};
     model.track = {false, "is running"};
     model.stop = {true, ""};
+    model.fit = fit_of(model.scene);
+    model.confirm = true;
     return model;
 }
 

@@ -24,20 +24,29 @@ int main(int, char** argv) {
         std::ofstream places(folder + "/places.part");
         for (const auto& [name, action] : {std::pair("scan", OperatorAction::scan), {"register", OperatorAction::do_register},
                                            {"track", OperatorAction::track}, {"stop", OperatorAction::stop},
-                                           {"dark", OperatorAction::dark}}) {
+                                           {"dark", OperatorAction::dark}, {"confirm", OperatorAction::confirm}}) {
             const auto [x, y, width, height] = window.place_of(action);
+            places << name << ' ' << x + width / 2 << ' ' << y + height / 2 << ' ' << width << ' ' << height << '\n';
+        }
+        for (const auto& [name, view] : {std::pair("before", FitView::before), {"after", FitView::after},
+                                         {"error", FitView::predicted_error}}) {
+            const auto [x, y, width, height] = window.place_of(view);
             places << name << ' ' << x + width / 2 << ' ' << y + height / 2 << ' ' << width << ' ' << height << '\n';
         }
     }
     std::rename((folder + "/places.part").c_str(), (folder + "/places").c_str());
-    const char* const names[] = {"none", "scan", "register", "track", "stop", "dark", "quit"};
+    const char* const names[] = {"none", "scan", "register", "track", "stop", "dark", "quit", "confirm"};
     const auto start = steady_clock::now();
+    const char* const views[] = {"view after", "view before", "view error"};
+    FitView last_view = window.fit_view();
     double last_azimuth = window.view().azimuth;
     while (steady_clock::now() - start < std::chrono::seconds(60)) {
         const OperatorAction action = window.frame(model);
         if (action != OperatorAction::none) fmt::print("{}\n", names[static_cast<int>(action)]);
         if (window.view().azimuth != last_azimuth) fmt::print("turned {}\n", window.view().azimuth > last_azimuth ? "+" : "-");
         last_azimuth = window.view().azimuth;
+        if (window.fit_view() != last_view) fmt::print("{}\n", views[static_cast<int>(window.fit_view())]);
+        last_view = window.fit_view();
         std::fflush(stdout);
         if (action == OperatorAction::quit) return 0;
         std::this_thread::sleep_for(std::chrono::milliseconds(30));

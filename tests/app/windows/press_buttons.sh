@@ -28,7 +28,8 @@ place() { awk -v n="$1" '$1 == n { print $2, $3 }' "$folder/places"; }
 
 seen=0
 awk '$4 < 72 || $5 < 72 { print "FAIL " $1 " is " $4 "x" $5 " pixels, less than 72"; bad = 1 } END { exit bad }' "$folder/places" || failed=1
-for control in scan register stop dark; do click $(place $control); wait_for $control "pressing $control"; done
+for view in before error after; do click $(place $view); wait_for "view $view" "the view $view"; done
+for control in scan register stop dark confirm; do click $(place $control); wait_for $control "pressing $control"; done
 click $(place track); silent "a button that is not enabled says nothing"
 xdotool mousemove $(place dark); sleep 0.4; xdotool click 1; wait_for dark "DARK by the shortest click"
 for key in space b Escape; do xdotool key $key; wait_for dark "DARK by the key $key"; done

@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "app/windows/distance_colours.h"
 #include "app/windows/fonts.h"
 #include "app/windows/layout.h"
 #include "app/windows/number_text.h"
@@ -170,6 +171,47 @@ TEST(RenderScene, AnEmptySceneIsDarkButHasItsLetters) {
     const auto letters_seen = centre_of(picture, [](const Rgb& c) { return c[0] > 200 && c[1] > 200 && c[2] > 200; });
     EXPECT_GT(letters_seen[2], 100);
     EXPECT_LT(letters_seen[2], 5000);
+}
+
+/// How many pixels of the picture have about that colour's hue: its largest channel stands out in the same way.
+std::size_t pixels_like(const RgbImage& picture, const Rgb& colour) {
+    std::size_t count = 0;
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+            const Rgb& p = picture.at(x, y);
+            const double scale = std::max({p[0], p[1], p[2]}) / static_cast<double>(std::max({colour[0], colour[1], colour[2]}));
+            if (scale < 0.25) continue;
+            double off = 0;
+            for (std::size_t c = 0; c < 3; ++c) off = std::max(off, std::abs(p[c] - scale * colour[c]));
+            count += off < 25 * scale + 8;
+        }
+    return count;
+}
+
+TEST(FitViews, ThePredictedErrorIsGreenInFrontAndRedBehindAndHidesTheScan) {
+    // The fake match: under 1 mm for the face (y < -60), over 2 mm behind (y > 0).
+    const OperatorModel model = test::fake_model();
+    const SceneModel error = scene_of_fit(model, FitView::predicted_error);
+    EXPECT_EQ(error.cloud, nullptr);
+    EXPECT_EQ(error.light, nullptr);
+    SceneModel bare;
+    bare.skin = error.skin;
+    bare.skin_error_mm = error.skin_error_mm;
+    const RgbImage front = render_scene(bare, {0, 0}, 640, 480), behind = render_scene(bare, {3.14159, 0}, 640, 480);
+    const Rgb green = error_colour(0.5, 1, 2), red = error_colour(3, 1, 2);
+    EXPECT_GT(pixels_like(front, green), 10 * pixels_like(front, red) + 5000);
+    EXPECT_GT(pixels_like(behind, red), 10 * pixels_like(behind, green) + 5000);
+}
+
+TEST(FitViews, BeforeAndAfterShowTheSameScanAtItsTwoPlaces) {
+    const OperatorModel model = test::fake_model();
+    const SceneModel before = scene_of_fit(model, FitView::before), after = scene_of_fit(model, FitView::after);
+    EXPECT_EQ(before.cloud, after.cloud);
+    EXPECT_NEAR((before.ct_from_rig.translation() - after.ct_from_rig.translation()).norm(), 4, 1e-9);
+    EXPECT_NE(before.cloud_distance_mm, after.cloud_distance_mm);
+    OperatorModel without = model;
+    without.fit = std::nullopt;
+    EXPECT_EQ(scene_of_fit(without, FitView::predicted_error).cloud, model.scene.cloud);
 }
 
 TEST(ViewOfPlan, LooksAtTheSideThePlanIsOn) {

@@ -41,6 +41,23 @@ TEST(RegisterPatient, AWideScanIsAcceptedAndRight) {
     }
 }
 
+TEST(RegisterPatient, WhatWasSeenThroughTheBodyIsRefused) {
+    // The front of the face, seen from before it; then the same points, said to have been seen from behind the head.
+    const RigidTransform rig_from_ct = random_pose(7);
+    const PointCloud cloud = spoiled(moved(head_view(View::front, 200, 20000, 3), rig_from_ct), 0.3, 0.1, 3);
+    RegistrationSettings settings;
+    settings.viewpoint_in_rig = rig_from_ct * Eigen::Vector3d(0, -900, 0);
+    const RegistrationResult before = register_patient(cloud, head_lut(), settings);
+    EXPECT_EQ(before.verdict, Verdict::yes) << told(before);
+    EXPECT_LT(before.blocked_fraction.value(), 0.02);
+    settings.viewpoint_in_rig = rig_from_ct * Eigen::Vector3d(0, 900, 0);
+    const RegistrationResult behind = register_patient(cloud, head_lut(), settings);
+    EXPECT_EQ(behind.verdict, Verdict::no);
+    EXPECT_TRUE(mentions(behind, "seen through")) << told(behind);
+    EXPECT_GT(behind.blocked_fraction.value(), 0.9);
+    EXPECT_FALSE(register_patient(cloud, head_lut()).blocked_fraction.has_value());
+}
+
 TEST(RegisterPatient, AWrongPoseIsNeverAYes) {
     // Hard scans: 90 to 150 mm, 0.5 mm of noise, 25 % strays, all views.
     for (unsigned i = 0; i < 16; ++i) {

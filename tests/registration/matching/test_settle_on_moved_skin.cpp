@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "registration/matching/match_evidence.h"
 #include "registration/matching/refine_icp.h"
 #include "registration/matching/settle_on_moved_skin.h"
 #include "tests/registration/matching/matching_scenes.h"
@@ -75,6 +76,41 @@ TEST(SettleOnMovedSkin, TooLittleSkinToTellIsAnInfiniteBoundNotASmallOne) {
     EXPECT_LT(pose.patches, 24);
     EXPECT_FALSE(std::isfinite(predicted_error(pose.covariance, Eigen::Vector3d::Zero()).bound_95_mm));
     EXPECT_TRUE(pose.ct_from_rig.isApprox(RigidTransform::Identity()));
+}
+
+TEST(SettleOnMovedSkin, TheScanStillLiesOnTheSkinAfterwards) {
+    // A round crown, noisy: shift, offset, growth and long waves can stand for each other, and any of them is found large.
+    for (unsigned seed = 0; seed < 12; ++seed) {
+        const RigidTransform rig_from_ct = random_pose(seed), ct_from_rig = rig_from_ct.inverse();
+        const PointCloud in_ct = with_moved_skin(head_view(View::top, 150, 20000, seed), "waves of 25 mm", 0.9, seed);
+        const PointCloud cloud = moved(spoiled(in_ct, 1, 0.2, seed), rig_from_ct);
+        const RigidTransform icp = refine_icp(cloud, head_lut(), ct_from_rig).ct_from_rig;
+        const MovedSkinPose settled = settle_on_moved_skin(cloud, head_lut(), icp);
+        const double before_mm = lay_on_skin(cloud, head_lut(), icp, 1.5).median_mm;
+        const double after_mm = lay_on_skin(cloud, head_lut(), settled.ct_from_rig, 1.5, settled.offset_mm).median_mm;
+        EXPECT_LT(after_mm, 1.5 * before_mm + 0.2) << "seed " << seed << ", offset " << settled.offset_mm;
+    }
+}
+
+TEST(SettleOnMovedSkin, SkinThatIsThickOverTheBoneIsTrustedLess) {
+    // Thin over the skull, thick below it, as cheeks are; only the thick skin moved, by waves of 1.5 mm rms.
+    SkinLut thick_below = head_lut();
+    for (SkinPoint& s : thick_below.skin) s.thickness_mm = s.position_in_ct.z() > 0 ? 3.f : 20.f;
+    double known_mm = 0, unknown_mm = 0;
+    for (unsigned seed = 0; seed < 12; ++seed) {
+        const RigidTransform rig_from_ct = random_pose(seed), ct_from_rig = rig_from_ct.inverse();
+        PointCloud in_ct = head_view(seed % 2 ? View::right : View::front, 190, 12000, seed);
+        const PointCloud all_moved = with_moved_skin(in_ct, "waves of 50 mm", 1.5, seed);
+        for (std::size_t i = 0; i < in_ct.size(); ++i)
+            if (in_ct.points_in_rig[i].z() < 0) in_ct.points_in_rig[i] = all_moved.points_in_rig[i];
+        const PointCloud cloud = moved(spoiled(in_ct, 0.2, 0.05, seed), rig_from_ct);
+        const auto error_mm = [&](const SkinLut& lut) {
+            return target_error_mm(settle_on_moved_skin(cloud, lut, ct_from_rig).ct_from_rig, ct_from_rig, cloud) / 12;
+        };
+        known_mm += error_mm(thick_below);
+        unknown_mm += error_mm(head_lut());
+    }
+    EXPECT_LT(known_mm, 0.8 * unknown_mm) << known_mm << " against " << unknown_mm;
 }
 
 }  // namespace

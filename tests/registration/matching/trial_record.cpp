@@ -19,11 +19,12 @@ constexpr char kSeparator = ';';
 
 std::string line_of(const TrialRecord& r) {
     return fmt::format(
-        "{};{};{};{:d};{};{};{};{};{};{};{};{};{};{:d};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{}",
+        "{};{};{};{:d};{};{};{};{};{};{};{};{};{};{:d};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{}",
         r.seed, r.kind, r.head, r.right_object, r.width_mm, r.noise_mm, r.strays, r.drape, r.movement_mm, r.view,
         r.movement, r.points, r.verdict, r.searched, r.initial.turn_deg, r.initial.middle_mm, r.initial.target_mm,
         r.final.turn_deg, r.final.middle_mm, r.final.target_mm, r.bound_mm, r.runner_up, r.mirror, r.inliers, r.rms_mm,
-        r.median_mm, r.scale, r.weakest_mm, r.bases, r.initial_s, r.refine_s, r.processor_s, r.reasons);
+        r.median_mm, r.scale, r.weakest_mm, r.bases, r.initial_s, r.refine_s, r.processor_s,
+        r.blocked, r.reasons);
 }
 
 void take(const std::string& text, std::string& into) {
@@ -62,7 +63,7 @@ TrialRecord record_of(const std::string& line) {
              r.view, r.movement, r.points, r.verdict, r.searched, r.initial.turn_deg, r.initial.middle_mm,
              r.initial.target_mm, r.final.turn_deg, r.final.middle_mm, r.final.target_mm, r.bound_mm, r.runner_up,
              r.mirror, r.inliers, r.rms_mm, r.median_mm, r.scale, r.weakest_mm, r.bases, r.initial_s, r.refine_s,
-             r.processor_s);
+             r.processor_s, r.blocked);
     std::getline(in, r.reasons);
     return r;
 }
@@ -76,8 +77,10 @@ double processor_seconds() {
 }
 
 void run_trial(const TrialScan& scan, const SkinLut& lut, TrialRecord& record) {
+    RegistrationSettings settings;
+    settings.viewpoint_in_rig = scan.viewpoint_in_rig;
     const double before = processor_seconds();
-    const RegistrationResult result = register_patient(scan.cloud, lut);
+    const RegistrationResult result = register_patient(scan.cloud, lut, settings);
     record.processor_s = processor_seconds() - before;
     record.points = scan.cloud.size();
     record.verdict = static_cast<int>(result.verdict);
@@ -94,6 +97,7 @@ void run_trial(const TrialScan& scan, const SkinLut& lut, TrialRecord& record) {
     record.median_mm = result.residual_median_mm;
     record.scale = result.scale;
     record.weakest_mm = result.weakest_sigma_mm;
+    record.blocked = result.blocked_fraction.value_or(0);
     record.bases = result.agreeing_bases;
     record.initial_s = result.initial_match_s;
     record.refine_s = result.refine_s;

@@ -199,6 +199,7 @@ TrialScan trial_scan(const TrialSurface& surface, const TrialScanSettings& setti
     spoil(grid, settings, scan, draped, random);
     scan.rig_from_ct = random_pose(settings.seed);
     const Vector3d middle = surface.middle_in_ct();
+    scan.viewpoint_in_rig = scan.rig_from_ct * as_is(window.eye, middle, settings);
     for (const auto i : met(grid)) {
         const Vector3d n = normal_of(grid, i, window.width_mm / columns);
         const Vector3d turned = as_is(middle + n, middle, settings) - middle;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,7 @@ struct TrialScan {
     RigidTransform rig_from_ct = RigidTransform::Identity();
     Eigen::Vector3d middle_in_ct = Eigen::Vector3d::Zero();  ///< of the bare skin scanned
     std::vector<Eigen::Vector3d> targets_in_ct;              ///< 60 mm deep under the scan: one, and six 40 mm round it
+    std::optional<Eigen::Vector3d> viewpoint_in_rig;         ///< the eye of all rays; empty: there is none
     std::size_t bare_points = 0, stray_points = 0, drape_points = 0;
 };
 

@@ -18,7 +18,8 @@ Rgb between(const std::vector<Rgb>& stops, double share) {
     const auto i = static_cast<std::size_t>(at);
     Rgb mixed;
     for (std::size_t c = 0; c < 3; ++c)
-        mixed[c] = static_cast<std::uint8_t>(std::lround(stops[i][c] + (at - static_cast<double>(i)) * (stops[i + 1][c] - stops[i][c])));
+        mixed[c] = static_cast<std::uint8_t>(
+            std::lround(stops[i][c] + (at - static_cast<double>(i)) * (stops[i + 1][c] - stops[i][c])));
     return mixed;
 }
 
@@ -33,10 +34,12 @@ Rgb sequential_colour(double share) {
     return between({{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}, share);
 }
 
-Rgb signed_colour(double share) { return between({{33, 90, 200}, {140, 180, 235}, {240, 240, 240}, {240, 160, 120}, {200, 40, 30}}, share); }
+Rgb signed_colour(double share) {
+    return between({{33, 90, 200}, {140, 180, 235}, {240, 240, 240}, {240, 160, 120}, {200, 40, 30}}, share);
+}
 
-RgbImage draw_cloud(const PointCloud& cloud, const std::vector<Rgb>& colours, const Eigen::Matrix3d& view_from_rig, double mm_per_px,
-                    int width, int height, int radius_px) {
+RgbImage draw_cloud(const PointCloud& cloud, const std::vector<Rgb>& colours, const Eigen::Matrix3d& view_from_rig,
+                    double mm_per_px, int width, int height, int radius_px) {
     RgbImage picture(width, height, kBackground);
     std::vector<float> depth(picture.pixels.size(), 1e30F);
     Eigen::AlignedBox3d box;
@@ -98,8 +101,10 @@ RgbImage half_size(const RgbImage& picture) {
     for (int y = 0; y < half.height; ++y)
         for (int x = 0; x < half.width; ++x)
             for (std::size_t c = 0; c < 3; ++c)
-                half.at(x, y)[c] = static_cast<std::uint8_t>((picture.at(2 * x, 2 * y)[c] + picture.at(2 * x + 1, 2 * y)[c] +
-                                                              picture.at(2 * x, 2 * y + 1)[c] + picture.at(2 * x + 1, 2 * y + 1)[c] + 2) / 4);
+                half.at(x, y)[c] =
+                    static_cast<std::uint8_t>((picture.at(2 * x, 2 * y)[c] + picture.at(2 * x + 1, 2 * y)[c] +
+                                               picture.at(2 * x, 2 * y + 1)[c] + picture.at(2 * x + 1, 2 * y + 1)[c] + 2) /
+                                              4);
     return half;
 }
 
@@ -111,7 +116,8 @@ RgbImage coloured(const GrayImage& picture) {
 
 RgbImage side_by_side(const std::vector<RgbImage>& pictures, int columns) {
     constexpr int kGap = 6;
-    const int w = pictures.front().width, h = pictures.front().height, rows = (static_cast<int>(pictures.size()) + columns - 1) / columns;
+    const int w = pictures.front().width, h = pictures.front().height,
+              rows = (static_cast<int>(pictures.size()) + columns - 1) / columns;
     RgbImage whole(columns * (w + kGap) - kGap, rows * (h + kGap) - kGap, {255, 255, 255});
     for (std::size_t k = 0; k < pictures.size(); ++k) {
         const int x0 = static_cast<int>(k) % columns * (w + kGap), y0 = static_cast<int>(k) / columns * (h + kGap);

@@ -18,8 +18,8 @@ Rgb signed_colour(double share);
 
 /// Points as discs, the nearest in front, seen by a parallel view: `view_from_rig` has x right, y down, z away from the eye;
 /// the cloud's middle is in the picture's. Shaded by the normals where there are any.
-RgbImage draw_cloud(const PointCloud& cloud, const std::vector<Rgb>& colours, const Eigen::Matrix3d& view_from_rig, double mm_per_px,
-                    int width, int height, int radius_px = 1);
+RgbImage draw_cloud(const PointCloud& cloud, const std::vector<Rgb>& colours, const Eigen::Matrix3d& view_from_rig,
+                    double mm_per_px, int width, int height, int radius_px = 1);
 
 /// The decoded columns by colour; grey where nothing is decoded. Every second pixel of larger pictures.
 RgbImage draw_columns(const DecodedView& view, int projector_width);

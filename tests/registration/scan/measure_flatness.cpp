@@ -89,8 +89,8 @@ int main(int argc, char** argv) {
             for (const auto& p : plane) box.extend(p);
             std::vector<double> off;
             const double flat = fit(plane, 3, off), bent = fit(plane, 6, off);
-            fmt::print("plane of {} points over {:.0f} x {:.0f} mm: {:.3f} mm rms off it, {:.3f} mm off a bent one\n", plane.size(),
-                       box.sizes().x(), box.sizes().y(), flat, bent);
+            fmt::print("plane of {} points over {:.0f} x {:.0f} mm: {:.3f} mm rms off it, {:.3f} mm off a bent one\n",
+                       plane.size(), box.sizes().x(), box.sizes().y(), flat, bent);
         }
         return 0;
     } catch (const Error& error) {

@@ -61,9 +61,11 @@ int main(int argc, char** argv) {
                 auto errors = room.scan_errors_mm(scan.clean.kept.points_in_rig, capture.began);
                 for (double& e : errors) e = std::abs(e);
                 std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
-                fmt::print(stderr, "{} room {} {:.2f} mm/s: true {:.3f}, markers {:.3f} ({} of {} moments), pictures {:.3f}, cloud {:.3f}\n",
-                           name_of(preset), seed + k, speed_mm_s, truth, markers.moved_mm, markers.markers, markers.moments,
-                           pictures.moved_mm, errors[errors.size() / 2]);
+                fmt::print(
+                    stderr,
+                    "{} room {} {:.2f} mm/s: true {:.3f}, markers {:.3f} ({} of {} moments), pictures {:.3f}, cloud {:.3f}\n",
+                    name_of(preset), seed + k, speed_mm_s, truth, markers.moved_mm, markers.markers, markers.moments,
+                    pictures.moved_mm, errors[errors.size() / 2]);
                 Bin& bin = *std::find_if(bins.begin(), bins.end(), [&](const Bin& b) { return truth >= b.from && truth < b.to; });
                 ++bin.scans;
                 const bool by_markers = markers.by == ScanMovement::By::markers;
@@ -74,14 +76,15 @@ int main(int argc, char** argv) {
                 bin.worst_off_pictures = std::max(bin.worst_off_pictures, std::abs(pictures.moved_mm - truth));
                 bin.error_mm += errors[errors.size() / 2];
             }
-        fmt::print("{}: said to have moved more than {} mm\n{:>16}{:>7}{:>12}{:>11}{:>12}{:>14}{:>12}\n", name_of(preset), kLimit_mm,
-                   "true way (mm)", "scans", "by markers", "worst off", "by pictures", "worst off", "cloud off");
+        fmt::print("{}: said to have moved more than {} mm\n{:>16}{:>7}{:>12}{:>11}{:>12}{:>14}{:>12}\n", name_of(preset),
+                   kLimit_mm, "true way (mm)", "scans", "by markers", "worst off", "by pictures", "worst off", "cloud off");
         for (const Bin& bin : bins)
             if (bin.scans > 0)
                 fmt::print("{:>16}{:>7}{:>12}{:>11.3f}{:>12}{:>14.3f}{:>12.3f}\n",
-                           bin.to < 1e-8 ? "at rest" : fmt::format("{:g} to {:g}", bin.from < 1e-8 ? 0 : bin.from, std::min(bin.to, 9.0)),
-                           bin.scans, fmt::format("{} of {}", bin.noticed, bin.markers), bin.worst_off, bin.noticed_by_pictures,
-                           bin.worst_off_pictures, bin.error_mm / bin.scans);
+                           bin.to < 1e-8 ? "at rest"
+                                         : fmt::format("{:g} to {:g}", bin.from < 1e-8 ? 0 : bin.from, std::min(bin.to, 9.0)),
+                           bin.scans, fmt::format("{} of {}", bin.noticed, bin.markers), bin.worst_off,
+                           bin.noticed_by_pictures, bin.worst_off_pictures, bin.error_mm / bin.scans);
         return 0;
     } catch (const Error& error) {
         fmt::print(stderr, "{} {}\n", error.what(), error.remedy);

@@ -14,6 +14,7 @@
 #include "registration/calibration/check_drift.h"
 #include "tests/registration/scan/random_rooms.h"
 #include "tests/registration/scan/scan_figures.h"
+#include "tests/registration/scan/scan_pictures.h"
 #include "tests/registration/scan/spoilt_rigs.h"
 
 using namespace planlight;
@@ -144,6 +145,8 @@ PresetTable run(Preset preset, const Options& options, const Volume& head, const
             Figures figures = figures_of_head(scan, room, capture.began);
             for (auto& figure : figures_of_ball(sphere, random_room(preset, seed))) figures.push_back(std::move(figure));
             table.rooms.push_back(std::move(figures));
+            if (k == 0 && !options.pictures.empty() && preset == options.presets.back())
+                write_scan_pictures(room, capture, scan, options.pictures);
             if (k < options.spoilt) try_spoilt(capture, room, table.spoilt);
         } catch (const Error& refusal) {
             table.refusals.push_back(fmt::format("seed {}: {}", seed, refusal.what()));
@@ -193,7 +196,8 @@ Json print_spoilt(const std::vector<Spoilt>& table) {
     for (const Spoilt& row : table) {
         const double n = row.rooms;
         std::string said;
-        for (const auto& [verdict, count] : row.verdicts) said += fmt::format("{}{} {}", said.empty() ? "" : ", ", count, verdict);
+        for (const auto& [verdict, count] : row.verdicts)
+            said += fmt::format("{}{} {}", said.empty() ? "" : ", ", count, verdict);
         fmt::print("{:42}{:>3} of {:>2}{:>10.3f}{:>11.3f}{:>8.3f}{:>9.3f}{:>10.3f}  {}\n", row.what, row.noticed, row.rooms,
                    row.epipolar_px / n, row.projector_px / n, row.after_px / n, row.offset_px / n, row.error_mm / n, said);
         json.push_back({{"what", row.what}, {"rooms", row.rooms}, {"noticed", row.noticed},

@@ -178,7 +178,8 @@ CodeFigures code_figures(const DecodedView& view, const SimulatedRig& room, Simu
     tbb::parallel_for(0, view.height / 2, [&](int half) {
         const int y = 2 * half;
         for (int x = 0; x < view.width; x += 2) {
-            const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
+            const std::size_t i =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
             if (std::isnan(view.column[i])) continue;
             ++looked_at;
             const auto sight = room.true_sight(camera, Vector2d(x, y), at);

@@ -107,7 +107,8 @@ DecodedView decode(const Pictures& p, int periods) {
             }
             const double column = kPeriod_px * (order + a.turns);
             view.column[i] = static_cast<float>(periods > 0 ? column : kPeriod_px * std::abs(periods) + column);
-            view.sigma_px[i] = static_cast<float>(kPeriod_px / (2 * std::numbers::pi) * std::sqrt(2.0 / kSteps) * kNoise_grey / a.amplitude);
+            view.sigma_px[i] =
+                static_cast<float>(kPeriod_px / (2 * std::numbers::pi) * std::sqrt(2.0 / kSteps) * kNoise_grey / a.amplitude);
             ++view.decoded;
         }
     }
@@ -161,7 +162,8 @@ RgbImage picture_of(const PointCloud& cloud) {
     for (const double z : depth) colours.push_back(sequential_colour((high - z) / (high - low)));
     std::vector<RgbImage> views;
     for (const double turned : {-0.6, 0.0, 0.6})
-        views.push_back(draw_cloud(cloud, colours, Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitY()).toRotationMatrix(), 0.75, 330, 420, 1));
+        views.push_back(draw_cloud(cloud, colours, Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitY()).toRotationMatrix(), 1.2,
+                                   205, 262, 1));
     return with_legend(side_by_side(views, 3), "far to near; the scale is chosen, not known", 0, 1, sequential_colour);
 }
 
@@ -180,19 +182,23 @@ int main(int argc, char** argv) {
                    disagree_right);
         const DecodedView left_view = decode(left, periods), right_view = decode(right, periods);
         for (const auto& [name, v] : {std::pair{"left", &left_view}, std::pair{"right", &right_view}})
-            fmt::print("{}: decoded {}, dark {}, saturated {}, uncertain {}\n", name, v->decoded, v->dark, v->saturated, v->uncertain);
+            fmt::print("{}: decoded {}, dark {}, saturated {}, uncertain {}\n", name, v->decoded, v->dark, v->saturated,
+                       v->uncertain);
         RigCalibration rig = chosen_rig(left_view.width, left_view.height);
         const int width = static_cast<int>(kPeriod_px) * std::abs(periods);
         const Triangulation raw = triangulate_cameras(left_view, right_view, rig, width, left_view.height);
         rig.projector = rig.left_camera;
         const OutlierReport clean = remove_outliers(raw, rig);
-        fmt::print("points {} (no partner {}, ragged {}, outside {}); kept {} (jump {}, grazing {}, small pieces {}, lonely {}, thinned {})\n",
-                   raw.cloud.size(), raw.no_partner, raw.ragged, raw.outside_volume, clean.kept.size(), clean.jump, clean.grazing,
-                   clean.small_piece, clean.lonely, clean.thinned);
+        fmt::print(
+            "points {} (no partner {}, ragged {}, outside {}); kept {} (jump {}, grazing {}, small pieces {}, lonely {}, "
+            "thinned {})\n",
+            raw.cloud.size(), raw.no_partner, raw.ragged, raw.outside_volume, clean.kept.size(), clean.jump, clean.grazing,
+            clean.small_piece, clean.lonely, clean.thinned);
         Eigen::AlignedBox3d box;
         for (const auto& p : clean.kept.points_in_rig) box.extend(p);
         fmt::print("chosen: focal length {} px, cameras {} mm apart; then {:.0f} x {:.0f} x {:.0f} mm, roughness {:.3f} mm\n",
-                   kChosenFocal_px, kChosenBaseline_mm, box.sizes().x(), box.sizes().y(), box.sizes().z(), roughness_mm(clean.kept));
+                   kChosenFocal_px, kChosenBaseline_mm, box.sizes().x(), box.sizes().y(), box.sizes().z(),
+                   roughness_mm(clean.kept));
         fs::create_directories(argv[2]);
         write_cloud(clean.kept, fs::path(argv[2]) / "cloud.ply");
         write_png(picture_of(clean.kept), fs::path(argv[2]) / "cloud.png");

@@ -1,0 +1,84 @@
+#include "registration/tracking/markers_in_scan.h"
+
+#include <gtest/gtest.h>
+
+#include "marker_scene.h"
+
+namespace planlight::test {
+namespace {
+
+constexpr int kBits = 5;
+
+/// A Gray code of columns on a head whose pose is `at(share)` when a share of the pictures is taken; stripes as seen from the
+/// left camera and the right one, hard over the markers too.
+ScanCapture capture_of(const RigCalibration& rig, const std::function<RigidTransform(double)>& at, bool with_stickers = true) {
+    ScanCapture capture;
+    capture.stripes.width = 800;
+    capture.stripes.height = 600;
+    capture.stripes.rows = false;
+    capture.partial = {{StripePattern::Kind::white, false, 0, "white"}, {StripePattern::Kind::black, false, 0, "black"}};
+    for (int bit = 0; bit < kBits; ++bit) {
+        const std::string name = "column-gray-" + std::to_string(bit);
+        capture.partial.push_back({StripePattern::Kind::gray_bit, false, bit, name});
+        capture.partial.push_back({StripePattern::Kind::gray_bit_inverse, false, bit, name + "-inverse"});
+    }
+    std::mt19937 random(3);
+    for (std::size_t k = 0; k < capture.partial.size(); ++k) {
+        const double share = static_cast<double>(k) / static_cast<double>(capture.partial.size() - 1);
+        auto stickers = moved(at(share) * RigidTransform(Eigen::Translation3d(head_centre())), stickers_on_head());
+        if (!with_stickers) stickers.clear();
+        const StereoFrame lit = render_frame(rig, stickers, Look{}, {}, random);
+        const auto under_stripes = [&](const GrayImage& picture) {
+            GrayImage striped = picture;
+            const auto kind = capture.partial[k].kind;
+            for (int y = 0; y < picture.height; ++y)
+                for (int x = 0; x < picture.width; ++x) {
+                    bool light = kind == StripePattern::Kind::white;
+                    const int stripe = (x * 32 / picture.width) >> (kBits - 1 - capture.partial[k].index);
+                    if (k >= 2) light = (stripe % 2 == 0) == (kind == StripePattern::Kind::gray_bit);
+                    if (!light) striped.at(x, y) = static_cast<std::uint8_t>(picture.at(x, y) / 8);
+                }
+            return striped;
+        };
+        capture.left.push_back(under_stripes(lit.left));
+        capture.right.push_back(under_stripes(lit.right));
+    }
+    capture.ended = std::chrono::milliseconds(500);
+    return capture;
+}
+
+TEST(MarkersInScan, AHeadAtRestAndOneThatMoves) {
+    const RigCalibration rig = paper_rig();
+    const ScanMovement rest = movement_of_markers(capture_of(rig, [](double) { return RigidTransform::Identity(); }), rig);
+    ASSERT_EQ(rest.by, ScanMovement::By::markers);
+    EXPECT_EQ(rest.markers, 6);
+    EXPECT_EQ(rest.moments, 1 + kBits);
+    EXPECT_LT(rest.moved_mm, 0.06) << "half a pair's contrast, noise 2 grey; the limit of a scan is 0.15";
+    for (const Eigen::Vector3d& way : {Eigen::Vector3d(0.3, 0, 0), Eigen::Vector3d(0, 0, 0.3)}) {
+        const ScanMovement movement = movement_of_markers(
+            capture_of(rig, [&](double share) { return RigidTransform(Eigen::Translation3d(share * way)); }), rig);
+        // The moments span 10 of 11 steps.
+        EXPECT_NEAR(movement.moved_mm, 0.27, 0.06) << way.transpose();
+        EXPECT_EQ(movement.from, "white");
+    }
+}
+
+TEST(MarkersInScan, ATurnIsAMovement) {
+    const RigCalibration rig = paper_rig();
+    const ScanMovement movement =
+        movement_of_markers(capture_of(rig, [](double share) { return head_move({0, 0.3 * share, 0}, {0, 0, 0}); }), rig);
+    EXPECT_NEAR(movement.turned, 0.3 * M_PI / 180 * 10 / 11, 0.0015);
+    EXPECT_GT(movement.moved_mm, 0.15) << "0.3 degrees at 80 mm are 0.4 mm";
+}
+
+TEST(MarkersInScan, WithoutMarkersOrASecondCameraItIsNotKnown) {
+    const RigCalibration rig = paper_rig();
+    const auto rest = [](double) { return RigidTransform::Identity(); };
+    EXPECT_EQ(movement_of_markers(capture_of(rig, rest, false), rig).by, ScanMovement::By::nothing);
+    ScanCapture left_only = capture_of(rig, rest);
+    left_only.right.clear();
+    EXPECT_EQ(movement_of_markers(left_only, rig).by, ScanMovement::By::nothing);
+}
+
+}  // namespace
+}  // namespace planlight::test
