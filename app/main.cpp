@@ -145,6 +145,7 @@ void add_scan(CLI::App& app, ScanOptions& o) {
     auto* sub = command(app, "scan", "Captured stripe pictures -> cloud of skin points in rig",
                         "scan room/capture --rig room/rig.json --out cloud.ply");
     sub->add_option("capture", o.capture, "Capture folder")->required();
+    sub->add_option("--exposure", o.exposures, "Another capture of the same pose, darker or brighter; may be said again");
     sub->add_option("--rig", o.rig, "rig.json")->required();
     sub->add_option("--out", o.out, "Clean cloud (.ply)")->required();
     sub->add_option("--raw", o.raw_out, "Also the cloud before the outliers were removed (.ply)");

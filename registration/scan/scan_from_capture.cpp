@@ -51,8 +51,8 @@ void refuse_wrong_sequence(const ScanCapture& capture, ScanResult& result) {
         if (!check->problems.empty())
             throw CheckFailedError(fmt::format("the {} camera's frames do not show the sequence: {} ({:.0f} % of the lit pixels)",
                                                camera, check->problems[0].what, 100 * check->problems[0].share),
-                                   "Scan again; if it comes back, check the delay between projector and cameras and the "
-                                   "names of the pictures.");
+                                   "Scan again; if it comes back, check the delay between projector and cameras and the names of "
+                                   "the pictures. \"check_sequence\": false in capture.json takes them as they are.");
 }
 
 bool use_resection(const ScanSettings& settings, ScanResult& result, RigCalibration& rig) {
@@ -133,7 +133,7 @@ ScanResult scan_from_exposures(std::span<const ScanCapture> captures, const RigC
     for (const ScanCapture& capture : captures) {
         check_devices(capture, rig);
         ScanResult one;
-        if (settings.check_sequence) refuse_wrong_sequence(capture, one);
+        if (settings.check_sequence && capture.check_sequence) refuse_wrong_sequence(capture, one);
         result.sequence_s += watch.lap_s();
         decode(capture, rig, settings.decode, one);
         if (&capture == &captures.front()) {

@@ -19,6 +19,7 @@ namespace planlight {
 /// The frames of one scan: one per pattern, in the order of the sequence.
 struct ScanCapture {
     StripeSettings stripes;
+    bool check_sequence = true;          ///< false: it is known to be right whatever it looks like (see ScanSettings)
     std::vector<GrayImage> left, right;  ///< `right` empty: one camera
     Instant began{}, ended{};            ///< mid-exposure of the first and last frame
     /// What was captured, when it is not the whole of `stripe_sequence(stripes)`: a Gray code without fringes
