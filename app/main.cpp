@@ -82,6 +82,10 @@ void add_patterns(CLI::App& app, PatternsOptions& o) {
     sub->add_option("--width", o.width, "Of the projector, pixels")->capture_default_str()->check(CLI::Range(64, 8192));
     sub->add_option("--height", o.height, "Of the projector, pixels")->capture_default_str()->check(CLI::Range(64, 8192));
     sub->add_option("--phase-steps", o.phase_steps, "Shifts a direction")->capture_default_str()->check(CLI::Range(3, 32));
+    sub->add_option("--set", o.set,
+                    "full: columns and rows, each bit with its inverse; fast: a third of the pictures, columns only, 5 shifts")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"full", "fast"}));
     sub->add_option("--phase-period-px", o.phase_period_px, "Projector pixels a fringe")
         ->capture_default_str()
         ->check(CLI::Range(4.0, 256.0));
@@ -141,6 +145,7 @@ void add_scan(CLI::App& app, ScanOptions& o) {
     auto* sub = command(app, "scan", "Captured stripe pictures -> cloud of skin points in rig",
                         "scan room/capture --rig room/rig.json --out cloud.ply");
     sub->add_option("capture", o.capture, "Capture folder")->required();
+    sub->add_option("--exposure", o.exposures, "Another capture of the same pose, darker or brighter; may be said again");
     sub->add_option("--rig", o.rig, "rig.json")->required();
     sub->add_option("--out", o.out, "Clean cloud (.ply)")->required();
     sub->add_option("--raw", o.raw_out, "Also the cloud before the outliers were removed (.ply)");

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "planning_io/types/error.h"
+#include "registration/scan/merge_exposures.h"
 #include "registration/tracking/markers_in_scan.h"
 
 namespace planlight {
@@ -59,7 +60,14 @@ const ScanResult& Session::scan(const std::function<void(int, int)>& progress) {
                                                motion_in_scan_mm_, scans_repeated_),
                                    "Have the patient lie still and scan again.");
     }
-    scanned_ = scan_from_capture(*capture_, rig_, settings_.scan);
+    std::vector<ScanCapture> exposures;
+    exposures.push_back(std::move(*capture_));
+    capture_.reset();
+    add_darker_captures(projector_, cameras_, clock_, exposures, progress);
+    // What moved since the first capture must not be joined to it.
+    if (exposures.size() > 1 && moved_at_the_end_mm() > settings_.max_motion_in_scan_mm) exposures.resize(1);
+    scanned_ = scan_from_exposures(exposures, rig_, settings_.scan);
+    capture_ = std::move(exposures.front());
     return *scanned_;
 }
 

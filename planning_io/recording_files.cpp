@@ -106,6 +106,7 @@ void write_capture(const CaptureFolder& capture, const fs::path& folder) {
                                                       {"phase_period_px", capture.phase_period_px},
                                                       {"rows", capture.rows},
                                                       {"inverse", capture.inverse},
+                                                      {"check_sequence", capture.check_sequence},
                                                       {"began_ns", capture.began.count()},
                                                       {"ended_ns", capture.ended.count()},
                                                       {"names", capture.names}}));
@@ -122,6 +123,7 @@ CaptureFolder read_capture_settings(const fs::path& file) {
     capture.phase_period_px = root.at("phase_period_px").number(0, 1e5);
     capture.rows = root.at("rows").flag();
     capture.inverse = root.at("inverse").flag();
+    if (const auto check = root.find("check_sequence")) capture.check_sequence = check->flag();
     if (const auto began = root.find("began_ns")) capture.began = instant_of(*began);
     if (const auto ended = root.find("ended_ns")) capture.ended = instant_of(*ended);
     const auto names = root.find("names");

@@ -18,6 +18,7 @@ struct CaptureFolder {
     int phase_steps = 8;
     double phase_period_px = 16;
     bool rows = true, inverse = true;
+    bool check_sequence = true;           ///< false: frames of another order or kind than ours, known to be right
     std::vector<std::string> names;       ///< of the patterns, in order
     std::vector<GrayImage> left, right;   ///< one per name; `right` empty: one camera, no folder right/
     Instant began{}, ended{};

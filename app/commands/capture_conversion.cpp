@@ -77,6 +77,7 @@ ScanCapture scan_capture_from(const CaptureFolder& folder, const std::filesystem
     capture.stripes.phase_period_px = folder.phase_steps > 0 ? folder.phase_period_px : 2;
     capture.stripes.rows = folder.rows;
     capture.stripes.inverse = folder.inverse;
+    capture.check_sequence = folder.check_sequence;
     auto patterns = wanted_patterns(capture.stripes, named);
     const bool whole = capture.stripes.phase_steps > 0 &&
                        std::all_of(patterns.begin(), patterns.end(), [&](const auto& p) { return is_there(folder, p.name); });
@@ -115,6 +116,7 @@ CaptureFolder capture_folder_from(const ScanCapture& capture) {
     folder.phase_period_px = capture.stripes.phase_period_px;
     folder.rows = capture.stripes.rows;
     folder.inverse = capture.stripes.inverse;
+    folder.check_sequence = capture.check_sequence;
     for (const auto& pattern : stripe_sequence(capture.stripes)) folder.names.push_back(pattern.name);
     folder.left = capture.left;
     folder.right = capture.right;

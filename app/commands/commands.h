@@ -34,6 +34,7 @@ struct PatternsOptions {
     Path out;
     int width = 1920, height = 1080, phase_steps = 8;
     double phase_period_px = 16;
+    std::string set = "full";  ///< or "fast"
     bool json = false;
 };
 int run_patterns(const PatternsOptions& options);
@@ -73,6 +74,7 @@ int run_simulate_board(const SimulateOptions& options);  ///< with `board` given
 
 struct ScanOptions {
     Path capture, rig, out, raw_out;
+    std::vector<Path> exposures;    ///< further captures of the same pose
     double max_movement_mm = 0.15;  ///< of the patient during the scan
     bool accept_movement = false, json = false;
 };

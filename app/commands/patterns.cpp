@@ -16,6 +16,7 @@ int run_patterns(const PatternsOptions& options) {
     stripes.width = options.width;
     stripes.height = options.height;
     stripes.phase_steps = options.phase_steps;
+    if (options.set == "fast") stripes = fast_stripes(options.width, options.height);
     stripes.phase_period_px = options.phase_period_px;
     std::filesystem::create_directories(options.out);
     const auto sequence = stripe_sequence(stripes);

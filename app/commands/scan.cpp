@@ -10,6 +10,7 @@
 #include "planning_io/mesh_file.h"
 #include "planning_io/rig_file.h"
 #include "planning_io/types/error.h"
+#include "registration/scan/merge_exposures.h"
 #include "registration/tracking/markers_in_scan.h"
 
 namespace planlight {
@@ -77,9 +78,19 @@ void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
 
 int run_scan(const ScanOptions& options) {
     const RigCalibration rig = read_partial_rig(options.rig);
-    const ScanCapture capture = scan_capture_from(read_capture(options.capture), options.capture);
-    check_sizes(capture, rig, options.capture);
-    const ScanResult scan = scan_from_capture(capture, rig);
+    std::vector<ScanCapture> captures;
+    std::vector<Path> folders{options.capture};
+    folders.insert(folders.end(), options.exposures.begin(), options.exposures.end());
+    for (const Path& folder : folders) {
+        captures.push_back(scan_capture_from(read_capture(folder), folder));
+        check_sizes(captures.back(), rig, folder);
+        if (captures.back().stripes.rows != captures.front().stripes.rows ||
+            captures.back().right.empty() != captures.front().right.empty())
+            throw InputError(folder, "has other directions or cameras than the first capture",
+                             "Give exposures of one pose with one sequence.");
+    }
+    const ScanCapture& capture = captures.front();
+    const ScanResult scan = scan_from_exposures(captures, rig);
     if (scan.clean.kept.empty())
         throw CheckFailedError(fmt::format("no skin was found in the capture ({} of {} pixels of the left picture decoded)",
                                            scan.left.decoded, scan.left.width * scan.left.height),
@@ -107,7 +118,7 @@ int run_scan(const ScanOptions& options) {
             {"projector_offset_px", {scan.raw.projector_offset_px.x(), scan.raw.projector_offset_px.y()}},
             {"projector", projector_of(scan)},
             {"movement", json_of(movement)},
-            {"seconds", {{"decode", scan.decode_s}, {"triangulate", scan.triangulate_s}, {"outliers", scan.outliers_s}}}};
+            {"seconds", {{"sequence", scan.sequence_s}, {"decode", scan.decode_s}, {"triangulate", scan.triangulate_s}, {"outliers", scan.outliers_s}}}};
         std::cout << result.dump(2) << '\n';
     } else {
         fmt::print("{} points by {} in {} (raw {}; off the rays {}, jumps {}, grazing {}, small pieces {}, lonely {}).\n",

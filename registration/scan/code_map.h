@@ -21,24 +21,26 @@ struct LocalCode {
 /// where the neighbours do not lie on one smooth map (a depth edge, a hair, a glint).
 std::optional<LocalCode> local_code(const DecodedView& view, int x, int y);
 
-/// Where in a view a projector pixel is seen: the inverse of the view's code, by rounded projector pixel.
+/// Where in a view a projector pixel is seen: the inverse of the view's code.
 class CodeIndex {
 public:
     CodeIndex(const DecodedView& view, int projector_width, int projector_height);
 
     struct Match {
-        Eigen::Vector2d pixel;  ///< sub-pixel
-        LocalCode local;        ///< around the nearest whole pixel
+        Eigen::Vector2d code, pixel;    ///< as asked for, and where it is: sub-pixel
+        LocalCode local;                ///< around the nearest whole pixel
+        Eigen::Matrix2d pixel_by_code;  ///< inverse of its derivative
     };
     /// The sub-pixel place in the view that has this code; empty when no smooth piece of code there contains it.
     std::optional<Match> find(const Eigen::Vector2d& code) const;
 
-private:
-    std::int32_t candidate(const Eigen::Vector2d& code) const;
+    /// The same, searched from a place nearby; empty also when the way there is broken.
+    std::optional<Match> find_from(const Eigen::Vector2d& code, const Eigen::Vector2d& pixel) const;
 
+private:
     const DecodedView& view_;
-    int width_, height_;
-    std::vector<std::int32_t> pixel_of_;  ///< index of a camera pixel, -1 where none
+    int columns_, rows_;                  ///< cells
+    std::vector<std::int32_t> pixel_in_;  ///< per cell of the projector's picture a camera pixel that sees it, -1 where none
 };
 
 }  // namespace planlight

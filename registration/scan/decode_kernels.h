@@ -3,31 +3,86 @@
 #include <cstddef>
 #include <cstdint>
 
-// The inner loops of the decoder: plain arrays of `n` pixels, one call per frame and block of pixels.
+// The inner loops of the decoder: plain arrays of `n` pixels, one call per frame and block of pixels. Compiled for
+// AVX-512, AVX2 and any x86-64; the processor's own set is chosen when the program starts.
 namespace planlight::decode_kernels {
+
+/// Pixels of one block: its working arrays stay in the first cache level.
+inline constexpr std::size_t kBlock = 1024;
+
+/// A Gray code of up to 16 bits and the bits that are in doubt, as low and high bytes.
+struct CodeBytes {
+    std::uint8_t low[kBlock], high[kBlock], doubt_low[kBlock], doubt_high[kBlock];
+};
+
+/// Asks for the next block of a frame while this one is worked on: the processor by itself does not follow 40 frames at once.
+inline void expect_next(const std::uint8_t* frame) {
+#pragma GCC unroll 16
+    for (std::size_t at = kBlock; at < 2 * kBlock; at += 64) __builtin_prefetch(frame + at);
+}
+
+/// The greatest difference of white and black (0 where black is the brighter).
+int highest_contrast(const std::uint8_t* white, const std::uint8_t* black, std::size_t n);
 
 /// Adds a fringe frame, weighted by the sine and cosine of its shift; `top` keeps the brightest value.
 void add_phase(const std::uint8_t* frame, float sine, float cosine, float* sine_sum, float* cosine_sum, std::uint8_t* top,
                std::size_t n);
+
+/// The same for all of eight frames shifted by an eighth of a period each; the sums and `top` are set, not added to.
+void sum_eight_phases(const std::uint8_t* const* frames, float* sine_sum, float* cosine_sum, std::uint8_t* top, std::size_t n);
 
 /// The fringe amplitude (`amplitude_scale` is 2 / steps) and the phase as pixels in [-period/2, period/2].
 void finish_phase(const float* sine_sum, const float* cosine_sum, float amplitude_scale, float period, float* amplitude,
                   float* phase_px, std::size_t n);
 
 /// The grey difference below which a Gray bit is in doubt: a part of the fringe amplitude, at least `floor`.
-void doubt_below(const float* amplitude, float part, float floor, std::int16_t* limit, std::size_t n);
+void doubt_below(const float* amplitude, float part, float floor, std::uint8_t* limit, std::size_t n);
 
-/// Decides one bit (value `bit`) by the frame against its inverse.
-void decide_bit(const std::uint8_t* frame, const std::uint8_t* inverse, const std::int16_t* limit, std::uint16_t bit,
-                std::uint16_t* code, std::uint16_t* doubt, std::size_t n);
+/// For a code without fringes: the difference below which, by (white - black) and in grey, a bit is in doubt, less one.
+void doubt_below_contrast(const std::uint8_t* white, const std::uint8_t* black, float part, float floor, std::uint8_t* limit,
+                          std::size_t n);
 
-/// Decides one bit by the frame against the mean of white and black (the difference counts twice, as for an inverse).
-void decide_bit_by_mean(const std::uint8_t* frame, const std::uint8_t* white, const std::uint8_t* black,
-                        const std::int16_t* limit, std::uint16_t bit, std::uint16_t* code, std::uint16_t* doubt, std::size_t n);
+void contrast_of(const std::uint8_t* white, const std::uint8_t* black, float* contrast, std::size_t n);
+
+/// Decides one bit (a bit of a byte of `code`) by the frame against its inverse, or against another threshold.
+void decide_bit(const std::uint8_t* frame, const std::uint8_t* inverse, const std::uint8_t* limit, std::uint8_t bit,
+                std::uint8_t* code, std::uint8_t* doubt, std::size_t n);
+
+/// Halfway between white and black, and half of `limit`: the threshold for a bit without an inverse.
+void middle_of(const std::uint8_t* white, const std::uint8_t* black, const std::uint8_t* limit, std::uint8_t* middle,
+               std::uint8_t* half_limit, std::size_t n);
 
 /// Joins Gray code and phase to a projector pixel; NaN where they do not determine it. A bit in doubt is harmless
 /// where the code with and without it unwraps to the same pixel (its own border); two are not.
-void unwrap(const std::uint16_t* code, const std::uint16_t* doubt, const float* phase_px, float period, float size,
-            float* pixel, std::size_t n);
+void unwrap(const CodeBytes& code, const float* phase_px, float period, float size, float* pixel, std::size_t n);
+
+/// A Gray code alone, `cell_px` projector pixels a number: the middle of its cell, or of two neighbours where just the bit of
+/// their common border is in doubt. NaN where another bit is, or the number lies outside `size` pixels.
+void place_code(const CodeBytes& code, float cell_px, float size, float* pixel, std::size_t n);
+
+/// What makes a pixel of one direction believable.
+struct Limits {
+    float min_modulation, min_direct_fraction, sigma_by_inverse_amplitude, max_sigma_px;
+    int saturated_at;
+};
+struct Counts {
+    std::uint32_t decoded = 0, dark = 0, saturated = 0, uncertain = 0;
+};
+
+/// One direction of a block as decoded.
+struct DirectionBlock {
+    const float *amplitude, *pixel;
+    const std::uint8_t* top;  ///< the brightest value seen
+};
+
+/// Writes column, row (if coded: `rows` and `row` not null) and sigma of the believable pixels, NaN for the rest, counted.
+Counts keep_good(const DirectionBlock& columns, const DirectionBlock* rows, const std::uint8_t* white,
+                 const std::uint8_t* black, const Limits& limits, float* column, float* row, float* sigma_px, std::size_t n);
+
+/// `value` where `pixel` is known, NaN elsewhere.
+void set_where_known(const float* pixel, float value, float* out, std::size_t n);
+
+/// A block without light: all NaN; dark, or saturated where white is.
+Counts keep_none(const std::uint8_t* white, int saturated_at, float* column, float* row, float* sigma_px, std::size_t n);
 
 }  // namespace planlight::decode_kernels

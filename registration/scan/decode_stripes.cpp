@@ -1,24 +1,19 @@
 #include "registration/scan/decode_stripes.h"
 
 #include <fmt/format.h>
-#include <tbb/parallel_for.h>
-
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <limits>
-#include <memory>
 #include <numbers>
 #include <stdexcept>
 
-#include "registration/scan/decode_kernels.h"
+#include "registration/scan/decode_blocks.h"
 
 namespace planlight {
 namespace {
 
-constexpr std::size_t kBlock = 2048;  // pixels whose working arrays stay in the first cache levels
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+namespace kernels = decode_kernels;
 constexpr double kFallbackNoiseGrey = 2;
 
 using Bytes = const std::uint8_t*;
@@ -62,32 +57,44 @@ Frames sort_frames(std::span<const GrayImage> frames, const StripeSettings& stri
     return sorted;
 }
 
+/// Pixels to measure the noise on: runs of neighbours, so that each cache line read is used, evenly over the picture.
+template <class Visit>
+void for_sample(std::size_t pixels, const Visit& visit) {
+    constexpr std::size_t kRun = 64, kMost = 20000;
+    const std::size_t runs = std::max<std::size_t>(1, std::min(pixels, kMost) / kRun), every = pixels / runs;
+    for (std::size_t begin = 0; begin < pixels; begin += every)
+        for (std::size_t i = begin; i < std::min(begin + kRun, pixels); ++i) visit(i);
+}
+
 /// The noise of one grey value from the second harmonic of the fringes: a gamma makes one, but in phase with the
 /// fringe (the fringe is even about its crest); what stands at right angles to it is noise.
 double measure_noise(const Direction& direction, std::size_t pixels, const DecodeSettings& settings) {
     const std::size_t steps = direction.phase.size();
     if (steps < 5) return kFallbackNoiseGrey;
-    const std::size_t stride = std::max<std::size_t>(1, pixels / 40000);
-    std::vector<double> off;
-    for (std::size_t i = 0; i < pixels; i += stride) {
-        std::array<double, 4> sum{};  // sine and cosine of the first and second harmonic
+    std::vector<Eigen::Array4f> weights;  // sine and cosine of the first and second harmonic
+    for (std::size_t k = 0; k < steps; ++k) {
+        const double shift = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(steps);
+        weights.push_back(
+            Eigen::Array4d(std::sin(shift), std::cos(shift), std::sin(2 * shift), std::cos(2 * shift)).cast<float>());
+    }
+    std::vector<float> off;
+    for_sample(pixels, [&](std::size_t i) {
+        Eigen::Array4f sum = Eigen::Array4f::Zero();
         int top = 0;
         for (std::size_t k = 0; k < steps; ++k) {
-            const double shift = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(steps);
             const int value = direction.phase[k][i];
             top = std::max(top, value);
-            sum[0] += value * std::sin(shift);
-            sum[1] += value * std::cos(shift);
-            sum[2] += value * std::sin(2 * shift);
-            sum[3] += value * std::cos(2 * shift);
+            sum += weights[k] * static_cast<float>(value);
         }
-        const double first = std::hypot(sum[0], sum[1]), theta = 2 * std::atan2(sum[0], sum[1]);
-        if (top >= settings.saturated_at || first * 2 / static_cast<double>(steps) < 3 * settings.min_modulation) continue;
-        const double quadrature = sum[2] * std::cos(theta) - sum[3] * std::sin(theta);
-        const double in_phase = sum[2] * std::sin(theta) + sum[3] * std::cos(theta);
-        const double by_phase_noise = 2 * in_phase / first;  // the reference phase is noisy as well
-        off.push_back(std::abs(quadrature) / std::sqrt(static_cast<double>(steps) / 2 * (1 + by_phase_noise * by_phase_noise)));
-    }
+        const float first = std::hypot(sum[0], sum[1]);
+        if (top >= settings.saturated_at || first * 2 / static_cast<float>(steps) < 3 * settings.min_modulation) return;
+        const float sine = sum[0] / first, cosine = sum[1] / first;
+        const float sine_twice = 2 * sine * cosine, cosine_twice = cosine * cosine - sine * sine;
+        const float quadrature = sum[2] * cosine_twice - sum[3] * sine_twice;
+        const float in_phase = sum[2] * sine_twice + sum[3] * cosine_twice;
+        const float by_phase_noise = 2 * in_phase / first;  // the reference phase is noisy as well
+        off.push_back(std::abs(quadrature) / std::sqrt(static_cast<float>(steps) / 2 * (1 + by_phase_noise * by_phase_noise)));
+    });
     if (off.size() < 50) return kFallbackNoiseGrey;
     const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
     std::nth_element(off.begin(), middle, off.end());
@@ -96,118 +103,90 @@ double measure_noise(const Direction& direction, std::size_t pixels, const Decod
 
 /// Working arrays of one block of pixels, and what one direction says about it.
 struct Block {
-    std::array<float, kBlock> sine_sum, cosine_sum, amplitude, phase_px, pixel;
-    std::array<std::int16_t, kBlock> limit;
-    std::array<std::uint16_t, kBlock> code, doubt;
-    std::array<std::uint8_t, kBlock> top;
+    alignas(64) std::array<float, kernels::kBlock> sine_sum, cosine_sum, amplitude, phase_px, pixel;
+    alignas(64) std::array<std::uint8_t, kernels::kBlock> limit, top, middle, half_limit;
+    alignas(64) kernels::CodeBytes code;
+
+    kernels::DirectionBlock result() const { return {amplitude.data(), pixel.data(), top.data()}; }
 };
+
+struct Work {
+    Block columns, rows;
+};
+
+void decode_phase(const Direction& direction, const StripeSettings& stripes, std::size_t begin, std::size_t n, Block& b) {
+    const std::size_t steps = direction.phase.size();
+    if (steps == 8) {
+        std::array<Bytes, 8> frames;
+        for (std::size_t k = 0; k < steps; ++k) frames[k] = direction.phase[k] + begin, kernels::expect_next(frames[k]);
+        kernels::sum_eight_phases(frames.data(), b.sine_sum.data(), b.cosine_sum.data(), b.top.data(), n);
+    } else {
+        b.sine_sum.fill(0);
+        b.cosine_sum.fill(0);
+        b.top.fill(0);
+        for (std::size_t k = 0; k < steps; ++k) {
+            const double shift = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(steps);
+            kernels::add_phase(direction.phase[k] + begin, static_cast<float>(std::sin(shift)),
+                               static_cast<float>(std::cos(shift)), b.sine_sum.data(), b.cosine_sum.data(), b.top.data(), n);
+        }
+    }
+    kernels::finish_phase(b.sine_sum.data(), b.cosine_sum.data(), 2 / static_cast<float>(steps),
+                          static_cast<float>(stripes.phase_period_px), b.amplitude.data(), b.phase_px.data(), n);
+}
 
 void decode_block(const Frames& frames, const Direction& direction, const StripeSettings& stripes, double noise_grey,
                   std::size_t begin, std::size_t n, Block& b) {
-    b.sine_sum.fill(0);
-    b.cosine_sum.fill(0);
-    b.code.fill(0);
-    b.doubt.fill(0);
-    b.top.fill(0);
-    const auto steps = static_cast<double>(direction.phase.size());
-    for (std::size_t k = 0; k < direction.phase.size(); ++k) {
-        const double shift = 2 * std::numbers::pi * static_cast<double>(k) / steps;
-        decode_kernels::add_phase(direction.phase[k] + begin, static_cast<float>(std::sin(shift)),
-                                  static_cast<float>(std::cos(shift)), b.sine_sum.data(), b.cosine_sum.data(), b.top.data(), n);
-    }
-    const auto period = static_cast<float>(stripes.phase_period_px);
-    decode_kernels::finish_phase(b.sine_sum.data(), b.cosine_sum.data(), static_cast<float>(2 / steps), period,
-                                 b.amplitude.data(), b.phase_px.data(), n);
+    decode_phase(direction, stripes, begin, n, b);
     // A clear bit differs by two amplitudes or more; a quarter of that, or 3 sigma of a difference, is doubt.
-    decode_kernels::doubt_below(b.amplitude.data(), 0.5f, static_cast<float>(3 * std::numbers::sqrt2 * noise_grey),
-                                b.limit.data(), n);
+    kernels::doubt_below(b.amplitude.data(), 0.5f, static_cast<float>(3 * std::numbers::sqrt2 * noise_grey), b.limit.data(), n);
+    b.code = {};
     const std::size_t bits = direction.gray.size();
+    if (!stripes.inverse)
+        kernels::middle_of(frames.white + begin, frames.black + begin, b.limit.data(), b.middle.data(), b.half_limit.data(), n);
     for (std::size_t k = 0; k < bits; ++k) {
-        const auto bit = static_cast<std::uint16_t>(1u << (bits - 1 - k));
-        if (stripes.inverse)
-            decode_kernels::decide_bit(direction.gray[k] + begin, direction.inverse[k] + begin, b.limit.data(), bit,
-                                       b.code.data(), b.doubt.data(), n);
-        else
-            decode_kernels::decide_bit_by_mean(direction.gray[k] + begin, frames.white + begin, frames.black + begin,
-                                               b.limit.data(), bit, b.code.data(), b.doubt.data(), n);
+        const std::size_t place = bits - 1 - k;
+        const auto bit = static_cast<std::uint8_t>(1u << (place % 8));
+        kernels::expect_next(direction.gray[k] + begin);
+        if (stripes.inverse) kernels::expect_next(direction.inverse[k] + begin);
+        kernels::decide_bit(direction.gray[k] + begin, stripes.inverse ? direction.inverse[k] + begin : b.middle.data(),
+                            stripes.inverse ? b.limit.data() : b.half_limit.data(), bit, place < 8 ? b.code.low : b.code.high,
+                            place < 8 ? b.code.doubt_low : b.code.doubt_high, n);
     }
-    decode_kernels::unwrap(b.code.data(), b.doubt.data(), b.phase_px.data(), period, static_cast<float>(direction.size),
-                           b.pixel.data(), n);
+    kernels::unwrap(b.code, b.phase_px.data(), static_cast<float>(stripes.phase_period_px), static_cast<float>(direction.size),
+                    b.pixel.data(), n);
 }
 
-struct Limits {
-    float min_modulation, min_direct_fraction, sigma_by_inverse_amplitude, max_sigma_px;
-    int saturated_at;
-};
-
-/// What became of a pixel in one direction.
-enum class Fate { decoded, dark, saturated, uncertain };
-
-Fate judge(const Block& b, std::size_t i, int contrast, const Limits& limits) {
-    if (b.top[i] >= limits.saturated_at) return Fate::saturated;
-    if (b.amplitude[i] < limits.min_modulation || b.amplitude[i] < limits.min_direct_fraction * static_cast<float>(contrast))
-        return Fate::dark;
-    if (std::isnan(b.pixel[i]) || limits.sigma_by_inverse_amplitude > limits.max_sigma_px * b.amplitude[i])
-        return Fate::uncertain;
-    return Fate::decoded;
-}
-
-struct Counts {
-    std::atomic<std::size_t> decoded{0}, dark{0}, saturated{0}, uncertain{0};
-};
-
-void keep_block(const Frames& frames, const Block& columns, const Block* rows, const Limits& limits, std::size_t begin,
-                std::size_t n, DecodedView& view, Counts& counts) {
-    std::array<std::size_t, 4> seen{};
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::size_t p = begin + i;
-        const int contrast = frames.white[p] - frames.black[p];
-        Fate fate = judge(columns, i, contrast, limits);
-        if (fate == Fate::decoded && rows) fate = judge(*rows, i, contrast, limits);
-        ++seen[static_cast<std::size_t>(fate)];
-        const bool good = fate == Fate::decoded;
-        view.column[p] = good ? columns.pixel[i] : kNaN;
-        if (rows) view.row[p] = good ? rows->pixel[i] : kNaN;
-        view.sigma_px[p] = good ? limits.sigma_by_inverse_amplitude / columns.amplitude[i] : kNaN;
-    }
-    counts.decoded += seen[0];
-    counts.dark += seen[1];
-    counts.saturated += seen[2];
-    counts.uncertain += seen[3];
+/// Decodes the pixels [begin, begin + n) of the view.
+kernels::Counts decode_into(const Frames& frames, const StripeSettings& stripes, const kernels::Limits& limits,
+                            std::size_t begin, std::size_t n, Work& work, DecodedView& view) {
+    const Bytes white = frames.white + begin, black = frames.black + begin;
+    kernels::expect_next(white);
+    kernels::expect_next(black);
+    float *column = view.column.data() + begin, *row = stripes.rows ? view.row.data() + begin : nullptr,
+          *sigma = view.sigma_px.data() + begin;
+    // A fringe is never stronger than the light itself; most of a picture shows what no light falls on.
+    if (static_cast<float>(kernels::highest_contrast(white, black, n)) < limits.min_modulation)
+        return kernels::keep_none(white, limits.saturated_at, column, row, sigma, n);
+    decode_block(frames, frames.directions[0], stripes, view.noise_grey, begin, n, work.columns);
+    if (stripes.rows) decode_block(frames, frames.directions[1], stripes, view.noise_grey, begin, n, work.rows);
+    const kernels::DirectionBlock columns = work.columns.result(), rows = work.rows.result();
+    return kernels::keep_good(columns, stripes.rows ? &rows : nullptr, white, black, limits, column, row, sigma, n);
 }
 
 }  // namespace
 
 DecodedView decode_stripes(std::span<const GrayImage> frames, const StripeSettings& stripes, const DecodeSettings& settings) {
     const Frames sorted = sort_frames(frames, stripes);
-    DecodedView view;
-    view.width = frames[0].width;
-    view.height = frames[0].height;
+    DecodedView view = empty_view(frames[0].width, frames[0].height, stripes.rows);
     const std::size_t pixels = frames[0].pixels.size();
-    view.column.resize(pixels);
-    if (stripes.rows) view.row.resize(pixels);
-    view.sigma_px.resize(pixels);
     view.noise_grey = settings.noise_grey > 0 ? settings.noise_grey : measure_noise(sorted.directions[0], pixels, settings);
-    const Limits limits{static_cast<float>(settings.min_modulation), static_cast<float>(settings.min_direct_fraction),
-                        static_cast<float>(stripes.phase_period_px / (2 * std::numbers::pi) *
-                                           std::sqrt(2.0 / stripes.phase_steps) * view.noise_grey),
-                        static_cast<float>(settings.max_phase_sigma_px), settings.saturated_at};
-    Counts counts;
-    const std::size_t blocks = (pixels + kBlock - 1) / kBlock;
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks, 16), [&](const tbb::blocked_range<std::size_t>& range) {
-        const auto columns = std::make_unique<Block>();
-        const auto rows = stripes.rows ? std::make_unique<Block>() : nullptr;
-        for (std::size_t block = range.begin(); block < range.end(); ++block) {
-            const std::size_t begin = block * kBlock, n = std::min(kBlock, pixels - begin);
-            decode_block(sorted, sorted.directions[0], stripes, view.noise_grey, begin, n, *columns);
-            if (rows) decode_block(sorted, sorted.directions[1], stripes, view.noise_grey, begin, n, *rows);
-            keep_block(sorted, *columns, rows.get(), limits, begin, n, view, counts);
-        }
+    const kernels::Limits limits{static_cast<float>(settings.min_modulation), static_cast<float>(settings.min_direct_fraction),
+                                 static_cast<float>(stripes.phase_period_px / (2 * std::numbers::pi) *
+                                                    std::sqrt(2.0 / stripes.phase_steps) * view.noise_grey),
+                                 static_cast<float>(settings.max_phase_sigma_px), settings.saturated_at};
+    decode_by_blocks<Work>(view, [&](std::size_t begin, std::size_t n, Work& work) {
+        return decode_into(sorted, stripes, limits, begin, n, work, view);
     });
-    view.decoded = counts.decoded;
-    view.dark = counts.dark;
-    view.saturated = counts.saturated;
-    view.uncertain = counts.uncertain;
     return view;
 }
 

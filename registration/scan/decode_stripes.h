@@ -2,9 +2,9 @@
 
 #include <cstddef>
 #include <span>
-#include <vector>
 
 #include "planning_io/types/image.h"
+#include "planning_io/types/large_array.h"
 #include "registration/scan/stripe_patterns.h"
 
 namespace planlight {
@@ -20,8 +20,8 @@ struct DecodeSettings {
 /// Per camera pixel the projector pixel that lit it; NaN where it is not known. An uncertain pixel is dropped, never guessed.
 struct DecodedView {
     int width = 0, height = 0;       ///< of the camera
-    std::vector<float> column, row;  ///< projector pixels (sub-pixel); `row` empty when only columns were coded
-    std::vector<float> sigma_px;     ///< one standard deviation of `column`, projector pixels
+    LargeArray<float> column, row;  ///< projector pixels (sub-pixel); `row` empty when only columns were coded
+    LargeArray<float> sigma_px;     ///< one standard deviation of `column`, projector pixels
     double noise_grey = 0;           ///< one standard deviation of a grey value, as measured or given
     std::size_t decoded = 0, dark = 0, saturated = 0, uncertain = 0;  ///< pixels, by what became of them
 };

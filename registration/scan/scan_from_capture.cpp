@@ -1,11 +1,16 @@
 #include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
 
+#include <algorithm>
 #include <chrono>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
+#include "planning_io/types/error.h"
 #include "registration/scan/decode_capture.h"
+#include "registration/scan/merge_exposures.h"
+#include "registration/scan/place_matches.h"
 #include "registration/scan/scan_surface.h"
 #include "registration/scan/triangulate_cameras.h"
 
@@ -31,6 +36,45 @@ void check_size(const DecodedView& view, const CameraModel& camera, const char* 
         throw std::invalid_argument(
             fmt::format("scan_from_capture: {} frames of {} x {} for a camera calibrated at {} x {}", name, view.width,
                         view.height, camera.width, camera.height));
+}
+
+/// The check of one camera's frames; empty where they are not the whole sequence.
+SequenceCheck sequence_of(const std::vector<GrayImage>& frames, const StripeSettings& stripes) {
+    const bool whole = stripes.phase_steps >= 3 && frames.size() == stripe_sequence(stripes).size();
+    return whole ? check_sequence(frames, stripes) : SequenceCheck{};
+}
+
+void refuse_wrong_sequence(const ScanCapture& capture, ScanResult& result) {
+    tbb::parallel_invoke([&] { result.left_sequence = sequence_of(capture.left, capture.stripes); },
+                         [&] { result.right_sequence = sequence_of(capture.right, capture.stripes); });
+    for (const auto& [check, camera] : {std::pair{&result.left_sequence, "left"}, {&result.right_sequence, "right"}})
+        if (!check->problems.empty())
+            throw CheckFailedError(fmt::format("the {} camera's frames do not show the sequence: {} ({:.0f} % of the lit pixels)",
+                                               camera, check->problems[0].what, 100 * check->problems[0].share),
+                                   "Scan again; if it comes back, check the delay between projector and cameras and the names of "
+                                   "the pictures. \"check_sequence\": false in capture.json takes them as they are.");
+}
+
+bool use_resection(const ScanSettings& settings, ScanResult& result, RigCalibration& rig) {
+    if (!settings.use_resection || !result.resection || !result.resection->believable) return false;
+    rig.projector = result.resection->projector;
+    return true;
+}
+
+/// The codes are matched once; where the projector stands is found from a part of the matches, then all are placed.
+void triangulate_and_resect(const ScanSettings& settings, ScanResult& result, RigCalibration& rig) {
+    if (result.left.row.empty() || result.right.row.empty()) {
+        result.raw = triangulate(result.left, result.right, rig, settings.triangulation);
+        return;
+    }
+    constexpr std::size_t kEnough = 10000;
+    const ViewMatches matches = match_views(result.left, result.right, rig, settings.triangulation);
+    TriangulationSettings by_cameras = settings.triangulation;
+    by_cameras.one_camera = false;
+    result.resection =
+        resect_projector(place_matches(matches, rig, by_cameras, 1 + matches.both.size() / kEnough), rig, settings.resection);
+    result.resection_used = use_resection(settings, result, rig);
+    result.raw = place_matches(matches, rig, settings.triangulation);
 }
 
 /// A view in which nothing is seen, for the camera that is not there.
@@ -76,29 +120,41 @@ RigCalibration place_points(const ScanCapture& capture, const RigCalibration& ri
         rig_now.projector = rig.left_camera;  // for what asks where the surface is looked at from
         return rig_now;
     }
-    result.raw = triangulate(result.left, result.right, rig, settings.triangulation);
-    if (capture.stripes.rows) result.resection = resect_projector(result.raw, rig, settings.resection);
-    if (settings.use_resection && result.resection && result.resection->believable) {
-        rig_now.projector = result.resection->projector;
-        result.raw = triangulate(result.left, result.right, rig_now, settings.triangulation);
-        result.resection_used = true;
-    }
+    triangulate_and_resect(settings, result, rig_now);
     return rig_now;
 }
 
 }  // namespace
 
-ScanResult scan_from_capture(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings) {
-    check_devices(capture, rig);
+ScanResult scan_from_exposures(std::span<const ScanCapture> captures, const RigCalibration& rig, const ScanSettings& settings) {
+    if (captures.empty()) throw std::invalid_argument("scan_from_exposures: no capture");
     ScanResult result;
     Stopwatch watch;
-    decode(capture, rig, settings.decode, result);
-    result.decode_s = watch.lap_s();
-    const RigCalibration rig_now = place_points(capture, rig, settings, result);
+    for (const ScanCapture& capture : captures) {
+        check_devices(capture, rig);
+        ScanResult one;
+        if (settings.check_sequence && capture.check_sequence) refuse_wrong_sequence(capture, one);
+        result.sequence_s += watch.lap_s();
+        decode(capture, rig, settings.decode, one);
+        if (&capture == &captures.front()) {
+            std::swap(result, one);
+            result.sequence_s = one.sequence_s;
+        } else {
+            take_better(result.left, one.left);
+            take_better(result.right, one.right);
+            result.code_step_px = std::max(result.code_step_px, one.code_step_px);
+        }
+        result.decode_s += watch.lap_s();
+    }
+    const RigCalibration rig_now = place_points(captures.front(), rig, settings, result);
     result.triangulate_s = watch.lap_s();
     result.clean = remove_outliers(result.raw, rig_now, settings.outliers);
     result.outliers_s = watch.lap_s();
     return result;
+}
+
+ScanResult scan_from_capture(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings) {
+    return scan_from_exposures(std::span(&capture, 1), rig, settings);
 }
 
 }  // namespace planlight

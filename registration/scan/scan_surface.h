@@ -8,6 +8,7 @@
 #include "planning_io/types/rig_calibration.h"
 #include "registration/devices/projector.h"
 #include "registration/devices/stereo_camera.h"
+#include "registration/scan/check_sequence.h"
 #include "registration/scan/decode_stripes.h"
 #include "registration/scan/remove_outliers.h"
 #include "registration/scan/resect_projector.h"
@@ -18,6 +19,7 @@ namespace planlight {
 /// The frames of one scan: one per pattern, in the order of the sequence.
 struct ScanCapture {
     StripeSettings stripes;
+    bool check_sequence = true;          ///< false: it is known to be right whatever it looks like (see ScanSettings)
     std::vector<GrayImage> left, right;  ///< `right` empty: one camera
     Instant began{}, ended{};            ///< mid-exposure of the first and last frame
     /// What was captured, when it is not the whole of `stripe_sequence(stripes)`: a Gray code without fringes
@@ -38,11 +40,13 @@ struct ScanSettings {
     /// Take the projector from where the scan finds it, if that is believable (`Resection::believable`): without it an
     /// error of the projector's calibration goes straight into the points that only one camera sees.
     bool use_resection = true;
+    bool check_sequence = true;  ///< refuse a capture in which a frame does not show its own picture
 };
 
 /// A scan from pictures to clean cloud, with everything in between for the report (Fig. 2).
 struct ScanResult {
     DecodedView left, right;
+    SequenceCheck left_sequence, right_sequence;  ///< not checked: too few lit pixels, or not asked for
     Triangulation raw;
     OutlierReport clean;
     std::optional<Resection> resection;  ///< empty: too few points, or columns only
@@ -50,14 +54,15 @@ struct ScanResult {
     /// How finely the light could be read, projector pixels: 0 by the fringes, to fractions of one; else the finest cell
     /// of the Gray code, because there were no fringes, or none that the optics resolved.
     double code_step_px = 0;
-    double decode_s = 0, triangulate_s = 0, outliers_s = 0;
+    double sequence_s = 0, decode_s = 0, triangulate_s = 0, outliers_s = 0;
 };
 
 /// The cloud of a capture. An empty cloud is a value (nothing was lit); the counts say why.
 ///
 /// Of three devices any two do: a rig without a right camera, or a capture without its pictures, is scanned by the left
 /// camera and the projector; a rig without a projector by both cameras, which find partners by the code (normals then look
-/// towards the left camera). `resection` needs all three. Throws std::invalid_argument when less is there.
+/// towards the left camera). `resection` needs all three. Throws std::invalid_argument when less is there; CheckFailedError,
+/// naming the picture, when a frame is late, doubled, missing or swapped (`ScanSettings::check_sequence`).
 ScanResult scan_from_capture(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings = {});
 
 }  // namespace planlight

@@ -64,6 +64,15 @@ void check_stripes(const StripeSettings& s) {
         refuse(fmt::format("more than {} Gray bits; a longer phase period needs fewer", kMaxGrayBits));
 }
 
+StripeSettings fast_stripes(int width, int height) {
+    StripeSettings stripes;
+    stripes.width = width;
+    stripes.height = height;
+    stripes.rows = stripes.inverse = false;
+    stripes.phase_steps = 5;
+    return stripes;
+}
+
 int gray_bits(const StripeSettings& settings, bool along_rows) {
     int bits = 1;
     while (bits < 30 && (1 << bits) < cells(settings, along_rows)) ++bits;

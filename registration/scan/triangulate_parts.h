@@ -37,6 +37,9 @@ int stride_for(std::size_t decoded, const TriangulationSettings& settings);
 /// Adds the outcomes to the result: points, counts and the evidence about the calibration.
 void collect(const std::vector<PointOutcome>& outcomes, Triangulation& result);
 
+/// Throws std::invalid_argument when the views or the rig cannot be triangulated.
+void check_views(const DecodedView& left, const DecodedView& right, const RigCalibration& rig);
+
 /// The views code columns only: along the epipolar lines (see triangulate).
 Triangulation triangulate_columns(const DecodedView& left, const DecodedView& right, const RigCalibration& rig,
                                   const TriangulationSettings& settings);

@@ -113,6 +113,31 @@ TEST(DecodeStripes, WithoutInversesToo) {
     EXPECT_LT(static_cast<double>(e.wrong), 1e-4 * static_cast<double>(e.column.size()));
 }
 
+TEST(DecodeStripes, TheFastSetHasAsFewWrongCodes) {
+    Shot s = plane_shot();
+    s.stripes = fast_stripes(s.room.projector.width, s.room.projector.height);
+    ASSERT_EQ(stripe_sequence(s.stripes).size(), 14u);
+    ASSERT_EQ(stripe_sequence(fast_stripes(1920, 1080)).size(), 15u);
+    std::size_t decoded = 0, wrong = 0, lit = 0;
+    std::vector<double> errors;
+    for (const double white_grey : {190.0, 60.0}) {
+        s.room.light.white_grey = white_grey;
+        const DecodedView v = decode_stripes(photograph(s.room, s.room.left, s.stripes, 9), s.stripes);
+        for (std::size_t i = 0; i < s.truth.code.size(); ++i) {
+            lit += !std::isnan(s.truth.code[i].x());
+            if (std::isnan(v.column[i]) || std::isnan(s.truth.code[i].x())) continue;
+            ++decoded;
+            const double e = v.column[i] - s.truth.code[i].x();
+            if (std::abs(e) > 4) ++wrong;
+            else errors.push_back(e);
+        }
+    }
+    EXPECT_GT(static_cast<double>(decoded), 0.95 * static_cast<double>(lit));
+    EXPECT_LT(static_cast<double>(wrong), 1e-4 * static_cast<double>(decoded));
+    EXPECT_LT(median_size(errors), 0.1);
+    EXPECT_LT(std::abs(mean(errors)), 0.02);
+}
+
 TEST(DecodeStripes, ColumnsOnly) {
     Shot s = plane_shot();
     s.stripes.rows = false;
@@ -151,6 +176,73 @@ TEST(DecodeStripes, ShadowAndDarknessAreDropped) {
         }
     EXPECT_GT(unlit, 100000u);
     EXPECT_EQ(far_from_light, 0u);
+}
+
+/// A frame smoothed by a Gaussian of `sigma` pixels.
+std::vector<float> smoothed(const GrayImage& frame, double sigma) {
+    const int reach = static_cast<int>(3 * sigma);
+    std::vector<float> weights, along(frame.pixels.size()), out(frame.pixels.size());
+    float sum = 0;
+    for (int d = -reach; d <= reach; ++d) sum += weights.emplace_back(static_cast<float>(std::exp(-d * d / (2 * sigma * sigma))));
+    for (int pass = 0; pass < 2; ++pass)
+        for (int y = 0; y < frame.height; ++y)
+            for (int x = 0; x < frame.width; ++x) {
+                float value = 0;
+                for (int d = -reach; d <= reach; ++d) {
+                    const float w = weights[static_cast<std::size_t>(d + reach)] / sum;
+                    if (pass == 0) value += w * static_cast<float>(frame.at(std::clamp(x + d, 0, frame.width - 1), y));
+                    else value += w * along[frame.index(x, std::clamp(y + d, 0, frame.height - 1))];
+                }
+                (pass == 0 ? along : out)[frame.index(x, y)] = value;
+            }
+    return out;
+}
+
+TEST(DecodeStripes, LightByWayOfAnotherWallIsDropped) {
+    // A wall 60 pixels aside throws on every pixel 0.6 of its own light, washed out over 4.8 pixels as by matt skin: in the
+    // shadow of a disc there is bright light with a weak, sharp enough code in it, and it is the code of the wall.
+    const Eigen::Vector3d towards = Eigen::Vector3d(0.1, 0.35, -1).normalized();
+    Room room = paper_room(nearest_of({plane(kPlace, kTilted), plane(kPlace + 120 * towards, -towards, 25)}));
+    room.light.ambient_grey = 8;
+    room.light.white_grey = 150;
+    const StripeSettings stripes = stripes_of(room);
+    std::vector<GrayImage> frames = photograph(room, room.left, stripes, 3);
+    constexpr int kAside_px = 60;
+    for (GrayImage& frame : frames) {
+        const std::vector<float> wall = smoothed(frame, 4.8);
+        for (int y = 0; y < frame.height; ++y)
+            for (int x = 0; x < frame.width; ++x) {
+                const float detour = 0.6f * wall[frame.index(std::min(x + kAside_px, frame.width - 1), y)];
+                frame.at(x, y) =
+                    static_cast<std::uint8_t>(std::min(255L, std::lround(static_cast<float>(frame.at(x, y)) + detour)));
+            }
+    }
+    const Truth truth = truth_of(room, room.left);
+    const auto wrong_codes = [&](double min_direct_fraction) {
+        DecodeSettings settings;
+        settings.min_direct_fraction = min_direct_fraction;
+        const DecodedView v = decode_stripes(frames, stripes, settings);
+        std::size_t wrong = 0;
+        for (int y = 0; y < v.height; ++y)
+            for (int x = 0; x < v.width; ++x) {
+                const std::size_t i =
+                    static_cast<std::size_t>(y) * static_cast<std::size_t>(v.width) + static_cast<std::size_t>(x);
+                if (std::isnan(v.column[i])) continue;
+                if (!std::isnan(truth.code[i].x())) continue;
+                bool near_light = false;  // the rim of the shadow, where blur mixes both
+                for (const auto& [dx, dy] : {std::pair{-5, 0}, {5, 0}, {0, -5}, {0, 5}, {0, 0}}) {
+                    const int px = std::clamp(x + dx, 0, v.width - 1), py = std::clamp(y + dy, 0, v.height - 1);
+                    near_light |= !std::isnan(truth.code[frames[0].index(px, py)].x());
+                }
+                wrong += !near_light;
+            }
+        return std::pair(wrong, v.decoded);
+    };
+    const auto [wrong_without, decoded_without] = wrong_codes(0);
+    const auto [wrong, decoded] = wrong_codes(DecodeSettings{}.min_direct_fraction);
+    EXPECT_GT(wrong_without, 1000u);  // the detour would be taken for a place
+    EXPECT_LT(wrong * 10, wrong_without);
+    EXPECT_GT(decoded + 2 * wrong_without, decoded_without);  // what is lit directly stays
 }
 
 TEST(DecodeStripes, SaturatedPixelsAreDropped) {

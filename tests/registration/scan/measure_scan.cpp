@@ -19,6 +19,7 @@ void measure(const char* name, const Room& room, const Eigen::Vector3d& centre, 
     ScanResult best = scan_from_capture(shot, rig);
     for (int k = 0; k < 4; ++k) {
         const ScanResult again = scan_from_capture(shot, rig);
+        best.sequence_s = std::min(best.sequence_s, again.sequence_s);
         best.decode_s = std::min(best.decode_s, again.decode_s);
         best.triangulate_s = std::min(best.triangulate_s, again.triangulate_s);
         best.outliers_s = std::min(best.outliers_s, again.outliers_s);
@@ -55,8 +56,8 @@ void measure(const char* name, const Room& room, const Eigen::Vector3d& centre, 
                best.raw.epipolar_rms_px);
     fmt::print("  kept {}, jump {}, grazing {}, small {}, lonely {}, thinned {}\n", best.clean.kept.size(), best.clean.jump,
                best.clean.grazing, best.clean.small_piece, best.clean.lonely, best.clean.thinned);
-    fmt::print("  best of 5: decode {:.1f} ms, triangulate {:.1f} ms, outliers {:.1f} ms\n", 1e3 * best.decode_s,
-               1e3 * best.triangulate_s, 1e3 * best.outliers_s);
+    fmt::print("  best of 5: sequence {:.1f} ms, decode {:.1f} ms, triangulate {:.1f} ms, outliers {:.1f} ms\n", 1e3 * best.sequence_s,
+               1e3 * best.decode_s, 1e3 * best.triangulate_s, 1e3 * best.outliers_s);
 }
 
 }  // namespace

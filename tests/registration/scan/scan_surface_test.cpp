@@ -140,6 +140,19 @@ TEST(ScanSurface, ColumnsAloneSufficeWhereThreeViewsMeet) {
     EXPECT_LT(far, 20u);
 }
 
+TEST(ScanSurface, TheFastSetFindsTheSphere) {
+    const Room& room = on_sphere().room;
+    const ScanResult result =
+        scan_from_capture(capture(room, fast_stripes(room.projector.width, room.projector.height)), rig_of(room));
+    ASSERT_GT(result.clean.kept.size(), 20000u);
+    const Eigen::Vector4d found = fit_sphere(result.clean.kept.points_in_rig);
+    EXPECT_NEAR(found(3), 80, 0.05);
+    EXPECT_LT(found.head<3>().norm(), 0.05);
+    double squares = 0;
+    for (const auto& p : result.clean.kept.points_in_rig) squares += std::pow((p - kCentre).norm() - 80, 2);
+    EXPECT_LT(std::sqrt(squares / static_cast<double>(result.clean.kept.size())), 0.1);
+}
+
 TEST(ScanSurface, AnEmptyRoomGivesAnEmptyCloudAndSaysWhy) {
     const Room room = paper_room(sphere(Eigen::Vector3d(5000, 0, 0), 10));
     const ScanResult result = scan_from_capture(capture(room, stripes_of(room)), rig_of(room));

@@ -195,6 +195,13 @@ Truth truth_of(const Room& room, const Optics& camera) {
 }
 
 std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const StripeSettings& stripes, unsigned seed) {
+    std::vector<Shown> pictures;
+    for (const StripePattern& pattern : stripe_sequence(stripes))
+        pictures.push_back({draw_stripes(stripes, pattern), pattern.along_rows});
+    return photograph(room, camera, pictures, seed);
+}
+
+std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const std::vector<Shown>& pictures, unsigned seed) {
     std::vector<std::vector<Sample>> samples;
     for (const double dy : {-0.25, 0.25})
         for (const double dx : {-0.25, 0.25}) samples.push_back(samples_of(room, camera, dx, dy));
@@ -204,15 +211,14 @@ std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const 
     for (float& n : noise) n = normal(random);
     const Light& light = room.light;
     std::vector<GrayImage> frames;
-    for (const StripePattern& pattern : stripe_sequence(stripes)) {
-        const RgbImage picture = draw_stripes(stripes, pattern);
-        const int length = pattern.along_rows ? stripes.height : stripes.width;
+    for (const auto& [picture, along_rows] : pictures) {
+        const int length = along_rows ? picture.height : picture.width;
         std::vector<double> values;
         for (int i = 0; i < length; ++i)
-            values.push_back(std::pow((pattern.along_rows ? picture.at(0, i) : picture.at(i, 0))[1] / 255.0, light.gamma));
+            values.push_back(std::pow((along_rows ? picture.at(0, i) : picture.at(i, 0))[1] / 255.0, light.gamma));
         const Profile profile(values, light.projector_blur_px);
         const Profile edge(
-            std::vector<double>(static_cast<std::size_t>(pattern.along_rows ? stripes.width : stripes.height), 1.0),
+            std::vector<double>(static_cast<std::size_t>(along_rows ? picture.width : picture.height), 1.0),
             light.projector_blur_px);
         cv::Mat seen(camera.height, camera.width, CV_32F);
         auto* pixel = seen.ptr<float>();
@@ -222,7 +228,7 @@ std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const 
                 const Sample& s = sub[i];
                 sum += s.albedo * light.ambient_grey;
                 if (s.shade <= 0) continue;
-                const double lit = profile.at(pattern.along_rows ? s.v : s.u) * edge.at(pattern.along_rows ? s.u : s.v);
+                const double lit = profile.at(along_rows ? s.v : s.u) * edge.at(along_rows ? s.u : s.v);
                 sum += s.shade * light.white_grey * lit;
             }
             pixel[i] = static_cast<float>(sum / static_cast<double>(samples.size()));

@@ -60,6 +60,13 @@ struct Truth {
 };
 Truth truth_of(const Room& room, const Optics& camera);
 
+/// A picture for the projector whose columns (or rows, `along_rows`) are each of one grey.
+struct Shown {
+    RgbImage picture;
+    bool along_rows = false;
+};
+std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const std::vector<Shown>& pictures, unsigned seed);
+
 /// The frames of one camera.
 std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const StripeSettings& stripes, unsigned seed);
 ScanCapture capture(const Room& room, const StripeSettings& stripes);

@@ -1,0 +1,134 @@
+#include "registration/scan/match_views.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
+#include <atomic>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "registration/scan/code_map.h"
+
+namespace planlight {
+namespace {
+
+/// Which squares of `stride` x `stride` right pixels hold a partner of a left pixel. Set by all threads, in any order.
+class Seen {
+public:
+    Seen(const DecodedView& view, int stride)
+        : stride_(stride), columns_(view.width / stride + 1), rows_(view.height / stride + 1),
+          cells_(std::make_unique<std::atomic<bool>[]>(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_))) {}
+    void mark(const Eigen::Vector2d& pixel) { cell(pixel).store(true, std::memory_order_relaxed); }
+    bool marked(const Eigen::Vector2d& pixel) { return cell(pixel).load(std::memory_order_relaxed); }
+
+private:
+    std::atomic<bool>& cell(const Eigen::Vector2d& pixel) {
+        const int c = std::clamp(static_cast<int>(pixel.x() / stride_ + 0.5), 0, columns_ - 1);
+        const int r = std::clamp(static_cast<int>(pixel.y() / stride_ + 0.5), 0, rows_ - 1);
+        return cells_[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c)];
+    }
+    int stride_, columns_, rows_;
+    std::unique_ptr<std::atomic<bool>[]> cells_;
+};
+
+/// The matches of one line of a picture.
+struct Line {
+    std::vector<ViewMatch> both, alone;
+    std::size_t ragged = 0;
+};
+
+/// Calls `make(x, y, line)` for every `stride`-th decoded pixel, line by line in parallel.
+template <class Make>
+std::vector<Line> for_lines(const DecodedView& view, int stride, const Make& make) {
+    std::vector<Line> lines(static_cast<std::size_t>((view.height + stride - 1) / stride));
+    tbb::parallel_for(tbb::blocked_range<int>(0, static_cast<int>(lines.size()), 8), [&](const tbb::blocked_range<int>& range) {
+        for (int r = range.begin(); r < range.end(); ++r) make(r * stride, lines[static_cast<std::size_t>(r)]);
+    });
+    return lines;
+}
+
+void join(const std::vector<Line>& lines, std::vector<ViewMatch> Line::*part, std::vector<ViewMatch>& all) {
+    std::vector<std::size_t> begin{0};
+    for (const Line& line : lines) begin.push_back(begin.back() + (line.*part).size());
+    all.resize(begin.back());
+    tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t i) {
+        std::copy((lines[i].*part).begin(), (lines[i].*part).end(), all.begin() + static_cast<std::ptrdiff_t>(begin[i]));
+    });
+}
+
+/// Along a line the partners follow each other: each search begins where the last match and its derivative say.
+std::optional<CodeIndex::Match> find_along(const CodeIndex& index, const Eigen::Vector2d& code,
+                                           std::optional<CodeIndex::Match>& last) {
+    constexpr double kNear_px = 12;
+    std::optional<CodeIndex::Match> match;
+    if (last) {
+        const Eigen::Vector2d way = last->pixel_by_code * (code - last->code);
+        if (way.cwiseAbs().maxCoeff() < kNear_px) match = index.find_from(code, last->pixel + way);
+    }
+    if (!match) match = index.find(code);
+    last = match;
+    return match;
+}
+
+ViewMatch alone(int x, int y, const LocalCode& local) { return {Eigen::Vector2d(x, y), local.code, local.sigma_px, local.whole}; }
+
+void match_line(const DecodedView& left, const CodeIndex& in_right, int y, int stride, Seen& seen, Line& line) {
+    std::optional<CodeIndex::Match> last;
+    const float* column = left.column.data() + static_cast<std::ptrdiff_t>(y) * left.width;
+    for (int x = 0; x < left.width; x += stride) {
+        if (std::isnan(column[x])) continue;
+        const auto local = local_code(left, x, y);
+        if (!local) {
+            ++line.ragged;
+            continue;
+        }
+        ViewMatch match = alone(x, y, *local);
+        const auto partner = find_along(in_right, local->code, last);
+        if (!partner) {
+            line.alone.push_back(match);
+            continue;
+        }
+        match.right = partner->pixel;
+        match.right_by_code = partner->pixel_by_code;
+        match.right_sigma_px = partner->local.sigma_px;
+        seen.mark(match.right);
+        line.both.push_back(match);
+    }
+}
+
+void match_right_line(const DecodedView& right, const CodeIndex& in_left, int y, int stride, Seen& seen, Line& line) {
+    std::optional<CodeIndex::Match> last;
+    const float* column = right.column.data() + static_cast<std::ptrdiff_t>(y) * right.width;
+    for (int x = 0; x < right.width; x += stride) {
+        if (std::isnan(column[x]) || seen.marked(Eigen::Vector2d(x, y))) continue;
+        const auto local = local_code(right, x, y);  // ragged pixels were counted in the left view
+        if (local && !find_along(in_left, local->code, last)) line.alone.push_back(alone(x, y, *local));
+    }
+}
+
+}  // namespace
+
+ViewMatches match_views(const DecodedView& left, const DecodedView& right, int projector_width, int projector_height,
+                        int stride, bool one_camera) {
+    std::optional<CodeIndex> in_left, in_right;
+    tbb::parallel_invoke([&] { in_right.emplace(right, projector_width, projector_height); },
+                         [&] {
+                             if (one_camera) in_left.emplace(left, projector_width, projector_height);
+                         });
+    ViewMatches matches;
+    matches.stride = stride;
+    Seen seen(right, stride);
+    const auto lines =
+        for_lines(left, stride, [&](int y, Line& line) { match_line(left, *in_right, y, stride, seen, line); });
+    join(lines, &Line::both, matches.both);
+    join(lines, &Line::alone, matches.left_only);
+    for (const Line& line : lines) matches.ragged += line.ragged;
+    if (!one_camera) return matches;
+    const auto right_lines =
+        for_lines(right, stride, [&](int y, Line& line) { match_right_line(right, *in_left, y, stride, seen, line); });
+    join(right_lines, &Line::alone, matches.right_only);
+    return matches;
+}
+
+}  // namespace planlight

@@ -1,0 +1,60 @@
+#include "registration/scan/merge_exposures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace planlight {
+namespace {
+
+/// The share of the lit pixels whose white is at the end of the scale.
+double saturated_share(const GrayImage& white, const GrayImage& black) {
+    constexpr int kLit_grey = 16, kFull_grey = 254;
+    std::size_t lit = 0, full = 0;
+    for (std::size_t i = 0; i < white.pixels.size(); ++i) {
+        if (white.pixels[i] - black.pixels[i] < kLit_grey) continue;
+        ++lit;
+        full += white.pixels[i] >= kFull_grey;
+    }
+    return lit == 0 ? 0 : static_cast<double>(full) / static_cast<double>(lit);
+}
+
+}  // namespace
+
+void take_better(DecodedView& view, const DecodedView& other) {
+    if (view.width != other.width || view.height != other.height || view.column.size() != other.column.size() ||
+        view.row.size() != other.row.size())
+        throw std::invalid_argument("take_better: views of different sizes or directions");
+    view.decoded = 0;
+    for (std::size_t i = 0; i < view.column.size(); ++i) {
+        const bool better = !std::isnan(other.column[i]) && !(view.sigma_px[i] <= other.sigma_px[i]);
+        if (better) {
+            view.column[i] = other.column[i];
+            if (!view.row.empty()) view.row[i] = other.row[i];
+            view.sigma_px[i] = other.sigma_px[i];
+        }
+        view.decoded += !std::isnan(view.column[i]);
+    }
+    std::size_t left_over = view.column.size() - view.decoded;
+    for (const auto& count : {&DecodedView::dark, &DecodedView::saturated}) {
+        view.*count = std::min({view.*count, other.*count, left_over});
+        left_over -= view.*count;
+    }
+    view.uncertain = left_over;
+}
+
+void add_darker_captures(Projector& projector, StereoCamera& cameras, const Clock& clock, std::vector<ScanCapture>& captures,
+                         const std::function<void(int, int)>& progress, const ExposureSettings& settings) {
+    if (captures.empty()) throw std::invalid_argument("add_darker_captures: no capture to judge by");
+    StripeSettings darker = captures.back().stripes;
+    while (static_cast<int>(captures.size()) < settings.most) {
+        const ScanCapture& last = captures.back();  // white and black are the first two pictures
+        const double left = saturated_share(last.left[0], last.left[1]), right = saturated_share(last.right[0], last.right[1]);
+        if (std::max(left, right) <= settings.max_saturated) break;
+        darker.brightness = static_cast<int>(std::lround(settings.darker * darker.brightness));
+        if (darker.brightness < 16) break;
+        captures.push_back(capture_scan(projector, cameras, clock, darker, progress));
+    }
+}
+
+}  // namespace planlight

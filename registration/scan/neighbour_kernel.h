@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+
+// Sums over the neighbours of a point, several neighbours side by side. Private to registration/scan.
+namespace planlight::neighbour_kernel {
+
+inline constexpr int kLanes = 8;
+
+/// Places [begin, end) of the points' arrays, one run a line of cells.
+struct Run {
+    std::uint32_t begin, end;
+};
+
+/// Coordinates (mm) as three arrays with kLanes more entries than points; NaN is a point that is no longer there.
+struct Coordinates {
+    const float *x, *y, *z;
+};
+
+/// How many of the points in the runs lie within `reach` of point `at` (itself among them).
+int count_within(const Coordinates& points, const Run* runs, int run_count, std::uint32_t at, float reach);
+
+/// Number, sum and sum of squares of the differences to point `at`, of the points within `reach`.
+struct Sums {
+    float n = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, xz = 0, yy = 0, yz = 0, zz = 0;
+};
+Sums sum_within(const Coordinates& points, const Run* runs, int run_count, std::uint32_t at, float reach);
+
+}  // namespace planlight::neighbour_kernel

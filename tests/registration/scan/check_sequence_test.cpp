@@ -1,0 +1,240 @@
+#include "registration/scan/check_sequence.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "planning_io/types/error.h"
+#include "tests/registration/scan/stripe_room.h"
+
+namespace planlight {
+namespace {
+
+using namespace stripe_room;
+
+const Eigen::Vector3d kCentre(120, -40, 360), kPlace(120, -40, 300);
+
+struct Scene {
+    StripeSettings stripes;
+    std::vector<GrayImage> frames;  // without noise
+};
+
+Scene scene(Surface surface, double ambient_grey) {
+    Room room = paper_room(std::move(surface));
+    room.light.noise_grey = 0;
+    room.light.ambient_grey = ambient_grey;
+    return {stripes_of(room), photograph(room, room.left, stripes_of(room), 1)};
+}
+
+const Scene& head() {
+    static const Scene s = scene(sphere(kCentre, 80), 18);
+    return s;
+}
+const Scene& moved_head() {  // by 0.2 mm, most of it in depth, where it changes the code
+    static const Scene s = scene(sphere(kCentre + Eigen::Vector3d(0.05, 0.05, -0.19), 80), 18);
+    return s;
+}
+const Scene& bright_room() {
+    static const Scene s = scene(plane(kPlace, Eigen::Vector3d(0.35, 0.2, -1).normalized(), 100), 60);
+    return s;
+}
+
+std::vector<GrayImage> with_noise(std::vector<GrayImage> frames, double sigma, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal(0, sigma);
+    std::vector<int> noise(1 << 16);
+    for (int& n : noise) n = static_cast<int>(std::lround(normal(random)));
+    for (GrayImage& f : frames) {
+        std::size_t at = random();
+        for (auto& p : f.pixels) p = static_cast<std::uint8_t>(std::clamp(p + noise[at++ % noise.size()], 0, 255));
+    }
+    return frames;
+}
+
+std::string said(const SequenceCheck& check) {
+    std::string all = fmt::format("{} pixels;", check.pixels);
+    for (const auto& p : check.problems) all += fmt::format(" [{} {} {:.3f}]", p.frame, p.what, p.share);
+    return all;
+}
+
+/// The share of the lit pixels at which two captures differ in any frame by more than a third of the contrast: where a
+/// fault changes nothing there is nothing to notice.
+double changed(const std::vector<GrayImage>& a, const std::vector<GrayImage>& b) {
+    std::size_t lit = 0, differ = 0;
+    for (std::size_t p = 0; p < a[0].pixels.size(); p += 7) {
+        const int contrast = a[0].pixels[p] - a[1].pixels[p];
+        if (contrast < 16) continue;
+        ++lit;
+        for (std::size_t i = 0; i < a.size(); ++i)
+            if (3 * std::abs(a[i].pixels[p] - b[i].pixels[p]) > contrast) {
+                ++differ;
+                break;
+            }
+    }
+    return static_cast<double>(differ) / static_cast<double>(lit);
+}
+
+TEST(CheckSequence, CleanCapturesAreNeverRefused) {
+    for (const Scene* s : {&head(), &bright_room()})
+        for (unsigned seed = 0; seed < 12; ++seed) {
+            const double sigma = 0.5 + 0.25 * (seed % 12);  // to 3.25 grey
+            const SequenceCheck check = check_sequence(with_noise(s->frames, sigma, seed), s->stripes);
+            EXPECT_TRUE(check.checked);
+            EXPECT_TRUE(check.problems.empty()) << "noise " << sigma << ": " << said(check);
+        }
+}
+
+TEST(CheckSequence, AHeadThatMovesAFifthOfAMillimetreIsNotRefused) {
+    for (std::size_t from = 1; from < head().frames.size(); from += 3) {
+        std::vector<GrayImage> frames = head().frames;
+        std::copy(moved_head().frames.begin() + static_cast<std::ptrdiff_t>(from), moved_head().frames.end(),
+                  frames.begin() + static_cast<std::ptrdiff_t>(from));
+        const SequenceCheck check = check_sequence(with_noise(frames, 1.5, static_cast<unsigned>(from)), head().stripes);
+        EXPECT_TRUE(check.problems.empty()) << from << ": " << said(check);
+    }
+}
+
+/// Faults of a real rig from frame m on, and of a careless hand.
+enum class Fault { late_once, late_from_here, missing, late_by_two, swapped_with_next, inverted, swapped_anywhere };
+
+std::vector<GrayImage> spoil(const Scene& s, Fault fault, std::size_t m, std::mt19937& random) {
+    std::vector<GrayImage> f = s.frames;
+    const std::size_t n = f.size();
+    switch (fault) {
+        case Fault::late_once: f[m] = s.frames[m - 1]; break;
+        case Fault::late_from_here:
+            for (std::size_t i = m; i < n; ++i) f[i] = s.frames[i - 1];
+            break;
+        case Fault::missing:
+            for (std::size_t i = m; i < n; ++i) f[i] = s.frames[std::min(i + 1, n - 1)];
+            break;
+        case Fault::late_by_two:
+            for (std::size_t i = std::max<std::size_t>(m, 2); i < n; ++i) f[i] = s.frames[i - 2];
+            break;
+        case Fault::swapped_with_next: std::swap(f[m], f[m == n - 1 ? m - 1 : m + 1]); break;
+        case Fault::inverted: {
+            const auto sequence = stripe_sequence(s.stripes);
+            while (sequence[m].kind != StripePattern::Kind::gray_bit) m = 2 + random() % (n - 2);
+            std::swap(f[m], f[m + 1]);
+            break;
+        }
+        case Fault::swapped_anywhere: std::swap(f[m], f[random() % n]); break;
+    }
+    return f;
+}
+
+class FaultIsNoticed : public testing::TestWithParam<Fault> {};
+
+TEST_P(FaultIsNoticed, WhereverItHappens) {
+    std::mt19937 random(11 + static_cast<unsigned>(GetParam()));
+    std::size_t noticed = 0, harmless = 0;
+    for (const Scene* s : {&head(), &bright_room()})
+        for (std::size_t m = 1; m < s->frames.size(); m += s == &head() ? 1 : 3) {
+            const std::vector<GrayImage> spoilt = spoil(*s, GetParam(), m, random);
+            if (changed(s->frames, spoilt) < 0.05) {  // the pictures look alike on this surface
+                ++harmless;
+                continue;
+            }
+            const SequenceCheck check = check_sequence(with_noise(spoilt, 1.5, static_cast<unsigned>(random())), s->stripes);
+            EXPECT_FALSE(check.problems.empty()) << "frame " << m << " of " << (s == &head() ? "head" : "plane");
+            noticed += !check.problems.empty();
+        }
+    EXPECT_GT(noticed, 50u);
+    EXPECT_LT(harmless, 5u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, FaultIsNoticed,
+                         testing::Values(Fault::late_once, Fault::late_from_here, Fault::missing, Fault::late_by_two,
+                                         Fault::swapped_with_next, Fault::inverted, Fault::swapped_anywhere));
+
+TEST(CheckSequence, ThePictureIsNamed) {
+    std::vector<GrayImage> frames = head().frames;
+    const auto sequence = stripe_sequence(head().stripes);
+    const std::size_t doubled = 10;  // the frame shows what was there before
+    ASSERT_EQ(sequence[doubled].name, "column-gray-4");
+    frames[doubled] = frames[doubled - 1];
+    const SequenceCheck check = check_sequence(with_noise(frames, 1.5, 3), head().stripes);
+    ASSERT_FALSE(check.problems.empty());
+    EXPECT_EQ(check.problems[0].frame, doubled);
+    EXPECT_NE(check.problems[0].what.find("column-gray-4 looks like column-gray-3-inverse"), std::string::npos) << said(check);
+}
+
+TEST(CheckSequence, SwappedFineBitsAreNoticed) {
+    const auto sequence = stripe_sequence(head().stripes);
+    std::size_t finest = 0;
+    for (std::size_t i = 0; i < sequence.size(); ++i)
+        if (sequence[i].kind == StripePattern::Kind::gray_bit && !sequence[i].along_rows) finest = i;
+    for (const std::size_t back : {2u, 4u}) {
+        std::vector<GrayImage> frames = head().frames;
+        std::swap(frames[finest], frames[finest - back]);
+        std::swap(frames[finest + 1], frames[finest + 1 - back]);
+        EXPECT_FALSE(check_sequence(frames, head().stripes).problems.empty()) << back;
+    }
+}
+
+TEST(CheckSequence, FaultsOfTheFastSetAreNoticed) {
+    Scene fast = head();
+    Room room = paper_room(sphere(kCentre, 80));
+    room.light.noise_grey = 0;
+    fast.stripes = fast_stripes(800, 600);
+    fast.frames = photograph(room, room.left, fast.stripes, 1);
+    EXPECT_TRUE(check_sequence(with_noise(fast.frames, 1.5, 5), fast.stripes).problems.empty());
+    std::mt19937 random(3);
+    std::size_t noticed = 0;
+    for (const Fault fault : {Fault::late_once, Fault::late_from_here, Fault::missing, Fault::swapped_with_next})
+        for (std::size_t m = 1; m < fast.frames.size(); ++m) {
+            const std::vector<GrayImage> spoilt = spoil(fast, fault, m, random);
+            if (changed(fast.frames, spoilt) < 0.05) continue;
+            // Neighbouring bits swapped keep the parity; the coarse ones among them change too seldom to be told apart.
+            const auto sequence = stripe_sequence(fast.stripes);
+            if (fault == Fault::swapped_with_next && sequence[m].kind == StripePattern::Kind::gray_bit && sequence[m].index < 4)
+                continue;
+            const SequenceCheck check = check_sequence(with_noise(spoilt, 1.5, static_cast<unsigned>(m)), fast.stripes);
+            EXPECT_FALSE(check.problems.empty()) << static_cast<int>(fault) << " at " << sequence[m].name;
+            noticed += !check.problems.empty();
+        }
+    EXPECT_GT(noticed, 40u);
+}
+
+TEST(CheckSequence, AScanNamesThePictureAndRefuses) {
+    Room room = paper_room(sphere(kCentre, 80));
+    ScanCapture shot = capture(room, stripes_of(room));
+    shot.right[20] = shot.right[19];
+    try {
+        scan_from_capture(shot, rig_of(room));
+        FAIL() << "a doubled frame was scanned";
+    } catch (const CheckFailedError& e) {
+        EXPECT_NE(std::string(e.what()).find(stripe_sequence(shot.stripes)[20].name), std::string::npos) << e.what();
+    }
+    ScanSettings as_it_is;
+    as_it_is.check_sequence = false;
+    EXPECT_NO_THROW(scan_from_capture(shot, rig_of(room), as_it_is));
+}
+
+TEST(CheckSequence, EdgesShadowsAndAModernRigAreNotRefused) {
+    const Eigen::Vector3d towards = Eigen::Vector3d(0.1, 0.35, -1).normalized();
+    Room room = modern_room(nearest_of({sphere(kCentre, 60), plane(kPlace + 80 * Eigen::Vector3d(0, 0, 1), -towards, 90),
+                                        plane(kPlace + 120 * towards, -towards, 15)}));
+    room.light.white_grey = 90;
+    const ScanCapture shot = capture(room, stripes_of(room));
+    for (const auto* frames : {&shot.left, &shot.right}) {
+        const SequenceCheck check = check_sequence(*frames, shot.stripes);
+        EXPECT_TRUE(check.checked);
+        EXPECT_TRUE(check.problems.empty()) << said(check);
+    }
+}
+
+TEST(CheckSequence, DarknessIsNotChecked) {
+    std::vector<GrayImage> frames(head().frames.size(), GrayImage(744, 576, 20));
+    const SequenceCheck check = check_sequence(with_noise(frames, 1.5, 1), head().stripes);
+    EXPECT_FALSE(check.checked);
+    EXPECT_TRUE(check.problems.empty());
+    frames.pop_back();
+    EXPECT_THROW(check_sequence(frames, head().stripes), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace planlight
