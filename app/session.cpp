@@ -103,6 +103,7 @@ const RegistrationResult& Session::find_patient() {
     RegistrationSettings settings = settings_.registration;
     settings.viewpoint_in_rig = rig_.projector.centre_in_rig();
     registration_ = register_patient(scanned_->clean.kept, case_.lut, settings);
+    registration_->moved_in_scan_mm = motion_in_scan_mm_;
     if (registration_->verdict != Verdict::no) draw_beside_markers();
     start_overlay();
     return *registration_;

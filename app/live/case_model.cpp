@@ -105,6 +105,8 @@ std::vector<std::string> evidence_of(const RegistrationResult& result) {
     if (result.mirror_ratio > 0)
         lines.push_back(fmt::format("The mirror image fits {:.1f} times worse; size of the head {:+.1f} ± {:.1f} %.",
                                     result.mirror_ratio, 100 * (1 / result.scale - 1), 100 * result.scale_sigma));
+    if (result.moved_in_scan_mm)
+        lines.push_back(fmt::format("The patient moved by at most {:.2f} mm during the scan.", *result.moved_in_scan_mm));
     if (result.blocked_fraction)
         lines.push_back(fmt::format("{:.0f} % of the scan was seen through what is body in the CT.", 100 * *result.blocked_fraction));
     lines.push_back(fmt::format("The skin lies {:.1f} mm {} that of the CT, and has moved by {:.1f} mm (rms).",

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "registration/processor_clones.h"
+
 // Compiled with -fassociative-math (see CMakeLists.txt), so that the sums may run in parallel lanes. The points are finite.
 namespace planlight::match_kernels {
 namespace {
@@ -16,7 +18,7 @@ struct Samples {
     float holds[kBlock];  // 1 or 0
 };
 
-inline __attribute__((always_inline)) void sample(const float* x, const float* y, const float* z, std::size_t n,
+PLANLIGHT_INLINE void sample(const float* x, const float* y, const float* z, std::size_t n,
                                                   const Field& field, const Placing& placing, Samples& s) {
     const float* R = placing.R;
     const float ax = placing.arm_shift[0], ay = placing.arm_shift[1], az = placing.arm_shift[2];
@@ -56,7 +58,7 @@ inline __attribute__((always_inline)) void sample(const float* x, const float* y
 
 }  // namespace
 
-__attribute__((target_clones("avx512f", "avx2", "default"))) std::size_t add_point_to_plane(
+PLANLIGHT_CLONES std::size_t add_point_to_plane(
     const float* x, const float* y, const float* z, const std::uint8_t* skip, std::size_t n, const Field& field,
     const Placing& placing, const Gate& gate, double* sums) {
     constexpr float kRidge = 0.3f;  // slope below which the field has no side to go to
@@ -100,7 +102,7 @@ __attribute__((target_clones("avx512f", "avx2", "default"))) std::size_t add_poi
     return static_cast<std::size_t>(used);
 }
 
-__attribute__((target_clones("avx512f", "avx2", "default"))) double sum_failure(
+PLANLIGHT_CLONES double sum_failure(
     const float* x, const float* y, const float* z, const float* nx, const float* ny, const float* nz, std::size_t n,
     const Field& field, const Placing& placing, float inside_mm, float outside_mm, float beyond_mm) {
     const float* R = placing.R;
@@ -124,7 +126,7 @@ __attribute__((target_clones("avx512f", "avx2", "default"))) double sum_failure(
     return sum;
 }
 
-__attribute__((target_clones("avx2", "default"))) void mark_alike(
+PLANLIGHT_CLONES void mark_alike(
     const float* length_mm, const float* first, const float* second, const float* between, std::size_t n,
     const PairGate& wanted, std::uint8_t* marks) {
     const PairGate w = wanted;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "registration/scan/processor_clones.h"
+#include "registration/processor_clones.h"
 
 namespace planlight {
 namespace {

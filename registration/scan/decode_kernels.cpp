@@ -5,7 +5,7 @@
 #include <initializer_list>
 #include <limits>
 
-#include "registration/scan/processor_clones.h"
+#include "registration/processor_clones.h"
 
 namespace planlight::decode_kernels {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-#include "registration/scan/processor_clones.h"
+#include "registration/processor_clones.h"
 
 namespace planlight::neighbour_kernel {
 namespace {

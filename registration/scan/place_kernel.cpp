@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "registration/scan/processor_clones.h"
+#include "registration/processor_clones.h"
 
 // Written without branches and with plain numbers, or the compiler could not put points side by side.
 namespace planlight::place_kernel {

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "planning_io/mesh_file.h"
@@ -29,8 +30,18 @@ TEST_F(CommandsTest, StagesOnFilesFindThePatientWithinAMillimetreOfTheTruth) {
     const auto check = run_planlight("check room/capture --rig room/rig.json --json", root());
     ASSERT_EQ(check.exit_code, 0) << check.err;
     EXPECT_EQ(json::parse(check.out)["verdict"], "good") << "the patient's own scan checks the rig";
-    const auto found = run_planlight("register case --cloud cloud.ply --out registration.json --json", root());
+    const auto found = run_planlight(
+        "register case --cloud cloud.ply --out registration.json --certificate match.html --json", root());
     ASSERT_EQ(found.exit_code, 0) << found.err;
+    std::ifstream certificate(root() / "match.html");
+    const std::string page(std::istreambuf_iterator<char>(certificate), {});
+    EXPECT_NE(page.find("Yes: the match may be used."), std::string::npos);
+    EXPECT_NE(page.find("How far off the match may be"), std::string::npos);
+    const auto review = run_planlight(
+        "review case --registration registration.json --cloud cloud.ply --view before --picture before.png --json", root());
+    ASSERT_EQ(review.exit_code, 0) << review.err;
+    EXPECT_FALSE(json::parse(review.out)["match"].empty());
+    EXPECT_EQ(run_planlight("review case --registration cloud.ply", root()).exit_code, 4);
     const auto track =
         run_planlight("track room/frames --rig room/rig.json --capture room/capture --out poses.json --json", root());
     ASSERT_EQ(track.exit_code, 0) << track.err;

@@ -242,6 +242,7 @@ TEST(Recordings, CaptureFramesRegistrationAndPosesReadBack) {
     result.covariance.of_turn_and_shift.diagonal().setConstant(3);
     result.covariance.centre_in_ct = {7, 8, 9};
     result.runner_up_ratio = std::numeric_limits<double>::infinity();
+    result.moved_in_scan_mm = 0.07;  // and the viewpoint was not said
     write_registration(result, folder.path() / "registration.json");
     const auto result_back = read_registration(folder.path() / "registration.json");
     EXPECT_EQ(result_back.verdict, Verdict::ask);
@@ -252,6 +253,8 @@ TEST(Recordings, CaptureFramesRegistrationAndPosesReadBack) {
     EXPECT_EQ(predicted_error(result_back.covariance, {0, 0, 50}).bound_95_mm,
               predicted_error(result.covariance, {0, 0, 50}).bound_95_mm);
     EXPECT_GT(result_back.runner_up_ratio, 1e100);
+    EXPECT_EQ(result_back.moved_in_scan_mm, 0.07);
+    EXPECT_FALSE(result_back.blocked_fraction);
 
     std::vector<TrackedPose> poses(2);
     poses[0].rig_from_patient = result.patient_from_ct;
