@@ -166,7 +166,8 @@ void add_register(CLI::App& app, RegisterOptions& o) {
         ->capture_default_str()
         ->needs(cloud);
     sub->add_flag("--in-rig", o.in_rig, "The cloud is in the rig's frame though it does not say so")->needs(cloud);
-    sub->add_option("--viewpoint", o.viewpoint_in_rig, "Where the scanner stood (rig, mm): then the space it looked through must be free in the CT too; a cloud "
+    sub->add_option("--viewpoint", o.viewpoint_in_rig,
+                    "Where the scanner stood (rig, mm): then the space it looked through must be free in the CT too; a cloud "
                     "without normals needs it")
         ->expected(3)
         ->needs(cloud);

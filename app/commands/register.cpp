@@ -84,7 +84,8 @@ int run_register(const RegisterOptions& options) {
                                     {"agreeing_bases", result.agreeing_bases},
                                     {"weakest_sigma_mm", result.weakest_sigma_mm},
                                     {"mirror_ratio", result.mirror_ratio},
-                                    {"blocked_fraction", result.blocked_fraction ? nlohmann::json(*result.blocked_fraction) : nlohmann::json()},
+                                    {"blocked_fraction", result.blocked_fraction ? nlohmann::json(*result.blocked_fraction)
+                                                                                 : nlohmann::json()},
                                     {"scale", result.scale},
                                     {"scale_sigma", result.scale_sigma},
                                     {"skin_movement_mm", result.skin_movement_mm},

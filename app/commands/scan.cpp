@@ -118,7 +118,11 @@ int run_scan(const ScanOptions& options) {
             {"projector_offset_px", {scan.raw.projector_offset_px.x(), scan.raw.projector_offset_px.y()}},
             {"projector", projector_of(scan)},
             {"movement", json_of(movement)},
-            {"seconds", {{"sequence", scan.sequence_s}, {"decode", scan.decode_s}, {"triangulate", scan.triangulate_s}, {"outliers", scan.outliers_s}}}};
+            {"seconds",
+             {{"sequence", scan.sequence_s},
+              {"decode", scan.decode_s},
+              {"triangulate", scan.triangulate_s},
+              {"outliers", scan.outliers_s}}}};
         std::cout << result.dump(2) << '\n';
     } else {
         fmt::print("{} points by {} in {} (raw {}; off the rays {}, jumps {}, grazing {}, small pieces {}, lonely {}).\n",

@@ -108,7 +108,8 @@ std::vector<std::string> evidence_of(const RegistrationResult& result) {
     if (result.moved_in_scan_mm)
         lines.push_back(fmt::format("The patient moved by at most {:.2f} mm during the scan.", *result.moved_in_scan_mm));
     if (result.blocked_fraction)
-        lines.push_back(fmt::format("{:.0f} % of the scan was seen through what is body in the CT.", 100 * *result.blocked_fraction));
+        lines.push_back(
+            fmt::format("{:.0f} % of the scan was seen through what is body in the CT.", 100 * *result.blocked_fraction));
     lines.push_back(fmt::format("The skin lies {:.1f} mm {} that of the CT, and has moved by {:.1f} mm (rms).",
                                 std::abs(result.skin_offset_mm), result.skin_offset_mm < 0 ? "inside of" : "outside of",
                                 result.skin_movement_mm));

@@ -18,7 +18,8 @@ std::vector<double> predicted_errors_mm(const Plan& plan, const RegistrationResu
 /// How far off each vertex of the skin may be by the registration, 95 %, mm; infinite where it cannot be told.
 std::shared_ptr<const std::vector<float>> predicted_on_skin_mm(const TriangleMesh& skin, const RegistrationResult& found);
 
-/// The distance of each point to the skin, mm, or to where it lies `skin_offset_mm` outside of the CT's; infinite beyond the table.
+/// The distance of each point to the skin, mm, or to where it lies `skin_offset_mm` outside of the CT's; infinite beyond the
+/// table.
 std::shared_ptr<const std::vector<float>> distances_to_skin_mm(const PointCloud& cloud, const RigidTransform& ct_from_rig,
                                                                const SkinLut& lut, double skin_offset_mm = 0);
 

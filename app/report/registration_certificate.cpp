@@ -17,11 +17,11 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string verdict_html(const RegistrationResult& found) {
-    std::string html = found.verdict == Verdict::yes
-                           ? "<div class=\"verdict yes\">&#10003; Yes: the match may be used.</div>"
-                       : found.verdict == Verdict::ask
-                           ? "<div class=\"verdict no\">&#9888; Ask: look whether the scan fits the skin before it is used.</div>"
-                           : "<div class=\"verdict no\">&#10007; No: the patient was not found.</div>";
+    std::string html =
+        found.verdict == Verdict::yes ? "<div class=\"verdict yes\">&#10003; Yes: the match may be used.</div>"
+        : found.verdict == Verdict::ask
+            ? "<div class=\"verdict no\">&#9888; Ask: look whether the scan fits the skin before it is used.</div>"
+            : "<div class=\"verdict no\">&#10007; No: the patient was not found.</div>";
     for (const std::string& reason : found.reasons) html += fmt::format("<p class=\"no\">{}</p>", html_escaped(reason));
     return html;
 }
@@ -52,10 +52,13 @@ void write_certificate_html(const Case& the_case, const CaseDrawing& drawing, co
     if (found.verdict != Verdict::no) {
         body += items_html(model);
         const SceneView view = view_of_plan(drawing.drawing);
-        const auto picture = [&](FitView shown) { return render_scene(scene_of_fit(model, shown), view, kWidth, kHeight); };
+        const auto picture = [&](FitView shown) {
+            return render_scene(scene_of_fit(model, shown), view, kWidth, kHeight);
+        };
         std::vector<ReportPicture> pictures;
         if (cloud) {
-            pictures.push_back({"Before the fine match", "The scan on the skin, coloured by its distance.", picture(FitView::before)});
+            pictures.push_back(
+                {"Before the fine match", "The scan on the skin, coloured by its distance.", picture(FitView::before)});
             pictures.push_back({"After it", "The same points. They must lie on the skin, above all round the plan.",
                                 picture(FitView::after)});
         }

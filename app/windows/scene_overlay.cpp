@@ -137,7 +137,8 @@ struct SceneOverlay::Parts {
                       distance_colour(i + 0.5, kSteps), 255);
         title.place(std::abs(scene.skin_offset_mm) < 0.05
                         ? std::string("Distance of the scan to the skin, mm")
-                        : fmt::format("Distance of the scan to the skin {:+.1f} mm", scene.skin_offset_mm), x + w / 2, y + 72 * scale, static_cast<int>(16 * scale));
+                        : fmt::format("Distance of the scan to the skin {:+.1f} mm", scene.skin_offset_mm),
+                    x + w / 2, y + 72 * scale, static_cast<int>(16 * scale));
         for (int i = 0; i < 4; ++i)
             values[static_cast<std::size_t>(i)].place(
                 fmt::format("{}{:.1f}", i == 3 ? "≥ " : "", scene.largest_distance_mm * i / 3), x + 24 * scale + bar * i / 3,

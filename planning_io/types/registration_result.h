@@ -30,7 +30,7 @@ struct RegistrationResult {
     int agreeing_bases = 0;            ///< independent contact triplets that led to this pose
     double weakest_sigma_mm = 0;       ///< how far the patient could slide along the least determined way
     double mirror_ratio = 0;           ///< cost of the mirrored scan's best pose / cost of this one; > 1 is good; 0: not tried
-    std::optional<double> blocked_fraction;  ///< of the light's ways back from the scan, through the body; empty: no viewpoint said
+    std::optional<double> blocked_fraction;  ///< of the ways back to the viewpoint, through the body; empty: none was said
     std::optional<double> moved_in_scan_mm;  ///< the most that a marker moved during the scan; empty: not looked at
     double scale = 1;                  ///< by which the scan would have to grow to fit best; 1 is good
     double scale_sigma = 0;            ///< one standard deviation of that

@@ -10,8 +10,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Whether the way from `from` towards `to` leads deeper than `tolerance_mm` into the body. The distance bounds how far the
-/// next skin is, so that free space is crossed in few steps.
+/// Whether the way from `from` towards `to` leads deeper than `tolerance_mm` into the body. The distance bounds how far
+/// the next skin is, so that free space is crossed in few steps.
 bool through_the_body(const DistanceField& field, const Vector3d& from, const Vector3d& to, double tolerance_mm) {
     constexpr double kLeastStep_mm = 1, kFarthest_mm = 600;
     const double length_mm = std::min((to - from).norm(), kFarthest_mm);

@@ -5,7 +5,8 @@
 
 #include "registration/processor_clones.h"
 
-// Compiled with -fassociative-math (see CMakeLists.txt), so that the sums may run in parallel lanes. The points are finite.
+// Compiled with -fassociative-math (see CMakeLists.txt), so that the sums may run in parallel lanes. The points are
+// finite.
 namespace planlight::match_kernels {
 namespace {
 
@@ -18,13 +19,14 @@ struct Samples {
     float holds[kBlock];  // 1 or 0
 };
 
-PLANLIGHT_INLINE void sample(const float* x, const float* y, const float* z, std::size_t n,
-                                                  const Field& field, const Placing& placing, Samples& s) {
+PLANLIGHT_INLINE void sample(const float* x, const float* y, const float* z, std::size_t n, const Field& field,
+                             const Placing& placing, Samples& s) {
     const float* R = placing.R;
     const float ax = placing.arm_shift[0], ay = placing.arm_shift[1], az = placing.arm_shift[2];
     const float bx = placing.shift[0], by = placing.shift[1], bz = placing.shift[2];
     const float per_mm = field.per_mm, end_x = field.end_x, end_y = field.end_y, end_z = field.end_z;
-    const float last_x = std::nextafter(end_x, 0.f), last_y = std::nextafter(end_y, 0.f), last_z = std::nextafter(end_z, 0.f);
+    const float last_x = std::nextafter(end_x, 0.f), last_y = std::nextafter(end_y, 0.f),
+                last_z = std::nextafter(end_z, 0.f);
     const int row = field.stride_y, slab = field.stride_z;
     const float* values = field.mm;
     for (std::size_t i = 0; i < n; ++i) {
@@ -39,7 +41,8 @@ PLANLIGHT_INLINE void sample(const float* x, const float* y, const float* z, std
         const float hx = std::min(std::max(vx, 0.f), last_x), hy = std::min(std::max(vy, 0.f), last_y),
                     hz = std::min(std::max(vz, 0.f), last_z);
         const int cx = static_cast<int>(hx), cy = static_cast<int>(hy), cz = static_cast<int>(hz);
-        const float fx = hx - static_cast<float>(cx), fy = hy - static_cast<float>(cy), fz = hz - static_cast<float>(cz);
+        const float fx = hx - static_cast<float>(cx), fy = hy - static_cast<float>(cy),
+                    fz = hz - static_cast<float>(cz);
         const int at = cx + cy * row + cz * slab;
         const float v000 = values[at], v100 = values[at + 1], v010 = values[at + row], v110 = values[at + row + 1];
         const float v001 = values[at + slab], v101 = values[at + slab + 1], v011 = values[at + slab + row],
@@ -58,9 +61,9 @@ PLANLIGHT_INLINE void sample(const float* x, const float* y, const float* z, std
 
 }  // namespace
 
-PLANLIGHT_CLONES std::size_t add_point_to_plane(
-    const float* x, const float* y, const float* z, const std::uint8_t* skip, std::size_t n, const Field& field,
-    const Placing& placing, const Gate& gate, double* sums) {
+PLANLIGHT_CLONES std::size_t add_point_to_plane(const float* x, const float* y, const float* z,
+                                                const std::uint8_t* skip, std::size_t n, const Field& field,
+                                                const Placing& placing, const Gate& gate, double* sums) {
     constexpr float kRidge = 0.3f;  // slope below which the field has no side to go to
     const float to_inside = 1 / (4.685f * gate.scale_inside_mm), to_outside = 1 / (4.685f * gate.scale_outside_mm);
     const float per_mm = field.per_mm, max_mm = gate.max_mm;
@@ -102,9 +105,9 @@ PLANLIGHT_CLONES std::size_t add_point_to_plane(
     return static_cast<std::size_t>(used);
 }
 
-PLANLIGHT_CLONES double sum_failure(
-    const float* x, const float* y, const float* z, const float* nx, const float* ny, const float* nz, std::size_t n,
-    const Field& field, const Placing& placing, float inside_mm, float outside_mm, float beyond_mm) {
+PLANLIGHT_CLONES double sum_failure(const float* x, const float* y, const float* z, const float* nx, const float* ny,
+                                    const float* nz, std::size_t n, const Field& field, const Placing& placing,
+                                    float inside_mm, float outside_mm, float beyond_mm) {
     const float* R = placing.R;
     Samples s;
     double sum = 0;
@@ -126,13 +129,13 @@ PLANLIGHT_CLONES double sum_failure(
     return sum;
 }
 
-PLANLIGHT_CLONES void mark_alike(
-    const float* length_mm, const float* first, const float* second, const float* between, std::size_t n,
-    const PairGate& wanted, std::uint8_t* marks) {
+PLANLIGHT_CLONES void mark_alike(const float* length_mm, const float* first, const float* second, const float* between,
+                                 std::size_t n, const PairGate& wanted, std::uint8_t* marks) {
     const PairGate w = wanted;
     for (std::size_t i = 0; i < n; ++i)
         marks[i] = (std::abs(length_mm[i] - w.length_mm) < w.length_tolerance_mm) &
-                   (std::abs(first[i] - w.first) < w.cosine_tolerance) & (std::abs(second[i] - w.second) < w.cosine_tolerance) &
+                   (std::abs(first[i] - w.first) < w.cosine_tolerance) &
+                   (std::abs(second[i] - w.second) < w.cosine_tolerance) &
                    (std::abs(between[i] - w.between) < w.cosine_tolerance);
 }
 

@@ -9,9 +9,9 @@ namespace planlight::match_kernels {
 /// A signed distance field as plain values, i running fastest.
 struct Field {
     const float* mm;
-    int stride_y, stride_z;         ///< values from row to row, from slab to slab
-    float end_x, end_y, end_z;      ///< the last node of each axis; points must lie before it
-    float per_mm;                   ///< nodes per mm
+    int stride_y, stride_z;     ///< values from row to row, from slab to slab
+    float end_x, end_y, end_z;  ///< the last node of each axis; points must lie before it
+    float per_mm;               ///< nodes per mm
 };
 
 /// Where the points go: node = per_mm * (R p + shift), in field nodes; arm = R p + arm_shift (mm).
@@ -31,8 +31,8 @@ struct Gate {
 std::size_t add_point_to_plane(const float* x, const float* y, const float* z, const std::uint8_t* skip, std::size_t n,
                                const Field& field, const Placing& placing, const Gate& gate, double* sums);
 
-/// Sum of the truncated distances: at most `inside_mm` in the body, `outside_mm` outside of it, `beyond_mm` beyond the field
-/// and `inside_mm` where the normal (nx, ny, nz; turned by R) does not face as the skin does.
+/// Sum of the truncated distances: at most `inside_mm` in the body, `outside_mm` outside of it, `beyond_mm` beyond the
+/// field and `inside_mm` where the normal (nx, ny, nz; turned by R) does not face as the skin does.
 double sum_failure(const float* x, const float* y, const float* z, const float* nx, const float* ny, const float* nz,
                    std::size_t n, const Field& field, const Placing& placing, float inside_mm, float outside_mm,
                    float beyond_mm);

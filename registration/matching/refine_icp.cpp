@@ -164,8 +164,8 @@ IcpResult refine_icp(const PointCloud& cloud, const SkinLut& lut, const RigidTra
             result.centre_in_ct = result.ct_from_rig * centre_in_rig;
             const NormalEquations equations =
                 settings.mode == IcpSettings::Mode::signed_distance
-                    ? point_to_plane_equations(arrays, some.size(), skip, field, result.ct_from_rig, result.centre_in_ct, scale_mm,
-                                               std::max(settings.last_scale_mm, kOutside * scale_mm),
+                    ? point_to_plane_equations(arrays, some.size(), skip, field, result.ct_from_rig, result.centre_in_ct,
+                                               scale_mm, std::max(settings.last_scale_mm, kOutside * scale_mm),
                                                settings.max_pair_mm)
                     : point_to_point_equations(some, lut, result.ct_from_rig, result.centre_in_ct, scale_mm,
                                                settings.max_pair_mm);

@@ -82,7 +82,8 @@ bool on_surface(const Cell& cell, const Cell& around) {
     constexpr float kOff_mm = 3;
     const float length = around.normal_sum.norm();
     if (length == 0) return true;
-    const Vector3f between = cell.position_sum / static_cast<float>(cell.count) - around.position_sum / static_cast<float>(around.count);
+    const Vector3f between =
+        cell.position_sum / static_cast<float>(cell.count) - around.position_sum / static_cast<float>(around.count);
     return std::abs(between.dot(around.normal_sum)) < kOff_mm * length;
 }
 
