@@ -59,7 +59,7 @@ void write_roc(const std::vector<RocCurve>& curves, const std::vector<RocPoint>&
                const std::filesystem::path& file) {
     const std::vector<cv::Scalar> colours{{180, 90, 20}, {30, 120, 220},  {60, 150, 40}, {150, 40, 150},
                                           {60, 60, 200}, {120, 120, 120}, {0, 190, 190}};
-    cv::Mat picture(800, 1100, CV_8UC3, cv::Scalar(255, 255, 255));
+    cv::Mat picture(800, 1480, CV_8UC3, cv::Scalar(255, 255, 255));
     std::size_t most = 10;
     for (const RocCurve& curve : curves) most = std::max(most, curve.wrong.size());
     const double least = 1 / static_cast<double>(most);
@@ -73,10 +73,11 @@ void write_roc(const std::vector<RocCurve>& curves, const std::vector<RocPoint>&
             line.push_back(at(across(share_from(wrong, *limit), least), share_from(right, *limit)));
         const cv::Scalar& colour = colours[c % colours.size()];
         cv::polylines(picture, line, false, colour, 2, cv::LINE_AA);
-        const cv::Point key = at(0.52, 0.06 + 0.05 * static_cast<double>(curves.size() - 1 - c));
-        cv::line(picture, key, key + cv::Point(30, 0), colour, 3);
-        write_text(picture, fmt::format("{} (area {:.4f})", curves[c].name, area_under(curves[c])),
-                   key + cv::Point(40, 5));
+    }
+    for (std::size_t c = 0; c < curves.size(); ++c) {
+        const cv::Point key = at(1.03, 0.9 - 0.06 * static_cast<double>(c));  // beside the axes, over no curve
+        cv::line(picture, key, key + cv::Point(30, 0), colours[c % colours.size()], 3);
+        write_text(picture, fmt::format("{} (area {:.4f})", curves[c].name, area_under(curves[c])), key + cv::Point(40, 5));
     }
     for (const RocPoint& point : points) {
         const cv::Point where = at(across(point.wrong_share, least), point.right_share);
