@@ -87,6 +87,29 @@ TEST_F(WholeChain, APatientWhoMovesDuringTheScanIsScannedAgain) {
     EXPECT_THROW(hurried.scan(), CheckFailedError);
 }
 
+TEST_F(WholeChain, ADoubtfulMatchIsDrawnOnThePersonsWordAndTheWordHoldsForThatMatchOnly) {
+    simulation::RoomSettings settings;
+    settings.preset = simulation::Preset::paper;
+    settings.seed = 1;
+    simulation::SimulatedRig room(*volume_, {}, settings);
+    const CaseDrawing drawing(prepared_);
+    SessionSettings doubting;
+    doubting.registration.min_agreeing_bases = 1000;  // every match is an `ask`
+    Session session(prepared_, drawing, room.calibration(), room.projector(), room.cameras(), room.clock(), doubting);
+    const auto lit = [&] {
+        bool any = false;
+        for (int i = 0; i < 4; ++i) any |= session.update().overlay.lit;
+        return any;
+    };
+    session.scan();
+    ASSERT_EQ(session.find_patient().verdict, Verdict::ask);
+    EXPECT_FALSE(lit()) << "nobody has looked yet";
+    session.confirm();
+    EXPECT_TRUE(lit());
+    ASSERT_EQ(session.find_patient().verdict, Verdict::ask);
+    EXPECT_FALSE(lit()) << "that word was given for another match";
+}
+
 TEST_F(WholeChain, AMirroredPatientIsNeverProjectedOn) {
     Case mirrored = prepared_;
     Volume volume = *volume_;  // left and right exchanged, as a reader that forgets the rows' direction would give
