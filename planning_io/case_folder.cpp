@@ -89,6 +89,10 @@ void write_case(const Case& prepared, const fs::path& folder, bool replace) {
     if (prepared.lut.volume_hash != prepared.volume_hash || prepared.lut.mesh_hash != hash_of(prepared.skin))
         throw InputError(folder, "would hold the LUT of another case", "Build the LUT from this case's volume and skin.");
     if (replace && fs::exists(folder) && !fs::exists(folder / kManifest)) replace = false;  // only a case is ever replaced
+    if (replace && fs::exists(folder / kRegistrationsFolder))
+        throw InputError(folder, std::string("holds matches that sessions kept (") + kRegistrationsFolder +
+                                     "), which would be lost with the case that is replaced",
+                         "Move that folder away, or name another folder for the new case.");
     write_folder_safely(folder, replace, [&](const fs::path& into) {
         write_safely(into / kManifest, dump(manifest_of(prepared)));
         write_mesh(prepared.skin, into / kSkinMesh);

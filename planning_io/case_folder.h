@@ -10,6 +10,9 @@
 
 namespace planlight {
 
+/// Where sessions keep their matches, in the case folder.
+constexpr const char* kRegistrationsFolder = "registrations";
+
 /// All that the operating room needs of one patient: case.json (manifest with checksums), skin.ply, skin.lut, plan.mrk.json.
 struct Case {
     std::string code;         ///< of the case, made from the volume's hash; never a patient's name
@@ -26,7 +29,8 @@ struct Case {
 };
 
 /// Writes the folder so that it is whole or not there: into a temporary folder beside it, synced, then renamed. An existing
-/// case folder is replaced only with `replace`; any other existing folder is refused.
+/// case folder is replaced only with `replace`; any other existing folder is refused, and a case that holds matches kept by
+/// sessions (`kRegistrationsFolder`).
 void write_case(const Case& prepared, const std::filesystem::path& folder, bool replace = false);
 
 /// Reads and verifies: every file's checksum, and that LUT, mesh and manifest name the same patient. A LUT of another case

@@ -21,7 +21,7 @@ int run_session(const SessionOptions& options) {
     live.autoplay = options.autoplay;
     live.end_after_s = options.end_after_s;
     live.screenshots = options.screenshots;
-    live.keep_matches_in = options.keep.empty() ? options.case_folder / "registrations" : options.keep;
+    live.keep_matches_in = options.keep.empty() ? options.case_folder / kRegistrationsFolder : options.keep;
     return run_live(volume, the_case, CaseDrawing(the_case), live);
 }
 

@@ -299,6 +299,10 @@ TEST(CaseFolder, ReadsBackAndIsReplacedOnlyWhenAsked) {
     write_case(other, folder.path() / "case", true);
     EXPECT_EQ(read_case(folder.path() / "case").code, "decade");
     EXPECT_EQ(files_in(folder.path()), 1u) << "nothing is left beside it";
+    fs::create_directories(folder.path() / "case" / kRegistrationsFolder / "0001");
+    EXPECT_EQ(read_case(folder.path() / "case").code, "decade") << "kept matches do not disturb";
+    EXPECT_THROW(write_case(made, folder.path() / "case", true), InputError) << "they would be lost";
+    EXPECT_TRUE(fs::exists(folder.path() / "case" / kRegistrationsFolder / "0001"));
     fs::create_directories(folder.path() / "photos");
     write_safely(folder.path() / "photos" / "a.txt", "mine");
     EXPECT_THROW(write_case(made, folder.path() / "photos", true), InputError) << "only a case is ever replaced";
