@@ -279,7 +279,7 @@ MovedSkinPose settle_on_moved_skin(const PointCloud& cloud, const SkinLut& lut, 
     const double pulled_mm = settings.pulled_share * result.movement_mm,
                  from_offset_mm = settings.offset_share * result.offset_mm;
     const double unseen_mm2 = pulled_mm * pulled_mm + from_offset_mm * from_offset_mm +
-                              settings.least_movement_mm * settings.least_movement_mm;
+                              settings.least_shift_mm * settings.least_shift_mm;
     result.covariance.of_turn_and_shift.diagonal().tail<3>().array() += unseen_mm2 / 3;
     const Vector3d turn = step.head<3>();
     RigidTransform moved = RigidTransform::Identity();

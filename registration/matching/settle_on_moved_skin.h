@@ -17,6 +17,9 @@ struct MovedSkinSettings {
     /// thickness; infinite: alike everywhere.
     double thickness_floor_mm = 5;
     double least_movement_mm = 0.1; ///< that no residual could show, one sigma
+    /// A shift of the whole that no residual shows even where the skin is still: another threshold or light that enters
+    /// the skin looks like a head that lies a little deeper. One sigma.
+    double least_shift_mm = 0.25;
 };
 
 /// The pose of a scan of skin that has moved since the CT, and how sure it is.
