@@ -51,6 +51,11 @@ Matrix3f triangle_axes(const Vector3f& a, const Vector3f& b, const Vector3f& c) 
     return axes;
 }
 
+bool alike(const SkinPairs::Shape& a, const SkinPairs::Shape& b, float tolerance_mm) {
+    return std::abs(a.length_mm - b.length_mm) < tolerance_mm && std::abs(a.first - b.first) < kNormalTolerance &&
+           std::abs(a.second - b.second) < kNormalTolerance && std::abs(a.between - b.between) < kNormalTolerance;
+}
+
 /// The best of `tries` random triples.
 std::optional<Base> best_of(const std::vector<SurfaceSite>& sites, int tries, std::mt19937& random) {
     std::optional<Base> best;
@@ -106,7 +111,9 @@ SkinPairs::Shape SkinPairs::shape_of(const SurfaceSite& a, const SurfaceSite& b)
     return {length_mm, a.normal.dot(way), b.normal.dot(way), a.normal.dot(b.normal)};
 }
 
-SkinPairs::SkinPairs(std::vector<SurfaceSite> skin) : skin_(std::move(skin)) {
+SkinPairs::SkinPairs(std::vector<SurfaceSite> skin, std::size_t most_kept)
+    : skin_(std::move(skin)), kept_(skin_.size() <= most_kept) {
+    if (!kept_) return;
     const std::size_t n = skin_.size();
     for (auto* values : {&length_, &first_, &second_, &between_}) values->reserve(n * n);
     for (const SurfaceSite& a : skin_)
@@ -119,12 +126,23 @@ SkinPairs::SkinPairs(std::vector<SurfaceSite> skin) : skin_(std::move(skin)) {
         }
 }
 
+SkinPairs::Shape SkinPairs::shape(std::size_t a, std::size_t b) const {
+    if (!kept_) return shape_of(skin_[a], skin_[b]);
+    const std::size_t at = a * skin_.size() + b;
+    return {length_[at], first_[at], second_[at], between_[at]};
+}
+
 void SkinPairs::find_alike(const Shape& wanted, std::size_t a, float tolerance_mm, std::vector<int>& found) const {
     constexpr std::size_t kBlock = 256;
-    const std::size_t n = skin_.size(), row = a * n;
+    const std::size_t n = skin_.size();
+    if (!kept_) {
+        for (std::size_t b = 0; b < n; ++b)
+            if (alike(wanted, shape(a, b), tolerance_mm)) found.push_back(static_cast<int>(b));
+        return;
+    }
     std::uint8_t marks[kBlock];
     for (std::size_t from = 0; from < n; from += kBlock) {
-        const std::size_t m = std::min(kBlock, n - from), at = row + from;
+        const std::size_t m = std::min(kBlock, n - from), at = a * n + from;
         match_kernels::mark_alike(&length_[at], &first_[at], &second_[at], &between_[at], m,
                                   {wanted.length_mm, wanted.first, wanted.second, wanted.between, tolerance_mm, kNormalTolerance},
                                   marks);
@@ -135,14 +153,8 @@ void SkinPairs::find_alike(const Shape& wanted, std::size_t a, float tolerance_m
 
 void SkinPairs::find_alike(const Shape& wanted, std::size_t a, float tolerance_mm, std::span<const int> among,
                            std::vector<int>& found) const {
-    const std::size_t row = a * skin_.size();
-    for (const int b : among) {
-        const std::size_t at = row + static_cast<std::size_t>(b);
-        if (std::abs(length_[at] - wanted.length_mm) < tolerance_mm && std::abs(first_[at] - wanted.first) < kNormalTolerance &&
-            std::abs(second_[at] - wanted.second) < kNormalTolerance &&
-            std::abs(between_[at] - wanted.between) < kNormalTolerance)
-            found.push_back(b);
-    }
+    for (const int b : among)
+        if (alike(wanted, shape(a, static_cast<std::size_t>(b)), tolerance_mm)) found.push_back(b);
 }
 
 void for_each_contact_triplet(const Base& base, const SkinPairs& pairs, double tolerance_mm,

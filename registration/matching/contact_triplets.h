@@ -25,10 +25,12 @@ struct ContactPose {
     Eigen::Vector3f t;
 };
 
-/// The skin samples with how each pair of them stands to each other, worked out once for all bases.
+/// The skin samples with how each pair of them stands to each other, worked out once for all bases. Of more than
+/// `most_kept` samples (a whole body; a head has about 700) each pair is worked out when it is asked for instead: 16 bytes a
+/// pair would fill the memory.
 class SkinPairs {
 public:
-    explicit SkinPairs(std::vector<SurfaceSite> skin);
+    explicit SkinPairs(std::vector<SurfaceSite> skin, std::size_t most_kept = 3000);
 
     const std::vector<SurfaceSite>& skin() const { return skin_; }
 
@@ -44,7 +46,10 @@ public:
                     std::vector<int>& found) const;
 
 private:
+    Shape shape(std::size_t a, std::size_t b) const;
+
     std::vector<SurfaceSite> skin_;
+    bool kept_;
     std::vector<float> length_, first_, second_, between_;  ///< row a: of the pairs (a, b)
 };
 

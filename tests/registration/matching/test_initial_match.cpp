@@ -2,7 +2,9 @@
 
 #include <limits>
 
+#include "registration/matching/contact_triplets.h"
 #include "registration/matching/initial_match.h"
+#include "registration/matching/surface_sites.h"
 #include "tests/registration/matching/matching_scenes.h"
 
 namespace planlight::test {
@@ -77,6 +79,23 @@ TEST(InitialMatch, TooFewPointsGiveNoCandidates) {
     without_normals.normals_in_rig.clear();
     EXPECT_TRUE(find_initial_match(without_normals, head_lut()).candidates.empty());
     EXPECT_TRUE(find_initial_match(head_view(View::front, 200, 500, 1), SkinLut{}).candidates.empty());
+}
+
+TEST(SkinPairs, AWholeBodysAreWorkedOutAsNeededAndAreTheSame) {
+    const std::vector<SurfaceSite> skin = sites_of_skin(head_lut(), 10, 1);
+    const SkinPairs kept(skin), as_needed(skin, 0);
+    std::size_t seen = 0;
+    for (std::size_t a = 0; a < skin.size(); a += 7) {
+        const SkinPairs::Shape wanted = SkinPairs::shape_of(skin[a], skin[(a * 31 + 5) % skin.size()]);
+        std::vector<int> one, other, among;
+        kept.find_alike(wanted, a, 7.5f, one);
+        as_needed.find_alike(wanted, a, 7.5f, other);
+        EXPECT_EQ(one, other);
+        as_needed.find_alike(wanted, a, 7.5f, one, among);
+        EXPECT_EQ(one, among);
+        seen += one.size();
+    }
+    EXPECT_GT(seen, skin.size());
 }
 
 }  // namespace
