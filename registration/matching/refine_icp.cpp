@@ -95,21 +95,24 @@ NormalEquations point_to_point_equations(std::span<const Vector3d> points_in_rig
 }
 
 double distance_to_skin(const SkinLut& lut, const DistanceField& field, IcpSettings::Mode mode, const Vector3d& p_in_ct) {
-    if (mode == IcpSettings::Mode::closest_point)
-        return (lut.nearest_skin(p_in_ct)->position_in_ct.cast<double>() - p_in_ct).norm();
+    if (mode == IcpSettings::Mode::closest_point) {
+        const SkinPoint* s = lut.nearest_skin(p_in_ct);
+        return s ? (s->position_in_ct.cast<double>() - p_in_ct).norm() : std::numeric_limits<double>::infinity();
+    }
     double d;
     Vector3d unused;
     return field.sample(p_in_ct, d, unused) ? std::abs(d) : std::numeric_limits<double>::infinity();
 }
 
-void measure_residuals(std::span<const Vector3d> points, const SkinLut& lut, const DistanceField& field,
-                       const IcpSettings& settings, IcpResult& result) {
+/// Of the points that the last stage did not leave out.
+void measure_residuals(std::span<const Vector3d> points, std::span<const std::uint8_t> skip, const SkinLut& lut,
+                       const DistanceField& field, const IcpSettings& settings, IcpResult& result) {
     std::vector<double> all;
     double sum = 0;
     result.used = result.inliers = 0;
-    for (const Vector3d& p : points) {
-        const Vector3d x = result.ct_from_rig * p;
-        if (off_the_skin(lut, x)) continue;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        if (skip[i]) continue;
+        const Vector3d x = result.ct_from_rig * points[i];
         const double d = distance_to_skin(lut, field, settings.mode, x);
         all.push_back(d);
         if (d <= settings.max_pair_mm) ++result.used;
@@ -155,9 +158,10 @@ IcpResult refine_icp(const PointCloud& cloud, const SkinLut& lut, const RigidTra
     if (points.size() < 6 || lut.skin.empty() || lut.distance_mm.empty()) return result;
     const DistanceField field(lut);
     const PointArrays arrays(points, mean_of_unmarked(points, {}));
+    std::vector<std::uint8_t> skip;
     for (const Stage& stage : stages_of(settings, sample)) {
         const std::span<const Vector3d> some(points.data(), stage.points);
-        const auto skip = mark_off_the_skin(some, lut, result.ct_from_rig);
+        skip = mark_off_the_skin(some, lut, result.ct_from_rig);
         const Vector3d centre_in_rig = mean_of_unmarked(some, skip);
         double scale_mm = stage.first_scale_mm;
         for (int i = 0; i < stage.max_iterations; ++i) {
@@ -180,7 +184,7 @@ IcpResult refine_icp(const PointCloud& cloud, const SkinLut& lut, const RigidTra
         }
     }
     result.ct_from_rig.linear() = Eigen::Quaterniond(result.ct_from_rig.linear()).normalized().toRotationMatrix();
-    measure_residuals(points, lut, field, settings, result);
+    measure_residuals(points, skip, lut, field, settings, result);
     return result;
 }
 
