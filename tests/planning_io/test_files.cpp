@@ -10,6 +10,7 @@
 #include "planning_io/rig_file.h"
 #include "planning_io/safe_write.h"
 #include "planning_io/types/error.h"
+#include "tests/planning_io/example_rig.h"
 #include "tests/support/analytic_head.h"
 #include "tests/support/test_data.h"
 
@@ -151,22 +152,10 @@ TEST(CloudFile, ReadsBackWithAndWithoutItsOptionalColumns) {
     EXPECT_THROW(read_mesh(folder.path() / "full.ply"), InputError);
 }
 
-RigCalibration a_rig() {
-    const auto device = [](double x_mm, double toe_in) {
-        CameraModel d{1440, 1080, 2400, 2401, 719.3, 541.1, -0.1, 0.05, 1e-4, -2e-4, 0.001};
-        RigidTransform rig_from_device = RigidTransform::Identity();
-        rig_from_device.translation().x() = x_mm;
-        rig_from_device.linear() = Eigen::AngleAxisd(toe_in, Vector3d::UnitY()).toRotationMatrix();
-        d.device_from_rig = rig_from_device.inverse();
-        return d;
-    };
-    return {device(-150, 0.15), device(150, -0.15), device(3, 0), "2026-01-02", 0.11};
-}
-
 TEST(RigFile, ReadsBackValueForValueAndRefusesNonsense) {
     const test::TemporaryFolder folder;
     const fs::path file = folder.path() / "rig.json";
-    const RigCalibration rig = a_rig();
+    const RigCalibration rig = test::example_rig();
     write_rig(rig, file);
     const RigCalibration back = read_rig(file);
     EXPECT_EQ(back.left_camera.device_from_rig.matrix(), rig.left_camera.device_from_rig.matrix());
@@ -174,7 +163,7 @@ TEST(RigFile, ReadsBackValueForValueAndRefusesNonsense) {
     EXPECT_EQ(back.projector.centre_y, 541.1);
     EXPECT_EQ(back.made_on, "2026-01-02");
     const auto refused = [&](auto change) {
-        RigCalibration bad = a_rig();
+        RigCalibration bad = test::example_rig();
         change(bad);
         EXPECT_THROW(write_rig(bad, file), InputError);
     };

@@ -5,6 +5,7 @@
 #include "planning_io/rig_file.h"
 #include "planning_io/safe_write.h"
 #include "planning_io/types/error.h"
+#include "tests/planning_io/example_rig.h"
 #include "tests/support/test_data.h"
 
 // Rigs and captures of two devices of the three.
@@ -14,23 +15,11 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-RigCalibration a_rig() {
-    const auto device = [](double x_mm, double toe_in) {
-        CameraModel d{1440, 1080, 2400, 2401, 719.3, 541.1, -0.1, 0.05, 1e-4, -2e-4, 0.001};
-        RigidTransform rig_from_device = RigidTransform::Identity();
-        rig_from_device.translation().x() = x_mm;
-        rig_from_device.linear() = Eigen::AngleAxisd(toe_in, Vector3d::UnitY()).toRotationMatrix();
-        d.device_from_rig = rig_from_device.inverse();
-        return d;
-    };
-    return {device(-150, 0.15), device(150, -0.15), device(3, 0), "2026-01-02", 0.11};
-}
-
 TEST(RigFile, ARigOfTwoDevicesIsReadOnlyWhereItIsEnough) {
     const test::TemporaryFolder folder;
     const fs::path file = folder.path() / "rig.json";
     for (const bool no_right : {true, false}) {
-        RigCalibration rig = a_rig();
+        RigCalibration rig = test::example_rig();
         (no_right ? rig.right_camera : rig.projector) = {};
         write_rig(rig, file);
         const RigCalibration back = read_partial_rig(file);
@@ -44,7 +33,7 @@ TEST(RigFile, ARigOfTwoDevicesIsReadOnlyWhereItIsEnough) {
             EXPECT_NE(std::string(e.what()).find(no_right ? "has no right_camera" : "has no projector"), std::string::npos);
         }
     }
-    RigCalibration alone = a_rig();
+    RigCalibration alone = test::example_rig();
     alone.right_camera = alone.projector = {};
     EXPECT_THROW(write_rig(alone, file), InputError) << "a camera is no rig";
 }
