@@ -10,22 +10,35 @@ namespace {
 typedef float Lanes __attribute__((vector_size(4 * kLanes)));
 typedef std::int32_t Mask __attribute__((vector_size(4 * kLanes)));
 
+/// `kLanes` points from `k` on, as they lie from (x, y, z); which of them are within the reach and before `end`.
+struct Near {
+    Lanes dx, dy, dz;
+    Mask within;
+};
+
+PLANLIGHT_INLINE void look(const Coordinates& points, std::uint32_t k, std::uint32_t end, float x, float y, float z,
+                           float squared_reach, Near& near) {
+    constexpr Mask kLane = {0, 1, 2, 3, 4, 5, 6, 7};
+    std::memcpy(&near.dx, points.x + k, sizeof near.dx);
+    std::memcpy(&near.dy, points.y + k, sizeof near.dy);
+    std::memcpy(&near.dz, points.z + k, sizeof near.dz);
+    near.dx -= x;
+    near.dy -= y;
+    near.dz -= z;
+    near.within = (near.dx * near.dx + near.dy * near.dy + near.dz * near.dz <= squared_reach) &
+                  (kLane < static_cast<std::int32_t>(end - k));
+}
+
 }  // namespace
 
 PLANLIGHT_CLONES int count_within(const Coordinates& points, const Run* runs, int run_count, std::uint32_t at, float reach) {
     const float x = points.x[at], y = points.y[at], z = points.z[at], squared = reach * reach;
-    const Mask lane = {0, 1, 2, 3, 4, 5, 6, 7};
+    Near near;
     Mask count = {};
     for (int r = 0; r < run_count; ++r)
         for (std::uint32_t k = runs[r].begin; k < runs[r].end; k += kLanes) {
-            Lanes dx, dy, dz;
-            std::memcpy(&dx, points.x + k, sizeof dx);
-            std::memcpy(&dy, points.y + k, sizeof dy);
-            std::memcpy(&dz, points.z + k, sizeof dz);
-            dx -= x;
-            dy -= y;
-            dz -= z;
-            count -= (dx * dx + dy * dy + dz * dz <= squared) & (lane < static_cast<std::int32_t>(runs[r].end - k));
+            look(points, k, runs[r].end, x, y, z, squared, near);
+            count -= near.within;
         }
     int sum = 0;
     for (int i = 0; i < kLanes; ++i) sum += count[i];
@@ -34,22 +47,14 @@ PLANLIGHT_CLONES int count_within(const Coordinates& points, const Run* runs, in
 
 PLANLIGHT_CLONES Sums sum_within(const Coordinates& points, const Run* runs, int run_count, std::uint32_t at, float reach) {
     const float px = points.x[at], py = points.y[at], pz = points.z[at], squared = reach * reach;
-    const Mask lane = {0, 1, 2, 3, 4, 5, 6, 7};
+    Near near;
     const Lanes one = Lanes{} + 1;
     Lanes n = {}, x = {}, y = {}, z = {}, xx = {}, xy = {}, xz = {}, yy = {}, yz = {}, zz = {};
     for (int r = 0; r < run_count; ++r)
         for (std::uint32_t k = runs[r].begin; k < runs[r].end; k += kLanes) {
-            Lanes dx, dy, dz;
-            std::memcpy(&dx, points.x + k, sizeof dx);
-            std::memcpy(&dy, points.y + k, sizeof dy);
-            std::memcpy(&dz, points.z + k, sizeof dz);
-            dx -= px;
-            dy -= py;
-            dz -= pz;
-            const Mask use = (dx * dx + dy * dy + dz * dz <= squared) & (lane < static_cast<std::int32_t>(runs[r].end - k));
-            dx = (Lanes)((Mask)dx & use);
-            dy = (Lanes)((Mask)dy & use);
-            dz = (Lanes)((Mask)dz & use);
+            look(points, k, runs[r].end, px, py, pz, squared, near);
+            const Mask use = near.within;
+            const Lanes dx = (Lanes)((Mask)near.dx & use), dy = (Lanes)((Mask)near.dy & use), dz = (Lanes)((Mask)near.dz & use);
             n += (Lanes)((Mask)one & use);
             x += dx;
             y += dy;

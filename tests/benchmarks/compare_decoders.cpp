@@ -5,17 +5,17 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstring>
-#include <ctime>
 #include <functional>
 #include <opencv2/core.hpp>
 #include <opencv2/structured_light.hpp>
 #include <string>
 #include <thread>
 
+#include "registration/processor_clones.h"
 #include "registration/scan/decode_gray_pairs.h"
+#include "tests/benchmarks/time_round.h"
 #include "tests/registration/scan/stripe_room.h"
 
 namespace planlight {
@@ -76,16 +76,9 @@ struct Contestant {
     static double least(const std::vector<double>& v) { return *std::min_element(v.begin(), v.end()); }
 };
 
-void time(Contestant& one) {
-    const auto began = std::chrono::steady_clock::now();
-    const std::clock_t began_processor = std::clock();
-    one.run();
-    one.wall_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
-    one.processor_s.push_back(static_cast<double>(std::clock() - began_processor) / CLOCKS_PER_SEC);
-}
+void time(Contestant& one) { test::time_round(one.run, one.wall_s, one.processor_s); }
 
-__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"))) std::uint64_t sum_words(const std::uint8_t* bytes,
-                                                                                                      std::size_t count) {
+PLANLIGHT_CLONES std::uint64_t sum_words(const std::uint8_t* bytes, std::size_t count) {
     std::uint64_t sum = 0;
     for (std::size_t i = 0; i < count / 8; ++i) {
         std::uint64_t word;

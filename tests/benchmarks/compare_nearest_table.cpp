@@ -16,9 +16,7 @@
 #include <vtkSmartPointer.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <ctime>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -33,6 +31,7 @@
 #include "segmentation/segment_skin.h"
 #include "segmentation/signed_distance_grid.h"
 #include "segmentation/skin_voxels.h"
+#include "tests/benchmarks/time_round.h"
 #include "tests/support/test_data.h"
 
 namespace planlight {
@@ -74,13 +73,7 @@ private:
     }
 };
 
-void time(Contestant& one) {
-    const auto began = std::chrono::steady_clock::now();
-    const std::clock_t began_processor = std::clock();
-    one.run();
-    one.wall_s.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
-    one.processor_s.push_back(static_cast<double>(std::clock() - began_processor) / CLOCKS_PER_SEC);
-}
+void time(Contestant& one) { test::time_round(one.run, one.wall_s, one.processor_s); }
 
 /// The table, and the same voxels as the peers want them.
 struct Scene {

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "registration/scan/even_pictures.h"
+#include "tests/registration/gray_columns.h"
 
 namespace planlight {
 namespace {
@@ -25,12 +26,7 @@ ScanCapture capture_of(const std::function<Eigen::Vector2d(double)>& at, double 
     capture.stripes.width = kWidth;
     capture.stripes.height = kHeight;
     capture.stripes.rows = false;
-    capture.partial = {{StripePattern::Kind::white, false, 0, "white"}, {StripePattern::Kind::black, false, 0, "black"}};
-    for (int bit = 0; bit < kBits; ++bit) {
-        const std::string name = "column-gray-" + std::to_string(bit);
-        capture.partial.push_back({StripePattern::Kind::gray_bit, false, bit, name});
-        capture.partial.push_back({StripePattern::Kind::gray_bit_inverse, false, bit, name + "-inverse"});
-    }
+    capture.partial = test::gray_columns(kBits);
     std::mt19937 random(5);
     std::normal_distribution<double> noise(0, 1.5);
     for (std::size_t k = 0; k < capture.partial.size(); ++k) {

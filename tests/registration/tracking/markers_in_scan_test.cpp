@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "marker_scene.h"
+#include "tests/registration/gray_columns.h"
 
 namespace planlight::test {
 namespace {
@@ -16,12 +17,7 @@ ScanCapture capture_of(const RigCalibration& rig, const std::function<RigidTrans
     capture.stripes.width = 800;
     capture.stripes.height = 600;
     capture.stripes.rows = false;
-    capture.partial = {{StripePattern::Kind::white, false, 0, "white"}, {StripePattern::Kind::black, false, 0, "black"}};
-    for (int bit = 0; bit < kBits; ++bit) {
-        const std::string name = "column-gray-" + std::to_string(bit);
-        capture.partial.push_back({StripePattern::Kind::gray_bit, false, bit, name});
-        capture.partial.push_back({StripePattern::Kind::gray_bit_inverse, false, bit, name + "-inverse"});
-    }
+    capture.partial = gray_columns(kBits);
     std::mt19937 random(3);
     for (std::size_t k = 0; k < capture.partial.size(); ++k) {
         const double share = static_cast<double>(k) / static_cast<double>(capture.partial.size() - 1);
