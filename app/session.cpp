@@ -99,9 +99,9 @@ double Session::moved_at_the_end_mm() {
 
 const RegistrationResult& Session::find_patient() {
     if (!scanned_) throw CheckFailedError("there is no scan to find the patient in", "Scan first.");
-    settings_.overlay.operator_confirmed = false;  // what was looked at was another match
     RegistrationSettings settings = settings_.registration;
     settings.viewpoint_in_rig = rig_.projector.centre_in_rig();
+    confirmed_ = false;
     registration_ = register_patient(scanned_->clean.kept, case_.lut, settings);
     registration_->moved_in_scan_mm = motion_in_scan_mm_;
     if (registration_->verdict != Verdict::no) draw_beside_markers();
@@ -110,8 +110,8 @@ const RegistrationResult& Session::find_patient() {
 }
 
 void Session::confirm() {
-    settings_.overlay.operator_confirmed = true;
-    if (registration_) start_overlay();
+    confirmed_ = true;
+    if (overlay_) overlay_->set_operator_confirmed(true);
 }
 
 void Session::draw_beside_markers() {
@@ -127,6 +127,7 @@ void Session::start_overlay() {
     keep_dark.clear();
     for (const auto& marker : tracker_.markers()) keep_dark.push_back(marker.centre_in_patient);
     overlay_ = std::make_unique<OverlayLoop>(projector_, clock_, renderer_, drawing_, *registration_, settings_.overlay);
+    if (confirmed_) overlay_->set_operator_confirmed(true);
 }
 
 Session::Update Session::update() {

@@ -60,7 +60,7 @@ public:
     /// MATCH: T_ini from the last scan. Throws CheckFailedError without one.
     const RegistrationResult& find_patient();
 
-    /// The operator's word that the overlay was looked at on landmarks (needed for the verdict `ask`).
+    /// The operator's word that the match was looked at (needed for the verdict `ask`). It holds for the last match only, through darkness too.
     void confirm();
 
     /// TRACK and DRAW once: a frame, its pose T_cur, the picture for T_global = T_cur T_ini or darkness.
@@ -107,6 +107,7 @@ private:
     std::optional<ScanResult> scanned_;
     std::optional<RegistrationResult> registration_;
     std::unique_ptr<OverlayLoop> overlay_;
+    bool confirmed_ = false;  ///< the last match, by the operator
     double motion_in_scan_mm_ = 0;
     int scans_repeated_ = 0;
 };

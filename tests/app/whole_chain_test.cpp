@@ -106,6 +106,8 @@ TEST_F(WholeChain, ADoubtfulMatchIsDrawnOnThePersonsWordAndTheWordHoldsForThatMa
     EXPECT_FALSE(lit()) << "nobody has looked yet";
     session.confirm();
     EXPECT_TRUE(lit());
+    session.go_dark();
+    EXPECT_TRUE(lit()) << "after DARK the word still holds";
     ASSERT_EQ(session.find_patient().verdict, Verdict::ask);
     EXPECT_FALSE(lit()) << "that word was given for another match";
 }
