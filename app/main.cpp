@@ -149,6 +149,7 @@ void add_scan(CLI::App& app, ScanOptions& o) {
     sub->add_option("--rig", o.rig, "rig.json")->required();
     sub->add_option("--out", o.out, "Clean cloud (.ply)")->required();
     sub->add_option("--raw", o.raw_out, "Also the cloud before the outliers were removed (.ply)");
+    sub->add_option("--surface", o.surface_out, "Also the scan as a triangulated surface (.ply: the same points, with faces)");
     sub->add_option("--max-movement-mm", o.max_movement_mm, "Of the patient during the scan; more is refused (exit 6)")
         ->capture_default_str()
         ->check(CLI::Range(0.01, 100.0));

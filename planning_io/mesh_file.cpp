@@ -29,6 +29,12 @@ public:
     void add(const Eigen::Vector3d& v) {
         for (int axis = 0; axis < 3; ++axis) add(v[axis]);
     }
+    void add(const std::vector<std::array<std::int32_t, 3>>& triangles) {
+        for (const auto& triangle : triangles) {
+            add(std::uint8_t{3});
+            for (const std::int32_t corner : triangle) add(corner);
+        }
+    }
     std::string header_and_rows(const std::string& header) const { return header + content_; }
 
 private:
@@ -39,6 +45,10 @@ std::string columns_of(const char* type, std::initializer_list<const char*> name
     std::string lines;
     for (const char* name : names) lines += std::string("property ") + type + " " + name + "\n";
     return lines;
+}
+
+std::string faces_in_header(std::size_t count) {
+    return "element face " + std::to_string(count) + "\nproperty list uchar int vertex_indices\n";
 }
 
 template <class Column>
@@ -79,7 +89,7 @@ void write_mesh(const TriangleMesh& mesh, const fs::path& file) {
     if (!mesh.normals_in_ct.empty()) header += columns_of("double", {"nx", "ny", "nz"});
     if (!mesh.flags.empty()) header += columns_of("uchar", {"flags"});
     if (!mesh.thickness_mm.empty()) header += columns_of("float", {"thickness"});
-    header += "element face " + std::to_string(mesh.triangles.size()) + "\nproperty list uchar int vertex_indices\nend_header\n";
+    header += faces_in_header(mesh.triangles.size()) + "end_header\n";
     Rows rows;
     for (std::size_t i = 0; i < count; ++i) {
         rows.add(mesh.vertices_in_ct[i]);
@@ -87,10 +97,7 @@ void write_mesh(const TriangleMesh& mesh, const fs::path& file) {
         if (!mesh.flags.empty()) rows.add(mesh.flags[i]);
         if (!mesh.thickness_mm.empty()) rows.add(mesh.thickness_mm[i]);
     }
-    for (const auto& triangle : mesh.triangles) {
-        rows.add(std::uint8_t{3});
-        for (const std::int32_t corner : triangle) rows.add(corner);
-    }
+    rows.add(mesh.triangles);
     write_safely(file, rows.header_and_rows(header));
 }
 
@@ -122,7 +129,7 @@ TriangleMesh read_mesh(const fs::path& file) {
     return mesh;
 }
 
-void write_cloud(const PointCloud& cloud, const fs::path& file) {
+void write_cloud(const PointCloud& cloud, const fs::path& file, const std::vector<std::array<std::int32_t, 3>>& triangles) {
     const std::size_t count = cloud.size();
     check_length(cloud.normals_in_rig, count, file, "normals");
     check_length(cloud.sigma_mm, count, file, "sigma");
@@ -141,6 +148,8 @@ void write_cloud(const PointCloud& cloud, const fs::path& file) {
         if (!cloud.pixels_in_projector.empty())
             rows.add(cloud.pixels_in_projector[i].x()), rows.add(cloud.pixels_in_projector[i].y());
     }
+    if (!triangles.empty()) header += faces_in_header(triangles.size());
+    rows.add(triangles);
     write_safely(file, rows.header_and_rows(header + "end_header\n"));
 }
 

@@ -14,8 +14,10 @@ void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file);
 /// PLY as written above, or another program's PLY with SPACE=LPS or SPACE=RAS (converted); without a SPACE it is refused.
 TriangleMesh read_mesh(const std::filesystem::path& file);
 
-/// Binary PLY of a scan in rig, with "comment FRAME=rig"; columns x y z nx ny nz sigma projector_x projector_y.
-void write_cloud(const PointCloud& cloud, const std::filesystem::path& file);
+/// Binary PLY of a scan in rig, with "comment FRAME=rig"; columns x y z nx ny nz sigma projector_x projector_y. With
+/// `triangles` (indices of its points) they are its faces: the scan as a surface, which `read_cloud` takes too.
+void write_cloud(const PointCloud& cloud, const std::filesystem::path& file,
+                 const std::vector<std::array<std::int32_t, 3>>& triangles = {});
 
 /// What a person says of a cloud that another program wrote.
 struct CloudOrigin {

@@ -74,6 +74,7 @@ int run_simulate_board(const SimulateOptions& options);  ///< with `board` given
 
 struct ScanOptions {
     Path capture, rig, out, raw_out;
+    Path surface_out;               ///< the same points with triangles; empty: not wanted
     std::vector<Path> exposures;    ///< further captures of the same pose
     double max_movement_mm = 0.15;  ///< of the patient during the scan
     bool accept_movement = false, json = false;

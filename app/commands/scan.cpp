@@ -11,6 +11,7 @@
 #include "planning_io/rig_file.h"
 #include "planning_io/types/error.h"
 #include "registration/scan/merge_exposures.h"
+#include "registration/scan/surface_triangles.h"
 #include "registration/tracking/markers_in_scan.h"
 
 namespace planlight {
@@ -100,10 +101,16 @@ int run_scan(const ScanOptions& options) {
     judge_movement(movement, options);
     write_cloud(scan.clean.kept, options.out);
     if (!options.raw_out.empty()) write_cloud(scan.raw.cloud, options.raw_out);
+    std::vector<std::array<std::int32_t, 3>> triangles;
+    if (!options.surface_out.empty()) {
+        triangles = surface_triangles(scan.clean.kept);
+        write_cloud(scan.clean.kept, options.surface_out, triangles);
+    }
     if (options.json) {
         const nlohmann::json result = {
             {"points", scan.clean.kept.size()},
             {"raw_points", scan.raw.cloud.size()},
+            {"triangles", options.surface_out.empty() ? nlohmann::json() : nlohmann::json(triangles.size())},
             {"left", counts(scan.left)},
             {"right", counts(scan.right)},
             {"three_view", scan.raw.three_view},
@@ -128,6 +135,8 @@ int run_scan(const ScanOptions& options) {
         fmt::print("{} points by {} in {} (raw {}; off the rays {}, jumps {}, grazing {}, small pieces {}, lonely {}).\n",
                    scan.clean.kept.size(), devices_of(scan, rig), options.out.string(), scan.raw.cloud.size(),
                    scan.raw.disagree, scan.clean.jump, scan.clean.grazing, scan.clean.small_piece, scan.clean.lonely);
+        if (!options.surface_out.empty())
+            fmt::print("{} triangles over them in {}.\n", triangles.size(), options.surface_out.string());
     }
     return 0;
 }
