@@ -173,8 +173,8 @@ void add_register(CLI::App& app, RegisterOptions& o) {
         ->expected(3)
         ->needs(cloud);
     sub->add_option("--pairs", o.pairs,
-                    "Landmarks (.csv: name, ct and rig coordinates): they check the cloud's match, or, without a "
-                    "cloud, are the match");
+                    "Landmarks (.csv: name, ct and rig coordinates; `review --landmarks` clicks them): they check the cloud's "
+                    "match, help where it is refused, or, without a cloud, are the match");
     sub->add_option("--certificate", o.certificate, "Write a page (.html) with what the match is worth, in words and pictures");
     sub->add_option("--out", o.out, "registration.json to write")->required();
     sub->add_option("--slicer", o.slicer_transform, "Transform for 3D Slicer to write (.tfm): it lays the cloud on the CT");

@@ -14,8 +14,7 @@
 #include "planning_io/slicer_transform.h"
 #include "planning_io/types/error.h"
 #include "registration/matching/cloud_normals.h"
-#include "registration/matching/point_pairs.h"
-#include "registration/matching/register_patient.h"
+#include "registration/matching/register_with_landmarks.h"
 
 namespace planlight {
 namespace {
@@ -48,9 +47,7 @@ RegistrationResult match(const RegisterOptions& options, const Case& the_case, s
     if (options.icp == "closest-point") settings.icp.mode = IcpSettings::Mode::closest_point;
     if (!options.viewpoint_in_rig.empty()) settings.viewpoint_in_rig = Eigen::Vector3d(options.viewpoint_in_rig.data());
     cloud = std::make_shared<PointCloud>(cloud_of(options));
-    RegistrationResult result = register_patient(*cloud, the_case.lut, settings);
-    check_with_point_pairs(pairs, result);
-    return result;
+    return register_with_landmarks(*cloud, the_case.lut, pairs, settings);
 }
 
 }  // namespace

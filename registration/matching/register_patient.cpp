@@ -15,7 +15,7 @@ namespace {
 /// The verdict as it grows worse, with a sentence for each step.
 class Judgement {
 public:
-    explicit Judgement(RegistrationResult& result) : result_(result) { result_.verdict = Verdict::yes; }
+    explicit Judgement(RegistrationResult& result, Verdict at_best = Verdict::yes) : result_(result) { result_.verdict = at_best; }
     void ask_if(bool doubtful, const std::string& reason) { lower_if(doubtful, Verdict::ask, reason); }
     void no_if(bool wrong, const std::string& reason) { lower_if(wrong, Verdict::no, reason); }
 
@@ -61,19 +61,18 @@ double mirror_ratio(const PointCloud& cloud, const MatchingSkin& skin, const Ini
     return (image.candidates[0].cost_mm + kNoise_mm) / (match.candidates[0].cost_mm + kNoise_mm);
 }
 
-/// Half of the scan on the skin, or a third when the rest is explained: it lies outside of the body, as cloth does, and no
-/// other pose comes near.
-bool enough_on_skin(const CloudOnSkin& fit, const RegistrationResult& result) {
+/// Half of the scan on the skin, or a third when the rest is explained: it lies outside of the body, as cloth does, and the
+/// place is known otherwise (no other pose comes near, or a start was given).
+bool enough_on_skin(const CloudOnSkin& fit, bool place_known) {
     const double on = fit.inlier_fraction(), inside = fit.inside_fraction();
-    return on >= 0.5 || (on >= 0.3 && inside < 0.2 * on && result.runner_up_ratio >= 1.3 && result.agreeing_bases >= 2);
+    return on >= 0.5 || (on >= 0.3 && inside < 0.2 * on && place_known);
 }
 
-void judge_fit(const RegistrationSettings& settings, const CloudOnSkin& fit, const RegistrationResult& result,
-               Judgement& judgement) {
+void judge_fit(const RegistrationSettings& settings, const CloudOnSkin& fit, bool place_known, Judgement& judgement) {
     const double share = fit.inlier_fraction();
     const std::string on_skin = fmt::format("only {:.0f} % of the scan lies on the skin (within {:.1f} mm)", 100 * share,
                                             settings.inlier_distance_mm);
-    const bool enough = enough_on_skin(fit, result);
+    const bool enough = enough_on_skin(fit, place_known);
     judgement.no_if(!enough, on_skin);
     judgement.ask_if(enough && share < settings.min_inlier_fraction, on_skin);
     judgement.no_if(fit.inlier_rms_mm > settings.max_residual_rms_mm,
@@ -115,6 +114,52 @@ void judge_mirror_and_scale(const RegistrationSettings& settings, const Registra
                     100 * std::abs(1 / result.scale - 1), result.scale < 1 ? "larger" : "smaller"));
 }
 
+/// The fine match from `start`, and what it is judged by; returns the skin's fit for the judgement.
+struct FineMatch {
+    CloudOnSkin fit;
+    double skin_offset_mm = 0;
+    WeakestWay weakest;
+};
+FineMatch match_finely(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& start_ct_from_rig,
+                       const RegistrationSettings& settings, RegistrationResult& result) {
+    const auto start = std::chrono::steady_clock::now();
+    result.initial_patient_from_ct = start_ct_from_rig.inverse();
+    IcpResult icp = refine_icp(cloud, lut, start_ct_from_rig, settings.icp);
+    const MovedSkinPose settled = settle_on_moved_skin(cloud, lut, icp.ct_from_rig, settings.skin);
+    if (settings.moved_skin) icp.ct_from_rig = settled.ct_from_rig;
+    result.covariance = settled.covariance;
+    result.skin_movement_mm = settled.movement_mm;
+    result.skin_offset_mm = settled.offset_mm;
+    result.refine_s = seconds_since(start);
+    result.patient_from_ct = icp.ct_from_rig.inverse();
+
+    FineMatch fine{lay_on_skin(cloud, lut, icp.ct_from_rig, settings.inlier_distance_mm,
+                               settings.moved_skin ? settled.offset_mm : 0),
+                   settled.offset_mm, weakest_way(settled.covariance)};
+    result.inlier_fraction = fine.fit.inlier_fraction();
+    result.residual_rms_mm = fine.fit.inlier_rms_mm;
+    result.residual_median_mm = fine.fit.median_mm;
+    result.weakest_sigma_mm = fine.weakest.sigma_mm;
+    result.scale = settled.scale;
+    result.scale_sigma = settled.scale_sigma;
+    if (settings.viewpoint_in_rig)
+        result.blocked_fraction = look_along_rays(cloud, lut, icp.ct_from_rig, *settings.viewpoint_in_rig).blocked_fraction();
+    return fine;
+}
+
+void judge_fine_match(const RegistrationSettings& settings, const FineMatch& fine, const RegistrationResult& result,
+                      Judgement& judgement) {
+    judge_free_space(settings, result, judgement);
+    judge_mirror_and_scale(settings, result, judgement);
+    judgement.ask_if(
+        std::abs(fine.skin_offset_mm) > settings.max_skin_offset_mm,
+        fmt::format("the whole skin lies {:.1f} mm {} that of the CT: swollen, or not the threshold of the skin",
+                    std::abs(fine.skin_offset_mm), fine.skin_offset_mm > 0 ? "outside" : "inside"));
+    judgement.ask_if(fine.weakest.sigma_mm > settings.max_weakest_sigma_mm,
+                     fmt::format("the patient could {} by {:.1f} mm unnoticed: scan {} as well", fine.weakest.in_words,
+                                 fine.weakest.sigma_mm, fine.weakest.advice));
+}
+
 }  // namespace
 
 RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut, const RegistrationSettings& settings) {
@@ -133,50 +178,36 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
         result.reasons.push_back("no three points of the scan fit the skin together: this is not the surface that the CT shows");
         return result;
     }
-    const MatchCandidate& best = match.candidates[0];
-    result.initial_patient_from_ct = best.ct_from_rig.inverse();
     result.runner_up_ratio = match.runner_up_ratio;
-    result.agreeing_bases = best.agreeing_bases;
-
-    const auto refine_start = std::chrono::steady_clock::now();
-    IcpResult icp = refine_icp(cloud, lut, best.ct_from_rig, settings.icp);
-    const MovedSkinPose settled = settle_on_moved_skin(cloud, lut, icp.ct_from_rig, settings.skin);
-    if (settings.moved_skin) icp.ct_from_rig = settled.ct_from_rig;
-    result.covariance = settled.covariance;
-    result.skin_movement_mm = settled.movement_mm;
-    result.skin_offset_mm = settled.offset_mm;
-    result.refine_s = seconds_since(refine_start);
-    result.patient_from_ct = icp.ct_from_rig.inverse();
-
-    const CloudOnSkin fit = lay_on_skin(cloud, lut, icp.ct_from_rig, settings.inlier_distance_mm,
-                                        settings.moved_skin ? settled.offset_mm : 0);
-    result.inlier_fraction = fit.inlier_fraction();
-    result.residual_rms_mm = fit.inlier_rms_mm;
-    result.residual_median_mm = fit.median_mm;
-    const WeakestWay weakest = weakest_way(settled.covariance);
-    result.weakest_sigma_mm = weakest.sigma_mm;
-    result.scale = settled.scale;
-    result.scale_sigma = settled.scale_sigma;
-    if (settings.viewpoint_in_rig)
-        result.blocked_fraction = look_along_rays(cloud, lut, icp.ct_from_rig, *settings.viewpoint_in_rig).blocked_fraction();
+    result.agreeing_bases = match.candidates[0].agreeing_bases;
+    const FineMatch fine = match_finely(cloud, lut, match.candidates[0].ct_from_rig, settings, result);
     if (settings.mirror_test) result.mirror_ratio = mirror_ratio(cloud, skin, match, settings);
 
     Judgement judgement(result);
-    judge_fit(settings, fit, result, judgement);
+    judge_fit(settings, fine.fit, result.runner_up_ratio >= 1.3 && result.agreeing_bases >= 2, judgement);
     judge_uniqueness(settings, result, judgement);
     judgement.no_if(result.runner_up_ratio < settings.min_runner_up_ratio &&
-                        fit.inlier_fraction() < settings.min_inlier_fraction && result.mirror_ratio > 0 &&
+                        fine.fit.inlier_fraction() < settings.min_inlier_fraction && result.mirror_ratio > 0 &&
                         result.mirror_ratio < settings.min_mirror_ratio,
                     "poorly on the skin, and other poses fit nearly as well: three weak signs together");
-    judge_free_space(settings, result, judgement);
-    judge_mirror_and_scale(settings, result, judgement);
-    judgement.ask_if(
-        std::abs(settled.offset_mm) > settings.max_skin_offset_mm,
-        fmt::format("the whole skin lies {:.1f} mm {} that of the CT: swollen, or not the threshold of the skin",
-                    std::abs(settled.offset_mm), settled.offset_mm > 0 ? "outside" : "inside"));
-    judgement.ask_if(weakest.sigma_mm > settings.max_weakest_sigma_mm,
-                     fmt::format("the patient could {} by {:.1f} mm unnoticed: scan {} as well", weakest.in_words,
-                                 weakest.sigma_mm, weakest.advice));
+    judge_fine_match(settings, fine, result, judgement);
+    return result;
+}
+
+RegistrationResult register_patient_near(const PointCloud& cloud, const SkinLut& lut,
+                                         const RigidTransform& start_patient_from_ct, const RegistrationSettings& settings) {
+    RegistrationResult result;
+    result.reasons.push_back("the scan was not found by itself, but from a start that was given");
+    result.points = finite_points(cloud);
+    result.inlier_distance_mm = settings.inlier_distance_mm;
+    if (const std::string problem = unfit(cloud, settings, result.points); !problem.empty()) {
+        result.reasons.push_back(problem);
+        return result;
+    }
+    const FineMatch fine = match_finely(cloud, lut, start_patient_from_ct.inverse(), settings, result);
+    Judgement judgement(result, Verdict::ask);
+    judge_fit(settings, fine.fit, true, judgement);
+    judge_fine_match(settings, fine, result, judgement);
     return result;
 }
 

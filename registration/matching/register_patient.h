@@ -37,4 +37,10 @@ struct RegistrationSettings {
 /// so the result is `patient_from_ct` = T_ini. Never throws for "not found": the verdict says so, with reasons in words.
 RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut, const RegistrationSettings& settings = {});
 
+/// The fine match alone, from a start within some 10 mm and 10 degrees, judged by all that does not need the search: the
+/// verdict is at best `ask`, for nothing says that no other pose fits as well. No runner-up, bases or mirror in the result; the
+/// first of its reasons says that it was helped.
+RegistrationResult register_patient_near(const PointCloud& cloud, const SkinLut& lut,
+                                         const RigidTransform& start_patient_from_ct, const RegistrationSettings& settings = {});
+
 }  // namespace planlight
