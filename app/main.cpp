@@ -214,13 +214,17 @@ void add_review(CLI::App& app, ReviewOptions& o) {
                         "review case --registration registration.json --cloud cloud.ply");
     sub->add_option("case", o.case_folder, "Case folder")->required();
     auto* match = sub->add_option("--registration", o.registration, "A match to look at (registration.json of `register`)");
-    sub->add_option("--cloud", o.cloud, "The scan it was found with (.ply, mm), shown on the skin, coloured by distance")
-        ->needs(match);
+    auto* cloud = sub->add_option(
+        "--cloud", o.cloud, "The scan (.ply, mm): shown on the skin, coloured by distance, as it was matched, or to click on");
+    auto* landmarks = sub->add_option(
+        "--landmarks", o.landmarks, "Click landmarks on the skin and the scan, and keep them in this table (.csv) for `register --pairs`");
+    landmarks->needs(cloud);
     sub->add_option("--view", o.view, "before or after the fine match, or error: how far off the match may be")
         ->check(CLI::IsMember({"before", "after", "error"}))
         ->capture_default_str()
         ->needs(match);
-    sub->add_option("--picture", o.picture, "Write a picture (.png) instead of opening a window; needs no display");
+    sub->add_option("--picture", o.picture, "Write a picture (.png) instead of opening a window; needs no display")
+        ->excludes(landmarks);
     json_flag(sub, o.json);
 }
 

@@ -97,12 +97,12 @@ double Session::moved_at_the_end_mm() {
     return moved_mm;
 }
 
-const RegistrationResult& Session::find_patient() {
+const RegistrationResult& Session::find_patient(const std::vector<PointPair>& landmarks) {
     if (!scanned_) throw CheckFailedError("there is no scan to find the patient in", "Scan first.");
     RegistrationSettings settings = settings_.registration;
     settings.viewpoint_in_rig = rig_.projector.centre_in_rig();
     confirmed_ = false;
-    registration_ = register_patient(scanned_->clean.kept, case_.lut, settings);
+    registration_ = register_with_landmarks(scanned_->clean.kept, case_.lut, landmarks, settings);
     registration_->moved_in_scan_mm = motion_in_scan_mm_;
     if (registration_->verdict != Verdict::no) draw_beside_markers();
     start_overlay();

@@ -10,7 +10,7 @@
 #include "planning_io/types/registration_result.h"
 #include "planning_io/types/rig_calibration.h"
 #include "projection/overlay_loop.h"
-#include "registration/matching/register_patient.h"
+#include "registration/matching/register_with_landmarks.h"
 #include "registration/scan/scan_surface.h"
 #include "registration/tracking/track_patient.h"
 
@@ -57,8 +57,9 @@ public:
     /// or too few markers were found.
     const ScanResult& scan(const std::function<void(int, int)>& progress = {});
 
-    /// MATCH: T_ini from the last scan. Throws CheckFailedError without one.
-    const RegistrationResult& find_patient();
+    /// MATCH: T_ini from the last scan; landmarks check it, and help where it is refused (`register_with_landmarks`). Throws
+    /// CheckFailedError without a scan.
+    const RegistrationResult& find_patient(const std::vector<PointPair>& landmarks = {});
 
     /// The operator's word that the match was looked at (needed for the verdict `ask`). It holds for the last match only, through darkness too.
     void confirm();
@@ -76,6 +77,7 @@ public:
     /// Dark now, and no more light until the next `update`.
     void go_dark() noexcept;
 
+    const RigCalibration& rig() const { return rig_; }
     const ScanCapture* capture() const { return capture_ ? &*capture_ : nullptr; }
     const ScanResult* scanned() const { return scanned_ ? &*scanned_ : nullptr; }
     const RegistrationResult* registration() const { return registration_ ? &*registration_ : nullptr; }

@@ -12,4 +12,7 @@ namespace planlight {
 /// other columns, a number that is none or beyond 5 m, and for a name that is used twice.
 std::vector<PointPair> read_point_pairs(const std::filesystem::path& file);
 
+/// The same table in LPS, to a hundredth of a millimetre. Throws InputError for a name with a comma or a line's end in it.
+void write_point_pairs(const std::vector<PointPair>& pairs, const std::filesystem::path& file);
+
 }  // namespace planlight

@@ -110,6 +110,7 @@ int run_project(const ProjectOptions& options);
 
 struct ReviewOptions {
     Path case_folder, picture, registration, cloud;
+    Path landmarks;              ///< table to click landmarks into; empty: not wanted
     std::string view = "after";  ///< before, after, error
     bool json = false;
 };

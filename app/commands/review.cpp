@@ -6,12 +6,15 @@
 #include "app/commands/commands.h"
 #include "app/console.h"
 #include "app/live/case_model.h"
+#include "app/live/clickable_scan.h"
 #include "app/live/live_window.h"
 #include "app/windows/scene_view.h"
 #include "planning_io/case_folder.h"
 #include "planning_io/image_file.h"
 #include "planning_io/mesh_file.h"
+#include "planning_io/point_pairs_file.h"
 #include "planning_io/recording_files.h"
+#include "planning_io/types/error.h"
 
 namespace planlight {
 
@@ -27,17 +30,46 @@ void set_status(const RegistrationResult& found, OperatorModel& model) {
     }
 }
 
+std::shared_ptr<const PointCloud> cloud_of(const ReviewOptions& options) {
+    if (options.cloud.empty()) return nullptr;
+    if (options.registration.empty() && options.landmarks.empty())
+        throw Error(ExitCode::usage, "nothing says where the cloud lies on the skin",
+                    "Give its match with --registration, or click landmarks on both with --landmarks FILE.");
+    return std::make_shared<PointCloud>(read_cloud(options.cloud, {1, true}));
+}
+
+/// The window until landmarks are used or it is closed; what was clicked is kept either way.
+int run_landmarks(const ReviewOptions& options, const CaseDrawing& drawing, const PointCloud& cloud, OperatorModel model) {
+    const bool is_there = std::filesystem::exists(options.landmarks);
+    const std::vector<PointPair> already = is_there ? read_point_pairs(options.landmarks) : std::vector<PointPair>{};
+    const auto clickable = clickable_scan(cloud);
+    if (!clickable)
+        throw InputError(options.cloud, "has neither projector pixels nor normals, so that its points make no surface",
+                         "Take the cloud of `planlight scan`, or give it normals.");
+    model.landmarks = LandmarkViews{&drawing.skin, clickable};
+    model.use_landmarks = "Save landmarks";
+    if (!model.fit) model.status = {StatusKind::ready, "Click landmarks on the skin and on the scan.", {"Nothing is projected."}};
+    const std::vector<PointPair> pairs = click_landmarks(model, already);
+    if (pairs.empty()) {
+        fmt::print("No landmarks were clicked; nothing was written.\n");
+        return 0;
+    }
+    write_point_pairs(pairs, options.landmarks);
+    fmt::print("{} landmarks in {}. Next: planlight register {} --cloud {} --pairs {} --out registration.json\n", pairs.size(),
+               options.landmarks.string(), options.case_folder.string(), options.cloud.string(), options.landmarks.string());
+    return 0;
+}
+
 }  // namespace
 
 int run_review(const ReviewOptions& options) {
     const Case the_case = read_case(options.case_folder);
     const CaseDrawing drawing(the_case);
     OperatorModel model = model_of_case(the_case, drawing);
+    const std::shared_ptr<const PointCloud> cloud = cloud_of(options);
     std::optional<RegistrationResult> found;
     if (!options.registration.empty()) {
         found = read_registration(options.registration);
-        std::shared_ptr<const PointCloud> cloud;
-        if (!options.cloud.empty()) cloud = std::make_shared<PointCloud>(read_cloud(options.cloud, {1, true}));
         show_match(the_case, *found, cloud, model);
         set_status(*found, model);
     }
@@ -66,6 +98,7 @@ int run_review(const ReviewOptions& options) {
     for (const auto& warning : the_case.warnings) warn(warning);
     if (const auto report = options.case_folder / "report.html"; std::filesystem::exists(report))
         fmt::print("Report: {}\n", report.string());
+    if (!options.landmarks.empty()) return run_landmarks(options, drawing, *cloud, model);
     show_model(model, view);
     return 0;
 }

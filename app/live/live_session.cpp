@@ -7,12 +7,22 @@
 #include <numbers>
 
 #include "app/live/case_model.h"
+#include "app/live/clickable_scan.h"
 #include "app/live/scene_of_session.h"
 #include "app/report/registration_certificate.h"
 #include "planning_io/plan_file.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
+namespace {
+
+std::string landmark_evidence(const std::vector<PointPair>& landmarks, const RegistrationResult& found) {
+    const std::vector<double> errors = landmark_errors_mm(landmarks, found.patient_from_ct);
+    return fmt::format("{} landmarks were clicked; the farthest lies {:.1f} mm from where the match puts it.", landmarks.size(),
+                       *std::max_element(errors.begin(), errors.end()));
+}
+
+}  // namespace
 
 /// Passes everything to the simulated projector and keeps the newest picture for the projector window.
 class LiveSession::LightTap final : public Projector {
@@ -80,6 +90,14 @@ void LiveSession::post(OperatorAction action) {
         actions_.push_back(action);
     }
     wake_.notify_all();
+}
+
+void LiveSession::post_find_patient(std::vector<PointPair> landmarks) {
+    {
+        const std::lock_guard lock(mutex_);
+        landmarks_ = std::move(landmarks);
+    }
+    post(OperatorAction::do_register);
 }
 
 OperatorModel LiveSession::model() const {
@@ -165,7 +183,8 @@ void LiveSession::act(OperatorAction action, Session& session, simulation::Simul
             moving_ = false;
             scan(session);
             return;
-        case OperatorAction::do_register: find_patient(session); return;
+        case OperatorAction::do_register:
+        case OperatorAction::use_landmarks: find_patient(session, newest_landmarks()); return;
         case OperatorAction::track:
             dark_wanted_ = false;
             following_ = true;
@@ -198,6 +217,7 @@ void LiveSession::scan(Session& session) {
         m.scene.light = nullptr;
         m.scene.markers = nullptr;
         m.fit = std::nullopt;
+        m.landmarks = std::nullopt;
         m.confirm = false;
         m.track = {false, "register first"};
     });
@@ -205,29 +225,43 @@ void LiveSession::scan(Session& session) {
         set_status(StatusKind::scanning, fmt::format("Scanning: picture {} of {}.", done, of), {"Keep the patient still."});
     });
     const ScanCapture& capture = *session.capture();
+    const auto clickable = clickable_scan(scan.clean.kept, &session.rig().left_camera);
     change_model([&](OperatorModel& m) {
         m.left.picture = std::make_shared<GrayImage>(capture.left.front());
         m.right.picture = std::make_shared<GrayImage>(capture.right.front());
         m.left.found = found_markers(session.tracker().seen_left());
         m.right.found = found_markers(session.tracker().seen_right());
         m.do_register = {true, {}};
+        if (clickable) m.landmarks = LandmarkViews{&drawing_.skin, clickable};
     });
     set_steps(3);
     set_status(StatusKind::ready, fmt::format("{} points of skin scanned.", scan.clean.kept.size()), {"Register next."});
 }
 
-void LiveSession::find_patient(Session& session) {
-    set_status(StatusKind::matching, "Finding the patient.");
-    const RegistrationResult& found = session.find_patient();
+std::vector<PointPair> LiveSession::newest_landmarks() const {
+    const std::lock_guard lock(mutex_);
+    return landmarks_;
+}
+
+void LiveSession::find_patient(Session& session, const std::vector<PointPair>& landmarks) {
+    following_ = projecting_ = false;
+    session.go_dark();
+    set_status(StatusKind::matching, landmarks.empty() ? "Finding the patient."
+                                                       : fmt::format("Finding the patient, with {} landmarks.", landmarks.size()));
+    const RegistrationResult& found = session.find_patient(landmarks);
     OperatorModel shown = model();
     show_match(case_, found, std::make_shared<PointCloud>(session.scanned()->clean.kept), shown);
     shown.confirm = found.verdict == Verdict::ask;
+    shown.scene.light = nullptr;
+    shown.stop = {false, "nothing runs"};
+    shown.track = {false, "register first"};
     if (found.verdict != Verdict::no) {
         shown.scene.markers = markers_in_ct(session.tracker(), shown.scene.ct_from_rig);
         shown.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
+        if (!landmarks.empty()) shown.evidence.insert(shown.evidence.begin(), landmark_evidence(landmarks, found));
         shown.track = {found.verdict == Verdict::yes, found.verdict == Verdict::yes ? "" : "look at the fit first"};
     }
-    shown.evidence.push_back(keep(found, session.scanned()->clean.kept));
+    shown.evidence.push_back(keep(found, session.scanned()->clean.kept, landmarks));
     change_model([&](OperatorModel& m) { m = std::move(shown); });
     set_steps(3, found.verdict == Verdict::yes ? StepState::done : StepState::attention);
     if (found.verdict == Verdict::yes) {
@@ -236,16 +270,17 @@ void LiveSession::find_patient(Session& session) {
     } else {
         set_status(found.verdict == Verdict::ask ? StatusKind::check : StatusKind::refused,
                    found.verdict == Verdict::ask ? "Not sure: look whether the scan fits the skin, or scan again."
-                                                 : "The patient was not found: scan again.",
+                                                 : "The patient was not found: scan again, or click landmarks.",
                    found.reasons);
     }
 }
 
 /// Keeps the match and its scan; what became of it, in a sentence. A full disk does not end a session.
-std::string LiveSession::keep(const RegistrationResult& found, const PointCloud& cloud) const {
+std::string LiveSession::keep(const RegistrationResult& found, const PointCloud& cloud,
+                              const std::vector<PointPair>& landmarks) const {
     if (settings_.keep_matches_in.empty()) return "This match is not kept.";
     try {
-        return "Kept in " + keep_match(found, &cloud, settings_.keep_matches_in).string() + ".";
+        return "Kept in " + keep_match(found, &cloud, landmarks, settings_.keep_matches_in).string() + ".";
     } catch (const std::exception& fault) {
         return std::string("This match could not be kept: ") + fault.what() + ".";
     }

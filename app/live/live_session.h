@@ -36,6 +36,9 @@ public:
     /// Queued; `dark` and `stop` overtake everything that waits.
     void post(OperatorAction action);
 
+    /// Finding the patient with these landmarks (none: without), clicked on the last scan; queued.
+    void post_find_patient(std::vector<PointPair> landmarks);
+
     OperatorModel model() const;
 
     /// The newest light, and a number that changes with it. An empty picture is darkness.
@@ -55,9 +58,10 @@ private:
     void run(const Volume& volume, const LiveSettings& settings);
     void act(OperatorAction action, Session& session, simulation::SimulatedRig& rig);
     void scan(Session& session);
-    void find_patient(Session& session);
+    void find_patient(Session& session, const std::vector<PointPair>& landmarks);
     void confirm(Session& session);
-    std::string keep(const RegistrationResult& found, const PointCloud& cloud) const;
+    std::vector<PointPair> newest_landmarks() const;
+    std::string keep(const RegistrationResult& found, const PointCloud& cloud, const std::vector<PointPair>& landmarks) const;
     void follow(Session& session, simulation::SimulatedRig& rig);
     void show_update(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update);
     void set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details = {});
@@ -72,6 +76,7 @@ private:
     mutable std::mutex mutex_;
     std::condition_variable wake_;
     std::deque<OperatorAction> actions_;
+    std::vector<PointPair> landmarks_;  ///< of the last `post_find_patient`
     OperatorModel model_;
     Light light_;
     std::string fault_;

@@ -135,7 +135,11 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
         const OperatorAction action = window.frame(model);
         if (action == OperatorAction::quit) return 0;
         if (light && (action == OperatorAction::dark || action == OperatorAction::stop)) light->go_dark();
-        session.post(action);
+        // Landmarks that stand in the window count for every match of their scan: a match that they refuse stays refused.
+        if (action == OperatorAction::do_register || action == OperatorAction::use_landmarks)
+            session.post_find_patient(window.landmarks());
+        else
+            session.post(action);
         if (options.autoplay) session.post(autoplay.next(model));
         if (light) light->follow(session);
         screenshots.take(window, model, session);
@@ -153,6 +157,15 @@ void show_model(const OperatorModel& model, FitView view) {
     OperatorWindow window;
     window.set_fit_view(view);
     while (window.frame(model) != OperatorAction::quit) {
+    }
+}
+
+std::vector<PointPair> click_landmarks(const OperatorModel& model, const std::vector<PointPair>& already) {
+    OperatorWindow window;
+    window.open_landmarks(already);
+    for (;;) {
+        const OperatorAction action = window.frame(model);
+        if (action == OperatorAction::quit || action == OperatorAction::use_landmarks) return window.landmarks();
     }
 }
 

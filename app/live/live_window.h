@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "app/session.h"
 #include "app/windows/operator_model.h"
+#include "planning_io/types/point_pair.h"
 #include "planning_io/types/volume.h"
 #include "registration/simulation/simulated_rig.h"
 
@@ -31,5 +33,9 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
 
 /// The operator window on a model that does not change, until it is closed. Throws DeviceError without a display.
 void show_model(const OperatorModel& model, FitView view = FitView::after);
+
+/// The same, with landmarks to be clicked from the start (the model has them), until they are used or the window is closed.
+/// Returns what was clicked on both sides.
+std::vector<PointPair> click_landmarks(const OperatorModel& model, const std::vector<PointPair>& already);
 
 }  // namespace planlight

@@ -8,6 +8,7 @@
 #include "app/report/html_page.h"
 #include "app/windows/scene_view.h"
 #include "planning_io/mesh_file.h"
+#include "planning_io/point_pairs_file.h"
 #include "planning_io/recording_files.h"
 #include "planning_io/safe_write.h"
 
@@ -70,7 +71,8 @@ void write_certificate_html(const Case& the_case, const CaseDrawing& drawing, co
     write_safely(file, html_page("Match of case " + the_case.code, body));
 }
 
-fs::path keep_match(const RegistrationResult& found, const PointCloud* cloud, const fs::path& folder) {
+fs::path keep_match(const RegistrationResult& found, const PointCloud* cloud, const std::vector<PointPair>& landmarks,
+                    const fs::path& folder) {
     fs::create_directories(folder);
     fs::path kept;
     for (int number = 1; kept.empty(); ++number) {
@@ -78,6 +80,7 @@ fs::path keep_match(const RegistrationResult& found, const PointCloud* cloud, co
         if (fs::create_directory(wanted)) kept = wanted;  // false: it is there already
     }
     if (cloud) write_cloud(*cloud, kept / "cloud.ply");
+    if (!landmarks.empty()) write_point_pairs(landmarks, kept / "landmarks.csv");
     write_registration(found, kept / "registration.json");
     return kept;
 }

@@ -14,8 +14,9 @@ namespace planlight {
 void write_certificate_html(const Case& the_case, const CaseDrawing& drawing, const RegistrationResult& found,
                             const std::shared_ptr<const PointCloud>& cloud, const std::filesystem::path& file);
 
-/// Keeps a match as a new folder 0001, 0002, ... in `folder`: registration.json, and cloud.ply where there was a scan. What is
-/// there is not touched. Gives the new folder. Throws DiskError like every writer.
-std::filesystem::path keep_match(const RegistrationResult& found, const PointCloud* cloud, const std::filesystem::path& folder);
+/// Keeps a match as a new folder 0001, 0002, ... in `folder`: registration.json, cloud.ply where there was a scan, landmarks.csv
+/// where there were any. What is there is not touched. Gives the new folder. Throws DiskError like every writer.
+std::filesystem::path keep_match(const RegistrationResult& found, const PointCloud* cloud, const std::vector<PointPair>& landmarks,
+                                 const std::filesystem::path& folder);
 
 }  // namespace planlight

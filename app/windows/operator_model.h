@@ -12,6 +12,7 @@
 #include "planning_io/types/rigid_transform.h"
 #include "planning_io/types/triangle_mesh.h"
 #include "projection/draw_plan.h"
+#include "projection/skin_surface.h"
 
 namespace planlight {
 
@@ -34,6 +35,7 @@ struct LightLine {
 /// in the last frame is not built again.
 struct SceneModel {
     std::shared_ptr<const TriangleMesh> skin;
+    bool of_scan = false;  ///< `skin` is a scan's surface in a frame of its own: cool colour, no letters at the edges
     std::shared_ptr<const PointCloud> cloud;
     std::shared_ptr<const std::vector<float>> cloud_distance_mm;  ///< per point, to the skin; null: one colour
     RigidTransform ct_from_rig = RigidTransform::Identity();      ///< where the cloud is shown
@@ -55,6 +57,19 @@ struct FitViews {
     RigidTransform before_ct_from_rig = RigidTransform::Identity();    ///< of the initial match
     std::shared_ptr<const std::vector<float>> before_distance_mm;      ///< per point of the cloud
     std::shared_ptr<const std::vector<float>> predicted_mm;            ///< per vertex of the skin, 95 %
+};
+
+/// A scan as a surface to be clicked on, in a frame `shown` in which it is looked at as a face is in ct: x to the devices'
+/// right, y away from them, z up.
+struct ClickableScan {
+    SkinSurface surface;  ///< in `shown`
+    RigidTransform shown_from_rig = RigidTransform::Identity();
+};
+
+/// What landmarks can be clicked on: the skin from CT and the scan.
+struct LandmarkViews {
+    const SkinSurface* skin = nullptr;  ///< outlives the frames that show it
+    std::shared_ptr<const ClickableScan> scan;
 };
 
 /// From where the head is looked at. Turning never tilts it: S stays up.
@@ -109,6 +124,7 @@ struct OperatorModel {
     std::string case_title, case_subtitle;
     std::array<StepState, 6> steps{};       ///< Case, Rig, Scan, Match, Verify, Project
     SceneModel scene;
+    std::optional<LandmarkViews> landmarks; ///< there is a scan: landmarks can be clicked on it
     std::optional<FitViews> fit;            ///< there is a match to be looked at: the 3-D view gets buttons for it
     CameraPicture left{"Left camera", nullptr, {}, "no picture yet"};
     CameraPicture right{"Right camera", nullptr, {}, "no picture yet"};
@@ -119,6 +135,7 @@ struct OperatorModel {
     Status status;
     Figures figures;
     ButtonState scan, do_register, track, stop;  ///< DARK is always enabled
+    std::string use_landmarks = "Use landmarks";  ///< on the button that hands over the landmarks that were clicked
     bool confirm = false;  ///< the match needs a person's look: a button says that it fits
 };
 

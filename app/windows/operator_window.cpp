@@ -6,9 +6,6 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
-#include <vtkOpenGLFramebufferObject.h>
-#include <vtkOpenGLState.h>
-#include <vtkTextureObject.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +14,8 @@
 #include <utility>
 
 #include "app/windows/camera_texture.h"
+#include "app/windows/middle_view.h"
 #include "app/windows/panels.h"
-#include "app/windows/render_target.h"
-#include "app/windows/scene.h"
 #include "planning_io/types/error.h"
 #include "projection/glfw_session.h"
 #include "projection/projector_window.h"
@@ -62,6 +58,10 @@ GLFWwindow* open_window(const OperatorWindowSettings& settings) {
     return window;
 }
 
+std::array<int, 4> whole_pixels(const Box& box) {
+    return {static_cast<int>(box.x), static_cast<int>(box.y), static_cast<int>(box.width), static_cast<int>(box.height)};
+}
+
 bool inside(const Box& box, double x, double y) {
     return x >= box.x && x < box.right() && y >= box.y && y < box.bottom();
 }
@@ -73,26 +73,21 @@ struct OperatorWindow::Parts {
     FontFiles font_files = find_fonts();
     GLFWwindow* window = nullptr;
     ImGuiContext* gui = nullptr;
-    vtkSmartPointer<vtkGenericOpenGLRenderWindow> target;
-    std::unique_ptr<Scene> scene;
+    std::unique_ptr<MiddleView> middle;
     CameraTexture left, right;
     Pen pen{};
     WindowLayout place;
-    SceneView view, first_view;
     bool dark_pressed = false;
     float rows_scrolled = 0;
     int rows_shown = 1;
     std::map<OperatorAction, Box> controls;
-    FitView fit_view = FitView::after;
-    std::map<FitView, Box> fit_buttons;
 
     explicit Parts(const OperatorWindowSettings& settings) : window(open_window(settings)) {
         glfwSetWindowSizeLimits(window, kLeastWidth, kLeastHeight, GLFW_DONT_CARE, GLFW_DONT_CARE);
         glfwMakeContextCurrent(window);
         glfwSwapInterval(0);  // the loop that follows the patient must not wait for this screen
         listen();
-        target = render_target(640, 480, 0, [w = window] { glfwMakeContextCurrent(w); });
-        scene = std::make_unique<Scene>(*target, font_files);
+        middle = std::make_unique<MiddleView>(font_files, [w = window] { glfwMakeContextCurrent(w); });
         gui = ImGui::CreateContext();
         ImGui::SetCurrentContext(gui);
         ImGui::GetIO().IniFilename = nullptr;
@@ -110,9 +105,7 @@ struct OperatorWindow::Parts {
         ImGui::DestroyContext(gui);
         left.release();
         right.release();
-        scene.reset();
-        target->Finalize();
-        target = nullptr;
+        middle.reset();
         glfwDestroyWindow(window);
     }
 
@@ -142,98 +135,6 @@ struct OperatorWindow::Parts {
         pen.scale = place.scale;
     }
 
-    /// The mouse over the 3-D view: left turns, right or middle shifts, wheel zooms, a double click goes back.
-    void turn_view(bool with_buttons, bool with_confirm) {
-        constexpr double kRadiansPerPixel = 0.007;
-        const ImGuiIO& io = ImGui::GetIO();
-        const float strip = fit_box().height + 24 * pen.scale;  // of buttons, which a finger must meet at once
-        const float above = with_buttons ? strip : 0, below = with_confirm ? strip : 0;
-        ImGui::SetCursorScreenPos({place.scene.x, place.scene.y + above});
-        ImGui::InvisibleButton("scene", {place.scene.width, place.scene.height - above - below},
-                               ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
-                                   ImGuiButtonFlags_MouseButtonMiddle);
-        if (ImGui::IsItemHovered()) {
-            view.zoom = std::clamp(view.zoom * std::pow(1.12, static_cast<double>(io.MouseWheel)), 0.3, 12.0);
-            if (ImGui::IsMouseDoubleClicked(0)) view = first_view;
-        }
-        if (!ImGui::IsItemActive()) return;
-        if (io.MouseDown[0]) {
-            view.azimuth = std::remainder(view.azimuth + kRadiansPerPixel * static_cast<double>(io.MouseDelta.x), 2 * M_PI);
-            view.elevation =
-                std::clamp(view.elevation + kRadiansPerPixel * static_cast<double>(io.MouseDelta.y), -1.5, 1.5);
-        } else {
-            view.shift_mm += scene->mm_per_pixel() * Eigen::Vector2d(io.MouseDelta.x, -io.MouseDelta.y);
-        }
-    }
-
-    void draw_scene(const OperatorModel& shown) {
-        pen.panel(place.scene);
-        if (!shown.fit) fit_view = FitView::after;
-        const SceneModel model = scene_of_fit(shown, fit_view);
-        turn_view(shown.fit.has_value(), shown.fit && shown.confirm);
-        const int width = static_cast<int>(place.scene.width) - 4, height = static_cast<int>(place.scene.height) - 4;
-        if (scene->update(model, view, width, height, place.scale)) {
-            target->SetSize(width, height);
-            target->GetState()->Reset();
-            target->GetState()->ResetFramebufferBindings();
-            target->Render();
-            glBindFramebuffer(GL_FRAMEBUFFER, 0);
-        }
-        const auto texture = target->GetDisplayFramebuffer()->GetColorAttachmentAsTextureObject(0)->GetHandle();
-        const ImVec2 low(place.scene.x + 2, place.scene.y + 2);
-        pen.list->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), low,
-                                  {low.x + static_cast<float>(width), low.y + static_cast<float>(height)}, {0, 1}, {1, 0},
-                                  IM_COL32_WHITE, 10 * pen.scale);
-        std::string title = "Skin from CT";
-        if (model.skin_error_mm) title += " coloured by how far off the match may be";
-        if (model.cloud) title += model.cloud_distance_mm ? " · scan coloured by distance" : " · scan";
-        if (shown.fit && fit_view == FitView::before) title += " before the fine match";
-        if (model.plan) title += " · plan";
-        if (model.light) title += " · light as it falls (white)";
-        const float indent = 18 * pen.scale;
-        pen.paragraph(pen.fonts.small, title,
-                      {place.scene.x + indent, place.scene.y + 14 * pen.scale, 0.44F * place.scene.width - indent,
-                       2.2F * line_height(pen.fonts.small)},
-                      theme::kText);
-    }
-
-    /// Right half of the view's upper edge, so that the letters at the middle of its edges stay free.
-    Box fit_box() const {
-        const float height = std::max(72.0F, 76 * pen.scale), from = place.scene.x + 0.5F * place.scene.width + 44 * pen.scale;
-        return {from, place.scene.y + 12 * pen.scale, place.scene.right() - 12 * pen.scale - from, height};
-    }
-
-    OperatorAction draw_fit_buttons(const OperatorModel& model) {
-        fit_buttons.clear();
-        controls.erase(OperatorAction::confirm);
-        if (!model.fit) return OperatorAction::none;
-        const std::array<std::pair<FitView, const char*>, 3> row{
-            {{FitView::before, "Before"}, {FitView::after, "After"}, {FitView::predicted_error, "Error"}}};
-        const Box all = fit_box();
-        const float gap = 8 * pen.scale;
-        Box box{all.x, all.y, (all.width - 2 * gap) / 3, all.height};
-        for (const auto& [shown, label] : row) {
-            fit_buttons[shown] = box;
-            ImGui::SetCursorScreenPos({box.x, box.y});
-            if (ImGui::InvisibleButton(label, {box.width, box.height})) fit_view = shown;
-            draw_button(pen, box, label, {true, {}}, ImGui::IsItemHovered(), fit_view == shown || ImGui::IsItemActive());
-            box.x += box.width + gap;
-        }
-        if (!model.confirm) return OperatorAction::none;
-        const Box corner{place.scene.x + 12 * pen.scale, place.scene.bottom() - 12 * pen.scale - all.height, 0.7F * all.width,
-                         all.height};
-        return button(OperatorAction::confirm, corner, "It fits: use it", {true, {}}) ? OperatorAction::confirm
-                                                                                     : OperatorAction::none;
-    }
-
-    bool button(OperatorAction action, const Box& box, const std::string& label, const ButtonState& state) {
-        controls[action] = box;
-        ImGui::SetCursorScreenPos({box.x, box.y});
-        const bool pressed = ImGui::InvisibleButton(label.c_str(), {box.width, box.height});
-        draw_button(pen, box, label, state, ImGui::IsItemHovered(), ImGui::IsItemActive());
-        return pressed && state.enabled;
-    }
-
     OperatorAction draw_buttons(const OperatorModel& model) {
         const std::array<std::tuple<OperatorAction, const char*, const ButtonState*>, 4> row{
             {{OperatorAction::scan, "Scan", &model.scan},
@@ -245,7 +146,8 @@ struct OperatorWindow::Parts {
         Box box = place.buttons;
         box.width = width;
         for (const auto& [action, label, state] : row) {
-            if (button(action, box, label, *state)) wanted = action;
+            controls[action] = box;
+            if (button(pen, box, label, *state)) wanted = action;
             box.x += width + gap;
         }
         controls[OperatorAction::dark] = place.dark;
@@ -280,8 +182,7 @@ struct OperatorWindow::Parts {
         pen.list = ImGui::GetWindowDrawList();
         const auto texture = [](unsigned name) { return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(name)); };
         draw_header(pen, place, model);
-        draw_scene(model);
-        const OperatorAction confirmed = draw_fit_buttons(model);
+        const OperatorAction over_scene = middle->draw(pen, place.scene, model);
         draw_camera(pen, place.left_camera, model.left, texture(left.take(model.left.picture)));
         draw_camera(pen, place.right_camera, model.right, texture(right.take(model.right.picture)));
         draw_plan_table(model);
@@ -289,7 +190,7 @@ struct OperatorWindow::Parts {
         draw_banner(pen, place.banner, model);
         ImGui::End();
         ImGui::PopStyleVar(2);
-        return wanted == OperatorAction::none ? confirmed : wanted;
+        return wanted == OperatorAction::none ? over_scene : wanted;
     }
 
     void paint() {
@@ -348,26 +249,30 @@ RgbImage OperatorWindow::screenshot() {
     return picture;
 }
 
-SceneView OperatorWindow::view() const { return parts_->view; }
+SceneView OperatorWindow::view() const { return parts_->middle->scene().view(); }
 
-void OperatorWindow::set_view(const SceneView& view) { parts_->view = parts_->first_view = view; }
+void OperatorWindow::set_view(const SceneView& view) { parts_->middle->scene().set_view(view); }
 
-FitView OperatorWindow::fit_view() const { return parts_->fit_view; }
-
-void OperatorWindow::set_fit_view(FitView view) { parts_->fit_view = view; }
-
-namespace {
-template <class Key>
-std::array<int, 4> place_in(const std::map<Key, Box>& places, Key key) {
-    const auto found = places.find(key);
-    if (found == places.end()) return {0, 0, 0, 0};
-    const Box& box = found->second;
-    return {static_cast<int>(box.x), static_cast<int>(box.y), static_cast<int>(box.width), static_cast<int>(box.height)};
+void OperatorWindow::open_landmarks(const std::vector<PointPair>& pairs) {
+    glfwMakeContextCurrent(parts_->window);
+    parts_->middle->open_landmarks().clicks().set_pairs(pairs);
 }
-}  // namespace
 
-std::array<int, 4> OperatorWindow::place_of(OperatorAction control) const { return place_in(parts_->controls, control); }
+std::vector<PointPair> OperatorWindow::landmarks() const {
+    const LandmarkPanel* const panel = parts_->middle->landmarks();
+    return panel ? panel->clicks().pairs() : std::vector<PointPair>{};
+}
 
-std::array<int, 4> OperatorWindow::place_of(FitView button) const { return place_in(parts_->fit_buttons, button); }
+FitView OperatorWindow::fit_view() const { return parts_->middle->fit_view; }
+
+void OperatorWindow::set_fit_view(FitView view) { parts_->middle->fit_view = view; }
+
+std::array<int, 4> OperatorWindow::place_of(OperatorAction control) const {
+    return whole_pixels(control == OperatorAction::confirm ? parts_->middle->place_of("confirm") : parts_->controls[control]);
+}
+
+std::array<int, 4> OperatorWindow::place_of(const std::string& button) const {
+    return whole_pixels(parts_->middle->place_of(button));
+}
 
 }  // namespace planlight

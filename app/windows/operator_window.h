@@ -3,12 +3,15 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/windows/operator_model.h"
+#include "planning_io/types/point_pair.h"
 
 namespace planlight {
 
-enum class OperatorAction { none, scan, do_register, track, stop, dark, quit, confirm };
+enum class OperatorAction { none, scan, do_register, track, stop, dark, quit, confirm, use_landmarks };
+
 
 struct OperatorWindowSettings {
     std::string title = "Planlight";
@@ -40,9 +43,17 @@ public:
     SceneView view() const;
     void set_view(const SceneView& view);
 
+    /// Shows the skin from CT and the scan side by side, to click landmarks on both, with `pairs` already there; in the next
+    /// frames whose model has landmarks. The person opens it by the button "Landmarks".
+    void open_landmarks(const std::vector<PointPair>& pairs = {});
+    /// What has been clicked on both sides, of the scan that the last frame's model had; empty before.
+    std::vector<PointPair> landmarks() const;
+
     /// Where a control is, in window pixels (x, y, width, height), as the last frame drew it; for tests by mouse.
     std::array<int, 4> place_of(OperatorAction control) const;
-    std::array<int, 4> place_of(FitView button) const;
+    /// The same for a control over the 3-D view by its word: before, after, error, landmarks; while these are clicked: undo,
+    /// turn, use, close, skin-view, scan-view. Zeros for what was not drawn.
+    std::array<int, 4> place_of(const std::string& button) const;
 
 private:
     struct Parts;

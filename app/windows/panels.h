@@ -21,8 +21,8 @@ struct TableShown {
 /// The plan items from row `first_row` on, then the evidence.
 TableShown draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int first_row);
 
-/// A button of the action row, and the DARK button.
-void draw_button(const Pen& pen, const Box& box, const std::string& label, const ButtonState& state, bool hovered, bool held);
+/// A button: drawn, and true when it was pressed and is enabled. `chosen`: it shows what is on, and looks held.
+bool button(const Pen& pen, const Box& box, const std::string& label, const ButtonState& state, bool chosen = false);
 void draw_dark_button(const Pen& pen, const Box& box, bool hovered, bool held);
 
 /// The word of a status: "ALIGNED".

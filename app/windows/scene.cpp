@@ -111,6 +111,7 @@ struct Scene::Parts {
         if (new_skin) {
             if (shown.skin) measure(shown.skin->vertices_in_ct, RigidTransform::Identity());
         }
+        shown.of_scan = scene.of_scan;  // with a skin of its own
         const bool other_colours = replace(shown.skin_error_mm, scene.skin_error_mm) |
                                    replace(shown.warn_above_mm, scene.warn_above_mm) |
                                    replace(shown.stop_above_mm, scene.stop_above_mm);
@@ -144,11 +145,14 @@ struct Scene::Parts {
         return reach_mm / (std::tan(kHalfAngle) * narrow * shown_view.zoom);
     }
 
+    Eigen::Vector3d focus(const ViewAxes& axes) const {
+        return middle - shown_view.shift_mm.x() * axes.right_in_ct - shown_view.shift_mm.y() * axes.up_in_ct;
+    }
+    Eigen::Vector3d eye(const ViewAxes& axes) const { return focus(axes) + distance_mm() * axes.backward_in_ct; }
+
     void place_camera() {
         const ViewAxes axes = axes_of(shown_view);
-        const Eigen::Vector3d focus =
-            middle - shown_view.shift_mm.x() * axes.right_in_ct - shown_view.shift_mm.y() * axes.up_in_ct;
-        const Eigen::Vector3d eye = focus + distance_mm() * axes.backward_in_ct;
+        const Eigen::Vector3d focus = this->focus(axes), eye = this->eye(axes);
         vtkCamera* const camera = renderer->GetActiveCamera();
         camera->SetViewAngle(2 * kHalfAngle * 180 / M_PI);
         camera->SetFocalPoint(focus.data());
@@ -175,6 +179,21 @@ bool Scene::update(const SceneModel& scene, const SceneView& view, int width, in
     parts.place_camera();
     parts.overlay.update(scene, view, width, height, scale);
     return true;
+}
+
+Ray Scene::sight(const Eigen::Vector2d& pixel) const {
+    const ViewAxes axes = axes_of(parts_->shown_view);
+    const double per_pixel = 2 * std::tan(kHalfAngle) / std::max(1, parts_->height);
+    const double x = (pixel.x() + 0.5 - parts_->width / 2.0) * per_pixel, y = (parts_->height / 2.0 - pixel.y() - 0.5) * per_pixel;
+    return {parts_->eye(axes), (x * axes.right_in_ct + y * axes.up_in_ct - axes.backward_in_ct).normalized()};
+}
+
+Eigen::Vector2d Scene::pixel_of(const Eigen::Vector3d& p) const {
+    const ViewAxes axes = axes_of(parts_->shown_view);
+    const Eigen::Vector3d from_eye = p - parts_->eye(axes);
+    const double depth = -axes.backward_in_ct.dot(from_eye), per_pixel = 2 * std::tan(kHalfAngle) / std::max(1, parts_->height);
+    return {parts_->width / 2.0 - 0.5 + axes.right_in_ct.dot(from_eye) / depth / per_pixel,
+            parts_->height / 2.0 - 0.5 - axes.up_in_ct.dot(from_eye) / depth / per_pixel};
 }
 
 double Scene::mm_per_pixel() const {

@@ -4,6 +4,7 @@
 
 #include "app/windows/fonts.h"
 #include "app/windows/operator_model.h"
+#include "planning_io/types/camera_model.h"
 
 class vtkRenderWindow;
 
@@ -17,6 +18,10 @@ public:
 
     /// Takes over what has changed; true when the picture must be rendered again.
     bool update(const SceneModel& scene, const SceneView& view, int width, int height, double scale);
+
+    /// The line of sight through a pixel of the last picture (from its top left), and the pixel of a point; in the scene's frame.
+    Ray sight(const Eigen::Vector2d& pixel) const;
+    Eigen::Vector2d pixel_of(const Eigen::Vector3d& p) const;
 
     /// Millimetres of the head that a pixel in the middle of the last picture covers.
     double mm_per_pixel() const;

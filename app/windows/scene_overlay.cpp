@@ -158,6 +158,7 @@ SceneOverlay::~SceneOverlay() = default;
 void SceneOverlay::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale) {
     scale = std::max(scale, 0.85);  // smaller letters are not readable
     parts_->boxes.clear();
+    for (Text& letter : parts_->letters) letter.actor->SetVisibility(!scene.of_scan);
     parts_->letters_at_edges(view, width, height, scale);
     parts_->legend(scene, width, scale);
     parts_->boxes.done();

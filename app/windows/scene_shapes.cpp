@@ -22,7 +22,7 @@
 namespace planlight {
 namespace {
 
-constexpr Rgb kSkinColour{232, 190, 165}, kLidColour{150, 140, 135};
+constexpr Rgb kSkinColour{232, 190, 165}, kLidColour{150, 140, 135}, kScanColour{150, 196, 214};
 constexpr double kPlanRadiusMm = 0.9, kTextRadiusMm = 0.3, kLightRadiusMm = 0.3;
 constexpr double kAboveSkinMm = 0.4;
 constexpr std::size_t kMostPoints = 60000;
@@ -106,6 +106,7 @@ void add_vertex_colours(const SceneModel& scene, vtkPolyData& data) {
         const bool known = errors != nullptr && i < errors->size();
         const Rgb colour = lid     ? kLidColour
                            : known ? error_colour(static_cast<double>((*errors)[i]), scene.warn_above_mm, scene.stop_above_mm)
+                                   : scene.of_scan ? kScanColour
                                    : kSkinColour;
         colours->SetTypedTuple(static_cast<vtkIdType>(i), colour.data());
     }

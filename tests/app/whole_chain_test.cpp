@@ -112,6 +112,31 @@ TEST_F(WholeChain, ADoubtfulMatchIsDrawnOnThePersonsWordAndTheWordHoldsForThatMa
     EXPECT_FALSE(lit()) << "that word was given for another match";
 }
 
+TEST_F(WholeChain, LandmarksOnTheScanCheckTheMatch) {
+    simulation::RoomSettings settings;
+    settings.preset = simulation::Preset::paper;
+    settings.seed = 2;
+    simulation::SimulatedRig room(*volume_, {}, settings);
+    const CaseDrawing drawing(prepared_);
+    Session session(prepared_, drawing, room.calibration(), room.projector(), room.cameras(), room.clock());
+    const RigidTransform truth = room.true_rig_from_ct(room.clock().now());
+    const PointCloud& scanned = session.scan().clean.kept;
+    std::vector<PointPair> landmarks;  // places of the scan, and where they truly lie in ct
+    for (const double share : {0.05, 0.3, 0.6, 0.95}) {
+        const Eigen::Vector3d p_in_rig = scanned.points_in_rig[static_cast<std::size_t>(share * static_cast<double>(scanned.size()))];
+        landmarks.push_back({"landmark " + std::to_string(landmarks.size() + 1), truth.inverse() * p_in_rig, p_in_rig});
+    }
+    EXPECT_EQ(session.find_patient(landmarks).verdict, Verdict::yes);
+    landmarks[2].in_ct += Eigen::Vector3d(0, 0, 6);
+    const RegistrationResult doubtful = session.find_patient(landmarks);
+    EXPECT_EQ(doubtful.verdict, Verdict::ask);
+    EXPECT_NE(doubtful.reasons.back().find("\"landmark 3\" lies"), std::string::npos) << doubtful.reasons.back();
+    EXPECT_FALSE(session.update().overlay.lit) << "a landmark is off: nobody has looked yet";
+    landmarks[2].in_ct += Eigen::Vector3d(0, 0, 10);
+    EXPECT_EQ(session.find_patient(landmarks).verdict, Verdict::no);
+    EXPECT_FALSE(session.update().overlay.lit);
+}
+
 TEST_F(WholeChain, AMirroredPatientIsNeverProjectedOn) {
     Case mirrored = prepared_;
     Volume volume = *volume_;  // left and right exchanged, as a reader that forgets the rows' direction would give

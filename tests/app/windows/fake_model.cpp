@@ -95,6 +95,12 @@ FitViews fit_of(const SceneModel& scene) {
     return fit;
 }
 
+/// The whole head as scanned, so that every place can be clicked on both sides.
+LandmarkViews landmarks_of(const SceneModel& scene) {
+    static const SkinSurface skin(*scene.skin);
+    return {&skin, std::make_shared<ClickableScan>(ClickableScan{SkinSurface(*scene.skin), RigidTransform::Identity()})};
+}
+
 }  // namespace
 
 OperatorModel fake_model() {
@@ -121,6 +127,7 @@ OperatorModel fake_model() {
     model.stop = {true, ""};
     model.fit = fit_of(model.scene);
     model.confirm = true;
+    model.landmarks = landmarks_of(model.scene);
     return model;
 }
 

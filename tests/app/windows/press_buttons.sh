@@ -10,8 +10,8 @@ fi
 failed=0
 timeout 100 "$program" "$folder" >"$folder/said" 2>"$folder/errors" & pid=$!
 trap 'kill $pid 2>/dev/null' EXIT
-for i in $(seq 100); do [ -e "$folder/places" ] && break; kill -0 $pid 2>/dev/null || break; sleep 0.2; done
-[ -e "$folder/places" ] || { echo "FAIL the window did not open"; cat "$folder/errors"; exit 1; }
+for i in $(seq 100); do [ -e "$folder/views" ] && break; kill -0 $pid 2>/dev/null || break; sleep 0.2; done
+[ -e "$folder/views" ] || { echo "FAIL the window did not open"; cat "$folder/errors"; exit 1; }
 window=$(xdotool search --name "Planlight buttons" | tail -1)
 xdotool windowfocus "$window"; sleep 0.3
 
@@ -24,10 +24,11 @@ wait_for() {  # wait_for WORD WHAT: a line WORD was said since the last look
 }
 silent() { sleep 1; if [ "$(wc -l <"$folder/said")" != "$seen" ]; then echo "FAIL $1: $(tail -1 "$folder/said")"; failed=1; else echo "ok   $1"; fi; seen=$(wc -l <"$folder/said"); }
 click() { xdotool mousemove "$1" "$2"; sleep 0.4; xdotool mousedown 1; sleep 0.4; xdotool mouseup 1; }
-place() { awk -v n="$1" '$1 == n { print $2, $3 }' "$folder/places"; }
+place() { cat "$folder"/{actions,views,landmarks} 2>/dev/null | awk -v n="$1" '$1 == n { print $2, $3 }'; }
+large_enough() { awk '$4 < 72 || $5 < 72 { print "FAIL " $1 " is " $4 "x" $5 " pixels, less than 72"; bad = 1 } END { exit bad }' "$@" || failed=1; }
 
 seen=0
-awk '$4 < 72 || $5 < 72 { print "FAIL " $1 " is " $4 "x" $5 " pixels, less than 72"; bad = 1 } END { exit bad }' "$folder/places" || failed=1
+large_enough "$folder/actions" "$folder/views"
 for view in before error after; do click $(place $view); wait_for "view $view" "the view $view"; done
 for control in scan register stop dark confirm; do click $(place $control); wait_for $control "pressing $control"; done
 click $(place track); silent "a button that is not enabled says nothing"
@@ -37,5 +38,24 @@ xdotool key x; silent "another key says nothing"
 xdotool mousemove 600 500; sleep 0.4; xdotool mousedown 1; sleep 0.4; xdotool mousemove 700 500; sleep 0.4; xdotool mouseup 1
 wait_for "turned +" "dragging the head to the right shows more of the patient's right"
 silent "and nothing else happens"
+
+click $(place landmarks)
+for i in $(seq 50); do [ -e "$folder/landmarks" ] && break; sleep 0.2; done
+large_enough "$folder/landmarks"
+read -r skin_x skin_y <<<"$(place skin-view)"; read -r scan_x scan_y <<<"$(place scan-view)"
+click $(place use); silent "landmarks are not used before there are three"
+n=0
+for at in "-40 -60" "45 -50" "5 30"; do
+  set -- $at; n=$((n + 1))
+  click $((skin_x + $1)) $((skin_y + $2)); silent "a landmark on the skin alone is none"
+  click $((scan_x + $1)) $((scan_y + $2)); wait_for "landmarks $n on the head" "landmark $n, where it was clicked"
+done
+click $(place undo); wait_for "landmarks 2 on the head" "a landmark is taken back"
+xdotool mousemove "$scan_x" "$scan_y"; sleep 0.4; xdotool mousedown 1; sleep 0.4; xdotool mousemove $((scan_x + 60)) "$scan_y"; sleep 0.4; xdotool mouseup 1
+silent "dragging the scan is no click"
+click "$scan_x" $((scan_y + 30)); wait_for "landmarks 3 on the head" "a landmark on the turned scan"
+xdotool key space; wait_for dark "DARK by the key while landmarks are clicked"
+click $(place use); wait_for "use landmarks" "using three landmarks"
+click $(place confirm); wait_for confirm "the 3-D view is back"
 xdotool windowclose "$window" 2>/dev/null
 exit $failed

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "app/windows/landmark_panel.h"
+#include "app/windows/operator_window.h"
+#include "app/windows/scene_pane.h"
+
+namespace planlight {
+
+/// The large place in the middle of the window: the 3-D view with the buttons over it, or the landmarks instead.
+class MiddleView {
+public:
+    MiddleView(const FontFiles& fonts, std::function<void()> make_current);
+
+    /// `confirm`, `use_landmarks` or nothing.
+    OperatorAction draw(const Pen& pen, const Box& place, const OperatorModel& model);
+
+    /// From the next frame on; a frame whose model has no landmarks closes them.
+    LandmarkPanel& open_landmarks();
+    const LandmarkPanel* landmarks() const { return landmarks_.get(); }  ///< null: never opened
+
+    ScenePane& scene() { return scene_; }
+    Box place_of(const std::string& button) const;
+    FitView fit_view = FitView::after;
+
+private:
+    OperatorAction draw_landmarks(const Pen& pen, const Box& place, const OperatorModel& model);
+    void draw_scene(const Pen& pen, const Box& place, const OperatorModel& model);
+    void draw_title(const Pen& pen, const Box& place, const OperatorModel& model, const SceneModel& shown) const;
+    void draw_fit_buttons(const Pen& pen, const Box& row);
+    OperatorAction draw_corner_buttons(const Pen& pen, Box corner, const OperatorModel& model);
+
+    FontFiles fonts_;
+    std::function<void()> make_current_;
+    ScenePane scene_;
+    std::unique_ptr<LandmarkPanel> landmarks_;  ///< from the first time it was opened
+    bool landmarks_open_ = false;
+    std::map<std::string, Box> places_;
+};
+
+}  // namespace planlight

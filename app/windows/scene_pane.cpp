@@ -1,0 +1,76 @@
+#define GLFW_INCLUDE_GLCOREARB
+#define GL_GLEXT_PROTOTYPES
+#include "app/windows/scene_pane.h"
+
+#include <GLFW/glfw3.h>
+#include <vtkOpenGLFramebufferObject.h>
+#include <vtkOpenGLState.h>
+#include <vtkTextureObject.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/windows/render_target.h"
+
+namespace planlight {
+
+ScenePane::ScenePane(const FontFiles& fonts, std::function<void()> make_current)
+    : target_(render_target(640, 480, 0, std::move(make_current))), scene_(std::make_unique<Scene>(*target_, fonts)) {}
+
+ScenePane::~ScenePane() {
+    scene_.reset();
+    target_->Finalize();
+}
+
+std::optional<ImVec2> ScenePane::take_mouse(const char* name, const Box& sensitive) {
+    constexpr double kRadiansPerPixel = 0.007;
+    constexpr float kStillPixels = 5;
+    const ImGuiIO& io = ImGui::GetIO();
+    ImGui::SetCursorScreenPos({sensitive.x, sensitive.y});
+    ImGui::InvisibleButton(name, {sensitive.width, sensitive.height},
+                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                               ImGuiButtonFlags_MouseButtonMiddle);
+    const bool still = io.MouseDragMaxDistanceSqr[0] < kStillPixels * kStillPixels;
+    if (ImGui::IsItemHovered()) {
+        view_.zoom = std::clamp(view_.zoom * std::pow(1.12, static_cast<double>(io.MouseWheel)), 0.3, 12.0);
+        if (ImGui::IsMouseDoubleClicked(0)) view_ = first_view_;
+    }
+    if (ImGui::IsItemActive()) {
+        if (io.MouseDown[0] && !still) {
+            view_.azimuth = std::remainder(view_.azimuth + kRadiansPerPixel * static_cast<double>(io.MouseDelta.x), 2 * M_PI);
+            view_.elevation =
+                std::clamp(view_.elevation + kRadiansPerPixel * static_cast<double>(io.MouseDelta.y), -1.5, 1.5);
+        } else if (!io.MouseDown[0]) {
+            view_.shift_mm += scene_->mm_per_pixel() * Eigen::Vector2d(io.MouseDelta.x, -io.MouseDelta.y);
+        }
+    }
+    if (ImGui::IsItemDeactivated() && io.MouseReleased[0] && still && ImGui::IsItemHovered()) return io.MousePos;
+    return std::nullopt;
+}
+
+void ScenePane::draw(const Pen& pen, const Box& box, const SceneModel& model) {
+    const int width = static_cast<int>(box.width) - 4, height = static_cast<int>(box.height) - 4;
+    if (scene_->update(model, view_, width, height, pen.scale)) {
+        target_->SetSize(width, height);
+        target_->GetState()->Reset();
+        target_->GetState()->ResetFramebufferBindings();
+        target_->Render();
+        glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    }
+    const auto texture = target_->GetDisplayFramebuffer()->GetColorAttachmentAsTextureObject(0)->GetHandle();
+    corner_ = {box.x + 2, box.y + 2};
+    pen.list->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), corner_,
+                              {corner_.x + static_cast<float>(width), corner_.y + static_cast<float>(height)}, {0, 1}, {1, 0},
+                              IM_COL32_WHITE, 10 * pen.scale);
+}
+
+Ray ScenePane::sight(const ImVec2& pixel) const {
+    return scene_->sight({static_cast<double>(pixel.x - corner_.x), static_cast<double>(pixel.y - corner_.y)});
+}
+
+ImVec2 ScenePane::pixel_of(const Eigen::Vector3d& p) const {
+    const Eigen::Vector2d at = scene_->pixel_of(p);
+    return {corner_.x + static_cast<float>(at.x()), corner_.y + static_cast<float>(at.y())};
+}
+
+}  // namespace planlight

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <imgui.h>
+#include <vtkGenericOpenGLRenderWindow.h>
+#include <vtkSmartPointer.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "app/windows/operator_model.h"
+#include "app/windows/pen.h"
+#include "app/windows/scene.h"
+
+namespace planlight {
+
+/// A 3-D view in its place in the operator window: its picture, and the mouse that turns it. Made, used and destroyed with
+/// the window's context current.
+class ScenePane {
+public:
+    ScenePane(const FontFiles& fonts, std::function<void()> make_current);
+    ~ScenePane();
+    ScenePane(const ScenePane&) = delete;
+    ScenePane& operator=(const ScenePane&) = delete;
+
+    /// Left turns, right or middle shifts, wheel zooms, a double click goes back to the first view. Returns where the left
+    /// button was pressed and released without moving, in window pixels.
+    std::optional<ImVec2> take_mouse(const char* name, const Box& sensitive);
+
+    /// Renders what has changed and draws the picture into the box.
+    void draw(const Pen& pen, const Box& box, const SceneModel& model);
+
+    /// The line of sight through a window pixel, and the window pixel of a point, in the scene's frame, as last drawn.
+    Ray sight(const ImVec2& window_pixel) const;
+    ImVec2 pixel_of(const Eigen::Vector3d& p) const;
+
+    const SceneView& view() const { return view_; }
+    void set_view(const SceneView& view) { view_ = first_view_ = view; }
+
+private:
+    vtkSmartPointer<vtkGenericOpenGLRenderWindow> target_;
+    std::unique_ptr<Scene> scene_;
+    SceneView view_, first_view_;
+    ImVec2 corner_{0, 0};  ///< of the picture, window pixels
+};
+
+}  // namespace planlight
