@@ -46,8 +46,8 @@ GLFWwindow* open_window(const OperatorWindowSettings& settings) {
     glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
     glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
     glfwWindowHint(GLFW_DECORATED, settings.fill_monitor ? GLFW_FALSE : GLFW_TRUE);
-    const int width = settings.fill_monitor ? monitor.width : std::max(settings.width, kLeastWidth);
-    const int height = settings.fill_monitor ? monitor.height : std::max(settings.height, kLeastHeight);
+    const int width = settings.fill_monitor ? monitor.width : std::max(std::min(settings.width, monitor.width), kLeastWidth);
+    const int height = settings.fill_monitor ? monitor.height : std::max(std::min(settings.height, monitor.height), kLeastHeight);
     GLFWwindow* const window = glfwCreateWindow(width, height, settings.title.c_str(), nullptr, nullptr);
     if (window == nullptr)
         throw DeviceError("operator window", "it could not be opened (" + last_window_error() + ")",

@@ -15,7 +15,7 @@ enum class OperatorAction { none, scan, do_register, track, stop, dark, quit, co
 
 struct OperatorWindowSettings {
     std::string title = "Planlight";
-    int width = 1920, height = 1080;     ///< pixels; at least 1280 x 800
+    int width = 1920, height = 1080;     ///< pixels; at most the monitor's, at least 1280 x 800
     std::optional<std::string> monitor;  ///< name or index as text; the primary one when not given
     bool fill_monitor = false;           ///< borderless over that whole monitor
 };

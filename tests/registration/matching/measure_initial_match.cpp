@@ -67,12 +67,13 @@ TrialRecord run(const std::vector<TrialHead>& heads, unsigned seed) {
 void print_row(const std::string& name, const std::vector<TrialRecord>& all,
                const std::function<bool(const TrialRecord&)>& in) {
     std::vector<double> before, after, initial_s, processor_s;
-    std::size_t n = 0, found = 0, good = 0, wrong[2] = {0, 0}, verdicts[3] = {0, 0, 0};
+    std::size_t n = 0, found = 0, finally = 0, good = 0, wrong[2] = {0, 0}, verdicts[3] = {0, 0, 0};
     for (const TrialRecord& r : all) {
         if (!in(r)) continue;
         ++n;
         ++verdicts[r.verdict];
         found += r.found();
+        finally += r.found_finally();
         good += r.found() && r.final.target_mm < 2;
         if (r.verdict < 2) wrong[r.verdict] += r.wrong();
         if (r.found()) before.push_back(r.initial.target_mm), after.push_back(r.final.target_mm);
@@ -82,16 +83,16 @@ void print_row(const std::string& name, const std::vector<TrialRecord>& all,
     if (n == 0) return;
     const auto percent = [&](std::size_t k) { return 100. * static_cast<double>(k) / static_cast<double>(n); };
     fmt::print(
-        "| {} | {} | {:.1f} % | {:.1f} % | {:.0f} / {:.0f} / {:.0f} % | {} / {} | {:.2f}, {:.2f} | {:.2f}, {:.2f} | "
+        "| {} | {} | {:.1f} / {:.1f} % | {:.1f} % | {:.0f} / {:.0f} / {:.0f} % | {} / {} | {:.2f}, {:.2f} | {:.2f}, {:.2f} | "
         "{:.2f}, {:.2f} | {:.2f} |\n",
-        name, n, percent(found), percent(good), percent(verdicts[0]), percent(verdicts[1]), percent(verdicts[2]),
+        name, n, percent(found), percent(finally), percent(good), percent(verdicts[0]), percent(verdicts[1]), percent(verdicts[2]),
         wrong[0], wrong[1], quantile(before, 0.5), quantile(before, 0.95), quantile(after, 0.5), quantile(after, 0.95),
         quantile(initial_s, 0.5), quantile(initial_s, 0.99), quantile(processor_s, 0.5));
 }
 
 void print_table(const std::vector<TrialRecord>& all) {
     fmt::print(
-        "| trials | number | found: within 3 degrees, 5 mm | found, and < 2 mm at targets | yes / ask / no | wrong (> "
+        "| trials | number | found (within 3 degrees, 5 mm): before / after the fine match | found, and < 2 mm at targets | yes / ask / no | wrong (> "
         "5 mm): yes / ask | "
         "error of those found, mm, before: median, 95 % | after | initial match, s by the wall: median, 99 % | "
         "processor s in all: median |\n"

@@ -33,6 +33,8 @@ struct TrialRecord {
 
     /// Within 3 degrees and 5 mm before the fine match: the right minimum.
     bool found() const { return searched && right_object && initial.turn_deg < 3 && initial.middle_mm < 5; }
+    /// The same of the pose that comes out in the end.
+    bool found_finally() const { return searched && right_object && final.turn_deg < 3 && final.middle_mm < 5; }
     /// A pose more than 5 mm off at a target, or any pose at all of a thing that is not there.
     bool wrong() const { return !right_object || final.target_mm > 5; }
 };
