@@ -68,7 +68,10 @@ private:
     void set_steps(int active, StepState state = StepState::active);
     OperatorAction next_action(bool wait);
     template <class Change>
-    void change_model(Change change);
+    void change_model(Change change) {
+        const std::lock_guard lock(mutex_);
+        change(model_);
+    }
 
     const Case& case_;
     const CaseDrawing& drawing_;

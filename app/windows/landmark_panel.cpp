@@ -162,7 +162,7 @@ std::optional<LandmarkButton> LandmarkPanel::draw(const Pen& pen, const Box& box
     draw_words(pen, box);
     draw_panes(pen, views);
     pen.line(pen.fonts.small, "Skin from CT", boxes_[0].x + edge, boxes_[0].y + 16 * pen.scale, pane_width / 2, theme::kText);
-    pen.line(pen.fonts.small, "Scan, as the devices saw it", boxes_[1].x + edge, boxes_[1].y + 16 * pen.scale, pane_width - edge,
+    pen.line(pen.fonts.small, "Scan", boxes_[1].x + edge, boxes_[1].y + 16 * pen.scale, pane_width - edge,
              theme::kText);
     const auto pressed =
         draw_buttons(pen, {box.x + edge, box.bottom() - edge - button_height, box.width - 2 * edge, button_height}, use_label);

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "planning_io/mesh_file.h"
+#include "planning_io/point_pairs_file.h"
 #include "planning_io/rig_file.h"
 #include "tests/app/on_example_patient.h"
 
@@ -124,6 +125,35 @@ TEST_F(CommandsTest, LandmarksAloneAreAskedForAndWrongOnesAreRefused) {
     expect_one_clear_sentence(run_planlight("register case --pairs bad.csv --out refused.json", root()), 6, "landmark");
     expect_one_clear_sentence(run_planlight("register case --pairs unsaid.csv --out refused2.json", root()), 3, "SPACE=");
     EXPECT_EQ(run_planlight("register case --out refused3.json", root()).exit_code, 2);
+    EXPECT_EQ(run_planlight("review case --landmarks good.csv", root()).exit_code, 2) << "landmarks are clicked on a scan";
+}
+
+TEST_F(CommandsTest, LandmarksCheckAScanAndAScanIsASurface) {
+    simulated();
+    const auto scanned = run_planlight("scan room/capture --rig room/rig.json --out on.ply --surface surface.ply --json", root());
+    ASSERT_EQ(scanned.exit_code, 0) << scanned.err;
+    const auto points = json::parse(scanned.out)["points"].get<std::size_t>(), triangles = json::parse(scanned.out)["triangles"].get<std::size_t>();
+    EXPECT_GT(triangles, points) << "nearly two a point";
+    EXPECT_LT(triangles, 2 * points);
+    prepared();
+    const PointCloud cloud = read_cloud(root() / "surface.ply");
+    EXPECT_EQ(cloud.size(), points);
+    const Eigen::Matrix4d ct_from_rig = true_rig_from_ct().inverse();
+    std::vector<PointPair> pairs;
+    for (const double share : {0.1, 0.4, 0.6, 0.9}) {
+        const Eigen::Vector3d p_in_rig = cloud.points_in_rig[static_cast<std::size_t>(share * static_cast<double>(points))];
+        pairs.push_back({std::to_string(pairs.size() + 1), (ct_from_rig * p_in_rig.homogeneous()).head<3>(), p_in_rig});
+    }
+    write_point_pairs(pairs, root() / "true.csv");
+    pairs[1].in_ct.z() += 6;
+    write_point_pairs(pairs, root() / "off.csv");
+    const auto found = run_planlight("register case --cloud surface.ply --pairs true.csv --out yes.json --json", root());
+    ASSERT_EQ(found.exit_code, 0) << found.err;
+    EXPECT_EQ(json::parse(found.out)["verdict"], "yes") << "the faces do no harm";
+    const auto asked = run_planlight("register case --cloud surface.ply --pairs off.csv --out ask.json --json", root());
+    EXPECT_EQ(json::parse(asked.out)["verdict"], "ask");
+    EXPECT_NE(asked.out.find("\"2\\\" lies"), std::string::npos) << asked.out;
+    EXPECT_EQ(run_planlight("review case --cloud surface.ply", root()).exit_code, 2) << "nothing says where it lies";
 }
 
 TEST_F(CommandsTest, ScansOfFewerDevicesAndOfAGrayCodeAlone) {

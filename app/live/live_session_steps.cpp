@@ -1,0 +1,153 @@
+// What a live session does when a button is pressed: scan, find the patient, confirm, follow.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "app/live/case_model.h"
+#include "app/live/clickable_scan.h"
+#include "app/live/live_session.h"
+#include "app/live/scene_of_session.h"
+#include "app/report/registration_certificate.h"
+
+namespace planlight {
+namespace {
+
+std::string landmark_evidence(const std::vector<PointPair>& landmarks, const RegistrationResult& found) {
+    const std::vector<double> errors = landmark_errors_mm(landmarks, found.patient_from_ct);
+    return fmt::format("{} landmarks were clicked; the farthest lies {:.1f} mm from where the match puts it.", landmarks.size(),
+                       *std::max_element(errors.begin(), errors.end()));
+}
+
+}  // namespace
+
+void LiveSession::scan(Session& session) {
+    set_steps(2);
+    set_status(StatusKind::scanning, "Scanning: keep the patient still.");
+    change_model([](OperatorModel& m) {
+        m.scene.cloud = nullptr;
+        m.scene.light = nullptr;
+        m.scene.markers = nullptr;
+        m.fit = std::nullopt;
+        m.landmarks = std::nullopt;
+        m.confirm = false;
+        m.track = {false, "register first"};
+    });
+    const ScanResult& scan = session.scan([&](int done, int of) {
+        set_status(StatusKind::scanning, fmt::format("Scanning: picture {} of {}.", done, of), {"Keep the patient still."});
+    });
+    const ScanCapture& capture = *session.capture();
+    const auto clickable = clickable_scan(scan.clean.kept, &session.rig().left_camera);
+    change_model([&](OperatorModel& m) {
+        m.left.picture = std::make_shared<GrayImage>(capture.left.front());
+        m.right.picture = std::make_shared<GrayImage>(capture.right.front());
+        m.left.found = found_markers(session.tracker().seen_left());
+        m.right.found = found_markers(session.tracker().seen_right());
+        m.do_register = {true, {}};
+        if (clickable) m.landmarks = LandmarkViews{&drawing_.skin, clickable};
+    });
+    set_steps(3);
+    set_status(StatusKind::ready, fmt::format("{} points of skin scanned.", scan.clean.kept.size()), {"Register next."});
+}
+
+std::vector<PointPair> LiveSession::newest_landmarks() const {
+    const std::lock_guard lock(mutex_);
+    return landmarks_;
+}
+
+void LiveSession::find_patient(Session& session, const std::vector<PointPair>& landmarks) {
+    following_ = projecting_ = false;
+    session.go_dark();
+    set_status(StatusKind::matching, landmarks.empty() ? "Finding the patient."
+                                                       : fmt::format("Finding the patient, with {} landmarks.", landmarks.size()));
+    const RegistrationResult& found = session.find_patient(landmarks);
+    OperatorModel shown = model();
+    show_match(case_, found, std::make_shared<PointCloud>(session.scanned()->clean.kept), shown);
+    shown.confirm = found.verdict == Verdict::ask;
+    shown.scene.light = nullptr;
+    shown.stop = {false, "nothing runs"};
+    shown.track = {false, "register first"};
+    if (found.verdict != Verdict::no) {
+        shown.scene.markers = markers_in_ct(session.tracker(), shown.scene.ct_from_rig);
+        shown.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
+        if (!landmarks.empty()) shown.evidence.insert(shown.evidence.begin(), landmark_evidence(landmarks, found));
+        shown.track = {found.verdict == Verdict::yes, found.verdict == Verdict::yes ? "" : "look at the fit first"};
+    }
+    shown.evidence.push_back(keep(found, session.scanned()->clean.kept, landmarks));
+    change_model([&](OperatorModel& m) { m = std::move(shown); });
+    set_steps(3, found.verdict == Verdict::yes ? StepState::done : StepState::attention);
+    if (found.verdict == Verdict::yes) {
+        set_steps(4);
+        set_status(StatusKind::ready, "The patient is found.", {"Look at the scan on the skin, then press Track."});
+    } else {
+        set_status(found.verdict == Verdict::ask ? StatusKind::check : StatusKind::refused,
+                   found.verdict == Verdict::ask ? "Not sure: look whether the scan fits the skin, or scan again."
+                                                 : "The patient was not found: scan again, or click landmarks.",
+                   found.reasons);
+    }
+}
+
+/// Keeps the match and its scan; what became of it, in a sentence. A full disk does not end a session.
+std::string LiveSession::keep(const RegistrationResult& found, const PointCloud& cloud,
+                              const std::vector<PointPair>& landmarks) const {
+    if (settings_.keep_matches_in.empty()) return "This match is not kept.";
+    try {
+        return "Kept in " + keep_match(found, &cloud, landmarks, settings_.keep_matches_in).string() + ".";
+    } catch (const std::exception& fault) {
+        return std::string("This match could not be kept: ") + fault.what() + ".";
+    }
+}
+
+void LiveSession::confirm(Session& session) {
+    if (session.registration() == nullptr || session.registration()->verdict != Verdict::ask) return;
+    session.confirm();
+    change_model([](OperatorModel& m) {
+        m.confirm = false;
+        m.track = {true, {}};
+        m.evidence.insert(m.evidence.begin(), "Confirmed by the operator, who looked at the fit.");
+    });
+    set_steps(4);
+    set_status(StatusKind::ready, "The match is used on your word.",
+               {"Press Track, and look at the light on two landmarks before you use it."});
+}
+
+void LiveSession::follow(Session& session, simulation::SimulatedRig& rig) {
+    const auto update = session.update();
+    if (dark_wanted_) return;
+    projecting_ = update.overlay.lit;
+    show_update(session, rig, update);
+}
+
+void LiveSession::show_update(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update) {
+    const auto light = true_light_lines(session.drawing(), rig.calibration(), update.overlay, rig);
+    Figures figures;
+    figures.updates_per_s = 1 / std::max(update.times.total_s(), 1e-6);
+    figures.delay_to_light_ms = 1000 * seconds(update.overlay.lit_from - update.pose.at);
+    if (update.pose.rig_from_patient) {
+        const Eigen::Vector3d middle = session.tracker().markers().front().centre_in_patient;
+        figures.head_moved_mm = (*update.pose.rig_from_patient * middle - middle).norm();
+        figures.head_turned_deg =
+            angle_between(*update.pose.rig_from_patient, RigidTransform::Identity()) * 180 / std::numbers::pi;
+    }
+    if (!update.overlay.lit) figures.delay_to_light_ms.reset();
+    change_model([&](OperatorModel& m) {
+        m.figures = figures;
+        m.scene.light = light;
+        m.left.picture = std::make_shared<GrayImage>(brightened(update.frame.left));
+        m.right.picture = std::make_shared<GrayImage>(brightened(update.frame.right));
+        m.left.found = found_markers(session.tracker().seen_left());
+        m.right.found = found_markers(session.tracker().seen_right());
+        m.stop = {true, {}};
+    });
+    if (update.overlay.lit)
+        set_status(StatusKind::aligned, "The plan is on the skin.",
+                   {fmt::format("Followed by {} markers, residual {:.2f} px.",
+                                std::max(update.pose.markers_left, update.pose.markers_right), update.pose.residual_px),
+                    "The light itself is not measured yet: look at it on landmarks before you use it."});
+    else
+        set_status(StatusKind::dark, "Dark: " + update.overlay.reason + ".",
+                   {"The light comes back by itself when the pose is good."});
+}
+
+}  // namespace planlight
