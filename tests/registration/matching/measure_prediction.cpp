@@ -145,10 +145,15 @@ int main(int argc, char** argv) {
     std::map<std::string, std::vector<Target>> by_movement;
     std::map<std::string, std::array<unsigned, 3>> verdicts;  // yes, ask, no
     std::vector<Target> others;
+    std::array<double, 2> worst_mm{};  // yes, ask
     for (unsigned i = 0; i < cases; ++i) {
         const auto done = run(first + i);
         auto& into = by_movement[done.movement];
         into.insert(into.end(), done.targets.begin(), done.targets.end());
+        for (const Target& target : done.targets) {
+            double& worst = worst_mm[done.verdict == planlight::Verdict::yes ? 0 : 1];
+            worst = std::max(worst, target.error_mm);
+        }
         ++verdicts[done.movement][done.verdict == planlight::Verdict::yes ? 0 : done.verdict == planlight::Verdict::ask ? 1 : 2];
     }
     std::array<unsigned, 3> of_others{};
@@ -165,4 +170,5 @@ int main(int argc, char** argv) {
         print_row(movement.name + (movement.tuned_on ? " (tuned on)" : ""), verdicts[movement.name], targets);
     }
     if (!others.empty()) print_row("**all not tuned on**", of_others, others);
+    fmt::print("\nWorst error at a target: {:.2f} mm where the verdict is yes, {:.2f} mm where it is ask.\n", worst_mm[0], worst_mm[1]);
 }
