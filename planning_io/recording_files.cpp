@@ -208,6 +208,7 @@ void write_registration(const RegistrationResult& result, const fs::path& file) 
                                  {"weakest_sigma_mm", result.weakest_sigma_mm},
                                  {"mirror_ratio", std::min(result.mirror_ratio, std::numeric_limits<double>::max())},
                                  {"blocked_fraction", result.blocked_fraction ? Json(*result.blocked_fraction) : Json(nullptr)},
+                                 {"landmarks_off_mm", result.landmarks_off_mm ? Json(*result.landmarks_off_mm) : Json(nullptr)},
                                  {"moved_in_scan_mm", result.moved_in_scan_mm ? Json(*result.moved_in_scan_mm) : Json(nullptr)},
                                  {"scale", result.scale},
                                  {"scale_sigma", result.scale_sigma},
@@ -240,6 +241,7 @@ RegistrationResult read_registration(const fs::path& file) {
     result.weakest_sigma_mm = number("weakest_sigma_mm");
     result.mirror_ratio = number("mirror_ratio");
     if (const auto blocked = root.find("blocked_fraction")) result.blocked_fraction = blocked->number();
+    if (const auto off = root.find("landmarks_off_mm")) result.landmarks_off_mm = off->number();
     if (const auto moved = root.find("moved_in_scan_mm")) result.moved_in_scan_mm = moved->number();
     if (root.find("scale")) result.scale = number("scale");
     result.scale_sigma = number("scale_sigma");

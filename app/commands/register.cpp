@@ -83,6 +83,8 @@ int run_register(const RegisterOptions& options) {
                                     {"mirror_ratio", result.mirror_ratio},
                                     {"blocked_fraction", result.blocked_fraction ? nlohmann::json(*result.blocked_fraction)
                                                                                  : nlohmann::json()},
+                                    {"landmarks_off_mm", result.landmarks_off_mm ? nlohmann::json(*result.landmarks_off_mm)
+                                                                                 : nlohmann::json()},
                                     {"scale", result.scale},
                                     {"scale_sigma", result.scale_sigma},
                                     {"skin_movement_mm", result.skin_movement_mm},

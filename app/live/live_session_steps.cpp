@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "app/live/case_model.h"
@@ -12,15 +11,6 @@
 #include "app/report/registration_certificate.h"
 
 namespace planlight {
-namespace {
-
-std::string landmark_evidence(const std::vector<PointPair>& landmarks, const RegistrationResult& found) {
-    const std::vector<double> errors = landmark_errors_mm(landmarks, found.patient_from_ct);
-    return fmt::format("{} landmarks were clicked; the farthest lies {:.1f} mm from where the match puts it.", landmarks.size(),
-                       *std::max_element(errors.begin(), errors.end()));
-}
-
-}  // namespace
 
 void LiveSession::scan(Session& session) {
     set_steps(2);
@@ -71,7 +61,6 @@ void LiveSession::find_patient(Session& session, const std::vector<PointPair>& l
     if (found.verdict != Verdict::no) {
         shown.scene.markers = markers_in_ct(session.tracker(), shown.scene.ct_from_rig);
         shown.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
-        if (!landmarks.empty()) shown.evidence.insert(shown.evidence.begin(), landmark_evidence(landmarks, found));
         shown.track = {found.verdict == Verdict::yes, found.verdict == Verdict::yes ? "" : "look at the fit first"};
     }
     shown.evidence.push_back(keep(found, session.scanned()->clean.kept, landmarks));

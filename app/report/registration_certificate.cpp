@@ -52,6 +52,9 @@ void write_certificate_html(const Case& the_case, const CaseDrawing& drawing, co
     for (const std::string& line : evidence_of(found)) body += fmt::format("<p>{}</p>", html_escaped(line));
     if (found.verdict != Verdict::no) {
         body += items_html(model);
+        body += "<p>These bounds hold for skin that moved here and there. They cannot know of skin that was pulled along as a whole "
+                "since the CT (by gravity, tape, a retractor): it looks like a head that moved. Look at the light on a place "
+                "where skin lies close on bone, such as the bridge of the nose.</p>";
         const SceneView view = view_of_plan(drawing.drawing);
         const auto picture = [&](FitView shown) {
             return render_scene(scene_of_fit(model, shown), view, kWidth, kHeight);

@@ -32,6 +32,7 @@ struct RegistrationResult {
     double mirror_ratio = 0;           ///< cost of the mirrored scan's best pose / cost of this one; > 1 is good; 0: not tried
     std::optional<double> blocked_fraction;  ///< of the ways back to the viewpoint, through the body; empty: none was said
     std::optional<double> moved_in_scan_mm;  ///< the most that a marker moved during the scan; empty: not looked at
+    std::optional<double> landmarks_off_mm;  ///< the farthest landmark from where T_ini puts it; empty: there were none
     double scale = 1;                  ///< by which the scan would have to grow to fit best; 1 is good
     double scale_sigma = 0;            ///< one standard deviation of that
     PoseCovariance covariance;         ///< how uncertain T_ini is, for `predicted_error` at any point

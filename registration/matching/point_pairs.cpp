@@ -85,6 +85,7 @@ RegistrationResult register_point_pairs(const std::vector<PointPair>& pairs, con
     }
     result.patient_from_ct = result.initial_patient_from_ct = fit(pairs);
     const std::vector<double> errors = landmark_errors_mm(pairs, result.patient_from_ct);
+    result.landmarks_off_mm = *std::max_element(errors.begin(), errors.end());
     result.residual_rms_mm = rms(errors);
     const auto n = static_cast<double>(pairs.size());
     // E[residual^2] = (1 - 2/n) error^2 (Sibson 1979)
@@ -105,8 +106,9 @@ RegistrationResult register_point_pairs(const std::vector<PointPair>& pairs, con
 }
 
 void check_with_point_pairs(const std::vector<PointPair>& pairs, RegistrationResult& result, const PointPairSettings& settings) {
-    if (result.verdict == Verdict::no) return;
+    if (result.verdict == Verdict::no || pairs.empty()) return;
     const std::vector<double> errors = landmark_errors_mm(pairs, result.patient_from_ct);
+    result.landmarks_off_mm = *std::max_element(errors.begin(), errors.end());
     for (std::size_t i = 0; i < pairs.size(); ++i)
         if (errors[i] > settings.max_check_mm)
             lower(result, errors[i] > 2 * settings.max_check_mm ? Verdict::no : Verdict::ask,

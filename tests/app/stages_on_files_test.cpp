@@ -38,6 +38,7 @@ TEST_F(CommandsTest, StagesOnFilesFindThePatientWithinAMillimetreOfTheTruth) {
     const std::string page(std::istreambuf_iterator<char>(certificate), {});
     EXPECT_NE(page.find("Yes: the match may be used."), std::string::npos);
     EXPECT_NE(page.find("How far off the match may be"), std::string::npos);
+    EXPECT_NE(page.find("pulled along as a whole"), std::string::npos) << "what the bounds cannot know";
     const auto review = run_planlight(
         "review case --registration registration.json --cloud cloud.ply --view before --picture before.png --json", root());
     ASSERT_EQ(review.exit_code, 0) << review.err;

@@ -249,6 +249,7 @@ TEST(Recordings, CaptureFramesRegistrationAndPosesReadBack) {
     result.covariance.of_turn_and_shift.diagonal().setConstant(3);
     result.covariance.centre_in_ct = {7, 8, 9};
     result.runner_up_ratio = std::numeric_limits<double>::infinity();
+    result.landmarks_off_mm = 2.5;
     result.moved_in_scan_mm = 0.07;  // and the viewpoint was not said
     write_registration(result, folder.path() / "registration.json");
     const auto result_back = read_registration(folder.path() / "registration.json");
@@ -260,6 +261,7 @@ TEST(Recordings, CaptureFramesRegistrationAndPosesReadBack) {
     EXPECT_EQ(predicted_error(result_back.covariance, {0, 0, 50}).bound_95_mm,
               predicted_error(result.covariance, {0, 0, 50}).bound_95_mm);
     EXPECT_GT(result_back.runner_up_ratio, 1e100);
+    EXPECT_EQ(result_back.landmarks_off_mm, 2.5);
     EXPECT_EQ(result_back.moved_in_scan_mm, 0.07);
     EXPECT_FALSE(result_back.blocked_fraction);
 

@@ -74,6 +74,7 @@ TEST(RegisterWithLandmarks, AGoodScanNeedsNoHelpAndIsCheckedByThem) {
     const RegistrationResult checked = register_with_landmarks(cloud, head_lut(), off);
     EXPECT_EQ(checked.verdict, Verdict::ask);
     EXPECT_NE(told(checked).find("\"landmark 2\""), std::string::npos);
+    EXPECT_NEAR(checked.landmarks_off_mm.value(), 6, 2);
 }
 
 TEST(RegisterWithLandmarks, LandmarksThatContradictEachOtherOrTheScanDoNotHelp) {
