@@ -115,10 +115,14 @@ SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSett
     check.checked = check.checked && (samples.lit >= kEnough || !check.problems.empty());
     if (!check.checked || !check.problems.empty()) return check;
     for (const Direction& direction : samples.directions) {
-        const std::vector<Fringe> fringes = fringes_of(samples, direction.phase);
+        std::vector<std::vector<Fringe>> fringes{fringes_of(samples, direction.phase)};
+        for (const auto& phases : direction.further) fringes.push_back(fringes_of(samples, phases));
         check_pairs(samples, direction, check);
-        check_fringes(samples, direction.phase, fringes, check);
-        check_parity(samples, direction, fringes, check);
+        if (!direction.phase.empty()) check_fringes(samples, direction.phase, fringes[0], check);
+        for (std::size_t k = 0; k < direction.further.size(); ++k)
+            check_fringes(samples, direction.further[k], fringes[k + 1], check);
+        check_frequencies(samples, direction, fringes, check);
+        check_parity(samples, direction, fringes[0], check);
         check_order(samples, direction, check);
     }
     return check;

@@ -12,11 +12,10 @@
 namespace planlight {
 namespace {
 
-constexpr int kReach = 2;  // 5 x 5 neighbours
+constexpr int kReach = 2;            // 5 x 5 neighbours
 constexpr int kWhole = (2 * kReach + 1) * (2 * kReach + 1);
-constexpr int kMinNeighbours = 12;  // about half of them
-constexpr double kRoughness_px =
-    0.25;  // rms about the affine map that the surface's own curvature and texture may make
+constexpr int kMinNeighbours = 12;   // about half of them
+constexpr double kRoughness_px = 0.25;  // rms about the affine map that the surface's own curvature and texture may make
 // A camera pixel spans a few projector pixels at most; a jump of more is another surface, not a slope.
 constexpr float kMaxJump_px = 12;
 constexpr int kMaxSteps = 5;
@@ -161,9 +160,7 @@ std::optional<LocalCode> local_code(const DecodedView& view, int x, int y) {
 }
 
 CodeIndex::CodeIndex(const DecodedView& view, int projector_width, int projector_height)
-    : view_(view),
-      columns_((projector_width + kCell_px - 1) / kCell_px),
-      rows_((projector_height + kCell_px - 1) / kCell_px),
+    : view_(view), columns_((projector_width + kCell_px - 1) / kCell_px), rows_((projector_height + kCell_px - 1) / kCell_px),
       pixel_in_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), -1) {
     constexpr float kByCell = 1.0f / kCell_px;
     // Every second pixel of every second line: a piece of code without one of them is too small to be fitted.
@@ -188,8 +185,8 @@ std::optional<CodeIndex::Match> CodeIndex::find(const Eigen::Vector2d& code) con
         for (int y = std::max(0, r - ring); y <= std::min(rows_ - 1, r + ring); ++y)
             for (int x = std::max(0, c - ring); x <= std::min(columns_ - 1, c + ring); ++x) {
                 if (std::max(std::abs(y - r), std::abs(x - c)) != ring) continue;
-                const std::int32_t start = pixel_in_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
-                                                     static_cast<std::size_t>(x)];
+                const std::int32_t start =
+                    pixel_in_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x)];
                 if (start < 0) continue;
                 if (const auto match = find_from(code, {start % view_.width, start / view_.width})) return match;
             }

@@ -129,4 +129,46 @@ void check_parity(const Samples& s, const Direction& direction, const std::vecto
          share_of(wrong, looked)});
 }
 
+namespace {
+
+/// By how many turns the phases of a pixel disagree at least, rms, wherever in the picture it may lie.
+double least_disagreement(const StripeSettings& stripes, int size, const std::vector<std::vector<Fringe>>& fringes, std::size_t i) {
+    const double turns = fringes[0][i].phase / (2 * std::numbers::pi);
+    const int orders = static_cast<int>(std::ceil(size / stripes.phase_period_px)) + 1;
+    double least = 1;
+    for (int order = 0; order < orders; ++order) {
+        double squares = 0;
+        for (std::size_t k = 1; k < fringes.size(); ++k) {
+            const double off = (order + turns) * stripes.phase_period_px / stripes.order_periods_px[k - 1] -
+                               fringes[k][i].phase / (2 * std::numbers::pi);
+            squares += (off - std::floor(off + 0.5)) * (off - std::floor(off + 0.5));
+        }
+        least = std::min(least, squares / static_cast<double>(fringes.size() - 1));
+    }
+    return std::sqrt(least);
+}
+
+}  // namespace
+
+void check_frequencies(const Samples& s, const Direction& direction, const std::vector<std::vector<Fringe>>& fringes,
+                       SequenceCheck& check) {
+    if (fringes.size() < 2 || fringes[0].empty()) return;
+    constexpr double kLeast_grey = 12, kMostTurns = 0.05, kMost = 0.1;
+    const bool rows = s.patterns[direction.phase.front()].along_rows;
+    const int size = rows ? s.stripes.height : s.stripes.width;
+    std::size_t looked = 0, wrong = 0;
+    for (std::size_t i = 0; i < s.lit; ++i) {
+        double amplitude = fringes[0][i].amplitude;
+        for (const auto& of_one : fringes) amplitude = std::min<double>(amplitude, of_one[i].amplitude);
+        if (amplitude < std::max(kLeast_grey, 0.15 * s.contrast[i])) continue;
+        ++looked;
+        wrong += least_disagreement(s.stripes, size, fringes, i) > kMostTurns;
+    }
+    if (looked < kEnough || share_of(wrong, looked) <= kMost) return;
+    check.problems.push_back({direction.phase[0],
+                              fmt::format("the fringes from {} to {} do not belong to each other", s.name(direction.phase.front()),
+                                          s.name(direction.further.back().back())),
+                              share_of(wrong, looked)});
+}
+
 }  // namespace planlight::sequence

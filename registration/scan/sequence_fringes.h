@@ -26,6 +26,10 @@ void check_fringes(const Samples& samples, const std::vector<std::size_t>& phase
 void check_parity(const Samples& samples, const Direction& direction, const std::vector<Fringe>& fringes,
                   SequenceCheck& check);
 
+/// Fringes of several frequencies must agree about a place.
+void check_frequencies(const Samples& samples, const Direction& direction, const std::vector<std::vector<Fringe>>& fringes,
+                       SequenceCheck& check);
+
 /// "; A looks like B": another frame that looks just like this one although its picture is another; empty where there
 /// is none.
 std::string explain(const Samples& samples, std::size_t frame);

@@ -18,24 +18,15 @@ void sort_frames(std::span<const GrayImage> frames, Samples& s) {
     for (const GrayImage& f : frames)
         if (f.width != frames[0].width || f.pixels.size() != frames[0].pixels.size() || f.empty())
             throw std::invalid_argument("check_sequence: frames of different size");
+    for (Direction& direction : s.directions) direction.further.resize(s.stripes.order_periods_px.size());
     for (std::size_t i = 0; i < frames.size(); ++i) {
         Direction& direction = s.directions[s.patterns[i].along_rows ? 1 : 0];
         switch (s.patterns[i].kind) {
-            case StripePattern::Kind::white:
-                s.white = i;
-                break;
-            case StripePattern::Kind::black:
-                s.black = i;
-                break;
-            case StripePattern::Kind::gray_bit:
-                direction.gray.push_back(i);
-                break;
-            case StripePattern::Kind::gray_bit_inverse:
-                direction.inverse.push_back(i);
-                break;
-            case StripePattern::Kind::phase:
-                direction.phase.push_back(i);
-                break;
+            case StripePattern::Kind::white: s.white = i; break;
+            case StripePattern::Kind::black: s.black = i; break;
+            case StripePattern::Kind::gray_bit: direction.gray.push_back(i); break;
+            case StripePattern::Kind::gray_bit_inverse: direction.inverse.push_back(i); break;
+            case StripePattern::Kind::phase: direction.fringes(s.patterns[i].frequency).push_back(i); break;
         }
     }
 }

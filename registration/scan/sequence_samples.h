@@ -23,6 +23,11 @@ inline constexpr std::size_t kEnough = 200;  // pixels, to say anything
 /// The frames of one direction, by place in the sequence.
 struct Direction {
     std::vector<std::size_t> gray, inverse, phase;
+    std::vector<std::vector<std::size_t>> further;  ///< fringes of the further frequencies
+
+    std::vector<std::size_t>& fringes(int frequency) {
+        return frequency == 0 ? phase : further[static_cast<std::size_t>(frequency - 1)];
+    }
 };
 
 using Bytes = std::vector<std::uint8_t>;
