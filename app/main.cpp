@@ -83,9 +83,11 @@ void add_patterns(CLI::App& app, PatternsOptions& o) {
     sub->add_option("--height", o.height, "Of the projector, pixels")->capture_default_str()->check(CLI::Range(64, 8192));
     sub->add_option("--phase-steps", o.phase_steps, "Shifts a direction")->capture_default_str()->check(CLI::Range(3, 32));
     sub->add_option("--set", o.set,
-                    "full: columns and rows, each bit with its inverse; fast: a third of the pictures, columns only, 5 shifts")
+                    "full: columns and rows, each bit with its inverse; fast: a third of the pictures, columns only, 5 shifts; "
+                    "multi-frequency: fringes of three or four periods instead of the Gray code")
         ->capture_default_str()
-        ->check(CLI::IsMember({"full", "fast"}));
+        ->check(CLI::IsMember({"full", "fast", "multi-frequency"}));
+    sub->add_flag("--columns-only", o.columns_only, "Multi-frequency: half the pictures; points then need both cameras");
     sub->add_option("--phase-period-px", o.phase_period_px, "Projector pixels a fringe")
         ->capture_default_str()
         ->check(CLI::Range(4.0, 256.0));

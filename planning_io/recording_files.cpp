@@ -98,18 +98,23 @@ void write_capture(const CaptureFolder& capture, const fs::path& folder) {
             write_png(capture.left[i], into / "left" / (capture.names[i] + ".png"));
             if (right) write_png(capture.right[i], into / "right" / (capture.names[i] + ".png"));
         }
-        write_safely(into / "capture.json", dump(Json{{"format", "planlight capture"},
-                                                      {"version", kVersion},
-                                                      {"projector_width", capture.projector_width},
-                                                      {"projector_height", capture.projector_height},
-                                                      {"phase_steps", capture.phase_steps},
-                                                      {"phase_period_px", capture.phase_period_px},
-                                                      {"rows", capture.rows},
-                                                      {"inverse", capture.inverse},
-                                                      {"check_sequence", capture.check_sequence},
-                                                      {"began_ns", capture.began.count()},
-                                                      {"ended_ns", capture.ended.count()},
-                                                      {"names", capture.names}}));
+        Json json{{"format", "planlight capture"},
+                  {"version", kVersion},
+                  {"projector_width", capture.projector_width},
+                  {"projector_height", capture.projector_height},
+                  {"phase_steps", capture.phase_steps},
+                  {"phase_period_px", capture.phase_period_px},
+                  {"rows", capture.rows},
+                  {"inverse", capture.inverse},
+                  {"check_sequence", capture.check_sequence},
+                  {"began_ns", capture.began.count()},
+                  {"ended_ns", capture.ended.count()},
+                  {"names", capture.names}};
+        if (!capture.order_periods_px.empty()) {
+            json["order_periods_px"] = capture.order_periods_px;
+            json["order_steps"] = capture.order_steps;
+        }
+        write_safely(into / "capture.json", dump(json));
     });
 }
 
@@ -121,6 +126,11 @@ CaptureFolder read_capture_settings(const fs::path& file) {
     capture.projector_height = static_cast<int>(root.at("projector_height").integer(1, 65535));
     capture.phase_steps = static_cast<int>(root.at("phase_steps").integer(0, 1000));
     capture.phase_period_px = root.at("phase_period_px").number(0, 1e5);
+    if (const auto periods = root.find("order_periods_px")) {
+        if (periods->size() > 8) periods->refuse("must be a list of at most 8 periods");
+        for (std::size_t i = 0; i < periods->size(); ++i) capture.order_periods_px.push_back((*periods)[i].number(0, 1e5));
+        capture.order_steps = static_cast<int>(root.at("order_steps").integer(3, 1000));
+    }
     capture.rows = root.at("rows").flag();
     capture.inverse = root.at("inverse").flag();
     if (const auto check = root.find("check_sequence")) capture.check_sequence = check->flag();

@@ -17,6 +17,8 @@ struct CaptureFolder {
     int projector_width = 0, projector_height = 0;
     int phase_steps = 8;
     double phase_period_px = 16;
+    std::vector<double> order_periods_px;  ///< of further fringes that take the place of the Gray code; empty: Gray code
+    int order_steps = 5;                   ///< shifts of each of them
     bool rows = true, inverse = true;
     bool check_sequence = true;           ///< false: frames of another order or kind than ours, known to be right
     std::vector<std::string> names;       ///< of the patterns, in order

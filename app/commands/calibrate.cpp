@@ -31,6 +31,8 @@ StripeSettings stripes_of(const CaptureFolder& settings, const Path& pose) {
     stripes.height = settings.projector_height;
     stripes.phase_steps = settings.phase_steps;
     stripes.phase_period_px = settings.phase_period_px;
+    stripes.order_periods_px = settings.order_periods_px;
+    stripes.order_steps = settings.order_steps;
     stripes.rows = settings.rows;
     stripes.inverse = settings.inverse;
     if (!stripes.rows)

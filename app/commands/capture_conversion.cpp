@@ -75,12 +75,17 @@ ScanCapture scan_capture_from(const CaptureFolder& folder, const std::filesystem
     capture.stripes.phase_steps = folder.phase_steps;
     // A Gray code without fringes counts single projector pixels; its finest cell is half a period.
     capture.stripes.phase_period_px = folder.phase_steps > 0 ? folder.phase_period_px : 2;
+    capture.stripes.order_periods_px = folder.order_periods_px;
+    capture.stripes.order_steps = folder.order_steps;
     capture.stripes.rows = folder.rows;
     capture.stripes.inverse = folder.inverse;
     capture.check_sequence = folder.check_sequence;
     auto patterns = wanted_patterns(capture.stripes, named);
     const bool whole = capture.stripes.phase_steps > 0 &&
                        std::all_of(patterns.begin(), patterns.end(), [&](const auto& p) { return is_there(folder, p.name); });
+    if (!whole && !capture.stripes.order_periods_px.empty())
+        throw InputError(named, "a picture of the fringes of several frequencies is missing",
+                         "Capture the whole sequence that `planlight patterns --set multi-frequency` writes.");
     if (!whole) capture.partial = patterns = gray_code_there(patterns, folder, named);
     for (const auto& pattern : patterns) {
         const auto found = std::find(folder.names.begin(), folder.names.end(), pattern.name);
@@ -114,6 +119,8 @@ CaptureFolder capture_folder_from(const ScanCapture& capture) {
     folder.projector_height = capture.stripes.height;
     folder.phase_steps = capture.stripes.phase_steps;
     folder.phase_period_px = capture.stripes.phase_period_px;
+    folder.order_periods_px = capture.stripes.order_periods_px;
+    folder.order_steps = capture.stripes.order_steps;
     folder.rows = capture.stripes.rows;
     folder.inverse = capture.stripes.inverse;
     folder.check_sequence = capture.check_sequence;

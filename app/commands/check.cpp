@@ -65,6 +65,9 @@ int run_check(const CheckOptions& options) {
                         {"epipolar_rms_px", check.epipolar_rms_px},
                         {"projector_rms_px", check.projector_rms_px},
                         {"projector_after_px", check.projector_after_px},
+                        {"camera_k1_off", check.bent.k1_off},
+                        {"camera_k1_sigma", check.bent.k1_sigma},
+                        {"projector_bent_px", check.bent.projector_px},
                         {"light_off_mm", check.light_off_mm},
                         {"projector_moved_mm", check.moved_mm},
                         {"projector_turned_deg", check.turned * 180 / std::numbers::pi}};

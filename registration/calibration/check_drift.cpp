@@ -18,6 +18,11 @@ double mm_per_px(const Triangulation& raw, const CameraModel& projector) {
     return raw.by_cameras.empty() ? 0 : sum / static_cast<double>(raw.by_cameras.size());
 }
 
+bool cameras_bent(const BentResiduals& bent, const DriftLimits& limits) {
+    const double off = std::abs(bent.k1_off);
+    return bent.k1_sigma < limits.camera_k1_known && off > limits.camera_k1 && off > limits.camera_k1_sigmas * bent.k1_sigma;
+}
+
 void decide(DriftCheck& check, const DriftLimits& limits) {
     using Verdict = DriftCheck::Verdict;
     if (check.epipolar_rms_px > limits.epipolar_px) {
@@ -32,6 +37,20 @@ void decide(DriftCheck& check, const DriftLimits& limits) {
             "the projector fits from no place ({:.2f} px left; {:.2f} is the limit): its zoom, focus or keystone was changed",
             check.projector_after_px, limits.projector_after_px);
         check.remedy = "Set zoom, focus and keystone back, or calibrate the rig again.";
+    } else if (cameras_bent(check.bent, limits)) {
+        check.verdict = Verdict::distortion_wrong;
+        check.reason = fmt::format(
+            "the distances from the epipolar lines are bent as by a wrong lens: a distortion k1 of the left or right camera is "
+            "off by about {:.2f} ({:.2f} is the limit)",
+            std::abs(check.bent.k1_off) * 2, 2 * limits.camera_k1);
+        check.remedy = "If rig.json was written by another program, see that its distortion has the right sign; else calibrate again.";
+    } else if (check.bent.projector_px > limits.projector_bent_px) {
+        check.verdict = Verdict::distortion_wrong;
+        check.reason = fmt::format(
+            "the light is bent against the rig from place to place ({:.3f} px rms; {:.3f} is the limit), as by a wrong distortion of "
+            "the projector or of both cameras",
+            check.bent.projector_px, limits.projector_bent_px);
+        check.remedy = "If rig.json was written by another program, see that its distortion has the right sign; else calibrate again.";
     } else if (check.projector_rms_px > limits.projector_px) {
         check.verdict = Verdict::projector_moved;
         check.reason = fmt::format("the projector moved by {:.2f} mm and {:.3f} degrees: light would land {:.2f} mm off",
@@ -73,6 +92,8 @@ const char* text_of(DriftCheck::Verdict verdict) {
             return "cameras moved";
         case DriftCheck::Verdict::lens_changed:
             return "lens changed";
+        case DriftCheck::Verdict::distortion_wrong:
+            return "distortion wrong";
         case DriftCheck::Verdict::cannot_tell:
             break;
     }
@@ -93,6 +114,9 @@ DriftCheck check_drift(const ScanResult& scan, const RigCalibration& rig, const 
     }
     check.projector_rms_px = std::numbers::sqrt2 * scan.resection->rms_before_px;  // said per axis there
     check.projector_after_px = std::numbers::sqrt2 * scan.resection->rms_after_px;
+    RigCalibration placed = rig;
+    placed.projector = scan.resection->projector;
+    check.bent = bent_residuals(scan.raw, placed);
     check.moved_mm = scan.resection->moved_mm;
     check.turned = scan.resection->turned;
     check.light_off_mm = check.projector_rms_px * mm_per_px(scan.raw, rig.projector);

@@ -92,8 +92,8 @@ GrayImage even_light(std::span<const GrayImage> frames) {
 
 /// The last pictures of the sequence that together are even light: a direction's fringes, or a bit and its inverse.
 std::span<const GrayImage> last_even(std::span<const GrayImage> frames, const StripeSettings& stripes) {
-    return frames.last(
-        std::min<std::size_t>(frames.size(), stripes.phase_steps > 0 ? static_cast<std::size_t>(stripes.phase_steps) : 2));
+    const int last = steps_of(stripes, static_cast<int>(stripes.order_periods_px.size()));
+    return frames.last(std::min<std::size_t>(frames.size(), last > 0 ? static_cast<std::size_t>(last) : 2));
 }
 
 /// All of the sequence but the black picture, where every bit has its inverse; else the last fringes.

@@ -2,8 +2,10 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "registration/processor_clones.h"
 
@@ -15,82 +17,94 @@ constexpr int kWhole = (2 * kReach + 1) * (2 * kReach + 1);
 constexpr int kMinNeighbours = 12;   // about half of them
 constexpr double kRoughness_px = 0.25;  // rms about the affine map that the surface's own curvature and texture may make
 // A camera pixel spans a few projector pixels at most; a jump of more is another surface, not a slope.
-constexpr double kMaxJump_px = 12;
+constexpr float kMaxJump_px = 12;
 constexpr int kMaxSteps = 5;
 constexpr int kCell_px = 4, kRings = 2;  // of the index: a view may see the projector's pixels coarsely
 constexpr double kMaxWay_px = 16;        // from where the search begins to what it finds
 
-/// Sums of a weighted affine fit, weights 0 or 1, about the centre's own code.
+/// Sums of a weighted affine fit, weights 0 or 1, about the centre's own code (column, row).
 struct Sums {
-    double n = 0, x = 0, y = 0, xx = 0, xy = 0, yy = 0;
-    Eigen::Vector2d c = Eigen::Vector2d::Zero(), cx = c, cy = c;
-    double cc = 0;
+    float n = 0, c[2] = {}, cx[2] = {}, cy[2] = {}, cc = 0;
+    float x = 0, y = 0, xx = 0, xy = 0, yy = 0;  ///< set where n is less than kWhole: else x, y, xy vanish
 };
 
-Sums sum_neighbours(const DecodedView& view, int x, int y, const Eigen::Vector2d& centre, double max_jump_px) {
-    Sums s;
-    const bool rows = !view.row.empty();
-    for (int dy = -kReach; dy <= kReach; ++dy) {
-        if (y + dy < 0 || y + dy >= view.height) continue;
-        for (int dx = -kReach; dx <= kReach; ++dx) {
-            if (x + dx < 0 || x + dx >= view.width) continue;
-            const std::size_t i = static_cast<std::size_t>(y + dy) * static_cast<std::size_t>(view.width) +
-                                  static_cast<std::size_t>(x + dx);
-            const Eigen::Vector2d d(view.column[i] - centre.x(), rows ? view.row[i] - centre.y() : 0.0);
-            if (!(std::abs(d.x()) <= max_jump_px && std::abs(d.y()) <= max_jump_px)) continue;  // NaN fails too
-            s.n += 1;
-            s.x += dx;
-            s.y += dy;
-            s.xx += dx * dx;
-            s.xy += dx * dy;
-            s.yy += dy * dy;
-            s.c += d;
-            s.cx += dx * d;
-            s.cy += dy * d;
-            s.cc += d.squaredNorm();
-        }
-    }
-    return s;
+typedef float Lanes __attribute__((vector_size(32)));
+typedef std::int32_t Mask __attribute__((vector_size(32)));
+typedef float Four __attribute__((vector_size(16)));
+
+/// The sums over the lanes of four vectors.
+PLANLIGHT_INLINE void sum_lanes(const Lanes& a, const Lanes& b, const Lanes& c, const Lanes& d, Four& sums) {
+    const Lanes ab = __builtin_shufflevector(a, b, 0, 8, 1, 9, 2, 10, 3, 11) +
+                     __builtin_shufflevector(a, b, 4, 12, 5, 13, 6, 14, 7, 15);
+    const Lanes cd = __builtin_shufflevector(c, d, 0, 8, 1, 9, 2, 10, 3, 11) +
+                     __builtin_shufflevector(c, d, 4, 12, 5, 13, 6, 14, 7, 15);
+    const Lanes abcd = __builtin_shufflevector(ab, cd, 0, 1, 8, 9, 2, 3, 10, 11) +
+                       __builtin_shufflevector(ab, cd, 4, 5, 12, 13, 6, 7, 14, 15);
+    sums = __builtin_shufflevector(abcd, abcd, 0, 1, 2, 3) + __builtin_shufflevector(abcd, abcd, 4, 5, 6, 7);
 }
 
-/// Sums over the whole 5 x 5 neighbourhood, about the centre's own code.
-struct WholeSums {
-    float c[2] = {}, cx[2] = {}, cy[2] = {}, cc = 0;
-};
-
-/// False when a neighbour is not decoded or jumps. Five rows of eight lanes, of which five count; `column` and `row` point
-/// at the centre pixel, with three more floats to read behind the last neighbour. Null `row`: columns only.
-PLANLIGHT_CLONES bool sum_whole(const float* column, const float* row, std::ptrdiff_t width, float max_jump_px, WholeSums& sums) {
-    typedef float Lanes __attribute__((vector_size(32)));
-    typedef std::int32_t Mask __attribute__((vector_size(32)));
+/// The sums over the 5 x 5 neighbours that are decoded and no jump away. Five rows of eight lanes, of which five count;
+/// `column` and `row` point at the centre pixel, with three more floats to read behind the last neighbour. Null `row`:
+/// columns only.
+PLANLIGHT_CLONES void sum_neighbours(const float* column, const float* row, std::ptrdiff_t width, float max_jump_px,
+                                     Sums& sums) {
     const Mask use = {-1, -1, -1, -1, -1, 0, 0, 0}, size_only = Mask{} + 0x7fffffff;
-    const Lanes dx = {-2, -1, 0, 1, 2, 0, 0, 0}, limit = Lanes{} + max_jump_px;
-    Mask bad = {};
-    Lanes squares = {};
-    for (int direction = 0; direction < (row ? 2 : 1); ++direction) {
-        const float* code = direction == 0 ? column : row;
-        Lanes sum = {}, by_y = {};
-        for (int dy = -kReach; dy <= kReach; ++dy) {
-            Lanes d;
-            std::memcpy(&d, code + dy * width - kReach, sizeof d);
-            d = (Lanes)((Mask)(d - *code) & use);
-            bad |= ~((Lanes)((Mask)d & size_only) <= limit);  // NaN as well
-            sum += d;
-            by_y += static_cast<float>(dy) * d;
-            squares += d * d;
+    const Lanes dx = {-2, -1, 0, 1, 2, 0, 0, 0}, limit = Lanes{} + max_jump_px, column_here = Lanes{} + *column,
+                row_here = Lanes{} + (row ? *row : 0);
+    Lanes c = {}, r = {}, c_by_y = {}, r_by_y = {}, squares = {}, n = {}, y = {}, yy = {};
+#pragma GCC unroll 5
+    for (int dy = -kReach; dy <= kReach; ++dy) {
+        const auto by = static_cast<float>(dy);
+        Lanes dc, dr = {};
+        std::memcpy(&dc, column + dy * width - kReach, sizeof dc);
+        dc -= column_here;
+        Mask good = use & ((Lanes)((Mask)dc & size_only) <= limit);  // NaN fails
+        if (row) {
+            std::memcpy(&dr, row + dy * width - kReach, sizeof dr);
+            dr -= row_here;
+            good &= (Lanes)((Mask)dr & size_only) <= limit;
+            dr = (Lanes)((Mask)dr & good);
+            r += dr;
+            r_by_y += by * dr;
         }
-        for (int lane = 0; lane < 5; ++lane) {
-            sums.c[direction] += sum[lane];
-            sums.cx[direction] += dx[lane] * sum[lane];
-            sums.cy[direction] += by_y[lane];
+        dc = (Lanes)((Mask)dc & good);
+        c += dc;
+        c_by_y += by * dc;
+        squares += dc * dc + dr * dr;
+        const Lanes one = (Lanes)((Mask)(Lanes{} + 1) & good);
+        n += one;
+        y += by * one;
+        yy += by * by * one;
+    }
+    Four first, second;
+    sum_lanes(c, r, c_by_y, r_by_y, first);
+    sum_lanes(dx * c, dx * r, squares, n, second);
+    sums.c[0] = first[0], sums.c[1] = first[1], sums.cy[0] = first[2], sums.cy[1] = first[3];
+    sums.cx[0] = second[0], sums.cx[1] = second[1], sums.cc = second[2], sums.n = second[3];
+    if (sums.n == kWhole) return;
+    sum_lanes(dx * n, dx * dx * n, dx * y, y, first);
+    sum_lanes(yy, Lanes{}, Lanes{}, Lanes{}, second);
+    sums.x = first[0], sums.xx = first[1], sums.xy = first[2], sums.y = first[3], sums.yy = second[0];
+}
+
+/// The same at the rim of a picture: on a copy of the neighbourhood, what lies outside is not decoded.
+void sum_at_rim(const DecodedView& view, int x, int y, Sums& sums) {
+    constexpr int kSide = 2 * kReach + 1, kStep = 8;
+    std::array<float, kSide * kStep> column, row;
+    column.fill(std::numeric_limits<float>::quiet_NaN());
+    row.fill(0);
+    for (int dy = 0; dy < kSide; ++dy)
+        for (int dx = 0; dx < kSide; ++dx) {
+            const int px = x + dx - kReach, py = y + dy - kReach;
+            if (px < 0 || py < 0 || px >= view.width || py >= view.height) continue;
+            const std::size_t from =
+                static_cast<std::size_t>(py) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(px);
+            const auto to = static_cast<std::size_t>(dy * kStep + dx);
+            column[to] = view.column[from];
+            if (!view.row.empty()) row[to] = view.row[from];
         }
-    }
-    int any = 0;
-    for (int lane = 0; lane < 5; ++lane) {
-        sums.cc += squares[lane];
-        any |= bad[lane];
-    }
-    return any == 0;
+    constexpr std::size_t kCentre = kReach * kStep + kReach;
+    sum_neighbours(&column[kCentre], &row[kCentre], kStep, kMaxJump_px, sums);
 }
 
 /// What is left after the fit must be roughness and noise, and the pixel itself must not stand off.
@@ -100,7 +114,7 @@ bool smooth(double residual, double freedom, double own_squared, double sigma_px
 }
 
 /// The fit over all 25 neighbours: sums of x, y and x y vanish, those of x^2 and y^2 are 50.
-std::optional<LocalCode> fit_whole(const WholeSums& s, const Eigen::Vector2d& centre, double sigma_px, double directions) {
+std::optional<LocalCode> fit_whole(const Sums& s, const Eigen::Vector2d& centre, double sigma_px, double directions) {
     const Eigen::Vector2d c(s.c[0], s.c[1]), cx(s.cx[0], s.cx[1]), cy(s.cy[0], s.cy[1]);
     const double residual = s.cc - c.squaredNorm() / kWhole - (cx.squaredNorm() + cy.squaredNorm()) / 50;
     if (!smooth(residual, kWhole - 3, c.squaredNorm() / (kWhole * kWhole), sigma_px, directions)) return std::nullopt;
@@ -109,34 +123,40 @@ std::optional<LocalCode> fit_whole(const WholeSums& s, const Eigen::Vector2d& ce
     return local;
 }
 
-}  // namespace
-
-std::optional<LocalCode> local_code(const DecodedView& view, int x, int y) {
-    const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
-    if (std::isnan(view.column[i])) return std::nullopt;
-    const bool rows = !view.row.empty();
-    const double directions = rows ? 2 : 1;
-    const Eigen::Vector2d centre(view.column[i], rows ? view.row[i] : 0.0);
-    if (x >= kReach && y >= kReach && x + kReach < view.width && y + kReach + 1 < view.height && view.width > 8) {
-        WholeSums whole;
-        if (sum_whole(&view.column[i], rows ? &view.row[i] : nullptr, view.width, static_cast<float>(kMaxJump_px), whole))
-            return fit_whole(whole, centre, view.sigma_px[i], directions);
-    }
-    const Sums s = sum_neighbours(view, x, y, centre, kMaxJump_px);
+/// The fit over what there is of them.
+std::optional<LocalCode> fit_part(const Sums& s, const Eigen::Vector2d& centre, double sigma_px, double directions) {
     if (s.n < kMinNeighbours) return std::nullopt;
     Eigen::Matrix3d A;
     A << s.n, s.x, s.y, s.x, s.xx, s.xy, s.y, s.xy, s.yy;
     Eigen::Matrix<double, 3, 2> b;
-    b << s.c.transpose(), s.cx.transpose(), s.cy.transpose();
+    b << s.c[0], s.c[1], s.cx[0], s.cx[1], s.cy[0], s.cy[1];
     bool invertible = false;
     Eigen::Matrix3d inverse;
     A.computeInverseWithCheck(inverse, invertible, 1e-6);
     if (!invertible) return std::nullopt;
     const Eigen::Matrix<double, 3, 2> fit = inverse * b;
     const double residual = s.cc - (fit.array() * b.array()).sum();
-    if (!smooth(residual, s.n - 3, fit.row(0).squaredNorm(), view.sigma_px[i], directions)) return std::nullopt;
-    return LocalCode{centre + fit.row(0).transpose(), fit.bottomRows<2>().transpose(), s.n > kWhole - 0.5,
-                     view.sigma_px[i] * std::sqrt(inverse(0, 0))};
+    if (!smooth(residual, s.n - 3, fit.row(0).squaredNorm(), sigma_px, directions)) return std::nullopt;
+    return LocalCode{centre + fit.row(0).transpose(), fit.bottomRows<2>().transpose(), false,
+                     sigma_px * std::sqrt(inverse(0, 0))};
+}
+
+}  // namespace
+
+std::optional<LocalCode> local_code(const DecodedView& view, int x, int y) {
+    const std::size_t i =
+        static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
+    if (std::isnan(view.column[i])) return std::nullopt;
+    const bool rows = !view.row.empty();
+    const double directions = rows ? 2 : 1;
+    const Eigen::Vector2d centre(view.column[i], rows ? view.row[i] : 0.0);
+    Sums sums;
+    if (x >= kReach && y >= kReach && x + kReach < view.width && y + kReach + 1 < view.height && view.width > 8)
+        sum_neighbours(&view.column[i], rows ? &view.row[i] : nullptr, view.width, kMaxJump_px, sums);
+    else
+        sum_at_rim(view, x, y, sums);
+    return sums.n == kWhole ? fit_whole(sums, centre, view.sigma_px[i], directions)
+                            : fit_part(sums, centre, view.sigma_px[i], directions);
 }
 
 CodeIndex::CodeIndex(const DecodedView& view, int projector_width, int projector_height)

@@ -67,7 +67,8 @@ DecodedCapture decode_capture(const ScanCapture& capture, bool with_right, const
     if (right) decoded.right = decode_stripes(capture.right, capture.stripes, settings);
     constexpr double kLeastDecoded = 0.02;
     const auto lit = static_cast<double>(lit_pixels(capture.left[0], capture.left[1]));
-    if (static_cast<double>(decoded.left.decoded) >= kLeastDecoded * lit) return decoded;
+    const bool gray_code = capture.stripes.order_periods_px.empty();
+    if (!gray_code || static_cast<double>(decoded.left.decoded) >= kLeastDecoded * lit) return decoded;
     DecodedCapture coarse = by_gray(capture, right, settings);
     return coarse.left.decoded > 10 * (decoded.left.decoded + 100) ? coarse : decoded;
 }

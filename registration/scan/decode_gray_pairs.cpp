@@ -29,17 +29,15 @@ void check_sizes(const GrayPairs& frames) {
         throw std::invalid_argument("decode_gray_pairs: more than 16 bits");
 }
 
-void decode_direction(std::span<const GrayImage> pairs, int size, std::size_t begin, std::size_t n, Block& b, float* pixel) {
-    b.code = {};
-    const std::size_t bits = pairs.size() / 2;
-    for (std::size_t k = 0; k < bits; ++k) {
-        const std::size_t place = bits - 1 - k;
-        const std::uint8_t *frame = pairs[2 * k].pixels.data() + begin, *inverse = pairs[2 * k + 1].pixels.data() + begin;
-        kernels::expect_next(frame);
-        kernels::expect_next(inverse);
-        kernels::decide_bit(frame, inverse, b.limit.data(), static_cast<std::uint8_t>(1u << (place % 8)),
-                            place < 8 ? b.code.low : b.code.high, place < 8 ? b.code.doubt_low : b.code.doubt_high, n);
+void decode_direction(std::span<const GrayImage> pairs, int size, std::size_t begin, std::size_t n, Block& b,
+                      float* pixel) {
+    const std::size_t count = pairs.size() / 2;
+    std::array<const std::uint8_t*, kernels::kMostBits> bits, inverses;
+    for (std::size_t k = 0; k < count; ++k) {
+        bits[k] = pairs[2 * k].pixels.data() + begin;
+        inverses[k] = pairs[2 * k + 1].pixels.data() + begin;
     }
+    kernels::decide_bits(bits.data(), inverses.data(), nullptr, b.limit.data(), static_cast<int>(count), b.code, n);
     kernels::place_code(b.code, 1, static_cast<float>(size), pixel, n);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <initializer_list>
 #include <limits>
 
@@ -116,15 +117,54 @@ PLANLIGHT_CLONES void set_where_known(const float* pixel, float value, float* __
     for (std::size_t i = 0; i < n; ++i) out[i] = pixel[i] == pixel[i] ? value : kNaN;  // NaN is not equal to itself
 }
 
-PLANLIGHT_CLONES void decide_bit(const std::uint8_t* frame, const std::uint8_t* inverse, const std::uint8_t* limit,
-                                 std::uint8_t bit, std::uint8_t* __restrict code, std::uint8_t* __restrict doubt,
-                                 std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::uint8_t a = frame[i], b = inverse[i];
-        const std::uint8_t high = a > b ? a : b, low = a > b ? b : a;
-        const auto size = static_cast<std::uint8_t>(high - low);
-        code[i] = static_cast<std::uint8_t>(code[i] | (a > b ? bit : std::uint8_t{0}));
-        doubt[i] = static_cast<std::uint8_t>(doubt[i] | (size <= limit[i] ? bit : std::uint8_t{0}));
+namespace {
+
+typedef std::uint8_t Bytes __attribute__((vector_size(64)));
+
+/// The bits [first, first + count) of 64 pixels, in registers until all are decided.
+PLANLIGHT_INLINE void decide_byte(const std::uint8_t* const* frames, const std::uint8_t* const* inverses,
+                                  const std::uint8_t* middle, const std::uint8_t* limit_at, int count, std::size_t i,
+                                  std::uint8_t* code_at, std::uint8_t* doubt_at) {
+    Bytes code = {}, doubt = {}, limit, a, b;
+    std::memcpy(&limit, limit_at + i, sizeof limit);
+    if (!inverses) std::memcpy(&b, middle + i, sizeof b);
+    for (int k = 0; k < count; ++k) {
+        const auto bit = static_cast<std::uint8_t>(1u << (count - 1 - k));
+        std::memcpy(&a, frames[k] + i, sizeof a);
+        __builtin_prefetch(frames[k] + i + kBlock);
+        if (inverses) {
+            std::memcpy(&b, inverses[k] + i, sizeof b);
+            __builtin_prefetch(inverses[k] + i + kBlock);
+        }
+        const Bytes high = a > b ? a : b, low = a > b ? b : a;
+        code |= (Bytes)(a > b) & bit;
+        doubt |= (Bytes)(high - low <= limit) & bit;
+    }
+    std::memcpy(code_at + i, &code, sizeof code);
+    std::memcpy(doubt_at + i, &doubt, sizeof doubt);
+}
+
+}  // namespace
+
+PLANLIGHT_CLONES void decide_bits(const std::uint8_t* const* frames, const std::uint8_t* const* inverses,
+                                  const std::uint8_t* middle, const std::uint8_t* limit, int bits, CodeBytes& code,
+                                  std::size_t n) {
+    const int high = bits > 8 ? bits - 8 : 0;  // of the upper byte: the coarse ones
+    const std::uint8_t* const* low_inverses = inverses ? inverses + high : nullptr;
+    for (std::size_t i = 0; i + 64 <= n; i += 64) {
+        decide_byte(frames, inverses, middle, limit, high, i, code.high, code.doubt_high);
+        decide_byte(frames + high, low_inverses, middle, limit, bits - high, i, code.low, code.doubt_low);
+    }
+    for (std::size_t i = n / 64 * 64; i < n; ++i) {
+        unsigned set = 0, doubt = 0;
+        for (int k = 0; k < bits; ++k) {
+            const int a = frames[k][i], b = inverses ? inverses[k][i] : middle[i];
+            set = 2 * set + (a > b);
+            doubt = 2 * doubt + ((a > b ? a - b : b - a) <= limit[i]);
+        }
+        code.low[i] = static_cast<std::uint8_t>(set), code.high[i] = static_cast<std::uint8_t>(set >> 8);
+        code.doubt_low[i] = static_cast<std::uint8_t>(doubt),
+        code.doubt_high[i] = static_cast<std::uint8_t>(doubt >> 8);
     }
 }
 

@@ -9,10 +9,11 @@ namespace planlight::decode_kernels {
 
 /// Pixels of one block: its working arrays stay in the first cache level.
 inline constexpr std::size_t kBlock = 1024;
+inline constexpr std::size_t kMostBits = 16;  ///< of a Gray code
 
 /// A Gray code of up to 16 bits and the bits that are in doubt, as low and high bytes.
 struct CodeBytes {
-    std::uint8_t low[kBlock], high[kBlock], doubt_low[kBlock], doubt_high[kBlock];
+    alignas(64) std::uint8_t low[kBlock], high[kBlock], doubt_low[kBlock], doubt_high[kBlock];
 };
 
 /// Asks for the next block of a frame while this one is worked on: the processor by itself does not follow 40 frames at once.
@@ -44,9 +45,10 @@ void doubt_below_contrast(const std::uint8_t* white, const std::uint8_t* black, 
 
 void contrast_of(const std::uint8_t* white, const std::uint8_t* black, float* contrast, std::size_t n);
 
-/// Decides one bit (a bit of a byte of `code`) by the frame against its inverse, or against another threshold.
-void decide_bit(const std::uint8_t* frame, const std::uint8_t* inverse, const std::uint8_t* limit, std::uint8_t bit,
-                std::uint8_t* code, std::uint8_t* doubt, std::size_t n);
+/// Decides up to 16 bits, coarsest first, each by its frame against its inverse (`inverses`: one a bit), or all against
+/// one other threshold (`inverses` null: `middle`). A difference of `limit` or less is doubt.
+void decide_bits(const std::uint8_t* const* frames, const std::uint8_t* const* inverses, const std::uint8_t* middle,
+                 const std::uint8_t* limit, int bits, CodeBytes& code, std::size_t n);
 
 /// Halfway between white and black, and half of `limit`: the threshold for a bit without an inverse.
 void middle_of(const std::uint8_t* white, const std::uint8_t* black, const std::uint8_t* limit, std::uint8_t* middle,

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "registration/scan/decode_blocks.h"
+#include "registration/scan/order_kernel.h"
 
 namespace planlight {
 namespace {
@@ -21,7 +22,12 @@ using Bytes = const std::uint8_t*;
 /// The frames of one direction.
 struct Direction {
     std::vector<Bytes> gray, inverse, phase;
+    std::vector<std::vector<Bytes>> further;  ///< fringes of the further frequencies
     int size = 0;  ///< of the projector along it, pixels
+
+    std::vector<Bytes>& fringes(int frequency) {
+        return frequency == 0 ? phase : further[static_cast<std::size_t>(frequency - 1)];
+    }
 };
 
 struct Frames {
@@ -38,6 +44,7 @@ Frames sort_frames(std::span<const GrayImage> frames, const StripeSettings& stri
     Frames sorted;
     sorted.directions.resize(stripes.rows ? 2 : 1);
     sorted.directions[0].size = stripes.width;
+    for (Direction& direction : sorted.directions) direction.further.resize(stripes.order_periods_px.size());
     if (stripes.rows) sorted.directions[1].size = stripes.height;
     for (std::size_t i = 0; i < frames.size(); ++i) {
         const GrayImage& f = frames[i];
@@ -51,7 +58,7 @@ Frames sort_frames(std::span<const GrayImage> frames, const StripeSettings& stri
             case StripePattern::Kind::black: sorted.black = f.pixels.data(); break;
             case StripePattern::Kind::gray_bit: direction.gray.push_back(f.pixels.data()); break;
             case StripePattern::Kind::gray_bit_inverse: direction.inverse.push_back(f.pixels.data()); break;
-            case StripePattern::Kind::phase: direction.phase.push_back(f.pixels.data()); break;
+            case StripePattern::Kind::phase: direction.fringes(sequence[i].frequency).push_back(f.pixels.data()); break;
         }
     }
     return sorted;
@@ -106,6 +113,8 @@ struct Block {
     alignas(64) std::array<float, kernels::kBlock> sine_sum, cosine_sum, amplitude, phase_px, pixel;
     alignas(64) std::array<std::uint8_t, kernels::kBlock> limit, top, middle, half_limit;
     alignas(64) kernels::CodeBytes code;
+    /// Of the further frequencies.
+    alignas(64) std::array<std::array<float, kernels::kBlock>, order_kernel::kMostFrequencies> further_amplitude, further_turns;
 
     kernels::DirectionBlock result() const { return {amplitude.data(), pixel.data(), top.data()}; }
 };
@@ -114,46 +123,69 @@ struct Work {
     Block columns, rows;
 };
 
-void decode_phase(const Direction& direction, const StripeSettings& stripes, std::size_t begin, std::size_t n, Block& b) {
-    const std::size_t steps = direction.phase.size();
-    if (steps == 8) {
+/// Amplitude and phase (projector pixels, or turns with a period of 1) of one frequency.
+void decode_phase(const std::vector<Bytes>& phase, float period, std::size_t begin, std::size_t n, Block& b, float* amplitude,
+                  float* phase_px) {
+    const std::size_t steps = phase.size();
+    if (steps == 8 && amplitude == b.amplitude.data()) {  // the first: the brightest value is set, not raised
         std::array<Bytes, 8> frames;
-        for (std::size_t k = 0; k < steps; ++k) frames[k] = direction.phase[k] + begin, kernels::expect_next(frames[k]);
+        for (std::size_t k = 0; k < steps; ++k) frames[k] = phase[k] + begin, kernels::expect_next(frames[k]);
         kernels::sum_eight_phases(frames.data(), b.sine_sum.data(), b.cosine_sum.data(), b.top.data(), n);
     } else {
         b.sine_sum.fill(0);
         b.cosine_sum.fill(0);
-        b.top.fill(0);
         for (std::size_t k = 0; k < steps; ++k) {
             const double shift = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(steps);
-            kernels::add_phase(direction.phase[k] + begin, static_cast<float>(std::sin(shift)),
+            kernels::add_phase(phase[k] + begin, static_cast<float>(std::sin(shift)),
                                static_cast<float>(std::cos(shift)), b.sine_sum.data(), b.cosine_sum.data(), b.top.data(), n);
         }
     }
-    kernels::finish_phase(b.sine_sum.data(), b.cosine_sum.data(), 2 / static_cast<float>(steps),
-                          static_cast<float>(stripes.phase_period_px), b.amplitude.data(), b.phase_px.data(), n);
+    kernels::finish_phase(b.sine_sum.data(), b.cosine_sum.data(), 2 / static_cast<float>(steps), period, amplitude, phase_px, n);
+}
+
+/// One standard deviation of a phase in turns, by the inverse of its amplitude.
+float sigma_turns(int steps, double noise_grey) {
+    return static_cast<float>(std::sqrt(2.0 / steps) * noise_grey / (2 * std::numbers::pi));
+}
+
+/// The order of the fringes by those of further frequencies. A frequency without light there has no say, and no order is sure.
+void order_by_fringes(const Direction& direction, const StripeSettings& stripes, double noise_grey, std::size_t begin,
+                      std::size_t n, Block& b) {
+    order_kernel::Fringes others;
+    others.count = direction.further.size();
+    others.first_sigma_turns = sigma_turns(stripes.phase_steps, noise_grey);
+    for (std::size_t k = 0; k < others.count; ++k) {
+        decode_phase(direction.further[k], 1, begin, n, b, b.further_amplitude[k].data(), b.further_turns[k].data());
+        others.amplitude[k] = b.further_amplitude[k].data();
+        others.turns[k] = b.further_turns[k].data();
+        others.by_period[k] = static_cast<float>(stripes.phase_period_px / stripes.order_periods_px[k]);
+        others.sigma_turns[k] = sigma_turns(stripes.order_steps, noise_grey);
+    }
+    order_kernel::find_order(b.phase_px.data(), b.amplitude.data(), others, {}, static_cast<float>(stripes.phase_period_px),
+                             static_cast<float>(direction.size), b.pixel.data(), n);
 }
 
 void decode_block(const Frames& frames, const Direction& direction, const StripeSettings& stripes, double noise_grey,
                   std::size_t begin, std::size_t n, Block& b) {
-    decode_phase(direction, stripes, begin, n, b);
+    b.top.fill(0);
+    decode_phase(direction.phase, static_cast<float>(stripes.phase_period_px), begin, n, b, b.amplitude.data(), b.phase_px.data());
+    if (!direction.further.empty()) return order_by_fringes(direction, stripes, noise_grey, begin, n, b);
     // A clear bit differs by two amplitudes or more; a quarter of that, or 3 sigma of a difference, is doubt.
-    kernels::doubt_below(b.amplitude.data(), 0.5f, static_cast<float>(3 * std::numbers::sqrt2 * noise_grey), b.limit.data(), n);
-    b.code = {};
-    const std::size_t bits = direction.gray.size();
+    kernels::doubt_below(b.amplitude.data(), 0.5f, static_cast<float>(3 * std::numbers::sqrt2 * noise_grey),
+                         b.limit.data(), n);
     if (!stripes.inverse)
-        kernels::middle_of(frames.white + begin, frames.black + begin, b.limit.data(), b.middle.data(), b.half_limit.data(), n);
-    for (std::size_t k = 0; k < bits; ++k) {
-        const std::size_t place = bits - 1 - k;
-        const auto bit = static_cast<std::uint8_t>(1u << (place % 8));
-        kernels::expect_next(direction.gray[k] + begin);
-        if (stripes.inverse) kernels::expect_next(direction.inverse[k] + begin);
-        kernels::decide_bit(direction.gray[k] + begin, stripes.inverse ? direction.inverse[k] + begin : b.middle.data(),
-                            stripes.inverse ? b.limit.data() : b.half_limit.data(), bit, place < 8 ? b.code.low : b.code.high,
-                            place < 8 ? b.code.doubt_low : b.code.doubt_high, n);
+        kernels::middle_of(frames.white + begin, frames.black + begin, b.limit.data(), b.middle.data(),
+                           b.half_limit.data(), n);
+    std::array<Bytes, kernels::kMostBits> bits, inverses;
+    for (std::size_t k = 0; k < direction.gray.size(); ++k) {
+        bits[k] = direction.gray[k] + begin;
+        if (stripes.inverse) inverses[k] = direction.inverse[k] + begin;
     }
-    kernels::unwrap(b.code, b.phase_px.data(), static_cast<float>(stripes.phase_period_px), static_cast<float>(direction.size),
-                    b.pixel.data(), n);
+    kernels::decide_bits(bits.data(), stripes.inverse ? inverses.data() : nullptr, b.middle.data(),
+                         stripes.inverse ? b.limit.data() : b.half_limit.data(),
+                         static_cast<int>(direction.gray.size()), b.code, n);
+    kernels::unwrap(b.code, b.phase_px.data(), static_cast<float>(stripes.phase_period_px),
+                    static_cast<float>(direction.size), b.pixel.data(), n);
 }
 
 /// Decodes the pixels [begin, begin + n) of the view.

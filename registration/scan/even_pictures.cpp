@@ -25,7 +25,9 @@ std::vector<EvenMoment> even_moments(const ScanCapture& capture) {
         if (patterns[i].kind == Kind::gray_bit && next && patterns[i + 1].kind == Kind::gray_bit_inverse) add({i, i + 1});
         if (patterns[i].kind != Kind::phase) continue;
         fringes.push_back(i);
-        if (next && patterns[i + 1].kind == Kind::phase && patterns[i + 1].along_rows == patterns[i].along_rows) continue;
+        if (next && patterns[i + 1].kind == Kind::phase && patterns[i + 1].along_rows == patterns[i].along_rows &&
+            patterns[i + 1].frequency == patterns[i].frequency)
+            continue;
         add(fringes);
         fringes.clear();
     }

@@ -13,22 +13,26 @@
 namespace planlight {
 namespace {
 
-/// Which squares of `stride` x `stride` right pixels hold a partner of a left pixel. Set by all threads, in any order.
+/// Which rectangles of a stride of right pixels hold a partner of a left pixel. Set by all threads, in any order.
 class Seen {
 public:
-    Seen(const DecodedView& view, int stride)
-        : stride_(stride), columns_(view.width / stride + 1), rows_(view.height / stride + 1),
-          cells_(std::make_unique<std::atomic<bool>[]>(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_))) {}
+    Seen(const DecodedView& view, Stride stride)
+        : stride_(stride),
+          columns_(view.width / stride.x + 1),
+          rows_(view.height / stride.y + 1),
+          cells_(std::make_unique<std::atomic<bool>[]>(static_cast<std::size_t>(columns_) *
+                                                       static_cast<std::size_t>(rows_))) {}
     void mark(const Eigen::Vector2d& pixel) { cell(pixel).store(true, std::memory_order_relaxed); }
     bool marked(const Eigen::Vector2d& pixel) { return cell(pixel).load(std::memory_order_relaxed); }
 
 private:
     std::atomic<bool>& cell(const Eigen::Vector2d& pixel) {
-        const int c = std::clamp(static_cast<int>(pixel.x() / stride_ + 0.5), 0, columns_ - 1);
-        const int r = std::clamp(static_cast<int>(pixel.y() / stride_ + 0.5), 0, rows_ - 1);
+        const int c = std::clamp(static_cast<int>(pixel.x() / stride_.x + 0.5), 0, columns_ - 1);
+        const int r = std::clamp(static_cast<int>(pixel.y() / stride_.y + 0.5), 0, rows_ - 1);
         return cells_[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c)];
     }
-    int stride_, columns_, rows_;
+    Stride stride_;
+    int columns_, rows_;
     std::unique_ptr<std::atomic<bool>[]> cells_;
 };
 
@@ -38,7 +42,7 @@ struct Line {
     std::size_t ragged = 0;
 };
 
-/// Calls `make(x, y, line)` for every `stride`-th decoded pixel, line by line in parallel.
+/// Calls `make(y, line)` for every `stride`-th line of the picture, in parallel.
 template <class Make>
 std::vector<Line> for_lines(const DecodedView& view, int stride, const Make& make) {
     std::vector<Line> lines(static_cast<std::size_t>((view.height + stride - 1) / stride));
@@ -110,7 +114,7 @@ void match_right_line(const DecodedView& right, const CodeIndex& in_left, int y,
 }  // namespace
 
 ViewMatches match_views(const DecodedView& left, const DecodedView& right, int projector_width, int projector_height,
-                        int stride, bool one_camera) {
+                        Stride stride, bool one_camera) {
     std::optional<CodeIndex> in_left, in_right;
     tbb::parallel_invoke([&] { in_right.emplace(right, projector_width, projector_height); },
                          [&] {
@@ -120,13 +124,13 @@ ViewMatches match_views(const DecodedView& left, const DecodedView& right, int p
     matches.stride = stride;
     Seen seen(right, stride);
     const auto lines =
-        for_lines(left, stride, [&](int y, Line& line) { match_line(left, *in_right, y, stride, seen, line); });
+        for_lines(left, stride.y, [&](int y, Line& line) { match_line(left, *in_right, y, stride.x, seen, line); });
     join(lines, &Line::both, matches.both);
     join(lines, &Line::alone, matches.left_only);
     for (const Line& line : lines) matches.ragged += line.ragged;
     if (!one_camera) return matches;
-    const auto right_lines =
-        for_lines(right, stride, [&](int y, Line& line) { match_right_line(right, *in_left, y, stride, seen, line); });
+    const auto right_lines = for_lines(
+        right, stride.y, [&](int y, Line& line) { match_right_line(right, *in_left, y, stride.x, seen, line); });
     join(right_lines, &Line::alone, matches.right_only);
     return matches;
 }

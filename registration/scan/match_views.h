@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "registration/scan/decode_stripes.h"
+#include "registration/scan/triangulate.h"
 
 namespace planlight {
 
@@ -22,12 +23,12 @@ struct ViewMatch {
 /// What the codes alone say, before any geometry: it holds for every calibration of the rig.
 struct ViewMatches {
     std::vector<ViewMatch> both, left_only, right_only;  ///< in the order of the pixels of the left (right) picture
-    std::size_t ragged = 0;  ///< left pixels around which the code is not smooth
-    int stride = 1;          ///< every how many pixels of a picture a match is made
+    std::size_t ragged = 0;                              ///< left pixels around which the code is not smooth
+    Stride stride;
 };
 
-/// Finds the partners of every `stride`-th pixel. Both views must code columns and rows.
+/// Finds the partners of the pixels of a grid of this stride. Both views must code columns and rows.
 ViewMatches match_views(const DecodedView& left, const DecodedView& right, int projector_width, int projector_height,
-                        int stride, bool one_camera);
+                        Stride stride, bool one_camera);
 
 }  // namespace planlight

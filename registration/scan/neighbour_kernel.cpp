@@ -1,5 +1,6 @@
 #include "registration/scan/neighbour_kernel.h"
 
+#include <cmath>
 #include <cstring>
 
 #include "registration/processor_clones.h"
@@ -27,6 +28,23 @@ PLANLIGHT_INLINE void look(const Coordinates& points, std::uint32_t k, std::uint
     near.dz -= z;
     near.within = (near.dx * near.dx + near.dy * near.dy + near.dz * near.dz <= squared_reach) &
                   (kLane < static_cast<std::int32_t>(end - k));
+}
+
+/// Symmetric: xx xy xz yy yz zz.
+struct Symmetric {
+    float xx, xy, xz, yy, yz, zz;
+};
+PLANLIGHT_INLINE Symmetric scaled(const Symmetric& m, float s) {
+    return {m.xx * s, m.xy * s, m.xz * s, m.yy * s, m.yz * s, m.zz * s};
+}
+PLANLIGHT_INLINE Symmetric adjugate(const Symmetric& m) {
+    return {m.yy * m.zz - m.yz * m.yz, m.xz * m.yz - m.xy * m.zz, m.xy * m.yz - m.xz * m.yy,
+            m.xx * m.zz - m.xz * m.xz, m.xy * m.xz - m.xx * m.yz, m.xx * m.yy - m.xy * m.xy};
+}
+PLANLIGHT_INLINE Symmetric square(const Symmetric& m) {
+    return {m.xx * m.xx + m.xy * m.xy + m.xz * m.xz, m.xx * m.xy + m.xy * m.yy + m.xz * m.yz,
+            m.xx * m.xz + m.xy * m.yz + m.xz * m.zz, m.xy * m.xy + m.yy * m.yy + m.yz * m.yz,
+            m.xy * m.xz + m.yy * m.yz + m.yz * m.zz, m.xz * m.xz + m.yz * m.yz + m.zz * m.zz};
 }
 
 }  // namespace
@@ -80,6 +98,33 @@ PLANLIGHT_CLONES Sums sum_within(const Coordinates& points, const Run* runs, int
         s.zz += zz[i];
     }
     return s;
+}
+
+PLANLIGHT_CLONES void find_planes(Planes& p) {
+    for (int i = 0; i < kPlanes; ++i) {
+        const float n = p.n[i], by_n = 1 / (n > 1 ? n : 1), x = p.x[i] * by_n, y = p.y[i] * by_n, z = p.z[i] * by_n;
+        const Symmetric C{p.xx[i] - p.x[i] * x, p.xy[i] - p.x[i] * y, p.xz[i] - p.x[i] * z,
+                          p.yy[i] - p.y[i] * y, p.yz[i] - p.y[i] * z, p.zz[i] - p.z[i] * z};
+        const float scatter = C.xx + C.yy + C.zz;
+        const Symmetric A = adjugate(scaled(C, 1 / (scatter > 0 ? scatter : 1)));
+        const float plane = A.xx + A.yy + A.zz;  // largest times middle eigenvalue
+        const bool good = bool((n >= 6) & (scatter > 0) & (plane > 1e-6f));
+        const Symmetric B = square(square(scaled(A, 1 / (good ? plane : 1))));
+        const bool first = bool((B.xx >= B.yy) & (B.xx >= B.zz)), second = bool(!first & (B.yy >= B.zz));
+        const float nx = first    ? B.xx
+                         : second ? B.xy
+                                  : B.xz,
+                    ny = first    ? B.xy
+                         : second ? B.yy
+                                  : B.yz,
+                    nz = first    ? B.xz
+                         : second ? B.yz
+                                  : B.zz;
+        const float squares = nx * nx + ny * ny + nz * nz, by_length = good ? 1 / std::sqrt(squares) : 0;
+        p.normal_x[i] = nx * by_length;
+        p.normal_y[i] = ny * by_length;
+        p.normal_z[i] = nz * by_length;
+    }
 }
 
 }  // namespace planlight::neighbour_kernel

@@ -26,4 +26,24 @@ struct Sums {
 };
 Sums sum_within(const Coordinates& points, const Run* runs, int run_count, std::uint32_t at, float reach);
 
+/// The sums of up to kPlanes points, side by side, and the planes through them.
+inline constexpr int kPlanes = 64;
+struct alignas(64) Planes {
+    float n[kPlanes], x[kPlanes], y[kPlanes], z[kPlanes], xx[kPlanes], xy[kPlanes], xz[kPlanes], yy[kPlanes],
+        yz[kPlanes], zz[kPlanes];
+    /// The direction in which the points scatter least, unit length; zero when they are under six or do not span a
+    /// plane.
+    float normal_x[kPlanes], normal_y[kPlanes], normal_z[kPlanes];
+
+    void set(int place, const Sums& sums) {
+        n[place] = sums.n, x[place] = sums.x, y[place] = sums.y, z[place] = sums.z;
+        xx[place] = sums.xx, xy[place] = sums.xy, xz[place] = sums.xz;
+        yy[place] = sums.yy, yz[place] = sums.yz, zz[place] = sums.zz;
+    }
+};
+
+/// The adjugate of the points' covariance has its eigenvectors, the one of the least scatter foremost; its fourth power
+/// has hardly anything else.
+void find_planes(Planes& planes);
+
 }  // namespace planlight::neighbour_kernel

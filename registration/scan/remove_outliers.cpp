@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numeric>
 
 #include "registration/scan/neighbour_kernel.h"
@@ -61,10 +62,12 @@ Work make_work(const Triangulation& raw, const RigCalibration& rig, const Outlie
     return work;
 }
 
-/// Calls `act(place, runs)` for every kept point, with the lines of cells within `Reach` of its own; lines in parallel.
-template <int Reach, class Act>
-void for_kept(const Work& work, const Act& act) {
+/// Calls `act(place, runs, state)` for every kept point, with the lines of cells within `Reach` of its own; bands of
+/// lines in parallel, each with a state that `begin` makes and `end` gets.
+template <int Reach, class Begin, class Act, class End>
+void for_kept(const Work& work, const Begin& begin_band, const Act& act, const End& end_band) {
     tbb::parallel_for(tbb::blocked_range<int>(0, work.grid.rows(), 8), [&](const tbb::blocked_range<int>& range) {
+        auto state = begin_band();
         for (int row = range.begin(); row < range.end(); ++row)
             for (int column = 0; column < work.grid.columns(); ++column) {
                 const auto [begin, end] = work.grid.in_cells(row, column, 0);
@@ -75,8 +78,9 @@ void for_kept(const Work& work, const Act& act) {
                     runs[static_cast<std::size_t>(dy + Reach)] = {first, last};
                 }
                 for (std::uint32_t k = begin; k < end; ++k)
-                    if (work.fate[k] == Fate::kept) act(k, runs);
+                    if (work.fate[k] == Fate::kept) act(k, runs, state);
             }
+        end_band(state);
     });
 }
 
@@ -87,52 +91,55 @@ void forget_removed(Work& work) {
 
 /// A point most of whose neighbours stand elsewhere in depth is no surface; one without neighbours neither.
 void mark_jumps_and_lonely(Work& work) {
-    for_kept<1>(work, [&](std::uint32_t k, const std::array<Run, 3>& runs) {
+    const auto nothing = [](auto&&...) { return 0; };
+    const auto judge = [&](std::uint32_t k, const std::array<Run, 3>& runs, int) {
         int all = -1;  // without itself
         for (const Run& run : runs) all += static_cast<int>(run.end - run.begin);
         const int near = neighbour_kernel::count_within(work.coordinates(), runs.data(), 3, k, work.reach_mm[k]) - 1;
-        if (all < 2) work.fate[k] = Fate::lonely;
-        else if (near < 2 || 7 * near < 3 * all) work.fate[k] = Fate::jump;
-    });
+        if (all < 2)
+            work.fate[k] = Fate::lonely;
+        else if (near < 2 || 7 * near < 3 * all)
+            work.fate[k] = Fate::jump;
+    };
+    for_kept<1>(work, nothing, judge, nothing);
     forget_removed(work);
 }
 
-/// The direction in which points scatter least, unit length; zero when they do not span a plane. The adjugate of their
-/// covariance has its eigenvectors, the one of the least scatter foremost; its fourth power has hardly anything else.
-Eigen::Vector3f least_scatter(const neighbour_kernel::Sums& s) {
-    Eigen::Matrix3f C;
-    C << s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz;
-    const Eigen::Vector3f sum(s.x, s.y, s.z);
-    C -= sum * sum.transpose() / s.n;
-    const float scatter = C.trace();
-    if (!(scatter > 0)) return Eigen::Vector3f::Zero();
-    C /= scatter;
-    Eigen::Matrix3f A;
-    A.col(0) = C.col(1).cross(C.col(2));
-    A.col(1) = C.col(2).cross(C.col(0));
-    A.col(2) = C.col(0).cross(C.col(1));
-    const float plane = A.trace();  // largest times middle eigenvalue
-    if (!(plane > 1e-6f)) return Eigen::Vector3f::Zero();
-    A /= plane;
-    A = (A * A).eval();
-    A = (A * A).eval();
-    int column = 0;
-    A.diagonal().maxCoeff(&column);
-    return A.col(column).normalized();
+/// Points whose planes are asked for together.
+struct Batch {
+    int count = 0;
+    std::array<std::uint32_t, neighbour_kernel::kPlanes> place;
+    neighbour_kernel::Planes planes{};
+};
+
+/// Their normals, towards the projector; steep points and those without a plane are marked.
+void judge_planes(Batch& batch, float least_cosine, Work& work) {
+    neighbour_kernel::find_planes(batch.planes);
+    for (int i = 0; i < batch.count; ++i) {
+        const std::uint32_t k = batch.place[static_cast<std::size_t>(i)];
+        const Eigen::Vector3f normal(batch.planes.normal_x[i], batch.planes.normal_y[i], batch.planes.normal_z[i]);
+        const float cosine = normal.dot((work.light - work.point(k)).normalized());
+        work.normals[k] = cosine < 0 ? Eigen::Vector3f(-normal) : normal;
+        if (normal.isZero())
+            work.fate[k] = Fate::lonely;
+        else if (std::abs(cosine) < least_cosine)
+            work.fate[k] = Fate::grazing;
+    }
+    batch.count = 0;
 }
 
-/// Normals of the planes through the neighbours, towards the projector; steep points and those without a plane are marked.
+/// Normals of the planes through the neighbours.
 void find_normals(Work& work) {
     const auto least_cosine = static_cast<float>(std::cos(work.settings.max_grazing_angle));
-    for_kept<2>(work, [&](std::uint32_t k, const std::array<Run, 5>& runs) {
-        const auto sums = neighbour_kernel::sum_within(work.coordinates(), runs.data(), 5, k, 2 * work.reach_mm[k]);
-        const Eigen::Vector3f normal = sums.n < 6 ? Eigen::Vector3f::Zero().eval() : least_scatter(sums);
-        const Eigen::Vector3f to_light = (work.light - work.point(k)).normalized();
-        const float cosine = normal.dot(to_light);
-        work.normals[k] = cosine < 0 ? Eigen::Vector3f(-normal) : normal;
-        if (normal.isZero()) work.fate[k] = Fate::lonely;
-        else if (std::abs(cosine) < least_cosine) work.fate[k] = Fate::grazing;
-    });
+    for_kept<2>(
+        work, [] { return std::make_unique<Batch>(); },
+        [&](std::uint32_t k, const std::array<Run, 5>& runs, const std::unique_ptr<Batch>& batch) {
+            batch->place[static_cast<std::size_t>(batch->count)] = k;
+            batch->planes.set(batch->count++, neighbour_kernel::sum_within(work.coordinates(), runs.data(), 5, k,
+                                                                           2 * work.reach_mm[k]));
+            if (batch->count == neighbour_kernel::kPlanes) judge_planes(*batch, least_cosine, work);
+        },
+        [&](const std::unique_ptr<Batch>& batch) { judge_planes(*batch, least_cosine, work); });
     forget_removed(work);
 }
 

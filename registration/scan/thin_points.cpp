@@ -4,75 +4,103 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numeric>
+
+#include "registration/processor_clones.h"
 
 namespace planlight {
 namespace {
 
-constexpr std::uint64_t kSide = 1 << 20;  // cubes along an axis
-constexpr std::uint64_t kNone = ~std::uint64_t{0};
+constexpr std::size_t kMostCubes = std::size_t{1} << 28;
 
-/// The points by the cube they lie in: a hash table of the cubes, and in each the point nearest to its centre.
+/// Bits set in the words before each.
+PLANLIGHT_CLONES void add_up(const std::uint64_t* words, std::size_t count, std::uint32_t* __restrict before) {
+    std::uint32_t sum = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        before[i] = sum;
+        sum += static_cast<std::uint32_t>(std::popcount(words[i]));
+    }
+}
+
+PLANLIGHT_CLONES std::uint32_t bits_below(std::uint64_t word, std::uint64_t bit) {
+    return static_cast<std::uint32_t>(std::popcount(word & ((std::uint64_t{1} << bit) - 1)));
+}
+
+/// The points by the cube they lie in: a bit for each cube of the box around them.
 class Cubes {
 public:
-    Cubes(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3f& low)
-        : points_(points), low_(low), keys_(std::bit_ceil(2 * points.size())), nearest_(keys_.size()), off_(keys_.size()) {}
+    Cubes(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3f& low, const Eigen::Vector3f& size)
+        : points_(points), low_(low), size_(size) {}
+
+    /// The smallest edge with which the bits do not become too many.
+    float finest_mm() const {
+        float edge = std::max(size_.maxCoeff(), 1e-6f) / 600;
+        while (cubes_of(edge / 2) <= kMostCubes && edge > size_.maxCoeff() * 1e-5f) edge /= 2;
+        return edge;
+    }
 
     /// Sorts the points into cubes of this edge; how many cubes hold one.
     std::size_t count(float edge_mm) {
-        std::fill(keys_.begin(), keys_.end(), kNone);
+        set_edge(edge_mm);
+        words_.assign(cubes_of(edge_mm) / 64 + 1, 0);
         std::size_t cubes = 0;
         for (const Eigen::Vector3f& p : points_) {
-            const std::uint64_t key = key_of((p - low_) / edge_mm);
-            std::uint64_t& slot = keys_[place_of(key)];
-            cubes += slot == kNone;
-            slot = key;
+            const std::size_t cube = cube_of((p - low_) * by_edge_);
+            std::uint64_t& word = words_[cube / 64];
+            const std::uint64_t bit = std::uint64_t{1} << (cube % 64);
+            cubes += (word & bit) == 0;
+            word |= bit;
         }
         return cubes;
     }
 
-    /// One point per cube, in ascending order.
+    /// The point nearest to the centre of each cube, in ascending order.
     std::vector<std::size_t> nearest(float edge_mm) {
-        std::fill(keys_.begin(), keys_.end(), kNone);
-        std::vector<std::size_t> places;
+        const std::size_t cubes = count(edge_mm);
+        std::vector<std::uint32_t> before(words_.size()), nearest(cubes);
+        std::vector<float> least(cubes, std::numeric_limits<float>::infinity());
+        add_up(words_.data(), words_.size(), before.data());
         for (std::size_t i = 0; i < points_.size(); ++i) {
-            const Eigen::Vector3f scaled = (points_[i] - low_) / edge_mm;
-            const float off = (scaled.array() - scaled.array().floor() - 0.5f).square().sum();
-            const std::uint64_t key = key_of(scaled);
-            const std::size_t place = place_of(key);
-            if (keys_[place] == kNone) places.push_back(place);
-            else if (off_[place] <= off) continue;
-            keys_[place] = key;
-            nearest_[place] = static_cast<std::uint32_t>(i);
-            off_[place] = off;
+            const Eigen::Vector3f scaled = (points_[i] - low_) * by_edge_;
+            const float off = (scaled.array() - scaled.array().cast<int>().cast<float>() - 0.5f).square().sum();
+            const std::size_t cube = cube_of(scaled),
+                              place = before[cube / 64] + bits_below(words_[cube / 64], cube % 64);
+            if (off >= least[place]) continue;
+            least[place] = off;
+            nearest[place] = static_cast<std::uint32_t>(i);
         }
-        std::vector<bool> kept(points_.size(), false);
-        for (const std::size_t place : places) kept[nearest_[place]] = true;
+        std::vector<std::uint8_t> kept(points_.size(), 0);
+        for (const std::uint32_t i : nearest) kept[i] = 1;
         std::vector<std::size_t> indices;
-        indices.reserve(places.size());
+        indices.reserve(cubes);
         for (std::size_t i = 0; i < kept.size(); ++i)
             if (kept[i]) indices.push_back(i);
         return indices;
     }
 
 private:
-    static std::uint64_t key_of(const Eigen::Vector3f& scaled) {
-        return static_cast<std::uint64_t>(scaled.x()) +
-               kSide * (static_cast<std::uint64_t>(scaled.y()) + kSide * static_cast<std::uint64_t>(scaled.z()));
+    std::size_t along(float length_mm, float edge_mm) const {
+        return static_cast<std::size_t>(length_mm / edge_mm) + 2;
     }
-    /// Where the cube is in the table, or the free place for it.
-    std::size_t place_of(std::uint64_t key) const {
-        const std::size_t mask = keys_.size() - 1;
-        std::size_t place = static_cast<std::size_t>((key * 0x9E3779B97F4A7C15u) >> 40) & mask;
-        while (keys_[place] != key && keys_[place] != kNone) place = (place + 1) & mask;
-        return place;
+    std::size_t cubes_of(float edge_mm) const {
+        return along(size_.x(), edge_mm) * along(size_.y(), edge_mm) * along(size_.z(), edge_mm);
+    }
+    void set_edge(float edge_mm) {
+        by_edge_ = 1 / edge_mm;
+        columns_ = along(size_.x(), edge_mm);
+        rows_ = along(size_.y(), edge_mm);
+    }
+    std::size_t cube_of(const Eigen::Vector3f& scaled) const {
+        return static_cast<std::size_t>(scaled.x()) +
+               columns_ * (static_cast<std::size_t>(scaled.y()) + rows_ * static_cast<std::size_t>(scaled.z()));
     }
 
     const std::vector<Eigen::Vector3f>& points_;
-    Eigen::Vector3f low_;
-    std::vector<std::uint64_t> keys_;
-    std::vector<std::uint32_t> nearest_;
-    std::vector<float> off_;
+    Eigen::Vector3f low_, size_;
+    float by_edge_ = 1;
+    std::size_t columns_ = 1, rows_ = 1;
+    std::vector<std::uint64_t> words_;
 };
 
 }  // namespace
@@ -89,10 +117,10 @@ std::vector<std::size_t> thin_evenly(const std::vector<Eigen::Vector3f>& points,
         high = high.cwiseMax(p);
     }
     const float size = std::max((high - low).maxCoeff(), 1e-6f);
-    float fine = size / (static_cast<float>(kSide) / 2), coarse = 2 * size;  // coarse: one cube
-    Cubes cubes(points, low);
+    Cubes cubes(points, low, high - low);
+    float fine = cubes.finest_mm(), coarse = 2 * size;  // coarse: one cube
     // A surface's cubes go with the inverse square of their edge: start there, then bisect on the logarithm.
-    float edge = size / std::sqrt(static_cast<float>(max_points));
+    float edge = std::max(size / std::sqrt(static_cast<float>(max_points)), fine);
     for (int step = 0; step < 24 && coarse > 1.01f * fine; ++step) {
         const float ratio = static_cast<float>(cubes.count(edge)) / static_cast<float>(max_points);
         if (ratio <= 1) {

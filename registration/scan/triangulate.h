@@ -14,8 +14,13 @@ struct TriangulationSettings {
     double camera_sigma_px = 0.1, projector_sigma_px = 0.25;
     double max_residual_sigma = 3.5;  ///< three-view agreement: normalised residual above which a point is dropped
     double near_mm = 200, far_mm = 3000;  ///< from the projector: the working volume
-    bool one_camera = true;  ///< also points that only one camera and the projector see
-    int stride = 0;          ///< every how many camera pixels a point is made; 0: so that a view makes at most 150,000
+    bool one_camera = true;               ///< also points that only one camera and the projector see
+    int stride = 0;  ///< every how many camera pixels a point is made; 0: so that a view makes at most 100,000
+};
+
+/// Every how many camera pixels along a line, and every how many lines, a point is made.
+struct Stride {
+    int x = 1, y = 1;
 };
 
 /// Points from all rays that agree, with counts by reason for those that do not (Fig. 2 of the paper, middle).
@@ -27,8 +32,8 @@ struct Triangulation {
     std::size_t three_view = 0, two_view = 0;
     std::size_t no_partner = 0, disagree = 0, outside_volume = 0;
     std::size_t ragged =
-        0;  ///< the code is not smooth around the pixel: an edge, hair, a glint; with one camera also its rim
-    int stride = 1;                 ///< as used
+        0;          ///< the code is not smooth around the pixel: an edge, hair, a glint; with one camera also its rim
+    Stride stride;  ///< as used
 
     /// Evidence about the calibration, over the points that both cameras placed without the projector: the median of
     /// (decoded - expected) projector pixel, and the rms distance from the epipolar line in camera pixels. Points that

@@ -208,11 +208,12 @@ Triangulation triangulate_cameras(const DecodedView& left, const DecodedView& ri
     if (left.row.empty()) by_column.emplace(right, rig.right_camera, projector_width);
     else by_code.emplace(right, projector_width, projector_height);
     const Matcher matcher{left, right, rig, settings, by_code ? &*by_code : nullptr, by_column ? &*by_column : nullptr};
-    const int stride = result.stride, columns = (left.width + stride - 1) / stride, rows = (left.height + stride - 1) / stride;
+    const auto [step_x, step_y] = result.stride;
+    const int columns = (left.width + step_x - 1) / step_x, rows = (left.height + step_y - 1) / step_y;
     std::vector<PointOutcome> outcomes(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
     tbb::parallel_for(0, rows, [&](int r) {
         for (int c = 0; c < columns; ++c) {
-            const int x = c * stride, y = r * stride;
+            const int x = c * step_x, y = r * step_y;
             if (!std::isnan(left.column[static_cast<std::size_t>(y) * static_cast<std::size_t>(left.width) +
                                         static_cast<std::size_t>(x)]))
                 matcher.place(x, y, outcomes[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) +

@@ -100,13 +100,14 @@ Triangulation triangulate_columns(const DecodedView& left, const DecodedView& ri
                                   const TriangulationSettings& settings) {
     Triangulation result;
     result.stride = stride_for(left.decoded, settings);
-    const int stride = result.stride, columns = (left.width + stride - 1) / stride, rows = (left.height + stride - 1) / stride;
+    const auto [step_x, step_y] = result.stride;
+    const int columns = (left.width + step_x - 1) / step_x, rows = (left.height + step_y - 1) / step_y;
     std::vector<PointOutcome> outcomes(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
     tbb::parallel_for(0, rows, [&](int r) {
         for (int c = 0; c < columns; ++c) {
             PointOutcome& outcome =
                 outcomes[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(c)];
-            const int x = c * stride, y = r * stride;
+            const int x = c * step_x, y = r * step_y;
             const float code = left.column[static_cast<std::size_t>(y) * static_cast<std::size_t>(left.width) +
                                            static_cast<std::size_t>(x)];
             if (std::isnan(code)) continue;

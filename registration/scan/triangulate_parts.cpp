@@ -63,10 +63,13 @@ bool in_volume(const CameraModel& projector, const Eigen::Vector3d& p_in_rig, co
     return distance >= settings.near_mm && distance <= settings.far_mm;
 }
 
-int stride_for(std::size_t decoded, const TriangulationSettings& settings) {
-    constexpr double kMaxPoints = 150000;
-    if (settings.stride > 0) return settings.stride;
-    return std::max(1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(decoded) / kMaxPoints))));
+Stride stride_for(std::size_t decoded, const TriangulationSettings& settings) {
+    constexpr std::size_t kMaxPoints = 100000;
+    if (settings.stride > 0) return {settings.stride, settings.stride};
+    Stride stride;
+    while (decoded > kMaxPoints * static_cast<std::size_t>(stride.x * stride.y))
+        (stride.x < stride.y ? stride.x : stride.y)++;
+    return stride;
 }
 
 void collect(const std::vector<PointOutcome>& outcomes, Triangulation& result) {

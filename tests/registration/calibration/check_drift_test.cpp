@@ -67,6 +67,30 @@ TEST(CheckDrift, AZoomedProjectorIsNotTakenForAMovedOne) {
     EXPECT_NE(check.verdict, Verdict::good);
 }
 
+void flip_distortion(CameraModel& device) {
+    for (double* k : {&device.k1, &device.k2, &device.k3, &device.p1, &device.p2}) *k = -*k;
+}
+
+/// A mild lens the wrong way round is under the noise of a point, but not of a place. It takes a surface over most of the pictures.
+TEST(CheckDrift, AFlippedSignOfADistortionIsNoticed) {
+    const Room room = paper_room(
+        nearest_of({sphere({120, -40, 400}, 95), plane({120, -40, 400}, Eigen::Vector3d(0.2, 0.1, -1).normalized(), 250)}));
+    const ScanCapture shot = capture(room, stripes_of(room));
+    for (const int which : {0, 1, 2}) {
+        RigCalibration rig = rig_of(room);
+        flip_distortion(which == 0 ? rig.left_camera : which == 1 ? rig.right_camera : rig.projector);
+        const DriftCheck check = check_drift(scan_from_capture(shot, rig), rig);
+        EXPECT_NE(check.verdict, Verdict::good) << which << ": k1 off " << check.bent.k1_off << " +- " << check.bent.k1_sigma
+                                                << ", projector bent " << check.bent.projector_px << " px";
+        EXPECT_FALSE(check.remedy.empty());
+    }
+    const DriftCheck good = check_drift(scan_from_capture(shot, rig_of(room)), rig_of(room));
+    EXPECT_EQ(good.verdict, Verdict::good) << good.reason;
+    EXPECT_LT(std::abs(good.bent.k1_off), 0.05) << good.bent.k1_sigma;
+    EXPECT_LT(good.bent.k1_sigma, 0.04);
+    EXPECT_LT(good.bent.projector_px, 0.03);
+}
+
 TEST(CheckDrift, NothingInViewCannotTell) {
     ScanCapture dark = scanned().shot;
     for (auto* frames : {&dark.left, &dark.right})

@@ -47,10 +47,12 @@ void measure(const char* name, const Room& room, const Eigen::Vector3d& centre, 
     const auto n = static_cast<double>(best.raw.cloud.size());
     fmt::print("{}: left decoded {} of {} lit, dark {}, saturated {}, uncertain {}, noise {:.2f} grey\n", name,
                best.left.decoded, lit, best.left.dark, best.left.saturated, best.left.uncertain, best.left.noise_grey);
-    fmt::print("  code: median error {:.4f} px, bias {:+.5f} px, wrong or unlit {}\n", errors[errors.size() / 2], bias, wrong);
-    fmt::print("  points {} (three views {}, two {}), stride {}, no partner {}, ragged {}, disagree {}, outside {}\n",
-               best.raw.cloud.size(), best.raw.three_view, best.raw.two_view, best.raw.stride, best.raw.no_partner,
-               best.raw.ragged, best.raw.disagree, best.raw.outside_volume);
+    fmt::print("  code: median error {:.4f} px, bias {:+.5f} px, wrong or unlit {}\n", errors[errors.size() / 2], bias,
+               wrong);
+    fmt::print(
+        "  points {} (three views {}, two {}), stride {} x {}, no partner {}, ragged {}, disagree {}, outside {}\n",
+        best.raw.cloud.size(), best.raw.three_view, best.raw.two_view, best.raw.stride.x, best.raw.stride.y,
+        best.raw.no_partner, best.raw.ragged, best.raw.disagree, best.raw.outside_volume);
     fmt::print("  sphere: mean {:+.4f} mm, rms {:.4f} mm; projector off {:.3f} {:.3f} px, epipolar {:.3f} px\n",
                sum / n, std::sqrt(squares / n), best.raw.projector_offset_px.x(), best.raw.projector_offset_px.y(),
                best.raw.epipolar_rms_px);

@@ -1,5 +1,5 @@
 // What a scan is worth in random simulated rooms: measure_scan_rooms [SEED] [COUNT] [paper|modern|both] [--volume FILE]
-// [--spoilt N] [--json FILE] [--pictures FOLDER].
+// [--spoilt N] [--set full|fast|multi-frequency|multi-frequency-columns] [--json FILE] [--pictures FOLDER].
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ namespace {
 struct Options {
     unsigned seed = 1, count = 3, spoilt = 1;
     std::vector<Preset> presets{Preset::paper, Preset::modern};
-    std::string volume = "/usr/share/doc/invesalius-examples/examples/Cranium.inv3", json, pictures;
+    std::string volume = "/usr/share/doc/invesalius-examples/examples/Cranium.inv3", json, pictures, set = "full";
 };
 
 Options parse(int argc, char** argv) {
@@ -40,6 +40,7 @@ Options parse(int argc, char** argv) {
         if (word == "--volume") o.volume = next();
         else if (word == "--json") o.json = next();
         else if (word == "--pictures") o.pictures = next();
+        else if (word == "--set") o.set = next();
         else if (word == "--spoilt") o.spoilt = static_cast<unsigned>(std::stoul(next()));
         else if (word == "paper") o.presets = {Preset::paper};
         else if (word == "modern") o.presets = {Preset::modern};
@@ -80,10 +81,10 @@ Figures figures_of_head(const ScanResult& scan, const SimulatedRig& room, Instan
 }
 
 /// The same room with a smooth ball of skin instead of the head: there is no detail in it that a scan could miss.
-Figures figures_of_ball(const Volume& sphere, simulation::RoomSettings settings) {
+Figures figures_of_ball(const Volume& sphere, simulation::RoomSettings settings, const std::string& set) {
     settings.markers = 0;
     SimulatedRig room(sphere, {}, settings);
-    const ScanCapture capture = capture_of(room);
+    const ScanCapture capture = capture_of(room, set);
     const ScanResult scan = scan_from_capture(capture, room.calibration());
     const CloudFigures cloud = cloud_figures(scan, room, room.calibration(), capture.began);
     const double radius = fitted_radius_mm(scan.clean.kept.points_in_rig);
@@ -139,11 +140,11 @@ PresetTable run(Preset preset, const Options& options, const Volume& head, const
         const unsigned seed = options.seed + k;
         try {
             SimulatedRig room(head, {}, random_room(preset, seed));
-            const ScanCapture capture = capture_of(room);
+            const ScanCapture capture = capture_of(room, options.set);
             const ScanResult scan = scan_from_capture(capture, room.calibration());
             if (scan.clean.kept.empty()) throw CheckFailedError("no skin was found", "-");
             Figures figures = figures_of_head(scan, room, capture.began);
-            for (auto& figure : figures_of_ball(sphere, random_room(preset, seed))) figures.push_back(std::move(figure));
+            for (auto& figure : figures_of_ball(sphere, random_room(preset, seed), options.set)) figures.push_back(std::move(figure));
             table.rooms.push_back(std::move(figures));
             if (k == 0 && !options.pictures.empty() && preset == options.presets.back())
                 write_scan_pictures(room, capture, scan, options.pictures);

@@ -47,6 +47,35 @@ TEST(MergeExposures, ASaturatedPixelTakesTheDarkerOneAndADarkPixelTheBrighter) {
               far_off(glare.raw.cloud.points_in_rig) + far_off(gloom.raw.cloud.points_in_rig));
 }
 
+/// Moist skin: a glint of five times the skin's light, at another place for each camera. The darker captures that the session
+/// adds see the code inside it.
+TEST(MergeExposures, AGlintIsReadInTheDarkerCapturesAndPutsNothingOffTheSkin) {
+    Room room = paper_room(sphere(kCentre, 80));
+    room.light.glint_grey = 900;
+    std::vector<ScanCapture> captures;
+    for (const double brightness : {255.0, 153.0, 92.0}) {  // as add_darker_captures chooses them
+        StripeSettings stripes = stripes_of(room);
+        stripes.brightness = static_cast<int>(brightness);
+        captures.push_back(capture(room, stripes));
+        room.light.seed += 17;
+    }
+    const RigCalibration rig = rig_of(room);
+    const ScanResult one = scan_from_capture(captures[0], rig), all = scan_from_exposures(captures, rig);
+    // More than a hundredth of the lit pixels is at the end of the scale: the session would go on.
+    ASSERT_GT(one.left.saturated, (one.left.decoded + one.left.saturated) / 100);
+    EXPECT_LT(all.left.saturated, one.left.saturated / 10);
+    EXPECT_LE(far_off(one.clean.kept.points_in_rig), 2u);
+    EXPECT_LE(far_off(all.clean.kept.points_in_rig), 2u);
+    // Where the glint lies (the normal halfway between lamp and camera) there is skin now.
+    const Eigen::Vector3d to_lamp = (room.projector.eye() - kCentre).normalized(), to_eye = (room.left.eye() - kCentre).normalized();
+    const Eigen::Vector3d glint = kCentre + 80 * (to_lamp + to_eye).normalized();
+    const auto near_glint = [&](const ScanResult& scan) {
+        return std::count_if(scan.raw.cloud.points_in_rig.begin(), scan.raw.cloud.points_in_rig.end(),
+                             [&](const auto& p) { return (p - glint).norm() < 4; });
+    };
+    EXPECT_GT(near_glint(all), 60);
+}
+
 TEST(MergeExposures, TheOrderDoesNotMatterAndOneIsItself) {
     const Room bright = glaring_room(350), dim = glaring_room(60);
     const DecodedView a = decode_stripes(photograph(bright, bright.left, stripes_of(bright), 1), stripes_of(bright)),

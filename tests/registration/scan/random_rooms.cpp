@@ -34,10 +34,12 @@ Volume sphere_volume() {
     return volume;
 }
 
-ScanCapture capture_of(simulation::SimulatedRig& room) {
+ScanCapture capture_of(simulation::SimulatedRig& room, const std::string& set) {
     StripeSettings stripes;
     stripes.width = room.projector().width();
     stripes.height = room.projector().height();
+    if (set == "fast") stripes = fast_stripes(stripes.width, stripes.height);
+    if (set.starts_with("multi")) stripes = multi_frequency_stripes(stripes.width, stripes.height, set == "multi-frequency");
     return capture_scan(room.projector(), room.cameras(), room.clock(), stripes);
 }
 

@@ -17,8 +17,9 @@ constexpr double kSphereRadius_mm = 80;
 /// A ball of that radius as a CT; its zero level is the sphere to 0.004 mm (voxels of 1.5 mm, values linear in the distance).
 Volume sphere_volume();
 
-/// The scan of a room: its sequence shown and captured, nothing decoded yet.
-ScanCapture capture_of(simulation::SimulatedRig& room);
+/// The scan of a room: its sequence ("full", "fast", "multi-frequency", or "multi-frequency-columns") shown and captured, nothing
+/// decoded yet.
+ScanCapture capture_of(simulation::SimulatedRig& room, const std::string& set = "full");
 
 std::string name_of(simulation::Preset preset);
 

@@ -183,7 +183,9 @@ CodeFigures code_figures(const DecodedView& view, const SimulatedRig& room, Simu
             if (std::isnan(view.column[i])) continue;
             ++looked_at;
             const auto sight = room.true_sight(camera, Vector2d(x, y), at);
-            const Vector2d code(view.column[i], view.row[i]);
+            // Columns only: the row is taken as it is, or from the middle where there is none.
+            const double row = !view.row.empty() ? view.row[i] : sight && sight->lit_by ? sight->lit_by->y() : true_rig.projector.height / 2.0;
+            const Vector2d code(view.column[i], row);
             if (sight && sight->lit_by && (code - *sight->lit_by).cwiseAbs().maxCoeff() <= kWrong_px) continue;
             ++wrong;
             const Vector2d last(true_rig.projector.width - 4, true_rig.projector.height - 4);

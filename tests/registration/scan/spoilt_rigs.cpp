@@ -35,6 +35,12 @@ std::vector<SpoiltRig> spoilt_rigs() {
          }},
         {"projector focal length +1 %", [](RigCalibration& r) { stretch(r.projector, 1.01); }},
         {"left distortion sign flipped", [](RigCalibration& r) { flip_distortion(r.left_camera); }},
+        {"right distortion sign flipped", [](RigCalibration& r) { flip_distortion(r.right_camera); }},
+        {"both cameras' distortion signs flipped",
+         [](RigCalibration& r) {
+             flip_distortion(r.left_camera);
+             flip_distortion(r.right_camera);
+         }},
         {"projector distortion sign flipped", [](RigCalibration& r) { flip_distortion(r.projector); }},
         {"left and right camera swapped", [](RigCalibration& r) { std::swap(r.left_camera, r.right_camera); }},
     };

@@ -93,7 +93,9 @@ std::vector<Sample> samples_of(const Room& room, const Optics& camera, double dx
         if (cosine * seen <= 0) continue;  // the camera and the lamp are on different sides
         const auto first = room.surface(lamp, to_p / away);
         if (!first || first->distance < away - 0.01) continue;  // in shadow
-        samples[i].shade = static_cast<float>(std::abs(cosine) * 810000 / (away * away));
+        const double halfway = std::abs(hit->normal.dot((directions[i] + to_p / away).normalized()));
+        const double glint = room.light.glint_grey / room.light.white_grey * std::pow(halfway, room.light.glint_power);
+        samples[i].shade = static_cast<float>((std::abs(cosine) + glint) * 810000 / (away * away));
         lit_points.push_back(p);
         lit.push_back(i);
     }

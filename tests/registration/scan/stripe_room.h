@@ -40,6 +40,7 @@ struct Light {
     double projector_blur_px = 0.6, camera_blur_px = 0.6;
     double ambient_grey = 18, white_grey = 190;  ///< of a surface that faces the projector
     double noise_grey = 1.5;
+    double glint_grey = 0, glint_power = 300;  ///< mirrored light where the normal halves the way (Blinn), of full projector light
     unsigned seed = 1;
 };
 
