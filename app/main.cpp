@@ -208,6 +208,30 @@ void add_project(CLI::App& app, ProjectOptions& o) {
     json_flag(sub, o.json);
 }
 
+void add_projector(CLI::App& app, ProjectorOptions& o) {
+    auto* sub = command(app, "projector", "What the projector really does: gamma, colour cycle, latency; which monitor it is",
+                        "projector recording --configured-ms 25 --serial X7K2 --out projector.json\n"
+                        "  planlight projector --simulate paper --seed 3 --light wheel-hz=120 delay-ms=12 --out projector.json\n"
+                        "  planlight projector --identify");
+    auto* recording = sub->add_option("recording", o.recording, "Folder with latency/, response/, cycle/ (any of them)");
+    auto* simulate = sub->add_option("--simulate", o.simulate, "Measure the simulated room's projector instead: modern or paper")
+                         ->check(CLI::IsMember({"modern", "paper"}))
+                         ->excludes(recording);
+    sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str()->needs(simulate);
+    sub->add_option("--light", o.light, "Of the simulated room, NAME=NUMBER: gamma, dark-end, wheel-hz, mains-hz, delay-ms, ...")->needs(simulate);
+    sub->add_option("--keep", o.keep, "Folder to keep what was recorded in")->needs(simulate);
+    sub->add_option("--part", o.part, "latency, response, cycle or all")
+        ->check(CLI::IsMember({"all", "latency", "response", "cycle"}))
+        ->capture_default_str();
+    sub->add_option("--refresh-hz", o.refresh_hz, "Of the projector")->capture_default_str()->check(CLI::Range(10.0, 1000.0));
+    sub->add_option("--configured-ms", o.configured_delay_ms, "The delay in force, to be compared (default: as recorded)")
+        ->check(CLI::Range(0.0, 10000.0));
+    sub->add_option("--serial", o.serial, "Of the projector, as on its label");
+    sub->add_option("--monitor", o.monitor, "Monitor that it is");
+    sub->add_option("--out", o.out, "projector.json to write; the page stands beside it");
+    json_flag(sub, o.json);
+}
+
 void add_review(CLI::App& app, ReviewOptions& o) {
     auto* sub = command(app, "review", "Look at a prepared case, or at a match on it, in the operator window",
                         "review case --registration registration.json --cloud cloud.ply");
@@ -278,6 +302,7 @@ int main(int argc, char** argv) {
     RegisterOptions registration;
     TrackOptions track;
     ProjectOptions project;
+    ProjectorOptions projector;
     ReviewOptions review;
     SessionOptions session;
     DemoOptions demo;
@@ -292,6 +317,7 @@ int main(int argc, char** argv) {
     add_register(app, registration);
     add_track(app, track);
     add_project(app, project);
+    add_projector(app, projector);
     add_session(app, session);
     add_review(app, review);
     add_simulate(app, simulate);
@@ -314,6 +340,7 @@ int main(int argc, char** argv) {
         if (name == "track") return run_track(track);
         if (name == "project") return run_project(project);
         if (name == "session") return run_session(session);
+        if (name == "projector") return run_projector(projector);
         if (name == "review") return run_review(review);
         return run_simulate(simulate);
     });

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <chrono>
-#include <ctime>
 #include <iostream>
 
 #include "app/commands/commands.h"
@@ -15,15 +13,6 @@
 
 namespace planlight {
 namespace {
-
-std::string today() {
-    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-    std::tm utc{};
-    gmtime_r(&now, &utc);
-    char text[32];
-    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    return text;
-}
 
 StripeSettings stripes_of(const CaptureFolder& settings, const Path& pose) {
     StripeSettings stripes;

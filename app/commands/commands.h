@@ -107,6 +107,19 @@ struct ProjectOptions {
 };
 int run_project(const ProjectOptions& options);
 
+struct ProjectorOptions {
+    Path recording, keep, out;       ///< `out`: projector.json, empty: not written; `keep`: folder for what is recorded
+    std::string simulate;            ///< preset of the simulated room; empty: none
+    std::vector<std::string> light;  ///< of the simulated room, NAME=NUMBER
+    std::string part = "all", monitor, serial;
+    unsigned seed = 1;
+    double refresh_hz = 60, configured_delay_ms = -1;  ///< the delay in force; below 0: as the recording says
+    bool identify = false;
+    double seconds = 15;  ///< of `identify`
+    bool json = false;
+};
+int run_projector(const ProjectorOptions& options);
+
 struct ReviewOptions {
     Path case_folder, picture, registration, cloud;
     std::string view = "after";  ///< before, after, error

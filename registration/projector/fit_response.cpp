@@ -1,7 +1,5 @@
 #include "registration/projector/fit_response.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
@@ -105,58 +103,6 @@ void fit_response(ResponseResult& result) {
 
 double fitted_light(const ResponseResult& result, double grey) {
     return light_of({result.gamma, result.dark_end / 255, result.bright_end / 255}, grey / 255);
-}
-
-void add_findings(ResponseResult& r) {
-    const auto say = [&](std::string what, std::string remedy) { r.findings.push_back({std::move(what), std::move(remedy)}); };
-    if (r.crushes_darks && r.crushes_whites && std::abs(r.dark_end - 16) < 6 && std::abs(r.bright_end - 235) < 8)
-        say(fmt::format("greys up to {:.0f} are black and from {:.0f} on white: the projector takes the picture for one of limited range",
-                        r.dark_end, r.bright_end),
-            "Set the HDMI range (\"black level\", \"RGB range\") to full, 0 to 255, on the computer and on the projector.");
-    else if (r.crushes_darks)
-        say(fmt::format("the projector crushes the darks: greys up to {:.0f} are black", r.dark_end),
-            "Choose another picture mode (\"sRGB\", \"cinema\"), raise its brightness, and switch dynamic contrast off.");
-    else if (r.crushes_whites)
-        say(fmt::format("the projector crushes the whites: greys from {:.0f} on are white", r.bright_end),
-            "Choose another picture mode (\"sRGB\", \"cinema\"), and lower its contrast.");
-    if (!r.not_rising.empty())
-        say(fmt::format("a brighter grey gives less light ({})", r.not_rising.front()),
-            "Switch dynamic contrast, eco dimming and picture enhancement off.");
-    constexpr double kDrift = 0.03;
-    if (r.white_drift > kDrift)
-        say(fmt::format("white changed by {:.1f} % during the measurement", 100 * r.white_drift),
-            "Let the lamp warm up for 15 minutes, switch dynamic contrast and eco mode off, and keep the scene still.");
-    constexpr double kMoreThanWhite = 1.06, kLessThanWhite = 0.9;
-    if (r.colours) {
-        const double sum = (*r.colours)[0] + (*r.colours)[1] + (*r.colours)[2];
-        if (sum > kMoreThanWhite)
-            say(fmt::format("red, green and blue add up to {:.2f} of white: the cameras are not linear, so the gamma is not the projector's alone", sum),
-                "Set the cameras' gamma to 1, and switch their automatic gain and contrast off.");
-        else if (sum < kLessThanWhite)
-            say(fmt::format("red, green and blue add up to {:.2f} of white: the projector adds a white segment", sum),
-                "Switch \"brilliant colour\" or the bright picture mode off where colours matter; the scan's grey pictures do not mind.");
-    }
-    constexpr double kDiffer = 0.02;
-    if (r.cameras_differ > kDiffer)
-        say(fmt::format("the two cameras see curves that differ by {:.1f} % of white", 100 * r.cameras_differ),
-            "Give both cameras the same settings: gamma 1, no automatic gain or exposure.");
-    if (r.tiles > 0 && 2 * r.tiles_at_zero > r.tiles)
-        say("black is below the cameras' zero, so the dark end of the curve is not seen",
-            "Raise the cameras' black level (offset) until black is a few greys.");
-}
-
-std::string meaning_for_the_scan(const ResponseResult& r) {
-    std::string text = fmt::format("The scan reads fringes by their phase in 8 steps, and a gamma of {:.2f} does not shift that: "
-                                   "nothing has to be corrected.",
-                                   r.gamma);
-    const double half = fitted_light(r, 128);
-    if (half < 0.3 || half > 0.7)
-        text += fmt::format(" Half grey gives {:.0f} % of white: dim colours of the plan are dimmer on the skin than on a screen.",
-                            100 * half);
-    if (r.crushes_darks || r.crushes_whites)
-        text += " The crushed end takes part of each fringe away: the contrast is less and the noise of the points more; markers "
-                "and the Gray code, which are black and white, do not mind.";
-    return text;
 }
 
 }  // namespace planlight

@@ -5,20 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "planning_io/types/image.h"
+#include "planning_io/types/light_order.h"
 #include "planning_io/types/time.h"
 #include "registration/devices/stereo_camera.h"
 
 namespace planlight {
-
-/// One order to the projector: its whole picture in one colour.
-struct LightOrder {
-    Instant at{};                     ///< when it was given
-    std::optional<Instant> returned;  ///< when `Projector::show` came back; empty: not known
-    std::optional<Instant> promised;  ///< the moment from which the projector said that it is light; empty: not said
-    Rgb colour{0, 0, 0};
-    bool covered = false;  ///< a lid was before the lens: not even the leak of a black picture came out
-};
 
 /// One exposure of both cameras, as the mean brightness of tiles.
 struct FrameBrightness {

@@ -198,27 +198,4 @@ CycleResult measure_cycle(const LightRecording& recording, const CycleSettings& 
     return result;
 }
 
-std::string text_of(const CycleResult& result) {
-    std::string text;
-    const CycleRun& room = result.runs.front();
-    text += room.varies ? fmt::format("The room's lamps flicker by {:.1f} % of their light", 100 * room.variation)
-                        : std::string("The room's light is steady");
-    double at_most = 0;
-    for (std::size_t i = 1; i < result.runs.size(); ++i) at_most = std::max(at_most, result.runs[i].at_most);
-    text += result.projector_varies
-                ? fmt::format("; the projector's light varies by {:.1f} % from frame to frame (a colour wheel, or dimming by pulses).",
-                              100 * result.worst)
-                : fmt::format("; the projector's light is steady (within {:.2f} %).", 100 * at_most);
-    if (result.exposure_to_set_s > 0)
-        text += fmt::format(" An exposure of {:.2f} ms instead of {:.2f} ms holds whole cycles and cures it{}.",
-                            1e3 * result.exposure_to_set_s, 1e3 * result.exposure_s,
-                            result.cycle_is_told ? "" : " if the cycle is a usual one (which one, these frames cannot tell)");
-    if (!result.unseen_hz.empty()) {
-        std::string list;
-        for (const double hz : result.unseen_hz) list += fmt::format("{}{:g}", list.empty() ? "" : ", ", hz);
-        text += fmt::format(" Cycles of {} Hz cannot be seen at {:.2f} frames a second.", list, result.frames_hz);
-    }
-    return text;
-}
-
 }  // namespace planlight

@@ -47,7 +47,4 @@ struct CycleResult {
 /// common, the light has. Refused: nothing of the projector seen, saturated, fewer than 24 frames in a row.
 CycleResult measure_cycle(const LightRecording& recording, const CycleSettings& settings = {});
 
-/// What it means, one or two sentences.
-std::string text_of(const CycleResult& result);
-
 }  // namespace planlight

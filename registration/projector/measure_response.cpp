@@ -17,12 +17,37 @@ struct Shown {
     std::size_t frames = 0;
 };
 
+/// Noise of a frame's mean: of the camera, the same for all, and of the light, which grows with it (a colour wheel).
+class FrameNoise {
+public:
+    FrameNoise(const std::vector<Shown>& all, const std::vector<std::pair<double, double>>& spreads) {
+        double white = 0;
+        black_ = 1e9;
+        for (const Shown& shown : all)
+            if (shown.frames > 0) black_ = std::min(black_, shown.grey), white = std::max(white, shown.grey);
+        double dark = 0, dark_freedom = 0, lit = 0, lit_freedom = 0;
+        for (std::size_t i = 0; i < all.size(); ++i)
+            if (all[i].grey - black_ < 0.15 * (white - black_)) dark += spreads[i].first, dark_freedom += spreads[i].second;
+        camera_ = dark_freedom > 0 ? std::max(kLeast_grey * kLeast_grey, dark / dark_freedom) : 0.05 * 0.05;
+        for (std::size_t i = 0; i < all.size(); ++i) {
+            const double light = all[i].grey - black_;
+            if (all[i].frames == 0 || light < 0.15 * (white - black_)) continue;
+            lit += (spreads[i].first - camera_ * spreads[i].second) / (light * light), lit_freedom += spreads[i].second;
+        }
+        of_light_ = lit_freedom > 0 ? std::max(0.0, lit / lit_freedom) : 0;
+    }
+    double at(double grey) const { return std::sqrt(camera_ + of_light_ * (grey - black_) * (grey - black_)); }
+
+private:
+    static constexpr double kLeast_grey = 0.005;
+    double black_ = 0, camera_ = 0, of_light_ = 0;
+};
+
 /// Brightness of every order over some tiles.
 std::vector<Shown> shown_by_order(const LightRecording& recording, const std::vector<std::size_t>& tiles) {
     std::vector<Shown> all(recording.orders.size());
     const auto steady = steady_frames(recording);
-    double square = 0;
-    std::size_t freedom = 0;
+    std::vector<std::pair<double, double>> spreads;  // sum of squares about the order's mean, frames less one
     for (std::size_t o = 0; o < all.size(); ++o) {
         Shown& shown = all[o];
         std::vector<double> values;
@@ -32,15 +57,16 @@ std::vector<Shown> shown_by_order(const LightRecording& recording, const std::ve
             shown.at_s += seconds(recording.frames[f].at);
         }
         shown.frames = values.size();
+        spreads.emplace_back(0, 0);
         if (values.empty()) continue;
         shown.grey /= static_cast<double>(values.size());
         shown.at_s /= static_cast<double>(values.size());
-        for (const double v : values) square += (v - shown.grey) * (v - shown.grey);
-        freedom += values.size() - 1;
+        for (const double v : values) spreads.back().first += (v - shown.grey) * (v - shown.grey);
+        spreads.back().second = static_cast<double>(values.size()) - 1;
     }
-    const double noise = freedom > 0 ? std::sqrt(square / static_cast<double>(freedom)) : 0.05;
+    const FrameNoise noise(all, spreads);
     for (Shown& shown : all)
-        if (shown.frames > 0) shown.sigma = std::max(noise, 0.005) / std::sqrt(static_cast<double>(shown.frames));
+        if (shown.frames > 0) shown.sigma = noise.at(shown.grey) / std::sqrt(static_cast<double>(shown.frames));
     return all;
 }
 
@@ -50,8 +76,9 @@ public:
     Reference(const LightRecording& recording, const std::vector<Shown>& shown, Rgb colour) {
         for (std::size_t o = 0; o < shown.size(); ++o)
             if (recording.orders[o].colour == colour && !recording.orders[o].covered && shown[o].frames > 0)
-                points_.emplace_back(shown[o].at_s, shown[o].grey);
+                points_.emplace_back(shown[o].at_s, shown[o].grey), sigma_ = std::max(sigma_, shown[o].sigma);
     }
+    double sigma() const { return sigma_; }
     double at(double at_s) const {
         const auto next = std::find_if(points_.begin(), points_.end(), [&](const auto& p) { return p.first >= at_s; });
         if (next == points_.end()) return points_.back().second;
@@ -73,6 +100,7 @@ public:
 
 private:
     std::vector<std::pair<double, double>> points_;
+    double sigma_ = 0;
 };
 
 struct Measured {
@@ -107,8 +135,8 @@ Measured measured_on(const LightRecording& recording, const std::vector<std::siz
         const double light = (shown[o].grey - b) / (w - b);
         Sum& sum = sums[recording.orders[o].colour];
         sum.light += light, sum.square += light * light, ++sum.orders, sum.frames += shown[o].frames;
-        const double reference = shown[o].sigma / (w - b);  // black and white are as noisy as what is set against them
-        sum.sigma_square += reference * reference * (1 + light * light + (1 - light) * (1 - light));
+        const double noise = std::hypot(shown[o].sigma, light * white.sigma(), (1 - light) * black.sigma()) / (w - b);
+        sum.sigma_square += noise * noise;
         if (recording.orders[o].colour == Rgb{0, 0, 0}) black_square += shown[o].sigma * shown[o].sigma, ++blacks;
     }
     if (blacks > 0) result.black_sigma = std::sqrt(black_square) / static_cast<double>(blacks);
@@ -181,7 +209,6 @@ ResponseResult measure_response(const LightRecording& recording) {
     if (!left.empty() && !right.empty())
         result.cameras_differ =
             std::max(0.0, largest_difference(measured_on(recording, left).curve, measured_on(recording, right).curve));
-    add_findings(result);
     return result;
 }
 

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "registration/projector/light_recording.h"
@@ -14,11 +13,6 @@ struct ResponsePoint {
     int grey = 0;
     double light = 0, sigma = 0;  ///< sigma: one standard deviation of `light`
     std::size_t frames = 0;
-};
-
-/// Something about the projector that a person should hear, and what to do.
-struct LightFinding {
-    std::string what, remedy;
 };
 
 /// What the projector makes of the numbers of a picture.
@@ -41,7 +35,6 @@ struct ResponseResult {
     double cameras_differ = 0;                   ///< largest difference between the curves of the two cameras; 0: one camera
     double black_grey = 0, white_grey = 0;       ///< in the cameras' pictures, mean over the tiles used
     std::size_t tiles = 0, saturated_tiles = 0, tiles_at_zero = 0;
-    std::vector<LightFinding> findings;          ///< empty: nothing to hear of
 };
 
 /// From steady frames of greys with black and white among them.

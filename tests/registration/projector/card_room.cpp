@@ -2,13 +2,6 @@
 
 namespace planlight::test {
 
-simulation::BoardSheet white_card() {
-    simulation::BoardSheet sheet;
-    sheet.px_per_mm = 2;
-    sheet.print = GrayImage(420, 594, 255);
-    return sheet;
-}
-
 namespace {
 
 simulation::BoardRoomSettings one_pose(simulation::BoardRoomSettings settings) {
@@ -20,7 +13,7 @@ simulation::BoardRoomSettings one_pose(simulation::BoardRoomSettings settings) {
 }  // namespace
 
 CardRoom::CardRoom(const simulation::BoardRoomSettings& settings)
-    : room(white_card(), one_pose(settings)),
+    : room(simulation::white_card(), one_pose(settings)),
       bench{room.projector(), room.cameras(), room.clock(), [this](Instant at) { room.wait(at - room.clock().now()); }, {}, {}} {}
 
 std::vector<double> true_delays_s(const LightRecording& recording, const std::vector<simulation::TrueLight>& truth) {

@@ -5,10 +5,7 @@
 
 namespace planlight::test {
 
-/// A white card, 210 x 297 mm, before the simulated rig.
-simulation::BoardSheet white_card();
-
-/// Simulated room with the card, and a bench on it; waiting passes the room's own time.
+/// Simulated room with a white card, and a bench on it; waiting passes the room's own time.
 struct CardRoom {
     explicit CardRoom(const simulation::BoardRoomSettings& settings);
     simulation::SimulatedBoardRoom room;

@@ -7,9 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "registration/projector/measure_cycle.h"
-#include "registration/projector/measure_latency.h"
-#include "registration/projector/measure_response.h"
+#include "registration/projector/light_findings.h"
 #include "tests/registration/projector/card_room.h"
 
 namespace planlight {
@@ -76,7 +74,7 @@ void measure_responses(const Rooms& rooms) {
         (panel.bright_end < 1 ? crushed_bright : false_bright) += r.crushes_whites;
         missed_dark += panel.dark_end > 0 && !r.crushes_darks;
         missed_bright += panel.bright_end < 1 && !r.crushes_whites;
-        for (const LightFinding& f : r.findings) other += f.what.find("crush") == std::string::npos && f.what.find("limited") == std::string::npos;
+        for (const LightFinding& f : findings_of(r)) other += f.what.find("crush") == std::string::npos && f.what.find("limited") == std::string::npos;
         if (rooms.verbose)
             fmt::print("  seed {}: gamma {:.3f} found {:.3f} +- {:.3f}; ends {:.1f} {:.1f} found {:.1f}+-{:.1f} {:.1f}+-{:.1f}; black {:.5f} found {:.5f}\n", seed,
                        panel.gamma, r.gamma, r.gamma_sigma, 255 * panel.dark_end, 255 * panel.bright_end, r.dark_end, r.dark_end_sigma,
