@@ -228,6 +228,14 @@ void add_projector(CLI::App& app, ProjectorOptions& o) {
         ->check(CLI::Range(0.0, 10000.0));
     sub->add_option("--serial", o.serial, "Of the projector, as on its label");
     sub->add_option("--monitor", o.monitor, "Monitor that it is");
+    auto* identify = sub->add_flag("--identify", o.identify,
+                                   "Every monitor shows its own name for a while, then goes dark; nobody may lie under the projector")
+                         ->excludes(recording)
+                         ->excludes(simulate);
+    sub->add_option("--seconds", o.seconds, "Of --identify; 0 only lists the monitors")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 60.0))
+        ->needs(identify);
     sub->add_option("--out", o.out, "projector.json to write; the page stands beside it");
     json_flag(sub, o.json);
 }

@@ -6,6 +6,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/light_source.h"
 #include "app/console.h"
+#include "app/live/identify_monitors.h"
 #include "app/report/projector_report.h"
 #include "planning_io/safe_write.h"
 #include "planning_io/types/error.h"
@@ -82,6 +83,7 @@ void throw_if_refused(const std::optional<Result>& result, const char* what) {
 }  // namespace
 
 int run_projector(const ProjectorOptions& options) {
+    if (options.identify) return identify_monitors(options);
     if (options.recording.empty() == options.simulate.empty())
         throw InputError({}, "there is nothing to measure, or two things", "Give a folder of recorded light, or --simulate, or --identify.");
     ProjectorReport report;

@@ -9,6 +9,7 @@
 
 #include "app/live/case_model.h"
 #include "app/live/live_session.h"
+#include "app/live/steady_clock.h"
 #include "app/windows/operator_window.h"
 #include "planning_io/image_file.h"
 #include "planning_io/types/error.h"
@@ -19,12 +20,6 @@ namespace {
 
 /// Set by Ctrl-C or a polite kill: the loop ends as if the window had been closed, and everything is dark on the way out.
 volatile std::sig_atomic_t asked_to_end = 0;
-
-/// The wall's monotonic clock, for the projector window.
-class SteadyClock final : public Clock {
-public:
-    Instant now() const override { return std::chrono::steady_clock::now().time_since_epoch(); }
-};
 
 /// The simulated room needs longer for a picture than a real one; the projector window forgives it this much.
 constexpr auto kPictureValidity = std::chrono::milliseconds(2500);
