@@ -110,6 +110,9 @@ void add_calibrate(CLI::App& app, CalibrateOptions& o) {
     sub->add_option("--board", o.board,
                     "The board, its square as measured: \"charuco 10x7 24.98 mm\" or \"chessboard 9x6 25 mm\"")
         ->required();
+    sub->add_option("--serial-left", o.serial_left, "Serial of the left camera, kept in rig.json (default: as capture.json says)");
+    sub->add_option("--serial-right", o.serial_right, "Of the right camera");
+    sub->add_option("--serial-projector", o.serial_projector, "Of the projector; `projector --identify` tells it where the monitor does");
     sub->add_option("--out", o.out, "rig.json to write; the report stands beside it")->capture_default_str();
     json_flag(sub, o.json);
 }
@@ -265,6 +268,11 @@ void add_session(CLI::App& app, SessionOptions& o) {
     sub->add_option(
         "--projector", o.projector_monitor,
         "Monitor (name or number) that is the projector; without it the light is shown in the operator window only");
+    auto* delay = sub->add_option("--light-delay-ms", o.light_delay_ms, "From showing to light, as `projector` measured it (default: 25)")
+                      ->check(CLI::Range(0.0, 10000.0));
+    sub->add_option("--projector-file", o.projector_file,
+                    "projector.json of `projector`: its delay is used; another monitor, resolution or serial is refused (exit 6)")
+        ->excludes(delay);
     sub->add_option("--operator", o.operator_monitor, "Monitor of the operator window (default: the primary one)");
     sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str();
     sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")->capture_default_str()->check(CLI::Range(0.0, 500.0));

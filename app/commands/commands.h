@@ -49,6 +49,7 @@ int run_board(const BoardOptions& options);
 struct CalibrateOptions {
     Path captures, out = "rig.json";
     std::string board;
+    std::string serial_left, serial_right, serial_projector;  ///< empty: as capture.json says
     bool json = false;
 };
 int run_calibrate(const CalibrateOptions& options);
@@ -136,6 +137,8 @@ struct SessionOptions {
     bool autoplay = false;
     double end_after_s = 0;  ///< wall time; 0 = until the window is closed
     Path screenshots;
+    double light_delay_ms = -1;  ///< of the projector window; below 0: the default, or what `projector_file` says
+    Path projector_file;         ///< projector.json of the monitor; empty: none
 };
 int run_session(const SessionOptions& options);
 

@@ -32,10 +32,11 @@ std::vector<LightFinding> findings_of(const ResponseResult& r) {
     constexpr double kMoreThanWhite = 1.06, kLessThanWhite = 0.9;
     if (r.colours) {
         const double sum = (*r.colours)[0] + (*r.colours)[1] + (*r.colours)[2];
-        if (sum > kMoreThanWhite)
+        const double noise = 3 * std::hypot(r.colour_sigmas[0], r.colour_sigmas[1], r.colour_sigmas[2]);
+        if (sum - noise > kMoreThanWhite)
             say(fmt::format("red, green and blue add up to {:.2f} of white: the cameras are not linear, so the gamma is not the projector's alone", sum),
                 "Set the cameras' gamma to 1, and switch their automatic gain and contrast off.");
-        else if (sum < kLessThanWhite)
+        else if (sum + noise < kLessThanWhite)
             say(fmt::format("red, green and blue add up to {:.2f} of white: the projector adds a white segment", sum),
                 "Switch \"brilliant colour\" or the bright picture mode off where colours matter; the scan's grey pictures do not mind.");
     }

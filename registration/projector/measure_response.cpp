@@ -117,7 +117,7 @@ Measured measured_on(const LightRecording& recording, const std::vector<std::siz
     Measured result;
     result.black = black.mean();
     result.white = white.mean();
-    result.drift = white.worst_from_mean() / (result.white - result.black);
+    result.drift = std::max(0.0, white.worst_from_mean() - 3 * white.sigma()) / (result.white - result.black);
     struct Sum {
         double light = 0, square = 0, sigma_square = 0;
         std::size_t orders = 0, frames = 0;

@@ -31,7 +31,7 @@ struct ResponseResult {
     /// Light of black by white's: the projector's own where the lid was put before the lens, else the room's lamps with it.
     double black_level = 0, black_level_sigma = 0;
     bool black_level_is_a_bound = true;          ///< the room's light is in it
-    double white_drift = 0;                      ///< of white between the references, share of it, largest from the mean
+    double white_drift = 0;                      ///< of white between the references beyond noise, share of it, largest from the mean
     double cameras_differ = 0;                   ///< largest difference between the curves of the two cameras; 0: one camera
     double black_grey = 0, white_grey = 0;       ///< in the cameras' pictures, mean over the tiles used
     std::size_t tiles = 0, saturated_tiles = 0, tiles_at_zero = 0;

@@ -41,7 +41,7 @@ struct Draw {
     double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
 };
 
-void measure_responses(const Rooms& rooms) {
+void measure_responses(const Rooms& rooms, bool unsteady) {
     std::vector<double> gamma, gamma_by_sigma, dark, bright, black, colour;
     unsigned refused = 0, false_dark = 0, false_bright = 0, missed_dark = 0, missed_bright = 0, crushed_dark = 0, crushed_bright = 0, other = 0;
     for (unsigned seed = 1; seed <= rooms.count; ++seed) {
@@ -55,6 +55,11 @@ void measure_responses(const Rooms& rooms) {
         panel.colours = {draw.between(0.2, 0.35), draw.between(0.4, 0.55), 0};
         panel.colours[2] = 1 - panel.colours[0] - panel.colours[1];
         s.ambient = draw.between(0.03, 0.2);
+        if (unsteady) {
+            s.light.wheel_hz = draw.between(59.5, 60.5) * (2 + static_cast<int>(seed % 3));
+            s.light.mains_hz = 100;
+            s.light.mains_depth = 0.2;
+        }
         test::CardRoom card(s);
         LightRecording recording = record_response(card.bench);
         card.room.cover_projector(true);
@@ -80,8 +85,8 @@ void measure_responses(const Rooms& rooms) {
                        panel.gamma, r.gamma, r.gamma_sigma, 255 * panel.dark_end, 255 * panel.bright_end, r.dark_end, r.dark_end_sigma,
                        r.bright_end, r.bright_end_sigma, panel.black, r.black_level);
     }
-    fmt::print("response: {} refused; darks crushed noticed {}, missed {}, false {}; whites noticed {}, missed {}, false {}; other findings {}\n",
-               refused, crushed_dark, missed_dark, false_dark, crushed_bright, missed_bright, false_bright, other);
+    fmt::print("response{}: {} refused; darks crushed noticed {}, missed {}, false {}; whites noticed {}, missed {}, false {}; other findings {}\n",
+               unsteady ? " under a colour wheel of 2 to 4 turns a picture, lamps that flicker" : "", refused, crushed_dark, missed_dark, false_dark, crushed_bright, missed_bright, false_bright, other);
     print("gamma error", gamma, "");
     print("gamma error by its stated sigma", gamma_by_sigma, "");
     print("dark end error", dark, "grey");
@@ -151,7 +156,7 @@ void measure_cycles(const Rooms& rooms, bool wheel, bool mains) {
         s.ambient = draw.between(0.05, 0.25);
         s.brightness = 0.75;
         if (wheel) s.light.wheel_hz = refresh * (1 + static_cast<int>(seed % 4));
-        if (mains) s.light.mains_hz = 100 + draw.between(-0.1, 0.1), s.light.mains_depth = draw.between(0.1, 0.4);
+        if (mains) s.light.mains_hz = (seed % 2 == 0 ? 100 : 120) + draw.between(-0.1, 0.1), s.light.mains_depth = draw.between(0.1, 0.4);
         test::CardRoom card(s);
         const LightRecording recording = record_cycle(card.bench);
         CycleSettings settings;
@@ -218,10 +223,10 @@ int main(int argc, char** argv) {
     const std::string preset = argc > 1 ? argv[1] : "paper", part = argc > 3 ? argv[3] : "all";
     const Rooms rooms{preset == "modern" ? simulation::Preset::modern : simulation::Preset::paper,
                       argc > 2 ? static_cast<unsigned>(std::stoi(argv[2])) : 20, argc > 4};
-    if (part == "all" || part == "response") measure_responses(rooms);
+    if (part == "all" || part == "response")
+        for (const bool unsteady : {false, true}) measure_responses(rooms, unsteady);
     if (part == "all" || part == "latency") measure_latencies(rooms);
     if (part == "all" || part == "cycle")
-        for (const bool wheel : {false, true})
-            for (const bool mains : {false, true}) measure_cycles(rooms, wheel, mains);
+        for (const auto& [wheel, mains] : {std::pair{false, false}, std::pair{false, true}, std::pair{true, true}}) measure_cycles(rooms, wheel, mains);
     return 0;
 }
