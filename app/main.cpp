@@ -215,14 +215,15 @@ void add_projector(CLI::App& app, ProjectorOptions& o) {
     auto* sub = command(app, "projector", "What the projector really does: gamma, colour cycle, latency; which monitor it is",
                         "projector recording --configured-ms 25 --serial X7K2 --out projector.json\n"
                         "  planlight projector --simulate paper --seed 3 --light wheel-hz=120 delay-ms=12 --out projector.json\n"
-                        "  planlight projector --identify");
+                        "  planlight projector --identify\n"
+                        "  planlight projector --show --monitor HDMI-2 --frames-hz 60 --keep recording");
     auto* recording = sub->add_option("recording", o.recording, "Folder with latency/, response/, cycle/ (any of them)");
     auto* simulate = sub->add_option("--simulate", o.simulate, "Measure the simulated room's projector instead: modern or paper")
                          ->check(CLI::IsMember({"modern", "paper"}))
                          ->excludes(recording);
-    sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str()->needs(simulate);
+    sub->add_option("--seed", o.seed, "Of the simulated room, and of the order of greys")->capture_default_str();
     sub->add_option("--light", o.light, "Of the simulated room, NAME=NUMBER: gamma, dark-end, wheel-hz, mains-hz, delay-ms, ...")->needs(simulate);
-    sub->add_option("--keep", o.keep, "Folder to keep what was recorded in")->needs(simulate);
+    sub->add_option("--keep", o.keep, "Folder to keep what was recorded, or shown, in")->excludes(recording);
     sub->add_option("--part", o.part, "latency, response, cycle or all")
         ->check(CLI::IsMember({"all", "latency", "response", "cycle"}))
         ->capture_default_str();
@@ -231,9 +232,15 @@ void add_projector(CLI::App& app, ProjectorOptions& o) {
         ->check(CLI::Range(0.0, 10000.0));
     sub->add_option("--serial", o.serial, "Of the projector, as on its label");
     sub->add_option("--monitor", o.monitor, "Monitor that it is");
+    auto* show = sub->add_flag("--show", o.show,
+                               "Show the light of each part on --monitor for your own cameras, and keep the orders; nobody may lie there")
+                     ->excludes(recording)
+                     ->excludes(simulate);
+    sub->add_option("--frames-hz", o.frames_hz, "Of your own cameras")->capture_default_str()->check(CLI::Range(1.0, 1000.0))->needs(show);
     auto* identify = sub->add_flag("--identify", o.identify,
                                    "Every monitor shows its own name for a while, then goes dark; nobody may lie under the projector")
                          ->excludes(recording)
+                         ->excludes(show)
                          ->excludes(simulate);
     sub->add_option("--seconds", o.seconds, "Of --identify; 0 only lists the monitors")
         ->capture_default_str()

@@ -115,7 +115,8 @@ struct ProjectorOptions {
     std::string part = "all", monitor, serial;
     unsigned seed = 1;
     double refresh_hz = 60, configured_delay_ms = -1;  ///< the delay in force; below 0: as the recording says
-    bool identify = false;
+    bool identify = false, show = false;
+    double frames_hz = 25;  ///< of the cameras that look while `show`s
     double seconds = 15;  ///< of `identify`
     bool json = false;
 };

@@ -7,6 +7,7 @@
 #include "app/commands/light_source.h"
 #include "app/console.h"
 #include "app/live/identify_monitors.h"
+#include "app/live/show_light.h"
 #include "app/report/projector_report.h"
 #include "planning_io/safe_write.h"
 #include "planning_io/types/error.h"
@@ -46,6 +47,8 @@ void measure_simulated(const ProjectorOptions& options, ProjectorReport& report)
         report.height = room.projector().height();
         RecordSettings record;
         record.seed = options.seed;
+        if (report.latency && !report.latency->refusal)
+            record.settle = std::max(record.settle, 2 * from_seconds(report.latency->latest_s));
         const LightBench bench{room.projector(),
                                room.cameras(),
                                room.clock(),
@@ -84,8 +87,9 @@ void throw_if_refused(const std::optional<Result>& result, const char* what) {
 
 int run_projector(const ProjectorOptions& options) {
     if (options.identify) return identify_monitors(options);
+    if (options.show) return show_light(options);
     if (options.recording.empty() == options.simulate.empty())
-        throw InputError({}, "there is nothing to measure, or two things", "Give a folder of recorded light, or --simulate, or --identify.");
+        throw InputError({}, "there is nothing to measure, or two things", "Give a folder of recorded light, or --simulate, --show or --identify.");
     ProjectorReport report;
     report.made_on = today();
     report.serial = options.serial;

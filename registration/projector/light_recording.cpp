@@ -45,33 +45,39 @@ void add_tiles(const GrayImage& picture, FrameBrightness& out) {
     }
 }
 
-/// One colour at rest, tile by tile: medians over the frames, so that an order which the projector left out does no harm.
-struct ColourAtRest {
+/// One light, tile by tile.
+struct TileLight {
     std::vector<double> grey, saturated, at_zero;
     std::size_t frames = 0;
 };
 
-ColourAtRest at_rest(const LightRecording& recording, const std::vector<std::vector<std::size_t>>& steady, Rgb colour) {
-    ColourAtRest rest;
+/// Of every tile what `share` of the frames are darker than: medians do not mind an order that the projector left out.
+TileLight quantile(const std::vector<const FrameBrightness*>& frames, double share) {
+    TileLight light;
+    light.frames = frames.size();
+    if (frames.empty()) return light;
+    const auto value = [&](std::vector<float> FrameBrightness::*what, std::size_t tile) {
+        std::vector<float> values;
+        for (const FrameBrightness* frame : frames) values.push_back((frame->*what)[tile]);
+        const auto at = values.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size()));
+        std::nth_element(values.begin(), at, values.end());
+        return static_cast<double>(*at);
+    };
+    for (std::size_t t = 0; t < frames.front()->tiles.size(); ++t) {
+        light.grey.push_back(value(&FrameBrightness::tiles, t));
+        light.saturated.push_back(value(&FrameBrightness::saturated, t));
+        light.at_zero.push_back(value(&FrameBrightness::at_zero, t));
+    }
+    return light;
+}
+
+/// One colour at rest.
+TileLight at_rest(const LightRecording& recording, const std::vector<std::vector<std::size_t>>& steady, Rgb colour) {
     std::vector<const FrameBrightness*> frames;
     for (std::size_t o = 0; o < recording.orders.size(); ++o)
         if (recording.orders[o].colour == colour && !recording.orders[o].covered)
             for (const std::size_t f : steady[o]) frames.push_back(&recording.frames[f]);
-    rest.frames = frames.size();
-    if (frames.empty()) return rest;
-    const auto median = [&](std::vector<float> FrameBrightness::*what, std::size_t tile) {
-        std::vector<float> values;
-        for (const FrameBrightness* frame : frames) values.push_back((frame->*what)[tile]);
-        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-        std::nth_element(values.begin(), middle, values.end());
-        return static_cast<double>(*middle);
-    };
-    for (std::size_t t = 0; t < frames.front()->tiles.size(); ++t) {
-        rest.grey.push_back(median(&FrameBrightness::tiles, t));
-        rest.saturated.push_back(median(&FrameBrightness::saturated, t));
-        rest.at_zero.push_back(median(&FrameBrightness::at_zero, t));
-    }
-    return rest;
+    return quantile(frames, 0.5);
 }
 
 /// From frame to frame, within each order of that colour.
@@ -91,6 +97,41 @@ double deviation(const LightRecording& recording, const std::vector<std::vector<
         freedom += steady[o].size() - 1;
     }
     return freedom > 0 ? std::sqrt(square / static_cast<double>(freedom)) : 0;
+}
+
+/// The tiles that are brighter under white than under black, or why there are none.
+LitTiles tiles_between(const TileLight& black, const TileLight& white) {
+    LitTiles lit;
+    double best = 0;
+    for (std::size_t t = 0; t < white.grey.size(); ++t) {
+        const double contrast = white.grey[t] - black.grey[t];
+        best = std::max(best, contrast);
+        const bool saturated = white.saturated[t] > kSaturatedShare;
+        if (contrast < kLeastContrast_grey && !(saturated && contrast > 1)) continue;
+        if (saturated) {
+            ++lit.saturated;
+            continue;
+        }
+        lit.tiles.push_back(t);
+        lit.at_zero += black.at_zero[t] > kZeroShare;
+        lit.black += black.grey[t];
+        lit.white += white.grey[t];
+    }
+    if (lit.tiles.size() + lit.saturated < kLeastTiles)
+        lit.refusal = {fmt::format("the cameras see nothing of the projector: white is at most {:.1f} grey brighter than black", best),
+                       "Lay a white card, or the calibration board, where the light falls and both cameras look, take the lid "
+                       "off the lens, and turn the room's light down."};
+    else if (lit.tiles.size() < kLeastTiles)
+        lit.refusal = {fmt::format("the light is too bright for the cameras: {} of {} lit tiles are saturated under white",
+                                   lit.saturated, lit.saturated + lit.tiles.size()),
+                       "Shorten the exposure or close the aperture until white is below 250."};
+    if (lit.refusal) {
+        lit.tiles.clear();
+        return lit;
+    }
+    lit.black /= static_cast<double>(lit.tiles.size());
+    lit.white /= static_cast<double>(lit.tiles.size());
+    return lit;
 }
 
 }  // namespace
@@ -125,9 +166,9 @@ double mean_of(const FrameBrightness& frame, const std::vector<std::size_t>& til
 
 LitTiles find_lit_tiles(const LightRecording& recording) {
     constexpr Rgb kBlack{0, 0, 0}, kWhite{255, 255, 255};
-    LitTiles lit;
     const auto steady = steady_frames(recording);
-    const ColourAtRest black = at_rest(recording, steady, kBlack), white = at_rest(recording, steady, kWhite);
+    const TileLight black = at_rest(recording, steady, kBlack), white = at_rest(recording, steady, kWhite);
+    LitTiles lit;
     if (black.frames == 0 || white.frames == 0) {
         lit.refusal = {fmt::format("no frame saw a steady {} picture", black.frames == 0 ? "black" : "white"),
                        fmt::format("Show white and black for {:.1f} s at least, and check that the cameras' times are on the "
@@ -135,35 +176,29 @@ LitTiles find_lit_tiles(const LightRecording& recording) {
                                    2 * seconds(recording.settle))};
         return lit;
     }
-    double best = 0;
-    for (std::size_t t = 0; t < white.grey.size(); ++t) {
-        const double contrast = white.grey[t] - black.grey[t];
-        best = std::max(best, contrast);
-        if (contrast < kLeastContrast_grey) continue;
-        if (white.saturated[t] > kSaturatedShare) {
-            ++lit.saturated;
-            continue;
-        }
-        lit.tiles.push_back(t);
-        lit.at_zero += black.at_zero[t] > kZeroShare;
-        lit.black += black.grey[t];
-        lit.white += white.grey[t];
-    }
-    if (lit.tiles.size() + lit.saturated < kLeastTiles)
-        lit.refusal = {fmt::format("the cameras see nothing of the projector: white is at most {:.1f} grey brighter than black", best),
-                       "Lay a white card, or the calibration board, where the light falls and both cameras look, take the lid "
-                       "off the lens, and turn the room's light down."};
-    else if (lit.tiles.size() < kLeastTiles)
-        lit.refusal = {fmt::format("the light is too bright for the cameras: {} of {} lit tiles are saturated under white",
-                                   lit.saturated, lit.saturated + lit.tiles.size()),
-                       "Shorten the exposure or close the aperture until white is below 250."};
-    if (lit.refusal) {
-        lit.tiles.clear();
+    lit = tiles_between(black, white);
+    if (!lit.refusal) lit.noise = std::max(deviation(recording, steady, lit.tiles, kBlack), deviation(recording, steady, lit.tiles, kWhite));
+    return lit;
+}
+
+LitTiles find_flashing_tiles(const LightRecording& recording) {
+    std::vector<const FrameBrightness*> frames;
+    for (const FrameBrightness& frame : recording.frames) frames.push_back(&frame);
+    LitTiles lit;
+    if (frames.size() < 20) {
+        lit.refusal = {fmt::format("only {} frames were recorded", frames.size()), "Record the whole flash code."};
         return lit;
     }
-    lit.black /= static_cast<double>(lit.tiles.size());
-    lit.white /= static_cast<double>(lit.tiles.size());
-    lit.noise = std::max(deviation(recording, steady, lit.tiles, kBlack), deviation(recording, steady, lit.tiles, kWhite));
+    lit = tiles_between(quantile(frames, 0.25), quantile(frames, 0.75));
+    if (lit.refusal) return lit;
+    // Frames near one of the two lights: what is between them is a change, not noise.
+    double square = 0;
+    std::size_t count = 0;
+    for (const FrameBrightness* frame : frames) {
+        const double v = mean_of(*frame, lit.tiles), off = std::min(std::abs(v - lit.black), std::abs(v - lit.white));
+        if (off < 0.15 * (lit.white - lit.black)) square += off * off, ++count;
+    }
+    lit.noise = count > 0 ? std::sqrt(square / static_cast<double>(count)) : 0;
     return lit;
 }
 

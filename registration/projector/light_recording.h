@@ -55,6 +55,9 @@ struct LitTiles {
 };
 LitTiles find_lit_tiles(const LightRecording& recording);
 
+/// The same from flashes, by the darker and the brighter quarter of the frames: does not need to know the delay.
+LitTiles find_flashing_tiles(const LightRecording& recording);
+
 /// Mean over some tiles, grey.
 double mean_of(const FrameBrightness& frame, const std::vector<std::size_t>& tiles);
 

@@ -197,7 +197,7 @@ LatencyResult refused(LatencyResult result, std::string reason, std::string reme
 
 LatencyResult measure_latency(const LightRecording& recording, const LatencySettings& settings) {
     LatencyResult result;
-    const LitTiles lit = find_lit_tiles(recording);
+    const LitTiles lit = find_flashing_tiles(recording);
     if (lit.refusal) {
         result.refusal = lit.refusal;
         return result;

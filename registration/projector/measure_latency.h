@@ -49,7 +49,7 @@ struct LatencyResult {
 
 /// The delay at which the ordered flashes fit the frames, then every change by itself.
 ///
-/// Needs steady white and black in the recording, and flashes of both, each at least two frames long. A frame counts the
+/// Needs black and white flashes, each at least two frames long, each light a third of the time or more. A frame counts the
 /// share of its exposure that the new light was there. Refused: nothing seen, saturated, flashes shorter than the frames
 /// tell apart, a sequence that repeats within the search, a code that does not fit, light before its order.
 LatencyResult measure_latency(const LightRecording& recording, const LatencySettings& settings = {});
