@@ -4,7 +4,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <new>
 
@@ -46,6 +48,15 @@ void ProgressBar::note(const std::string& line) {
 }
 
 void warn(const std::string& text) { fmt::print(stderr, "warning: {}\n", text); }
+
+std::string today() {
+    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    std::tm utc{};
+    gmtime_r(&now, &utc);
+    char text[32];
+    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
+    return text;
+}
 
 int run_and_explain(const std::function<int()>& command) {
     try {

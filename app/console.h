@@ -26,6 +26,9 @@ private:
 /// One line on stderr that begins with "warning: ".
 void warn(const std::string& text);
 
+/// The present moment, UTC, ISO 8601.
+std::string today();
+
 /// Runs a command: every Error becomes one sentence with its remedy on stderr, and its exit code; anything else is a
 /// fault of ours (70).
 int run_and_explain(const std::function<int()>& command);

@@ -57,6 +57,11 @@ Json parse_file(const fs::path& file, const char* format) {
 
 Instant instant_of(const JsonValue& value) { return Instant(value.integer(-kAny, kAny)); }
 
+/// The devices' serials in capture.json.
+constexpr std::pair<const char*, std::string DeviceSerials::*> kSerials[] = {{"left_serial", &DeviceSerials::left_camera},
+                                                                             {"right_serial", &DeviceSerials::right_camera},
+                                                                             {"projector_serial", &DeviceSerials::projector}};
+
 const char* const kVerdicts[] = {"yes", "ask", "no"};
 
 Verdict verdict_of(const JsonValue& value) {
@@ -98,23 +103,25 @@ void write_capture(const CaptureFolder& capture, const fs::path& folder) {
             write_png(capture.left[i], into / "left" / (capture.names[i] + ".png"));
             if (right) write_png(capture.right[i], into / "right" / (capture.names[i] + ".png"));
         }
-        Json json{{"format", "planlight capture"},
-                  {"version", kVersion},
-                  {"projector_width", capture.projector_width},
-                  {"projector_height", capture.projector_height},
-                  {"phase_steps", capture.phase_steps},
-                  {"phase_period_px", capture.phase_period_px},
-                  {"rows", capture.rows},
-                  {"inverse", capture.inverse},
-                  {"check_sequence", capture.check_sequence},
-                  {"began_ns", capture.began.count()},
-                  {"ended_ns", capture.ended.count()},
-                  {"names", capture.names}};
+        Json settings{{"format", "planlight capture"},
+                      {"version", kVersion},
+                      {"projector_width", capture.projector_width},
+                      {"projector_height", capture.projector_height},
+                      {"phase_steps", capture.phase_steps},
+                      {"phase_period_px", capture.phase_period_px},
+                      {"rows", capture.rows},
+                      {"inverse", capture.inverse},
+                      {"check_sequence", capture.check_sequence},
+                      {"began_ns", capture.began.count()},
+                      {"ended_ns", capture.ended.count()},
+                      {"names", capture.names}};
         if (!capture.order_periods_px.empty()) {
-            json["order_periods_px"] = capture.order_periods_px;
-            json["order_steps"] = capture.order_steps;
+            settings["order_periods_px"] = capture.order_periods_px;
+            settings["order_steps"] = capture.order_steps;
         }
-        write_safely(into / "capture.json", dump(json));
+        for (const auto& [key, serial] : kSerials)
+            if (!(capture.serials.*serial).empty()) settings[key] = capture.serials.*serial;
+        write_safely(into / "capture.json", dump(settings));
     });
 }
 
@@ -136,6 +143,8 @@ CaptureFolder read_capture_settings(const fs::path& file) {
     if (const auto check = root.find("check_sequence")) capture.check_sequence = check->flag();
     if (const auto began = root.find("began_ns")) capture.began = instant_of(*began);
     if (const auto ended = root.find("ended_ns")) capture.ended = instant_of(*ended);
+    for (const auto& [key, serial] : kSerials)
+        if (const auto given = root.find(key)) capture.serials.*serial = given->text();
     const auto names = root.find("names");
     if (!names) return capture;
     if (names->size() == 0 || names->size() > 10000) names->refuse("must be a list of 1 to 10000 names");

@@ -7,6 +7,7 @@
 
 #include "planning_io/types/image.h"
 #include "planning_io/types/registration_result.h"
+#include "planning_io/types/rig_calibration.h"
 #include "planning_io/types/tracked_pose.h"
 
 namespace planlight {
@@ -24,6 +25,7 @@ struct CaptureFolder {
     std::vector<std::string> names;       ///< of the patterns, in order
     std::vector<GrayImage> left, right;   ///< one per name; `right` empty: one camera, no folder right/
     Instant began{}, ended{};
+    DeviceSerials serials;                ///< of the devices it was captured with, where they are known
 };
 void write_capture(const CaptureFolder& capture, const std::filesystem::path& folder);
 CaptureFolder read_capture(const std::filesystem::path& folder);

@@ -17,8 +17,8 @@ constexpr const char* kFormat = "planlight rig";
 constexpr int kVersion = 1;
 constexpr const char* kCalibrate = "Calibrate the rig again.";
 
-Json json_of(const CameraModel& d) {
-    return Json{{"width", d.width},
+Json json_of(const CameraModel& d, const std::string& serial = {}) {
+    Json json{{"width", d.width},
                 {"height", d.height},
                 {"focal_x", d.focal_x},
                 {"focal_y", d.focal_y},
@@ -30,6 +30,13 @@ Json json_of(const CameraModel& d) {
                 {"p2", d.p2},
                 {"k3", d.k3},
                 {"device_from_rig", to_json(d.device_from_rig)}};
+    if (!serial.empty()) json["serial"] = serial;
+    return json;
+}
+
+std::string serial_of(const JsonValue& value) {
+    const auto serial = value.find("serial");
+    return serial ? serial->text() : std::string();
 }
 
 CameraModel device_of(const JsonValue& value) {
@@ -101,9 +108,9 @@ void write_rig(const RigCalibration& rig, const fs::path& file) {
               {"version", kVersion},
               {"made_on", rig.made_on},
               {"reprojection_rms_px", rig.reprojection_rms_px},
-              {"left_camera", json_of(rig.left_camera)}};
-    if (present(rig.right_camera)) json["right_camera"] = json_of(rig.right_camera);
-    if (present(rig.projector)) json["projector"] = json_of(rig.projector);
+              {"left_camera", json_of(rig.left_camera, rig.serials.left_camera)}};
+    if (present(rig.right_camera)) json["right_camera"] = json_of(rig.right_camera, rig.serials.right_camera);
+    if (present(rig.projector)) json["projector"] = json_of(rig.projector, rig.serials.projector);
     write_safely(file, dump(json));
 }
 
@@ -122,8 +129,15 @@ RigCalibration read_partial_rig(const fs::path& file) {
     check_format(root, kFormat, kVersion, file);
     RigCalibration rig;
     rig.left_camera = device_of(root.at("left_camera"));
-    if (const auto right = root.find("right_camera")) rig.right_camera = device_of(*right);
-    if (const auto light = root.find("projector")) rig.projector = device_of(*light);
+    rig.serials.left_camera = serial_of(root.at("left_camera"));
+    if (const auto right = root.find("right_camera")) {
+        rig.right_camera = device_of(*right);
+        rig.serials.right_camera = serial_of(*right);
+    }
+    if (const auto light = root.find("projector")) {
+        rig.projector = device_of(*light);
+        rig.serials.projector = serial_of(*light);
+    }
     rig.made_on = root.at("made_on").text();
     rig.reprojection_rms_px = root.at("reprojection_rms_px").number();
     check_rig(rig, file);

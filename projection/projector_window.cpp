@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "planning_io/types/error.h"
+#include "projection/edid.h"
 #include "projection/glfw_session.h"
 #include "projection/picture_thread.h"
 
@@ -32,6 +33,7 @@ Monitor describe(GLFWmonitor* monitor) {
     if (const GLFWvidmode* mode = glfwGetVideoMode(monitor)) {
         result.width = mode->width;
         result.height = mode->height;
+        result.refresh_hz = mode->refreshRate;
     }
     result.primary = monitor == glfwGetPrimaryMonitor();
     return result;
@@ -93,7 +95,13 @@ GLFWwindow* hidden_window(const Monitor& monitor) {
 std::vector<Monitor> list_monitors() {
     const auto session = glfw_session();
     std::vector<Monitor> result;
-    for (GLFWmonitor* monitor : monitors_now()) result.push_back(describe(monitor));
+    for (GLFWmonitor* monitor : monitors_now()) {
+        result.push_back(describe(monitor));
+        if (const auto edid = edid_of_output(result.back().name)) {
+            result.back().model = edid->name.empty() ? edid->manufacturer : edid->name;
+            result.back().serial = edid->serial;
+        }
+    }
     return result;
 }
 

@@ -13,6 +13,8 @@ struct Monitor {
     std::string name;
     int x = 0, y = 0, width = 0, height = 0;  ///< virtual desktop pixels
     bool primary = false;
+    double refresh_hz = 0;             ///< 0: not known
+    std::string model, serial;         ///< of its EDID, where X11 tells one; else empty
 };
 
 /// The monitors there are now. Throws DeviceError when there is no display at all.

@@ -1,10 +1,9 @@
 #include <fmt/format.h>
 
-#include <chrono>
-#include <ctime>
 #include <iostream>
 
 #include "app/commands/commands.h"
+#include "app/commands/device_check.h"
 #include "app/console.h"
 #include "app/report/calibration_report.h"
 #include "planning_io/board_captures.h"
@@ -15,15 +14,6 @@
 
 namespace planlight {
 namespace {
-
-std::string today() {
-    const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-    std::tm utc{};
-    gmtime_r(&now, &utc);
-    char text[32];
-    std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &utc);
-    return text;
-}
 
 StripeSettings stripes_of(const CaptureFolder& settings, const Path& pose) {
     StripeSettings stripes;
@@ -57,17 +47,22 @@ std::vector<std::string> names_of(const StripeSettings& stripes, const Path& pos
 struct Observed {
     std::vector<PoseObservation> poses;
     int projector_width = 0, projector_height = 0;
+    DeviceSerials serials;
 };
 
 /// One pose after the other, so that only one pose's pictures are in memory.
 Observed observe_captures(const CalibrateOptions& options, const BoardSpec& board) {
     Observed observed;
+    observed.serials = {options.serial_left, options.serial_right, options.serial_projector};
     ProgressBar bar;
     const auto folders = pose_folders(options.captures);
     for (std::size_t i = 0; i < folders.size(); ++i) {
         const auto settings = pose_settings(folders[i]);
         std::optional<StripeSettings> stripes;
-        if (settings) stripes = stripes_of(*settings, folders[i]);
+        if (settings) {
+            stripes = stripes_of(*settings, folders[i]);
+            observed.serials = joined_serials(observed.serials, settings->serials, folders[i]);
+        }
         if (i > 0 && (stripes ? stripes->width : 0) != observed.projector_width)
             throw InputError(folders[i], "was captured under other light than the first pose",
                              "Capture all poses with one sequence.");
@@ -106,9 +101,10 @@ int run_calibrate(const CalibrateOptions& options) {
     const Observed observed = observe_captures(options, board);
     const Calibration calibration = calibrate_rig(observed.poses, board, observed.projector_width, observed.projector_height);
     if (calibration.refusal) throw CheckFailedError(calibration.refusal->reason, calibration.refusal->remedy);
-    CalibrationReport report{calibration, observed.poses, board, today(), {}, {}};
+    CalibrationReport report{calibration, observed.poses, board, today(), {}, {}, observed.serials};
     if (calibration.makes_a_rig()) {
-        const RigCalibration rig = rig_calibration_of(calibration, report.made_on);
+        RigCalibration rig = rig_calibration_of(calibration, report.made_on);
+        rig.serials = observed.serials;
         if (const auto before = previous_rig(options.out); before && before->whole() && rig.whole())
             report.changes = changes_since(*before, rig);
         write_rig(rig, options.out);

@@ -8,6 +8,7 @@
 
 #include "app/commands/capture_conversion.h"
 #include "app/commands/commands.h"
+#include "app/commands/device_check.h"
 #include "app/console.h"
 #include "planning_io/rig_file.h"
 #include "planning_io/safe_write.h"
@@ -47,7 +48,7 @@ std::vector<EarlierCheck> earlier_checks(const Json& log, const std::string& rig
 
 int run_check(const CheckOptions& options) {
     const RigCalibration rig = read_rig(options.rig);
-    const ScanCapture capture = scan_capture_from(read_capture(options.capture), options.capture);
+    const ScanCapture capture = scan_capture_from(read_capture_of(rig, options.capture), options.capture);
     check_sizes(capture, rig, options.capture);
     Path file = options.log;
     if (file.empty()) {

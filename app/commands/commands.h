@@ -50,6 +50,7 @@ int run_board(const BoardOptions& options);
 struct CalibrateOptions {
     Path captures, out = "rig.json";
     std::string board;
+    std::string serial_left, serial_right, serial_projector;  ///< empty: as capture.json says
     bool json = false;
 };
 int run_calibrate(const CalibrateOptions& options);
@@ -109,6 +110,20 @@ struct ProjectOptions {
 };
 int run_project(const ProjectOptions& options);
 
+struct ProjectorOptions {
+    Path recording, keep, out;       ///< `out`: projector.json, empty: not written; `keep`: folder for what is recorded
+    std::string simulate;            ///< preset of the simulated room; empty: none
+    std::vector<std::string> light;  ///< of the simulated room, NAME=NUMBER
+    std::string part = "all", monitor, serial;
+    unsigned seed = 1;
+    double refresh_hz = 60, configured_delay_ms = -1;  ///< the delay in force; below 0: as the recording says
+    bool identify = false, show = false;
+    double frames_hz = 25;  ///< of the cameras that look while `show`s
+    double seconds = 15;  ///< of `identify`
+    bool json = false;
+};
+int run_projector(const ProjectorOptions& options);
+
 struct ReviewOptions {
     Path case_folder, picture, registration, cloud;
     Path landmarks;              ///< table to click landmarks into; empty: not wanted
@@ -126,6 +141,8 @@ struct SessionOptions {
     bool autoplay = false;
     double end_after_s = 0;  ///< wall time; 0 = until the window is closed
     Path screenshots;
+    double light_delay_ms = -1;  ///< of the projector window; below 0: the default, or what `projector_file` says
+    Path projector_file;         ///< projector.json of the monitor; empty: none
 };
 int run_session(const SessionOptions& options);
 

@@ -6,6 +6,7 @@
 
 #include "app/commands/capture_conversion.h"
 #include "app/commands/commands.h"
+#include "app/commands/device_check.h"
 #include "app/console.h"
 #include "planning_io/mesh_file.h"
 #include "planning_io/rig_file.h"
@@ -83,7 +84,7 @@ int run_scan(const ScanOptions& options) {
     std::vector<Path> folders{options.capture};
     folders.insert(folders.end(), options.exposures.begin(), options.exposures.end());
     for (const Path& folder : folders) {
-        captures.push_back(scan_capture_from(read_capture(folder), folder));
+        captures.push_back(scan_capture_from(read_capture_of(rig, folder), folder));
         check_sizes(captures.back(), rig, folder);
         if (captures.back().stripes.rows != captures.front().stripes.rows ||
             captures.back().right.empty() != captures.front().right.empty())

@@ -18,6 +18,8 @@ int run_session(const SessionOptions& options) {
     live.speed_mm_s = options.speed_mm_s;
     live.projector_monitor = options.projector_monitor;
     live.operator_monitor = options.operator_monitor;
+    if (!options.projector_file.empty()) live.projector = read_projector_file(options.projector_file);
+    if (options.light_delay_ms >= 0) live.projector.light_delay = from_seconds(options.light_delay_ms / 1e3);
     live.autoplay = options.autoplay;
     live.end_after_s = options.end_after_s;
     live.screenshots = options.screenshots;

@@ -6,6 +6,7 @@
 
 #include "app/commands/capture_conversion.h"
 #include "app/commands/commands.h"
+#include "app/commands/device_check.h"
 #include "app/console.h"
 #include "planning_io/recording_files.h"
 #include "planning_io/rig_file.h"
@@ -19,9 +20,9 @@ StereoFrame stereo_frame(const RecordedFrame& recorded) {
     return {recorded.left, recorded.right, recorded.at, recorded.exposure, recorded.number};
 }
 
-StereoFrame reference_frame(const TrackOptions& options, const std::vector<RecordedFrame>& frames) {
+StereoFrame reference_frame(const TrackOptions& options, const RigCalibration& rig, const std::vector<RecordedFrame>& frames) {
     if (options.capture.empty()) return stereo_frame(frames.front());
-    const ScanCapture capture = scan_capture_from(read_capture(options.capture), options.capture);
+    const ScanCapture capture = scan_capture_from(read_capture_of(rig, options.capture), options.capture);
     if (capture.right.empty())
         throw InputError(options.capture, "has the left camera's pictures only", "Markers need both cameras: capture with both.");
     return {capture.left.front(), capture.right.front(), capture.began, Instant{}, 0};
@@ -30,10 +31,11 @@ StereoFrame reference_frame(const TrackOptions& options, const std::vector<Recor
 }  // namespace
 
 int run_track(const TrackOptions& options) {
-    PatientTracker tracker(read_rig(options.rig));
+    const RigCalibration rig = read_rig(options.rig);
+    PatientTracker tracker(rig);
     const auto frames = read_frames(options.frames);
     if (frames.empty()) throw InputError(options.frames, "there is no frame in the folder", "Record at least one frame.");
-    const auto markers = tracker.set_reference(reference_frame(options, frames)).size();
+    const auto markers = tracker.set_reference(reference_frame(options, rig, frames)).size();
     if (markers < 3)
         throw CheckFailedError(fmt::format("only {} markers were found by both cameras in the reference picture", markers),
                                "Paste at least five markers where both cameras see them.");

@@ -9,6 +9,7 @@
 
 #include "app/live/case_model.h"
 #include "app/live/live_session.h"
+#include "app/live/steady_clock.h"
 #include "app/windows/operator_window.h"
 #include "planning_io/image_file.h"
 #include "planning_io/types/error.h"
@@ -19,12 +20,6 @@ namespace {
 
 /// Set by Ctrl-C or a polite kill: the loop ends as if the window had been closed, and everything is dark on the way out.
 volatile std::sig_atomic_t asked_to_end = 0;
-
-/// The wall's monotonic clock, for the projector window.
-class SteadyClock final : public Clock {
-public:
-    Instant now() const override { return std::chrono::steady_clock::now().time_since_epoch(); }
-};
 
 /// The simulated room needs longer for a picture than a real one; the projector window forgives it this much.
 constexpr auto kPictureValidity = std::chrono::milliseconds(2500);
@@ -46,7 +41,7 @@ RgbImage fitted(const RgbImage& picture, int width, int height) {
 /// Keeps the projector window at the newest light of the session.
 class LightWindow {
 public:
-    LightWindow(const std::string& monitor) : window_(monitor, clock_) {}
+    LightWindow(const std::string& monitor, const ProjectorWindowSettings& settings) : window_(monitor, clock_, false, settings) {}
 
     void follow(const LiveSession& session) {
         const auto light = session.light();
@@ -73,6 +68,24 @@ std::string light_monitor(const LiveOptions& options) {
     for (const auto& monitor : list_monitors())
         if (!monitor.primary) return monitor.name;
     return {};
+}
+
+/// Refuses a monitor that is not the projector which was measured.
+void check_monitor(const std::string& name, const ProjectorFacts& facts) {
+    const auto monitors = list_monitors();
+    for (std::size_t i = 0; i < monitors.size(); ++i) {
+        const Monitor& m = monitors[i];
+        if (m.name != name && std::to_string(i) != name) continue;
+        const auto other = [&](const std::string& what, const std::string& is, const std::string& was) {
+            throw CheckFailedError(fmt::format("the projector on {} is not the one that was measured on {}: its {} is {}, was {}", m.name,
+                                               facts.made_on, what, is, was),
+                                   "Connect that projector, set its resolution, or measure this one with `planlight projector`.");
+        };
+        if (facts.width > 0 && (m.width != facts.width || m.height != facts.height))
+            other("resolution", fmt::format("{} x {}", m.width, m.height), fmt::format("{} x {}", facts.width, facts.height));
+        if (!facts.serial.empty() && !m.serial.empty() && m.serial != facts.serial) other("serial", m.serial, facts.serial);
+        if (!facts.monitor.empty() && m.name != facts.monitor) other("monitor", m.name, facts.monitor);
+    }
 }
 
 /// Presses the buttons in their order as soon as each is free: the session by itself.
@@ -124,7 +137,12 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
     if (!options.operator_monitor.empty()) window_settings.monitor = options.operator_monitor;
     OperatorWindow window(window_settings);
     std::unique_ptr<LightWindow> light;
-    if (const std::string monitor = light_monitor(options); !monitor.empty()) light = std::make_unique<LightWindow>(monitor);
+    if (const std::string monitor = light_monitor(options); !monitor.empty()) {
+        check_monitor(monitor, options.projector);
+        ProjectorWindowSettings light_settings;
+        light_settings.light_delay = options.projector.light_delay.value_or(light_settings.light_delay);
+        light = std::make_unique<LightWindow>(monitor, light_settings);
+    }
     LiveSession session(volume, the_case, drawing, {options.preset, options.seed, options.speed_mm_s, options.keep_matches_in});
     Autoplay autoplay;
     Screenshots screenshots(options.screenshots);

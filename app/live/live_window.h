@@ -6,6 +6,7 @@
 
 #include "app/session.h"
 #include "app/windows/operator_model.h"
+#include "planning_io/light_file.h"
 #include "planning_io/types/point_pair.h"
 #include "planning_io/types/volume.h"
 #include "registration/simulation/simulated_rig.h"
@@ -17,6 +18,7 @@ struct LiveOptions {
     unsigned seed = 1;
     double speed_mm_s = 20;
     std::string projector_monitor;  ///< name or number; empty: the first monitor that is not the primary one, if there is one
+    ProjectorFacts projector;       ///< what was measured of the projector; empty fields are not compared
     std::string operator_monitor;   ///< empty: the primary one
     bool autoplay = false;          ///< scan, register and track without a person
     double end_after_s = 0;         ///< of projecting, wall time; 0 = until the window is closed

@@ -16,6 +16,7 @@ struct CalibrationReport {
     std::string made_on;               ///< ISO 8601
     std::filesystem::path rig_file;    ///< empty: not a whole rig
     std::vector<std::string> changes;  ///< since the calibration before
+    DeviceSerials serials;
 };
 
 /// Baseline, and how far the projector moved against the cameras, one sentence each.

@@ -45,7 +45,7 @@ struct SimulatedBoardRoom::Room final : Projector, StereoCamera, Clock {
 
     RigidTransform random_pose(std::mt19937& random) const;
     double share_in_view(const RigidTransform& room_from_board) const;
-    GrayImage expose(CameraView& view, const Sensor& sensor, const LightMap& light, std::uint64_t frame);
+    GrayImage expose(CameraView& view, const Sensor& sensor, const LightMap& light, double lamps, std::uint64_t frame);
     void look();
 
     BoardSheet sheet;
@@ -70,7 +70,8 @@ SimulatedBoardRoom::Room::Room(const BoardSheet& print, const BoardRoomSettings&
     random.seed(static_cast<unsigned>(mixed(static_cast<std::uint64_t>(settings.seed) * 64 + 40)));
     for (int i = 0; i < settings.poses; ++i) room_from_board.push_back(random_pose(random));
     if (!room_from_board.empty()) room_from_board_now = room_from_board.front();
-    schedule = LightSchedule(rig.projector.columns, rig.projector.rows, std::chrono::milliseconds(25));
+    schedule = LightSchedule(rig.projector.columns, rig.projector.rows, settings.projector_delay, settings.light,
+                             mixed(static_cast<std::uint64_t>(settings.seed) + 9000));
     const auto sensor = [&](const Optics& camera, double blur_px, std::uint64_t number) {
         return Sensor{camera.columns, camera.rows,    blur_px,
                       0.85,           settings.noise, mixed(2 * static_cast<std::uint64_t>(settings.seed) + 5000 + number)};
@@ -127,9 +128,10 @@ void SimulatedBoardRoom::Room::look() {
     seen = true;
 }
 
-GrayImage SimulatedBoardRoom::Room::expose(CameraView& view, const Sensor& sensor, const LightMap& light, std::uint64_t frame) {
+GrayImage SimulatedBoardRoom::Room::expose(CameraView& view, const Sensor& sensor, const LightMap& light, double lamps,
+                                           std::uint64_t frame) {
     const double gain = settings.brightness * (200.0 / 255 - settings.ambient) / SheetLook::kPaperAlbedo;
-    const double ambient = settings.ambient / SheetLook::kPaperAlbedo;
+    const double ambient = lamps * settings.ambient / SheetLook::kPaperAlbedo;
     view.expose(light, static_cast<float>(gain), static_cast<float>(ambient), light_buffer);
     return sense(sensor, light_buffer, frame);
 }
@@ -139,12 +141,13 @@ Instant SimulatedBoardRoom::Room::show(const RgbImage& picture, Instant valid_un
         throw DeviceError("simulated projector", "a picture of another size was to be shown",
                           "Draw the picture in the projector's own size.");
     schedule.show(picture, now_, valid_until);
-    return now_ + std::chrono::milliseconds(25);
+    return now_ + settings.projector_delay;
 }
 
 StereoFrame SimulatedBoardRoom::Room::grab(Instant not_before, std::chrono::milliseconds patience) {
     const Instant from = std::max(not_before, now_);
-    const auto number = (from.count() + rig.frame_interval.count() - 1) / rig.frame_interval.count();
+    auto number = (from.count() + rig.frame_interval.count() - 1) / rig.frame_interval.count();
+    while (frame_is_lost(settings.light, settings.seed, number)) ++number;
     const Instant begins = number * rig.frame_interval, ends = begins + rig.exposure;
     if (ends - now_ > patience)
         throw DeviceError("simulated cameras", "no frame came in time", "Wait longer, or ask for an earlier frame.");
@@ -153,9 +156,10 @@ StereoFrame SimulatedBoardRoom::Room::grab(Instant not_before, std::chrono::mill
     frame.exposure = rig.exposure;
     frame.number = static_cast<std::uint64_t>(number);
     look();
-    const auto light = schedule.at(frame.at);
-    frame.left = expose(left_view, left_sensor, *light, frame.number);
-    frame.right = expose(right_view, right_sensor, *light, frame.number);
+    const auto light = schedule.during(begins, ends);
+    const double lamps = lamps_during(settings.light, begins, ends);
+    frame.left = expose(left_view, left_sensor, *light, lamps, frame.number);
+    frame.right = expose(right_view, right_sensor, *light, lamps, frame.number);
     now_ = ends;
     return frame;
 }
@@ -172,6 +176,15 @@ StereoCamera& SimulatedBoardRoom::cameras() {
 }
 const Clock& SimulatedBoardRoom::clock() const {
     return *room_;
+}
+void SimulatedBoardRoom::wait(Instant duration) {
+    room_->now_ += std::max(duration, Instant{});
+}
+void SimulatedBoardRoom::cover_projector(bool covered) {
+    room_->schedule.cover(covered);
+}
+const std::vector<TrueLight>& SimulatedBoardRoom::true_lights() const {
+    return room_->schedule.truth();
 }
 int SimulatedBoardRoom::poses() const {
     return static_cast<int>(room_->room_from_board.size());

@@ -22,6 +22,8 @@ struct BoardRoomSettings {
     double ambient = 0.12;                        ///< share of full scale on white paper
     double brightness = 1;                        ///< 1: white paper at the working point is about 200 grey
     bool noise = true;
+    Instant projector_delay = std::chrono::milliseconds(25);
+    LightSettings light;
 };
 
 /// The simulated rig of `build_rig` with a printed board before it, in random poses: the captures of a calibration.
@@ -36,6 +38,9 @@ public:
     StereoCamera& cameras();
     const Clock& clock() const;
 
+    void wait(Instant duration);         ///< lets simulated time pass
+    void cover_projector(bool covered);  ///< a lid before its lens: not even the leak of a black picture comes out
+
     int poses() const;
     void lay(int pose);                       ///< puts the board into a pose
     void slip(const Eigen::Vector3d& by_mm);  ///< shifts the board (room frame) from now on, until the next `lay`
@@ -44,6 +49,7 @@ public:
 
     // ---- truth: nothing of the product reads what follows ----
     RigCalibration true_rig() const;  ///< before any knock
+    const std::vector<TrueLight>& true_lights() const;  ///< when every order to the projector became light
     RigidTransform true_rig_from_board(int pose) const;
     std::string truth_json() const;
 

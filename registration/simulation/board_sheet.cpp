@@ -7,6 +7,13 @@ namespace planlight::simulation {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
+BoardSheet white_card() {
+    BoardSheet sheet;
+    sheet.px_per_mm = 2;
+    sheet.print = GrayImage(420, 594, 255);
+    return sheet;
+}
+
 double BoardSheet::z_at(double x, double y, Vector2d* slope) const {
     if (sag_mm == 0) {
         if (slope) slope->setZero();

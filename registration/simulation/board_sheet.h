@@ -20,6 +20,9 @@ struct BoardSheet {
     double z_at(double x, double y, Eigen::Vector2d* slope = nullptr) const;
 };
 
+/// White paper without a print, 210 x 297 mm.
+BoardSheet white_card();
+
 /// The sheet as a surface: rays meet it by Newton's method on its height.
 class SheetSurface final : public Surface {
 public:

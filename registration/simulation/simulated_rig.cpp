@@ -49,7 +49,7 @@ struct SimulatedRig::Room final : Projector, StereoCamera, Clock {
     RigidTransform ct_from_room(Instant at) const { return history.room_from_ct(at).inverse(); }
     void add_motion(const Motion& motion);
     void look_at_head(Instant at);
-    GrayImage expose(CameraView& view, const Sensor& sensor, const LightMap& light, std::uint64_t frame);
+    GrayImage expose(CameraView& view, const Sensor& sensor, const LightMap& light, double lamps, std::uint64_t frame);
     void set_exposure();
 
     /// Seeded apart for every purpose, so that more of one does not change the others.
@@ -88,7 +88,8 @@ SimulatedRig::Room::Room(const Volume& volume, const std::vector<Vector3d>& keep
     look.stickers = place_stickers(skin, region, keep_clear_in_ct, rig.left_camera.seen_from(to_ct),
                                    rig.right_camera.seen_from(to_ct), rig.projector.seen_from(to_ct), settings.markers, random);
     for (const Sticker& sticker : look.stickers) markers_in_ct.push_back(sticker.centre_in_ct);
-    schedule = LightSchedule(rig.projector.columns, rig.projector.rows, settings.projector_delay);
+    schedule = LightSchedule(rig.projector.columns, rig.projector.rows, settings.projector_delay, settings.light,
+                             mixed(static_cast<std::uint64_t>(settings.seed) + 9000));
     left_sensor = {rig.left_camera.columns, rig.left_camera.rows, rig.left_blur_px, 0.85, settings.noise,
                    mixed(2 * static_cast<std::uint64_t>(settings.seed) + 1000)};
     right_sensor = {rig.right_camera.columns, rig.right_camera.rows, rig.right_blur_px, 0.85, settings.noise,
@@ -112,7 +113,7 @@ void SimulatedRig::Room::set_exposure() {
     constexpr double kBrightSkin = 165.0 / 255;
     look_at_head(now_);
     const RgbImage white(width(), height(), {255, 255, 255});
-    const LightMap light(width(), height(), &white);
+    const LightMap light(width(), height(), &white, settings.light.panel);
     double sum = 0;
     for (CameraView* view : {&left_view, &right_view}) {
         view->expose(light, 1, 0, light_buffer);
@@ -139,8 +140,9 @@ void SimulatedRig::Room::look_at_head(Instant at) {
     seen_room_from_ct = room_from_ct.matrix();
 }
 
-GrayImage SimulatedRig::Room::expose(CameraView& view, const Sensor& sensor, const LightMap& light, std::uint64_t frame) {
-    const double ambient = settings.ambient / SkinLook::kSkinAlbedo;
+GrayImage SimulatedRig::Room::expose(CameraView& view, const Sensor& sensor, const LightMap& light, double lamps,
+                                     std::uint64_t frame) {
+    const double ambient = lamps * settings.ambient / SkinLook::kSkinAlbedo;
     view.expose(light, static_cast<float>(gain), static_cast<float>(ambient), light_buffer);
     return sense(sensor, light_buffer, frame);
 }
@@ -161,7 +163,8 @@ Instant SimulatedRig::Room::show(const RgbImage& picture, Instant valid_until) {
 
 StereoFrame SimulatedRig::Room::grab(Instant not_before, std::chrono::milliseconds patience) {
     const Instant from = std::max({not_before, now_, Instant{}});
-    const auto number = (from.count() + rig.frame_interval.count() - 1) / rig.frame_interval.count();
+    auto number = (from.count() + rig.frame_interval.count() - 1) / rig.frame_interval.count();
+    while (frame_is_lost(settings.light, settings.seed, number)) ++number;
     const Instant begins = number * rig.frame_interval, ends = begins + rig.exposure;
     if (ends - now_ > patience) {
         now_ += patience;
@@ -173,9 +176,10 @@ StereoFrame SimulatedRig::Room::grab(Instant not_before, std::chrono::millisecon
     frame.exposure = rig.exposure;
     frame.number = static_cast<std::uint64_t>(number);
     look_at_head(frame.at);
-    const auto light = schedule.at(frame.at);
-    frame.left = expose(left_view, left_sensor, *light, frame.number);
-    frame.right = expose(right_view, right_sensor, *light, frame.number);
+    const auto light = schedule.during(begins, ends);
+    const double lamps = lamps_during(settings.light, begins, ends);
+    frame.left = expose(left_view, left_sensor, *light, lamps, frame.number);
+    frame.right = expose(right_view, right_sensor, *light, lamps, frame.number);
     now_ = ends;
     return frame;
 }
@@ -189,6 +193,7 @@ StereoCamera& SimulatedRig::cameras() { return *room_; }
 const Clock& SimulatedRig::clock() const { return *room_; }
 const RigCalibration& SimulatedRig::calibration() const { return room_->calibration; }
 void SimulatedRig::wait(Instant duration) { room_->now_ += std::max(duration, Instant{}); }
+void SimulatedRig::cover_projector(bool covered) { room_->schedule.cover(covered); }
 void SimulatedRig::set_motion(const Motion& motion) { room_->add_motion(motion); }
 
 void SimulatedRig::cover_markers(const std::vector<int>& markers) {
@@ -240,6 +245,7 @@ bool SimulatedRig::truly_seen(Camera camera, const Lit& skin, Instant at) const 
 }
 
 const std::vector<Vector3d>& SimulatedRig::true_markers_in_ct() const { return room_->markers_in_ct; }
+const std::vector<TrueLight>& SimulatedRig::true_lights() const { return room_->schedule.truth(); }
 RigCalibration SimulatedRig::true_rig() const { return exported(room_->rig); }
 
 std::string SimulatedRig::truth_json() const {

@@ -11,6 +11,7 @@
 #include "planning_io/types/volume.h"
 #include "registration/devices/projector.h"
 #include "registration/devices/stereo_camera.h"
+#include "registration/simulation/light.h"
 
 namespace planlight::simulation {
 
@@ -36,6 +37,7 @@ struct RoomSettings {
     double calibration_error = 1;    ///< scales the difference between true and calibrated rig (0 = perfect)
     Instant projector_delay = std::chrono::milliseconds(25);
     bool noise = true;
+    LightSettings light;
 };
 
 /// The simulated operating room: a true head (the CT field), a true projector, two true cameras and a clock of its own.
@@ -59,6 +61,9 @@ public:
 
     /// Lets simulated time pass (the product's own computing time, for example).
     void wait(Instant duration);
+
+    /// A lid before the projector's lens from now on, or taken away: not even the leak of a black picture comes out.
+    void cover_projector(bool covered);
 
     /// From now on the head moves so (its pose is continuous).
     void set_motion(const Motion& motion);
@@ -99,6 +104,9 @@ public:
 
     /// Centres of the markers on the true skin, ct, mm.
     const std::vector<Eigen::Vector3d>& true_markers_in_ct() const;
+
+    /// When every order to the projector became light, going dark included.
+    const std::vector<TrueLight>& true_lights() const;
 
     /// The true rig (for reports of the calibration's error).
     RigCalibration true_rig() const;

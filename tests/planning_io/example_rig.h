@@ -16,7 +16,7 @@ inline RigCalibration example_rig() {
         d.device_from_rig = rig_from_device.inverse();
         return d;
     };
-    return {device(-150, 0.15), device(150, -0.15), device(3, 0), "2026-01-02", 0.11};
+    return {device(-150, 0.15), device(150, -0.15), device(3, 0), "2026-01-02", 0.11, {}};
 }
 
 }  // namespace planlight::test

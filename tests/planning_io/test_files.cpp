@@ -173,9 +173,13 @@ TEST(PointPairsFile, ReadsBackAndRefusesNamesThatBreakTheTable) {
 TEST(RigFile, ReadsBackValueForValueAndRefusesNonsense) {
     const test::TemporaryFolder folder;
     const fs::path file = folder.path() / "rig.json";
-    const RigCalibration rig = test::example_rig();
+    RigCalibration rig = test::example_rig();
+    write_rig(rig, file);
+    EXPECT_EQ(read_rig(file).serials, DeviceSerials{}) << "a file without serials, as all were";
+    rig.serials = {"L-1", "", "P \"9\""};
     write_rig(rig, file);
     const RigCalibration back = read_rig(file);
+    EXPECT_EQ(back.serials, rig.serials);
     EXPECT_EQ(back.left_camera.device_from_rig.matrix(), rig.left_camera.device_from_rig.matrix());
     EXPECT_EQ(back.right_camera.k3, 0.001);
     EXPECT_EQ(back.projector.centre_y, 541.1);

@@ -10,24 +10,20 @@
 #include <string>
 #include <thread>
 
+#include "app/live/steady_clock.h"
 #include "app/windows/operator_window.h"
 #include "fake_model.h"
 #include "planning_io/types/error.h"
 #include "projection/projector_window.h"
 #include "projector_picture.h"
-#include "write_picture.h"
+#include "root_window.h"
 
 namespace {
 
 using namespace planlight;
-int failures = 0;
-
-void expect(bool fact, const std::string& what) {
-    fmt::print("{} {}\n", fact ? "ok  " : "FAIL", what);
-    std::fflush(stdout);
-    if (!fact) ++failures;
-}
-
+using test::different;
+using test::expect;
+using test::screen;
 void expect_refusal(const std::string& what, const std::string& word, const std::function<void()>& act) {
     try {
         act();
@@ -35,27 +31,6 @@ void expect_refusal(const std::string& what, const std::string& word, const std:
     } catch (const DeviceError& error) {
         expect(std::string(error.what()).find(word) != std::string::npos && !error.remedy.empty(), what + ": " + error.what());
     }
-}
-
-class SteadyClock final : public Clock {
-public:
-    Instant now() const override { return std::chrono::steady_clock::now().time_since_epoch(); }
-};
-
-RgbImage screen(const std::string& folder, const std::string& name) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(150));
-    const std::string file = folder + "/" + name + ".ppm";
-    if (std::system(("import -window root -depth 8 " + file).c_str()) != 0) throw std::runtime_error("import failed");
-    return test::read_picture(file);
-}
-
-/// How many pixels of the monitor differ from `wanted`.
-long different(const RgbImage& root, const Monitor& monitor, const RgbImage& wanted) {
-    long count = 0;
-    for (int y = 0; y < monitor.height; ++y)
-        for (int x = 0; x < monitor.width; ++x)
-            if (root.at(monitor.x + x, monitor.y + y) != wanted.at(x, y)) ++count;
-    return count;
 }
 
 void run(const std::string& folder) {
@@ -131,5 +106,5 @@ int main(int argc, char** argv) {
     } catch (const std::exception& error) {
         expect(false, std::string("thrown: ") + error.what());
     }
-    return failures == 0 ? 0 : 1;
+    return test::failures() == 0 ? 0 : 1;
 }

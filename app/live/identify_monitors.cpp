@@ -1,0 +1,51 @@
+#include "app/live/identify_monitors.h"
+
+#include <fmt/format.h>
+
+#include <csignal>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "app/console.h"
+#include "app/live/steady_clock.h"
+#include "projection/monitor_card.h"
+
+namespace planlight {
+namespace {
+
+volatile std::sig_atomic_t asked_to_end = 0;
+
+}  // namespace
+
+int identify_monitors(const ProjectorOptions& options) {
+    const std::vector<Monitor> monitors = list_monitors();
+    nlohmann::ordered_json list = nlohmann::ordered_json::array();
+    for (std::size_t i = 0; i < monitors.size(); ++i) {
+        const Monitor& m = monitors[i];
+        list.push_back({{"number", i},
+                        {"name", m.name},
+                        {"width", m.width},
+                        {"height", m.height},
+                        {"refresh_hz", m.refresh_hz},
+                        {"x", m.x},
+                        {"y", m.y},
+                        {"primary", m.primary},
+                        {"model", m.model},
+                        {"serial", m.serial}});
+        if (!options.json)
+            fmt::print("{} {}: {} x {}, {:g} Hz{}{}{}\n", i, m.name, m.width, m.height, m.refresh_hz, m.primary ? ", primary" : "",
+                       m.model.empty() ? "" : ", " + m.model, m.serial.empty() ? "" : ", serial " + m.serial);
+    }
+    if (options.json) std::cout << list.dump(2) << '\n';
+    std::cout.flush();
+    std::fflush(stdout);
+    if (options.seconds <= 0) return 0;
+    fmt::print(stderr, "Every monitor shows its name for {:g} s, then goes dark. Nobody may lie under the projector. Ctrl-C ends it.\n",
+               options.seconds);
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
+    const SteadyClock clock;
+    for (const std::string& why : show_monitor_cards(clock, options.seconds, [] { return asked_to_end != 0; })) warn(why);
+    return 0;
+}
+
+}  // namespace planlight

@@ -1,0 +1,53 @@
+#include <X11/Xatom.h>
+#include <X11/Xlib.h>
+#include <X11/extensions/Xrandr.h>
+
+#include <memory>
+
+#include "projection/edid.h"
+
+namespace planlight {
+namespace {
+
+template <auto Free>
+struct Freed {
+    template <class T>
+    void operator()(T* pointer) const {
+        Free(pointer);
+    }
+};
+
+std::vector<std::uint8_t> property_of(Display* display, RROutput output) {
+    const Atom edid = XInternAtom(display, "EDID", True);
+    if (edid == None) return {};
+    Atom type = None;
+    int format = 0;
+    unsigned long items = 0, more = 0;
+    unsigned char* data = nullptr;
+    constexpr long kMost = 256;  // of 4 bytes
+    if (XRRGetOutputProperty(display, output, edid, 0, kMost, False, False, AnyPropertyType, &type, &format, &items, &more, &data) != Success)
+        return {};
+    const std::unique_ptr<unsigned char, Freed<XFree>> owned(data);
+    if (data == nullptr || type != XA_INTEGER || format != 8) return {};
+    return {data, data + items};
+}
+
+}  // namespace
+
+std::optional<Edid> edid_of_output(const std::string& name) {
+    const std::unique_ptr<Display, Freed<XCloseDisplay>> display(XOpenDisplay(nullptr));
+    int event = 0, error = 0;
+    if (!display || XRRQueryExtension(display.get(), &event, &error) == 0) return std::nullopt;
+    const std::unique_ptr<XRRScreenResources, Freed<XRRFreeScreenResources>> resources(
+        XRRGetScreenResourcesCurrent(display.get(), DefaultRootWindow(display.get())));
+    if (!resources) return std::nullopt;
+    for (int i = 0; i < resources->noutput; ++i) {
+        const std::unique_ptr<XRROutputInfo, Freed<XRRFreeOutputInfo>> info(
+            XRRGetOutputInfo(display.get(), resources.get(), resources->outputs[i]));
+        if (info && name == std::string(info->name, static_cast<std::size_t>(info->nameLen)))
+            return parse_edid(property_of(display.get(), resources->outputs[i]));
+    }
+    return std::nullopt;
+}
+
+}  // namespace planlight
