@@ -44,8 +44,8 @@ void decode_direction(std::span<const GrayImage> pairs, int size, std::size_t be
 kernels::Counts decode_block(const GrayPairs& frames, const GrayLimits& limits, std::size_t begin, std::size_t n, Block& b,
                              DecodedView& view) {
     const std::uint8_t *white = frames.white.pixels.data() + begin, *black = frames.black.pixels.data() + begin;
-    kernels::expect_next(white);
-    kernels::expect_next(black);
+    kernels::expect_next(white, kernels::kFarAhead);
+    kernels::expect_next(black, kernels::kFarAhead);
     float *column = view.column.data() + begin, *row = view.row.data() + begin, *sigma = view.sigma_px.data() + begin;
     if (kernels::highest_contrast(white, black, n) < limits.least_grey)
         return kernels::keep_none(white, limits.saturated_at, column, row, sigma, n);

@@ -37,18 +37,22 @@ PLANLIGHT_INLINE int binary_from_gray(int v) {
     return v;
 }
 
-PLANLIGHT_INLINE std::uint8_t less_or_zero(std::uint8_t a, std::uint8_t b) {
-    return a > b ? static_cast<std::uint8_t>(a - b) : std::uint8_t{0};
-}
-
 }  // namespace
 
+typedef std::uint8_t Bytes __attribute__((vector_size(64)));
+
 PLANLIGHT_CLONES int highest_contrast(const std::uint8_t* white, const std::uint8_t* black, std::size_t n) {
-    std::uint8_t highest = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-        const std::uint8_t contrast = less_or_zero(white[i], black[i]);
-        highest = highest > contrast ? highest : contrast;
+    Bytes most = {}, a, b;
+    std::size_t i = 0;
+    for (; i + sizeof most <= n; i += sizeof most) {
+        std::memcpy(&a, white + i, sizeof a);
+        std::memcpy(&b, black + i, sizeof b);
+        const Bytes contrast = (a - b) & (Bytes)(a > b);
+        most = most > contrast ? most : contrast;
     }
+    int highest = 0;
+    for (std::size_t lane = 0; lane < sizeof most; ++lane) highest = std::max<int>(highest, most[lane]);
+    for (; i < n; ++i) highest = std::max(highest, white[i] - black[i]);
     return highest;
 }
 
@@ -118,8 +122,6 @@ PLANLIGHT_CLONES void set_where_known(const float* pixel, float value, float* __
 }
 
 namespace {
-
-typedef std::uint8_t Bytes __attribute__((vector_size(64)));
 
 /// The bits [first, first + count) of 64 pixels, in registers until all are decided.
 PLANLIGHT_INLINE void decide_byte(const std::uint8_t* const* frames, const std::uint8_t* const* inverses,

@@ -17,10 +17,14 @@ struct CodeBytes {
 };
 
 /// Asks for the next block of a frame while this one is worked on: the processor by itself does not follow 40 frames at once.
-inline void expect_next(const std::uint8_t* frame) {
+inline void expect_next(const std::uint8_t* frame, std::size_t blocks_ahead = 1) {
+    const std::uint8_t* next = frame + blocks_ahead * kBlock;
 #pragma GCC unroll 16
-    for (std::size_t at = kBlock; at < 2 * kBlock; at += 64) __builtin_prefetch(frame + at);
+    for (std::size_t at = 0; at < kBlock; at += 64) __builtin_prefetch(next + at);
 }
+
+/// White and black are all that is looked at where there is no light: those blocks follow each other quickly.
+inline constexpr std::size_t kFarAhead = 6;
 
 /// The greatest difference of white and black (0 where black is the brighter).
 int highest_contrast(const std::uint8_t* white, const std::uint8_t* black, std::size_t n);

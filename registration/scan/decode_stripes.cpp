@@ -192,8 +192,8 @@ void decode_block(const Frames& frames, const Direction& direction, const Stripe
 kernels::Counts decode_into(const Frames& frames, const StripeSettings& stripes, const kernels::Limits& limits,
                             std::size_t begin, std::size_t n, Work& work, DecodedView& view) {
     const Bytes white = frames.white + begin, black = frames.black + begin;
-    kernels::expect_next(white);
-    kernels::expect_next(black);
+    kernels::expect_next(white, kernels::kFarAhead);
+    kernels::expect_next(black, kernels::kFarAhead);
     float *column = view.column.data() + begin, *row = stripes.rows ? view.row.data() + begin : nullptr,
           *sigma = view.sigma_px.data() + begin;
     // A fringe is never stronger than the light itself; most of a picture shows what no light falls on.
