@@ -191,14 +191,19 @@ LitTiles find_flashing_tiles(const LightRecording& recording) {
     }
     lit = tiles_between(quantile(frames, 0.25), quantile(frames, 0.75));
     if (lit.refusal) return lit;
-    // Frames near one of the two lights: what is between them is a change, not noise.
-    double square = 0;
-    std::size_t count = 0;
+    // From the medians of both halves: the few frames that saw a change are no noise.
+    std::array<std::vector<double>, 2> off;
     for (const FrameBrightness* frame : frames) {
-        const double v = mean_of(*frame, lit.tiles), off = std::min(std::abs(v - lit.black), std::abs(v - lit.white));
-        if (off < 0.15 * (lit.white - lit.black)) square += off * off, ++count;
+        const double v = mean_of(*frame, lit.tiles);
+        const bool bright = v > (lit.black + lit.white) / 2;
+        off[bright].push_back(std::abs(v - (bright ? lit.white : lit.black)));
     }
-    lit.noise = count > 0 ? std::sqrt(square / static_cast<double>(count)) : 0;
+    for (std::vector<double>& side : off) {
+        if (side.empty()) continue;
+        const auto middle = side.begin() + static_cast<std::ptrdiff_t>(side.size() / 2);
+        std::nth_element(side.begin(), middle, side.end());
+        lit.noise = std::max(lit.noise, 1.4826 * *middle);
+    }
     return lit;
 }
 

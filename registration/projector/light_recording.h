@@ -55,7 +55,7 @@ struct LitTiles {
 };
 LitTiles find_lit_tiles(const LightRecording& recording);
 
-/// The same from flashes, by the darker and the brighter quarter of the frames: does not need to know the delay.
+/// The same from flashes, by the darker and the brighter half of the frames, each by its median: does not need to know the delay.
 LitTiles find_flashing_tiles(const LightRecording& recording);
 
 /// Mean over some tiles, grey.

@@ -110,16 +110,19 @@ Seen look_for(const Flashes& flashes, std::size_t c, double delay_s) {
     Seen seen;
     seen.delay.order = change.order;
     double at_least = -1e9, at_most = 1e9;
-    const double sure = std::max(4 * flashes.noise, 0.02);
+    // Light that is as unsteady as that says which of the two it is, but not what part of an exposure it was there.
+    constexpr double kUnsteady = 0.1;
+    const bool coarse = flashes.noise > kUnsteady;
+    const double sure = coarse ? 0.5 : std::max(4 * flashes.noise, 0.02);
     bool old_before = false;
     for (const auto& frame : flashes.frames) {
         if (frame.opened_s < from || frame.closed_s > to) continue;
         const double share = change.to_white ? frame.light : 1 - frame.light;  // of the exposure in the new light
         if (share < sure) {
-            at_least = std::max(at_least, frame.closed_s - share * (frame.closed_s - frame.opened_s));
+            at_least = std::max(at_least, coarse ? frame.opened_s : frame.closed_s - share * (frame.closed_s - frame.opened_s));
             old_before = true;
-        } else if (share > 1 - sure) {
-            at_most = std::min(at_most, frame.opened_s);
+        } else if (share >= 1 - sure) {
+            at_most = std::min(at_most, coarse ? frame.closed_s : frame.opened_s);
         } else {
             at_least = at_most = frame.closed_s - share * (frame.closed_s - frame.opened_s);
             seen.delay.exact = true;
@@ -236,6 +239,11 @@ LatencyResult measure_latency(const LightRecording& recording, const LatencySett
         return refused(result, fmt::format("only {} of {} changes of light are seen cleanly", result.delays.size(), result.changes),
                        "Give the code more light or more frames a flash.");
     fit_delays(flashes.noise, recording.frames.front().exposure, result);
+    if (result.jitter_s > flashes.shortest_s / 4)
+        return refused(result,
+                       fmt::format("the delays differ by {:.0f} ms (standard deviation), too much for flashes of {:.0f} ms", 1e3 * result.jitter_s,
+                                   1e3 * flashes.shortest_s),
+                       "See first whether the light is steady (the colour cycle), then flash longer.");
     if (result.median_s < -0.001)
         return refused(result, fmt::format("the light was seen {:.1f} ms before it was ordered", -1e3 * result.median_s),
                        "The cameras' times are not on the orders' clock: correct their offset, then measure again.");

@@ -113,6 +113,20 @@ TEST(Latency, WhatRepeatsOrDoesNotFitOrIsTooFastIsRefused) {
     EXPECT_TRUE(measure_latency(flashed(dark)).refusal);
 }
 
+TEST(Latency, UnsteadyLightCostsPrecisionNotTruth) {
+    test::LightScene scene;
+    scene.delay = microseconds(33000);
+    for (const double amplitude : {0.05, 0.3, 0.6}) {
+        scene.lamp_at = [=](double t) { return 1 + amplitude * std::sin(2 * M_PI * 57.3 * t); };
+        const LatencyResult r = measure_latency(flashed(scene));
+        ASSERT_FALSE(r.refusal) << amplitude << ": " << r.refusal->reason;
+        EXPECT_NEAR(1e3 * r.median_s, 33, 3) << amplitude;
+        EXPECT_LT(std::abs(r.median_s - 0.033), 4 * r.median_sigma_s + 1e-4) << amplitude;
+        EXPECT_GE(r.light_delay_s, 0.033);
+        EXPECT_LT(r.light_delay_s, 0.050);
+    }
+}
+
 TEST(Latency, PicturesLeftOutAndFramesLostAreCounted) {
     test::LightScene scene;
     auto recording = flashed(scene);
