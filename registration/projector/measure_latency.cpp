@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "registration/projector/fit_delays.h"
+#include "registration/projector/judge_promise.h"
 
 namespace planlight {
 namespace {
@@ -149,48 +150,6 @@ std::size_t unseen_changes(const Flashes& flashes, const LatencyResult& result) 
     return unseen;
 }
 
-void compare_with_promise(const LightRecording& recording, LatencyResult& result) {
-    std::vector<double> promised;
-    LatencyResult::Promise promise;
-    double return_s = 0;  // the longest that `show` took: what a delay from its return has on top
-    bool all_return = true;
-    std::vector<double> after_return;
-    for (const LightDelay& delay : result.delays) {
-        const LightOrder& order = recording.orders[delay.order];
-        if (order.returned) {
-            return_s = seconds(*order.returned - order.at);
-            after_return.push_back(delay.at_least_s - return_s);
-        } else {
-            all_return = false;
-        }
-        if (!order.promised) continue;
-        promised.push_back(seconds(*order.promised - order.at));
-        const double early_s = delay.at_least_s - promised.back();
-        constexpr double kNoticed_s = 0.0005;
-        promise.broken += early_s > kNoticed_s;
-        promise.too_early_s = std::max(promise.too_early_s, early_s);
-    }
-    if (!promised.empty()) {
-        promise.orders = promised.size();
-        std::nth_element(promised.begin(), promised.begin() + static_cast<std::ptrdiff_t>(promised.size() / 2), promised.end());
-        promise.delay_s = promised[promised.size() / 2];
-        result.promise = promise;
-    }
-    double shortest_return = 0;
-    if (all_return && !after_return.empty()) {
-        shortest_return = 1e9;
-        for (const LightDelay& delay : result.delays) {
-            const LightOrder& order = recording.orders[delay.order];
-            shortest_return = std::min(shortest_return, seconds(*order.returned - order.at));
-        }
-    }
-    constexpr double kMargin_s = 0.001;
-    const double seen_s = all_return && !after_return.empty() ? *std::max_element(after_return.begin(), after_return.end())
-                                                              : result.latest_s;
-    const double spread_s = result.median_s - shortest_return + 3 * std::hypot(result.jitter_s, result.median_sigma_s);
-    result.light_delay_s = std::ceil(1e3 * (std::max({seen_s, spread_s, 0.0}) + kMargin_s)) / 1e3;
-}
-
 LatencyResult refused(LatencyResult result, std::string reason, std::string remedy) {
     result.refusal = {std::move(reason), std::move(remedy)};
     return result;
@@ -249,7 +208,7 @@ LatencyResult measure_latency(const LightRecording& recording, const LatencySett
                        "The cameras' times are not on the orders' clock: correct their offset, then measure again.");
     result.unseen = unseen_changes(flashes, result);
     for (const LightDelay& delay : result.delays) result.late += delay.at_least_s > result.median_s + 0.75 / settings.refresh_hz;
-    compare_with_promise(recording, result);
+    judge_promise(recording, result);
     return result;
 }
 

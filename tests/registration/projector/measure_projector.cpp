@@ -1,4 +1,4 @@
-// What `planlight projector` measures in simulated rooms, against their truth. measure_projector paper|modern [ROOMS]
+// What `planlight projector` measures in simulated rooms, against their truth. measure_projector paper|modern [ROOMS] [PART] [v]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -223,10 +223,12 @@ int main(int argc, char** argv) {
     const std::string preset = argc > 1 ? argv[1] : "paper", part = argc > 3 ? argv[3] : "all";
     const Rooms rooms{preset == "modern" ? simulation::Preset::modern : simulation::Preset::paper,
                       argc > 2 ? static_cast<unsigned>(std::stoi(argv[2])) : 20, argc > 4};
-    if (part == "all" || part == "response")
-        for (const bool unsteady : {false, true}) measure_responses(rooms, unsteady);
-    if (part == "all" || part == "latency") measure_latencies(rooms);
-    if (part == "all" || part == "cycle")
-        for (const auto& [wheel, mains] : {std::pair{false, false}, std::pair{false, true}, std::pair{true, true}}) measure_cycles(rooms, wheel, mains);
+    const auto wanted = [&](const std::string& name) { return part == "all" || part == name; };
+    if (wanted("response")) measure_responses(rooms, false);
+    if (wanted("response-unsteady")) measure_responses(rooms, true);
+    if (wanted("latency")) measure_latencies(rooms);
+    if (wanted("cycle-none")) measure_cycles(rooms, false, false);
+    if (wanted("cycle-lamps")) measure_cycles(rooms, false, true);
+    if (wanted("cycle")) measure_cycles(rooms, true, true);
     return 0;
 }
