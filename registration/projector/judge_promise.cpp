@@ -28,7 +28,8 @@ void judge_promise(const LightRecording& recording, LatencyResult& result) {
         promise.delay_s = *middle;
         result.promise = promise;
     }
-    const double spread_s = result.median_s - quickest_return_s + 3 * std::hypot(result.jitter_s, result.median_sigma_s);
+    const double spread_s =
+        result.median_s - quickest_return_s + 3 * std::hypot(result.jitter_s, result.median_sigma_s);
     result.light_delay_s = std::ceil(1e3 * (std::max({latest_s, spread_s, 0.0}) + kMargin_s)) / 1e3;
 }
 

@@ -118,13 +118,16 @@ LitTiles tiles_between(const TileLight& black, const TileLight& white) {
         lit.white += white.grey[t];
     }
     if (lit.tiles.size() + lit.saturated < kLeastTiles)
-        lit.refusal = {fmt::format("the cameras see nothing of the projector: white is at most {:.1f} grey brighter than black", best),
-                       "Lay a white card, or the calibration board, where the light falls and both cameras look, take the lid "
-                       "off the lens, and turn the room's light down."};
+        lit.refusal = {
+            fmt::format("the cameras see nothing of the projector: white is at most {:.1f} grey brighter than black",
+                        best),
+            "Lay a white card, or the calibration board, where the light falls and both cameras look, take the lid "
+            "off the lens, and turn the room's light down."};
     else if (lit.tiles.size() < kLeastTiles)
-        lit.refusal = {fmt::format("the light is too bright for the cameras: {} of {} lit tiles are saturated under white",
-                                   lit.saturated, lit.saturated + lit.tiles.size()),
-                       "Shorten the exposure or close the aperture until white is below 250."};
+        lit.refusal = {
+            fmt::format("the light is too bright for the cameras: {} of {} lit tiles are saturated under white",
+                        lit.saturated, lit.saturated + lit.tiles.size()),
+            "Shorten the exposure or close the aperture until white is below 250."};
     if (lit.refusal) {
         lit.tiles.clear();
         return lit;
@@ -170,14 +173,17 @@ LitTiles find_lit_tiles(const LightRecording& recording) {
     const TileLight black = at_rest(recording, steady, kBlack), white = at_rest(recording, steady, kWhite);
     LitTiles lit;
     if (black.frames == 0 || white.frames == 0) {
-        lit.refusal = {fmt::format("no frame saw a steady {} picture", black.frames == 0 ? "black" : "white"),
-                       fmt::format("Show white and black for {:.1f} s at least, and check that the cameras' times are on the "
-                                   "orders' clock.",
-                                   2 * seconds(recording.settle))};
+        lit.refusal = {
+            fmt::format("no frame saw a steady {} picture", black.frames == 0 ? "black" : "white"),
+            fmt::format("Show white and black for {:.1f} s at least, and check that the cameras' times are on the "
+                        "orders' clock.",
+                        2 * seconds(recording.settle))};
         return lit;
     }
     lit = tiles_between(black, white);
-    if (!lit.refusal) lit.noise = std::max(deviation(recording, steady, lit.tiles, kBlack), deviation(recording, steady, lit.tiles, kWhite));
+    if (!lit.refusal)
+        lit.noise =
+            std::max(deviation(recording, steady, lit.tiles, kBlack), deviation(recording, steady, lit.tiles, kWhite));
     return lit;
 }
 

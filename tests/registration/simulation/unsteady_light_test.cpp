@@ -21,7 +21,8 @@ BoardRoomSettings paper_room() {
 }
 
 double brightness(const GrayImage& picture) {
-    return std::accumulate(picture.pixels.begin(), picture.pixels.end(), 0.0) / static_cast<double>(picture.pixels.size());
+    return std::accumulate(picture.pixels.begin(), picture.pixels.end(), 0.0) /
+           static_cast<double>(picture.pixels.size());
 }
 
 /// Mean brightness of the left picture under one colour, 100 ms after it was ordered.
@@ -41,7 +42,8 @@ TEST(UnsteadyLight, AWheelGivesEachColourItsThirdOfATurnAndAllOfThemInWholeTurns
     EXPECT_NEAR(red[0], 3, 1e-9);
     EXPECT_NEAR(red[1] + red[2], 0, 1e-9);
     for (const double share : wheel_during(light, milliseconds(7), milliseconds(37))) EXPECT_NEAR(share, 1, 1e-9);
-    const auto most = wheel_during(light, milliseconds(5), milliseconds(13));  // half of green, all of blue, 3 ms of red
+    const auto most =
+        wheel_during(light, milliseconds(5), milliseconds(13));  // half of green, all of blue, 3 ms of red
     EXPECT_NEAR(most[0], 3 * (3.0 / 8), 1e-9);
     EXPECT_NEAR(most[1], 3 * (10.0 / 6 / 8), 1e-6);
     EXPECT_NEAR(most[2], 3 * (10.0 / 3 / 8), 1e-6);
@@ -81,7 +83,8 @@ TEST(UnsteadyLight, ByDefaultAFrameSeesItsMiddleAndWithWholeExposureItsShare) {
         // Frames every 40 ms from 0 on, 8 ms long; light 2 ms before the end of one.
         const Instant next = (room.clock().now() / milliseconds(40) + 2) * milliseconds(40);
         room.wait(next + milliseconds(6) - milliseconds(25) - room.clock().now());
-        projector.show(RgbImage(projector.width(), projector.height(), {255, 255, 255}), next + std::chrono::seconds(2));
+        projector.show(RgbImage(projector.width(), projector.height(), {255, 255, 255}),
+                       next + std::chrono::seconds(2));
         const double share = (brightness(room.cameras().grab(next, milliseconds(500)).left) - black) / (white - black);
         EXPECT_NEAR(share, whole ? 0.25 : 0.0, 0.01);
     }
@@ -95,7 +98,8 @@ TEST(UnsteadyLight, DelayJitterAndRefreshAreWhatTheTruthSays) {
     SimulatedBoardRoom room(white_card(), settings);
     for (int i = 0; i < 200; ++i) {
         const Instant now = room.clock().now();
-        EXPECT_EQ(room.projector().show(RgbImage(800, 600), now + milliseconds(90)) - now, milliseconds(25)) << "as it promises";
+        EXPECT_EQ(room.projector().show(RgbImage(800, 600), now + milliseconds(90)) - now, milliseconds(25))
+            << "as it promises";
         room.wait(milliseconds(50));
     }
     double mean_s = 0;
