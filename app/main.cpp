@@ -112,9 +112,11 @@ void add_calibrate(CLI::App& app, CalibrateOptions& o) {
     sub->add_option("--board", o.board,
                     "The board, its square as measured: \"charuco 10x7 24.98 mm\" or \"chessboard 9x6 25 mm\"")
         ->required();
-    sub->add_option("--serial-left", o.serial_left, "Serial of the left camera, kept in rig.json (default: as capture.json says)");
+    sub->add_option("--serial-left", o.serial_left,
+                    "Serial of the left camera, kept in rig.json (default: as capture.json says)");
     sub->add_option("--serial-right", o.serial_right, "Of the right camera");
-    sub->add_option("--serial-projector", o.serial_projector, "Of the projector; `projector --identify` tells it where the monitor does");
+    sub->add_option("--serial-projector", o.serial_projector,
+                    "Of the projector; `projector --identify` tells it where the monitor does");
     sub->add_option("--out", o.out, "rig.json to write; the report stands beside it")->capture_default_str();
     json_flag(sub, o.json);
 }
@@ -215,36 +217,50 @@ void add_project(CLI::App& app, ProjectOptions& o) {
 }
 
 void add_projector(CLI::App& app, ProjectorOptions& o) {
-    auto* sub = command(app, "projector", "What the projector really does: gamma, colour cycle, latency; which monitor it is",
-                        "projector recording --configured-ms 25 --serial X7K2 --out projector.json\n"
-                        "  planlight projector --simulate paper --seed 3 --light wheel-hz=120 delay-ms=12 --out projector.json\n"
-                        "  planlight projector --identify\n"
-                        "  planlight projector --show --monitor HDMI-2 --frames-hz 60 --keep recording");
-    auto* recording = sub->add_option("recording", o.recording, "Folder with latency/, response/, cycle/ (any of them)");
-    auto* simulate = sub->add_option("--simulate", o.simulate, "Measure the simulated room's projector instead: modern or paper")
-                         ->check(CLI::IsMember({"modern", "paper"}))
-                         ->excludes(recording);
+    auto* sub = command(
+        app, "projector", "What the projector really does: gamma, colour cycle, latency; which monitor it is",
+        "projector recording --configured-ms 25 --serial X7K2 --out projector.json\n"
+        "  planlight projector --simulate paper --seed 3 --light wheel-hz=120 delay-ms=12 --out projector.json\n"
+        "  planlight projector --identify\n"
+        "  planlight projector --show --monitor HDMI-2 --frames-hz 60 --keep recording");
+    auto* recording =
+        sub->add_option("recording", o.recording, "Folder with latency/, response/, cycle/ (any of them)");
+    auto* simulate =
+        sub->add_option("--simulate", o.simulate, "Measure the simulated room's projector instead: modern or paper")
+            ->check(CLI::IsMember({"modern", "paper"}))
+            ->excludes(recording);
     sub->add_option("--seed", o.seed, "Of the simulated room, and of the order of greys")->capture_default_str();
-    sub->add_option("--light", o.light, "Of the simulated room, NAME=NUMBER: gamma, dark-end, wheel-hz, mains-hz, delay-ms, ...")->needs(simulate);
+    sub->add_option("--light", o.light,
+                    "Of the simulated room, NAME=NUMBER: gamma, dark-end, wheel-hz, mains-hz, delay-ms, ...")
+        ->needs(simulate);
     sub->add_option("--keep", o.keep, "Folder to keep what was recorded, or shown, in")->excludes(recording);
     sub->add_option("--part", o.part, "latency, response, cycle or all")
         ->check(CLI::IsMember({"all", "latency", "response", "cycle"}))
         ->capture_default_str();
-    sub->add_option("--refresh-hz", o.refresh_hz, "Of the projector")->capture_default_str()->check(CLI::Range(10.0, 1000.0));
-    sub->add_option("--configured-ms", o.configured_delay_ms, "The delay in force, to be compared (default: as recorded)")
+    sub->add_option("--refresh-hz", o.refresh_hz, "Of the projector")
+        ->capture_default_str()
+        ->check(CLI::Range(10.0, 1000.0));
+    sub->add_option("--configured-ms", o.configured_delay_ms,
+                    "The delay in force, to be compared (default: as recorded)")
         ->check(CLI::Range(0.0, 10000.0));
     sub->add_option("--serial", o.serial, "Of the projector, as on its label");
     sub->add_option("--monitor", o.monitor, "Monitor that it is");
     auto* show = sub->add_flag("--show", o.show,
-                               "Show the light of each part on --monitor for your own cameras, and keep the orders; nobody may lie there")
+                               "Show the light of each part on --monitor for your own cameras, and keep the orders; "
+                               "nobody may lie there")
                      ->excludes(recording)
                      ->excludes(simulate);
-    sub->add_option("--frames-hz", o.frames_hz, "Of your own cameras")->capture_default_str()->check(CLI::Range(1.0, 1000.0))->needs(show);
-    auto* identify = sub->add_flag("--identify", o.identify,
-                                   "Every monitor shows its own name for a while, then goes dark; nobody may lie under the projector")
-                         ->excludes(recording)
-                         ->excludes(show)
-                         ->excludes(simulate);
+    sub->add_option("--frames-hz", o.frames_hz, "Of your own cameras")
+        ->capture_default_str()
+        ->check(CLI::Range(1.0, 1000.0))
+        ->needs(show);
+    auto* identify =
+        sub->add_flag(
+               "--identify", o.identify,
+               "Every monitor shows its own name for a while, then goes dark; nobody may lie under the projector")
+            ->excludes(recording)
+            ->excludes(show)
+            ->excludes(simulate);
     sub->add_option("--seconds", o.seconds, "Of --identify; 0 only lists the monitors")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 60.0))
@@ -282,10 +298,12 @@ void add_session(CLI::App& app, SessionOptions& o) {
     sub->add_option(
         "--projector", o.projector_monitor,
         "Monitor (name or number) that is the projector; without it the light is shown in the operator window only");
-    auto* delay = sub->add_option("--light-delay-ms", o.light_delay_ms, "From showing to light, as `projector` measured it (default: 25)")
+    auto* delay = sub->add_option("--light-delay-ms", o.light_delay_ms,
+                                  "From showing to light, as `projector` measured it (default: 25)")
                       ->check(CLI::Range(0.0, 10000.0));
     sub->add_option("--projector-file", o.projector_file,
-                    "projector.json of `projector`: its delay is used; another monitor, resolution or serial is refused (exit 6)")
+                    "projector.json of `projector`: its delay is used; another monitor, resolution or serial is "
+                    "refused (exit 6)")
         ->excludes(delay);
     sub->add_option("--operator", o.operator_monitor, "Monitor of the operator window (default: the primary one)");
     sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str();

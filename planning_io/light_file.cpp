@@ -17,7 +17,9 @@ constexpr int kVersion = 1;
 constexpr std::int64_t kAny = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t kDay_ns = 86'400'000'000'000;
 
-Instant instant_of(const JsonValue& value) { return Instant(value.integer(-kAny, kAny)); }
+Instant instant_of(const JsonValue& value) {
+    return Instant(value.integer(-kAny, kAny));
+}
 
 LightOrder order_of(const JsonValue& value) {
     LightOrder order;
@@ -76,11 +78,13 @@ LightFile read_light_file(const fs::path& folder) {
     const JsonValue orders = root.at("orders"), frames = root.at("frames");
     for (std::size_t i = 0; i < orders.size(); ++i) {
         light.orders.push_back(order_of(orders[i]));
-        if (i > 0 && light.orders[i].at < light.orders[i - 1].at) orders[i].at("at_ns").refuse("is before the order before it");
+        if (i > 0 && light.orders[i].at < light.orders[i - 1].at)
+            orders[i].at("at_ns").refuse("is before the order before it");
     }
     for (std::size_t i = 0; i < frames.size(); ++i) {
         light.frames.push_back(frame_of(frames[i]));
-        if (i > 0 && light.frames[i].at < light.frames[i - 1].at) frames[i].at("at_ns").refuse("is before the frame before it");
+        if (i > 0 && light.frames[i].at < light.frames[i - 1].at)
+            frames[i].at("at_ns").refuse("is before the frame before it");
     }
     if (light.orders.empty() || light.frames.empty())
         throw InputError(file, fmt::format("has {} orders and {} frames", light.orders.size(), light.frames.size()),

@@ -10,8 +10,8 @@
 
 namespace planlight {
 
-/// The light.json of a light folder (format in the room's README): what the projector was told, and when the cameras looked.
-/// The pictures lie beside it, left/NAME and right/NAME.
+/// The light.json of a light folder (format in the room's README): what the projector was told, and when the cameras
+/// looked. The pictures lie beside it, left/NAME and right/NAME.
 struct LightFile {
     Instant settle = std::chrono::milliseconds(250);  ///< after an order, before its light is taken as steady
     std::vector<LightOrder> orders;                   ///< in their order of time
@@ -29,9 +29,9 @@ LightFile read_light_file(const std::filesystem::path& folder);
 
 /// What `planlight projector` found of a projector, as far as others use it.
 struct ProjectorFacts {
-    std::string made_on;         ///< ISO 8601
-    int width = 0, height = 0;   ///< its picture
-    std::string monitor, serial; ///< empty: not known
+    std::string made_on;                 ///< ISO 8601
+    int width = 0, height = 0;           ///< its picture
+    std::string monitor, serial;         ///< empty: not known
     std::optional<Instant> light_delay;  ///< from the return of `show` to light; empty: not measured
 };
 

@@ -19,17 +19,17 @@ constexpr const char* kCalibrate = "Calibrate the rig again.";
 
 Json json_of(const CameraModel& d, const std::string& serial = {}) {
     Json json{{"width", d.width},
-                {"height", d.height},
-                {"focal_x", d.focal_x},
-                {"focal_y", d.focal_y},
-                {"centre_x", d.centre_x},
-                {"centre_y", d.centre_y},
-                {"k1", d.k1},
-                {"k2", d.k2},
-                {"p1", d.p1},
-                {"p2", d.p2},
-                {"k3", d.k3},
-                {"device_from_rig", to_json(d.device_from_rig)}};
+              {"height", d.height},
+              {"focal_x", d.focal_x},
+              {"focal_y", d.focal_y},
+              {"centre_x", d.centre_x},
+              {"centre_y", d.centre_y},
+              {"k1", d.k1},
+              {"k2", d.k2},
+              {"p1", d.p1},
+              {"p2", d.p2},
+              {"k3", d.k3},
+              {"device_from_rig", to_json(d.device_from_rig)}};
     if (!serial.empty()) json["serial"] = serial;
     return json;
 }

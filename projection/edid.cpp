@@ -28,13 +28,15 @@ std::optional<Edid> parse_edid(const std::vector<std::uint8_t>& bytes) {
     if (std::accumulate(bytes.begin(), bytes.begin() + kBlock, 0U) % 256 != 0) return std::nullopt;
     Edid edid;
     const unsigned letters = bytes[8] * 256U + bytes[9];  // five bits each, A = 1
-    for (const unsigned shift : {10U, 5U, 0U}) edid.manufacturer += static_cast<char>('A' + static_cast<int>(letters >> shift & 31U) - 1);
+    for (const unsigned shift : {10U, 5U, 0U})
+        edid.manufacturer += static_cast<char>('A' + static_cast<int>(letters >> shift & 31U) - 1);
     for (std::size_t at = 54; at + 18 <= 126; at += 18) {
         if (bytes[at] != 0 || bytes[at + 1] != 0 || bytes[at + 2] != 0) continue;  // a picture's timing
         if (bytes[at + 3] == kName) edid.name = text_at(bytes, at + 5);
         if (bytes[at + 3] == kSerialText) edid.serial = text_at(bytes, at + 5);
     }
-    const std::uint32_t number = bytes[12] | bytes[13] << 8U | bytes[14] << 16U | static_cast<std::uint32_t>(bytes[15]) << 24U;
+    const std::uint32_t number =
+        bytes[12] | bytes[13] << 8U | bytes[14] << 16U | static_cast<std::uint32_t>(bytes[15]) << 24U;
     constexpr std::uint32_t kFiller = 0x01010101;
     if (edid.serial.empty() && number != 0 && number != kFiller) edid.serial = std::to_string(number);
     return edid;

@@ -14,8 +14,8 @@ struct Edid {
     std::string serial;        ///< the text serial, else the number, else empty: many projectors give none
 };
 
-/// The first block of an EDID (VESA E-EDID 1.3, 128 bytes). Empty when it is too short, without its header, or its checksum
-/// is wrong.
+/// The first block of an EDID (VESA E-EDID 1.3, 128 bytes). Empty when it is too short, without its header, or its
+/// checksum is wrong.
 std::optional<Edid> parse_edid(const std::vector<std::uint8_t>& bytes);
 
 /// The EDID of an X11 output by its RandR name. Empty without X11, without such an output, or when it tells none.

@@ -16,7 +16,8 @@ namespace {
 using Eigen::Vector2d;
 
 /// One line of text with its middle at `middle` (pixels), capitals `height` high, as bright as `colour`.
-void write_line(const std::string& text, Vector2d middle, double height, Rgb colour, StrokeRaster& raster, RgbImage& picture) {
+void write_line(const std::string& text, Vector2d middle, double height, Rgb colour, StrokeRaster& raster,
+                RgbImage& picture) {
     const std::u32string codes = code_points(text);
     const double half = std::max(0.75, height / 16);
     double x = middle.x() - text_width(codes) * height / 2;
@@ -24,7 +25,9 @@ void write_line(const std::string& text, Vector2d middle, double height, Rgb col
         const Glyph sign = glyph(code);
         for (const auto& way : sign.lines)
             for (std::size_t i = 0; i + 1 < way.size(); ++i) {
-                const auto place = [&](const Vector2d& p) { return Vector2d(x + p.x() * height, middle.y() + height / 2 - p.y() * height); };
+                const auto place = [&](const Vector2d& p) {
+                    return Vector2d(x + p.x() * height, middle.y() + height / 2 - p.y() * height);
+                };
                 Vector2d a = place(way[i]), b = place(way[i + 1]);
                 if (a == b) continue;
                 const Vector2d along = half * (b - a).normalized(), aside(-along.y(), along.x());
@@ -43,7 +46,8 @@ RgbImage draw_monitor_card(const Monitor& monitor, int number) {
     StrokeRaster raster(monitor.width, monitor.height);
     const auto line = [&](const std::string& text, double at, double height, Rgb colour) {
         const double widest = 0.88 * monitor.width / std::max(0.1, text_width(code_points(text)));
-        write_line(text, {monitor.width / 2.0, at * monitor.height}, std::min(height * monitor.height, widest), colour, raster, picture);
+        write_line(text, {monitor.width / 2.0, at * monitor.height}, std::min(height * monitor.height, widest), colour,
+                   raster, picture);
     };
     constexpr Rgb kWhite{255, 255, 255}, kGrey{150, 150, 150}, kAmber{255, 180, 60};
     line("PLANLIGHT PROJECTOR HERE?", 0.14, 0.06, kAmber);
@@ -52,7 +56,8 @@ RgbImage draw_monitor_card(const Monitor& monitor, int number) {
     std::string what = fmt::format("{} x {}", monitor.width, monitor.height);
     if (monitor.refresh_hz > 0) what += fmt::format(", {:g} Hz", monitor.refresh_hz);
     line(what, 0.75, 0.06, kGrey);
-    if (const std::string who = monitor.model + (monitor.serial.empty() ? "" : " " + monitor.serial); !who.empty()) line(who, 0.85, 0.05, kGrey);
+    if (const std::string who = monitor.model + (monitor.serial.empty() ? "" : " " + monitor.serial); !who.empty())
+        line(who, 0.85, 0.05, kGrey);
     line("If this is on the patient's place: --projector " + monitor.name, 0.94, 0.035, kGrey);
     return picture;
 }
@@ -61,7 +66,9 @@ std::vector<std::string> show_monitor_cards(const Clock& clock, double seconds, 
     std::vector<std::string> left_out;
     std::vector<std::unique_ptr<ProjectorWindow>> windows;
     const std::vector<Monitor> monitors = list_monitors();
-    const auto instead = [&](const Monitor& monitor, const Error& error) { left_out.push_back(monitor.name + ": " + error.what()); };
+    const auto instead = [&](const Monitor& monitor, const Error& error) {
+        left_out.push_back(monitor.name + ": " + error.what());
+    };
     std::vector<Monitor> open;
     for (const Monitor& monitor : monitors) try {
             windows.push_back(std::make_unique<ProjectorWindow>(monitor.name, clock, true));
@@ -71,7 +78,8 @@ std::vector<std::string> show_monitor_cards(const Clock& clock, double seconds, 
         }
     const Instant until = clock.now() + from_seconds(seconds);
     for (std::size_t i = 0; i < windows.size(); ++i) {
-        const auto number = std::find_if(monitors.begin(), monitors.end(), [&](const Monitor& m) { return m.name == open[i].name; });
+        const auto number =
+            std::find_if(monitors.begin(), monitors.end(), [&](const Monitor& m) { return m.name == open[i].name; });
         windows[i]->show(draw_monitor_card(open[i], static_cast<int>(number - monitors.begin())), until);
     }
     while (clock.now() < until && !stop() && !windows.empty()) {

@@ -25,7 +25,8 @@ std::vector<std::uint8_t> property_of(Display* display, RROutput output) {
     unsigned long items = 0, more = 0;
     unsigned char* data = nullptr;
     constexpr long kMost = 256;  // of 4 bytes
-    if (XRRGetOutputProperty(display, output, edid, 0, kMost, False, False, AnyPropertyType, &type, &format, &items, &more, &data) != Success)
+    if (XRRGetOutputProperty(display, output, edid, 0, kMost, False, False, AnyPropertyType, &type, &format, &items,
+                             &more, &data) != Success)
         return {};
     const std::unique_ptr<unsigned char, Freed<XFree>> owned(data);
     if (data == nullptr || type != XA_INTEGER || format != 8) return {};

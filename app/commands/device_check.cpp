@@ -16,12 +16,14 @@ constexpr Device kDevices[] = {{"left camera", &DeviceSerials::left_camera, &Rig
                                {"right camera", &DeviceSerials::right_camera, &RigCalibration::right_camera},
                                {"projector", &DeviceSerials::projector, &RigCalibration::projector}};
 
-void check_size(const Device& device, int width, int height, const RigCalibration& rig, const std::filesystem::path& folder) {
+void check_size(const Device& device, int width, int height, const RigCalibration& rig,
+                const std::filesystem::path& folder) {
     const CameraModel& model = rig.*device.model;
     if (!present(model) || (model.width == width && model.height == height)) return;
-    throw CheckFailedError(fmt::format("{}: the {} has {} x {} pixels here and {} x {} in the rig file", folder.string(), device.name, width,
-                                       height, model.width, model.height),
-                           "Set the device to the resolution it was calibrated at, use the rig.json of this rig, or calibrate again.");
+    throw CheckFailedError(
+        fmt::format("{}: the {} has {} x {} pixels here and {} x {} in the rig file", folder.string(), device.name,
+                    width, height, model.width, model.height),
+        "Set the device to the resolution it was calibrated at, use the rig.json of this rig, or calibrate again.");
 }
 
 }  // namespace
@@ -31,12 +33,14 @@ CaptureFolder read_capture_of(const RigCalibration& rig, const std::filesystem::
     for (const Device& device : kDevices) {
         const std::string &here = capture.serials.*device.serial, &calibrated = rig.serials.*device.serial;
         if (here.empty() || calibrated.empty() || here == calibrated) continue;
-        throw CheckFailedError(fmt::format("{}: was captured with the {} {}, and the rig file is of {}{}", folder.string(), device.name, here,
-                                           calibrated, rig.made_on.empty() ? "" : " (calibrated " + rig.made_on + ")"),
-                               "Use the rig.json of this rig, put the calibrated device back, or calibrate again.");
+        throw CheckFailedError(
+            fmt::format("{}: was captured with the {} {}, and the rig file is of {}{}", folder.string(), device.name,
+                        here, calibrated, rig.made_on.empty() ? "" : " (calibrated " + rig.made_on + ")"),
+            "Use the rig.json of this rig, put the calibrated device back, or calibrate again.");
     }
     check_size(kDevices[0], capture.left.front().width, capture.left.front().height, rig, folder);
-    if (!capture.right.empty()) check_size(kDevices[1], capture.right.front().width, capture.right.front().height, rig, folder);
+    if (!capture.right.empty())
+        check_size(kDevices[1], capture.right.front().width, capture.right.front().height, rig, folder);
     check_size(kDevices[2], capture.projector_width, capture.projector_height, rig, folder);
     return capture;
 }

@@ -4,8 +4,8 @@
 
 namespace planlight {
 
-/// A capture folder whose devices are those of the rig. Throws CheckFailedError when it names another serial than rig.json, or
-/// its pictures or its projector have another size; what one of the two does not say is not compared.
+/// A capture folder whose devices are those of the rig. Throws CheckFailedError when it names another serial than
+/// rig.json, or its pictures or its projector have another size; what one of the two does not say is not compared.
 CaptureFolder read_capture_of(const RigCalibration& rig, const std::filesystem::path& folder);
 
 /// `given` by a person and `said` by capture.json as one. Throws InputError where both say something else.

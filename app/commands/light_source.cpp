@@ -24,8 +24,8 @@ LightRecording recorded(const std::string& part, const LightBench& bench, const 
 void check_size(const GrayImage& picture, const GrayImage& first, const fs::path& file) {
     if (picture.width != first.width || picture.height != first.height)
         throw InputError(file,
-                         fmt::format("is {} x {} pixels, the first picture of this camera is {} x {}", picture.width, picture.height,
-                                     first.width, first.height),
+                         fmt::format("is {} x {} pixels, the first picture of this camera is {} x {}", picture.width,
+                                     picture.height, first.width, first.height),
                          "Record all pictures with the same settings.");
 }
 
@@ -53,7 +53,8 @@ LightRecording read_light_folder(const fs::path& folder) {
     return recording;
 }
 
-LightRecording record_part(const std::string& part, LightBench bench, const RecordSettings& settings, const fs::path& folder,
+LightRecording record_part(const std::string& part, LightBench bench, const RecordSettings& settings,
+                           const fs::path& folder,
                            const std::function<void(const LightBench&, LightRecording&)>& afterwards) {
     const auto record = [&] {
         LightRecording recording = recorded(part, bench, settings);
@@ -104,10 +105,12 @@ void set_simulated_light(const std::vector<std::string>& words, simulation::Boar
         double value = 0;
         const char* end = word.data() + word.size();
         if (name == known.end() || equals == std::string::npos ||
-            std::from_chars(word.data() + equals + 1, end, value) != std::from_chars_result{end, std::errc{}} || !(value >= 0)) {
+            std::from_chars(word.data() + equals + 1, end, value) != std::from_chars_result{end, std::errc{}} ||
+            !(value >= 0)) {
             std::string names;
             for (const auto& [n, set] : known) names += (names.empty() ? "" : ", ") + n;
-            throw InputError({}, "the simulated light knows no \"" + word + "\"", "Write NAME=NUMBER with one of: " + names + ".");
+            throw InputError({}, "the simulated light knows no \"" + word + "\"",
+                             "Write NAME=NUMBER with one of: " + names + ".");
         }
         name->second(value);
     }

@@ -15,11 +15,15 @@
 namespace planlight {
 namespace {
 
-bool wanted(const ProjectorOptions& options, const std::string& part) { return options.part == "all" || options.part == part; }
+bool wanted(const ProjectorOptions& options, const std::string& part) {
+    return options.part == "all" || options.part == part;
+}
 
-void evaluate(const std::string& part, LightRecording recording, const ProjectorOptions& options, ProjectorReport& report) {
+void evaluate(const std::string& part, LightRecording recording, const ProjectorOptions& options,
+              ProjectorReport& report) {
     if (options.configured_delay_ms >= 0)
-        for (LightOrder& order : recording.orders) order.promised = order.returned.value_or(order.at) + from_seconds(options.configured_delay_ms / 1e3);
+        for (LightOrder& order : recording.orders)
+            order.promised = order.returned.value_or(order.at) + from_seconds(options.configured_delay_ms / 1e3);
     if (part == "response") report.response = measure_response(recording);
     CycleSettings cycle;
     cycle.refresh_hz = options.refresh_hz;
@@ -60,7 +64,8 @@ void measure_simulated(const ProjectorOptions& options, ProjectorReport& report)
             room.cover_projector(true);
             record_covered(with, recording, record);
         };
-        evaluate(part, record_part(part, bench, record, options.keep.empty() ? Path{} : options.keep / part, cover), options, report);
+        evaluate(part, record_part(part, bench, record, options.keep.empty() ? Path{} : options.keep / part, cover),
+                 options, report);
     }
 }
 
@@ -74,13 +79,15 @@ void measure_recorded(const ProjectorOptions& options, ProjectorReport& report) 
         any = true;
     }
     if (!any)
-        throw InputError(options.recording, "holds no recording of light (latency/, response/ or cycle/, each with its light.json)",
+        throw InputError(options.recording,
+                         "holds no recording of light (latency/, response/ or cycle/, each with its light.json)",
                          "Record one; registration/projector/README.md says how.");
 }
 
 template <class Result>
 void throw_if_refused(const std::optional<Result>& result, const char* what) {
-    if (result && result->refusal) throw CheckFailedError(fmt::format("{}: {}", what, result->refusal->reason), result->refusal->remedy);
+    if (result && result->refusal)
+        throw CheckFailedError(fmt::format("{}: {}", what, result->refusal->reason), result->refusal->remedy);
 }
 
 }  // namespace
@@ -89,16 +96,21 @@ int run_projector(const ProjectorOptions& options) {
     if (options.identify) return identify_monitors(options);
     if (options.show) return show_light(options);
     if (options.recording.empty() == options.simulate.empty())
-        throw InputError({}, "there is nothing to measure, or two things", "Give a folder of recorded light, or --simulate, --show or --identify.");
+        throw InputError({}, "there is nothing to measure, or two things",
+                         "Give a folder of recorded light, or --simulate, --show or --identify.");
     ProjectorReport report;
     report.made_on = today();
     report.serial = options.serial;
     report.monitor = options.monitor;
-    if (options.simulate.empty()) measure_recorded(options, report);
-    else measure_simulated(options, report);
+    if (options.simulate.empty())
+        measure_recorded(options, report);
+    else
+        measure_simulated(options, report);
     const std::string text = projector_json(report);
-    if (options.json) std::cout << text;
-    else fmt::print("{}", projector_summary(report));
+    if (options.json)
+        std::cout << text;
+    else
+        fmt::print("{}", projector_summary(report));
     std::cout.flush();
     for (const LightFinding& finding : findings_of(report)) warn(finding.what + ". " + finding.remedy);
     throw_if_refused(report.latency, "latency");

@@ -20,7 +20,8 @@ StereoFrame stereo_frame(const RecordedFrame& recorded) {
     return {recorded.left, recorded.right, recorded.at, recorded.exposure, recorded.number};
 }
 
-StereoFrame reference_frame(const TrackOptions& options, const RigCalibration& rig, const std::vector<RecordedFrame>& frames) {
+StereoFrame reference_frame(const TrackOptions& options, const RigCalibration& rig,
+                            const std::vector<RecordedFrame>& frames) {
     if (options.capture.empty()) return stereo_frame(frames.front());
     const ScanCapture capture = scan_capture_from(read_capture_of(rig, options.capture), options.capture);
     if (capture.right.empty())

@@ -33,18 +33,22 @@ int identify_monitors(const ProjectorOptions& options) {
                         {"model", m.model},
                         {"serial", m.serial}});
         if (!options.json)
-            fmt::print("{} {}: {} x {}, {:g} Hz{}{}{}\n", i, m.name, m.width, m.height, m.refresh_hz, m.primary ? ", primary" : "",
-                       m.model.empty() ? "" : ", " + m.model, m.serial.empty() ? "" : ", serial " + m.serial);
+            fmt::print("{} {}: {} x {}, {:g} Hz{}{}{}\n", i, m.name, m.width, m.height, m.refresh_hz,
+                       m.primary ? ", primary" : "", m.model.empty() ? "" : ", " + m.model,
+                       m.serial.empty() ? "" : ", serial " + m.serial);
     }
     if (options.json) std::cout << list.dump(2) << '\n';
     std::cout.flush();
     std::fflush(stdout);
     if (options.seconds <= 0) return 0;
-    fmt::print(stderr, "Every monitor shows its name for {:g} s, then goes dark. Nobody may lie under the projector. Ctrl-C ends it.\n",
+    fmt::print(stderr,
+               "Every monitor shows its name for {:g} s, then goes dark. Nobody may lie under the projector. Ctrl-C "
+               "ends it.\n",
                options.seconds);
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
     const SteadyClock clock;
-    for (const std::string& why : show_monitor_cards(clock, options.seconds, [] { return asked_to_end != 0; })) warn(why);
+    for (const std::string& why : show_monitor_cards(clock, options.seconds, [] { return asked_to_end != 0; }))
+        warn(why);
     return 0;
 }
 

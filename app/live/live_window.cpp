@@ -41,7 +41,8 @@ RgbImage fitted(const RgbImage& picture, int width, int height) {
 /// Keeps the projector window at the newest light of the session.
 class LightWindow {
 public:
-    LightWindow(const std::string& monitor, const ProjectorWindowSettings& settings) : window_(monitor, clock_, false, settings) {}
+    LightWindow(const std::string& monitor, const ProjectorWindowSettings& settings)
+        : window_(monitor, clock_, false, settings) {}
 
     void follow(const LiveSession& session) {
         const auto light = session.light();
@@ -77,13 +78,16 @@ void check_monitor(const std::string& name, const ProjectorFacts& facts) {
         const Monitor& m = monitors[i];
         if (m.name != name && std::to_string(i) != name) continue;
         const auto other = [&](const std::string& what, const std::string& is, const std::string& was) {
-            throw CheckFailedError(fmt::format("the projector on {} is not the one that was measured on {}: its {} is {}, was {}", m.name,
-                                               facts.made_on, what, is, was),
-                                   "Connect that projector, set its resolution, or measure this one with `planlight projector`.");
+            throw CheckFailedError(
+                fmt::format("the projector on {} is not the one that was measured on {}: its {} is {}, was {}", m.name,
+                            facts.made_on, what, is, was),
+                "Connect that projector, set its resolution, or measure this one with `planlight projector`.");
         };
         if (facts.width > 0 && (m.width != facts.width || m.height != facts.height))
-            other("resolution", fmt::format("{} x {}", m.width, m.height), fmt::format("{} x {}", facts.width, facts.height));
-        if (!facts.serial.empty() && !m.serial.empty() && m.serial != facts.serial) other("serial", m.serial, facts.serial);
+            other("resolution", fmt::format("{} x {}", m.width, m.height),
+                  fmt::format("{} x {}", facts.width, facts.height));
+        if (!facts.serial.empty() && !m.serial.empty() && m.serial != facts.serial)
+            other("serial", m.serial, facts.serial);
         if (!facts.monitor.empty() && m.name != facts.monitor) other("monitor", m.name, facts.monitor);
     }
 }

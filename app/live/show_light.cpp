@@ -28,9 +28,11 @@ public:
 
     void wait_until(Instant at) {
         do {
-            if (asked_to_end) throw DeviceError("projector window", "the showing was ended", "Start it again for a whole recording.");
+            if (asked_to_end)
+                throw DeviceError("projector window", "the showing was ended", "Start it again for a whole recording.");
             window_.refresh();
-            std::this_thread::sleep_for(std::clamp(at - clock_.now(), Instant{}, Instant(std::chrono::milliseconds(5))));
+            std::this_thread::sleep_for(
+                std::clamp(at - clock_.now(), Instant{}, Instant(std::chrono::milliseconds(5))));
         } while (clock_.now() < at);
     }
     StereoFrame grab(Instant not_before, std::chrono::milliseconds) override {
@@ -53,7 +55,8 @@ private:
 
 int show_light(const ProjectorOptions& options) {
     if (options.monitor.empty() || options.keep.empty())
-        throw InputError({}, "showing needs the projector's monitor and a folder for the orders", "Give --monitor NAME and --keep FOLDER.");
+        throw InputError({}, "showing needs the projector's monitor and a folder for the orders",
+                         "Give --monitor NAME and --keep FOLDER.");
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
     const SteadyClock clock;
     ProjectorWindowSettings settings;
@@ -67,12 +70,18 @@ int show_light(const ProjectorOptions& options) {
         if (options.part != "all" && options.part != part) continue;
         RecordSettings record;
         record.seed = options.seed;
-        const LightBench bench{window, pace, clock, [&](Instant at) { pace.wait_until(at); }, [&](double share) { bar.show(part, share); }, {}};
+        const LightBench bench{
+            window, pace, clock, [&](Instant at) { pace.wait_until(at); }, [&](double share) { bar.show(part, share); },
+            {}};
         const LightRecording shown = record_part(part, bench, record, {});
-        write_folder_safely(options.keep / part, false, [&](const Path& into) { write_light_file({shown.settle, shown.orders, {}}, into); });
+        write_folder_safely(options.keep / part, false, [&](const Path& into) {
+            write_light_file({shown.settle, shown.orders, {}}, into);
+        });
     }
-    fmt::print("{}: the orders of what was shown, on CLOCK_MONOTONIC. Add the frames of the same time to each light.json, and their pictures.\n",
-               options.keep.string());
+    fmt::print(
+        "{}: the orders of what was shown, on CLOCK_MONOTONIC. Add the frames of the same time to each light.json, and "
+        "their pictures.\n",
+        options.keep.string());
     return 0;
 }
 

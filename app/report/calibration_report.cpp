@@ -75,7 +75,8 @@ const std::string& serial_of(const DeviceSerials& serials, DeviceName name) {
 std::string device_rows(const CalibrationReport& report) {
     const Calibration& c = report.calibration;
     std::string html =
-        "<table><tr><th>Device</th><th>Serial</th><th>Picture</th><th>Held-out poses</th><th>All poses</th><th>Left out</th><th>Focal "
+        "<table><tr><th>Device</th><th>Serial</th><th>Picture</th><th>Held-out poses</th><th>All poses</th><th>Left "
+        "out</th><th>Focal "
         "length</th>"
         "<th>Optical axis</th></tr>";
     for (const DeviceName name : kDevices) {
@@ -86,12 +87,14 @@ std::string device_rows(const CalibrationReport& report) {
         const auto sigma = lens_sigmas(c.bundle, name);
         const double all = static_cast<double>(c.bundle.used[i] + c.bundle.left_out[i]);
         html += fmt::format(
-            "<tr><td>{}</td><td>{}</td><td>{} x {}</td><td>{:.3f} px</td><td>{:.3f} px</td><td>{:.1f} %</td><td>{:.2f} &plusmn; {:.2f} "
+            "<tr><td>{}</td><td>{}</td><td>{} x {}</td><td>{:.3f} px</td><td>{:.3f} px</td><td>{:.1f} %</td><td>{:.2f} "
+            "&plusmn; {:.2f} "
             "px</td>"
             "<td>{:.2f}, {:.2f} &plusmn; {:.2f} px</td></tr>",
-            text_of(name), serial.empty() ? "not given" : html_escaped(serial), d->width, d->height, c.held_out.rms_px[i],
-            c.bundle.rms_px[i], all > 0 ? 100 * static_cast<double>(c.bundle.left_out[i]) / all : 0, d->focal_x, sigma[0], d->centre_x, d->centre_y,
-            sigma[2]);
+            text_of(name), serial.empty() ? "not given" : html_escaped(serial), d->width, d->height,
+            c.held_out.rms_px[i], c.bundle.rms_px[i],
+            all > 0 ? 100 * static_cast<double>(c.bundle.left_out[i]) / all : 0, d->focal_x, sigma[0], d->centre_x,
+            d->centre_y, sigma[2]);
     }
     return html + "</table>";
 }
@@ -137,13 +140,15 @@ std::vector<std::string> changes_since(const RigCalibration& before, const RigCa
         return rig.projector.device_from_rig * rig.left_camera.device_from_rig.inverse();
     };
     const RigidTransform moved = projector_from_left(now) * projector_from_left(before).inverse();
-    std::vector<std::string> changes{fmt::format("Cameras {:.2f} mm apart; {:+.2f} mm since {}.", baseline(now), baseline(now) - baseline(before),
-                        before.made_on),
-            fmt::format("Projector moved by {:.2f} mm and turned by {:.3f} degrees against the left camera since then.",
-                        moved.translation().norm(),
-                        std::acos(std::clamp((moved.linear().trace() - 1) / 2, -1.0, 1.0)) * 180 / std::numbers::pi)};
+    std::vector<std::string> changes{
+        fmt::format("Cameras {:.2f} mm apart; {:+.2f} mm since {}.", baseline(now), baseline(now) - baseline(before),
+                    before.made_on),
+        fmt::format("Projector moved by {:.2f} mm and turned by {:.3f} degrees against the left camera since then.",
+                    moved.translation().norm(),
+                    std::acos(std::clamp((moved.linear().trace() - 1) / 2, -1.0, 1.0)) * 180 / std::numbers::pi)};
     const auto exchanged = [&](const char* name, const std::string& was, const std::string& is) {
-        if (!was.empty() && !is.empty() && was != is) changes.push_back(fmt::format("The {} is another one: {}, was {}.", name, is, was));
+        if (!was.empty() && !is.empty() && was != is)
+            changes.push_back(fmt::format("The {} is another one: {}, was {}.", name, is, was));
     };
     exchanged("left camera", before.serials.left_camera, now.serials.left_camera);
     exchanged("right camera", before.serials.right_camera, now.serials.right_camera);

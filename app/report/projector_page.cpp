@@ -16,7 +16,8 @@ namespace {
 constexpr const char *kSeen = "#36d68a", *kFit = "#6aa8ff", *kWarn = "#ffb454";
 
 std::string figure(const std::string& svg, const std::string& title, const std::string& caption) {
-    return fmt::format("<figure>{}<figcaption><b>{}</b>{}</figcaption></figure>", svg, html_escaped(title), html_escaped(caption));
+    return fmt::format("<figure>{}<figcaption><b>{}</b>{}</figcaption></figure>", svg, html_escaped(title),
+                       html_escaped(caption));
 }
 
 std::string curve_chart(const ResponseResult& r, double to_grey, double to_light) {
@@ -24,9 +25,11 @@ std::string curve_chart(const ResponseResult& r, double to_grey, double to_light
     SvgChart::Points seen, fitted;
     std::vector<double> sigma;
     for (const ResponsePoint& p : r.curve)
-        if (p.grey <= to_grey && p.light <= 1.02 * to_light) seen.emplace_back(p.grey, p.light), sigma.push_back(2 * p.sigma);
+        if (p.grey <= to_grey && p.light <= 1.02 * to_light)
+            seen.emplace_back(p.grey, p.light), sigma.push_back(2 * p.sigma);
     for (int i = 0; i <= 255; ++i)
-        if (const double light = fitted_light(r, i); i <= to_grey && light <= 1.001 * to_light) fitted.emplace_back(i, light);
+        if (const double light = fitted_light(r, i); i <= to_grey && light <= 1.001 * to_light)
+            fitted.emplace_back(i, light);
     chart.line(fitted, kFit);
     chart.dots(seen, kSeen, sigma);
     return chart.text();
@@ -36,25 +39,36 @@ std::string section(const ResponseResult& r) {
     double dark_light = 0.01;
     for (const ResponsePoint& p : r.curve)
         if (p.grey <= 48) dark_light = std::max(dark_light, 1.1 * p.light);
-    std::string html = fmt::format("<h2>Response</h2><p>Gamma {:.3f} &plusmn; {:.3f}; black up to grey {:.1f} &plusmn; {:.1f}, white from grey "
-                                   "{:.1f} &plusmn; {:.1f}. The curve departs from that by {:.2f} % of white at most. ",
-                                   r.gamma, r.gamma_sigma, r.dark_end, r.dark_end_sigma, r.bright_end, r.bright_end_sigma, 100 * r.worst_departure);
-    html += r.black_level_is_a_bound
-                ? fmt::format("Black gives {:.2f} % of white's light, the room's lamps included; put the lid before the lens to know the projector's own share.",
-                              100 * r.black_level)
-                : fmt::format("Black gives {:.3f} &plusmn; {:.3f} % of white's light: a contrast of {:.0f} to 1.", 100 * r.black_level,
-                              100 * r.black_level_sigma, r.black_level > 0 ? 1 / r.black_level : 0);
+    std::string html = fmt::format(
+        "<h2>Response</h2><p>Gamma {:.3f} &plusmn; {:.3f}; black up to grey {:.1f} &plusmn; {:.1f}, white from grey "
+        "{:.1f} &plusmn; {:.1f}. The curve departs from that by {:.2f} % of white at most. ",
+        r.gamma, r.gamma_sigma, r.dark_end, r.dark_end_sigma, r.bright_end, r.bright_end_sigma,
+        100 * r.worst_departure);
+    html +=
+        r.black_level_is_a_bound
+            ? fmt::format(
+                  "Black gives {:.2f} % of white's light, the room's lamps included; put the lid before the lens to "
+                  "know the projector's own share.",
+                  100 * r.black_level)
+            : fmt::format("Black gives {:.3f} &plusmn; {:.3f} % of white's light: a contrast of {:.0f} to 1.",
+                          100 * r.black_level, 100 * r.black_level_sigma, r.black_level > 0 ? 1 / r.black_level : 0);
     html += "</p>";
     if (r.colours)
-        html += fmt::format("<p>Alone, as the cameras see them: red {:.1f} %, green {:.1f} %, blue {:.1f} % of white; together {:.1f} %.</p>",
-                            100 * (*r.colours)[0], 100 * (*r.colours)[1], 100 * (*r.colours)[2],
-                            100 * ((*r.colours)[0] + (*r.colours)[1] + (*r.colours)[2]));
-    html += fmt::format("<p>{}</p><div class=\"grid\">{}{}</div><p class=\"muted\">{} tiles of both pictures; black is {:.0f}, white {:.0f} grey there; "
-                        "{} tiles left out because white saturates.</p>",
-                        html_escaped(meaning_of(r)),
-                        figure(curve_chart(r, 256, 1), "Measured curve", "Points: measured, bars: two standard deviations. Line: fitted."),
-                        figure(curve_chart(r, 48, dark_light), "Its dark end", "Where points stay at 0, the projector crushes the darks."), r.tiles,
-                        r.black_grey, r.white_grey, r.saturated_tiles);
+        html += fmt::format(
+            "<p>Alone, as the cameras see them: red {:.1f} %, green {:.1f} %, blue {:.1f} % of white; together {:.1f} "
+            "%.</p>",
+            100 * (*r.colours)[0], 100 * (*r.colours)[1], 100 * (*r.colours)[2],
+            100 * ((*r.colours)[0] + (*r.colours)[1] + (*r.colours)[2]));
+    html += fmt::format(
+        "<p>{}</p><div class=\"grid\">{}{}</div><p class=\"muted\">{} tiles of both pictures; black is {:.0f}, white "
+        "{:.0f} grey there; "
+        "{} tiles left out because white saturates.</p>",
+        html_escaped(meaning_of(r)),
+        figure(curve_chart(r, 256, 1), "Measured curve",
+               "Points: measured, bars: two standard deviations. Line: fitted."),
+        figure(curve_chart(r, 48, dark_light), "Its dark end",
+               "Where points stay at 0, the projector crushes the darks."),
+        r.tiles, r.black_grey, r.white_grey, r.saturated_tiles);
     return html;
 }
 
@@ -66,16 +80,19 @@ std::string colour_of(const std::string& name) {
 }
 
 std::string section(const CycleResult& r) {
-    std::string html = fmt::format("<h2>Colour cycle</h2><p>{}</p><table><tr><th>Picture</th><th>Variation</th><th>At most (95 %)</th><th></th>"
-                                   "<th>Seen at</th><th>Cycles that look so</th></tr>",
-                                   html_escaped(meaning_of(r)));
+    std::string html = fmt::format(
+        "<h2>Colour cycle</h2><p>{}</p><table><tr><th>Picture</th><th>Variation</th><th>At most (95 %)</th><th></th>"
+        "<th>Seen at</th><th>Cycles that look so</th></tr>",
+        html_escaped(meaning_of(r)));
     for (const CycleRun& run : r.runs) {
         std::string cycles;
         for (const double hz : run.cycles_hz) cycles += fmt::format("{}{:g} Hz", cycles.empty() ? "" : " or ", hz);
-        html += fmt::format("<tr><td>{}{}</td><td>{:.2f} &plusmn; {:.2f} %</td><td>{:.2f} %</td><td class=\"{}\">{}</td><td>{}</td><td>{}</td></tr>",
-                            run.name, run.name == "black" ? " (the room)" : "", 100 * run.variation, 100 * run.variation_sigma, 100 * run.at_most,
-                            run.varies ? "no" : "yes", run.varies ? "varies" : "steady", run.seen_hz ? fmt::format("{:.1f} Hz", *run.seen_hz) : "",
-                            cycles);
+        html += fmt::format(
+            "<tr><td>{}{}</td><td>{:.2f} &plusmn; {:.2f} %</td><td>{:.2f} %</td><td "
+            "class=\"{}\">{}</td><td>{}</td><td>{}</td></tr>",
+            run.name, run.name == "black" ? " (the room)" : "", 100 * run.variation, 100 * run.variation_sigma,
+            100 * run.at_most, run.varies ? "no" : "yes", run.varies ? "varies" : "steady",
+            run.seen_hz ? fmt::format("{:.1f} Hz", *run.seen_hz) : "", cycles);
     }
     html += "</table><div class=\"grid\">";
     for (const CycleRun& run : r.runs) {
@@ -85,11 +102,13 @@ std::string section(const CycleResult& r) {
             trace.emplace_back(static_cast<double>(i), 100 * static_cast<double>(run.trace[i]));
             most = std::max(most, 1.1 * std::abs(static_cast<double>(run.trace[i])));
         }
-        SvgChart chart({0, std::max(1.0, static_cast<double>(run.trace.size())), "frame"}, {-100 * most, 100 * most, "% of its light"}, 560, 220);
+        SvgChart chart({0, std::max(1.0, static_cast<double>(run.trace.size())), "frame"},
+                       {-100 * most, 100 * most, "% of its light"}, 560, 220);
         chart.line(trace, colour_of(run.name));
         html += figure(chart.text(), run.name == "black" ? "black: the room alone" : run.name, "");
     }
-    return html + fmt::format("</div><p class=\"muted\">{:.2f} frames a second, exposed for {:.2f} ms.</p>", r.frames_hz, 1e3 * r.exposure_s);
+    return html + fmt::format("</div><p class=\"muted\">{:.2f} frames a second, exposed for {:.2f} ms.</p>",
+                              r.frames_hz, 1e3 * r.exposure_s);
 }
 
 std::string histogram(const LatencyResult& r) {
@@ -112,37 +131,43 @@ std::string histogram(const LatencyResult& r) {
                 const double here = d.at_least_s >= from && d.at_least_s < to ? 1 : 0;
                 exact[i] += here, all[i] += here;
             } else {
-                all[i] += std::max(0.0, std::min(to, d.at_most_s) - std::max(from, d.at_least_s)) / std::max(1e-9, d.at_most_s - d.at_least_s);
+                all[i] += std::max(0.0, std::min(to, d.at_most_s) - std::max(from, d.at_least_s)) /
+                          std::max(1e-9, d.at_most_s - d.at_least_s);
             }
         }
     const double most = *std::max_element(all.begin(), all.end());
-    SvgChart chart({1e3 * low, 1e3 * high, "from order to light, ms", 8}, {0, 1.35 * std::max(1.0, most), "changes"}, 1140, 340);
+    SvgChart chart({1e3 * low, 1e3 * high, "from order to light, ms", 8}, {0, 1.35 * std::max(1.0, most), "changes"},
+                   1140, 340);
     for (int b = 0; b < kBars; ++b) {
         const auto i = static_cast<std::size_t>(b);
         chart.bar(1e3 * (low + b * width), 1e3 * (low + (b + 1) * width), all[i], "#2f5d4a");
         chart.bar(1e3 * (low + b * width), 1e3 * (low + (b + 1) * width), exact[i], kSeen);
     }
     chart.mark(1e3 * r.median_s, fmt::format("median {:.1f} ms", 1e3 * r.median_s), "#ffffff", 0);
-    if (r.promise) chart.mark(1e3 * r.promise->delay_s, fmt::format("promised {:.1f} ms", 1e3 * r.promise->delay_s), kWarn, 1);
+    if (r.promise)
+        chart.mark(1e3 * r.promise->delay_s, fmt::format("promised {:.1f} ms", 1e3 * r.promise->delay_s), kWarn, 1);
     chart.mark(1e3 * r.light_delay_s, fmt::format("delay to set {:.0f} ms", 1e3 * r.light_delay_s), kFit, 2);
     return chart.text();
 }
 
 std::string section(const LatencyResult& r) {
-    return fmt::format("<h2>Latency</h2><p>{}</p>{}<p class=\"muted\">Agreement with the code {:.3f}, at the next best delay {:.3f}. {} changes, {} never "
-                       "light, {} a refresh late; {} frames lost, {} doubled.</p>",
-                       html_escaped(meaning_of(r)),
-                       figure(histogram(r), "Delays of the flashes",
-                              "Bright: changes within an exposure. Dull: changes between two exposures, spread over the time between them."),
-                       r.code_agreement, r.runner_up_agreement, r.changes, r.unseen, r.late, r.frames.lost, r.frames.doubled);
+    return fmt::format(
+        "<h2>Latency</h2><p>{}</p>{}<p class=\"muted\">Agreement with the code {:.3f}, at the next best delay {:.3f}. "
+        "{} changes, {} never "
+        "light, {} a refresh late; {} frames lost, {} doubled.</p>",
+        html_escaped(meaning_of(r)),
+        figure(histogram(r), "Delays of the flashes",
+               "Bright: changes within an exposure. Dull: changes between two exposures, spread over the time between "
+               "them."),
+        r.code_agreement, r.runner_up_agreement, r.changes, r.unseen, r.late, r.frames.lost, r.frames.doubled);
 }
 
 template <class Result>
 std::string section_or_refusal(const std::optional<Result>& result, const char* what) {
     if (!result) return {};
     if (!result->refusal) return section(*result);
-    return fmt::format("<h2>{}</h2><p class=\"no\">Not measured: {}. {}</p>", what, html_escaped(result->refusal->reason),
-                       html_escaped(result->refusal->remedy));
+    return fmt::format("<h2>{}</h2><p class=\"no\">Not measured: {}. {}</p>", what,
+                       html_escaped(result->refusal->reason), html_escaped(result->refusal->remedy));
 }
 
 }  // namespace
@@ -153,12 +178,16 @@ void write_projector_html(const ProjectorReport& report, const std::filesystem::
     if (report.width > 0) about += fmt::format(", {} x {}", report.width, report.height);
     about += ", serial " + (report.serial.empty() ? "not given" : report.serial);
     if (!report.monitor.empty()) about += ", monitor " + report.monitor;
-    std::string body = fmt::format("<p class=\"muted\">{}. For research; not a medical device.</p>", html_escaped(about));
-    body += findings.empty() ? "<div class=\"verdict yes\">&#10003; Nothing that a scan or the light would suffer from.</div>"
-                             : fmt::format("<div class=\"verdict no\">&#9888; {} thing{} to set right.</div>", findings.size(), findings.size() == 1 ? "" : "s");
+    std::string body =
+        fmt::format("<p class=\"muted\">{}. For research; not a medical device.</p>", html_escaped(about));
+    body += findings.empty()
+                ? "<div class=\"verdict yes\">&#10003; Nothing that a scan or the light would suffer from.</div>"
+                : fmt::format("<div class=\"verdict no\">&#9888; {} thing{} to set right.</div>", findings.size(),
+                              findings.size() == 1 ? "" : "s");
     for (LightFinding finding : findings) {
         finding.what[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(finding.what[0])));
-        body += fmt::format("<p><span class=\"no\">{}.</span> {}</p>", html_escaped(finding.what), html_escaped(finding.remedy));
+        body += fmt::format("<p><span class=\"no\">{}.</span> {}</p>", html_escaped(finding.what),
+                            html_escaped(finding.remedy));
     }
     body += section_or_refusal(report.latency, "Latency") + section_or_refusal(report.response, "Response") +
             section_or_refusal(report.cycle, "Colour cycle");

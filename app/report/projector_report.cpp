@@ -11,7 +11,8 @@ using Json = nlohmann::ordered_json;
 
 Json json_of(const ResponseResult& r) {
     Json curve = Json::array();
-    for (const ResponsePoint& p : r.curve) curve.push_back({{"grey", p.grey}, {"light", p.light}, {"sigma", p.sigma}, {"frames", p.frames}});
+    for (const ResponsePoint& p : r.curve)
+        curve.push_back({{"grey", p.grey}, {"light", p.light}, {"sigma", p.sigma}, {"frames", p.frames}});
     Json json = {{"gamma", r.gamma},
                  {"gamma_sigma", r.gamma_sigma},
                  {"dark_end_grey", r.dark_end},
@@ -33,7 +34,11 @@ Json json_of(const ResponseResult& r) {
                  {"tiles", r.tiles},
                  {"saturated_tiles", r.saturated_tiles},
                  {"tiles_at_zero", r.tiles_at_zero}};
-    if (r.colours) json["colours"] = {{"red", (*r.colours)[0]}, {"green", (*r.colours)[1]}, {"blue", (*r.colours)[2]}, {"sigmas", r.colour_sigmas}};
+    if (r.colours)
+        json["colours"] = {{"red", (*r.colours)[0]},
+                           {"green", (*r.colours)[1]},
+                           {"blue", (*r.colours)[2]},
+                           {"sigmas", r.colour_sigmas}};
     json["curve"] = std::move(curve);
     json["meaning"] = meaning_of(r);
     return json;
@@ -115,16 +120,20 @@ std::vector<LightFinding> findings_of(const ProjectorReport& report) {
 }
 
 std::string projector_summary(const ProjectorReport& report) {
-    std::string text = report.source + (report.width > 0 ? fmt::format(", {} x {}", report.width, report.height) : std::string());
+    std::string text =
+        report.source + (report.width > 0 ? fmt::format(", {} x {}", report.width, report.height) : std::string());
     if (!report.monitor.empty()) text += ", monitor " + report.monitor;
     if (!report.serial.empty()) text += ", serial " + report.serial;
     text += "\n";
     if (report.response && !report.response->refusal) {
         const ResponseResult& r = *report.response;
-        text += fmt::format("  response     gamma {:.2f} +- {:.2f}, black up to {:.0f}, white from {:.0f}, black {}{:.4f} of white\n", r.gamma,
-                            r.gamma_sigma, r.dark_end, r.bright_end, r.black_level_is_a_bound ? "with the room's light " : "", r.black_level);
+        text += fmt::format(
+            "  response     gamma {:.2f} +- {:.2f}, black up to {:.0f}, white from {:.0f}, black {}{:.4f} of white\n",
+            r.gamma, r.gamma_sigma, r.dark_end, r.bright_end, r.black_level_is_a_bound ? "with the room's light " : "",
+            r.black_level);
         if (r.colours)
-            text += fmt::format("  colours      red {:.2f}, green {:.2f}, blue {:.2f} of white\n", (*r.colours)[0], (*r.colours)[1], (*r.colours)[2]);
+            text += fmt::format("  colours      red {:.2f}, green {:.2f}, blue {:.2f} of white\n", (*r.colours)[0],
+                                (*r.colours)[1], (*r.colours)[2]);
     }
     if (report.cycle && !report.cycle->refusal) text += "  colour cycle " + meaning_of(*report.cycle) + "\n";
     if (report.latency && !report.latency->refusal) text += "  latency      " + meaning_of(*report.latency) + "\n";
@@ -132,7 +141,8 @@ std::string projector_summary(const ProjectorReport& report) {
 }
 
 std::string projector_json(const ProjectorReport& report) {
-    Json json = {{"format", "planlight projector"}, {"version", 1}, {"made_on", report.made_on}, {"source", report.source}};
+    Json json = {
+        {"format", "planlight projector"}, {"version", 1}, {"made_on", report.made_on}, {"source", report.source}};
     Json projector = Json::object();
     if (report.width > 0) projector["width"] = report.width, projector["height"] = report.height;
     if (!report.monitor.empty()) projector["monitor"] = report.monitor;

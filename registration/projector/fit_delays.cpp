@@ -7,7 +7,9 @@
 namespace planlight {
 namespace {
 
-double below(double z) { return 0.5 * std::erfc(-z / std::sqrt(2.0)); }
+double below(double z) {
+    return 0.5 * std::erfc(-z / std::sqrt(2.0));
+}
 
 /// Minus the logarithm of the likelihood; a hundredth of the changes may be anything (a picture that came late).
 double cost(const std::vector<LightDelay>& delays, double reading_s, double middle_s, double spread_s) {
@@ -53,9 +55,11 @@ void fit_delays(double noise, Instant exposure, LatencyResult& result) {
                 if (const double c = cost(result.delays, reading_s, m, s); c < best) best = c, middle = m, spread = s;
     };
     look(low, high, std::max(2e-4, (high - low) / 400), kLeastSpread_s, kMostSpread_s, 1.5);
-    for (double step = std::max(2e-4, (high - low) / 400), factor = 1.5; step > 2e-6; step /= 4, factor = std::sqrt(factor)) {
+    for (double step = std::max(2e-4, (high - low) / 400), factor = 1.5; step > 2e-6;
+         step /= 4, factor = std::sqrt(factor)) {
         const double m = middle, s = spread;
-        look(m - 2 * step, m + 2 * step, step / 2, std::max(kLeastSpread_s, s / (factor * factor)), s * factor * factor, std::sqrt(factor));
+        look(m - 2 * step, m + 2 * step, step / 2, std::max(kLeastSpread_s, s / (factor * factor)), s * factor * factor,
+             std::sqrt(factor));
     }
     if (result.exact == 0 && latest < earliest) middle = (latest + earliest) / 2;  // any of them will do
     result.median_s = middle;
@@ -68,8 +72,8 @@ void fit_delays(double noise, Instant exposure, LatencyResult& result) {
     const double flat_s = std::max(0.0, earliest - latest) / std::sqrt(12.0);
     result.median_sigma_s = std::max({bend > 0 ? 1 / std::sqrt(bend) : (high - low) / std::sqrt(12.0), flat_s,
                                       reading_s / std::sqrt(static_cast<double>(result.delays.size()))});
-    const double bend_of_spread =
-        curvature([&](double s) { return cost(result.delays, reading_s, middle, std::max(s, 1e-6)); }, spread, spread / 4);
+    const double bend_of_spread = curvature(
+        [&](double s) { return cost(result.delays, reading_s, middle, std::max(s, 1e-6)); }, spread, spread / 4);
     result.jitter_sigma_s = bend_of_spread > 0 ? 1 / std::sqrt(bend_of_spread) : spread;
 }
 

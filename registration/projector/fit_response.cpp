@@ -23,7 +23,9 @@ Vector3d bounded(Vector3d p) {
 /// Below it the curve's own shape (it is no exact power) is more than the noise.
 constexpr double kShape = 0.001;
 
-double weight(const ResponsePoint& point) { return 1 / (point.sigma * point.sigma + kShape * kShape); }
+double weight(const ResponsePoint& point) {
+    return 1 / (point.sigma * point.sigma + kShape * kShape);
+}
 
 double cost(const std::vector<ResponsePoint>& curve, const Vector3d& p) {
     double sum = 0;
@@ -98,7 +100,8 @@ void fit_response(ResponseResult& result) {
     result.crushes_darks = result.dark_end > std::max(kNoticed_grey, 3 * result.dark_end_sigma);
     result.crushes_whites = 255 - result.bright_end > std::max(kNoticed_grey, 3 * result.bright_end_sigma);
     for (const ResponsePoint& point : result.curve)
-        result.worst_departure = std::max(result.worst_departure, std::abs(point.light - fitted_light(result, point.grey)));
+        result.worst_departure =
+            std::max(result.worst_departure, std::abs(point.light - fitted_light(result, point.grey)));
 }
 
 double fitted_light(const ResponseResult& result, double grey) {

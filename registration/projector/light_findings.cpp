@@ -11,14 +11,19 @@ namespace planlight {
 
 std::vector<LightFinding> findings_of(const ResponseResult& r) {
     std::vector<LightFinding> findings;
-    const auto say = [&](std::string what, std::string remedy) { findings.push_back({std::move(what), std::move(remedy)}); };
+    const auto say = [&](std::string what, std::string remedy) {
+        findings.push_back({std::move(what), std::move(remedy)});
+    };
     if (r.crushes_darks && r.crushes_whites && std::abs(r.dark_end - 16) < 6 && std::abs(r.bright_end - 235) < 8)
-        say(fmt::format("greys up to {:.0f} are black and from {:.0f} on white: the projector takes the picture for one of limited range",
+        say(fmt::format("greys up to {:.0f} are black and from {:.0f} on white: the projector takes the picture for "
+                        "one of limited range",
                         r.dark_end, r.bright_end),
-            "Set the HDMI range (\"black level\", \"RGB range\") to full, 0 to 255, on the computer and on the projector.");
+            "Set the HDMI range (\"black level\", \"RGB range\") to full, 0 to 255, on the computer and on the "
+            "projector.");
     else if (r.crushes_darks)
         say(fmt::format("the projector crushes the darks: greys up to {:.0f} are black", r.dark_end),
-            "Choose another picture mode (\"sRGB\", \"cinema\"), raise its brightness, and switch dynamic contrast off.");
+            "Choose another picture mode (\"sRGB\", \"cinema\"), raise its brightness, and switch dynamic contrast "
+            "off.");
     else if (r.crushes_whites)
         say(fmt::format("the projector crushes the whites: greys from {:.0f} on are white", r.bright_end),
             "Choose another picture mode (\"sRGB\", \"cinema\"), and lower its contrast.");
@@ -34,11 +39,14 @@ std::vector<LightFinding> findings_of(const ResponseResult& r) {
         const double sum = (*r.colours)[0] + (*r.colours)[1] + (*r.colours)[2];
         const double noise = 3 * std::hypot(r.colour_sigmas[0], r.colour_sigmas[1], r.colour_sigmas[2]);
         if (sum - noise > kMoreThanWhite)
-            say(fmt::format("red, green and blue add up to {:.2f} of white: the cameras are not linear, so the gamma is not the projector's alone", sum),
+            say(fmt::format("red, green and blue add up to {:.2f} of white: the cameras are not linear, so the gamma "
+                            "is not the projector's alone",
+                            sum),
                 "Set the cameras' gamma to 1, and switch their automatic gain and contrast off.");
         else if (sum + noise < kLessThanWhite)
             say(fmt::format("red, green and blue add up to {:.2f} of white: the projector adds a white segment", sum),
-                "Switch \"brilliant colour\" or the bright picture mode off where colours matter; the scan's grey pictures do not mind.");
+                "Switch \"brilliant colour\" or the bright picture mode off where colours matter; the scan's grey "
+                "pictures do not mind.");
     }
     constexpr double kDiffer = 0.02;
     if (r.cameras_differ > kDiffer)
@@ -51,16 +59,20 @@ std::vector<LightFinding> findings_of(const ResponseResult& r) {
 }
 
 std::string meaning_of(const ResponseResult& r) {
-    std::string text = fmt::format("The scan reads fringes by their phase in 8 steps, and a gamma of {:.2f} does not shift that: "
-                                   "nothing has to be corrected.",
-                                   r.gamma);
+    std::string text = fmt::format(
+        "The scan reads fringes by their phase in 8 steps, and a gamma of {:.2f} does not shift that: "
+        "nothing has to be corrected.",
+        r.gamma);
     const double half = fitted_light(r, 128);
     if (half < 0.3 || half > 0.7)
-        text += fmt::format(" Half grey gives {:.0f} % of white: dim colours of the plan are dimmer on the skin than on a screen.",
-                            100 * half);
+        text += fmt::format(
+            " Half grey gives {:.0f} % of white: dim colours of the plan are dimmer on the skin than on a screen.",
+            100 * half);
     if (r.crushes_darks || r.crushes_whites)
-        text += " The crushed end takes part of each fringe away: the contrast is less and the noise of the points more; markers "
-                "and the Gray code, which are black and white, do not mind.";
+        text +=
+            " The crushed end takes part of each fringe away: the contrast is less and the noise of the points more; "
+            "markers "
+            "and the Gray code, which are black and white, do not mind.";
     return text;
 }
 
@@ -68,37 +80,45 @@ std::vector<LightFinding> findings_of(const CycleResult& r) {
     std::vector<LightFinding> findings;
     const std::string cure =
         r.exposure_to_set_s > 0
-            ? fmt::format("Set the exposure to {:.2f} ms{}.", 1e3 * r.exposure_to_set_s, r.cycle_is_told ? "" : " and measure again")
+            ? fmt::format("Set the exposure to {:.2f} ms{}.", 1e3 * r.exposure_to_set_s,
+                          r.cycle_is_told ? "" : " and measure again")
             : "Lengthen the exposure to several cycles, dim the lens instead of the shutter, and measure again.";
     if (r.projector_varies)
-        findings.push_back({fmt::format("the projector's light varies by {:.1f} % from frame to frame at an exposure of {:.2f} ms",
-                                        100 * r.worst, 1e3 * r.exposure_s),
-                            cure});
+        findings.push_back(
+            {fmt::format("the projector's light varies by {:.1f} % from frame to frame at an exposure of {:.2f} ms",
+                         100 * r.worst, 1e3 * r.exposure_s),
+             cure});
     if (r.room_varies)
-        findings.push_back({fmt::format("the room's lamps flicker by {:.1f} % in the cameras", 100 * r.runs.front().variation),
-                            cure + " Or turn them off."});
+        findings.push_back(
+            {fmt::format("the room's lamps flicker by {:.1f} % in the cameras", 100 * r.runs.front().variation),
+             cure + " Or turn them off."});
     if (r.timing.lost > 0)
-        findings.push_back({fmt::format("{} frames were lost", r.timing.lost), "Check the cameras' connection and the load of the computer."});
+        findings.push_back({fmt::format("{} frames were lost", r.timing.lost),
+                            "Check the cameras' connection and the load of the computer."});
     return findings;
 }
 
 std::string meaning_of(const CycleResult& result) {
     std::string text;
     const CycleRun& room = result.runs.front();
-    const bool blind = std::any_of(result.unseen_hz.begin(), result.unseen_hz.end(), [](double hz) { return hz == 100 || hz == 120; });
+    const bool blind =
+        std::any_of(result.unseen_hz.begin(), result.unseen_hz.end(), [](double hz) { return hz == 100 || hz == 120; });
     text += room.varies ? fmt::format("The room's lamps flicker by {:.1f} % of their light", 100 * room.variation)
             : blind     ? std::string("The room's lamps look steady, which these frames cannot tell for sure")
                         : std::string("The room's light is steady");
     double at_most = 0;
     for (std::size_t i = 1; i < result.runs.size(); ++i) at_most = std::max(at_most, result.runs[i].at_most);
     text += result.projector_varies
-                ? fmt::format("; the projector's light varies by {:.1f} % from frame to frame (a colour wheel, or dimming by pulses).",
-                              100 * result.worst)
+                ? fmt::format(
+                      "; the projector's light varies by {:.1f} % from frame to frame (a colour wheel, or dimming by "
+                      "pulses).",
+                      100 * result.worst)
                 : fmt::format("; the projector's light is steady (within {:.2f} %).", 100 * at_most);
     if (result.exposure_to_set_s > 0)
-        text += fmt::format(" An exposure of {:.2f} ms instead of {:.2f} ms holds whole cycles and cures it{}.",
-                            1e3 * result.exposure_to_set_s, 1e3 * result.exposure_s,
-                            result.cycle_is_told ? "" : " if the cycle is a usual one (which one, these frames cannot tell)");
+        text += fmt::format(
+            " An exposure of {:.2f} ms instead of {:.2f} ms holds whole cycles and cures it{}.",
+            1e3 * result.exposure_to_set_s, 1e3 * result.exposure_s,
+            result.cycle_is_told ? "" : " if the cycle is a usual one (which one, these frames cannot tell)");
     if (!result.unseen_hz.empty()) {
         std::string list;
         for (const double hz : result.unseen_hz) list += fmt::format("{}{:g}", list.empty() ? "" : ", ", hz);
@@ -109,41 +129,54 @@ std::string meaning_of(const CycleResult& result) {
 
 std::vector<LightFinding> findings_of(const LatencyResult& r) {
     std::vector<LightFinding> findings;
-    const std::string set = fmt::format("Set the delay to {:.0f} ms (`session --light-delay-ms {:.0f}`, or `--projector-file`).",
-                                        1e3 * r.light_delay_s, 1e3 * r.light_delay_s);
+    const std::string set =
+        fmt::format("Set the delay to {:.0f} ms (`session --light-delay-ms {:.0f}`, or `--projector-file`).",
+                    1e3 * r.light_delay_s, 1e3 * r.light_delay_s);
     if (r.promise && r.promise->broken > 0)
-        findings.push_back({fmt::format("light was promised {:.1f} ms after the order and came later for {} of {} pictures, by {:.1f} ms at "
-                                        "worst: a scan would expose them too early",
-                                        1e3 * r.promise->delay_s, r.promise->broken, r.promise->orders, 1e3 * r.promise->too_early_s),
-                            set});
+        findings.push_back(
+            {fmt::format(
+                 "light was promised {:.1f} ms after the order and came later for {} of {} pictures, by {:.1f} ms at "
+                 "worst: a scan would expose them too early",
+                 1e3 * r.promise->delay_s, r.promise->broken, r.promise->orders, 1e3 * r.promise->too_early_s),
+             set});
     constexpr double kTooLong_s = 0.010, kHead_mm_s = 20;
     if (r.promise && r.promise->broken == 0 && r.promise->delay_s - r.light_delay_s > kTooLong_s)
-        findings.push_back({fmt::format("light was promised {:.1f} ms after the order and is there after {:.1f} ms: the plan is drawn for a "
-                                        "head that moves on {:.1f} ms too long, {:.2f} mm at {:.0f} mm/s",
-                                        1e3 * r.promise->delay_s, 1e3 * r.median_s, 1e3 * (r.promise->delay_s - r.median_s),
-                                        kHead_mm_s * (r.promise->delay_s - r.median_s), kHead_mm_s),
-                            set});
+        findings.push_back(
+            {fmt::format(
+                 "light was promised {:.1f} ms after the order and is there after {:.1f} ms: the plan is drawn for a "
+                 "head that moves on {:.1f} ms too long, {:.2f} mm at {:.0f} mm/s",
+                 1e3 * r.promise->delay_s, 1e3 * r.median_s, 1e3 * (r.promise->delay_s - r.median_s),
+                 kHead_mm_s * (r.promise->delay_s - r.median_s), kHead_mm_s),
+             set});
     if (r.unseen > 0)
         findings.push_back({fmt::format("{} of {} pictures never became light", r.unseen, r.changes),
-                            "Set the monitor to the projector's own resolution and refresh rate, and switch frame interpolation off."});
+                            "Set the monitor to the projector's own resolution and refresh rate, and switch frame "
+                            "interpolation off."});
     if (r.late > 0)
-        findings.push_back({fmt::format("{} of {} pictures came a refresh late", r.late, r.delays.size()),
-                            "Switch the projector's picture processing off (\"game mode\"), and close other programs that draw."});
+        findings.push_back(
+            {fmt::format("{} of {} pictures came a refresh late", r.late, r.delays.size()),
+             "Switch the projector's picture processing off (\"game mode\"), and close other programs that draw."});
     if (r.frames.lost + r.frames.doubled > 0)
-        findings.push_back({fmt::format("the cameras lost {} frames and gave {} twice", r.frames.lost, r.frames.doubled),
-                            "Check the cameras' connection and the load of the computer."});
+        findings.push_back(
+            {fmt::format("the cameras lost {} frames and gave {} twice", r.frames.lost, r.frames.doubled),
+             "Check the cameras' connection and the load of the computer."});
     return findings;
 }
 
 std::string meaning_of(const LatencyResult& r) {
-    std::string text = fmt::format("From order to light {:.1f} +- {:.1f} ms, with a spread of {:.1f} ms from picture to picture (standard deviation); "
-                                   "the latest seen came after {:.1f} ms.",
-                                   1e3 * r.median_s, 1e3 * r.median_sigma_s, 1e3 * r.jitter_s, 1e3 * r.latest_s);
-    text += fmt::format(" {} of {} changes fell within an exposure and are known to a part of it, the others to the time between two.",
-                        r.exact, r.delays.size());
+    std::string text = fmt::format(
+        "From order to light {:.1f} +- {:.1f} ms, with a spread of {:.1f} ms from picture to picture (standard "
+        "deviation); "
+        "the latest seen came after {:.1f} ms.",
+        1e3 * r.median_s, 1e3 * r.median_sigma_s, 1e3 * r.jitter_s, 1e3 * r.latest_s);
+    text += fmt::format(
+        " {} of {} changes fell within an exposure and are known to a part of it, the others to the time between two.",
+        r.exact, r.delays.size());
     constexpr double kHead_mm_s = 20;
-    text += fmt::format(" At {:.0f} mm/s the head moves {:.2f} mm in that time, which the prediction has to make good; its spread leaves {:.2f} mm.",
-                        kHead_mm_s, kHead_mm_s * r.median_s, kHead_mm_s * r.jitter_s);
+    text += fmt::format(
+        " At {:.0f} mm/s the head moves {:.2f} mm in that time, which the prediction has to make good; its spread "
+        "leaves {:.2f} mm.",
+        kHead_mm_s, kHead_mm_s * r.median_s, kHead_mm_s * r.jitter_s);
     return text;
 }
 

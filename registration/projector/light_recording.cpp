@@ -118,13 +118,16 @@ LitTiles tiles_between(const TileLight& black, const TileLight& white) {
         lit.white += white.grey[t];
     }
     if (lit.tiles.size() + lit.saturated < kLeastTiles)
-        lit.refusal = {fmt::format("the cameras see nothing of the projector: white is at most {:.1f} grey brighter than black", best),
-                       "Lay a white card, or the calibration board, where the light falls and both cameras look, take the lid "
-                       "off the lens, and turn the room's light down."};
+        lit.refusal = {
+            fmt::format("the cameras see nothing of the projector: white is at most {:.1f} grey brighter than black",
+                        best),
+            "Lay a white card, or the calibration board, where the light falls and both cameras look, take the lid "
+            "off the lens, and turn the room's light down."};
     else if (lit.tiles.size() < kLeastTiles)
-        lit.refusal = {fmt::format("the light is too bright for the cameras: {} of {} lit tiles are saturated under white",
-                                   lit.saturated, lit.saturated + lit.tiles.size()),
-                       "Shorten the exposure or close the aperture until white is below 250."};
+        lit.refusal = {
+            fmt::format("the light is too bright for the cameras: {} of {} lit tiles are saturated under white",
+                        lit.saturated, lit.saturated + lit.tiles.size()),
+            "Shorten the exposure or close the aperture until white is below 250."};
     if (lit.refusal) {
         lit.tiles.clear();
         return lit;
@@ -170,14 +173,17 @@ LitTiles find_lit_tiles(const LightRecording& recording) {
     const TileLight black = at_rest(recording, steady, kBlack), white = at_rest(recording, steady, kWhite);
     LitTiles lit;
     if (black.frames == 0 || white.frames == 0) {
-        lit.refusal = {fmt::format("no frame saw a steady {} picture", black.frames == 0 ? "black" : "white"),
-                       fmt::format("Show white and black for {:.1f} s at least, and check that the cameras' times are on the "
-                                   "orders' clock.",
-                                   2 * seconds(recording.settle))};
+        lit.refusal = {
+            fmt::format("no frame saw a steady {} picture", black.frames == 0 ? "black" : "white"),
+            fmt::format("Show white and black for {:.1f} s at least, and check that the cameras' times are on the "
+                        "orders' clock.",
+                        2 * seconds(recording.settle))};
         return lit;
     }
     lit = tiles_between(black, white);
-    if (!lit.refusal) lit.noise = std::max(deviation(recording, steady, lit.tiles, kBlack), deviation(recording, steady, lit.tiles, kWhite));
+    if (!lit.refusal)
+        lit.noise =
+            std::max(deviation(recording, steady, lit.tiles, kBlack), deviation(recording, steady, lit.tiles, kWhite));
     return lit;
 }
 
@@ -191,14 +197,19 @@ LitTiles find_flashing_tiles(const LightRecording& recording) {
     }
     lit = tiles_between(quantile(frames, 0.25), quantile(frames, 0.75));
     if (lit.refusal) return lit;
-    // Frames near one of the two lights: what is between them is a change, not noise.
-    double square = 0;
-    std::size_t count = 0;
+    // From the medians of both halves: the few frames that saw a change are no noise.
+    std::array<std::vector<double>, 2> off;
     for (const FrameBrightness* frame : frames) {
-        const double v = mean_of(*frame, lit.tiles), off = std::min(std::abs(v - lit.black), std::abs(v - lit.white));
-        if (off < 0.15 * (lit.white - lit.black)) square += off * off, ++count;
+        const double v = mean_of(*frame, lit.tiles);
+        const bool bright = v > (lit.black + lit.white) / 2;
+        off[bright].push_back(std::abs(v - (bright ? lit.white : lit.black)));
     }
-    lit.noise = count > 0 ? std::sqrt(square / static_cast<double>(count)) : 0;
+    for (std::vector<double>& side : off) {
+        if (side.empty()) continue;
+        const auto middle = side.begin() + static_cast<std::ptrdiff_t>(side.size() / 2);
+        std::nth_element(side.begin(), middle, side.end());
+        lit.noise = std::max(lit.noise, 1.4826 * *middle);
+    }
     return lit;
 }
 

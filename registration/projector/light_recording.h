@@ -16,7 +16,8 @@ struct FrameBrightness {
     Instant at{};              ///< mid-exposure
     Instant exposure{};        ///< how long the shutter was open
     std::uint64_t number = 0;  ///< of the cameras; a jump is a lost frame
-    std::vector<float> tiles;      ///< grey; `kTilesAcross` x `kTilesDown` of the left picture, rows from the top, then of the right
+    std::vector<float>
+        tiles;  ///< grey; `kTilesAcross` x `kTilesDown` of the left picture, rows from the top, then of the right
     std::vector<float> saturated;  ///< share of each tile's pixels at 254 or more
     std::vector<float> at_zero;    ///< share of each tile's pixels at 0
 
@@ -47,15 +48,16 @@ struct LightRefusal {
 /// The tiles on which the projector is seen, and how bright they are when it is white and when it is black.
 struct LitTiles {
     std::vector<std::size_t> tiles;
-    double black = 0, white = 0;    ///< grey, mean over `tiles`
-    double noise = 0;               ///< standard deviation of that mean from frame to frame, grey (flicker included)
-    std::size_t saturated = 0;      ///< left out: white is at the end of their scale
-    std::size_t at_zero = 0;        ///< kept, but the camera's zero cuts off their darks
+    double black = 0, white = 0;  ///< grey, mean over `tiles`
+    double noise = 0;             ///< standard deviation of that mean from frame to frame, grey (flicker included)
+    std::size_t saturated = 0;    ///< left out: white is at the end of their scale
+    std::size_t at_zero = 0;      ///< kept, but the camera's zero cuts off their darks
     std::optional<LightRefusal> refusal;  ///< nothing seen, or all of it saturated; `tiles` is empty then
 };
 LitTiles find_lit_tiles(const LightRecording& recording);
 
-/// The same from flashes, by the darker and the brighter quarter of the frames: does not need to know the delay.
+/// The same from flashes, by the darker and the brighter half of the frames, each by its median: does not need to know
+/// the delay.
 LitTiles find_flashing_tiles(const LightRecording& recording);
 
 /// Mean over some tiles, grey.
@@ -63,7 +65,7 @@ double mean_of(const FrameBrightness& frame, const std::vector<std::size_t>& til
 
 /// Time between frames that followed each other, and how many were lost: gaps in which no order was given.
 struct FrameTiming {
-    double interval_s = 0;      ///< median; 0 with fewer than three frames
+    double interval_s = 0;              ///< median; 0 with fewer than three frames
     std::size_t lost = 0, doubled = 0;  ///< doubled: one number or one moment twice
 };
 FrameTiming frame_timing(const LightRecording& recording);

@@ -28,7 +28,8 @@ double flatten(const std::vector<double>& at_s, std::vector<double>& v) {
     return m;
 }
 
-Halves halves_of(const LightRecording& recording, const std::vector<std::size_t>& frames, const std::vector<std::size_t>& tiles) {
+Halves halves_of(const LightRecording& recording, const std::vector<std::size_t>& frames,
+                 const std::vector<std::size_t>& tiles) {
     std::vector<std::size_t> even, odd;
     for (const std::size_t t : tiles) ((t % kTilesAcross + t / kTilesAcross) % 2 == 0 ? even : odd).push_back(t);
     Halves halves;
@@ -78,7 +79,9 @@ std::optional<double> strongest_hz(const Halves& h, double frames_hz) {
     return best_hz;
 }
 
-double aliased(double hz, double frames_hz) { return std::abs(hz - frames_hz * std::round(hz / frames_hz)); }
+double aliased(double hz, double frames_hz) {
+    return std::abs(hz - frames_hz * std::round(hz / frames_hz));
+}
 
 std::vector<double> usual_cycles(bool room, double refresh_hz) {
     if (room) return {100, 120};
@@ -88,14 +91,18 @@ std::vector<double> usual_cycles(bool room, double refresh_hz) {
 }
 
 std::string name_of(Rgb c) {
-    static const std::map<Rgb, std::string> kNames{
-        {{0, 0, 0}, "black"}, {{255, 255, 255}, "white"}, {{255, 0, 0}, "red"}, {{0, 255, 0}, "green"}, {{0, 0, 255}, "blue"}};
+    static const std::map<Rgb, std::string> kNames{{{0, 0, 0}, "black"},
+                                                   {{255, 255, 255}, "white"},
+                                                   {{255, 0, 0}, "red"},
+                                                   {{0, 255, 0}, "green"},
+                                                   {{0, 0, 255}, "blue"}};
     const auto found = kNames.find(c);
     return found == kNames.end() ? fmt::format("{} {} {}", c[0], c[1], c[2]) : found->second;
 }
 
-CycleRun measured_run(const LightRecording& recording, const std::vector<std::size_t>& frames, const LitTiles& lit, Rgb colour,
-                      const std::optional<Covariance>& room, double frames_hz, const CycleSettings& settings) {
+CycleRun measured_run(const LightRecording& recording, const std::vector<std::size_t>& frames, const LitTiles& lit,
+                      Rgb colour, const std::optional<Covariance>& room, double frames_hz,
+                      const CycleSettings& settings) {
     const Halves halves = halves_of(recording, frames, lit.tiles);
     const Covariance c = covariance_of(halves);
     CycleRun run;
@@ -146,9 +153,12 @@ void find_cure(const CycleSettings& settings, CycleResult& result) {
     for (const CycleRun& run : result.runs) {
         if (!run.varies) continue;
         const bool room = run.name == "black";
-        // Half grey would be enough for a wheel's cycle, but every cycle of a projector is over after one of its pictures.
-        if (room) add(run, 100);
-        else add(run, settings.refresh_hz);
+        // Half grey would be enough for a wheel's cycle, but every cycle of a projector is over after one of its
+        // pictures.
+        if (room)
+            add(run, 100);
+        else
+            add(run, settings.refresh_hz);
     }
     if (needed.empty()) return;
     std::sort(needed.begin(), needed.end());
@@ -169,7 +179,9 @@ CycleResult measure_cycle(const LightRecording& recording, const CycleSettings& 
     result.frames_hz = 1 / result.timing.interval_s;
     result.exposure_s = seconds(recording.frames.front().exposure);
     const auto steady = steady_frames(recording);
-    const auto frames_of = [&](std::size_t o) { return steady[o].size() >= kLeastFrames ? steady[o] : std::vector<std::size_t>{}; };
+    const auto frames_of = [&](std::size_t o) {
+        return steady[o].size() >= kLeastFrames ? steady[o] : std::vector<std::size_t>{};
+    };
     std::optional<Covariance> room;
     double lasted = 0;
     for (const bool dark : {true, false})
@@ -177,13 +189,16 @@ CycleResult measure_cycle(const LightRecording& recording, const CycleSettings& 
             const auto frames = frames_of(o);
             const bool black = recording.orders[o].colour == Rgb{0, 0, 0};
             if (frames.empty() || black != dark || recording.orders[o].covered) continue;
-            result.runs.push_back(measured_run(recording, frames, lit, recording.orders[o].colour, room, result.frames_hz, settings));
-            lasted = std::max(lasted, seconds(recording.frames[frames.back()].at - recording.frames[frames.front()].at));
+            result.runs.push_back(
+                measured_run(recording, frames, lit, recording.orders[o].colour, room, result.frames_hz, settings));
+            lasted =
+                std::max(lasted, seconds(recording.frames[frames.back()].at - recording.frames[frames.front()].at));
             if (dark && !room) room = covariance_of(halves_of(recording, frames, lit.tiles));
         }
     if (!room || result.runs.size() < 2) {
-        result.refusal = {fmt::format("a run of {} frames in a row is missing for {}", kLeastFrames, room ? "white" : "black"),
-                          "Let the cameras run while one picture stands still, for black and for white at least."};
+        result.refusal = {
+            fmt::format("a run of {} frames in a row is missing for {}", kLeastFrames, room ? "white" : "black"),
+            "Let the cameras run while one picture stands still, for black and for white at least."};
         return result;
     }
     result.room_varies = result.runs.front().varies;

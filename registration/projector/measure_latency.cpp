@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "registration/projector/fit_delays.h"
+#include "registration/projector/judge_promise.h"
 
 namespace planlight {
 namespace {
@@ -29,7 +30,9 @@ struct Flashes {
     double shortest_s = 1e9;  ///< between two changes
 };
 
-bool is_white(const LightOrder& order) { return order.colour == Rgb{255, 255, 255}; }
+bool is_white(const LightOrder& order) {
+    return order.colour == Rgb{255, 255, 255};
+}
 
 Flashes flashes_of(const LightRecording& recording, const LitTiles& lit) {
     Flashes flashes;
@@ -38,7 +41,8 @@ Flashes flashes_of(const LightRecording& recording, const LitTiles& lit) {
         const bool before = !flashes.changes.empty() && flashes.changes.back().to_white;
         if (white == before) continue;
         const double at_s = seconds(recording.orders[o].at);
-        if (!flashes.changes.empty()) flashes.shortest_s = std::min(flashes.shortest_s, at_s - flashes.changes.back().at_s);
+        if (!flashes.changes.empty())
+            flashes.shortest_s = std::min(flashes.shortest_s, at_s - flashes.changes.back().at_s);
         flashes.changes.push_back({at_s, white, o});
     }
     for (const FrameBrightness& frame : recording.frames)
@@ -48,7 +52,8 @@ Flashes flashes_of(const LightRecording& recording, const LitTiles& lit) {
     return flashes;
 }
 
-/// Share of [from, to] in which it is ordered to be white, were the light there at once. `hint`: where to look, moves on.
+/// Share of [from, to] in which it is ordered to be white, were the light there at once. `hint`: where to look, moves
+/// on.
 double ordered_share(const std::vector<Flashes::Change>& changes, double from, double to, std::size_t& hint) {
     while (hint > 0 && changes[hint - 1].at_s > from) --hint;
     while (hint < changes.size() && changes[hint].at_s <= from) ++hint;
@@ -82,7 +87,8 @@ struct Search {
 
 Search search(const Flashes& flashes, const LatencySettings& settings) {
     std::vector<std::pair<double, double>> all;
-    for (double delay = settings.least_s; delay <= settings.most_s; delay += kStep_s) all.emplace_back(agreement(flashes, delay), delay);
+    for (double delay = settings.least_s; delay <= settings.most_s; delay += kStep_s)
+        all.emplace_back(agreement(flashes, delay), delay);
     Search found;
     for (const auto& [value, delay] : all)
         if (value > found.agreement) found.agreement = value, found.delay_s = delay;
@@ -93,7 +99,8 @@ Search search(const Flashes& flashes, const LatencySettings& settings) {
             low = std::min(low, delay), high = std::max(high, delay);
     found.delay_s = (low + high) / 2;
     for (const auto& [value, delay] : all)
-        if (std::abs(delay - found.delay_s) > flashes.shortest_s / 2) found.runner_up = std::max(found.runner_up, value);
+        if (std::abs(delay - found.delay_s) > flashes.shortest_s / 2)
+            found.runner_up = std::max(found.runner_up, value);
     return found;
 }
 
@@ -106,20 +113,26 @@ struct Seen {
 Seen look_for(const Flashes& flashes, std::size_t c, double delay_s) {
     const auto& change = flashes.changes[c];
     const double from = (c > 0 ? (flashes.changes[c - 1].at_s + change.at_s) / 2 : change.at_s - 0.2) + delay_s;
-    const double to = (c + 1 < flashes.changes.size() ? (flashes.changes[c + 1].at_s + change.at_s) / 2 : change.at_s + 0.2) + delay_s;
+    const double to =
+        (c + 1 < flashes.changes.size() ? (flashes.changes[c + 1].at_s + change.at_s) / 2 : change.at_s + 0.2) +
+        delay_s;
     Seen seen;
     seen.delay.order = change.order;
     double at_least = -1e9, at_most = 1e9;
-    const double sure = std::max(4 * flashes.noise, 0.02);
+    // Light that is as unsteady as that says which of the two it is, but not what part of an exposure it was there.
+    constexpr double kUnsteady = 0.1;
+    const bool coarse = flashes.noise > kUnsteady;
+    const double sure = coarse ? 0.5 : std::max(4 * flashes.noise, 0.02);
     bool old_before = false;
     for (const auto& frame : flashes.frames) {
         if (frame.opened_s < from || frame.closed_s > to) continue;
         const double share = change.to_white ? frame.light : 1 - frame.light;  // of the exposure in the new light
         if (share < sure) {
-            at_least = std::max(at_least, frame.closed_s - share * (frame.closed_s - frame.opened_s));
+            at_least = std::max(at_least,
+                                coarse ? frame.opened_s : frame.closed_s - share * (frame.closed_s - frame.opened_s));
             old_before = true;
-        } else if (share > 1 - sure) {
-            at_most = std::min(at_most, frame.opened_s);
+        } else if (share >= 1 - sure) {
+            at_most = std::min(at_most, coarse ? frame.closed_s : frame.opened_s);
         } else {
             at_least = at_most = frame.closed_s - share * (frame.closed_s - frame.opened_s);
             seen.delay.exact = true;
@@ -138,54 +151,14 @@ std::size_t unseen_changes(const Flashes& flashes, const LatencyResult& result) 
     std::size_t unseen = 0;
     for (std::size_t c = 1; c + 1 < flashes.changes.size(); ++c) {
         const auto& change = flashes.changes[c];
-        const double from = change.at_s + result.latest_s + kSpare_s, to = flashes.changes[c + 1].at_s + result.earliest_s - kSpare_s;
+        const double from = change.at_s + result.latest_s + kSpare_s,
+                     to = flashes.changes[c + 1].at_s + result.earliest_s - kSpare_s;
         unseen += std::any_of(flashes.frames.begin(), flashes.frames.end(), [&](const Flashes::Frame& frame) {
-            return frame.opened_s >= from && frame.closed_s <= to && (change.to_white ? frame.light : 1 - frame.light) < kOld;
+            return frame.opened_s >= from && frame.closed_s <= to &&
+                   (change.to_white ? frame.light : 1 - frame.light) < kOld;
         });
     }
     return unseen;
-}
-
-void compare_with_promise(const LightRecording& recording, LatencyResult& result) {
-    std::vector<double> promised;
-    LatencyResult::Promise promise;
-    double return_s = 0;  // the longest that `show` took: what a delay from its return has on top
-    bool all_return = true;
-    std::vector<double> after_return;
-    for (const LightDelay& delay : result.delays) {
-        const LightOrder& order = recording.orders[delay.order];
-        if (order.returned) {
-            return_s = seconds(*order.returned - order.at);
-            after_return.push_back(delay.at_least_s - return_s);
-        } else {
-            all_return = false;
-        }
-        if (!order.promised) continue;
-        promised.push_back(seconds(*order.promised - order.at));
-        const double early_s = delay.at_least_s - promised.back();
-        constexpr double kNoticed_s = 0.0005;
-        promise.broken += early_s > kNoticed_s;
-        promise.too_early_s = std::max(promise.too_early_s, early_s);
-    }
-    if (!promised.empty()) {
-        promise.orders = promised.size();
-        std::nth_element(promised.begin(), promised.begin() + static_cast<std::ptrdiff_t>(promised.size() / 2), promised.end());
-        promise.delay_s = promised[promised.size() / 2];
-        result.promise = promise;
-    }
-    double shortest_return = 0;
-    if (all_return && !after_return.empty()) {
-        shortest_return = 1e9;
-        for (const LightDelay& delay : result.delays) {
-            const LightOrder& order = recording.orders[delay.order];
-            shortest_return = std::min(shortest_return, seconds(*order.returned - order.at));
-        }
-    }
-    constexpr double kMargin_s = 0.001;
-    const double seen_s = all_return && !after_return.empty() ? *std::max_element(after_return.begin(), after_return.end())
-                                                              : result.latest_s;
-    const double spread_s = result.median_s - shortest_return + 3 * std::hypot(result.jitter_s, result.median_sigma_s);
-    result.light_delay_s = std::ceil(1e3 * (std::max({seen_s, spread_s, 0.0}) + kMargin_s)) / 1e3;
 }
 
 LatencyResult refused(LatencyResult result, std::string reason, std::string remedy) {
@@ -207,24 +180,33 @@ LatencyResult measure_latency(const LightRecording& recording, const LatencySett
     result.changes = flashes.changes.size();
     constexpr std::size_t kLeastChanges = 12;
     if (result.changes < kLeastChanges)
-        return refused(result, fmt::format("only {} changes between black and white were ordered; {} are needed", result.changes, kLeastChanges),
+        return refused(result,
+                       fmt::format("only {} changes between black and white were ordered; {} are needed",
+                                   result.changes, kLeastChanges),
                        "Record the whole flash code.");
     if (flashes.shortest_s < 1.9 * result.frames.interval_s)
-        return refused(result,
-                       fmt::format("the cameras are too slow for these flashes: the shortest is {:.0f} ms, a frame comes every {:.0f} ms",
-                                   1e3 * flashes.shortest_s, 1e3 * result.frames.interval_s),
-                       "Flash two frames long at least, or raise the frame rate.");
+        return refused(
+            result,
+            fmt::format(
+                "the cameras are too slow for these flashes: the shortest is {:.0f} ms, a frame comes every {:.0f} ms",
+                1e3 * flashes.shortest_s, 1e3 * result.frames.interval_s),
+            "Flash two frames long at least, or raise the frame rate.");
     const Search found = search(flashes, settings);
     result.code_agreement = found.agreement;
     result.runner_up_agreement = found.runner_up;
     if (found.agreement < kLeastAgreement)
-        return refused(result, fmt::format("what the cameras saw is not the code that was shown (agreement {:.2f})", found.agreement),
-                       "Check that the cameras' times and the orders' are on one clock, and that nobody walked through the light.");
+        return refused(
+            result,
+            fmt::format("what the cameras saw is not the code that was shown (agreement {:.2f})", found.agreement),
+            "Check that the cameras' times and the orders' are on one clock, and that nobody walked through the "
+            "light.");
     if (found.runner_up > 0.85 * found.agreement)
-        return refused(result,
-                       fmt::format("the flashes fit the frames at several delays (agreement {:.2f} and {:.2f}): they repeat themselves",
-                                   found.agreement, found.runner_up),
-                       "Flash in a pseudo-random order, as `planlight projector` does.");
+        return refused(
+            result,
+            fmt::format(
+                "the flashes fit the frames at several delays (agreement {:.2f} and {:.2f}): they repeat themselves",
+                found.agreement, found.runner_up),
+            "Flash in a pseudo-random order, as `planlight projector` does.");
     for (std::size_t c = 1; c < flashes.changes.size(); ++c) {
         const Seen seen = look_for(flashes, c, found.delay_s);
         if (seen.seen) {
@@ -233,15 +215,25 @@ LatencyResult measure_latency(const LightRecording& recording, const LatencySett
         }
     }
     if (result.delays.size() < kLeastChanges / 2)
-        return refused(result, fmt::format("only {} of {} changes of light are seen cleanly", result.delays.size(), result.changes),
-                       "Give the code more light or more frames a flash.");
+        return refused(
+            result,
+            fmt::format("only {} of {} changes of light are seen cleanly", result.delays.size(), result.changes),
+            "Give the code more light or more frames a flash.");
     fit_delays(flashes.noise, recording.frames.front().exposure, result);
+    if (result.jitter_s > flashes.shortest_s / 4)
+        return refused(
+            result,
+            fmt::format("the delays differ by {:.0f} ms (standard deviation), too much for flashes of {:.0f} ms",
+                        1e3 * result.jitter_s, 1e3 * flashes.shortest_s),
+            "See first whether the light is steady (the colour cycle), then flash longer.");
     if (result.median_s < -0.001)
-        return refused(result, fmt::format("the light was seen {:.1f} ms before it was ordered", -1e3 * result.median_s),
+        return refused(result,
+                       fmt::format("the light was seen {:.1f} ms before it was ordered", -1e3 * result.median_s),
                        "The cameras' times are not on the orders' clock: correct their offset, then measure again.");
     result.unseen = unseen_changes(flashes, result);
-    for (const LightDelay& delay : result.delays) result.late += delay.at_least_s > result.median_s + 0.75 / settings.refresh_hz;
-    compare_with_promise(recording, result);
+    for (const LightDelay& delay : result.delays)
+        result.late += delay.at_least_s > result.median_s + 0.75 / settings.refresh_hz;
+    judge_promise(recording, result);
     return result;
 }
 

@@ -10,9 +10,9 @@ namespace planlight {
 
 /// One change of light: from the order to the light that the cameras saw, seconds.
 struct LightDelay {
-    std::size_t order = 0;             ///< index into the recording's orders
+    std::size_t order = 0;                 ///< index into the recording's orders
     double at_least_s = 0, at_most_s = 0;  ///< equal where the change fell within an exposure
-    bool exact = false;                ///< it did
+    bool exact = false;                    ///< it did
 };
 
 struct LatencySettings {
@@ -23,9 +23,9 @@ struct LatencySettings {
 /// From order to light as the cameras see it.
 struct LatencyResult {
     std::optional<LightRefusal> refusal;
-    double median_s = 0;           ///< of a normal distribution fitted to all changes, their bounds taken as bounds
-    double median_sigma_s = 0;     ///< one standard deviation of `median_s`; never under what the exposures resolve
-    double jitter_s = 0;           ///< standard deviation from change to change
+    double median_s = 0;        ///< of a normal distribution fitted to all changes, their bounds taken as bounds
+    double median_sigma_s = 0;  ///< one standard deviation of `median_s`; never under what the exposures resolve
+    double jitter_s = 0;        ///< standard deviation from change to change
     double jitter_sigma_s = 0;
     double earliest_s = 0, latest_s = 0;  ///< what some change surely was at most, at least
     std::vector<LightDelay> delays;       ///< one a change that was seen
@@ -36,22 +36,23 @@ struct LatencyResult {
     double code_agreement = 0;            ///< correlation of what was seen with the code at that delay, 1 = all of it
     double runner_up_agreement = 0;       ///< the best at any delay that is off by more than half the shortest flash
     FrameTiming frames;
-    /// Of the orders that promised a moment: the promised delay (median), how many were light only after that moment, and by
-    /// how much the worst. Empty: none promised one.
+    /// Of the orders that promised a moment: the promised delay (median), how many were light only after that moment,
+    /// and by how much the worst. Empty: none promised one.
     struct Promise {
         double delay_s = 0;
         std::size_t orders = 0, broken = 0;
         double too_early_s = 0;
     };
     std::optional<Promise> promise;
-    double light_delay_s = 0;  ///< what to set as delay from the return of `show` so that the light is there: covers the latest
+    double light_delay_s =
+        0;  ///< what to set as delay from the return of `show` so that the light is there: covers the latest
 };
 
 /// The delay at which the ordered flashes fit the frames, then every change by itself.
 ///
-/// Needs black and white flashes, each at least two frames long, each light a third of the time or more. A frame counts the
-/// share of its exposure that the new light was there. Refused: nothing seen, saturated, flashes shorter than the frames
-/// tell apart, a sequence that repeats within the search, a code that does not fit, light before its order.
+/// Needs black and white flashes, each at least two frames long, each light a third of the time or more. A frame counts
+/// the share of its exposure that the new light was there. Refused: nothing seen, saturated, flashes shorter than the
+/// frames tell apart, a sequence that repeats within the search, a code that does not fit, light before its order.
 LatencyResult measure_latency(const LightRecording& recording, const LatencySettings& settings = {});
 
 }  // namespace planlight

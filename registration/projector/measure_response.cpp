@@ -27,7 +27,8 @@ public:
             if (shown.frames > 0) black_ = std::min(black_, shown.grey), white = std::max(white, shown.grey);
         double dark = 0, dark_freedom = 0, lit = 0, lit_freedom = 0;
         for (std::size_t i = 0; i < all.size(); ++i)
-            if (all[i].grey - black_ < 0.15 * (white - black_)) dark += spreads[i].first, dark_freedom += spreads[i].second;
+            if (all[i].grey - black_ < 0.15 * (white - black_))
+                dark += spreads[i].first, dark_freedom += spreads[i].second;
         camera_ = dark_freedom > 0 ? std::max(kLeast_grey * kLeast_grey, dark / dark_freedom) : 0.05 * 0.05;
         for (std::size_t i = 0; i < all.size(); ++i) {
             const double light = all[i].grey - black_;
@@ -144,12 +145,15 @@ Measured measured_on(const LightRecording& recording, const std::vector<std::siz
         const auto n = static_cast<double>(sum.orders);
         ResponsePoint point;
         point.light = sum.light / n;
-        const double between = sum.orders > 1 ? std::max(0.0, sum.square - n * point.light * point.light) / (n - 1) / n : 0;
+        const double between =
+            sum.orders > 1 ? std::max(0.0, sum.square - n * point.light * point.light) / (n - 1) / n : 0;
         point.sigma = std::max(std::sqrt(sum.sigma_square) / n, std::sqrt(between));
         point.frames = sum.frames;
         point.grey = colour[0];
-        if (colour[0] == colour[1] && colour[1] == colour[2]) result.curve.push_back(point);
-        else result.colours[colour] = point;
+        if (colour[0] == colour[1] && colour[1] == colour[2])
+            result.curve.push_back(point);
+        else
+            result.colours[colour] = point;
     }
     // What the references are set against is themselves.
     if (!result.curve.empty() && result.curve.front().grey == 0) result.curve.front().light = 0;
@@ -177,8 +181,9 @@ ResponseResult measure_response(const LightRecording& recording) {
     result.curve = both.curve;
     constexpr std::size_t kLeastGreys = 8;
     if (result.curve.size() < kLeastGreys) {
-        result.refusal = {fmt::format("only {} greys were seen steadily; {} are needed", result.curve.size(), kLeastGreys),
-                          "Show more greys between 0 and 255, each until it is steady."};
+        result.refusal = {
+            fmt::format("only {} greys were seen steadily; {} are needed", result.curve.size(), kLeastGreys),
+            "Show more greys between 0 and 255, each until it is steady."};
         return result;
     }
     result.black_grey = both.black;
@@ -190,7 +195,8 @@ ResponseResult measure_response(const LightRecording& recording) {
     fit_response(result);
     for (std::size_t i = 1; i < result.curve.size(); ++i) {
         const ResponsePoint &before = result.curve[i - 1], &now = result.curve[i];
-        if (now.light < before.light - 3 * std::hypot(now.sigma, before.sigma) - 0.001) result.not_rising.push_back(now.grey);
+        if (now.light < before.light - 3 * std::hypot(now.sigma, before.sigma) - 0.001)
+            result.not_rising.push_back(now.grey);
     }
     constexpr std::array<Rgb, 3> kPure{{{255, 0, 0}, {0, 255, 0}, {0, 0, 255}}};
     if (std::all_of(kPure.begin(), kPure.end(), [&](const Rgb& c) { return both.colours.contains(c); })) {
@@ -203,7 +209,8 @@ ResponseResult measure_response(const LightRecording& recording) {
     result.black_level_is_a_bound = !both.covered;
     const double room = both.covered ? both.covered->first : 0;
     result.black_level = (both.black - room) / (both.white - room);
-    result.black_level_sigma = std::hypot(both.black_sigma, both.covered ? both.covered->second : 0) / (both.white - room);
+    result.black_level_sigma =
+        std::hypot(both.black_sigma, both.covered ? both.covered->second : 0) / (both.white - room);
     std::vector<std::size_t> left, right;
     for (const std::size_t t : lit.tiles) (t < kTiles ? left : right).push_back(t);
     if (!left.empty() && !right.empty())

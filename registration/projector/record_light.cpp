@@ -21,7 +21,8 @@ public:
 
     void show(Rgb colour, int frames_to_come) {
         constexpr auto kSpare = std::chrono::seconds(2);
-        const Instant valid_until = bench_.clock.now() + settings_.settle + kSpare + frames_to_come * settings_.patience;
+        const Instant valid_until =
+            bench_.clock.now() + settings_.settle + kSpare + frames_to_come * settings_.patience;
         LightOrder order;
         order.at = bench_.clock.now();
         order.colour = colour;
@@ -75,7 +76,8 @@ Instant aimed(Instant now, const FrameBrightness& last, double interval_s, doubl
 }  // namespace
 
 std::vector<int> response_greys() {
-    return {0, 4, 8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96, 112, 128, 144, 160, 176, 192, 208, 224, 232, 236, 240, 244, 248, 252, 255};
+    return {0,   4,   8,   12,  16,  20,  24,  32,  40,  48,  64,  80,  96,  112,
+            128, 144, 160, 176, 192, 208, 224, 232, 236, 240, 244, 248, 252, 255};
 }
 
 std::vector<bool> flash_code() {
@@ -93,7 +95,8 @@ LightRecording record_response(const LightBench& bench, const RecordSettings& se
     std::vector<int> greys = response_greys();
     std::mt19937 random(settings.seed);
     const int greys_a_pass = static_cast<int>(greys.size());
-    Recorder recorder(bench, settings, settings.grey_passes * (greys_a_pass + 2 * (greys_a_pass / kGreysBetweenReferences + 1)) + 5);
+    Recorder recorder(bench, settings,
+                      settings.grey_passes * (greys_a_pass + 2 * (greys_a_pass / kGreysBetweenReferences + 1)) + 5);
     const auto references = [&] {
         recorder.show_steady(kBlack, settings.frames_a_grey);
         recorder.show_steady(kWhite, settings.frames_a_grey);
@@ -105,7 +108,8 @@ LightRecording record_response(const LightBench& bench, const RecordSettings& se
             recorder.show_steady(grey(greys[i]), settings.frames_a_grey);
         }
     }
-    for (const Rgb colour : {Rgb{255, 0, 0}, Rgb{0, 255, 0}, Rgb{0, 0, 255}}) recorder.show_steady(colour, 2 * settings.frames_a_grey);
+    for (const Rgb colour : {Rgb{255, 0, 0}, Rgb{0, 255, 0}, Rgb{0, 0, 255}})
+        recorder.show_steady(colour, 2 * settings.frames_a_grey);
     references();
     return recorder.finish();
 }
@@ -149,8 +153,9 @@ LightRecording record_latency(const LightBench& bench, const RecordSettings& set
         for (const bool bit : code) {
             if (bit != on) {
                 const FrameBrightness& last = recorder.so_far().frames.back();
-                bench.wait_until(latency_s ? aimed(bench.clock.now(), last, interval_s, *latency_s, 0.2 + 0.6 * evenly(random))
-                                           : bench.clock.now() + from_seconds(interval_s * evenly(random)));
+                bench.wait_until(
+                    latency_s ? aimed(bench.clock.now(), last, interval_s, *latency_s, 0.2 + 0.6 * evenly(random))
+                              : bench.clock.now() + from_seconds(interval_s * evenly(random)));
                 recorder.show(bit ? kWhite : kBlack, 8 * settings.frames_a_flash);
                 on = bit;
             }

@@ -13,18 +13,18 @@ struct LightBench {
     Projector& projector;
     StereoCamera& cameras;
     const Clock& clock;
-    std::function<void(Instant)> wait_until;  ///< returns at that moment of `clock`; a past moment: at once
-    std::function<void(double)> progress;     ///< share done, 0 to 1; may be empty
+    std::function<void(Instant)> wait_until;       ///< returns at that moment of `clock`; a past moment: at once
+    std::function<void(double)> progress;          ///< share done, 0 to 1; may be empty
     std::function<void(const StereoFrame&)> keep;  ///< every frame as it was taken, to be written; may be empty
 };
 
 struct RecordSettings {
-    Instant settle = std::chrono::milliseconds(250);    ///< longer than any delay of a projector and its dynamic contrast
-    std::chrono::milliseconds patience{2000};           ///< for one frame
-    int grey_passes = 2, frames_a_grey = 2;             ///< response
-    int cycle_frames = 64;                              ///< colour cycle, a colour
-    int frames_a_flash = 3;                             ///< latency: a bit of the code
-    unsigned seed = 1;                                  ///< of the order of greys, and of the flashes
+    Instant settle = std::chrono::milliseconds(250);  ///< longer than any delay of a projector and its dynamic contrast
+    std::chrono::milliseconds patience{2000};         ///< for one frame
+    int grey_passes = 2, frames_a_grey = 2;           ///< response
+    int cycle_frames = 64;                            ///< colour cycle, a colour
+    int frames_a_flash = 3;                           ///< latency: a bit of the code
+    unsigned seed = 1;                                ///< of the order of greys, and of the flashes
 };
 
 /// The greys of the response, ends denser than the middle (0 to 255, rising).
@@ -41,8 +41,8 @@ void record_covered(const LightBench& bench, LightRecording& recording, const Re
 LightRecording record_cycle(const LightBench& bench, const RecordSettings& settings = {});
 
 /// Black and white at rest, then a pseudo-random code of 63 bits, each a few frames long and begun at a random moment
-/// between two frames; then the code once more with its changes aimed at the middle of an exposure, where they are seen to
-/// a fraction of it.
+/// between two frames; then the code once more with its changes aimed at the middle of an exposure, where they are seen
+/// to a fraction of it.
 LightRecording record_latency(const LightBench& bench, const RecordSettings& settings = {});
 
 /// The code: 63 bits of a shift register (x^6 + x^5 + 1), in which no window of six bits comes twice.

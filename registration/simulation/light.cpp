@@ -76,7 +76,8 @@ void LightMap::add(const LightMap& other) {
 Instant LightSchedule::light_of(Instant now) {
     Instant on = now + delay_ + settings_.untold_delay;
     if (settings_.jitter > Instant{}) on += from_seconds(seconds(settings_.jitter) * evenly(seed_ + 1, truth_.size()));
-    if (settings_.refresh_hz > 0) on = from_seconds(std::ceil(seconds(on) * settings_.refresh_hz - 1e-9) / settings_.refresh_hz);
+    if (settings_.refresh_hz > 0)
+        on = from_seconds(std::ceil(seconds(on) * settings_.refresh_hz - 1e-9) / settings_.refresh_hz);
     if (!orders_.empty()) on = std::max(on, orders_.back().on);
     return on;
 }
@@ -93,7 +94,8 @@ void LightSchedule::show(const RgbImage& picture, Instant now, Instant valid_unt
     Order order;
     order.off = valid_until + delay_ + settings_.untold_delay;
     order.picture = std::make_shared<RgbImage>(picture);
-    order.uniform = std::all_of(picture.pixels.begin(), picture.pixels.end(), [&](const Rgb& p) { return p == picture.pixels[0]; });
+    order.uniform =
+        std::all_of(picture.pixels.begin(), picture.pixels.end(), [&](const Rgb& p) { return p == picture.pixels[0]; });
     if (!settings_.over_exposure()) order.map = std::make_shared<LightMap>(width_, height_, &picture, settings_.panel);
     push(std::move(order), now);
 }
@@ -141,7 +143,7 @@ std::shared_ptr<const LightMap> LightSchedule::sum_over(Instant opened, Instant 
         full_ = std::make_shared<LightMap>(width_, height_, &white);
     }
     const auto response = panel_response(settings_.panel);
-    double even_light = 0;  // of pictures of one colour: a multiple of the full panel
+    double even_light = 0;           // of pictures of one colour: a multiple of the full panel
     std::optional<LightMap> result;  // of the other pictures
     for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
         if (cuts[i + 1] == cuts[i]) continue;
@@ -158,8 +160,10 @@ std::shared_ptr<const LightMap> LightSchedule::sum_over(Instant opened, Instant 
             std::array<double, 3> only{};
             only[c] = 1;
             if (!map) map = std::make_shared<LightMap>(width_, height_, found->picture.get(), settings_.panel, only);
-            if (result) result->add(map->times(share * wheel[c]));
-            else result = map->times(share * wheel[c]);
+            if (result)
+                result->add(map->times(share * wheel[c]));
+            else
+                result = map->times(share * wheel[c]);
         }
     }
     LightMap even = full_->times(even_light);

@@ -30,7 +30,8 @@ TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
     const std::string board = " --board 'charuco 10x7 25 mm'";
     const auto simulated = run_planlight("simulate" + board + " --preset paper --seed 2 --poses 4 --out room --json", root);
     ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
-    const auto run = run_planlight("calibrate room/captures" + board + " --serial-left L-1 --serial-projector P-9 --out rig.json --json", root);
+    const auto run = run_planlight(
+        "calibrate room/captures" + board + " --serial-left L-1 --serial-projector P-9 --out rig.json --json", root);
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const json report = json::parse(run.out), rig = json::parse(whole(root / "rig.json")),
                truth = json::parse(whole(root / "room" / "truth.json"))["true_rig"];
@@ -58,12 +59,14 @@ TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
     EXPECT_EQ(said("left_serial", "L-1").exit_code, 0);
     expect_refused(said("projector_serial", "P-10"), 6, "projector P-10, and the rig file is of P-9");
     expect_refused(run_planlight("scan room/captures/pose-01 --rig rig.json --out cloud.ply", root), 6, "P-10");
-    expect_refused(run_planlight("calibrate room/captures" + board + " --serial-projector P-9 --out rig.json", root), 3, "P-10");
+    expect_refused(run_planlight("calibrate room/captures" + board + " --serial-projector P-9 --out rig.json", root), 3,
+                   "P-10");
     std::ofstream(capture) << as_captured;
     json wide = rig;
     wide["left_camera"]["width"] = 752;
     std::ofstream(root / "wide.json") << wide.dump();
-    expect_refused(run_planlight("check room/captures/pose-01 --rig wide.json", root), 6, "744 x 576 pixels here and 752 x 576");
+    expect_refused(run_planlight("check room/captures/pose-01 --rig wide.json", root), 6,
+                   "744 x 576 pixels here and 752 x 576");
 
     const std::string good = whole(root / "rig.json");
     fs::create_directories(root / "few");

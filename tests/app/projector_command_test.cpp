@@ -29,12 +29,15 @@ void change(const fs::path& file, const std::function<void(json&)>& how) {
     std::ofstream(file) << content.dump();
 }
 
-/// The simulated room's light and its recording say the same; then what goes wrong. One test: a recording takes its time.
+/// The simulated room's light and its recording say the same; then what goes wrong. One test: a recording takes its
+/// time.
 TEST(ProjectorCommand, MeasuresARoomAndTheFolderThatItKept) {
     const TemporaryFolder folder;
     const fs::path& root = folder.path();
     const auto live = run_planlight(
-        "projector --simulate paper --seed 3 --light delay-ms=20 --part latency --keep kept --serial X7K2 --out projector.json --json", root);
+        "projector --simulate paper --seed 3 --light delay-ms=20 --part latency --keep kept --serial X7K2 --out "
+        "projector.json --json",
+        root);
     ASSERT_EQ(live.exit_code, 0) << live.err;
     const json result = json::parse(live.out);
     EXPECT_NEAR(result["latency"]["median_ms"].get<double>(), 45, 0.5) << "25 ms that it promises, 20 that it does not";

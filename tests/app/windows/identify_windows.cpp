@@ -42,7 +42,8 @@ void run(const std::string& folder) {
         return true;
     });
     for (const Monitor& monitor : monitors)
-        expect(different(after_the_end, monitor, RgbImage(monitor.width, monitor.height)) == 0, monitor.name + " is black after the end");
+        expect(different(after_the_end, monitor, RgbImage(monitor.width, monitor.height)) == 0,
+               monitor.name + " is black after the end");
     expect(clock.now() - began < std::chrono::seconds(15), "and all of it ends by itself");
 }
 

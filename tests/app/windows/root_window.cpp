@@ -25,7 +25,9 @@ void expect(bool fact, const std::string& what) {
     if (!fact) ++failed();
 }
 
-int failures() { return failed(); }
+int failures() {
+    return failed();
+}
 
 RgbImage screen(const std::string& folder, const std::string& name) {
     std::this_thread::sleep_for(std::chrono::milliseconds(150));

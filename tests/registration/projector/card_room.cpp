@@ -13,8 +13,12 @@ simulation::BoardRoomSettings one_pose(simulation::BoardRoomSettings settings) {
 }  // namespace
 
 CardRoom::CardRoom(const simulation::BoardRoomSettings& settings)
-    : room(simulation::white_card(), one_pose(settings)),
-      bench{room.projector(), room.cameras(), room.clock(), [this](Instant at) { room.wait(at - room.clock().now()); }, {}, {}} {}
+    : room(simulation::white_card(), one_pose(settings)), bench{room.projector(),
+                                                                room.cameras(),
+                                                                room.clock(),
+                                                                [this](Instant at) { room.wait(at - room.clock().now()); },
+                                                                {},
+                                                                {}} {}
 
 std::vector<double> true_delays_s(const LightRecording& recording, const std::vector<simulation::TrueLight>& truth) {
     std::vector<double> delays;

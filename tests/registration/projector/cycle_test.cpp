@@ -21,7 +21,9 @@ std::function<double(double)> wave(double hz, double amplitude) {
 }
 
 /// What an exposure leaves of a wave's amplitude.
-double left_over(double hz, double exposure_s) { return std::abs(std::sin(M_PI * hz * exposure_s) / (M_PI * hz * exposure_s)); }
+double left_over(double hz, double exposure_s) {
+    return std::abs(std::sin(M_PI * hz * exposure_s) / (M_PI * hz * exposure_s));
+}
 
 TEST(ColourCycle, SteadyLightIsCalledSteadyWhateverTheNoise) {
     for (unsigned seed = 1; seed <= 40; ++seed) {

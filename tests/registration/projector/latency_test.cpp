@@ -23,7 +23,8 @@ LightRecording flashed(const test::LightScene& scene, Instant bit = milliseconds
 
 bool says(const LatencyResult& result, const std::string& word) {
     const auto findings = findings_of(result);
-    return std::any_of(findings.begin(), findings.end(), [&](const auto& f) { return f.what.find(word) != std::string::npos; });
+    return std::any_of(findings.begin(), findings.end(),
+                       [&](const auto& f) { return f.what.find(word) != std::string::npos; });
 }
 
 TEST(FlashCode, NoWindowOfSixBitsComesTwice) {
@@ -71,7 +72,8 @@ TEST(Latency, ABrokenPromiseIsSaidWithTheDelayToSet) {
     };
     const LatencyResult early = promise(milliseconds(25));
     ASSERT_TRUE(early.promise);
-    EXPECT_EQ(early.promise->broken, 0U + std::count_if(early.delays.begin(), early.delays.end(), [](const auto& d) { return d.at_least_s > 0.0255; }));
+    EXPECT_EQ(early.promise->broken, 0U + std::count_if(early.delays.begin(), early.delays.end(),
+                                                        [](const auto& d) { return d.at_least_s > 0.0255; }));
     EXPECT_NEAR(1e3 * early.promise->too_early_s, 15, 0.5);
     EXPECT_TRUE(says(early, "too early"));
     EXPECT_FALSE(says(promise(milliseconds(44)), "promised"));
@@ -92,7 +94,8 @@ TEST(Latency, WhatRepeatsOrDoesNotFitOrIsTooFastIsRefused) {
     std::vector<bool> regular;
     for (int i = 0; i < 63; ++i) regular.push_back(i % 2 == 0);
     auto orders = test::flashes(regular, milliseconds(60));
-    for (std::size_t i = 3; i < orders.size(); ++i) orders[i].at = milliseconds(1800) + static_cast<int>(i - 3) * milliseconds(60);
+    for (std::size_t i = 3; i < orders.size(); ++i)
+        orders[i].at = milliseconds(1800) + static_cast<int>(i - 3) * milliseconds(60);
     const LatencyResult repeats = measure_latency(scene.record(orders, orders.back().at + milliseconds(900)));
     ASSERT_TRUE(repeats.refusal);
     EXPECT_NE(repeats.refusal->reason.find("repeat"), std::string::npos);
@@ -101,7 +104,8 @@ TEST(Latency, WhatRepeatsOrDoesNotFitOrIsTooFastIsRefused) {
     std::mt19937 random(3);
     for (LightOrder& order : recording.orders)
         if (order.at > milliseconds(1700)) order.at = milliseconds(1800) + milliseconds(random() % 3800);
-    std::sort(recording.orders.begin(), recording.orders.end(), [](const auto& a, const auto& b) { return a.at < b.at; });
+    std::sort(recording.orders.begin(), recording.orders.end(),
+              [](const auto& a, const auto& b) { return a.at < b.at; });
     EXPECT_TRUE(measure_latency(recording).refusal);
 
     const LatencyResult slow = measure_latency(flashed(scene, milliseconds(25)));
@@ -111,6 +115,20 @@ TEST(Latency, WhatRepeatsOrDoesNotFitOrIsTooFastIsRefused) {
     test::LightScene dark;
     dark.white_grey = dark.room_grey + 1;
     EXPECT_TRUE(measure_latency(flashed(dark)).refusal);
+}
+
+TEST(Latency, UnsteadyLightCostsPrecisionNotTruth) {
+    test::LightScene scene;
+    scene.delay = microseconds(33000);
+    for (const double amplitude : {0.05, 0.3, 0.6}) {
+        scene.lamp_at = [=](double t) { return 1 + amplitude * std::sin(2 * M_PI * 57.3 * t); };
+        const LatencyResult r = measure_latency(flashed(scene));
+        ASSERT_FALSE(r.refusal) << amplitude << ": " << r.refusal->reason;
+        EXPECT_NEAR(1e3 * r.median_s, 33, 3) << amplitude;
+        EXPECT_LT(std::abs(r.median_s - 0.033), 4 * r.median_sigma_s + 1e-4) << amplitude;
+        EXPECT_GE(r.light_delay_s, 0.033);
+        EXPECT_LT(r.light_delay_s, 0.050);
+    }
 }
 
 TEST(Latency, PicturesLeftOutAndFramesLostAreCounted) {

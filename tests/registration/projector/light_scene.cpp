@@ -20,7 +20,8 @@ LightRecording LightScene::record(const std::vector<LightOrder>& orders, Instant
             const LightOrder* lit = nullptr;
             for (const LightOrder& order : orders)
                 if (order.at + delay <= at) lit = &order;
-            if (lit && !lit->covered) projector += (0.002 + 0.998 * light_of(lit->colour)) * lamp_at(seconds(at)) / kSlices;
+            if (lit && !lit->covered)
+                projector += (0.002 + 0.998 * light_of(lit->colour)) * lamp_at(seconds(at)) / kSlices;
             room += room_at(seconds(at)) / kSlices;
         }
         FrameBrightness frame;
@@ -30,8 +31,10 @@ LightRecording LightScene::record(const std::vector<LightOrder>& orders, Instant
         for (int t = 0; t < 2 * kTiles; ++t) {
             const bool lit = t % kTiles >= 5 * kTilesAcross && t % kTiles < 8 * kTilesAcross;
             const double bright = 0.5 + 0.5 * (t % 7) / 6.0;  // tiles differ
-            const double light = camera(room_grey * bright * room + (lit ? (white_grey - room_grey) * bright * projector : 0));
-            frame.tiles.push_back(static_cast<float>(std::min(light, saturates_at)) + static_cast<float>(noise_grey) * unit(random));
+            const double light =
+                camera(room_grey * bright * room + (lit ? (white_grey - room_grey) * bright * projector : 0));
+            frame.tiles.push_back(static_cast<float>(std::min(light, saturates_at)) +
+                                  static_cast<float>(noise_grey) * unit(random));
             frame.saturated.push_back(light >= saturates_at ? 1.0F : 0.0F);
             frame.at_zero.push_back(0);
         }

@@ -1,4 +1,5 @@
 // What `planlight projector` measures in simulated rooms, against their truth. measure_projector paper|modern [ROOMS]
+// [PART] [v]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,9 +18,12 @@ void print(const std::string& what, std::vector<double> values, const std::strin
     if (values.empty()) return fmt::print("{:<52} none\n", what);
     std::sort(values.begin(), values.end());
     const auto at = [&](double share) {
-        return values[std::max<std::size_t>(static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size()))), 1) - 1];
+        return values[std::max<std::size_t>(
+                          static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size()))), 1) -
+                      1];
     };
-    fmt::print("{:<52} {:3} rooms: {:8.4f} / {:8.4f} / {:8.4f} {}\n", what, values.size(), at(0.5), at(0.95), values.back(), unit);
+    fmt::print("{:<52} {:3} rooms: {:8.4f} / {:8.4f} / {:8.4f} {}\n", what, values.size(), at(0.5), at(0.95),
+               values.back(), unit);
     std::fflush(stdout);
 }
 
@@ -43,7 +47,8 @@ struct Draw {
 
 void measure_responses(const Rooms& rooms, bool unsteady) {
     std::vector<double> gamma, gamma_by_sigma, dark, bright, black, colour;
-    unsigned refused = 0, false_dark = 0, false_bright = 0, missed_dark = 0, missed_bright = 0, crushed_dark = 0, crushed_bright = 0, other = 0;
+    unsigned refused = 0, false_dark = 0, false_bright = 0, missed_dark = 0, missed_bright = 0, crushed_dark = 0,
+             crushed_bright = 0, other = 0;
     for (unsigned seed = 1; seed <= rooms.count; ++seed) {
         Draw draw(seed);
         auto s = rooms.settings(seed);
@@ -79,14 +84,20 @@ void measure_responses(const Rooms& rooms, bool unsteady) {
         (panel.bright_end < 1 ? crushed_bright : false_bright) += r.crushes_whites;
         missed_dark += panel.dark_end > 0 && !r.crushes_darks;
         missed_bright += panel.bright_end < 1 && !r.crushes_whites;
-        for (const LightFinding& f : findings_of(r)) other += f.what.find("crush") == std::string::npos && f.what.find("limited") == std::string::npos;
+        for (const LightFinding& f : findings_of(r))
+            other += f.what.find("crush") == std::string::npos && f.what.find("limited") == std::string::npos;
         if (rooms.verbose)
-            fmt::print("  seed {}: gamma {:.3f} found {:.3f} +- {:.3f}; ends {:.1f} {:.1f} found {:.1f}+-{:.1f} {:.1f}+-{:.1f}; black {:.5f} found {:.5f}\n", seed,
-                       panel.gamma, r.gamma, r.gamma_sigma, 255 * panel.dark_end, 255 * panel.bright_end, r.dark_end, r.dark_end_sigma,
-                       r.bright_end, r.bright_end_sigma, panel.black, r.black_level);
+            fmt::print(
+                "  seed {}: gamma {:.3f} found {:.3f} +- {:.3f}; ends {:.1f} {:.1f} found {:.1f}+-{:.1f} "
+                "{:.1f}+-{:.1f}; black {:.5f} found {:.5f}\n",
+                seed, panel.gamma, r.gamma, r.gamma_sigma, 255 * panel.dark_end, 255 * panel.bright_end, r.dark_end,
+                r.dark_end_sigma, r.bright_end, r.bright_end_sigma, panel.black, r.black_level);
     }
-    fmt::print("response{}: {} refused; darks crushed noticed {}, missed {}, false {}; whites noticed {}, missed {}, false {}; other findings {}\n",
-               unsteady ? " under a colour wheel of 2 to 4 turns a picture, lamps that flicker" : "", refused, crushed_dark, missed_dark, false_dark, crushed_bright, missed_bright, false_bright, other);
+    fmt::print(
+        "response{}: {} refused; darks crushed noticed {}, missed {}, false {}; whites noticed {}, missed {}, false "
+        "{}; other findings {}\n",
+        unsteady ? " under a colour wheel of 2 to 4 turns a picture, lamps that flicker" : "", refused, crushed_dark,
+        missed_dark, false_dark, crushed_bright, missed_bright, false_bright, other);
     print("gamma error", gamma, "");
     print("gamma error by its stated sigma", gamma_by_sigma, "");
     print("dark end error", dark, "grey");
@@ -133,12 +144,16 @@ void measure_latencies(const Rooms& rooms) {
         for (const LightOrder& o : recording.orders)
             for (const auto& light : card.room.true_lights()) skipped += light.asked == o.at && !light.shown;
         if (rooms.verbose)
-            fmt::print("  seed {}: {:.2f} ms found {:.2f} +- {:.2f}; jitter {:.2f} found {:.2f}; worst {:.2f} to set {:.1f}; exact {} of {}; agree {:.3f} {:.3f}\n",
-                       seed, 1e3 * mean, 1e3 * r.median_s, 1e3 * r.median_sigma_s, 1e3 * spread, 1e3 * r.jitter_s, 1e3 * worst,
-                       1e3 * r.light_delay_s, r.exact, r.changes, r.code_agreement, r.runner_up_agreement);
+            fmt::print(
+                "  seed {}: {:.2f} ms found {:.2f} +- {:.2f}; jitter {:.2f} found {:.2f}; worst {:.2f} to set {:.1f}; "
+                "exact {} of {}; agree {:.3f} {:.3f}\n",
+                seed, 1e3 * mean, 1e3 * r.median_s, 1e3 * r.median_sigma_s, 1e3 * spread, 1e3 * r.jitter_s, 1e3 * worst,
+                1e3 * r.light_delay_s, r.exact, r.changes, r.code_agreement, r.runner_up_agreement);
     }
-    fmt::print("latency: {} refused; delay to set covers every order in {} of {}; left out by the projector {} in {} rooms, noticed {}; frames lost {}\n", refused, covered,
-               error.size(), skipped, rooms_with_skips, unseen, lost);
+    fmt::print(
+        "latency: {} refused; delay to set covers every order in {} of {}; left out by the projector {} in {} rooms, "
+        "noticed {}; frames lost {}\n",
+        refused, covered, error.size(), skipped, rooms_with_skips, unseen, lost);
     print("latency error", error, "ms");
     print("latency error by its stated sigma", by_sigma, "");
     print("jitter error (standard deviation)", jitter, "ms");
@@ -156,7 +171,9 @@ void measure_cycles(const Rooms& rooms, bool wheel, bool mains) {
         s.ambient = draw.between(0.05, 0.25);
         s.brightness = 0.75;
         if (wheel) s.light.wheel_hz = refresh * (1 + static_cast<int>(seed % 4));
-        if (mains) s.light.mains_hz = (seed % 2 == 0 ? 100 : 120) + draw.between(-0.1, 0.1), s.light.mains_depth = draw.between(0.1, 0.4);
+        if (mains)
+            s.light.mains_hz = (seed % 2 == 0 ? 100 : 120) + draw.between(-0.1, 0.1),
+            s.light.mains_depth = draw.between(0.1, 0.4);
         test::CardRoom card(s);
         const LightRecording recording = record_cycle(card.bench);
         CycleSettings settings;
@@ -177,7 +194,9 @@ void measure_cycles(const Rooms& rooms, bool wheel, bool mains) {
                 if (which < 0 || steady[o].empty()) continue;
                 double sum = 0, square = 0;
                 for (const std::size_t f : steady[o]) {
-                    const double v = simulation::wheel_during(s.light, recording.frames[f].opened(), recording.frames[f].closed())[static_cast<std::size_t>(which)];
+                    const double v =
+                        simulation::wheel_during(s.light, recording.frames[f].opened(),
+                                                 recording.frames[f].closed())[static_cast<std::size_t>(which)];
                     sum += v, square += v * v;
                 }
                 const auto n = static_cast<double>(steady[o].size());
@@ -187,9 +206,11 @@ void measure_cycles(const Rooms& rooms, bool wheel, bool mains) {
                         wheel_error.push_back(100 * std::abs(run.variation - spread));
                         if (which == 0) blind += spread < 0.005;
                         if (rooms.verbose)
-                            fmt::print("  seed {} {}: {:.2f} % found {:.2f} +- {:.2f} {}\n", seed, run.name, 100 * spread, 100 * run.variation,
-                                       100 * run.variation_sigma, run.varies ? "varies" : "steady");
-                        if (which == 0 && run.varies && run.cycles_hz.size() == 1) ++told, told_right += std::abs(run.cycles_hz[0] - s.light.wheel_hz) < 1;
+                            fmt::print("  seed {} {}: {:.2f} % found {:.2f} +- {:.2f} {}\n", seed, run.name,
+                                       100 * spread, 100 * run.variation, 100 * run.variation_sigma,
+                                       run.varies ? "varies" : "steady");
+                        if (which == 0 && run.varies && run.cycles_hz.size() == 1)
+                            ++told, told_right += std::abs(run.cycles_hz[0] - s.light.wheel_hz) < 1;
                     }
             }
         }
@@ -198,18 +219,23 @@ void measure_cycles(const Rooms& rooms, bool wheel, bool mains) {
             const auto steady = steady_frames(recording);
             double sum = 0, square = 0;
             for (const std::size_t f : steady[0]) {
-                const double v = simulation::lamps_during(s.light, recording.frames[f].opened(), recording.frames[f].closed());
+                const double v =
+                    simulation::lamps_during(s.light, recording.frames[f].opened(), recording.frames[f].closed());
                 sum += v, square += v * v;
             }
             const auto n = static_cast<double>(steady[0].size());
             const double spread = std::sqrt(std::max(0.0, square / n - sum / n * sum / n)) / (sum / n);
             room_error.push_back(100 * std::abs(r.runs[0].variation - spread));
-            if (rooms.verbose) fmt::print("  seed {} room: {:.2f} % found {:.2f} {}\n", seed, 100 * spread, 100 * r.runs[0].variation, r.runs[0].varies);
+            if (rooms.verbose)
+                fmt::print("  seed {} room: {:.2f} % found {:.2f} {}\n", seed, 100 * spread, 100 * r.runs[0].variation,
+                           r.runs[0].varies);
         }
     }
-    fmt::print("cycle ({}, {}): {} refused; projector said to vary in {} of {} rooms{}; room's lamps in {}; cycle told in {}, rightly in {}\n",
-               wheel ? "colour wheel" : "no wheel", mains ? "mains flicker" : "steady lamps", refused, noticed, rooms.count,
-               wheel ? fmt::format(" (in {} red truly varies under 0.5 %)", blind) : "", room_noticed, told, told_right);
+    fmt::print(
+        "cycle ({}, {}): {} refused; projector said to vary in {} of {} rooms{}; room's lamps in {}; cycle told in {}, "
+        "rightly in {}\n",
+        wheel ? "colour wheel" : "no wheel", mains ? "mains flicker" : "steady lamps", refused, noticed, rooms.count,
+        wheel ? fmt::format(" (in {} red truly varies under 0.5 %)", blind) : "", room_noticed, told, told_right);
     if (wheel) print("variation of a pure colour, error", wheel_error, "% of its light");
     if (mains) print("variation of the lamps, error", room_error, "% of their light");
     print("95 % bound of the projector's variation", at_most, "%");
@@ -223,10 +249,12 @@ int main(int argc, char** argv) {
     const std::string preset = argc > 1 ? argv[1] : "paper", part = argc > 3 ? argv[3] : "all";
     const Rooms rooms{preset == "modern" ? simulation::Preset::modern : simulation::Preset::paper,
                       argc > 2 ? static_cast<unsigned>(std::stoi(argv[2])) : 20, argc > 4};
-    if (part == "all" || part == "response")
-        for (const bool unsteady : {false, true}) measure_responses(rooms, unsteady);
-    if (part == "all" || part == "latency") measure_latencies(rooms);
-    if (part == "all" || part == "cycle")
-        for (const auto& [wheel, mains] : {std::pair{false, false}, std::pair{false, true}, std::pair{true, true}}) measure_cycles(rooms, wheel, mains);
+    const auto wanted = [&](const std::string& name) { return part == "all" || part == name; };
+    if (wanted("response")) measure_responses(rooms, false);
+    if (wanted("response-unsteady")) measure_responses(rooms, true);
+    if (wanted("latency")) measure_latencies(rooms);
+    if (wanted("cycle-none")) measure_cycles(rooms, false, false);
+    if (wanted("cycle-lamps")) measure_cycles(rooms, false, true);
+    if (wanted("cycle")) measure_cycles(rooms, true, true);
     return 0;
 }

@@ -38,7 +38,9 @@ bool says(const ResponseResult& result, const std::string& word) {
 }
 
 std::function<double(Rgb)> curve(std::function<double(double)> of_share) {
-    return [=](Rgb c) { return 0.3 * of_share(c[0] / 255.0) + 0.5 * of_share(c[1] / 255.0) + 0.2 * of_share(c[2] / 255.0); };
+    return [=](Rgb c) {
+        return 0.3 * of_share(c[0] / 255.0) + 0.5 * of_share(c[1] / 255.0) + 0.2 * of_share(c[2] / 255.0);
+    };
 }
 
 TEST(Response, GammaIsThatOfThePanelWhateverTheTilesAndTheRoomAre) {
@@ -86,7 +88,9 @@ TEST(Response, ACameraThatIsNotLinearIsNoticedByItsColours) {
     scene.camera = [](double g) { return 255 * std::pow(g / 255, 0.45); };
     EXPECT_TRUE(says(measured(scene), "cameras are not linear"));
     test::LightScene white_segment;
-    white_segment.light_of = [](Rgb c) { return (0.2 * c[0] + 0.3 * c[1] + 0.15 * c[2] + 0.35 * std::min({c[0], c[1], c[2]})) / 255; };
+    white_segment.light_of = [](Rgb c) {
+        return (0.2 * c[0] + 0.3 * c[1] + 0.15 * c[2] + 0.35 * std::min({c[0], c[1], c[2]})) / 255;
+    };
     EXPECT_TRUE(says(measured(white_segment), "white segment"));
 }
 
