@@ -206,7 +206,7 @@ InitialMatch find_initial_match(const PointCloud& cloud, const SkinLut& lut, con
 
 InitialMatch find_initial_match(const PointCloud& cloud, const MatchingSkin& skin, const InitialMatchSettings& settings) {
     constexpr double kClearRatio = 1.15;
-    constexpr int kAgreeing = 2, kBatch = 2;
+    constexpr int kAgreeing = 2, kBatch = 2, kPatientBases = 12;
     InitialMatch match;
     const Search search = prepare_search(cloud, skin, settings);
     const std::vector<Base> bases = choose_bases(search.scan, settings.max_bases, settings.seed);
@@ -228,8 +228,8 @@ InitialMatch find_initial_match(const PointCloud& cloud, const MatchingSkin& ski
         match.runner_up_ratio = runner_up_ratio(match.candidates);
         if (match.candidates.empty()) continue;
         const MatchCandidate& best = match.candidates[0];
-        // A poor fit may be clear and agreed on because the right pose has not been met yet.
-        const bool fits = best.cost_mm < 0.15 * settings.truncation_mm;
+        // A poor fit may be clear and agreed on because the right pose has not been met yet: the poorer, the longer it is looked for.
+        const bool fits = best.cost_mm < (match.bases_tried < kPatientBases ? 0.1 : 0.15) * settings.truncation_mm;
         if (fits && best.agreeing_bases >= kAgreeing && match.runner_up_ratio >= kClearRatio) break;
     }
     if (match.candidates.size() > static_cast<std::size_t>(settings.candidates))
