@@ -45,7 +45,7 @@ void decide(DriftCheck& check, const DriftLimits& limits) {
         check.reason = fmt::format(
             "the distances from the epipolar lines are bent as by a wrong lens: a distortion k1 of the left or right camera is "
             "off by about {:.2f} ({:.2f} is the limit)",
-            std::abs(check.bent.k1_off) * 2, 2 * limits.camera_k1);
+            std::abs(check.bent.k1_off), limits.camera_k1);
         check.remedy = kOtherDistortion;
     } else if (check.bent.projector_px > limits.projector_bent_px) {
         check.verdict = Verdict::distortion_wrong;
