@@ -10,9 +10,9 @@ namespace planlight {
 /// What the differences between a scan and the rig have in common from place to place. A wrong lens bends them: that shows in the
 /// means of places (10 x 10 of a picture, with equally many points) when it is still far below the noise of the points.
 struct BentResiduals {
-    /// How much the distortion k1 of the cameras, on average of both, differs from the rig's according to the distances from the
+    /// By how much more the left camera's distortion k1 is off the rig's than the right one's, according to the distances from the
     /// epipolar lines, and one standard deviation by the scatter of the places. What a turned or shifted camera makes is taken
-    /// out first; what bends both cameras' pictures against each other alike cancels. Sigma 0: under 40 places, not known.
+    /// out first; what bends both cameras' pictures alike cancels. Sigma 0: under 40 places, not known.
     double k1_off = 0, k1_sigma = 0;
     /// rms over the places of decoded less expected projector pixel. 0: under 40 places.
     double projector_px = 0;

@@ -18,6 +18,9 @@ double mm_per_px(const Triangulation& raw, const CameraModel& projector) {
     return raw.by_cameras.empty() ? 0 : sum / static_cast<double>(raw.by_cameras.size());
 }
 
+constexpr const char* kOtherDistortion =
+    "If rig.json was written by another program, see that its distortion has the right sign; else calibrate again.";
+
 bool cameras_bent(const BentResiduals& bent, const DriftLimits& limits) {
     const double off = std::abs(bent.k1_off);
     return bent.k1_sigma < limits.camera_k1_known && off > limits.camera_k1 && off > limits.camera_k1_sigmas * bent.k1_sigma;
@@ -42,15 +45,15 @@ void decide(DriftCheck& check, const DriftLimits& limits) {
         check.reason = fmt::format(
             "the distances from the epipolar lines are bent as by a wrong lens: a distortion k1 of the left or right camera is "
             "off by about {:.2f} ({:.2f} is the limit)",
-            std::abs(check.bent.k1_off) * 2, 2 * limits.camera_k1);
-        check.remedy = "If rig.json was written by another program, see that its distortion has the right sign; else calibrate again.";
+            std::abs(check.bent.k1_off), limits.camera_k1);
+        check.remedy = kOtherDistortion;
     } else if (check.bent.projector_px > limits.projector_bent_px) {
         check.verdict = Verdict::distortion_wrong;
         check.reason = fmt::format(
-            "the light is bent against the rig from place to place ({:.3f} px rms; {:.3f} is the limit), as by a wrong distortion of "
-            "the projector or of both cameras",
+            "the light is bent against the rig from place to place ({:.3f} px rms; {:.3f} is the limit), as by a wrong distortion "
+            "of the projector or of both cameras",
             check.bent.projector_px, limits.projector_bent_px);
-        check.remedy = "If rig.json was written by another program, see that its distortion has the right sign; else calibrate again.";
+        check.remedy = kOtherDistortion;
     } else if (check.projector_rms_px > limits.projector_px) {
         check.verdict = Verdict::projector_moved;
         check.reason = fmt::format("the projector moved by {:.2f} mm and {:.3f} degrees: light would land {:.2f} mm off",

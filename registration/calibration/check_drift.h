@@ -23,7 +23,8 @@ struct DriftLimits {
 
 /// A rig checked against one scan of anything: a board, a phantom, the patient.
 struct DriftCheck {
-    enum class Verdict { good, projector_moved, cameras_moved, lens_changed, distortion_wrong, cannot_tell } verdict = Verdict::cannot_tell;
+    enum class Verdict { good, projector_moved, cameras_moved, lens_changed, distortion_wrong, cannot_tell };
+    Verdict verdict = Verdict::cannot_tell;
     std::string reason, remedy;  ///< remedy empty when good
     std::size_t points = 0;
     double epipolar_rms_px = 0;

@@ -57,7 +57,8 @@ PLANLIGHT_CLONES void find_order(const float* phase_px, const float* amplitude, 
         }
         const Lanes found = first + best_order * period;
         // NaN (no light at all) fails every comparison.
-        const Mask good = (best <= sure.most_chi_square) & (second - best >= sure.least_lead) & (found >= -0.5f) & (found < size - 0.5f);
+        const Mask good = (best <= sure.most_chi_square) & (second - best >= sure.least_lead) & (found >= -0.5f) &
+                          (found < size - 0.5f);
         const Lanes out = good ? found : Lanes{} + std::numeric_limits<float>::quiet_NaN();
         std::memcpy(pixel + begin, &out, sizeof out);
     }

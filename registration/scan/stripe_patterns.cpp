@@ -168,8 +168,9 @@ RgbImage draw_stripes(const StripeSettings& settings, const StripePattern& patte
     const int bits = gray_bits(settings, pattern.along_rows);
     const bool is_gray = pattern.kind == StripePattern::Kind::gray_bit || pattern.kind == StripePattern::Kind::gray_bit_inverse;
     const bool is_phase = pattern.kind == StripePattern::Kind::phase;
-    if (pattern.index < 0 || (is_gray && pattern.index >= bits) || (is_phase && (pattern.frequency < 0 || pattern.frequency > static_cast<int>(settings.order_periods_px.size()) ||
-                      pattern.index >= steps_of(settings, pattern.frequency))))
+    const bool is_frequency = pattern.frequency >= 0 && pattern.frequency <= static_cast<int>(settings.order_periods_px.size());
+    if (pattern.index < 0 || (is_gray && pattern.index >= bits) ||
+        (is_phase && (!is_frequency || pattern.index >= steps_of(settings, pattern.frequency))))
         throw std::invalid_argument(fmt::format("draw_stripes: no picture {} in this sequence", pattern.name));
     RgbImage picture(settings.width, settings.height);
     if (pattern.along_rows) {

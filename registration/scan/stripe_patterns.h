@@ -49,8 +49,8 @@ std::vector<StripePattern> stripe_sequence(const StripeSettings& settings);
 double period_of(const StripeSettings& settings, int frequency);
 int steps_of(const StripeSettings& settings, int frequency);
 
-/// Bits of the Gray code of one direction; 0 where fringes of further frequencies take its place. It counts half periods of the fringe, not periods: a code wrong by one
-/// half period at its own border still unwraps the phase to the right period.
+/// Bits of the Gray code of one direction; 0 where fringes of further frequencies take its place. It counts half periods of the
+/// fringe, not periods: a code wrong by one half period at its own border still unwraps the phase to the right period.
 int gray_bits(const StripeSettings& settings, bool along_rows);
 
 /// Throws std::invalid_argument, naming the setting, when no code can be made of the settings.

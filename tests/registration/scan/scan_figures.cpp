@@ -184,7 +184,8 @@ CodeFigures code_figures(const DecodedView& view, const SimulatedRig& room, Simu
             ++looked_at;
             const auto sight = room.true_sight(camera, Vector2d(x, y), at);
             // Columns only: the row is taken as it is, or from the middle where there is none.
-            const double row = !view.row.empty() ? view.row[i] : sight && sight->lit_by ? sight->lit_by->y() : true_rig.projector.height / 2.0;
+            const double true_row = sight && sight->lit_by ? sight->lit_by->y() : true_rig.projector.height / 2.0;
+            const double row = view.row.empty() ? true_row : view.row[i];
             const Vector2d code(view.column[i], row);
             if (sight && sight->lit_by && (code - *sight->lit_by).cwiseAbs().maxCoeff() <= kWrong_px) continue;
             ++wrong;
