@@ -57,7 +57,7 @@ void SvgChart::bar(double from, double to, double height, const std::string& col
 }
 
 void SvgChart::mark(double x, const std::string& words, const std::string& colour, int row) {
-    const bool right = px(x) > 0.6 * width_;
+    const bool right = px(x) > 0.75 * width_;
     const double y = kTop + 14 + 18 * row;
     drawn_ += fmt::format(
         "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.1f}\" y2=\"{2:.1f}\" stroke=\"{3}\" stroke-dasharray=\"5 4\" "

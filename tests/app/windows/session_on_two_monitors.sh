@@ -10,6 +10,10 @@ number() { awk "BEGIN { print ($1) ? 1 : 0 }"; }
 brightest() { convert "$folder/$1.png" -crop 800x600+1920+0 +repage -format '%[fx:maxima]' info:; }
 rm -rf "$folder/case" "$folder/pictures" "$folder"/*.png
 "$PLANLIGHT" prepare $patient --plan "$PLAN" --out "$folder/case" >/dev/null 2>"$folder/errors" || { cat "$folder/errors"; exit 1; }
+echo '{"format": "planlight projector", "version": 1, "made_on": "2026", "projector": {"width": 1280, "height": 800}}' >"$folder/other.json"
+"$PLANLIGHT" session "$folder/case" --volume $patient --projector DUMMY1 --projector-file "$folder/other.json" 2>"$folder/errors"; code=$?
+check "a projector of another resolution than the one measured is refused" "$(number "$code == 6")" "exit code $code: $(cat "$folder/errors")"
+cat "$folder/errors"
 "$PLANLIGHT" session "$folder/case" --volume $patient --preset paper --projector DUMMY1 --autoplay --speed-mm-s 5 \
   --end-after-s 12 --screenshots "$folder/pictures" 2>"$folder/errors" & session=$!
 trap 'kill $session 2>/dev/null' EXIT
