@@ -13,6 +13,10 @@
 namespace planlight {
 
 void LiveSession::scan(Session& session) {
+    {
+        const std::lock_guard lock(mutex_);
+        landmarks_.clear();  // they were clicked on the last scan
+    }
     set_steps(2);
     set_status(StatusKind::scanning, "Scanning: keep the patient still.");
     change_model([](OperatorModel& m) {
