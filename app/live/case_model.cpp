@@ -106,7 +106,8 @@ std::vector<std::string> evidence_of(const RegistrationResult& result) {
         lines.push_back(fmt::format("The mirror image fits {:.1f} times worse; size of the head {:+.1f} ± {:.1f} %.",
                                     result.mirror_ratio, 100 * (1 / result.scale - 1), 100 * result.scale_sigma));
     if (result.landmarks_off_mm)
-        lines.push_back(fmt::format("The farthest landmark lies {:.1f} mm from where the match puts it.", *result.landmarks_off_mm));
+        lines.push_back(
+            fmt::format("The farthest landmark lies {:.1f} mm from where the match puts it.", *result.landmarks_off_mm));
     if (result.moved_in_scan_mm)
         lines.push_back(fmt::format("The patient moved by at most {:.2f} mm during the scan.", *result.moved_in_scan_mm));
     if (result.blocked_fraction)

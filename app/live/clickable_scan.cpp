@@ -28,14 +28,16 @@ std::shared_ptr<const ClickableScan> clickable_scan(const PointCloud& cloud, con
     if (mesh.triangles.empty()) return nullptr;
     Eigen::Matrix3d shown_from_device;  // right, forward, up
     shown_from_device << 1, 0, 0, 0, 0, 1, 0, -1, 0;
-    const Eigen::Matrix3d device_from_rig = seen_by ? Eigen::Matrix3d(seen_by->device_from_rig.linear()) : from_before(cloud);
+    const Eigen::Matrix3d device_from_rig =
+        seen_by ? Eigen::Matrix3d(seen_by->device_from_rig.linear()) : from_before(cloud);
     RigidTransform shown_from_rig = RigidTransform::Identity();
     shown_from_rig.linear() = shown_from_device * device_from_rig;
     mesh.vertices_in_ct.reserve(cloud.size());
     for (const Eigen::Vector3d& p : cloud.points_in_rig)  // unused ones that are not finite would be refused
         mesh.vertices_in_ct.emplace_back(p.allFinite() ? shown_from_rig * p : Eigen::Vector3d::Zero());
     if (cloud.normals_in_rig.size() == cloud.size())
-        for (const Eigen::Vector3d& n : cloud.normals_in_rig) mesh.normals_in_ct.emplace_back(shown_from_rig.linear() * n);
+        for (const Eigen::Vector3d& n : cloud.normals_in_rig)
+            mesh.normals_in_ct.emplace_back(shown_from_rig.linear() * n);
     return std::make_shared<ClickableScan>(ClickableScan{SkinSurface(std::move(mesh)), shown_from_rig});
 }
 

@@ -23,7 +23,9 @@ void LandmarkClicks::undo() {
     order_.pop_back();
 }
 
-void LandmarkClicks::clear() { *this = {}; }
+void LandmarkClicks::clear() {
+    *this = {};
+}
 
 std::vector<PointPair> LandmarkClicks::pairs() const {
     std::vector<PointPair> pairs;

@@ -29,12 +29,14 @@ void draw_dot(const Pen& pen, const ImVec2& at, std::size_t number, bool waits, 
     pen.list->AddLine(at, flag, colour, 2);
     pen.list->AddCircleFilled(flag, radius, IM_COL32(10, 12, 16, 235));
     pen.list->AddCircle(flag, radius, colour, 32, 2.5F);
-    pen.line(pen.fonts.strong, std::to_string(number), flag.x - radius, flag.y, 2 * radius, theme::kText, Pen::Side::centre);
+    pen.line(pen.fonts.strong, std::to_string(number), flag.x - radius, flag.y, 2 * radius, theme::kText,
+             Pen::Side::centre);
 }
 
 template <class ToScene>
-void draw_dots(const Pen& pen, const ScenePane& pane, const SkinSurface& surface, const std::vector<Eigen::Vector3d>& points,
-               std::size_t complete, ToScene scene_from_point, const Eigen::Isometry3d& surface_from_scene) {
+void draw_dots(const Pen& pen, const ScenePane& pane, const SkinSurface& surface,
+               const std::vector<Eigen::Vector3d>& points, std::size_t complete, ToScene scene_from_point,
+               const Eigen::Isometry3d& surface_from_scene) {
     for (std::size_t i = 0; i < points.size(); ++i) {
         const Eigen::Vector3d p = scene_from_point(points[i]);
         const ImVec2 at = pane.pixel_of(p);
@@ -94,13 +96,16 @@ void LandmarkPanel::draw_panes(const Pen& pen, const LandmarkViews& views) {
     skin_pane_.draw(pen, boxes_[0], skin_scene_);
     scan_pane_.draw(pen, boxes_[1], scan_scene_);
     const std::size_t complete = clicks_.pairs().size();
-    const auto to_scan_scene = [&](const Eigen::Vector3d& p_in_rig) { return Eigen::Vector3d(turned() * (scan_->shown_from_rig * p_in_rig)); };
+    const auto to_scan_scene = [&](const Eigen::Vector3d& p_in_rig) {
+        return Eigen::Vector3d(turned() * (scan_->shown_from_rig * p_in_rig));
+    };
     for (int i = 0; i < 2; ++i) {
         const Box& box = boxes_[static_cast<std::size_t>(i)];
         pen.list->PushClipRect({box.x, box.y}, {box.right(), box.bottom()}, true);
         if (i == 0)
-            draw_dots(pen, skin_pane_, *views.skin, clicks_.on_skin(), complete, [](const Eigen::Vector3d& p) { return p; },
-                      Eigen::Isometry3d::Identity());
+            draw_dots(
+                pen, skin_pane_, *views.skin, clicks_.on_skin(), complete, [](const Eigen::Vector3d& p) { return p; },
+                Eigen::Isometry3d::Identity());
         else
             draw_dots(pen, scan_pane_, scan_->surface, clicks_.on_scan(), complete, to_scan_scene, turned().inverse());
         pen.list->PopClipRect();
@@ -109,7 +114,8 @@ void LandmarkPanel::draw_panes(const Pen& pen, const LandmarkViews& views) {
 
 void LandmarkPanel::draw_words(const Pen& pen, const Box& box) const {
     const std::size_t skin = clicks_.on_skin().size(), scan = clicks_.on_scan().size(), pairs = std::min(skin, scan);
-    std::string words = skin == scan ? fmt::format("Landmark {}: click it on the skin and on the scan. Drag turns.", pairs + 1)
+    std::string words = skin == scan
+                            ? fmt::format("Landmark {}: click it on the skin and on the scan. Drag turns.", pairs + 1)
                         : skin > scan ? fmt::format("Landmark {}: now the same place on the scan.", skin)
                                       : fmt::format("Landmark {}: now the same place on the skin from CT.", scan);
     ImU32 colour = skin == scan ? theme::kText : theme::kAmber;
@@ -118,19 +124,23 @@ void LandmarkPanel::draw_words(const Pen& pen, const Box& box) const {
         colour = theme::kAmber;
     }
     const float pad = 18 * pen.scale, line = line_height(pen.fonts.body);
-    pen.paragraph(pen.fonts.body, words, {box.x + pad, box.y + 10 * pen.scale, box.width - 2 * pad, 1.2F * line}, colour);
+    pen.paragraph(pen.fonts.body, words, {box.x + pad, box.y + 10 * pen.scale, box.width - 2 * pad, 1.2F * line},
+                  colour);
     const double misfit_mm = clicks_.misfit_mm();
     const bool poor = misfit_mm > kPoorFitMm;
-    const std::string fit = pairs < kLeastPairs
-                                ? fmt::format("{} of at least {} landmarks; better 5 or more, far apart.", pairs, kLeastPairs)
-                                : fmt::format("{} landmarks; they fit each other to {:.1f} mm (rms){}", pairs, misfit_mm,
-                                              poor ? ": is each where it should be, on the right side?" : ".");
-    pen.paragraph(pen.fonts.small, fit,
-                  {box.x + pad, box.y + 10 * pen.scale + line, box.width - 2 * pad, 1.2F * line_height(pen.fonts.small)},
-                  poor ? theme::kAmber : theme::kQuiet);
+    const std::string fit =
+        pairs < kLeastPairs
+            ? fmt::format("{} of at least {} landmarks; better 5 or more, far apart.", pairs, kLeastPairs)
+            : fmt::format("{} landmarks; they fit each other to {:.1f} mm (rms){}", pairs, misfit_mm,
+                          poor ? ": is each where it should be, on the right side?" : ".");
+    pen.paragraph(
+        pen.fonts.small, fit,
+        {box.x + pad, box.y + 10 * pen.scale + line, box.width - 2 * pad, 1.2F * line_height(pen.fonts.small)},
+        poor ? theme::kAmber : theme::kQuiet);
 }
 
-std::optional<LandmarkButton> LandmarkPanel::draw_buttons(const Pen& pen, const Box& strip, const std::string& use_label) {
+std::optional<LandmarkButton> LandmarkPanel::draw_buttons(const Pen& pen, const Box& strip,
+                                                          const std::string& use_label) {
     const std::size_t clicked = clicks_.on_skin().size() + clicks_.on_scan().size();
     const bool enough = clicks_.pairs().size() >= kLeastPairs;
     const std::array<std::tuple<LandmarkButton, std::string, ButtonState, float>, 4> row{
@@ -161,11 +171,12 @@ std::optional<LandmarkButton> LandmarkPanel::draw(const Pen& pen, const Box& box
     pen.panel(box);
     draw_words(pen, box);
     draw_panes(pen, views);
-    pen.line(pen.fonts.small, "Skin from CT", boxes_[0].x + edge, boxes_[0].y + 16 * pen.scale, pane_width / 2, theme::kText);
+    pen.line(pen.fonts.small, "Skin from CT", boxes_[0].x + edge, boxes_[0].y + 16 * pen.scale, pane_width / 2,
+             theme::kText);
     pen.line(pen.fonts.small, "Scan", boxes_[1].x + edge, boxes_[1].y + 16 * pen.scale, pane_width - edge,
              theme::kText);
-    const auto pressed =
-        draw_buttons(pen, {box.x + edge, box.bottom() - edge - button_height, box.width - 2 * edge, button_height}, use_label);
+    const auto pressed = draw_buttons(
+        pen, {box.x + edge, box.bottom() - edge - button_height, box.width - 2 * edge, button_height}, use_label);
     if (pressed == LandmarkButton::undo) clicks_.undo();
     if (pressed == LandmarkButton::turn) {
         quarter_turns_ = (quarter_turns_ + 1) % 4;
@@ -175,7 +186,7 @@ std::optional<LandmarkButton> LandmarkPanel::draw(const Pen& pen, const Box& box
 }
 
 std::map<std::string, Box> LandmarkPanel::places() const {
-    return {{"undo", buttons_[0]}, {"turn", buttons_[1]}, {"use", buttons_[2]},
+    return {{"undo", buttons_[0]},  {"turn", buttons_[1]},    {"use", buttons_[2]},
             {"close", buttons_[3]}, {"skin-view", boxes_[0]}, {"scan-view", boxes_[1]}};
 }
 

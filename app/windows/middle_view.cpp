@@ -10,7 +10,9 @@
 namespace planlight {
 namespace {
 
-float button_height(const Pen& pen) { return std::max(72.0F, 76 * pen.scale); }
+float button_height(const Pen& pen) {
+    return std::max(72.0F, 76 * pen.scale);
+}
 
 /// Right half of the view's upper edge, so that the letters at the middle of its edges stay free.
 Box fit_row(const Pen& pen, const Box& place) {
@@ -21,7 +23,8 @@ Box fit_row(const Pen& pen, const Box& place) {
 /// Lower left corner of the view.
 Box corner_of(const Pen& pen, const Box& place) {
     const float height = button_height(pen);
-    return {place.x + 12 * pen.scale, place.bottom() - 12 * pen.scale - height, 0.7F * fit_row(pen, place).width, height};
+    return {place.x + 12 * pen.scale, place.bottom() - 12 * pen.scale - height, 0.7F * fit_row(pen, place).width,
+            height};
 }
 
 }  // namespace
@@ -67,7 +70,8 @@ void MiddleView::draw_scene(const Pen& pen, const Box& place, const OperatorMode
     draw_title(pen, place, model, shown);
 }
 
-void MiddleView::draw_title(const Pen& pen, const Box& place, const OperatorModel& model, const SceneModel& shown) const {
+void MiddleView::draw_title(const Pen& pen, const Box& place, const OperatorModel& model,
+                            const SceneModel& shown) const {
     std::string title = "Skin from CT";
     if (shown.skin_error_mm) title += " coloured by how far off the match may be";
     if (shown.cloud) title += shown.cloud_distance_mm ? " · scan coloured by distance" : " · scan";
@@ -82,9 +86,10 @@ void MiddleView::draw_title(const Pen& pen, const Box& place, const OperatorMode
 }
 
 void MiddleView::draw_fit_buttons(const Pen& pen, const Box& row) {
-    const std::array<std::tuple<FitView, const char*, const char*>, 3> views{{{FitView::before, "Before", "before"},
-                                                                              {FitView::after, "After", "after"},
-                                                                              {FitView::predicted_error, "Error", "error"}}};
+    const std::array<std::tuple<FitView, const char*, const char*>, 3> views{
+        {{FitView::before, "Before", "before"},
+         {FitView::after, "After", "after"},
+         {FitView::predicted_error, "Error", "error"}}};
     const float gap = 8 * pen.scale;
     Box box{row.x, row.y, (row.width - 2 * gap) / 3, row.height};
     for (const auto& [view, label, word] : views) {

@@ -27,9 +27,9 @@ std::optional<ImVec2> ScenePane::take_mouse(const char* name, const Box& sensiti
     constexpr float kStillPixels = 5;
     const ImGuiIO& io = ImGui::GetIO();
     ImGui::SetCursorScreenPos({sensitive.x, sensitive.y});
-    ImGui::InvisibleButton(name, {sensitive.width, sensitive.height},
-                           ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
-                               ImGuiButtonFlags_MouseButtonMiddle);
+    ImGui::InvisibleButton(
+        name, {sensitive.width, sensitive.height},
+        ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight | ImGuiButtonFlags_MouseButtonMiddle);
     const bool still = io.MouseDragMaxDistanceSqr[0] < kStillPixels * kStillPixels;
     if (ImGui::IsItemHovered()) {
         view_.zoom = std::clamp(view_.zoom * std::pow(1.12, static_cast<double>(io.MouseWheel)), 0.3, 12.0);
@@ -37,7 +37,8 @@ std::optional<ImVec2> ScenePane::take_mouse(const char* name, const Box& sensiti
     }
     if (ImGui::IsItemActive()) {
         if (io.MouseDown[0] && !still) {
-            view_.azimuth = std::remainder(view_.azimuth + kRadiansPerPixel * static_cast<double>(io.MouseDelta.x), 2 * M_PI);
+            view_.azimuth =
+                std::remainder(view_.azimuth + kRadiansPerPixel * static_cast<double>(io.MouseDelta.x), 2 * M_PI);
             view_.elevation =
                 std::clamp(view_.elevation + kRadiansPerPixel * static_cast<double>(io.MouseDelta.y), -1.5, 1.5);
         } else if (!io.MouseDown[0]) {
@@ -60,8 +61,8 @@ void ScenePane::draw(const Pen& pen, const Box& box, const SceneModel& model) {
     const auto texture = target_->GetDisplayFramebuffer()->GetColorAttachmentAsTextureObject(0)->GetHandle();
     corner_ = {box.x + 2, box.y + 2};
     pen.list->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), corner_,
-                              {corner_.x + static_cast<float>(width), corner_.y + static_cast<float>(height)}, {0, 1}, {1, 0},
-                              IM_COL32_WHITE, 10 * pen.scale);
+                              {corner_.x + static_cast<float>(width), corner_.y + static_cast<float>(height)}, {0, 1},
+                              {1, 0}, IM_COL32_WHITE, 10 * pen.scale);
 }
 
 Ray ScenePane::sight(const ImVec2& pixel) const {

@@ -228,7 +228,8 @@ InitialMatch find_initial_match(const PointCloud& cloud, const MatchingSkin& ski
         match.runner_up_ratio = runner_up_ratio(match.candidates);
         if (match.candidates.empty()) continue;
         const MatchCandidate& best = match.candidates[0];
-        // A poor fit may be clear and agreed on because the right pose has not been met yet: the poorer, the longer it is looked for.
+        // A poor fit may be clear and agreed on because the right pose has not been met yet: the poorer, the longer it is
+        // looked for.
         const bool fits = best.cost_mm < (match.bases_tried < kPatientBases ? 0.1 : 0.15) * settings.truncation_mm;
         if (fits && best.agreeing_bases >= kAgreeing && match.runner_up_ratio >= kClearRatio) break;
     }

@@ -12,8 +12,9 @@ void add_reasons(const std::string& of, const std::vector<std::string>& reasons,
 
 }  // namespace
 
-RegistrationResult register_with_landmarks(const PointCloud& cloud, const SkinLut& lut, const std::vector<PointPair>& pairs,
-                                           const RegistrationSettings& settings, const PointPairSettings& pair_settings) {
+RegistrationResult register_with_landmarks(const PointCloud& cloud, const SkinLut& lut,
+                                           const std::vector<PointPair>& pairs, const RegistrationSettings& settings,
+                                           const PointPairSettings& pair_settings) {
     RegistrationResult alone = register_patient(cloud, lut, settings);
     const bool sure = alone.verdict == Verdict::yes;
     check_with_point_pairs(pairs, alone, pair_settings);

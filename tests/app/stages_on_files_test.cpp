@@ -133,7 +133,8 @@ TEST_F(CommandsTest, LandmarksCheckAScanAndAScanIsASurface) {
     simulated();
     const auto scanned = run_planlight("scan room/capture --rig room/rig.json --out on.ply --surface surface.ply --json", root());
     ASSERT_EQ(scanned.exit_code, 0) << scanned.err;
-    const auto points = json::parse(scanned.out)["points"].get<std::size_t>(), triangles = json::parse(scanned.out)["triangles"].get<std::size_t>();
+    const json counts = json::parse(scanned.out);
+    const auto points = counts["points"].get<std::size_t>(), triangles = counts["triangles"].get<std::size_t>();
     EXPECT_GT(triangles, points) << "nearly two a point";
     EXPECT_LT(triangles, 2 * points);
     prepared();

@@ -50,53 +50,61 @@ TEST(LandmarkClicks, KeepTheNamesOfATableAndNeverUseOneTwice) {
 
 TEST(LandmarkClicks, MisfitIsThatOfTheBestRigidTransform) {
     LandmarkClicks clicks;
-    const RigidTransform turned(Eigen::Translation3d(5, -7, 300) * Eigen::AngleAxisd(1, Vector3d(1, 2, 3).normalized()));
+    const RigidTransform turned(Eigen::Translation3d(5, -7, 300) *
+                                Eigen::AngleAxisd(1, Vector3d(1, 2, 3).normalized()));
     const std::vector<Vector3d> places{{50, 0, 0}, {-50, 0, 0}, {0, 60, 0}, {0, -60, 0}};
     for (const Vector3d& p : places) clicks.click_skin(p), clicks.click_scan(turned * p);
     EXPECT_NEAR(clicks.misfit_mm(), 0, 1e-9);
     LandmarkClicks off;  // along the axis across the square by turns: nothing rigid makes up for it
-    for (std::size_t i = 0; i < 4; ++i) off.click_skin(places[i]), off.click_scan(turned * (places[i] + Vector3d(0, 0, i < 2 ? 2 : -2)));
+    for (std::size_t i = 0; i < 4; ++i)
+        off.click_skin(places[i]), off.click_scan(turned * (places[i] + Vector3d(0, 0, i < 2 ? 2 : -2)));
     EXPECT_NEAR(off.misfit_mm(), 2, 0.01);
 }
 
 /// A disc on the head as drawn, and what the scene says of its place: (mean pixel of the disc, pixel_of its centre).
 std::pair<Eigen::Vector2d, Eigen::Vector2d> drawn_and_said(const Vector3d& p, const SceneView& view) {
-    return std::async(std::launch::async, [&] {
-               const auto context = headless_gl(640, 480);
-               const auto window = render_target(640, 480, 0, [] {});
-               std::pair<Eigen::Vector2d, Eigen::Vector2d> result{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
-               {
-                   Scene scene(*window, find_fonts());
-                   SceneModel model;
-                   model.skin = std::make_shared<TriangleMesh>(test::analytic_head_mesh(4));
-                   model.of_scan = true;  // no letters, which are white as well
-                   model.markers = std::make_shared<std::vector<SceneMarker>>(
-                       std::vector<SceneMarker>{{p, test::analytic_head_normal(p), true}});
-                   scene.update(model, view, 640, 480, 1);
-                   vtkObject::GlobalWarningDisplayOff();  // GLEW complains without a display
-                   window->Render();
-                   vtkObject::GlobalWarningDisplayOn();
-                   const RgbImage picture = picture_of(*window);
-                   double count = 0;
-                   for (int y = 0; y < 480; ++y)
-                       for (int x = 0; x < 640; ++x) {
-                           const Rgb& c = picture.at(x, y);
-                           if (c[0] > 235 && c[1] > 235 && c[2] > 235) result.first += Eigen::Vector2d(x, y), ++count;
-                       }
-                   result.first /= count;
-                   result.second = scene.pixel_of(p);
-                   const Ray sight = scene.sight(result.second);
-                   EXPECT_LT((p - sight.origin).cross(sight.direction).norm(), 1e-6) << "the sight leads back to the point";
-                   EXPECT_GT((p - sight.origin).dot(sight.direction), 0);
-               }
-               window->Finalize();
-               return result;
-           }).get();
+    return std::async(
+               std::launch::async,
+               [&] {
+                   const auto context = headless_gl(640, 480);
+                   const auto window = render_target(640, 480, 0, [] {});
+                   std::pair<Eigen::Vector2d, Eigen::Vector2d> result{Eigen::Vector2d::Zero(), Eigen::Vector2d::Zero()};
+                   {
+                       Scene scene(*window, find_fonts());
+                       SceneModel model;
+                       model.skin = std::make_shared<TriangleMesh>(test::analytic_head_mesh(4));
+                       model.of_scan = true;  // no letters, which are white as well
+                       model.markers = std::make_shared<std::vector<SceneMarker>>(
+                           std::vector<SceneMarker>{{p, test::analytic_head_normal(p), true}});
+                       scene.update(model, view, 640, 480, 1);
+                       vtkObject::GlobalWarningDisplayOff();  // GLEW complains without a display
+                       window->Render();
+                       vtkObject::GlobalWarningDisplayOn();
+                       const RgbImage picture = picture_of(*window);
+                       double count = 0;
+                       for (int y = 0; y < 480; ++y)
+                           for (int x = 0; x < 640; ++x) {
+                               const Rgb& c = picture.at(x, y);
+                               if (c[0] > 235 && c[1] > 235 && c[2] > 235)
+                                   result.first += Eigen::Vector2d(x, y), ++count;
+                           }
+                       result.first /= count;
+                       result.second = scene.pixel_of(p);
+                       const Ray sight = scene.sight(result.second);
+                       EXPECT_LT((p - sight.origin).cross(sight.direction).norm(), 1e-6)
+                           << "the sight leads back to the point";
+                       EXPECT_GT((p - sight.origin).dot(sight.direction), 0);
+                   }
+                   window->Finalize();
+                   return result;
+               })
+        .get();
 }
 
 TEST(Scene, SaysInWhichPixelItDrewAPoint) {
     unsetenv("DISPLAY");
-    for (const SceneView& view : {SceneView{0, 0, 1, {0, 0}}, SceneView{0.5, 0.3, 2, {-15, -10}}, SceneView{-0.4, -0.2, 0.6, {-15, 40}}}) {
+    for (const SceneView& view :
+         {SceneView{0, 0, 1, {0, 0}}, SceneView{0.5, 0.3, 2, {-15, -10}}, SceneView{-0.4, -0.2, 0.6, {-15, 40}}}) {
         const Vector3d p = test::on_analytic_head({-20, -90, 40});
         const auto [drawn, said] = drawn_and_said(p, view);
         EXPECT_LT((drawn - said).norm(), 3) << "drawn at " << drawn.transpose() << ", said " << said.transpose();
@@ -113,7 +121,8 @@ TEST(ClickableScan, StandsAsTheCameraSeesItAndGivesTheRigsPoints) {
     camera.device_from_rig.linear() = axes;
     const auto scan = clickable_scan(in_ct, &camera);
     ASSERT_NE(scan, nullptr);
-    // The nose looks at the viewer; what the camera has at its right (the patient's right, as it hangs) is to the right.
+    // The nose looks at the viewer; what the camera has at its right (the patient's right, as it hangs) is to the
+    // right.
     EXPECT_LT((scan->shown_from_rig.linear() * Vector3d(0, -1, 0) - Vector3d(0, -1, 0)).norm(), 1e-9);
     EXPECT_LT((scan->shown_from_rig.linear() * Vector3d(-1, 0, 0) - Vector3d(1, 0, 0)).norm(), 1e-9);
     EXPECT_LT((scan->shown_from_rig.linear() * Vector3d(0, 0, 1) - Vector3d(0, 0, -1)).norm(), 1e-9);

@@ -1,5 +1,6 @@
-// Run by press_buttons.sh: shows the operator window with a fake model, writes where its controls are into FOLDER/actions and
-// FOLDER/views (FOLDER/landmarks once these are clicked), and prints every action and landmark, until the window is closed or a minute has passed. Argument: FOLDER.
+// Run by press_buttons.sh: shows the operator window with a fake model, writes where its controls are into FOLDER/actions
+// and FOLDER/views (FOLDER/landmarks once these are clicked), and prints every action and landmark, until the window is
+// closed or a minute has passed. Argument: FOLDER.
 #include <fmt/format.h>
 
 #include <chrono>

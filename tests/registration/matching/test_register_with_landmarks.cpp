@@ -17,8 +17,8 @@ std::vector<PointPair> clicked(const RigidTransform& rig_from_ct, double error_m
     std::mt19937 random(seed);
     std::normal_distribution<double> off(0, error_mm / std::sqrt(3.));
     std::vector<PointPair> pairs;
-    for (const Vector3d& near : {Vector3d(0, -95, 20), Vector3d(48, -80, 15), Vector3d(-48, -80, 15), Vector3d(75, 5, 0),
-                                 Vector3d(-75, 5, 0), Vector3d(0, -115, -10)}) {
+    for (const Vector3d& near : {Vector3d(0, -95, 20), Vector3d(48, -80, 15), Vector3d(-48, -80, 15),
+                                 Vector3d(75, 5, 0), Vector3d(-75, 5, 0), Vector3d(0, -115, -10)}) {
         const Vector3d p = on_analytic_head(near), miss(off(random), off(random), off(random));
         pairs.push_back({"landmark " + std::to_string(pairs.size() + 1), p, rig_from_ct * p + miss});
     }
