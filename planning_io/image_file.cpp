@@ -1,5 +1,7 @@
 #include "planning_io/image_file.h"
 
+#include <fmt/format.h>
+
 #include <opencv2/imgcodecs.hpp>
 
 #include <cmath>
@@ -95,6 +97,14 @@ RgbImage read_rgb(const fs::path& file) {
             rgb.at(x, y) = {bgr[2], bgr[1], bgr[0]};
         }
     return rgb;
+}
+
+void check_same_size(const GrayImage& picture, const GrayImage& first, const std::filesystem::path& file) {
+    if (picture.width != first.width || picture.height != first.height)
+        throw InputError(file,
+                         fmt::format("is {} x {} pixels, the first picture of this camera is {} x {}", picture.width,
+                                     picture.height, first.width, first.height),
+                         "Capture all pictures with the same settings.");
 }
 
 }  // namespace planlight

@@ -14,4 +14,7 @@ void write_png(const RgbImage& picture, const std::filesystem::path& file);
 GrayImage read_gray(const std::filesystem::path& file);
 RgbImage read_rgb(const std::filesystem::path& file);
 
+/// All pictures of a camera have one size: throws InputError when this one is not as large as the first.
+void check_same_size(const GrayImage& picture, const GrayImage& first, const std::filesystem::path& file);
+
 }  // namespace planlight

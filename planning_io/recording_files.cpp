@@ -28,14 +28,6 @@ void check_name(const std::string& name, const fs::path& file) {
                          "Use letters, digits, _ and - in names of patterns only.");
 }
 
-void check_picture(const GrayImage& picture, const GrayImage& first, const fs::path& file) {
-    if (picture.width != first.width || picture.height != first.height)
-        throw InputError(file,
-                         fmt::format("is {} x {} pixels, the first picture of this camera is {} x {}", picture.width,
-                                     picture.height, first.width, first.height),
-                         "Capture all pictures with the same settings.");
-}
-
 /// NAME.png, or NAME.tif, NAME.tiff where that is there instead.
 fs::path picture_file(const fs::path& folder, const std::string& name) {
     for (const char* ending : {".tif", ".tiff"})
@@ -46,7 +38,7 @@ fs::path picture_file(const fs::path& folder, const std::string& name) {
 /// The picture at left/ or right/ of a recording; one size for all.
 void read_picture(std::vector<GrayImage>& pictures, const fs::path& file) {
     pictures.push_back(read_gray(file));
-    check_picture(pictures.back(), pictures.front(), file);
+    check_same_size(pictures.back(), pictures.front(), file);
 }
 
 Json parse_file(const fs::path& file, const char* format) {
@@ -205,8 +197,8 @@ std::vector<RecordedFrame> read_frames(const fs::path& folder) {
         if (i > 0 && frame.at <= frames[i - 1].at) list[i].at("at_ns").refuse("is not later than the frame before it");
         frame.left = read_gray(folder / "left" / name);
         frame.right = read_gray(folder / "right" / name);
-        check_picture(frame.left, frames.front().left, folder / "left" / name);
-        check_picture(frame.right, frames.front().right, folder / "right" / name);
+        check_same_size(frame.left, frames.front().left, folder / "left" / name);
+        check_same_size(frame.right, frames.front().right, folder / "right" / name);
     }
     return frames;
 }

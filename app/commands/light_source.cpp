@@ -21,14 +21,6 @@ LightRecording recorded(const std::string& part, const LightBench& bench, const 
     return record_latency(bench, settings);
 }
 
-void check_size(const GrayImage& picture, const GrayImage& first, const fs::path& file) {
-    if (picture.width != first.width || picture.height != first.height)
-        throw InputError(file,
-                         fmt::format("is {} x {} pixels, the first picture of this camera is {} x {}", picture.width,
-                                     picture.height, first.width, first.height),
-                         "Record all pictures with the same settings.");
-}
-
 }  // namespace
 
 LightRecording read_light_folder(const fs::path& folder) {
@@ -46,8 +38,8 @@ LightRecording read_light_folder(const fs::path& folder) {
         frame.left = read_gray(folder / "left" / entry.picture);
         if (right) frame.right = read_gray(folder / "right" / entry.picture);
         if (first_left.empty()) first_left = frame.left, first_right = frame.right;
-        check_size(frame.left, first_left, folder / "left" / entry.picture);
-        check_size(frame.right, first_right, folder / "right" / entry.picture);
+        check_same_size(frame.left, first_left, folder / "left" / entry.picture);
+        check_same_size(frame.right, first_right, folder / "right" / entry.picture);
         recording.frames.push_back(brightness_of(frame));
     }
     return recording;

@@ -156,7 +156,7 @@ std::shared_ptr<const LightMap> LightSchedule::sum_over(Instant opened, Instant 
                 even_light += share * wheel[c] * settings_.panel.colours[c] * static_cast<double>(response[value]);
                 continue;
             }
-            auto& map = const_cast<Order*>(found)->colours[c];
+            auto& map = found->colours[c];
             std::array<double, 3> only{};
             only[c] = 1;
             if (!map) map = std::make_shared<LightMap>(width_, height_, found->picture.get(), settings_.panel, only);

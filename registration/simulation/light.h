@@ -77,7 +77,7 @@ private:
         std::shared_ptr<const RgbImage> picture;  ///< null: dark
         bool uniform = false;                     ///< one colour all over
         std::shared_ptr<const LightMap> map;      ///< of all colours at once
-        std::array<std::shared_ptr<const LightMap>, 3> colours;  ///< one a colour; made when asked for
+        mutable std::array<std::shared_ptr<const LightMap>, 3> colours;  ///< one a colour; made when asked for
     };
     void push(Order order, Instant now);
     Instant light_of(Instant now);

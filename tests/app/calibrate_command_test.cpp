@@ -12,16 +12,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-std::string whole(const fs::path& file) {
-    std::ifstream in(file, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-}
-
-void expect_refused(const CommandRun& run, int exit_code, const std::string& about) {
-    EXPECT_EQ(run.exit_code, exit_code) << run.err;
-    EXPECT_NE(run.err.find(about), std::string::npos) << run.err;
-}
-
 /// From simulated captures to rig.json; then what goes wrong leaves the good file alone. One test: the captures take their
 /// time.
 TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {

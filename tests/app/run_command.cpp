@@ -1,5 +1,6 @@
 #include "tests/app/run_command.h"
 
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 
 #include <cstdlib>
@@ -7,16 +8,17 @@
 #include <sstream>
 
 namespace planlight::test {
-namespace {
-
-std::string content_of(const std::filesystem::path& file) {
-    std::ifstream in(file);
+std::string whole(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
     std::ostringstream text;
     text << in.rdbuf();
     return text.str();
 }
 
-}  // namespace
+void expect_refused(const CommandRun& run, int exit_code, const std::string& about) {
+    EXPECT_EQ(run.exit_code, exit_code) << run.err;
+    EXPECT_NE(run.err.find(about), std::string::npos) << run.err;
+}
 
 CommandRun run_planlight(const std::string& arguments, const std::filesystem::path& folder) {
     const auto out = folder / ".stdout", err = folder / ".stderr";
@@ -25,8 +27,8 @@ CommandRun run_planlight(const std::string& arguments, const std::filesystem::pa
     const int status = std::system(line.c_str());
     CommandRun run;
     run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    run.out = content_of(out);
-    run.err = content_of(err);
+    run.out = whole(out);
+    run.err = whole(err);
     std::filesystem::remove(out);
     std::filesystem::remove(err);
     return run;

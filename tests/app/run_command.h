@@ -14,4 +14,10 @@ struct CommandRun {
 /// Runs `planlight ARGUMENTS` (shell words) in `folder`.
 CommandRun run_planlight(const std::string& arguments, const std::filesystem::path& folder);
 
+/// The bytes of a file; none when it is not there.
+std::string whole(const std::filesystem::path& file);
+
+/// It ended with that code, and the words are in what it said.
+void expect_refused(const CommandRun& run, int exit_code, const std::string& about);
+
 }  // namespace planlight::test

@@ -40,6 +40,12 @@ protected:
         settings.measured_updates = 3;
         return settings;
     }
+    static simulation::RoomSettings papers_room(unsigned seed) {
+        simulation::RoomSettings settings;
+        settings.preset = simulation::Preset::paper;
+        settings.seed = seed;
+        return settings;
+    }
     /// What the demo promises of every room.
     static bool good(const ChainFigures& f) {
         return f.refused.empty() && f.initial_match_right && distribution_of(f.tre_mm).p95 <= 1 &&
@@ -63,10 +69,7 @@ TEST_F(WholeChain, PutsThePlanOnTheSkinInThePapersRoom) {
 }
 
 TEST_F(WholeChain, APatientWhoMovesDuringTheScanIsScannedAgain) {
-    simulation::RoomSettings settings;
-    settings.preset = simulation::Preset::paper;
-    settings.seed = 1;
-    simulation::SimulatedRig room(*volume_, {}, settings);
+    simulation::SimulatedRig room(*volume_, {}, papers_room(1));
     room.set_motion({1, room.clock().now()});
     room.wait(std::chrono::seconds(1));
     const CaseDrawing drawing(prepared_);
@@ -88,10 +91,7 @@ TEST_F(WholeChain, APatientWhoMovesDuringTheScanIsScannedAgain) {
 }
 
 TEST_F(WholeChain, ADoubtfulMatchIsDrawnOnThePersonsWordAndTheWordHoldsForThatMatchOnly) {
-    simulation::RoomSettings settings;
-    settings.preset = simulation::Preset::paper;
-    settings.seed = 1;
-    simulation::SimulatedRig room(*volume_, {}, settings);
+    simulation::SimulatedRig room(*volume_, {}, papers_room(1));
     const CaseDrawing drawing(prepared_);
     SessionSettings doubting;
     doubting.registration.min_agreeing_bases = 1000;  // every match is an `ask`
@@ -113,10 +113,7 @@ TEST_F(WholeChain, ADoubtfulMatchIsDrawnOnThePersonsWordAndTheWordHoldsForThatMa
 }
 
 TEST_F(WholeChain, LandmarksOnTheScanCheckTheMatch) {
-    simulation::RoomSettings settings;
-    settings.preset = simulation::Preset::paper;
-    settings.seed = 2;
-    simulation::SimulatedRig room(*volume_, {}, settings);
+    simulation::SimulatedRig room(*volume_, {}, papers_room(2));
     const CaseDrawing drawing(prepared_);
     Session session(prepared_, drawing, room.calibration(), room.projector(), room.cameras(), room.clock());
     const RigidTransform truth = room.true_rig_from_ct(room.clock().now());
