@@ -5,12 +5,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "planning_io/types/large_array.h"
+
 namespace planlight {
 
 /// 8-bit grey picture, rows from the top, no padding.
 struct GrayImage {
     int width = 0, height = 0;
-    std::vector<std::uint8_t> pixels;  ///< height x width
+    LargeArray<std::uint8_t> pixels;  ///< height x width
 
     GrayImage() = default;
     GrayImage(int w, int h, std::uint8_t value = 0)

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "registration/scan/decode_blocks.h"
+#include "registration/scan/pair_kernel.h"
 
 namespace planlight {
 namespace {
@@ -13,7 +14,7 @@ namespace {
 namespace kernels = decode_kernels;
 
 struct Block {
-    alignas(64) std::array<float, kernels::kBlock> contrast, column, row;
+    alignas(64) std::array<std::uint16_t, kernels::kBlock> columns, rows;
     alignas(64) std::array<std::uint8_t, kernels::kBlock> limit;
     alignas(64) kernels::CodeBytes code;
 };
@@ -27,19 +28,43 @@ void check_sizes(const GrayPairs& frames) {
         throw std::invalid_argument("decode_gray_pairs: frames of different size");
     if (frames.columns.size() > 32 || frames.rows.size() > 32)
         throw std::invalid_argument("decode_gray_pairs: more than 16 bits");
+    if (frames.columns.size() % 2 != 0 || frames.rows.size() % 2 != 0)
+        throw std::invalid_argument("decode_gray_pairs: a bit without its inverse");
+    if (std::max(frames.projector_width, frames.projector_height) > pair_kernel::kMostPixels)
+        throw std::invalid_argument("decode_gray_pairs: a projector of more than 32767 pixels");
 }
 
-void decode_direction(std::span<const GrayImage> pairs, int size, std::size_t begin, std::size_t n, Block& b,
-                      float* pixel) {
-    const std::size_t count = pairs.size() / 2;
-    std::array<const std::uint8_t*, kernels::kMostBits> bits, inverses;
-    for (std::size_t k = 0; k < count; ++k) {
-        bits[k] = pairs[2 * k].pixels.data() + begin;
-        inverses[k] = pairs[2 * k + 1].pixels.data() + begin;
+/// Of a block: the bits of the columns, their inverses, the bits of the rows, their inverses.
+class BlockFrames {
+public:
+    BlockFrames(const GrayPairs& pairs, std::size_t begin) {
+        for (const std::span<const GrayImage>& direction : {pairs.columns, pairs.rows})
+            for (std::size_t inverse : {0, 1})
+                for (std::size_t k = inverse; k < direction.size(); k += 2)
+                    frames_[count_++] = direction[k].pixels.data() + begin;
     }
-    kernels::decide_bits(bits.data(), inverses.data(), nullptr, b.limit.data(), static_cast<int>(count), b.code, n);
-    kernels::place_code(b.code, 1, static_cast<float>(size), pixel, n);
-}
+    const std::uint8_t* const* data() const { return frames_.data(); }
+    std::size_t size() const { return count_; }
+
+private:
+    std::array<const std::uint8_t*, 4 * kernels::kMostBits> frames_;
+    std::size_t count_ = 0;
+};
+
+/// The pictures of one direction: `data`, as many bits as pairs, then their inverses.
+struct Direction {
+    const std::uint8_t* const* data;
+    int pairs, size;
+
+    void decide_coarse(std::size_t n, Block& b) const {
+        kernels::decide_bits(data, data + pairs, nullptr, b.limit.data(), coarse(), b.code.high, b.code.doubt_high, n);
+    }
+    void decide_fine(std::size_t n, Block& b) const {
+        kernels::decide_bits(data + coarse(), data + pairs + coarse(), nullptr, b.limit.data(), pairs - coarse(), b.code.low,
+                             b.code.doubt_low, n);
+    }
+    int coarse() const { return kernels::coarse_bits(pairs); }
+};
 
 kernels::Counts decode_block(const GrayPairs& frames, const GrayLimits& limits, std::size_t begin, std::size_t n, Block& b,
                              DecodedView& view) {
@@ -52,15 +77,24 @@ kernels::Counts decode_block(const GrayPairs& frames, const GrayLimits& limits, 
     // In doubt is what lies below the limit: one grey less than the least that is believed.
     kernels::doubt_below_contrast(white, black, static_cast<float>(limits.least_share), static_cast<float>(limits.least_grey),
                                   b.limit.data(), n);
-    decode_direction(frames.columns, frames.projector_width, begin, n, b, b.column.data());
-    decode_direction(frames.rows, frames.projector_height, begin, n, b, b.row.data());
-    kernels::contrast_of(white, black, b.contrast.data(), n);
-    const kernels::DirectionBlock columns{b.contrast.data(), b.column.data(), white},
-        rows{b.contrast.data(), b.row.data(), white};
-    const kernels::Limits good{static_cast<float>(limits.least_grey), 0, 0, 1, limits.saturated_at};
-    const kernels::Counts counts = kernels::keep_good(columns, &rows, white, black, good, column, row, sigma, n);
-    kernels::set_where_known(column, 0.29f, sigma, n);
-    return counts;
+    const BlockFrames all(frames, begin);
+    kernels::LinesAhead ahead(all.data(), all.size());
+    const Direction columns{all.data(), static_cast<int>(frames.columns.size() / 2), frames.projector_width};
+    const Direction rows{all.data() + frames.columns.size(), static_cast<int>(frames.rows.size() / 2), frames.projector_height};
+    const pair_kernel::Limits known{limits.least_grey, limits.saturated_at};
+    columns.decide_coarse(n, b);
+    if (columns.coarse() >= 2 && !pair_kernel::any_left(white, black, b.code.doubt_high, known, n)) {
+        b.columns.fill(pair_kernel::kUnknown);
+        b.rows.fill(pair_kernel::kUnknown);
+    } else {
+        columns.decide_fine(n, b);
+        pair_kernel::find_halves(b.code, columns.size, b.columns.data(), n, ahead);
+        rows.decide_coarse(n, b);
+        rows.decide_fine(n, b);
+        pair_kernel::find_halves(b.code, rows.size, b.rows.data(), n, ahead);
+    }
+    constexpr float kSigma_px = 0.29f;
+    return pair_kernel::keep_pairs(b.columns.data(), b.rows.data(), white, black, known, kSigma_px, column, row, sigma, n, ahead);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "registration/processor_clones.h"
+#include "registration/scan/write_past_cache.h"
 
 namespace planlight::decode_kernels {
 namespace {
@@ -112,61 +113,60 @@ PLANLIGHT_CLONES void doubt_below_contrast(const std::uint8_t* white, const std:
     }
 }
 
-PLANLIGHT_CLONES void contrast_of(const std::uint8_t* white, const std::uint8_t* black, float* __restrict contrast,
-                                  std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) contrast[i] = static_cast<float>(white[i] - black[i]);
-}
-
-PLANLIGHT_CLONES void set_where_known(const float* pixel, float value, float* __restrict out, std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) out[i] = pixel[i] == pixel[i] ? value : kNaN;  // NaN is not equal to itself
-}
-
 namespace {
 
-/// The bits [first, first + count) of 64 pixels, in registers until all are decided.
-PLANLIGHT_INLINE void decide_byte(const std::uint8_t* const* frames, const std::uint8_t* const* inverses,
-                                  const std::uint8_t* middle, const std::uint8_t* limit_at, int count, std::size_t i,
-                                  std::uint8_t* code_at, std::uint8_t* doubt_at) {
-    Bytes code = {}, doubt = {}, limit, a, b;
-    std::memcpy(&limit, limit_at + i, sizeof limit);
-    if (!inverses) std::memcpy(&b, middle + i, sizeof b);
+/// The bits of `kVectors` x 64 pixels, in registers until all are decided. Of every frame several cache lines after each
+/// other: memory gives runs of a frame much sooner than a line of each in turn.
+template <int kVectors>
+PLANLIGHT_INLINE void decide_run(const std::uint8_t* const* frames, const std::uint8_t* const* inverses,
+                                 const std::uint8_t* middle, const std::uint8_t* limit_at, int count, std::size_t i,
+                                 std::uint8_t* code_at, std::uint8_t* doubt_at) {
+    Bytes code[kVectors], doubt[kVectors], limit[kVectors], a, b;
+#pragma GCC unroll 8
+    for (std::size_t v = 0; v < kVectors; ++v) {
+        code[v] = doubt[v] = Bytes{};
+        std::memcpy(&limit[v], limit_at + i + v * sizeof a, sizeof a);
+    }
     for (int k = 0; k < count; ++k) {
         const auto bit = static_cast<std::uint8_t>(1u << (count - 1 - k));
-        std::memcpy(&a, frames[k] + i, sizeof a);
-        __builtin_prefetch(frames[k] + i + kBlock);
-        if (inverses) {
-            std::memcpy(&b, inverses[k] + i, sizeof b);
-            __builtin_prefetch(inverses[k] + i + kBlock);
+        const std::uint8_t *frame = frames[k] + i, *other = inverses ? inverses[k] + i : middle + i;
+#pragma GCC unroll 8
+        for (std::size_t v = 0; v < kVectors; ++v) {
+            std::memcpy(&a, frame + v * sizeof a, sizeof a);
+            std::memcpy(&b, other + v * sizeof b, sizeof b);
+            __builtin_prefetch(frame + v * sizeof a + kBlock);
+            if (inverses) __builtin_prefetch(other + v * sizeof b + kBlock);
+            const Bytes high = a > b ? a : b, low = a > b ? b : a;
+            code[v] = a > b ? code[v] + bit : code[v];  // an addition under a mask
+            doubt[v] = high - low <= limit[v] ? doubt[v] + bit : doubt[v];
         }
-        const Bytes high = a > b ? a : b, low = a > b ? b : a;
-        code |= (Bytes)(a > b) & bit;
-        doubt |= (Bytes)(high - low <= limit) & bit;
     }
-    std::memcpy(code_at + i, &code, sizeof code);
-    std::memcpy(doubt_at + i, &doubt, sizeof doubt);
+#pragma GCC unroll 8
+    for (std::size_t v = 0; v < kVectors; ++v) {
+        std::memcpy(code_at + i + v * sizeof a, &code[v], sizeof a);
+        std::memcpy(doubt_at + i + v * sizeof a, &doubt[v], sizeof a);
+    }
 }
 
 }  // namespace
 
 PLANLIGHT_CLONES void decide_bits(const std::uint8_t* const* frames, const std::uint8_t* const* inverses,
-                                  const std::uint8_t* middle, const std::uint8_t* limit, int bits, CodeBytes& code,
-                                  std::size_t n) {
-    const int high = bits > 8 ? bits - 8 : 0;  // of the upper byte: the coarse ones
-    const std::uint8_t* const* low_inverses = inverses ? inverses + high : nullptr;
-    for (std::size_t i = 0; i + 64 <= n; i += 64) {
-        decide_byte(frames, inverses, middle, limit, high, i, code.high, code.doubt_high);
-        decide_byte(frames + high, low_inverses, middle, limit, bits - high, i, code.low, code.doubt_low);
-    }
-    for (std::size_t i = n / 64 * 64; i < n; ++i) {
-        unsigned set = 0, doubt = 0;
+                                  const std::uint8_t* middle, const std::uint8_t* limit, int bits, std::uint8_t* code,
+                                  std::uint8_t* doubt, std::size_t n) {
+    constexpr std::size_t kRun = 512;
+    std::size_t i = 0;
+    for (; i + kRun <= n; i += kRun)
+        decide_run<kRun / sizeof(Bytes)>(frames, inverses, middle, limit, bits, i, code, doubt);
+    for (; i + sizeof(Bytes) <= n; i += sizeof(Bytes)) decide_run<1>(frames, inverses, middle, limit, bits, i, code, doubt);
+    for (; i < n; ++i) {
+        unsigned set = 0, unsure = 0;
         for (int k = 0; k < bits; ++k) {
             const int a = frames[k][i], b = inverses ? inverses[k][i] : middle[i];
             set = 2 * set + (a > b);
-            doubt = 2 * doubt + ((a > b ? a - b : b - a) <= limit[i]);
+            unsure = 2 * unsure + ((a > b ? a - b : b - a) <= limit[i]);
         }
-        code.low[i] = static_cast<std::uint8_t>(set), code.high[i] = static_cast<std::uint8_t>(set >> 8);
-        code.doubt_low[i] = static_cast<std::uint8_t>(doubt),
-        code.doubt_high[i] = static_cast<std::uint8_t>(doubt >> 8);
+        code[i] = static_cast<std::uint8_t>(set);
+        doubt[i] = static_cast<std::uint8_t>(unsure);
     }
 }
 
@@ -197,16 +197,6 @@ PLANLIGHT_CLONES void unwrap(const CodeBytes& bytes, const float* phase_px, floa
         const bool good = bool(((doubt & (doubt - 1)) == 0) & (order_a == order_b) & (off <= kMaxTurns) & (found >= -0.5f) &
                                (found < size - 0.5f));
         pixel[i] = good ? found : kNaN;
-    }
-}
-
-PLANLIGHT_CLONES void place_code(const CodeBytes& bytes, float cell_px, float size, float* __restrict pixel, std::size_t n) {
-    for (std::size_t i = 0; i < n; ++i) {
-        const int code = bytes.low[i] | bytes.high[i] << 8, doubt = bytes.doubt_low[i] | bytes.doubt_high[i] << 8;
-        const int number = binary_from_gray(code), other = binary_from_gray(code ^ doubt);
-        const int apart = number > other ? number - other : other - number, highest = number > other ? number : other;
-        const bool good = bool(((doubt & (doubt - 1)) == 0) & (apart <= 1) & (static_cast<float>(highest) * cell_px < size));
-        pixel[i] = good ? (static_cast<float>(number + other) * 0.5f + 0.5f) * cell_px - 0.5f : kNaN;
     }
 }
 
@@ -242,12 +232,25 @@ PLANLIGHT_CLONES Counts keep_good(const DirectionBlock& columns, const Direction
             static_cast<std::uint32_t>(static_cast<int>(n) - decoded - dark - saturated)};
 }
 
-PLANLIGHT_CLONES Counts keep_none(const std::uint8_t* white, int saturated_at, float* __restrict column,
+PLANLIGHT_CLONES bool any_lit(const float* amplitude, const std::uint8_t* top, const std::uint8_t* white,
+                              const std::uint8_t* black, const Limits& limits, std::size_t n) {
+    const Limits l = limits;
+    int lit = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const float direct = l.min_direct_fraction * static_cast<float>(white[i] - black[i]);
+        const float least = direct > l.min_modulation ? direct : l.min_modulation;
+        lit |= (top[i] < l.saturated_at) & (amplitude[i] >= least);
+    }
+    return lit != 0;
+}
+
+PLANLIGHT_CLONES Counts keep_none(const std::uint8_t* top, int saturated_at, float* __restrict column,
                                   float* __restrict row, float* __restrict sigma_px, std::size_t n) {
     int saturated = 0;
-    for (std::size_t i = 0; i < n; ++i) saturated += white[i] >= saturated_at;
+    for (std::size_t i = 0; i < n; ++i) saturated += top[i] >= saturated_at;
     for (float* out : {column, row, sigma_px})
-        if (out) std::fill_n(out, n, kNaN);
+        if (out) fill_past_cache(kNaN, out, n);
+    finish_writing();
     return {0, static_cast<std::uint32_t>(static_cast<int>(n) - saturated), static_cast<std::uint32_t>(saturated), 0};
 }
 

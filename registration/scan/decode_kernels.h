@@ -23,6 +23,24 @@ inline void expect_next(const std::uint8_t* frame, std::size_t blocks_ahead = 1)
     for (std::size_t at = 0; at < kBlock; at += 64) __builtin_prefetch(next + at);
 }
 
+/// Lines of frames that will be needed two blocks later, asked for a few at a time while something else is computed: the
+/// processor forgets most of what it is asked for at once.
+class LinesAhead {
+public:
+    LinesAhead(const std::uint8_t* const* frames, std::size_t count) : frames_(frames), lines_(count * kLines) {}
+    void ask_for_four() {
+        if (next_ >= lines_) return;
+        const std::uint8_t* line = frames_[next_ / kLines] + 2 * kBlock + next_ % kLines * kLine;
+        for (std::size_t i = 0; i < 4; ++i) __builtin_prefetch(line + i * kLine);
+        next_ += 4;
+    }
+
+private:
+    static constexpr std::size_t kLine = 64, kLines = kBlock / kLine;
+    const std::uint8_t* const* frames_;
+    std::size_t lines_, next_ = 0;
+};
+
 /// White and black are all that is looked at where there is no light: those blocks follow each other quickly.
 inline constexpr std::size_t kFarAhead = 6;
 
@@ -47,12 +65,13 @@ void doubt_below(const float* amplitude, float part, float floor, std::uint8_t* 
 void doubt_below_contrast(const std::uint8_t* white, const std::uint8_t* black, float part, float floor, std::uint8_t* limit,
                           std::size_t n);
 
-void contrast_of(const std::uint8_t* white, const std::uint8_t* black, float* contrast, std::size_t n);
-
-/// Decides up to 16 bits, coarsest first, each by its frame against its inverse (`inverses`: one a bit), or all against
-/// one other threshold (`inverses` null: `middle`). A difference of `limit` or less is doubt.
+/// Decides up to 8 bits, coarsest first, each by its frame against its inverse (`inverses`: one a bit), or all against one
+/// other threshold (`inverses` null: `middle`). A difference of `limit` or less is doubt.
 void decide_bits(const std::uint8_t* const* frames, const std::uint8_t* const* inverses, const std::uint8_t* middle,
-                 const std::uint8_t* limit, int bits, CodeBytes& code, std::size_t n);
+                 const std::uint8_t* limit, int bits, std::uint8_t* code, std::uint8_t* doubt, std::size_t n);
+
+/// How many of a code's bits stand in the upper byte: the coarse ones.
+constexpr int coarse_bits(int bits) { return bits > 8 ? bits - 8 : 0; }
 
 /// Halfway between white and black, and half of `limit`: the threshold for a bit without an inverse.
 void middle_of(const std::uint8_t* white, const std::uint8_t* black, const std::uint8_t* limit, std::uint8_t* middle,
@@ -61,10 +80,6 @@ void middle_of(const std::uint8_t* white, const std::uint8_t* black, const std::
 /// Joins Gray code and phase to a projector pixel; NaN where they do not determine it. A bit in doubt is harmless
 /// where the code with and without it unwraps to the same pixel (its own border); two are not.
 void unwrap(const CodeBytes& code, const float* phase_px, float period, float size, float* pixel, std::size_t n);
-
-/// A Gray code alone, `cell_px` projector pixels a number: the middle of its cell, or of two neighbours where just the bit of
-/// their common border is in doubt. NaN where another bit is, or the number lies outside `size` pixels.
-void place_code(const CodeBytes& code, float cell_px, float size, float* pixel, std::size_t n);
 
 /// What makes a pixel of one direction believable.
 struct Limits {
@@ -85,10 +100,11 @@ struct DirectionBlock {
 Counts keep_good(const DirectionBlock& columns, const DirectionBlock* rows, const std::uint8_t* white,
                  const std::uint8_t* black, const Limits& limits, float* column, float* row, float* sigma_px, std::size_t n);
 
-/// `value` where `pixel` is known, NaN elsewhere.
-void set_where_known(const float* pixel, float value, float* out, std::size_t n);
+/// Whether a pixel of the first direction is neither dark nor saturated.
+bool any_lit(const float* amplitude, const std::uint8_t* top, const std::uint8_t* white, const std::uint8_t* black,
+             const Limits& limits, std::size_t n);
 
-/// A block without light: all NaN; dark, or saturated where white is.
-Counts keep_none(const std::uint8_t* white, int saturated_at, float* column, float* row, float* sigma_px, std::size_t n);
+/// A block without light: all NaN; dark, or saturated where the brightest value is.
+Counts keep_none(const std::uint8_t* top, int saturated_at, float* column, float* row, float* sigma_px, std::size_t n);
 
 }  // namespace planlight::decode_kernels

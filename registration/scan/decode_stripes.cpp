@@ -165,10 +165,15 @@ void order_by_fringes(const Direction& direction, const StripeSettings& stripes,
                              static_cast<float>(direction.size), b.pixel.data(), n);
 }
 
-void decode_block(const Frames& frames, const Direction& direction, const StripeSettings& stripes, double noise_grey,
-                  std::size_t begin, std::size_t n, Block& b) {
+/// Amplitude and phase of the first frequency.
+void decode_fringes(const Direction& direction, const StripeSettings& stripes, std::size_t begin, std::size_t n, Block& b) {
     b.top.fill(0);
     decode_phase(direction.phase, static_cast<float>(stripes.phase_period_px), begin, n, b, b.amplitude.data(), b.phase_px.data());
+}
+
+/// Then the rest of the code.
+void decode_order(const Frames& frames, const Direction& direction, const StripeSettings& stripes, double noise_grey,
+                  std::size_t begin, std::size_t n, Block& b) {
     if (!direction.further.empty()) return order_by_fringes(direction, stripes, noise_grey, begin, n, b);
     // A clear bit differs by two amplitudes or more; a quarter of that, or 3 sigma of a difference, is doubt.
     kernels::doubt_below(b.amplitude.data(), 0.5f, static_cast<float>(3 * std::numbers::sqrt2 * noise_grey),
@@ -181,9 +186,14 @@ void decode_block(const Frames& frames, const Direction& direction, const Stripe
         bits[k] = direction.gray[k] + begin;
         if (stripes.inverse) inverses[k] = direction.inverse[k] + begin;
     }
-    kernels::decide_bits(bits.data(), stripes.inverse ? inverses.data() : nullptr, b.middle.data(),
-                         stripes.inverse ? b.limit.data() : b.half_limit.data(),
-                         static_cast<int>(direction.gray.size()), b.code, n);
+    const std::uint8_t* limit = stripes.inverse ? b.limit.data() : b.half_limit.data();
+    const int count = static_cast<int>(direction.gray.size()), coarse = kernels::coarse_bits(count);
+    const auto decide = [&](int first, int some, std::uint8_t* code, std::uint8_t* doubt) {
+        kernels::decide_bits(bits.data() + first, stripes.inverse ? inverses.data() + first : nullptr, b.middle.data(), limit,
+                             some, code, doubt, n);
+    };
+    decide(0, coarse, b.code.high, b.code.doubt_high);
+    decide(coarse, count - coarse, b.code.low, b.code.doubt_low);
     kernels::unwrap(b.code, b.phase_px.data(), static_cast<float>(stripes.phase_period_px),
                     static_cast<float>(direction.size), b.pixel.data(), n);
 }
@@ -199,9 +209,15 @@ kernels::Counts decode_into(const Frames& frames, const StripeSettings& stripes,
     // A fringe is never stronger than the light itself; most of a picture shows what no light falls on.
     if (static_cast<float>(kernels::highest_contrast(white, black, n)) < limits.min_modulation)
         return kernels::keep_none(white, limits.saturated_at, column, row, sigma, n);
-    decode_block(frames, frames.directions[0], stripes, view.noise_grey, begin, n, work.columns);
-    if (stripes.rows) decode_block(frames, frames.directions[1], stripes, view.noise_grey, begin, n, work.rows);
+    decode_fringes(frames.directions[0], stripes, begin, n, work.columns);
     const kernels::DirectionBlock columns = work.columns.result(), rows = work.rows.result();
+    if (!kernels::any_lit(columns.amplitude, columns.top, white, black, limits, n))
+        return kernels::keep_none(columns.top, limits.saturated_at, column, row, sigma, n);
+    decode_order(frames, frames.directions[0], stripes, view.noise_grey, begin, n, work.columns);
+    if (stripes.rows) {
+        decode_fringes(frames.directions[1], stripes, begin, n, work.rows);
+        decode_order(frames, frames.directions[1], stripes, view.noise_grey, begin, n, work.rows);
+    }
     return kernels::keep_good(columns, stripes.rows ? &rows : nullptr, white, black, limits, column, row, sigma, n);
 }
 
