@@ -83,15 +83,19 @@ std::vector<LightFinding> findings_of(const CycleResult& r) {
             ? fmt::format("Set the exposure to {:.2f} ms{}.", 1e3 * r.exposure_to_set_s,
                           r.cycle_is_told ? "" : " and measure again")
             : "Lengthen the exposure to several cycles, dim the lens instead of the shutter, and measure again.";
+    const auto size = [](double variation, bool told) {
+        return told ? fmt::format("by {:.1f} %", 100 * variation)
+                    : fmt::format("by {:.1f} % as far as these frames met its cycle, how much in all they cannot tell,",
+                                  100 * variation);
+    };
     if (r.projector_varies)
-        findings.push_back(
-            {fmt::format("the projector's light varies by {:.1f} % from frame to frame at an exposure of {:.2f} ms",
-                         100 * r.worst, 1e3 * r.exposure_s),
-             cure});
+        findings.push_back({fmt::format("the projector's light varies {} from frame to frame at an exposure of {:.2f} ms",
+                                        size(r.worst, r.worst_is_told), 1e3 * r.exposure_s),
+                            cure});
     if (r.room_varies)
-        findings.push_back(
-            {fmt::format("the room's lamps flicker by {:.1f} % in the cameras", 100 * r.runs.front().variation),
-             cure + " Or turn them off."});
+        findings.push_back({fmt::format("the room's lamps flicker {} in the cameras",
+                                        size(r.runs.front().variation, r.runs.front().size_is_told)),
+                            cure + " Or turn them off."});
     if (r.timing.lost > 0)
         findings.push_back({fmt::format("{} frames were lost", r.timing.lost),
                             "Check the cameras' connection and the load of the computer."});
@@ -101,19 +105,34 @@ std::vector<LightFinding> findings_of(const CycleResult& r) {
 std::string meaning_of(const CycleResult& result) {
     std::string text;
     const CycleRun& room = result.runs.front();
-    const bool blind =
-        std::any_of(result.unseen_hz.begin(), result.unseen_hz.end(), [](double hz) { return hz == 100 || hz == 120; });
-    text += room.varies ? fmt::format("The room's lamps flicker by {:.1f} % of their light", 100 * room.variation)
-            : blind     ? std::string("The room's lamps look steady, which these frames cannot tell for sure")
-                        : std::string("The room's light is steady");
-    double at_most = 0;
-    for (std::size_t i = 1; i < result.runs.size(); ++i) at_most = std::max(at_most, result.runs[i].at_most);
-    text += result.projector_varies
-                ? fmt::format(
-                      "; the projector's light varies by {:.1f} % from frame to frame (a colour wheel, or dimming by "
-                      "pulses).",
-                      100 * result.worst)
-                : fmt::format("; the projector's light is steady (within {:.2f} %).", 100 * at_most);
+    const auto size = [](double variation, double sigma, bool told) {
+        return told ? fmt::format("by {:.1f} +- {:.1f} %", 100 * variation, 100 * sigma)
+                    : fmt::format("by {:.1f} % in the part of the cycle that these frames met", 100 * variation);
+    };
+    text += room.varies
+                ? fmt::format("The room's lamps flicker {} of their light",
+                              size(room.variation, room.variation_sigma, room.size_is_told))
+            : result.lamps_may_hide ? std::string("The room's lamps look steady, which these frames cannot tell for sure")
+                                    : std::string("The room's light is steady");
+    double at_most = 0, sigma = 0;
+    for (std::size_t i = 1; i < result.runs.size(); ++i) {
+        const CycleRun& run = result.runs[i];
+        at_most = std::max(at_most, run.at_most);
+        if (run.varies && run.variation >= result.worst) sigma = run.variation_sigma;
+    }
+    if (result.projector_varies)
+        text += fmt::format(
+            "; the projector's light varies {} from frame to frame (a colour wheel, or dimming by pulses).",
+            size(result.worst, sigma, result.worst_is_told));
+    else
+        text += fmt::format("; the projector's light {} (within {:.2f} %).",
+                            result.wheel_may_hide ? "is steady as far as these frames can tell" : "is steady",
+                            100 * at_most);
+    if (result.projector_varies && !result.worst_is_told)
+        text += fmt::format(
+            " It beats too slowly against {:.2f} frames a second for its size to be told; it may be {:.0f} % at this "
+            "exposure.",
+            result.frames_hz, 100 * at_most);
     if (result.exposure_to_set_s > 0)
         text += fmt::format(
             " An exposure of {:.2f} ms instead of {:.2f} ms holds whole cycles and cures it{}.",

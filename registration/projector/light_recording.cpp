@@ -221,7 +221,13 @@ FrameTiming frame_timing(const LightRecording& recording) {
     if (gaps.size() < 2) return timing;
     std::vector<double> sorted = gaps;
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-    timing.interval_s = sorted[sorted.size() / 2];
+    const double median_s = sorted[sorted.size() / 2];
+    // Over all gaps that are whole intervals, as many as they are: jitter of the time stamps averages out.
+    double lasted_s = 0, intervals = 0;
+    for (const double gap : gaps)
+        if (const double whole = std::round(gap / median_s); whole >= 1 && std::abs(gap / median_s - whole) < 0.1)
+            lasted_s += gap, intervals += whole;
+    timing.interval_s = intervals > 0 ? lasted_s / intervals : median_s;
     for (std::size_t f = 1; f < recording.frames.size(); ++f) {
         const FrameBrightness &before = recording.frames[f - 1], &now = recording.frames[f];
         if (now.number == before.number || now.at <= before.at) {
