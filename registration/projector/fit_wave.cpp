@@ -41,31 +41,94 @@ Covariance covariance_of(const VectorXd& a, const VectorXd& b, double freedom) {
 /// Columns that are as good as a sum of others count for nothing.
 constexpr double kCollinear = 1e-3;
 
+/// One least-squares fit of both halves.
+struct Solved {
+    VectorXd of_a, of_b;      ///< coefficients
+    VectorXd left_a, left_b;  ///< residuals
+    double freedom = 1;
+};
+
+Solved solve(const MatrixXd& X, const PairedTrace& trace) {
+    Eigen::ColPivHouseholderQR<MatrixXd> qr(X);
+    qr.setThreshold(kCollinear);
+    Solved s;
+    const VectorXd a = as_vector(trace.a), b = as_vector(trace.b);
+    s.of_a = qr.solve(a), s.of_b = qr.solve(b);
+    s.left_a = a - X * s.of_a, s.left_b = b - X * s.of_b;
+    s.freedom = static_cast<double>(std::max<Index>(1, X.rows() - qr.rank()));
+    return s;
+}
+
+/// Every frame's part of a turn of `hz`: half the way to the phases beside it.
+VectorXd parts_of_turn(const std::vector<double>& at_s, double hz) {
+    std::vector<std::pair<double, Index>> phases;
+    for (std::size_t i = 0; i < at_s.size(); ++i) {
+        const double turns = (at_s[i] - at_s.front()) * hz;
+        phases.emplace_back(turns - std::floor(turns), static_cast<Index>(i));
+    }
+    std::sort(phases.begin(), phases.end());
+    VectorXd parts(static_cast<Index>(at_s.size()));
+    for (std::size_t i = 0; i < phases.size(); ++i) {
+        const double before = i > 0 ? phases[i - 1].first : phases.back().first - 1,
+                     after = i + 1 < phases.size() ? phases[i + 1].first : phases.front().first + 1;
+        parts[phases[i].second] = (after - before) / 2;
+    }
+    return parts;
+}
+
+WaveFit fitted(const PairedTrace& trace, double hz, int harmonics, const std::vector<double>& beside_hz) {
+    std::vector<double> all_hz;
+    for (int m = 1; m <= harmonics; ++m) all_hz.push_back(m * hz);
+    all_hz.insert(all_hz.end(), beside_hz.begin(), beside_hz.end());
+    const MatrixXd X = columns_of(trace.at_s, all_hz);
+    const Solved s = solve(X, trace);
+    const VectorXd parts = parts_of_turn(trace.at_s, hz);
+    const auto waves = X.middleCols(2, 2 * harmonics);
+    const VectorXd of_a = s.of_a.segment(2, 2 * harmonics), of_b = s.of_b.segment(2, 2 * harmonics);
+    const VectorXd wave_a = waves * of_a, wave_b = waves * of_b;
+    const double rest_a = parts.dot(s.left_a), rest_b = parts.dot(s.left_b);
+    WaveFit fit;
+    fit.mean = (s.of_a[0] + s.of_b[0] + rest_a + rest_b) / 2;
+    fit.variance = of_a.dot(of_b) / 2 - rest_a * rest_b +
+                   parts.dot(wave_a.cwiseProduct(s.left_b) + wave_b.cwiseProduct(s.left_a) +
+                             s.left_a.cwiseProduct(s.left_b));
+    fit.left_over = covariance_of(s.left_a, s.left_b, s.freedom);
+    return fit;
+}
+
+PairedTrace without(const PairedTrace& trace, std::size_t from, std::size_t to) {
+    PairedTrace rest;
+    for (std::size_t i = 0; i < trace.at_s.size(); ++i) {
+        if (i >= from && i < to) continue;
+        rest.at_s.push_back(trace.at_s[i]);
+        rest.a.push_back(trace.a[i]);
+        rest.b.push_back(trace.b[i]);
+    }
+    return rest;
+}
+
 }  // namespace
 
 WaveFit fit_wave(const PairedTrace& trace, double hz, int harmonics, const std::vector<double>& beside_hz) {
-    std::vector<double> all_hz;
-    const int counted = hz > 0 ? harmonics : 0;
-    for (int m = 1; m <= counted; ++m) all_hz.push_back(m * hz);
-    all_hz.insert(all_hz.end(), beside_hz.begin(), beside_hz.end());
-    const MatrixXd X = columns_of(trace.at_s, all_hz);
-    Eigen::ColPivHouseholderQR<MatrixXd> qr(X);
-    qr.setThreshold(kCollinear);
-    const VectorXd a = as_vector(trace.a), b = as_vector(trace.b), of_a = qr.solve(a), of_b = qr.solve(b);
-    const double freedom = static_cast<double>(std::max<Index>(1, X.rows() - qr.rank()));
-    const VectorXd left_a = a - X * of_a, left_b = b - X * of_b;
-
-    WaveFit fit;
-    fit.mean = (of_a[0] + of_b[0]) / 2;
-    fit.left_over = covariance_of(left_a, left_b, freedom);
-    VectorXd slope = VectorXd::Zero(X.cols());  // of the variance by the coefficients
-    slope.segment(2, 2 * counted) = ((of_a + of_b) / 2).segment(2, 2 * counted);
-    fit.variance = of_a.segment(2, 2 * counted).dot(of_b.segment(2, 2 * counted)) / 2;
-    const double noise = ((left_a + left_b) / 2).squaredNorm() / freedom;
-    MatrixXd normal = X.transpose() * X;
-    normal.diagonal().array() += kCollinear * kCollinear * static_cast<double>(X.rows());
-    fit.variance_sigma = std::sqrt(std::max(0.0, noise * slope.dot(normal.ldlt().solve(slope))));
+    WaveFit fit = fitted(trace, hz, harmonics, beside_hz);
+    constexpr std::size_t kStretches = 20;
+    double mean = 0, means = 0, variance = 0, variances = 0;
+    for (std::size_t k = 0; k < kStretches; ++k) {
+        const std::size_t n = trace.at_s.size();
+        const WaveFit less = fitted(without(trace, k * n / kStretches, (k + 1) * n / kStretches), hz, harmonics, beside_hz);
+        const double m = less.mean - fit.mean, v = less.variance - fit.variance;
+        mean += m / kStretches, means += m * m, variance += v / kStretches, variances += v * v;
+    }
+    const double share = (kStretches - 1.0) / kStretches;
+    fit.mean_sigma = std::sqrt(std::max(0.0, share * (means - kStretches * mean * mean)));
+    fit.variance_sigma = std::sqrt(std::max(0.0, share * (variances - kStretches * variance * variance)));
     return fit;
+}
+
+Covariance covariance_beside(const PairedTrace& trace, const std::vector<double>& beside_hz, double* mean) {
+    const Solved s = solve(columns_of(trace.at_s, beside_hz), trace);
+    if (mean) *mean = (s.of_a[0] + s.of_b[0]) / 2;
+    return covariance_of(s.left_a, s.left_b, s.freedom);
 }
 
 std::optional<double> strongest_hz(const std::vector<PairedTrace>& traces, double highest_hz,

@@ -18,19 +18,23 @@ struct Covariance {
     double correlation = 0;  ///< 0 noise, 1 light
 };
 
-/// A periodic light as the frames met it: mean, slow drift, harmonics of one frequency.
+/// A periodic light as the frames met it, over whole cycles.
 struct WaveFit {
-    double mean = 0;            ///< grey, over whole cycles, in the middle of the drift
-    double variance = 0;        ///< of the harmonics over whole cycles, grey squared; free of noise on average
-    double variance_sigma = 0;  ///< one standard deviation
-    Covariance left_over;       ///< of what the fit does not explain
+    double mean = 0, mean_sigma = 0;          ///< grey, in the middle of the drift
+    double variance = 0, variance_sigma = 0;  ///< grey squared; free of noise on average
+    Covariance left_over;                     ///< of what the harmonics do not explain
 };
 
-/// Least squares with mean, straight line, `harmonics` multiples of `hz` (0: none), and one sine each of `beside_hz`,
-/// which is not counted in `variance`.
+/// Mean, straight line, `harmonics` multiples of `hz` (0: none) and one sine each of `beside_hz` by least squares. What
+/// the harmonics do not explain (a wheel's light has corners) is summed over the phases that were met, each with its
+/// part of the turn (trapezoidal rule). The sigmas are a jackknife's over 20 stretches of time (Efron & Stein, Ann.
+/// Statist. 9, 1981), so that frames that met the same phase do not count twice. `beside_hz` are not in the variance.
 ///
 /// Frequencies are those that the frames see: a light of 240 Hz before 50 frames a second is one of 10 Hz.
 WaveFit fit_wave(const PairedTrace& trace, double hz, int harmonics, const std::vector<double>& beside_hz);
+
+/// The halves' covariance after mean, straight line and one sine each of `beside_hz`.
+Covariance covariance_beside(const PairedTrace& trace, const std::vector<double>& beside_hz, double* mean = nullptr);
 
 /// The frequency whose sine explains most of all traces together, up to `highest_hz`, after mean, straight line and
 /// `beside_hz`; empty when none explains half of what is left.

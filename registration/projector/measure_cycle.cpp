@@ -72,48 +72,47 @@ struct Beside {
     double frames_hz = 0, exposure_s = 0;
 };
 
-/// The widest part of a cycle without a frame that still lets its size be told: two harmonics stay within it.
-constexpr double kWidestGap = 0.3;
-
 int harmonics_within(double gap) {
     return std::clamp(static_cast<int>(0.45 / gap), 1, 6);
 }
+
+/// Slower than that, a beat is not told from drift; with a wider part of a turn unmet, its size is not told.
+constexpr double kFewestTurns = 2.5, kWidestGap = 0.35;
 
 /// `seen_hz`: of the light that varies, the projector's or for black the lamps'; empty: no one frequency.
 CycleRun measured_run(const Visits& visits, const std::optional<double>& seen_hz, const Beside& beside,
                       const std::vector<UsualCycle>& usual, double noticed) {
     const bool black = visits.colour == kBlack;
-    const WaveFit plain = fit_wave(visits.trace, 0, 0, beside.lamps_hz);
     CycleRun run;
     run.name = name_of(visits.colour);
     run.frames = visits.frames.size();
+    double mean = 0, mean_sigma = 0;
+    const Covariance met = covariance_beside(visits.trace, beside.lamps_hz, &mean);
     const double lamps = black ? 0 : beside.room.common, lamps_sigma = black ? 0 : beside.room.sigma;
-    double variance = std::max(0.0, plain.left_over.common - lamps);
-    double sigma = std::hypot(plain.left_over.sigma, lamps_sigma), mean = plain.mean;
-    const bool beyond_noise = plain.left_over.correlation > chance(visits) && variance > 3 * sigma * chance(visits);
+    double variance = met.common - lamps, sigma = std::hypot(met.sigma, lamps_sigma);
+    const bool beyond_noise = met.correlation > chance(visits) && variance > 3 * sigma * chance(visits);
     if (beyond_noise && seen_hz) {
-        const double gap = widest_gap(visits.trace.at_s, *seen_hz);
+        const double gap = widest_gap(visits.trace.at_s, *seen_hz), lasted_s = visits.trace.lasted_s();
         const WaveFit wave = fit_wave(visits.trace, *seen_hz, harmonics_within(gap), beside.lamps_hz);
-        if (wave.left_over.common < plain.left_over.common / 2) {
+        if (wave.left_over.common < met.common / 2) {
             run.seen_hz = seen_hz;
-            run.cycles_hz = cycles_that_look_like(*seen_hz, 0.1 / visits.trace.lasted_s(), usual, beside.frames_hz);
-            run.size_is_told = gap < kWidestGap;
+            run.cycles_hz = cycles_that_look_like(*seen_hz, 0.1 / lasted_s, usual, beside.frames_hz);
+            run.size_is_told = gap < kWidestGap && *seen_hz * lasted_s > kFewestTurns;
         }
         if (run.seen_hz && run.size_is_told) {
-            // What the harmonics leave over is as irregular as the visits: counted, but known by their number only.
-            const double rest = std::max(0.0, wave.left_over.common - lamps);
-            variance = std::max(0.0, wave.variance) + rest;
-            sigma = std::hypot(wave.variance_sigma, std::hypot(wave.left_over.sigma, lamps_sigma), rest / 2);
-            mean = wave.mean;
+            variance = wave.variance - lamps, sigma = std::hypot(wave.variance_sigma, lamps_sigma);
+            mean = wave.mean, mean_sigma = wave.mean_sigma;
         }
     }
-    run.light_grey = mean - beside.black_grey;
-    const double light = std::max(run.light_grey, 1.0), sized = std::sqrt(variance);
-    if (beyond_noise && !run.seen_hz)
+    if (beyond_noise && !run.seen_hz)  // irregular: as well known as the visits are many
         sigma = std::hypot(sigma, variance * std::sqrt(2.0 / static_cast<double>(visits.number)));
-    run.variation = sized / light;
-    run.variation_sigma = variance > sigma ? sigma / (2 * sized) / light : std::sqrt(sigma) / light;
-    run.at_most = std::sqrt(variance + 2 * sigma) / light;
+    variance = std::max(0.0, variance);
+    run.light_grey = mean - beside.black_grey;
+    const double light = std::max(run.light_grey, 1.0);
+    run.variation = std::sqrt(variance) / light;
+    run.variation_sigma = std::hypot((variance > sigma ? sigma / (2 * std::sqrt(variance)) : std::sqrt(sigma)) / light,
+                                     run.variation * mean_sigma / light);
+    run.at_most = std::hypot(std::sqrt(variance + 2 * sigma) / light, 2 * run.variation * mean_sigma / light);
     run.varies = beyond_noise && run.variation > noticed;
     if (run.varies && !run.size_is_told) {
         run.at_most = 0;
@@ -122,8 +121,7 @@ CycleRun measured_run(const Visits& visits, const std::optional<double>& seen_hz
         run.variation_sigma = run.at_most / 2;
     }
     for (std::size_t i = 0; i < visits.frames.size(); ++i)
-        run.trace.push_back(
-            static_cast<float>(((visits.trace.a[i] + visits.trace.b[i]) / 2 - plain.mean) / light));
+        run.trace.push_back(static_cast<float>(((visits.trace.a[i] + visits.trace.b[i]) / 2 - mean) / light));
     return run;
 }
 
@@ -161,15 +159,13 @@ void measure_runs(const std::vector<Visits>& all, const CycleSettings& settings,
         return traces.empty() ? std::nullopt : strongest_hz(traces, result.frames_hz / 2, beside.lamps_hz);
     };
     const auto unsteady = [&](const Visits& v) {
-        return fit_wave(v.trace, 0, 0, beside.lamps_hz).left_over.correlation > chance(v);
+        return covariance_beside(v.trace, beside.lamps_hz).correlation > chance(v);
     };
     const Visits& black = all.front();
     const auto lamps_hz = unsteady(black) ? strongest({black.trace}) : std::nullopt;
     result.runs.push_back(measured_run(black, lamps_hz, beside, of_lamps, settings.noticed));
     if (lamps_hz) beside.lamps_hz = {*lamps_hz};
-    const WaveFit room = fit_wave(black.trace, 0, 0, beside.lamps_hz);
-    beside.room = room.left_over;
-    beside.black_grey = room.mean;
+    beside.room = covariance_beside(black.trace, beside.lamps_hz, &beside.black_grey);
     std::vector<PairedTrace> wheel;
     for (const Visits& visits : all)
         if (visits.colour != kBlack && unsteady(visits)) wheel.push_back(visits.trace);

@@ -22,7 +22,7 @@ struct RecordSettings {
     Instant settle = std::chrono::milliseconds(250);  ///< longer than any delay of a projector and its dynamic contrast
     std::chrono::milliseconds patience{2000};         ///< for one frame
     int grey_passes = 2, frames_a_grey = 2;           ///< response
-    int cycle_visits = 20, frames_a_visit = 4;        ///< colour cycle, to each colour
+    int cycle_visits = 28, frames_a_visit = 3;        ///< colour cycle, to each colour
     int frames_a_flash = 3;                           ///< latency: a bit of the code
     unsigned seed = 1;                                ///< of the order of greys, and of the flashes
 };
@@ -38,7 +38,7 @@ LightRecording record_response(const LightBench& bench, const RecordSettings& se
 void record_covered(const LightBench& bench, LightRecording& recording, const RecordSettings& settings = {});
 
 /// Black, white, red, green and blue, again and again in random order, each `cycle_visits` times for `frames_a_visit`
-/// frames, with irregular pauses: half a minute in which the frames meet the cycle at many phases, also where it beats
+/// frames, with irregular pauses: a minute in which the frames meet the cycle at many phases, also where it beats
 /// slowly against them.
 LightRecording record_cycle(const LightBench& bench, const RecordSettings& settings = {});
 
