@@ -121,7 +121,11 @@ WaveFit fit_wave(const PairedTrace& trace, double hz, int harmonics, const std::
     }
     const double share = (kStretches - 1.0) / kStretches;
     fit.mean_sigma = std::sqrt(std::max(0.0, share * (means - kStretches * mean * mean)));
-    fit.variance_sigma = std::sqrt(std::max(0.0, share * (variances - kStretches * variance * variance)));
+    // Phases that were not met are missing from every stretch: what is assumed of them is what the harmonics differ in.
+    const WaveFit coarse = fitted(trace, hz, harmonics > 1 ? harmonics / 2 : 2, beside_hz);
+    fit.variance_sigma = std::hypot(std::sqrt(std::max(0.0, share * (variances - kStretches * variance * variance))),
+                                    fit.variance - coarse.variance);
+    fit.mean_sigma = std::hypot(fit.mean_sigma, fit.mean - coarse.mean);
     return fit;
 }
 

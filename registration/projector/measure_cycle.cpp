@@ -79,6 +79,14 @@ int harmonics_within(double gap) {
 /// Slower than that, a beat is not told from drift; with a wider part of a turn unmet, its size is not told.
 constexpr double kFewestTurns = 2.5, kWidestGap = 0.35;
 
+/// The frames met a part of the cycle only: nothing is known of the rest but what an exposure can vary at all.
+void leave_untold(const std::vector<UsualCycle>& usual, double exposure_s, CycleRun& run) {
+    run.size_is_told = false;
+    run.at_most = 0;
+    for (const UsualCycle& cycle : usual) run.at_most = std::max(run.at_most, most_variation(exposure_s, cycle.hz));
+    run.variation_sigma = run.at_most / 2;
+}
+
 /// `seen_hz`: of the light that varies, the projector's or for black the lamps'; empty: no one frequency.
 CycleRun measured_run(const Visits& visits, const std::optional<double>& seen_hz, const Beside& beside,
                       const std::vector<UsualCycle>& usual, double noticed) {
@@ -109,17 +117,13 @@ CycleRun measured_run(const Visits& visits, const std::optional<double>& seen_hz
     variance = std::max(0.0, variance);
     run.light_grey = mean - beside.black_grey;
     const double light = std::max(run.light_grey, 1.0);
+    constexpr double kAtBest = 0.01;  // of the variation: corners of the wave between the phases that were met
     run.variation = std::sqrt(variance) / light;
+    const double mean_share = std::hypot(mean_sigma / light, beyond_noise ? kAtBest : 0);
     run.variation_sigma = std::hypot((variance > sigma ? sigma / (2 * std::sqrt(variance)) : std::sqrt(sigma)) / light,
-                                     run.variation * mean_sigma / light);
-    run.at_most = std::hypot(std::sqrt(variance + 2 * sigma) / light, 2 * run.variation * mean_sigma / light);
+                                     run.variation * mean_share);
+    run.at_most = std::max(run.variation + 2 * run.variation_sigma, std::sqrt(variance + 2 * sigma) / light);
     run.varies = beyond_noise && run.variation > noticed;
-    if (run.varies && !run.size_is_told) {
-        run.at_most = 0;
-        for (const UsualCycle& cycle : usual)
-            run.at_most = std::max(run.at_most, most_variation(beside.exposure_s, cycle.hz));
-        run.variation_sigma = run.at_most / 2;
-    }
     for (std::size_t i = 0; i < visits.frames.size(); ++i)
         run.trace.push_back(static_cast<float>(((visits.trace.a[i] + visits.trace.b[i]) / 2 - mean) / light));
     return run;
@@ -166,6 +170,7 @@ void measure_runs(const std::vector<Visits>& all, const CycleSettings& settings,
     result.runs.push_back(measured_run(black, lamps_hz, beside, of_lamps, settings.noticed));
     if (lamps_hz) beside.lamps_hz = {*lamps_hz};
     beside.room = covariance_beside(black.trace, beside.lamps_hz, &beside.black_grey);
+    if (!result.runs.front().size_is_told) leave_untold(of_lamps, result.exposure_s, result.runs.front());
     std::vector<PairedTrace> wheel;
     for (const Visits& visits : all)
         if (visits.colour != kBlack && unsteady(visits)) wheel.push_back(visits.trace);
@@ -176,6 +181,11 @@ void measure_runs(const std::vector<Visits>& all, const CycleSettings& settings,
         result.runs.push_back(measured_run(visits, wheel_hz, beside, of_projectors, settings.noticed));
         lasted_s = std::max(lasted_s, visits.trace.lasted_s());
     }
+    // One wheel: where it beats too slowly for one colour, another that looked steady was met at its even part only.
+    const auto colours = result.runs.begin() + 1;
+    if (std::any_of(colours, result.runs.end(), [](const CycleRun& run) { return !run.size_is_told; }))
+        std::for_each(colours, result.runs.end(),
+                      [&](CycleRun& run) { leave_untold(of_projectors, result.exposure_s, run); });
     result.unseen_hz = cycles_that_stand_still(of_lamps, result.frames_hz, lasted_s);
     result.lamps_may_hide = !result.unseen_hz.empty();
     for (const double hz : cycles_that_stand_still(of_projectors, result.frames_hz, lasted_s)) {

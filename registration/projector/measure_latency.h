@@ -32,6 +32,7 @@ struct LatencyResult {
     std::size_t changes = 0;              ///< ordered
     std::size_t exact = 0;                ///< seen within an exposure
     std::size_t unseen = 0;               ///< orders of which no light was ever seen: the projector left a picture out
+    double blind_s = 0;                   ///< light changes between exposures only: the time between them; 0: it does not
     std::size_t late = 0;                 ///< later than the median by more than three quarters of a picture's time
     double code_agreement = 0;            ///< correlation of what was seen with the code at that delay, 1 = all of it
     double runner_up_agreement = 0;       ///< the best at any delay that is off by more than half the shortest flash

@@ -152,5 +152,6 @@ int main(int argc, char** argv) {
     if (wanted("cycle-lamps")) test::measure_cycles(rooms, false, true);
     if (wanted("cycle")) test::measure_cycles(rooms, true, true);
     if (part == "cycle-many") test::measure_many_cycles(rooms);
+    if (part == "latency-many") test::measure_many_latencies(rooms);
     return 0;
 }

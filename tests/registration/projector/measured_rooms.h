@@ -37,4 +37,7 @@ void measure_cycles(const Rooms& rooms, bool wheel, bool mains);
 /// Wheels and lamps in rooms by formula (`TileRoom`), hundreds of them: the coverage of what is stated.
 void measure_many_cycles(const Rooms& rooms);
 
+/// Latency in rooms by formula whose projector changes in step with the cameras, nearly so, or as it likes.
+void measure_many_latencies(const Rooms& rooms);
+
 }  // namespace planlight::test
