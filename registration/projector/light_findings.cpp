@@ -167,6 +167,14 @@ std::vector<LightFinding> findings_of(const LatencyResult& r) {
                  1e3 * r.promise->delay_s, 1e3 * r.median_s, 1e3 * (r.promise->delay_s - r.median_s),
                  kHead_mm_s * (r.promise->delay_s - r.median_s), kHead_mm_s),
              set});
+    constexpr double kBlind_s = 0.004;
+    if (r.blind_s > kBlind_s)
+        findings.push_back(
+            {fmt::format("the projector changes in step with the cameras, always between two exposures: the delay is "
+                         "known to {:.0f} ms only",
+                         1e3 * r.blind_s),
+             "Set the cameras to another frame rate (5 % off is enough) or to an exposure of nearly a whole frame, and "
+             "measure again."});
     if (r.unseen > 0)
         findings.push_back({fmt::format("{} of {} pictures never became light", r.unseen, r.changes),
                             "Set the monitor to the projector's own resolution and refresh rate, and switch frame "

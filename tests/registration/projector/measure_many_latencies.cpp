@@ -38,7 +38,9 @@ void measure(const Rooms& rooms, Refresh kind, const std::string& what) {
         TileRoom room(s);
         RecordSettings record;
         record.seed = seed;
-        const LatencyResult r = measure_latency(record_latency(room.bench(), record));
+        LatencySettings settings;
+        settings.refresh_hz = s.frames_hz == 25 ? 50 : 60;
+        const LatencyResult r = measure_latency(record_latency(room.bench(), record), settings);
         if (r.refusal) {
             ++refused;
             if (rooms.verbose) fmt::print("  seed {} refused: {}\n", seed, r.refusal->reason);
@@ -56,9 +58,9 @@ void measure(const Rooms& rooms, Refresh kind, const std::string& what) {
         beyond.push_back(1e3 * (r.light_delay_s - worst));
         in_step += r.blind_s > 0;
         if (rooms.verbose)
-            fmt::print("  seed {}: {:.2f} ms found {:.2f} +- {:.2f}; worst {:.2f} to set {:.1f}; exact {} of {}; jitter {:.2f}\n",
+            fmt::print("  seed {}: {:.2f} ms found {:.2f} +- {:.2f}; worst {:.2f} to set {:.1f}; exact {} of {}; jitter {:.2f}; refresh {:.3f} found {:.3f}; blind {:.1f}\n",
                        seed, 1e3 * mean, 1e3 * r.median_s, 1e3 * r.median_sigma_s, 1e3 * worst, 1e3 * r.light_delay_s,
-                       r.exact, r.delays.size(), 1e3 * s.jitter_s);
+                       r.exact, r.delays.size(), 1e3 * s.jitter_s, s.refresh_hz, r.refresh_hz, 1e3 * r.blind_s);
     }
     fmt::print("latency, {}: {} refused; within two sigmas {} of {}; delay to set covers every order in {}; said to be in "
                "step {}\n",
