@@ -76,15 +76,15 @@ VectorXd parts_of_turn(const std::vector<double>& at_s, double hz) {
     return parts;
 }
 
-WaveFit fitted(const PairedTrace& trace, double hz, int harmonics, const std::vector<double>& beside_hz) {
-    std::vector<double> all_hz;
-    for (int m = 1; m <= harmonics; ++m) all_hz.push_back(m * hz);
+WaveFit fitted(const PairedTrace& trace, const std::vector<double>& waves_hz, const std::vector<double>& beside_hz) {
+    std::vector<double> all_hz = waves_hz;
     all_hz.insert(all_hz.end(), beside_hz.begin(), beside_hz.end());
     const MatrixXd X = columns_of(trace.at_s, all_hz);
     const Solved s = solve(X, trace);
-    const VectorXd parts = parts_of_turn(trace.at_s, hz);
-    const auto waves = X.middleCols(2, 2 * harmonics);
-    const VectorXd of_a = s.of_a.segment(2, 2 * harmonics), of_b = s.of_b.segment(2, 2 * harmonics);
+    const VectorXd parts = parts_of_turn(trace.at_s, waves_hz.front());
+    const auto counted = 2 * static_cast<Index>(waves_hz.size());
+    const auto waves = X.middleCols(2, counted);
+    const VectorXd of_a = s.of_a.segment(2, counted), of_b = s.of_b.segment(2, counted);
     const VectorXd wave_a = waves * of_a, wave_b = waves * of_b;
     const double rest_a = parts.dot(s.left_a), rest_b = parts.dot(s.left_b);
     WaveFit fit;
@@ -109,20 +109,22 @@ PairedTrace without(const PairedTrace& trace, std::size_t from, std::size_t to) 
 
 }  // namespace
 
-WaveFit fit_wave(const PairedTrace& trace, double hz, int harmonics, const std::vector<double>& beside_hz) {
-    WaveFit fit = fitted(trace, hz, harmonics, beside_hz);
+WaveFit fit_wave(const PairedTrace& trace, const std::vector<double>& waves_hz, const std::vector<double>& beside_hz) {
+    WaveFit fit = fitted(trace, waves_hz, beside_hz);
     constexpr std::size_t kStretches = 20;
     double mean = 0, means = 0, variance = 0, variances = 0;
     for (std::size_t k = 0; k < kStretches; ++k) {
         const std::size_t n = trace.at_s.size();
-        const WaveFit less = fitted(without(trace, k * n / kStretches, (k + 1) * n / kStretches), hz, harmonics, beside_hz);
+        const WaveFit less =
+            fitted(without(trace, k * n / kStretches, (k + 1) * n / kStretches), waves_hz, beside_hz);
         const double m = less.mean - fit.mean, v = less.variance - fit.variance;
         mean += m / kStretches, means += m * m, variance += v / kStretches, variances += v * v;
     }
     const double share = (kStretches - 1.0) / kStretches;
     fit.mean_sigma = std::sqrt(std::max(0.0, share * (means - kStretches * mean * mean)));
     // Phases that were not met are missing from every stretch: what is assumed of them is what the harmonics differ in.
-    const WaveFit coarse = fitted(trace, hz, harmonics > 1 ? harmonics / 2 : 2, beside_hz);
+    const auto half = waves_hz.begin() + static_cast<std::ptrdiff_t>((waves_hz.size() + 1) / 2);
+    const WaveFit coarse = fitted(trace, {waves_hz.begin(), half}, beside_hz);
     fit.variance_sigma = std::hypot(std::sqrt(std::max(0.0, share * (variances - kStretches * variance * variance))),
                                     fit.variance - coarse.variance);
     fit.mean_sigma = std::hypot(fit.mean_sigma, fit.mean - coarse.mean);

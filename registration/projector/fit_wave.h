@@ -22,16 +22,16 @@ struct Covariance {
 struct WaveFit {
     double mean = 0, mean_sigma = 0;          ///< grey, in the middle of the drift
     double variance = 0, variance_sigma = 0;  ///< grey squared; free of noise on average
-    Covariance left_over;                     ///< of what the harmonics do not explain
+    Covariance left_over;                     ///< of what the waves do not explain
 };
 
-/// Mean, straight line, `harmonics` multiples of `hz` (0: none) and one sine each of `beside_hz` by least squares. What
-/// the harmonics do not explain (a wheel's light has corners) is summed over the phases that were met, each with its
+/// Mean, straight line, one sine each of `waves_hz` (`hz` and multiples of it) and of `beside_hz` by least squares. What
+/// the waves do not explain (a wheel's light has corners) is summed over the phases that were met, each with its
 /// part of the turn (trapezoidal rule). The sigmas are a jackknife's over 20 stretches of time (Efron & Stein, Ann.
 /// Statist. 9, 1981), so that frames that met the same phase do not count twice. `beside_hz` are not in the variance.
 ///
 /// Frequencies are those that the frames see: a light of 240 Hz before 50 frames a second is one of 10 Hz.
-WaveFit fit_wave(const PairedTrace& trace, double hz, int harmonics, const std::vector<double>& beside_hz);
+WaveFit fit_wave(const PairedTrace& trace, const std::vector<double>& waves_hz, const std::vector<double>& beside_hz);
 
 /// The halves' covariance after mean, straight line and one sine each of `beside_hz`.
 Covariance covariance_beside(const PairedTrace& trace, const std::vector<double>& beside_hz, double* mean = nullptr);

@@ -72,8 +72,18 @@ struct Beside {
     double frames_hz = 0, exposure_s = 0;
 };
 
-int harmonics_within(double gap) {
-    return std::clamp(static_cast<int>(0.45 / gap), 1, 6);
+/// Multiples of the frequency that is seen: as many as the widest part of a turn without a frame lets be told, and of
+/// those that the frames see alike only the lowest.
+std::vector<double> waves_of(double seen_hz, double gap, double lasted_s, const Beside& beside) {
+    constexpr int kMost = 6;
+    std::vector<double> waves{seen_hz}, taken{0, seen_hz};
+    taken.insert(taken.end(), beside.lamps_hz.begin(), beside.lamps_hz.end());
+    for (int m = 2; m <= std::min(kMost, static_cast<int>(0.45 / gap)); ++m) {
+        const double seen = std::abs(m * seen_hz - beside.frames_hz * std::round(m * seen_hz / beside.frames_hz));
+        if (std::all_of(taken.begin(), taken.end(), [&](double hz) { return std::abs(hz - seen) > 1 / lasted_s; }))
+            waves.push_back(m * seen_hz), taken.push_back(seen);
+    }
+    return waves;
 }
 
 /// Slower than that, a beat is not told from drift; with a wider part of a turn unmet, its size is not told.
@@ -101,7 +111,7 @@ CycleRun measured_run(const Visits& visits, const std::optional<double>& seen_hz
     const bool beyond_noise = met.correlation > chance(visits) && variance > 3 * sigma * chance(visits);
     if (beyond_noise && seen_hz) {
         const double gap = widest_gap(visits.trace.at_s, *seen_hz), lasted_s = visits.trace.lasted_s();
-        const WaveFit wave = fit_wave(visits.trace, *seen_hz, harmonics_within(gap), beside.lamps_hz);
+        const WaveFit wave = fit_wave(visits.trace, waves_of(*seen_hz, gap, lasted_s, beside), beside.lamps_hz);
         if (wave.left_over.common < met.common / 2) {
             run.seen_hz = seen_hz;
             run.cycles_hz = cycles_that_look_like(*seen_hz, 0.1 / lasted_s, usual, beside.frames_hz);
