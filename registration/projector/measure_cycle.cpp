@@ -162,6 +162,17 @@ void find_cure(const CycleSettings& settings, CycleResult& result) {
     result.exposure_to_set_s = whole_cycles_s(result.exposure_s, needed);
 }
 
+/// True when a colour varies at the lamps' frequency, as well as the frames tell it, by far more than black does.
+bool looks_alike(const std::vector<Visits>& all, double lamps_hz, double frames_hz) {
+    constexpr double kFarMore = 4;
+    const double black = covariance_beside(all.front().trace, {}).common;
+    return std::any_of(all.begin() + 1, all.end(), [&](const Visits& visits) {
+        if (covariance_beside(visits.trace, {}).common < kFarMore * black) return false;
+        const auto seen_hz = strongest_hz({visits.trace}, frames_hz / 2, {});
+        return seen_hz && std::abs(*seen_hz - lamps_hz) < 1 / visits.trace.lasted_s();
+    });
+}
+
 /// The room by its black, then all colours together: they turn with one wheel.
 void measure_runs(const std::vector<Visits>& all, const CycleSettings& settings, CycleResult& result) {
     const auto of_lamps = usual_cycles_of_lamps();
@@ -178,7 +189,9 @@ void measure_runs(const std::vector<Visits>& all, const CycleSettings& settings,
     const Visits& black = all.front();
     const auto lamps_hz = unsteady(black) ? strongest({black.trace}) : std::nullopt;
     result.runs.push_back(measured_run(black, lamps_hz, beside, of_lamps, settings.noticed));
-    if (lamps_hz) beside.lamps_hz = {*lamps_hz};
+    // Too little for lamps may be the projector's own leak; what looks like the lamps, but is more than they are, too.
+    if (lamps_hz && result.runs.front().varies && !looks_alike(all, *lamps_hz, result.frames_hz))
+        beside.lamps_hz = {*lamps_hz};
     beside.room = covariance_beside(black.trace, beside.lamps_hz, &beside.black_grey);
     if (!result.runs.front().size_is_told) leave_untold(of_lamps, result.exposure_s, result.runs.front());
     std::vector<PairedTrace> wheel;
