@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <string>
 #include <vector>
 
@@ -138,6 +139,7 @@ void measure_latencies(const Rooms& rooms) {
 
 int main(int argc, char** argv) {
     using namespace planlight;
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);  // a room takes its time: each is told at once
     const std::string preset = argc > 1 ? argv[1] : "paper", part = argc > 3 ? argv[3] : "all";
     const auto number = [&](int i, int otherwise) {
         return static_cast<unsigned>(argc > i ? std::stoi(argv[i]) : otherwise);
