@@ -20,7 +20,7 @@ struct Refreshes {
 std::optional<Refreshes> find_refreshes(const std::vector<LightDelay>& delays, const std::vector<double>& at_s,
                                         double nominal_hz, double reading_s);
 
-/// Changes between two exposures came at a refresh too. Where several may be it, it is the one that fits the delay which
+/// Changes between two exposures came at a refresh too. Where several may be it, it is the one that fits the delay that
 /// most changes have in common before they wait for their refresh.
 /// Empty: more than one in ten has no refresh between its exposures, so that they are none.
 std::optional<std::vector<LightDelay>> at_refreshes(const Refreshes& refreshes, std::vector<LightDelay> delays,

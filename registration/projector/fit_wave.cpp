@@ -89,9 +89,9 @@ WaveFit fitted(const PairedTrace& trace, const std::vector<double>& waves_hz, co
     const double rest_a = parts.dot(s.left_a), rest_b = parts.dot(s.left_b);
     WaveFit fit;
     fit.mean = (s.of_a[0] + s.of_b[0] + rest_a + rest_b) / 2;
-    fit.variance = of_a.dot(of_b) / 2 - rest_a * rest_b +
-                   parts.dot(wave_a.cwiseProduct(s.left_b) + wave_b.cwiseProduct(s.left_a) +
-                             s.left_a.cwiseProduct(s.left_b));
+    fit.variance =
+        of_a.dot(of_b) / 2 - rest_a * rest_b +
+        parts.dot(wave_a.cwiseProduct(s.left_b) + wave_b.cwiseProduct(s.left_a) + s.left_a.cwiseProduct(s.left_b));
     fit.left_over = covariance_of(s.left_a, s.left_b, s.freedom);
     return fit;
 }
@@ -115,8 +115,7 @@ WaveFit fit_wave(const PairedTrace& trace, const std::vector<double>& waves_hz, 
     double mean = 0, means = 0, variance = 0, variances = 0;
     for (std::size_t k = 0; k < kStretches; ++k) {
         const std::size_t n = trace.at_s.size();
-        const WaveFit less =
-            fitted(without(trace, k * n / kStretches, (k + 1) * n / kStretches), waves_hz, beside_hz);
+        const WaveFit less = fitted(without(trace, k * n / kStretches, (k + 1) * n / kStretches), waves_hz, beside_hz);
         const double m = less.mean - fit.mean, v = less.variance - fit.variance;
         mean += m / kStretches, means += m * m, variance += v / kStretches, variances += v * v;
     }

@@ -25,8 +25,8 @@ struct WaveFit {
     Covariance left_over;                     ///< of what the waves do not explain
 };
 
-/// Mean, straight line, one sine each of `waves_hz` (`hz` and multiples of it) and of `beside_hz` by least squares. What
-/// the waves do not explain (a wheel's light has corners) is summed over the phases that were met, each with its
+/// Mean, straight line, one sine each of `waves_hz` (`hz` and multiples of it) and of `beside_hz` by least squares.
+/// What the waves do not explain (a wheel's light has corners) is summed over the phases that were met, each with its
 /// part of the turn (trapezoidal rule). The sigmas are a jackknife's over 20 stretches of time (Efron & Stein, Ann.
 /// Statist. 9, 1981), so that frames that met the same phase do not count twice. `beside_hz` are not in the variance.
 ///

@@ -89,9 +89,10 @@ std::vector<LightFinding> findings_of(const CycleResult& r) {
                                   100 * variation);
     };
     if (r.projector_varies)
-        findings.push_back({fmt::format("the projector's light varies {} from frame to frame at an exposure of {:.2f} ms",
-                                        size(r.worst, r.worst_is_told), 1e3 * r.exposure_s),
-                            cure});
+        findings.push_back(
+            {fmt::format("the projector's light varies {} from frame to frame at an exposure of {:.2f} ms",
+                         size(r.worst, r.worst_is_told), 1e3 * r.exposure_s),
+             cure});
     if (r.room_varies)
         findings.push_back({fmt::format("the room's lamps flicker {} in the cameras",
                                         size(r.runs.front().variation, r.runs.front().size_is_told)),
@@ -109,11 +110,11 @@ std::string meaning_of(const CycleResult& result) {
         return told ? fmt::format("by {:.1f} +- {:.1f} %", 100 * variation, 100 * sigma)
                     : fmt::format("by {:.1f} % in the part of the cycle that these frames met", 100 * variation);
     };
-    text += room.varies
-                ? fmt::format("The room's lamps flicker {} of their light",
-                              size(room.variation, room.variation_sigma, room.size_is_told))
-            : result.lamps_may_hide ? std::string("The room's lamps look steady, which these frames cannot tell for sure")
-                                    : std::string("The room's light is steady");
+    text += room.varies ? fmt::format("The room's lamps flicker {} of their light",
+                                      size(room.variation, room.variation_sigma, room.size_is_told))
+            : result.lamps_may_hide
+                ? std::string("The room's lamps look steady, which these frames cannot tell for sure")
+                : std::string("The room's light is steady");
     double at_most = 0, sigma = 0;
     for (std::size_t i = 1; i < result.runs.size(); ++i) {
         const CycleRun& run = result.runs[i];
@@ -121,9 +122,9 @@ std::string meaning_of(const CycleResult& result) {
         if (run.varies && run.variation >= result.worst) sigma = run.variation_sigma;
     }
     if (result.projector_varies)
-        text += fmt::format(
-            "; the projector's light varies {} from frame to frame (a colour wheel, or dimming by pulses).",
-            size(result.worst, sigma, result.worst_is_told));
+        text +=
+            fmt::format("; the projector's light varies {} from frame to frame (a colour wheel, or dimming by pulses).",
+                        size(result.worst, sigma, result.worst_is_told));
     else
         text += fmt::format("; the projector's light {} (within {:.2f} %).",
                             result.wheel_may_hide ? "is steady as far as these frames can tell" : "is steady",
@@ -196,9 +197,10 @@ std::string meaning_of(const LatencyResult& r) {
         "deviation); "
         "the latest seen came after {:.1f} ms.",
         1e3 * r.median_s, 1e3 * r.median_sigma_s, 1e3 * r.jitter_s, 1e3 * r.latest_s);
-    text += fmt::format(
-        " {} of {} changes fell within an exposure and are known to a part of it, the others to the time between two.",
-        r.exact, r.delays.size());
+    text += fmt::format(" {} of {} changes fell within an exposure and are known to a part of it, the others {}.",
+                        r.exact, r.delays.size(),
+                        r.refresh_hz > 0 ? fmt::format("by the projector's refreshes, {:.2f} a second", r.refresh_hz)
+                                         : std::string("to the time between two"));
     constexpr double kHead_mm_s = 20;
     text += fmt::format(
         " At {:.0f} mm/s the head moves {:.2f} mm in that time, which the prediction has to make good; its spread "

@@ -115,7 +115,7 @@ CycleRun measured_run(const Visits& visits, const std::optional<double>& seen_hz
         if (wave.left_over.common < met.common / 2) {
             run.seen_hz = seen_hz;
             run.cycles_hz = cycles_that_look_like(*seen_hz, 0.1 / lasted_s, usual, beside.frames_hz);
-            run.size_is_told = gap < kWidestGap && *seen_hz * lasted_s > kFewestTurns;
+            run.size_is_told = gap<kWidestGap&& * seen_hz * lasted_s> kFewestTurns;
         }
         if (run.seen_hz && run.size_is_told) {
             variance = wave.variance - lamps, sigma = std::hypot(wave.variance_sigma, lamps_sigma);

@@ -33,7 +33,7 @@ struct LatencyResult {
     std::size_t exact = 0;                ///< seen within an exposure
     double refresh_hz = 0;                ///< at which the changes were seen to come; 0: not seen
     std::size_t unseen = 0;               ///< orders of which no light was ever seen: the projector left a picture out
-    double blind_s = 0;                   ///< light changes between exposures only: the time between them; 0: it does not
+    double blind_s = 0;                   ///< light that changes between exposures only: the time between them; else 0
     std::size_t late = 0;                 ///< later than the median by more than three quarters of a picture's time
     double code_agreement = 0;            ///< correlation of what was seen with the code at that delay, 1 = all of it
     double runner_up_agreement = 0;       ///< the best at any delay that is off by more than half the shortest flash

@@ -24,7 +24,8 @@ std::vector<double> cycles_that_stand_still(const std::vector<UsualCycle>& usual
 
 /// The largest standard deviation that the light of exposures can have, share of its mean, whatever the shape of the
 /// cycle: an exposure of n + f cycles (n whole) gets n cycles' light at least and n + 1 at most, and values between two
-/// limits l and h with mean 1 have a variance of at most (h - 1) (1 - l) (Bhatia & Davis, Amer. Math. Monthly 107, 2000).
+/// limits l and h with mean 1 have a variance of at most (h - 1) (1 - l) (Bhatia & Davis, Amer. Math. Monthly 107,
+/// 2000).
 /// `lowest_hz`: of the slowest cycle that there may be.
 double most_variation(double exposure_s, double lowest_hz);
 

@@ -55,7 +55,9 @@ TEST(CycleRooms, WhatIsStatedCoversTheTruthInRoomsOfEveryKind) {
     unsigned sizes = 0, within = 0, bounds = 0, covered = 0, untold = 0;
     for (unsigned seed = 1; seed <= 32; ++seed) {
         std::mt19937 random(seed + 77);
-        const auto between = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+        const auto between = [&](double low, double high) {
+            return std::uniform_real_distribution<double>(low, high)(random);
+        };
         TileRoomSettings room;
         room.seed = seed;
         room.frames_hz = seed % 2 == 0 ? 60 : 25;
@@ -71,8 +73,7 @@ TEST(CycleRooms, WhatIsStatedCoversTheTruthInRoomsOfEveryKind) {
         for (const CycleRun& run : r.runs) {
             if (run.name == "black") continue;
             const double truth = test::wheel_variation(
-                room.wheel_hz * room.exposure_s,
-                run.name == "white" ? room.colours : std::array<double, 3>{1, 0, 0});
+                room.wheel_hz * room.exposure_s, run.name == "white" ? room.colours : std::array<double, 3>{1, 0, 0});
             ++bounds, covered += truth <= run.at_most;
             if (run.cycles_hz.size() == 1) {
                 EXPECT_NEAR(run.cycles_hz.front(), room.wheel_hz, 1) << seed << run.name;

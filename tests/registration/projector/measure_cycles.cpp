@@ -103,19 +103,20 @@ struct Tally {
     }
     static void tell_runs(const CycleResult& r, const CycleTruth& truth, unsigned seed) {
         for (const CycleRun& run : r.runs) {
-            fmt::print("  seed {:3} {:6} wheel {:.3f} refresh {:.3f} lamps {:.3f}: {:.2f} % found {:.2f} +- {:.2f} at most "
-                       "{:.1f} {}{}; seen at {:.3f} Hz, may be",
-                       seed, run.name, truth.wheel_hz, truth.refresh_hz, truth.lamps_hz,
-                       100 * truth.of(run.name, r.exposure_s), 100 * run.variation, 100 * run.variation_sigma,
-                       100 * run.at_most, run.varies ? "varies" : "steady", run.size_is_told ? "" : ", size not told",
-                       run.seen_hz.value_or(-1));
+            fmt::print(
+                "  seed {:3} {:6} wheel {:.3f} refresh {:.3f} lamps {:.3f}: {:.2f} % found {:.2f} +- {:.2f} at most "
+                "{:.1f} {}{}; seen at {:.3f} Hz, may be",
+                seed, run.name, truth.wheel_hz, truth.refresh_hz, truth.lamps_hz,
+                100 * truth.of(run.name, r.exposure_s), 100 * run.variation, 100 * run.variation_sigma,
+                100 * run.at_most, run.varies ? "varies" : "steady", run.size_is_told ? "" : ", size not told",
+                run.seen_hz.value_or(-1));
             for (const double hz : run.cycles_hz) fmt::print(" {:.1f}", hz);
             fmt::print("\n");
         }
     }
     void tell(const std::string& what, bool with_wheel, bool with_lamps) const {
-        fmt::print("{}: {} rooms, {} refused; projector said to vary in {}{}; lamps in {}\n", what, rooms, refused, noticed,
-                   with_wheel ? fmt::format(" (truly under 0.5 % in {})", steady_truth) : "", room_noticed);
+        fmt::print("{}: {} rooms, {} refused; projector said to vary in {}{}; lamps in {}\n", what, rooms, refused,
+                   noticed, with_wheel ? fmt::format(" (truly under 0.5 % in {})", steady_truth) : "", room_noticed);
         if (with_wheel) {
             wheel.tell("colour");
             fmt::print("cycle told as one in {}, rightly in {}; with the refresh known to 0.1 Hz only: {}, {}\n", told,

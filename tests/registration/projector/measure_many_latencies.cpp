@@ -14,10 +14,14 @@ enum class Refresh { none, in_step, nearly, other };
 
 double refresh_hz(Refresh kind, double frames_hz, Draw& draw) {
     switch (kind) {
-        case Refresh::none: return 0;
-        case Refresh::in_step: return frames_hz == 25 ? 50 : frames_hz;
-        case Refresh::nearly: return (frames_hz == 25 ? 50 : frames_hz) + draw.between(-0.1, 0.1);
-        case Refresh::other: return draw.between(47, 75);
+        case Refresh::none:
+            return 0;
+        case Refresh::in_step:
+            return frames_hz == 25 ? 50 : frames_hz;
+        case Refresh::nearly:
+            return (frames_hz == 25 ? 50 : frames_hz) + draw.between(-0.1, 0.1);
+        case Refresh::other:
+            return draw.between(47, 75);
     }
     return 0;
 }
@@ -58,13 +62,16 @@ void measure(const Rooms& rooms, Refresh kind, const std::string& what) {
         beyond.push_back(1e3 * (r.light_delay_s - worst));
         in_step += r.blind_s > 0;
         if (rooms.verbose)
-            fmt::print("  seed {}: {:.2f} ms found {:.2f} +- {:.2f}; worst {:.2f} to set {:.1f}; exact {} of {}; jitter {:.2f}; refresh {:.3f} found {:.3f}; blind {:.1f}\n",
-                       seed, 1e3 * mean, 1e3 * r.median_s, 1e3 * r.median_sigma_s, 1e3 * worst, 1e3 * r.light_delay_s,
-                       r.exact, r.delays.size(), 1e3 * s.jitter_s, s.refresh_hz, r.refresh_hz, 1e3 * r.blind_s);
+            fmt::print(
+                "  seed {}: {:.2f} ms found {:.2f} +- {:.2f}; worst {:.2f} to set {:.1f}; exact {} of {}; jitter "
+                "{:.2f}; refresh {:.3f} found {:.3f}; blind {:.1f}\n",
+                seed, 1e3 * mean, 1e3 * r.median_s, 1e3 * r.median_sigma_s, 1e3 * worst, 1e3 * r.light_delay_s, r.exact,
+                r.delays.size(), 1e3 * s.jitter_s, s.refresh_hz, r.refresh_hz, 1e3 * r.blind_s);
     }
-    fmt::print("latency, {}: {} refused; within two sigmas {} of {}; delay to set covers every order in {}; said to be in "
-               "step {}\n",
-               what, refused, within_two_sigmas, error.size(), covered, in_step);
+    fmt::print(
+        "latency, {}: {} refused; within two sigmas {} of {}; delay to set covers every order in {}; said to be in "
+        "step {}\n",
+        what, refused, within_two_sigmas, error.size(), covered, in_step);
     print("latency error", error, "ms");
     print("latency error by its stated sigma", by_sigma, "");
     print("delay to set: beyond the worst order", beyond, "ms");

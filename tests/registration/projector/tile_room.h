@@ -11,14 +11,14 @@ namespace planlight::test {
 /// segments, lamps that flicker as a sine, a projector that changes at its refreshes; 8 bits and noise.
 struct TileRoomSettings {
     double frames_hz = 60, exposure_s = 0.008, first_frame_s = 0;
-    double delay_s = 0.04;                            ///< from order to light
-    double refresh_hz = 0, refresh_phase = 0;         ///< changes come at (n + phase) / hz only; 0 Hz: at once
-    double jitter_s = 0;                              ///< an order waits up to so much longer, evenly distributed
-    double wheel_hz = 0, wheel_phase = 0;             ///< turns a second; 0: all colours at once
-    double lamps_hz = 0, lamps_depth = 0;             ///< amplitude, share of the lamps' light
-    std::array<double, 3> colours{0.3, 0.45, 0.25};   ///< red, green, blue as the cameras see them, of white
-    double white_grey = 140, room_grey = 30;          ///< the projector's white; the lamps
-    double noise_grey = 1;                            ///< of a pixel
+    double delay_s = 0.04;                           ///< from order to light
+    double refresh_hz = 0, refresh_phase = 0;        ///< changes come at (n + phase) / hz only; 0 Hz: at once
+    double jitter_s = 0;                             ///< an order waits up to so much longer, evenly distributed
+    double wheel_hz = 0, wheel_phase = 0;            ///< turns a second; 0: all colours at once
+    double lamps_hz = 0, lamps_depth = 0;            ///< amplitude, share of the lamps' light
+    std::array<double, 3> colours{0.3, 0.45, 0.25};  ///< red, green, blue as the cameras see them, of white
+    double white_grey = 140, room_grey = 30;         ///< the projector's white; the lamps
+    double noise_grey = 1;                           ///< of a pixel
     unsigned seed = 1;
 };
 
