@@ -122,6 +122,9 @@ CycleRun measured_run(const Visits& visits, const std::optional<double>& seen_hz
             mean = wave.mean, mean_sigma = wave.mean_sigma;
         }
     }
+    // Lamps that the frames see as they see the wheel: whether both rise together is not known.
+    if (beyond_noise && beside.lamps_hz.empty() && lamps > 0)
+        sigma = std::hypot(sigma, std::sqrt(2 * std::max(0.0, variance) * lamps));
     if (beyond_noise && !run.seen_hz)  // irregular: as well known as the visits are many
         sigma = std::hypot(sigma, variance * std::sqrt(2.0 / static_cast<double>(visits.number)));
     variance = std::max(0.0, variance);
