@@ -72,14 +72,15 @@ void fit_delays(double noise, Instant exposure, LatencyResult& result) {
     const double flat_s = std::max(0.0, earliest - latest) / std::sqrt(12.0);
     result.median_sigma_s = std::max({bend > 0 ? 1 / std::sqrt(bend) : (high - low) / std::sqrt(12.0), flat_s,
                                       reading_s / std::sqrt(static_cast<double>(result.delays.size()))});
-    // A projector whose pictures change in step with the cameras never shows a change to an exposure, and all bounds lie alike:
-    // they do not narrow each other.
-    if (20 * result.exact < result.delays.size() && result.jitter_s > 0) {
+    // A projector whose pictures change in step with the cameras never shows a change to an exposure, and all bounds
+    // lie alike: they do not narrow each other.
+    if (result.refresh_hz == 0 && 10 * result.exact < result.delays.size() && result.jitter_s > 0) {
         std::vector<double> widths;
         for (const LightDelay& d : result.delays) widths.push_back(d.at_most_s - d.at_least_s);
         const auto half = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
         std::nth_element(widths.begin(), half, widths.end());
-        result.median_sigma_s = std::max(result.median_sigma_s, *half / std::sqrt(12.0));
+        result.blind_s = *half;
+        result.median_sigma_s = std::hypot(result.median_sigma_s, result.blind_s / std::sqrt(12.0));
     }
     const double bend_of_spread = curvature(
         [&](double s) { return cost(result.delays, reading_s, middle, std::max(s, 1e-6)); }, spread, spread / 4);

@@ -13,7 +13,7 @@ void judge_promise(const LightRecording& recording, LatencyResult& result) {
     for (const LightDelay& delay : result.delays) {
         const LightOrder& order = recording.orders[delay.order];
         const double return_s = order.returned ? seconds(*order.returned - order.at) : 0;
-        latest_s = std::max(latest_s, delay.at_least_s - return_s);
+        latest_s = std::max(latest_s, delay.at_least_s + result.blind_s - return_s);
         quickest_return_s = std::min(quickest_return_s, return_s);
         if (!order.promised) continue;
         promised.push_back(seconds(*order.promised - order.at));

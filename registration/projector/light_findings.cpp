@@ -83,15 +83,20 @@ std::vector<LightFinding> findings_of(const CycleResult& r) {
             ? fmt::format("Set the exposure to {:.2f} ms{}.", 1e3 * r.exposure_to_set_s,
                           r.cycle_is_told ? "" : " and measure again")
             : "Lengthen the exposure to several cycles, dim the lens instead of the shutter, and measure again.";
+    const auto size = [](double variation, bool told) {
+        return told ? fmt::format("by {:.1f} %", 100 * variation)
+                    : fmt::format("by {:.1f} % as far as these frames met its cycle, how much in all they cannot tell,",
+                                  100 * variation);
+    };
     if (r.projector_varies)
         findings.push_back(
-            {fmt::format("the projector's light varies by {:.1f} % from frame to frame at an exposure of {:.2f} ms",
-                         100 * r.worst, 1e3 * r.exposure_s),
+            {fmt::format("the projector's light varies {} from frame to frame at an exposure of {:.2f} ms",
+                         size(r.worst, r.worst_is_told), 1e3 * r.exposure_s),
              cure});
     if (r.room_varies)
-        findings.push_back(
-            {fmt::format("the room's lamps flicker by {:.1f} % in the cameras", 100 * r.runs.front().variation),
-             cure + " Or turn them off."});
+        findings.push_back({fmt::format("the room's lamps flicker {} in the cameras",
+                                        size(r.runs.front().variation, r.runs.front().size_is_told)),
+                            cure + " Or turn them off."});
     if (r.timing.lost > 0)
         findings.push_back({fmt::format("{} frames were lost", r.timing.lost),
                             "Check the cameras' connection and the load of the computer."});
@@ -101,19 +106,34 @@ std::vector<LightFinding> findings_of(const CycleResult& r) {
 std::string meaning_of(const CycleResult& result) {
     std::string text;
     const CycleRun& room = result.runs.front();
-    const bool blind =
-        std::any_of(result.unseen_hz.begin(), result.unseen_hz.end(), [](double hz) { return hz == 100 || hz == 120; });
-    text += room.varies ? fmt::format("The room's lamps flicker by {:.1f} % of their light", 100 * room.variation)
-            : blind     ? std::string("The room's lamps look steady, which these frames cannot tell for sure")
-                        : std::string("The room's light is steady");
-    double at_most = 0;
-    for (std::size_t i = 1; i < result.runs.size(); ++i) at_most = std::max(at_most, result.runs[i].at_most);
-    text += result.projector_varies
-                ? fmt::format(
-                      "; the projector's light varies by {:.1f} % from frame to frame (a colour wheel, or dimming by "
-                      "pulses).",
-                      100 * result.worst)
-                : fmt::format("; the projector's light is steady (within {:.2f} %).", 100 * at_most);
+    const auto size = [](double variation, double sigma, bool told) {
+        return told ? fmt::format("by {:.1f} +- {:.1f} %", 100 * variation, 100 * sigma)
+                    : fmt::format("by {:.1f} % in the part of the cycle that these frames met", 100 * variation);
+    };
+    text += room.varies ? fmt::format("The room's lamps flicker {} of their light",
+                                      size(room.variation, room.variation_sigma, room.size_is_told))
+            : result.lamps_may_hide
+                ? std::string("The room's lamps look steady, which these frames cannot tell for sure")
+                : std::string("The room's light is steady");
+    double at_most = 0, sigma = 0;
+    for (std::size_t i = 1; i < result.runs.size(); ++i) {
+        const CycleRun& run = result.runs[i];
+        at_most = std::max(at_most, run.at_most);
+        if (run.varies && run.variation >= result.worst) sigma = run.variation_sigma;
+    }
+    if (result.projector_varies)
+        text +=
+            fmt::format("; the projector's light varies {} from frame to frame (a colour wheel, or dimming by pulses).",
+                        size(result.worst, sigma, result.worst_is_told));
+    else
+        text += fmt::format("; the projector's light {} (within {:.2f} %).",
+                            result.wheel_may_hide ? "is steady as far as these frames can tell" : "is steady",
+                            100 * at_most);
+    if (result.projector_varies && !result.worst_is_told)
+        text += fmt::format(
+            " It beats too slowly against {:.2f} frames a second for its size to be told; it may be {:.0f} % at this "
+            "exposure.",
+            result.frames_hz, 100 * at_most);
     if (result.exposure_to_set_s > 0)
         text += fmt::format(
             " An exposure of {:.2f} ms instead of {:.2f} ms holds whole cycles and cures it{}.",
@@ -148,6 +168,14 @@ std::vector<LightFinding> findings_of(const LatencyResult& r) {
                  1e3 * r.promise->delay_s, 1e3 * r.median_s, 1e3 * (r.promise->delay_s - r.median_s),
                  kHead_mm_s * (r.promise->delay_s - r.median_s), kHead_mm_s),
              set});
+    constexpr double kBlind_s = 0.004;
+    if (r.blind_s > kBlind_s)
+        findings.push_back(
+            {fmt::format("the projector changes in step with the cameras, always between two exposures: the delay is "
+                         "known to {:.0f} ms only",
+                         1e3 * r.blind_s),
+             "Set the cameras to another frame rate (5 % off is enough) or to an exposure of nearly a whole frame, and "
+             "measure again."});
     if (r.unseen > 0)
         findings.push_back({fmt::format("{} of {} pictures never became light", r.unseen, r.changes),
                             "Set the monitor to the projector's own resolution and refresh rate, and switch frame "
@@ -169,9 +197,10 @@ std::string meaning_of(const LatencyResult& r) {
         "deviation); "
         "the latest seen came after {:.1f} ms.",
         1e3 * r.median_s, 1e3 * r.median_sigma_s, 1e3 * r.jitter_s, 1e3 * r.latest_s);
-    text += fmt::format(
-        " {} of {} changes fell within an exposure and are known to a part of it, the others to the time between two.",
-        r.exact, r.delays.size());
+    text += fmt::format(" {} of {} changes fell within an exposure and are known to a part of it, the others {}.",
+                        r.exact, r.delays.size(),
+                        r.refresh_hz > 0 ? fmt::format("by the projector's refreshes, {:.2f} a second", r.refresh_hz)
+                                         : std::string("to the time between two"));
     constexpr double kHead_mm_s = 20;
     text += fmt::format(
         " At {:.0f} mm/s the head moves {:.2f} mm in that time, which the prediction has to make good; its spread "

@@ -221,7 +221,17 @@ FrameTiming frame_timing(const LightRecording& recording) {
     if (gaps.size() < 2) return timing;
     std::vector<double> sorted = gaps;
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
+    // Gaps of one interval, then all that are a few whole ones: jitter of the time stamps averages out.
+    constexpr double kMostIntervals = 50;
     timing.interval_s = sorted[sorted.size() / 2];
+    for (const double most : {1.0, kMostIntervals}) {
+        double lasted_s = 0, intervals = 0;
+        for (const double gap : gaps) {
+            const double ratio = gap / timing.interval_s, whole = std::round(ratio);
+            if (whole >= 1 && whole <= most && std::abs(ratio - whole) < 0.2) lasted_s += gap, intervals += whole;
+        }
+        if (intervals > 0) timing.interval_s = lasted_s / intervals;
+    }
     for (std::size_t f = 1; f < recording.frames.size(); ++f) {
         const FrameBrightness &before = recording.frames[f - 1], &now = recording.frames[f];
         if (now.number == before.number || now.at <= before.at) {

@@ -65,7 +65,7 @@ double mean_of(const FrameBrightness& frame, const std::vector<std::size_t>& til
 
 /// Time between frames that followed each other, and how many were lost: gaps in which no order was given.
 struct FrameTiming {
-    double interval_s = 0;              ///< median; 0 with fewer than three frames
+    double interval_s = 0;              ///< mean over all that fit the median; 0 with fewer than three frames
     std::size_t lost = 0, doubled = 0;  ///< doubled: one number or one moment twice
 };
 FrameTiming frame_timing(const LightRecording& recording);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "registration/projector/find_refreshes.h"
 #include "registration/projector/fit_delays.h"
 #include "registration/projector/judge_promise.h"
 
@@ -161,6 +162,18 @@ std::size_t unseen_changes(const Flashes& flashes, const LatencyResult& result) 
     return unseen;
 }
 
+/// Changes that come at refreshes only are known to the moment, also between two exposures.
+void use_refreshes(const LightRecording& recording, double nominal_hz, double reading_s, LatencyResult& result) {
+    std::vector<double> at_s;
+    for (const LightDelay& delay : result.delays) at_s.push_back(seconds(recording.orders[delay.order].at));
+    const auto refreshes = find_refreshes(result.delays, at_s, nominal_hz, reading_s);
+    if (!refreshes) return;
+    auto placed = at_refreshes(*refreshes, result.delays, at_s);
+    if (!placed) return;
+    result.delays = std::move(*placed);
+    result.refresh_hz = refreshes->hz;
+}
+
 LatencyResult refused(LatencyResult result, std::string reason, std::string remedy) {
     result.refusal = {std::move(reason), std::move(remedy)};
     return result;
@@ -219,7 +232,9 @@ LatencyResult measure_latency(const LightRecording& recording, const LatencySett
             result,
             fmt::format("only {} of {} changes of light are seen cleanly", result.delays.size(), result.changes),
             "Give the code more light or more frames a flash.");
-    fit_delays(flashes.noise, recording.frames.front().exposure, result);
+    const Instant exposure = recording.frames.front().exposure;
+    use_refreshes(recording, settings.refresh_hz, flashes.noise * seconds(exposure), result);
+    fit_delays(flashes.noise, exposure, result);
     if (result.jitter_s > flashes.shortest_s / 4)
         return refused(
             result,

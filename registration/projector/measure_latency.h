@@ -11,13 +11,13 @@ namespace planlight {
 /// One change of light: from the order to the light that the cameras saw, seconds.
 struct LightDelay {
     std::size_t order = 0;                 ///< index into the recording's orders
-    double at_least_s = 0, at_most_s = 0;  ///< equal where the change fell within an exposure
-    bool exact = false;                    ///< it did
+    double at_least_s = 0, at_most_s = 0;  ///< equal where the change is known to a moment
+    bool exact = false;                    ///< it did, or it came at a refresh that others showed
 };
 
 struct LatencySettings {
     double least_s = -0.3, most_s = 1.5;  ///< searched
-    double refresh_hz = 60;               ///< of the projector: what counts as late by a picture
+    double refresh_hz = 60;  ///< of the projector, within 1 %: its changes may come then only; what is a picture late
 };
 
 /// From order to light as the cameras see it.
@@ -31,7 +31,9 @@ struct LatencyResult {
     std::vector<LightDelay> delays;       ///< one a change that was seen
     std::size_t changes = 0;              ///< ordered
     std::size_t exact = 0;                ///< seen within an exposure
+    double refresh_hz = 0;                ///< at which the changes were seen to come; 0: not seen
     std::size_t unseen = 0;               ///< orders of which no light was ever seen: the projector left a picture out
+    double blind_s = 0;                   ///< light that changes between exposures only: the time between them; else 0
     std::size_t late = 0;                 ///< later than the median by more than three quarters of a picture's time
     double code_agreement = 0;            ///< correlation of what was seen with the code at that delay, 1 = all of it
     double runner_up_agreement = 0;       ///< the best at any delay that is off by more than half the shortest flash

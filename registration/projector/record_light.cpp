@@ -126,9 +126,18 @@ void record_covered(const LightBench& bench, LightRecording& recording, const Re
 }
 
 LightRecording record_cycle(const LightBench& bench, const RecordSettings& settings) {
-    Recorder recorder(bench, settings, 5);
-    for (const Rgb colour : {kBlack, kWhite, Rgb{255, 0, 0}, Rgb{0, 255, 0}, Rgb{0, 0, 255}})
-        recorder.show_steady(colour, settings.cycle_frames);
+    constexpr double kLongestPause_s = 0.1;
+    std::vector<Rgb> colours{kBlack, kWhite, {255, 0, 0}, {0, 255, 0}, {0, 0, 255}};
+    std::mt19937 random(settings.seed);
+    std::uniform_real_distribution<double> pause_s(0, kLongestPause_s);
+    Recorder recorder(bench, settings, settings.cycle_visits * static_cast<int>(colours.size()));
+    for (int visit = 0; visit < settings.cycle_visits; ++visit) {
+        std::shuffle(colours.begin(), colours.end(), random);
+        for (const Rgb colour : colours) {
+            recorder.show_steady(colour, settings.frames_a_visit);
+            bench.wait_until(bench.clock.now() + from_seconds(pause_s(random)));
+        }
+    }
     return recorder.finish();
 }
 

@@ -22,7 +22,7 @@ struct RecordSettings {
     Instant settle = std::chrono::milliseconds(250);  ///< longer than any delay of a projector and its dynamic contrast
     std::chrono::milliseconds patience{2000};         ///< for one frame
     int grey_passes = 2, frames_a_grey = 2;           ///< response
-    int cycle_frames = 64;                            ///< colour cycle, a colour
+    int cycle_visits = 28, frames_a_visit = 3;        ///< colour cycle, to each colour
     int frames_a_flash = 3;                           ///< latency: a bit of the code
     unsigned seed = 1;                                ///< of the order of greys, and of the flashes
 };
@@ -37,7 +37,9 @@ LightRecording record_response(const LightBench& bench, const RecordSettings& se
 /// With the lid before the lens: what the room alone gives. The recording's order says `covered`.
 void record_covered(const LightBench& bench, LightRecording& recording, const RecordSettings& settings = {});
 
-/// Black, white, red, green and blue, each for `cycle_frames` frames in a row.
+/// Black, white, red, green and blue, again and again in random order, each `cycle_visits` times for `frames_a_visit`
+/// frames, with irregular pauses: a minute in which the frames meet the cycle at many phases, also where it beats
+/// slowly against them.
 LightRecording record_cycle(const LightBench& bench, const RecordSettings& settings = {});
 
 /// Black and white at rest, then a pseudo-random code of 63 bits, each a few frames long and begun at a random moment

@@ -1,55 +1,29 @@
-// What `planlight projector` measures in simulated rooms, against their truth. measure_projector paper|modern [ROOMS]
-// [PART] [v]
+// What `planlight projector` measures in simulated rooms, against their truth.
+// measure_projector paper|modern [ROOMS] [PART] [FIRST SEED] [v]
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <random>
+#include <cstdio>
 #include <string>
 #include <vector>
 
 #include "registration/projector/light_findings.h"
 #include "tests/registration/projector/card_room.h"
+#include "tests/registration/projector/measured_rooms.h"
 
 namespace planlight {
 namespace {
 
-void print(const std::string& what, std::vector<double> values, const std::string& unit) {
-    if (values.empty()) return fmt::print("{:<52} none\n", what);
-    std::sort(values.begin(), values.end());
-    const auto at = [&](double share) {
-        return values[std::max<std::size_t>(
-                          static_cast<std::size_t>(std::ceil(share * static_cast<double>(values.size()))), 1) -
-                      1];
-    };
-    fmt::print("{:<52} {:3} rooms: {:8.4f} / {:8.4f} / {:8.4f} {}\n", what, values.size(), at(0.5), at(0.95),
-               values.back(), unit);
-    std::fflush(stdout);
-}
-
-struct Rooms {
-    simulation::Preset preset;
-    unsigned count;
-    bool verbose;
-    simulation::BoardRoomSettings settings(unsigned seed) const {
-        simulation::BoardRoomSettings s;
-        s.preset = preset;
-        s.seed = seed;
-        return s;
-    }
-};
-
-struct Draw {
-    std::mt19937 random;
-    explicit Draw(unsigned seed) : random(seed * 7919U + 13U) {}
-    double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
-};
+using test::Draw;
+using test::print;
+using test::Rooms;
 
 void measure_responses(const Rooms& rooms, bool unsteady) {
     std::vector<double> gamma, gamma_by_sigma, dark, bright, black, colour;
     unsigned refused = 0, false_dark = 0, false_bright = 0, missed_dark = 0, missed_bright = 0, crushed_dark = 0,
              crushed_bright = 0, other = 0;
-    for (unsigned seed = 1; seed <= rooms.count; ++seed) {
+    for (unsigned seed = rooms.first; seed < rooms.first + rooms.count; ++seed) {
         Draw draw(seed);
         auto s = rooms.settings(seed);
         auto& panel = s.light.panel;
@@ -109,7 +83,7 @@ void measure_responses(const Rooms& rooms, bool unsteady) {
 void measure_latencies(const Rooms& rooms) {
     std::vector<double> error, by_sigma, jitter, latest, width;
     unsigned refused = 0, covered = 0, unseen = 0, skipped = 0, rooms_with_skips = 0, lost = 0;
-    for (unsigned seed = 1; seed <= rooms.count; ++seed) {
+    for (unsigned seed = rooms.first; seed < rooms.first + rooms.count; ++seed) {
         Draw draw(seed + 1000);
         auto s = rooms.settings(seed);
         s.projector_delay = from_seconds(draw.between(0.005, 0.12));
@@ -160,101 +134,26 @@ void measure_latencies(const Rooms& rooms) {
     print("delay to set: beyond the worst order", width, "ms");
 }
 
-void measure_cycles(const Rooms& rooms, bool wheel, bool mains) {
-    std::vector<double> wheel_error, room_error, at_most;
-    unsigned refused = 0, noticed = 0, room_noticed = 0, told = 0, told_right = 0, blind = 0;
-    for (unsigned seed = 1; seed <= rooms.count; ++seed) {
-        Draw draw(seed + 2000);
-        auto s = rooms.settings(seed);
-        s.light.whole_exposure = true;
-        const double refresh = draw.between(59.5, 60.5);
-        s.ambient = draw.between(0.05, 0.25);
-        s.brightness = 0.75;
-        if (wheel) s.light.wheel_hz = refresh * (1 + static_cast<int>(seed % 4));
-        if (mains)
-            s.light.mains_hz = (seed % 2 == 0 ? 100 : 120) + draw.between(-0.1, 0.1),
-            s.light.mains_depth = draw.between(0.1, 0.4);
-        test::CardRoom card(s);
-        const LightRecording recording = record_cycle(card.bench);
-        CycleSettings settings;
-        settings.refresh_hz = refresh;
-        const CycleResult r = measure_cycle(recording, settings);
-        if (r.refusal) {
-            ++refused;
-            continue;
-        }
-        noticed += r.projector_varies;
-        room_noticed += r.room_varies;
-        if (wheel) {
-            // The truth: each frame's share of red light, over the frames of the red run.
-            const auto steady = steady_frames(recording);
-            for (std::size_t o = 0; o < recording.orders.size(); ++o) {
-                const Rgb c = recording.orders[o].colour;
-                const int which = c == Rgb{255, 0, 0} ? 0 : c == Rgb{0, 255, 0} ? 1 : c == Rgb{0, 0, 255} ? 2 : -1;
-                if (which < 0 || steady[o].empty()) continue;
-                double sum = 0, square = 0;
-                for (const std::size_t f : steady[o]) {
-                    const double v =
-                        simulation::wheel_during(s.light, recording.frames[f].opened(),
-                                                 recording.frames[f].closed())[static_cast<std::size_t>(which)];
-                    sum += v, square += v * v;
-                }
-                const auto n = static_cast<double>(steady[o].size());
-                const double spread = std::sqrt(std::max(0.0, square / n - sum / n * sum / n)) / (sum / n);
-                for (const CycleRun& run : r.runs)
-                    if (run.name == (which == 0 ? "red" : which == 1 ? "green" : "blue")) {
-                        wheel_error.push_back(100 * std::abs(run.variation - spread));
-                        if (which == 0) blind += spread < 0.005;
-                        if (rooms.verbose)
-                            fmt::print("  seed {} {}: {:.2f} % found {:.2f} +- {:.2f} {}\n", seed, run.name,
-                                       100 * spread, 100 * run.variation, 100 * run.variation_sigma,
-                                       run.varies ? "varies" : "steady");
-                        if (which == 0 && run.varies && run.cycles_hz.size() == 1)
-                            ++told, told_right += std::abs(run.cycles_hz[0] - s.light.wheel_hz) < 1;
-                    }
-            }
-        }
-        for (std::size_t i = 1; i < r.runs.size(); ++i) at_most.push_back(100 * r.runs[i].at_most);
-        if (mains) {
-            const auto steady = steady_frames(recording);
-            double sum = 0, square = 0;
-            for (const std::size_t f : steady[0]) {
-                const double v =
-                    simulation::lamps_during(s.light, recording.frames[f].opened(), recording.frames[f].closed());
-                sum += v, square += v * v;
-            }
-            const auto n = static_cast<double>(steady[0].size());
-            const double spread = std::sqrt(std::max(0.0, square / n - sum / n * sum / n)) / (sum / n);
-            room_error.push_back(100 * std::abs(r.runs[0].variation - spread));
-            if (rooms.verbose)
-                fmt::print("  seed {} room: {:.2f} % found {:.2f} {}\n", seed, 100 * spread, 100 * r.runs[0].variation,
-                           r.runs[0].varies);
-        }
-    }
-    fmt::print(
-        "cycle ({}, {}): {} refused; projector said to vary in {} of {} rooms{}; room's lamps in {}; cycle told in {}, "
-        "rightly in {}\n",
-        wheel ? "colour wheel" : "no wheel", mains ? "mains flicker" : "steady lamps", refused, noticed, rooms.count,
-        wheel ? fmt::format(" (in {} red truly varies under 0.5 %)", blind) : "", room_noticed, told, told_right);
-    if (wheel) print("variation of a pure colour, error", wheel_error, "% of its light");
-    if (mains) print("variation of the lamps, error", room_error, "% of their light");
-    print("95 % bound of the projector's variation", at_most, "%");
-}
-
 }  // namespace
 }  // namespace planlight
 
 int main(int argc, char** argv) {
     using namespace planlight;
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);  // a room takes its time: each is told at once
     const std::string preset = argc > 1 ? argv[1] : "paper", part = argc > 3 ? argv[3] : "all";
-    const Rooms rooms{preset == "modern" ? simulation::Preset::modern : simulation::Preset::paper,
-                      argc > 2 ? static_cast<unsigned>(std::stoi(argv[2])) : 20, argc > 4};
+    const auto number = [&](int i, int otherwise) {
+        return static_cast<unsigned>(argc > i ? std::stoi(argv[i]) : otherwise);
+    };
+    const Rooms rooms{preset == "modern" ? simulation::Preset::modern : simulation::Preset::paper, number(2, 20),
+                      number(4, 1), argc > 5};
     const auto wanted = [&](const std::string& name) { return part == "all" || part == name; };
     if (wanted("response")) measure_responses(rooms, false);
     if (wanted("response-unsteady")) measure_responses(rooms, true);
     if (wanted("latency")) measure_latencies(rooms);
-    if (wanted("cycle-none")) measure_cycles(rooms, false, false);
-    if (wanted("cycle-lamps")) measure_cycles(rooms, false, true);
-    if (wanted("cycle")) measure_cycles(rooms, true, true);
+    if (wanted("cycle-none")) test::measure_cycles(rooms, false, false);
+    if (wanted("cycle-lamps")) test::measure_cycles(rooms, false, true);
+    if (wanted("cycle")) test::measure_cycles(rooms, true, true);
+    if (part == "cycle-many") test::measure_many_cycles(rooms);
+    if (part == "latency-many") test::measure_many_latencies(rooms);
     return 0;
 }
