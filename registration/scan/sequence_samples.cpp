@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace planlight::sequence {
 namespace {
@@ -18,6 +19,9 @@ void sort_frames(std::span<const GrayImage> frames, Samples& s) {
     for (const GrayImage& f : frames)
         if (f.width != frames[0].width || f.pixels.size() != frames[0].pixels.size() || f.empty())
             throw std::invalid_argument("check_sequence: frames of different size");
+    for (const auto kind : {StripePattern::Kind::white, StripePattern::Kind::black})
+        if (std::none_of(s.patterns.begin(), s.patterns.end(), [&](const StripePattern& p) { return p.kind == kind; }))
+            throw std::invalid_argument("check_sequence: no white or no black frame");
     for (Direction& direction : s.directions) direction.further.resize(s.stripes.order_periods_px.size());
     for (std::size_t i = 0; i < frames.size(); ++i) {
         Direction& direction = s.directions[s.patterns[i].along_rows ? 1 : 0];
@@ -108,9 +112,10 @@ std::vector<std::int16_t> contrast_of(const Bytes& white, const Bytes& black) {
 
 }  // namespace
 
-Samples gather_samples(std::span<const GrayImage> frames, const StripeSettings& stripes) {
+Samples gather_samples(std::span<const GrayImage> frames, const StripeSettings& stripes,
+                       std::vector<StripePattern> patterns) {
     Samples s;
-    s.patterns = stripe_sequence(stripes);
+    s.patterns = std::move(patterns);
     s.stripes = stripes;
     sort_frames(frames, s);
     std::vector<std::size_t> pixels = sample_of(frames[0]);
