@@ -72,6 +72,21 @@ Bytes values_at(const GrayImage& frame, const std::vector<std::size_t>& pixels, 
     return values;
 }
 
+/// Noise and no light: few of the frames are near the brightest of them, or few near the darkest. Under light a good part is
+/// near either; only where little changes can noise be all of it (in a camera that encodes for a screen it is much in the dark).
+bool only_noise(const std::vector<Bytes>& frames, std::size_t i, int low, int high) {
+    constexpr int kMostNoise_grey = 64;
+    constexpr double kLeastNearAnEnd = 0.15;
+    if (high - low >= kMostNoise_grey) return false;
+    const int quarter = (high - low) / 4;
+    std::size_t dark = 0, bright = 0;
+    for (const Bytes& frame : frames) {
+        dark += frame[i] <= low + quarter;
+        bright += frame[i] >= high - quarter;
+    }
+    return static_cast<double>(std::min(dark, bright)) < kLeastNearAnEnd * static_cast<double>(frames.size());
+}
+
 /// White must be the brightest frame and black the darkest wherever any light changes. The places in the list of those
 /// that are lit so, and neither too dark nor too bright to judge a sum by.
 std::vector<std::size_t> choose_lit(Samples& s) {
@@ -83,7 +98,7 @@ std::vector<std::size_t> choose_lit(Samples& s) {
         }
     std::vector<std::size_t> lit;
     for (std::size_t i = 0; i < low.size(); ++i) {
-        if (high[i] - low[i] < kLit_grey) continue;
+        if (high[i] - low[i] < kLit_grey || only_noise(s.here, i, low[i], high[i])) continue;
         ++s.changing;
         const int allowed = (high[i] - low[i]) / 3, white = s.here[s.white][i], black = s.here[s.black][i];
         const bool is_white = high[i] - white <= allowed, is_black = black - low[i] <= allowed;

@@ -3,6 +3,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <cmath>
+
 #include "planning_io/types/error.h"
 #include "registration/calibration/board_spec.h"
 #include "registration/calibration/draw_board.h"
@@ -47,14 +49,14 @@ TEST(BoardPng, IsPrintedInItsTrueSizeToAHundredthOfAPercent) {
         EXPECT_LT(number_at(png, 16), 15000u) << text << " fits the memory";
         const std::vector<std::uint8_t> bytes(png.begin(), png.end());
         const cv::Mat sheet = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
+        // Down the left column of squares: dark from the top of the first to the bottom of the last dark one.
+        const int x = (sheet.cols - static_cast<int>(std::lround(board.width_mm() * px_per_mm))) / 2 + 1;
         int first = sheet.rows, last = 0;
-        for (int y = 0; y < sheet.rows; ++y)  // left column of squares: dark at the top, and where the last dark one ends
-            for (const int dark = sheet.at<std::uint8_t>(y, (sheet.cols - std::lround(board.width_mm() * px_per_mm)) / 2 + 1);
-                 dark == kBoardDark;) {
-                first = std::min(first, y);
-                last = std::max(last, y + 1);
-                break;
-            }
+        for (int y = 0; y < sheet.rows; ++y) {
+            if (sheet.at<std::uint8_t>(y, x) != kBoardDark) continue;
+            first = std::min(first, y);
+            last = std::max(last, y + 1);
+        }
         const int squares = board.squares_down() - (board.squares_down() % 2 == 0 ? 1 : 0);
         EXPECT_NEAR((last - first) / px_per_mm, squares * board.square_mm, 1e-4 * squares * board.square_mm) << text;
     }
