@@ -72,19 +72,16 @@ Bytes values_at(const GrayImage& frame, const std::vector<std::size_t>& pixels, 
     return values;
 }
 
-/// Noise and no light: few of the frames are near the brightest of them, or few near the darkest. Under light a good part is
-/// near either; only where little changes can noise be all of it (in a camera that encodes for a screen it is much in the dark).
-bool only_noise(const std::vector<Bytes>& frames, std::size_t i, int low, int high) {
-    constexpr int kMostNoise_grey = 64;
-    constexpr double kLeastNearAnEnd = 0.15;
-    if (high - low >= kMostNoise_grey) return false;
-    const int quarter = (high - low) / 4;
-    std::size_t dark = 0, bright = 0;
-    for (const Bytes& frame : frames) {
-        dark += frame[i] <= low + quarter;
-        bright += frame[i] >= high - quarter;
-    }
-    return static_cast<double>(std::min(dark, bright)) < kLeastNearAnEnd * static_cast<double>(frames.size());
+/// How much of a change is light and not noise: a quarter of that of the best lit places (one in a hundred). (A camera that encodes for a
+/// screen has 30 grey of noise in the dark.)
+int least_change(const Bytes& low, const Bytes& high) {
+    std::vector<int> changes;
+    for (std::size_t i = 0; i < low.size(); ++i)
+        if (high[i] - low[i] >= kLit_grey) changes.push_back(high[i] - low[i]);
+    if (changes.empty()) return kLit_grey;
+    const auto strong = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() * 99 / 100);
+    std::nth_element(changes.begin(), strong, changes.end());
+    return std::max(kLit_grey, *strong / 4);
 }
 
 /// White must be the brightest frame and black the darkest wherever any light changes. The places in the list of those
@@ -97,8 +94,9 @@ std::vector<std::size_t> choose_lit(Samples& s) {
             high[i] = std::max(high[i], frame[i]);
         }
     std::vector<std::size_t> lit;
+    const int least = least_change(low, high);
     for (std::size_t i = 0; i < low.size(); ++i) {
-        if (high[i] - low[i] < kLit_grey || only_noise(s.here, i, low[i], high[i])) continue;
+        if (high[i] - low[i] < least) continue;
         ++s.changing;
         const int allowed = (high[i] - low[i]) / 3, white = s.here[s.white][i], black = s.here[s.black][i];
         const bool is_white = high[i] - white <= allowed, is_black = black - low[i] <= allowed;
