@@ -87,7 +87,7 @@ void add_patterns(CLI::App& app, PatternsOptions& o) {
                     "multi-frequency: fringes of three or four periods instead of the Gray code")
         ->capture_default_str()
         ->check(CLI::IsMember({"full", "fast", "multi-frequency"}));
-    sub->add_flag("--columns-only", o.columns_only, "Multi-frequency: half the pictures; points then need both cameras");
+    sub->add_flag("--columns-only", o.columns_only, "Half the pictures (not with the set fast, which has no rows); points then need both cameras");
     sub->add_option("--phase-period-px", o.phase_period_px, "Projector pixels a fringe")
         ->capture_default_str()
         ->check(CLI::Range(4.0, 256.0));

@@ -95,26 +95,30 @@ void write_capture(const CaptureFolder& capture, const fs::path& folder) {
             write_png(capture.left[i], into / "left" / (capture.names[i] + ".png"));
             if (right) write_png(capture.right[i], into / "right" / (capture.names[i] + ".png"));
         }
-        Json settings{{"format", "planlight capture"},
-                      {"version", kVersion},
-                      {"projector_width", capture.projector_width},
-                      {"projector_height", capture.projector_height},
-                      {"phase_steps", capture.phase_steps},
-                      {"phase_period_px", capture.phase_period_px},
-                      {"rows", capture.rows},
-                      {"inverse", capture.inverse},
-                      {"check_sequence", capture.check_sequence},
-                      {"began_ns", capture.began.count()},
-                      {"ended_ns", capture.ended.count()},
-                      {"names", capture.names}};
-        if (!capture.order_periods_px.empty()) {
-            settings["order_periods_px"] = capture.order_periods_px;
-            settings["order_steps"] = capture.order_steps;
-        }
-        for (const auto& [key, serial] : kSerials)
-            if (!(capture.serials.*serial).empty()) settings[key] = capture.serials.*serial;
-        write_safely(into / "capture.json", dump(settings));
+        write_capture_settings(capture, into / "capture.json");
     });
+}
+
+void write_capture_settings(const CaptureFolder& capture, const fs::path& file) {
+    Json settings{{"format", "planlight capture"},
+                  {"version", kVersion},
+                  {"projector_width", capture.projector_width},
+                  {"projector_height", capture.projector_height},
+                  {"phase_steps", capture.phase_steps},
+                  {"phase_period_px", capture.phase_period_px},
+                  {"rows", capture.rows},
+                  {"inverse", capture.inverse},
+                  {"check_sequence", capture.check_sequence},
+                  {"began_ns", capture.began.count()},
+                  {"ended_ns", capture.ended.count()},
+                  {"names", capture.names}};
+    if (!capture.order_periods_px.empty()) {
+        settings["order_periods_px"] = capture.order_periods_px;
+        settings["order_steps"] = capture.order_steps;
+    }
+    for (const auto& [key, serial] : kSerials)
+        if (!(capture.serials.*serial).empty()) settings[key] = capture.serials.*serial;
+    write_safely(file, dump(settings));
 }
 
 CaptureFolder read_capture_settings(const fs::path& file) {

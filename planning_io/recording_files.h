@@ -30,6 +30,9 @@ struct CaptureFolder {
 void write_capture(const CaptureFolder& capture, const std::filesystem::path& folder);
 CaptureFolder read_capture(const std::filesystem::path& folder);
 
+/// capture.json by itself, for whoever lays the pictures beside it.
+void write_capture_settings(const CaptureFolder& capture, const std::filesystem::path& file);
+
 /// What capture.json says, without the pictures. `names` may be missing there (empty then).
 CaptureFolder read_capture_settings(const std::filesystem::path& file);
 

@@ -101,6 +101,13 @@ void write_safely(const fs::path& file, const std::string& content) {
     write_safely(file, [&](std::ostream& out) { out.write(content.data(), static_cast<std::streamsize>(content.size())); });
 }
 
+void check_can_write(const fs::path& file) {
+    std::error_code ignored;
+    if (fs::is_directory(file, ignored)) throw DiskError(file, "is a folder, not a file", "Name a file.");
+    if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored)) return;
+    RemoveUnlessKept{make_temporary_beside(fs::is_symlink(file, ignored) ? fs::weakly_canonical(file, ignored) : file)};
+}
+
 void write_folder_safely(const fs::path& folder, bool replace, const std::function<void(const fs::path&)>& fill) {
     fs::path target = folder;
     if (!target.has_filename()) target = target.parent_path();  // "case/" means "case"

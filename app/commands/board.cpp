@@ -11,7 +11,9 @@ namespace planlight {
 
 int run_board(const BoardOptions& options) {
     const BoardSpec board = parse_board(options.board);
-    Path png = options.out, pdf = options.out;
+    Path png = options.out;
+    if (png.extension() == ".pdf" || png.extension() == ".png") png.replace_extension();
+    Path pdf = png;
     png += ".png";
     pdf += ".pdf";
     write_safely(png, board_png(board));

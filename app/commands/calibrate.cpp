@@ -69,8 +69,10 @@ Observed observe_captures(const CalibrateOptions& options, const BoardSpec& boar
         if (stripes) observed.projector_width = stripes->width, observed.projector_height = stripes->height;
         const PosePictures pictures =
             read_pose(folders[i], stripes ? names_of(*stripes, folders[i]) : std::vector<std::string>{});
-        observed.poses.push_back({folders[i].filename().string(), observe_board(pictures.left, stripes, board),
-                                  observe_board(pictures.right, stripes, board)});
+        ObserveSettings observe;
+        observe.check_sequence = !settings || settings->check_sequence;
+        observed.poses.push_back({folders[i].filename().string(), observe_board(pictures.left, stripes, board, observe),
+                                  observe_board(pictures.right, stripes, board, observe)});
         bar.show("poses", static_cast<double>(i + 1) / static_cast<double>(folders.size()));
     }
     const bool right = observed.poses.front().right.width > 0;
@@ -98,6 +100,7 @@ std::optional<RigCalibration> previous_rig(const Path& file) {
 
 int run_calibrate(const CalibrateOptions& options) {
     const BoardSpec board = parse_board(options.board);
+    check_can_write(options.out);  // before minutes of work, not after
     const Observed observed = observe_captures(options, board);
     const Calibration calibration = calibrate_rig(observed.poses, board, observed.projector_width, observed.projector_height);
     if (calibration.refusal) throw CheckFailedError(calibration.refusal->reason, calibration.refusal->remedy);

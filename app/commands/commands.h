@@ -35,7 +35,7 @@ struct PatternsOptions {
     int width = 1920, height = 1080, phase_steps = 8;
     double phase_period_px = 16;
     std::string set = "full";  ///< or "fast", "multi-frequency"
-    bool columns_only = false;  ///< of "multi-frequency"
+    bool columns_only = false;  ///< no rows
     bool json = false;
 };
 int run_patterns(const PatternsOptions& options);

@@ -76,6 +76,44 @@ void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
     warn(problem);
 }
 
+/// What `scan_from_capture` checks of a whole sequence, for one that lacks fringes or fine bits.
+void check_partial_sequence(const ScanCapture& capture, const Path& folder) {
+    if (capture.partial.empty() || !capture.check_sequence) return;
+    for (const auto& [frames, camera] : {std::pair{&capture.left, "left"}, {&capture.right, "right"}}) {
+        if (frames->empty()) continue;
+        const SequenceCheck check = check_sequence(*frames, capture.stripes, capture.partial);
+        if (check.problems.empty()) continue;
+        throw CheckFailedError(
+            fmt::format("{}: the {} camera's frames do not show the sequence: {} ({:.0f} % of the lit pixels)", folder.string(),
+                        camera, check.problems[0].what, 100 * check.problems[0].share),
+            "Scan again; if it comes back, check the delay between projector and cameras and the names of the pictures. "
+            "\"check_sequence\": false in capture.json takes them as they are.");
+    }
+}
+
+/// One camera needs both directions: nothing else says whether a pixel was read right.
+void check_directions(const ScanCapture& capture, const RigCalibration& rig, const Path& folder) {
+    if (capture.stripes.rows || (!capture.right.empty() && present(rig.right_camera))) return;
+    throw InputError(folder, "codes the projector's columns only, and there is one camera",
+                     "Capture a sequence that codes columns and rows, or with both cameras of a calibrated rig.");
+}
+
+/// Where most of what was read lies off the rays of the rig file, the rest lies on them by chance.
+void judge_fit(const ScanResult& scan, const RigCalibration& rig) {
+    constexpr double kMostOff = 0.75;
+    const double off = static_cast<double>(scan.raw.disagree), on = static_cast<double>(scan.raw.cloud.size());
+    if (off + on > 0 && off > kMostOff * (off + on))
+        throw CheckFailedError(
+            fmt::format("the capture does not fit the rig file: {} of {} places that the light was read at lie off the rays of {}",
+                        scan.raw.disagree, scan.raw.disagree + scan.raw.cloud.size(), devices_of(scan, rig)),
+            "Use the rig.json of this rig; check that left and right are not swapped and no picture is mirrored; if the rig was "
+            "moved, calibrate it again.");
+    if (scan.clean.kept.empty())
+        throw CheckFailedError(fmt::format("no skin was found in the capture ({} of {} pixels of the left picture decoded)",
+                                           scan.left.decoded, scan.left.width * scan.left.height),
+                               "Check that the projector lights the patient and that rig.json belongs to this capture.");
+}
+
 }  // namespace
 
 int run_scan(const ScanOptions& options) {
@@ -86,6 +124,8 @@ int run_scan(const ScanOptions& options) {
     for (const Path& folder : folders) {
         captures.push_back(scan_capture_from(read_capture_of(rig, folder), folder));
         check_sizes(captures.back(), rig, folder);
+        check_directions(captures.back(), rig, folder);
+        check_partial_sequence(captures.back(), folder);
         if (captures.back().stripes.rows != captures.front().stripes.rows ||
             captures.back().right.empty() != captures.front().right.empty())
             throw InputError(folder, "has other directions or cameras than the first capture",
@@ -93,10 +133,7 @@ int run_scan(const ScanOptions& options) {
     }
     const ScanCapture& capture = captures.front();
     const ScanResult scan = scan_from_exposures(captures, rig);
-    if (scan.clean.kept.empty())
-        throw CheckFailedError(fmt::format("no skin was found in the capture ({} of {} pixels of the left picture decoded)",
-                                           scan.left.decoded, scan.left.width * scan.left.height),
-                               "Check that the projector lights the patient and that rig.json belongs to this capture.");
+    judge_fit(scan, rig);
     warn_of(scan, rig);
     const ScanMovement movement = movement_in_scan(capture, rig, scan.clean.kept);
     judge_movement(movement, options);

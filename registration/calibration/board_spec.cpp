@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <regex>
 
 #include "planning_io/types/error.h"
@@ -10,6 +11,7 @@ namespace planlight {
 namespace {
 
 constexpr int kMostSquares = 200;  ///< as many as there are markers for (100)
+constexpr double kMost_mm = 5000;   ///< a PDF page ends at 5080 mm
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
     throw InputError({}, fmt::format("the board \"{}\" {}", text, why),
@@ -29,15 +31,16 @@ BoardSpec parse_board(const std::string& text) {
     std::smatch found;
     if (text.size() > 200 || !std::regex_match(text, found, kForm)) refuse(text.substr(0, 200), "is not understood");
     BoardSpec board;
-    std::string kind = found[1];
-    for (char& c : kind) c = static_cast<char>(std::tolower(c));
+    std::string kind = found[1], unit = found[5];
+    for (std::string* word : {&kind, &unit})
+        for (char& c : *word) c = static_cast<char>(std::tolower(c));
     if (kind == "charuco")
         board.kind = BoardSpec::Kind::charuco;
     else if (kind == "chessboard")
         board.kind = BoardSpec::Kind::chessboard;
     else
         refuse(text, "is neither a charuco nor a chessboard");
-    if (found[5] != "mm") refuse(text, "does not say its squares in mm");
+    if (unit != "mm") refuse(text, "does not say its squares in mm");
     board.columns = std::stoi(found[2]);
     board.rows = std::stoi(found[3]);
     board.square_mm = std::stod(found[4]);
@@ -45,6 +48,8 @@ BoardSpec parse_board(const std::string& text) {
     if (board.kind == BoardSpec::Kind::charuco && board.columns * board.rows > kMostSquares)
         refuse(text, fmt::format("has more than {} squares", kMostSquares));
     if (!(board.square_mm >= 1 && board.square_mm <= 1000)) refuse(text, "has squares under 1 mm or over 1 m");
+    if (const double most_mm = std::max(board.width_mm(), board.height_mm()); most_mm > kMost_mm)
+        refuse(text, fmt::format("is {:.1f} m long; {:g} m is the most that a page can be", most_mm / 1000, kMost_mm / 1000));
     return board;
 }
 

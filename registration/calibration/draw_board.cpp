@@ -22,7 +22,13 @@ std::string chunk(const std::string& type_and_data) {
     return big_endian(static_cast<std::uint32_t>(type_and_data.size() - 4)) + type_and_data + big_endian(crc);
 }
 
-constexpr int kPngPxPerMm = 10;
+/// Whole pixels a module, about 10 a mm (fewer on a board that would fill the memory). The file says how many there are in a
+/// metre, so that the print has the square's true size.
+int png_px_per_square(const BoardSpec& board) {
+    constexpr double kPxPerMm = 10, kMostPx = 12000;
+    const double px_per_mm = std::min(kPxPerMm, kMostPx / std::max(board.width_mm(), board.height_mm()));
+    return kModulesPerSquare * std::max(1, static_cast<int>(std::lround(board.square_mm * px_per_mm / kModulesPerSquare)));
+}
 
 }  // namespace
 
@@ -57,7 +63,7 @@ GrayImage draw_board(const BoardSpec& board, int px_per_square, int dark) {
 }
 
 std::string board_png(const BoardSpec& board) {
-    const int square = static_cast<int>(std::lround(board.square_mm * kPngPxPerMm)), margin = std::max(square, 100);
+    const int square = png_px_per_square(board), margin = std::max(square, 100);
     GrayImage drawn = draw_board(board, square);
     cv::Mat sheet(drawn.height + 2 * margin, drawn.width + 2 * margin, CV_8UC1, cv::Scalar(255));
     cv::Mat(drawn.height, drawn.width, CV_8UC1, drawn.pixels.data())
@@ -73,7 +79,7 @@ std::string board_png(const BoardSpec& board) {
     cv::imencode(".png", sheet, bytes, {cv::IMWRITE_PNG_COMPRESSION, 6});
     std::string file(bytes.begin(), bytes.end());
     constexpr std::size_t kAfterHeader = 8 + 25;  // signature and IHDR
-    const std::string per_metre = big_endian(1000 * kPngPxPerMm);
+    const std::string per_metre = big_endian(static_cast<std::uint32_t>(std::lround(1000 * square / board.square_mm)));
     return file.insert(kAfterHeader, chunk("pHYs" + per_metre + per_metre + '\1'));
 }
 

@@ -72,6 +72,10 @@ std::optional<Refusal> judge_picture(const PoseObservation& pose, DeviceName cam
         return Refusal{
             fmt::format("{}: the board or the rig moved by {:.2f} px while the pose was captured", where, seen.moved_px),
             "Let the board stand by itself and capture this pose again."};
+    if (!seen.wrong_sequence.empty())
+        return Refusal{fmt::format("{}: the frames do not show the sequence: {}", where, seen.wrong_sequence),
+                       "Capture this pose again; if it comes back, check the delay between projector and cameras and the "
+                       "names of the pictures. \"check_sequence\": false in capture.json takes them as they are."};
     if (seen.coded_light && seen.decoded_share < s.min_decoded)
         return Refusal{
             fmt::format("{}: only {:.0f} % of the lit board could be decoded", where, 100 * seen.decoded_share),

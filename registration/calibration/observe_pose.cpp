@@ -1,9 +1,12 @@
 #include "registration/calibration/observe_pose.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "registration/scan/check_sequence.h"
 #include "registration/scan/gray_code.h"
 
 namespace planlight {
@@ -151,6 +154,15 @@ BoardCorners mirrored_corners(const GrayImage& picture, const BoardSpec& board) 
     return find_board(mirrored, board);
 }
 
+std::string wrong_in_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes) {
+    const SequenceCheck check =
+        stripes.phase_steps == 0
+            ? check_sequence(frames, stripes, gray_code_patterns(stripes.width, stripes.height))
+            : check_sequence(frames, stripes);
+    if (check.problems.empty()) return {};
+    return fmt::format("{} ({:.0f} % of the lit pixels)", check.problems[0].what, 100 * check.problems[0].share);
+}
+
 }  // namespace
 
 DecodedView decode_calibration_light(std::span<const GrayImage> frames, const StripeSettings& stripes) {
@@ -174,6 +186,7 @@ CameraObservation observe_board(std::span<const GrayImage> frames, const std::op
     const auto pixels = pixels_on_board(seen, board, 12 * settings.light_samples);
     judge_white(frames[0], pixels, seen);
     if (!seen.coded_light) return seen;
+    if (settings.check_sequence) seen.wrong_sequence = wrong_in_sequence(frames, *stripes);
     keep_light(frames, *stripes, pixels, settings, seen);
     seen.moved_px = moved_between(seen.corners, follow_board(even_light(last_even(frames, *stripes)), seen.corners, board));
     if (seen.moved_px < settings.moved_px)

@@ -29,6 +29,7 @@ struct CameraObservation {
     double decoded_share = 0;        ///< of the pixels looked at on the board
     double moved_px = 0;             ///< of the board between the first picture and the last
     bool found_mirrored = false;     ///< the board was found only in the picture's mirror image
+    std::string wrong_sequence;      ///< a frame that does not show its own picture (`check_sequence`); empty: none
 };
 
 struct PoseObservation {
@@ -40,6 +41,7 @@ struct ObserveSettings {
     int light_samples = 400;      ///< a camera and pose: enough for their noise to vanish, few enough to be quick
     double edge_contrast = 0.10;  ///< light samples lie where the white picture varies less than this within 5x5 pixels
     double moved_px = 0.2;  ///< a board that moved less is looked up again in the sum of all pictures, which has less noise
+    bool check_sequence = true;  ///< look for late, doubled, missing and swapped frames
 };
 
 /// Coded light of a calibration: that of a scan, or (`phase_steps` 0) a Gray code without fringes.

@@ -109,7 +109,12 @@ void check_order(const Samples& s, const Direction& direction, SequenceCheck& ch
 }  // namespace
 
 SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes) {
-    const Samples samples = gather_samples(frames, stripes);
+    return check_sequence(frames, stripes, stripe_sequence(stripes));
+}
+
+SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes,
+                             const std::vector<StripePattern>& patterns) {
+    const Samples samples = gather_samples(frames, stripes, patterns);
     SequenceCheck check;
     check_ends(samples, check);
     check.checked = check.checked && (samples.lit >= kEnough || !check.problems.empty());

@@ -34,4 +34,9 @@ struct SequenceCheck {
 /// Throws std::invalid_argument when number or sizes of the frames do not fit.
 SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes);
 
+/// The same for a capture that is not all of the sequence (no fringes, bits missing at the fine end): `patterns` says what
+/// the frames are, in their order. What cannot be judged without the missing ones is not.
+SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes,
+                             const std::vector<StripePattern>& patterns);
+
 }  // namespace planlight

@@ -17,13 +17,21 @@ int bits_for(int size) {
 
 }  // namespace
 
-std::vector<std::string> gray_code_names(int projector_width, int projector_height) {
-    std::vector<std::string> names{"white", "black"};
-    for (const auto& [direction, size] : {std::pair{"column", projector_width}, std::pair{"row", projector_height}})
-        for (int bit = 0; bit < bits_for(size); ++bit) {
-            names.push_back(fmt::format("{}-gray-{}", direction, bit));
-            names.push_back(fmt::format("{}-gray-{}-inverse", direction, bit));
+std::vector<StripePattern> gray_code_patterns(int projector_width, int projector_height) {
+    using Kind = StripePattern::Kind;
+    std::vector<StripePattern> patterns{{Kind::white, false, 0, "white"}, {Kind::black, false, 0, "black"}};
+    for (const bool along_rows : {false, true})
+        for (int bit = 0; bit < bits_for(along_rows ? projector_height : projector_width); ++bit) {
+            const std::string name = fmt::format("{}-gray-{}", along_rows ? "row" : "column", bit);
+            patterns.push_back({Kind::gray_bit, along_rows, bit, name});
+            patterns.push_back({Kind::gray_bit_inverse, along_rows, bit, name + "-inverse"});
         }
+    return patterns;
+}
+
+std::vector<std::string> gray_code_names(int projector_width, int projector_height) {
+    std::vector<std::string> names;
+    for (const StripePattern& pattern : gray_code_patterns(projector_width, projector_height)) names.push_back(pattern.name);
     return names;
 }
 

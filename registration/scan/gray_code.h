@@ -6,11 +6,13 @@
 
 #include "planning_io/types/image.h"
 #include "registration/scan/decode_stripes.h"
+#include "registration/scan/stripe_patterns.h"
 
 namespace planlight {
 
 /// The pictures of a Gray code without fringes, down to single projector pixels (captures of others): white, black, then
 /// columns and rows, coarsest bit first, each followed by its inverse; named as in `stripe_sequence`.
+std::vector<StripePattern> gray_code_patterns(int projector_width, int projector_height);
 std::vector<std::string> gray_code_names(int projector_width, int projector_height);
 
 /// Decodes such frames to whole projector pixels, or between two of them where just the bit of their common border differs

@@ -1,8 +1,13 @@
 #include "registration/scan/merge_exposures.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
+
+#include "planning_io/types/error.h"
 
 namespace planlight {
 namespace {
@@ -19,12 +24,43 @@ double saturated_share(const GrayImage& white, const GrayImage& black) {
     return lit == 0 ? 0 : static_cast<double>(full) / static_cast<double>(lit);
 }
 
+float middle_of(std::vector<float>& values) {
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return *middle;
+}
+
+/// Throws where the codes of what both exposures decoded differ by more than their noise: the surface lies elsewhere.
+void check_one_pose(const LargeArray<float>& code, const LargeArray<float>& other, const DecodedView& view,
+                    const DecodedView& other_view) {
+    constexpr std::size_t kEnough = 1000;
+    constexpr float kMost_px = 0.1F;  // about 0.15 mm of depth in both rooms
+    std::vector<float> off, sigma, other_sigma;
+    for (std::size_t i = 0; i < code.size(); ++i) {
+        if (std::isnan(code[i]) || std::isnan(other[i])) continue;
+        off.push_back(std::abs(code[i] - other[i]));
+        sigma.push_back(view.sigma_px[i]);
+        other_sigma.push_back(other_view.sigma_px[i]);
+    }
+    if (off.size() < kEnough) return;
+    const float a = middle_of(sigma), b = middle_of(other_sigma), median_px = middle_of(off);
+    // Half of all differences lie within 0.67 sigma; Gray codes of different cells also differ by their roundings.
+    constexpr float kCells_px = 0.2F;
+    const float rounding_px = std::max(a, b) > kCells_px ? 1.5F * std::abs(a - b) : 0;
+    if (median_px <= kMost_px + 0.67F * std::hypot(a, b) + rounding_px) return;
+    throw CheckFailedError(
+        fmt::format("the exposures are not of one pose: their light differs by {:.2f} projector pixels in the median", median_px),
+        "Scan again; the patient and the rig must rest from the first exposure to the last.");
+}
+
 }  // namespace
 
 void take_better(DecodedView& view, const DecodedView& other) {
     if (view.width != other.width || view.height != other.height || view.column.size() != other.column.size() ||
         view.row.size() != other.row.size())
         throw std::invalid_argument("take_better: views of different sizes or directions");
+    check_one_pose(view.column, other.column, view, other);
+    if (!view.row.empty()) check_one_pose(view.row, other.row, view, other);
     view.decoded = 0;
     for (std::size_t i = 0; i < view.column.size(); ++i) {
         const bool better = !std::isnan(other.column[i]) && !(view.sigma_px[i] <= other.sigma_px[i]);

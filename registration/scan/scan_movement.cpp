@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "registration/scan/even_pictures.h"
+#include "registration/scan/camera_gamma.h"
 
 namespace planlight {
 namespace {
@@ -122,14 +122,18 @@ ScanMovement movement_in_pictures(const ScanCapture& capture, double mm_per_px) 
     const auto moments = even_moments(capture);
     if (moments.size() < 3 || moments.front().name != "white") return movement;
     const GrayImage& white = capture.left[0];
-    const auto first = softened(even_picture(capture.left, moments.front()), white.width, white.height);
+    const double gamma = camera_gamma(capture.left, moments);
+    const auto even = [&](const EvenMoment& moment) {
+        return softened(even_light_picture(capture.left, moment, gamma), white.width, white.height);
+    };
+    const auto first = even(moments.front());
     const Template t = make_template(first, white, capture.left[1]);
     if (!t.determined) return movement;
     movement.by = ScanMovement::By::pictures;
     movement.moments = static_cast<int>(moments.size());
     std::vector<Vector7d> maps;
     for (const auto& moment : moments)
-        maps.push_back(laid_on(t, first, softened(even_picture(capture.left, moment), white.width, white.height), white.width));
+        maps.push_back(laid_on(t, first, even(moment), white.width));
     for (std::size_t i = 0; i < maps.size(); ++i)
         for (std::size_t j = i + 1; j < maps.size(); ++j) {
             const double moved_mm = mm_per_px * way_px(t, maps[i], maps[j]);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 namespace planlight::sequence {
 namespace {
@@ -18,6 +19,9 @@ void sort_frames(std::span<const GrayImage> frames, Samples& s) {
     for (const GrayImage& f : frames)
         if (f.width != frames[0].width || f.pixels.size() != frames[0].pixels.size() || f.empty())
             throw std::invalid_argument("check_sequence: frames of different size");
+    for (const auto kind : {StripePattern::Kind::white, StripePattern::Kind::black})
+        if (std::none_of(s.patterns.begin(), s.patterns.end(), [&](const StripePattern& p) { return p.kind == kind; }))
+            throw std::invalid_argument("check_sequence: no white or no black frame");
     for (Direction& direction : s.directions) direction.further.resize(s.stripes.order_periods_px.size());
     for (std::size_t i = 0; i < frames.size(); ++i) {
         Direction& direction = s.directions[s.patterns[i].along_rows ? 1 : 0];
@@ -68,6 +72,18 @@ Bytes values_at(const GrayImage& frame, const std::vector<std::size_t>& pixels, 
     return values;
 }
 
+/// How much of a change is light and not noise: a quarter of that of the best lit places (one in a hundred). (A camera that encodes for a
+/// screen has 30 grey of noise in the dark.)
+int least_change(const Bytes& low, const Bytes& high) {
+    std::vector<int> changes;
+    for (std::size_t i = 0; i < low.size(); ++i)
+        if (high[i] - low[i] >= kLit_grey) changes.push_back(high[i] - low[i]);
+    if (changes.empty()) return kLit_grey;
+    const auto strong = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() * 99 / 100);
+    std::nth_element(changes.begin(), strong, changes.end());
+    return std::max(kLit_grey, *strong / 4);
+}
+
 /// White must be the brightest frame and black the darkest wherever any light changes. The places in the list of those
 /// that are lit so, and neither too dark nor too bright to judge a sum by.
 std::vector<std::size_t> choose_lit(Samples& s) {
@@ -78,8 +94,9 @@ std::vector<std::size_t> choose_lit(Samples& s) {
             high[i] = std::max(high[i], frame[i]);
         }
     std::vector<std::size_t> lit;
+    const int least = least_change(low, high);
     for (std::size_t i = 0; i < low.size(); ++i) {
-        if (high[i] - low[i] < kLit_grey) continue;
+        if (high[i] - low[i] < least) continue;
         ++s.changing;
         const int allowed = (high[i] - low[i]) / 3, white = s.here[s.white][i], black = s.here[s.black][i];
         const bool is_white = high[i] - white <= allowed, is_black = black - low[i] <= allowed;
@@ -108,9 +125,10 @@ std::vector<std::int16_t> contrast_of(const Bytes& white, const Bytes& black) {
 
 }  // namespace
 
-Samples gather_samples(std::span<const GrayImage> frames, const StripeSettings& stripes) {
+Samples gather_samples(std::span<const GrayImage> frames, const StripeSettings& stripes,
+                       std::vector<StripePattern> patterns) {
     Samples s;
-    s.patterns = stripe_sequence(stripes);
+    s.patterns = std::move(patterns);
     s.stripes = stripes;
     sort_frames(frames, s);
     std::vector<std::size_t> pixels = sample_of(frames[0]);

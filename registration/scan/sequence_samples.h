@@ -57,8 +57,10 @@ struct Samples {
     const std::string& name(std::size_t frame) const { return patterns[frame].name; }
 };
 
-/// Throws std::invalid_argument when number or sizes of the frames do not fit the sequence.
-Samples gather_samples(std::span<const GrayImage> frames, const StripeSettings& stripes);
+/// `patterns`: what the frames are, in their order. Throws std::invalid_argument when number or sizes of the frames do not
+/// fit, or white or black is not among them.
+Samples gather_samples(std::span<const GrayImage> frames, const StripeSettings& stripes,
+                       std::vector<StripePattern> patterns);
 
 inline double share_of(std::size_t part, std::size_t all) {
     return all == 0 ? 0 : static_cast<double>(part) / static_cast<double>(all);

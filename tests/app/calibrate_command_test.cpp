@@ -91,6 +91,14 @@ TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
                 truth["left_camera"]["focal_x"].get<double>(), 10);
 }
 
+TEST(CalibrateCommand, AFolderThatIsNotThereIsSaidBeforeTheWork) {
+    const TemporaryFolder folder;
+    expect_refused(run_planlight("calibrate captures --board 'charuco 10x7 25 mm' --out nowhere/rig.json", folder.path()), 7,
+                   "Make the folder nowhere first");
+    fs::create_directories(folder.path() / "rig.json");
+    expect_refused(run_planlight("calibrate captures --board 'charuco 10x7 25 mm'", folder.path()), 7, "is a folder");
+}
+
 TEST(BoardCommand, WritesTheSheetTwice) {
     const TemporaryFolder folder;
     const auto run = run_planlight("board --board 'chessboard 9x6 20 mm' --out sheet --json", folder.path());
@@ -98,6 +106,9 @@ TEST(BoardCommand, WritesTheSheetTwice) {
     EXPECT_EQ(json::parse(run.out)["corners"], 54);
     EXPECT_TRUE(whole(folder.path() / "sheet.pdf").starts_with("%PDF"));
     EXPECT_TRUE(whole(folder.path() / "sheet.png").starts_with("\x89PNG"));
+    ASSERT_EQ(run_planlight("board --board 'chessboard 9x6 20 mm' --out other.pdf", folder.path()).exit_code, 0);
+    EXPECT_TRUE(fs::exists(folder.path() / "other.pdf"));
+    expect_refused(run_planlight("board --board 'chessboard 999x999 1000 mm'", folder.path()), 3, "5 m is the most");
     expect_refused(run_planlight("board --board 'chessboard 9x6 2 cm'", folder.path()), 3, "mm");
 }
 

@@ -3,6 +3,8 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include <cmath>
+
 #include "planning_io/types/error.h"
 #include "registration/calibration/board_spec.h"
 #include "registration/calibration/draw_board.h"
@@ -17,13 +19,47 @@ TEST(BoardSpec, ReadsWhatItWrites) {
     EXPECT_EQ(chess.corner_count(), 54);
     EXPECT_EQ(chess.squares_across(), 10);
     EXPECT_EQ(parse_board("charuco 10x7 squares 25 mm").corner_count(), 54);
+    EXPECT_EQ(text_of(parse_board("CHARUCO 10X7 25 MM")), "charuco 10x7 25 mm");
 }
 
 TEST(BoardSpec, RefusesWhatItCannotMean) {
     for (const char* text :
          {"", "charuco", "charuco 10x7", "charuco 10x7 25", "charuco 10x7 25 cm", "circles 10x7 25 mm", "charuco 2x7 25 mm",
-          "charuco 99x99 25 mm", "chessboard 9x6 0 mm", "charuco -10x7 25 mm", "charuco 10x7 nan mm"})
+          "charuco 99x99 25 mm", "chessboard 9x6 0 mm", "charuco -10x7 25 mm", "charuco 10x7 nan mm",
+          "chessboard 999x999 1000 mm"})
         EXPECT_THROW(parse_board(text), InputError) << text;
+}
+
+/// A big-endian number of a PNG file.
+std::uint32_t number_at(const std::string& png, std::size_t at) {
+    std::uint32_t n = 0;
+    for (std::size_t i = 0; i < 4; ++i) n = n << 8 | static_cast<std::uint8_t>(png.at(at + i));
+    return n;
+}
+
+// A square of 24.96 mm is not a whole number of tenths: pixels and their number in a metre agree all the same.
+TEST(BoardPng, IsPrintedInItsTrueSizeToAHundredthOfAPercent) {
+    for (const char* text : {"chessboard 9x6 24.96 mm", "charuco 10x7 1.05 mm", "charuco 10x7 25 mm", "chessboard 90x60 40 mm"}) {
+        const BoardSpec board = parse_board(text);
+        const std::string png = board_png(board);
+        const std::size_t phys = png.find("pHYs");
+        ASSERT_NE(phys, std::string::npos);
+        EXPECT_EQ(png.at(phys + 12), 1) << "pixels a metre";
+        const double px_per_mm = number_at(png, phys + 4) / 1000.0;
+        EXPECT_LT(number_at(png, 16), 15000u) << text << " fits the memory";
+        const std::vector<std::uint8_t> bytes(png.begin(), png.end());
+        const cv::Mat sheet = cv::imdecode(bytes, cv::IMREAD_GRAYSCALE);
+        // Down the left column of squares: dark from the top of the first to the bottom of the last dark one.
+        const int x = (sheet.cols - static_cast<int>(std::lround(board.width_mm() * px_per_mm))) / 2 + 1;
+        int first = sheet.rows, last = 0;
+        for (int y = 0; y < sheet.rows; ++y) {
+            if (sheet.at<std::uint8_t>(y, x) != kBoardDark) continue;
+            first = std::min(first, y);
+            last = std::max(last, y + 1);
+        }
+        const int squares = board.squares_down() - (board.squares_down() % 2 == 0 ? 1 : 0);
+        EXPECT_NEAR((last - first) / px_per_mm, squares * board.square_mm, 1e-4 * squares * board.square_mm) << text;
+    }
 }
 
 /// The picture with a white margin and blur, as a camera that looks straight at the board; the margin in pixels.

@@ -199,6 +199,39 @@ TEST(CheckSequence, FaultsOfTheFastSetAreNoticed) {
     EXPECT_GT(noticed, 40u);
 }
 
+/// What others capture: a Gray code with inverses and no fringes to check it against.
+TEST(CheckSequence, FaultsOfAGrayCodeWithoutFringesAreNoticed) {
+    Scene gray{head().stripes, {}};
+    std::vector<StripePattern> patterns;
+    const auto sequence = stripe_sequence(head().stripes);
+    for (std::size_t i = 0; i < sequence.size(); ++i)
+        if (sequence[i].kind != StripePattern::Kind::phase) {
+            patterns.push_back(sequence[i]);
+            gray.frames.push_back(head().frames[i]);
+        }
+    const auto check = [&](const std::vector<GrayImage>& frames, unsigned seed) {
+        return check_sequence(with_noise(frames, 1.5, seed), gray.stripes, patterns);
+    };
+    for (unsigned seed = 0; seed < 4; ++seed) {
+        const SequenceCheck clean = check(gray.frames, seed);
+        EXPECT_TRUE(clean.checked);
+        EXPECT_TRUE(clean.problems.empty()) << said(clean);
+    }
+    std::mt19937 random(3);
+    std::size_t noticed = 0;
+    for (const Fault fault : {Fault::late_once, Fault::late_from_here, Fault::missing})
+        for (std::size_t m = 1; m < gray.frames.size(); ++m) {
+            const std::vector<GrayImage> spoilt = spoil(gray, fault, m, random);
+            if (changed(gray.frames, spoilt) < 0.05) continue;
+            const bool found = !check(spoilt, static_cast<unsigned>(m)).problems.empty();
+            EXPECT_TRUE(found) << static_cast<int>(fault) << " at " << patterns[m].name;
+            noticed += found;
+        }
+    EXPECT_GT(noticed, 50u);
+    patterns[0].kind = StripePattern::Kind::black;
+    EXPECT_THROW(check(gray.frames, 1), std::invalid_argument) << "no white";
+}
+
 TEST(CheckSequence, AScanNamesThePictureAndRefuses) {
     Room room = paper_room(sphere(kCentre, 80));
     ScanCapture shot = capture(room, stripes_of(room));
@@ -225,6 +258,20 @@ TEST(CheckSequence, EdgesShadowsAndAModernRigAreNotRefused) {
         EXPECT_TRUE(check.checked);
         EXPECT_TRUE(check.problems.empty()) << said(check);
     }
+}
+
+// 0.4 grey of noise in the dark becomes 20 in a picture of gamma 2.2: no light, so white need not be the brightest there.
+TEST(CheckSequence, TheDarkOfACameraThatEncodesForAScreenIsNotLight) {
+    std::mt19937 random(4);
+    std::normal_distribution<double> noise(0, 0.4);
+    std::vector<GrayImage> frames = head().frames;
+    for (GrayImage& frame : frames)
+        for (auto& p : frame.pixels)
+            p = static_cast<std::uint8_t>(
+                std::lround(255 * std::pow(std::clamp(p - 15 + noise(random), 0.0, 255.0) / 255, 1 / 2.2)));
+    const SequenceCheck check = check_sequence(frames, head().stripes);
+    EXPECT_TRUE(check.checked);
+    EXPECT_TRUE(check.problems.empty()) << said(check);
 }
 
 TEST(CheckSequence, DarknessIsNotChecked) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planning_io/types/error.h"
 #include "tests/registration/scan/stripe_room.h"
 
 namespace planlight {
@@ -74,6 +75,23 @@ TEST(MergeExposures, AGlintIsReadInTheDarkerCapturesAndPutsNothingOffTheSkin) {
                              [&](const auto& p) { return (p - glint).norm() < 4; });
     };
     EXPECT_GT(near_glint(all), 60);
+}
+
+// Half a millimetre between two exposures of three seconds each is soon done.
+TEST(MergeExposures, APatientWhoMovedBetweenThemIsRefused) {
+    const Room bright = glaring_room(350);
+    for (const Eigen::Vector3d& way : {Eigen::Vector3d(0, 0, 0.5), Eigen::Vector3d(2, 0, 0), Eigen::Vector3d(0, -2, 0)}) {
+        Room moved = paper_room(sphere(kCentre + way, 80));
+        moved.light.white_grey = 60;
+        moved.light.seed = 9;
+        const std::vector<ScanCapture> both{capture(bright, stripes_of(bright)), capture(moved, stripes_of(moved))};
+        try {
+            scan_from_exposures(both, rig_of(bright));
+            ADD_FAILURE() << "two poses were merged, apart by " << way.transpose();
+        } catch (const CheckFailedError& e) {
+            EXPECT_NE(std::string(e.what()).find("not of one pose"), std::string::npos) << e.what();
+        }
+    }
 }
 
 TEST(MergeExposures, TheOrderDoesNotMatterAndOneIsItself) {

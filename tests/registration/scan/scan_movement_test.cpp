@@ -6,6 +6,7 @@
 #include <functional>
 #include <random>
 
+#include "registration/scan/camera_gamma.h"
 #include "registration/scan/even_pictures.h"
 #include "tests/registration/gray_columns.h"
 
@@ -48,6 +49,30 @@ ScanCapture capture_of(const std::function<Eigen::Vector2d(double)>& at, double 
     return capture;
 }
 
+/// The same with the edges of the stripes blurred over three pixels, by a camera that gives light to the power 1 / `gamma`.
+ScanCapture encoded_capture(double gamma, const Eigen::Vector2d& way_px) {
+    ScanCapture capture = capture_of([](double) { return Eigen::Vector2d(0, 0); });
+    std::mt19937 random(7);
+    std::normal_distribution<double> noise(0, 0.7);
+    for (std::size_t k = 0; k < capture.partial.size(); ++k) {
+        const auto& pattern = capture.partial[k];
+        const Eigen::Vector2d d = way_px * static_cast<double>(k) / static_cast<double>(capture.partial.size() - 1);
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                double lit = pattern.kind == StripePattern::Kind::white ? 1 : 0;
+                for (int i = -1; k >= 2 && i <= 1; ++i)
+                    lit += (((x + i) >> (kBits - pattern.index)) % 2 == 0) == (pattern.kind == StripePattern::Kind::gray_bit)
+                               ? 1.0 / 3
+                               : 0.0;
+                const bool head = std::hypot(x - kWidth / 2.0 - d.x(), y - kHeight / 2.0 - d.y()) < 100;
+                const double light = head ? skin(x - d.x(), y - d.y()) * (lit + 0.12) : 3;
+                const double grey = 255 * std::pow(light / 255, 1 / gamma) + noise(random);
+                capture.left[k].at(x, y) = static_cast<std::uint8_t>(std::clamp(std::lround(grey), 0L, 255L));
+            }
+    }
+    return capture;
+}
+
 ScanMovement seen(const ScanCapture& capture) { return movement_in_pictures(capture, 0.42); }
 
 TEST(ScanMovement, APatientAtRestMovesByTheNoiseOnly) {
@@ -55,6 +80,18 @@ TEST(ScanMovement, APatientAtRestMovesByTheNoiseOnly) {
     EXPECT_EQ(movement.by, ScanMovement::By::pictures);
     EXPECT_EQ(movement.moments, 1 + kBits);
     EXPECT_LT(movement.moved_mm, 0.02);
+}
+
+// Where a stripe's edge halves the light, such a camera shows more than half: stripes are left in the sum of a bit and its
+// inverse. They are no movement.
+TEST(ScanMovement, ACameraThatEncodesForAScreenIsUnderstood) {
+    for (const double gamma : {1.0, 1.8, 2.2}) {
+        const ScanCapture still = encoded_capture(gamma, {0, 0});
+        EXPECT_NEAR(camera_gamma(still.left, even_moments(still)), gamma, 0.12);
+        EXPECT_LT(seen(still).moved_mm, 0.03) << gamma;
+        const Eigen::Vector2d way_px(0.4, -0.3);
+        EXPECT_NEAR(seen(encoded_capture(gamma, way_px)).moved_mm, 0.42 * 0.5 * 12 / 13, 0.03) << gamma;
+    }
 }
 
 TEST(ScanMovement, AShiftAcrossThePictureIsMeasured) {
