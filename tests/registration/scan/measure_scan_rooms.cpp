@@ -12,6 +12,7 @@
 #include "planning_io/safe_write.h"
 #include "planning_io/types/error.h"
 #include "registration/calibration/check_drift.h"
+#include "tests/registration/scan/footprint_figures.h"
 #include "tests/registration/scan/random_rooms.h"
 #include "tests/registration/scan/scan_figures.h"
 #include "tests/registration/scan/scan_pictures.h"
@@ -62,6 +63,7 @@ Figures figures_of_head(const ScanResult& scan, const SimulatedRig& room, Instan
     code.wrong += right.wrong;
     code.wrong_inside += right.wrong_inside;
     code.wrong_facing += right.wrong_facing;
+    const DriftCheck check = check_drift(scan, room.calibration());
     const double decoded = std::max<double>(1, static_cast<double>(code.looked_at));
     return {{"noise, rms, facing (mm)", cloud.noise_mm},
             {"noise, rms, all (mm)", cloud.noise_all_mm},
@@ -74,10 +76,26 @@ Figures figures_of_head(const ScanResult& scan, const SimulatedRig& room, Instan
             {"wrong codes, silhouettes too", static_cast<double>(code.wrong) / decoded},
             {"chi-square, mean", cloud.chi_square},
             {"chi-square by median", cloud.chi_square_median},
-            {"epipolar rms (px)", scan.raw.epipolar_rms_px},
+            {"epipolar, usual (px)", check.epipolar_rms_px},
+            {"epipolar rms, wrong partners too", scan.raw.epipolar_rms_px},
+            {"check: k1 off, size", std::abs(check.bent.k1_off)},
+            {"check: k1 off by its sigma", std::abs(check.bent.k1_off) / std::max(1e-9, check.bent.k1_sigma)},
+            {"check: light bent (px)", check.bent.projector_px},
+            {"check: not called good", check.verdict == DriftCheck::Verdict::good ? 0.0 : 1.0},
             {"projector off (px)", scan.raw.projector_offset_px.norm()},
             {"points", static_cast<double>(cloud.points)},
             {"signed bias (mm)", cloud.bias_mm}};
+}
+
+/// Where the noise on the head comes from: a second scan of the same room, other noise.
+Figures figures_of_footprint(const ScanResult& scan, SimulatedRig& room, const std::string& set, Instant at) {
+    const ScanResult again = scan_from_capture(capture_of(room, set), room.calibration());
+    const FootprintFigures f = footprint_figures(scan, again, room, room.calibration(), at);
+    return {{"off the skin at the pixel (mm)", f.at_point_mm},
+            {"off it, blurred by the lens (mm)", f.by_lens_mm},
+            {"off it, over 5 x 5 pixels (mm)", f.by_window_mm},
+            {"two scans / sqrt 2 (mm)", f.repeat_mm},
+            {"points of both scans", static_cast<double>(f.repeated)}};
 }
 
 /// The same room with a smooth ball of skin instead of the head: there is no detail in it that a scan could miss.
@@ -145,6 +163,7 @@ PresetTable run(Preset preset, const Options& options, const Volume& head, const
             if (scan.clean.kept.empty()) throw CheckFailedError("no skin was found", "-");
             Figures figures = figures_of_head(scan, room, capture.began);
             for (auto& figure : figures_of_ball(sphere, random_room(preset, seed), options.set)) figures.push_back(std::move(figure));
+            for (auto& figure : figures_of_footprint(scan, room, options.set, capture.began)) figures.push_back(std::move(figure));
             table.rooms.push_back(std::move(figures));
             if (k == 0 && !options.pictures.empty() && preset == options.presets.back())
                 write_scan_pictures(room, capture, scan, options.pictures);

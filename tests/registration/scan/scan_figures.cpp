@@ -134,15 +134,25 @@ CloudFigures cloud_figures(const ScanResult& scan, const SimulatedRig& room, con
     CloudFigures figures;
     figures.points = cloud.size();
     const std::vector<double> errors = room.scan_errors_mm(cloud.points_in_rig, at);
+    split_error(cloud.points_in_rig, errors, facing_points(cloud, room, rig, at), figures);
+    judge_covariance(cloud, errors, rig, figures);
+    figures.completeness = completeness(cloud.points_in_rig, room, room.true_rig(), at);
+    return figures;
+}
+
+std::vector<bool> facing_points(const PointCloud& cloud, const SimulatedRig& room, const RigCalibration& rig, Instant at) {
     const RigidTransform ct_from_rig = room.true_rig_from_ct(at).inverse();
     std::vector<bool> facing;
     for (std::size_t i = 0; i < cloud.size(); ++i)
         facing.push_back(faces(rig.projector, cloud.points_in_rig[i], cloud.normals_in_rig[i]) &&
                          !on_sticker(room, ct_from_rig * cloud.points_in_rig[i]));
-    split_error(cloud.points_in_rig, errors, facing, figures);
-    judge_covariance(cloud, errors, rig, figures);
-    figures.completeness = completeness(cloud.points_in_rig, room, room.true_rig(), at);
-    return figures;
+    return facing;
+}
+
+double scatter_in_cubes_mm(const std::vector<Vector3d>& points, const std::vector<double>& errors) {
+    CloudFigures figures;
+    split_error(points, errors, std::vector<bool>(points.size(), true), figures);
+    return figures.noise_mm;
 }
 
 double completeness(const std::vector<Vector3d>& points_in_rig, const SimulatedRig& room, const RigCalibration& true_rig,

@@ -23,6 +23,13 @@ struct CloudFigures {
 };
 CloudFigures cloud_figures(const ScanResult& scan, const simulation::SimulatedRig& room, const RigCalibration& rig, Instant at);
 
+/// rms of `errors` about their own mean in cubes of 4 mm (those with six points or more).
+double scatter_in_cubes_mm(const std::vector<Eigen::Vector3d>& points, const std::vector<double>& errors);
+
+/// Of each point of the cloud: under 65 degrees between its normal and the way to the projector, and off the stickers.
+std::vector<bool> facing_points(const PointCloud& cloud, const simulation::SimulatedRig& room, const RigCalibration& rig,
+                                Instant at);
+
 /// Share of the true skin that is lit, faces the projector and a camera that sees it at less than 65 degrees, lies off the
 /// stickers, and has a point of the cloud within 2 mm. Sampled every few projector pixels.
 double completeness(const std::vector<Eigen::Vector3d>& points_in_rig, const simulation::SimulatedRig& room,
