@@ -15,7 +15,8 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 /// What a projector pixel is on the points, mm.
 double mm_per_px(const Triangulation& raw, const CameraModel& projector) {
     double sum = 0;
-    for (const auto& point : raw.by_cameras) sum += (projector.device_from_rig * point.p_in_rig).z() / projector.focal_x;
+    for (const auto& point : raw.by_cameras)
+        sum += (projector.device_from_rig * point.p_in_rig).z() / projector.focal_x;
     return raw.by_cameras.empty() ? 0 : sum / static_cast<double>(raw.by_cameras.size());
 }
 
@@ -38,7 +39,8 @@ constexpr const char* kNotInView =
 
 bool cameras_bent(const BentResiduals& bent, const DriftLimits& limits) {
     const double off = std::abs(bent.k1_off);
-    return bent.k1_sigma < limits.camera_k1_known && off > limits.camera_k1 && off > limits.camera_k1_sigmas * bent.k1_sigma;
+    return bent.k1_sigma < limits.camera_k1_known && off > limits.camera_k1 &&
+           off > limits.camera_k1_sigmas * bent.k1_sigma;
 }
 
 /// `placed`: the points were enough to place the projector by them. Moved cameras are told first: then they may not be.
@@ -51,9 +53,9 @@ void decide(DriftCheck& check, bool placed, const DriftLimits& limits) {
         check.remedy = kNotInView;
     } else if (check.epipolar_rms_px > limits.epipolar_px) {
         check.verdict = Verdict::cameras_moved;
-        check.reason =
-            fmt::format("the cameras do not fit each other any more: {:.2f} px from the epipolar lines; {:.2f} is the limit",
-                        check.epipolar_rms_px, limits.epipolar_px);
+        check.reason = fmt::format(
+            "the cameras do not fit each other any more: {:.2f} px from the epipolar lines; {:.2f} is the limit",
+            check.epipolar_rms_px, limits.epipolar_px);
         check.remedy = "Calibrate the rig again.";
     } else if (!placed) {
         check.reason = "what both cameras see under the light lies too close together to place the projector by it";
@@ -61,28 +63,33 @@ void decide(DriftCheck& check, bool placed, const DriftLimits& limits) {
     } else if (check.projector_after_px > limits.projector_after_px) {
         check.verdict = Verdict::lens_changed;
         check.reason = fmt::format(
-            "the projector fits from no place ({:.2f} px left; {:.2f} is the limit): its zoom, focus or keystone was changed",
+            "the projector fits from no place ({:.2f} px left; {:.2f} is the limit): its zoom, focus or keystone was "
+            "changed",
             check.projector_after_px, limits.projector_after_px);
         check.remedy = "Set zoom, focus and keystone back, or calibrate the rig again.";
     } else if (cameras_bent(check.bent, limits)) {
         check.verdict = Verdict::distortion_wrong;
         check.reason = fmt::format(
-            "the distances from the epipolar lines are bent as by a wrong lens: a distortion k1 of the left or right camera is "
+            "the distances from the epipolar lines are bent as by a wrong lens: a distortion k1 of the left or right "
+            "camera is "
             "off by about {:.2f} ({:.2f} is the limit)",
             std::abs(check.bent.k1_off), limits.camera_k1);
         check.remedy = kOtherDistortion;
     } else if (check.bent.projector_px > limits.projector_bent_px) {
         check.verdict = Verdict::distortion_wrong;
         check.reason = fmt::format(
-            "the light is bent against the rig from place to place ({:.3f} px rms; {:.3f} is the limit), as by a wrong distortion "
+            "the light is bent against the rig from place to place ({:.3f} px rms; {:.3f} is the limit), as by a wrong "
+            "distortion "
             "of the projector or of both cameras",
             check.bent.projector_px, limits.projector_bent_px);
         check.remedy = kOtherDistortion;
     } else if (check.projector_rms_px > limits.projector_px) {
         check.verdict = Verdict::projector_moved;
-        check.reason = fmt::format("the projector moved by {:.2f} mm and {:.3f} degrees: light would land {:.2f} mm off",
-                                   check.moved_mm, check.turned * kDegrees, check.light_off_mm);
-        check.remedy = "Scans place the projector anew by themselves; calibrate the rig again if it was not moved on purpose.";
+        check.reason =
+            fmt::format("the projector moved by {:.2f} mm and {:.3f} degrees: light would land {:.2f} mm off",
+                        check.moved_mm, check.turned * kDegrees, check.light_off_mm);
+        check.remedy =
+            "Scans place the projector anew by themselves; calibrate the rig again if it was not moved on purpose.";
     } else {
         check.verdict = Verdict::good;
         check.reason = "the rig is as it was calibrated";
@@ -149,7 +156,8 @@ std::vector<DriftTrend> drift_trends(const std::vector<EarlierCheck>& checks, co
     std::vector<DriftTrend> trends;
     const auto add = [&](const char* what, double EarlierCheck::*value, double limit) {
         std::vector<EarlierCheck> known;
-        std::copy_if(checks.begin(), checks.end(), std::back_inserter(known), [&](const auto& c) { return c.*value > 0; });
+        std::copy_if(checks.begin(), checks.end(), std::back_inserter(known),
+                     [&](const auto& c) { return c.*value > 0; });
         if (known.size() < 4) return;
         const auto [first, last] =
             std::minmax_element(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.day < b.day; });

@@ -39,7 +39,8 @@ TEST(CheckDrift, AGoodRigIsGood) {
     EXPECT_TRUE(check.remedy.empty());
 }
 
-/// The rms of all distances is over the limit then: two wrong partners of 20,000 points made it 0.44 px in a good simulated room.
+/// The rms of all distances is over the limit then: two wrong partners of 20,000 points made it 0.44 px in a good
+/// simulated room.
 TEST(CheckDrift, AFewWrongPartnersAreNoMovedCamera) {
     ScanResult scan = scan_from_capture(scanned().shot, scanned().rig);
     auto& points = scan.raw.by_cameras;
@@ -86,26 +87,30 @@ void flip_distortion(CameraModel& device) {
     for (double* k : {&device.k1, &device.k2, &device.k3, &device.p1, &device.p2}) *k = -*k;
 }
 
-/// 0.02 degrees are 0.7 px of this camera. So few points are near their lines then that the projector cannot be placed by them.
+/// 0.02 degrees are 0.7 px of this camera. So few points are near their lines then that the projector cannot be placed
+/// by them.
 TEST(CheckDrift, ACameraTurnedByAFiftiethOfADegreeIsNoticed) {
     for (const double degrees : {0.02, -0.02}) {
         RigCalibration rig = scanned().rig;
-        rig.right_camera.device_from_rig = turned_by(degrees, Eigen::Vector3d::UnitX()) * rig.right_camera.device_from_rig;
+        rig.right_camera.device_from_rig =
+            turned_by(degrees, Eigen::Vector3d::UnitX()) * rig.right_camera.device_from_rig;
         EXPECT_EQ(checked(rig).verdict, Verdict::cameras_moved) << degrees;
     }
 }
 
-/// A mild lens the wrong way round is under the noise of a point, but not of a place. It takes a surface over most of the pictures.
+/// A mild lens the wrong way round is under the noise of a point, but not of a place. It takes a surface over most of
+/// the pictures.
 TEST(CheckDrift, AFlippedSignOfADistortionIsNoticed) {
-    const Room room = paper_room(
-        nearest_of({sphere({120, -40, 400}, 95), plane({120, -40, 400}, Eigen::Vector3d(0.2, 0.1, -1).normalized(), 250)}));
+    const Room room = paper_room(nearest_of(
+        {sphere({120, -40, 400}, 95), plane({120, -40, 400}, Eigen::Vector3d(0.2, 0.1, -1).normalized(), 250)}));
     const ScanCapture shot = capture(room, stripes_of(room));
     for (const int which : {0, 1, 2}) {
         RigCalibration rig = rig_of(room);
         flip_distortion(which == 0 ? rig.left_camera : which == 1 ? rig.right_camera : rig.projector);
         const DriftCheck check = check_drift(scan_from_capture(shot, rig), rig);
-        EXPECT_NE(check.verdict, Verdict::good) << which << ": k1 off " << check.bent.k1_off << " +- " << check.bent.k1_sigma
-                                                << ", projector bent " << check.bent.projector_px << " px";
+        EXPECT_NE(check.verdict, Verdict::good)
+            << which << ": k1 off " << check.bent.k1_off << " +- " << check.bent.k1_sigma << ", projector bent "
+            << check.bent.projector_px << " px";
         EXPECT_FALSE(check.remedy.empty());
     }
     const DriftCheck good = check_drift(scan_from_capture(shot, rig_of(room)), rig_of(room));

@@ -2,8 +2,9 @@
 
 namespace planlight::test {
 
-std::optional<double> epipolar_error_px(const CameraModel& true_left, const CameraModel& true_right, const CameraModel& left,
-                                        const CameraModel& right, const Eigen::Vector3d& p_in_rig) {
+std::optional<double> epipolar_error_px(const CameraModel& true_left, const CameraModel& true_right,
+                                        const CameraModel& left, const CameraModel& right,
+                                        const Eigen::Vector3d& p_in_rig) {
     const auto left_pixel = project(true_left, p_in_rig), right_pixel = project(true_right, p_in_rig);
     if (!left_pixel || !right_pixel || !in_picture(true_left, *left_pixel) || !in_picture(true_right, *right_pixel))
         return std::nullopt;

@@ -17,7 +17,8 @@ using simulation::SimulatedRig;
 constexpr int kReach = 4, kSide = 2 * kReach + 1;
 using Window = std::array<double, kSide * kSide>;
 
-/// Weights of the 9 x 9 pixels that sum to one: the lens's Gaussian, averaged over a box of (2 reach + 1) squared pixels.
+/// Weights of the 9 x 9 pixels that sum to one: the lens's Gaussian, averaged over a box of (2 reach + 1) squared
+/// pixels.
 Window window_of(int reach) {
     constexpr double kLens_px = 0.7;
     Window weights{};
@@ -38,8 +39,13 @@ Window window_of(int reach) {
 class Skin {
 public:
     Skin(const SimulatedRig& room, const CameraModel& left, Instant at)
-        : room_(room), rig_from_ct_(room.true_rig_from_ct(at)), at_(at), width_(left.width), height_(left.height),
-          wanted_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)), points_(wanted_.size()) {}
+        : room_(room),
+          rig_from_ct_(room.true_rig_from_ct(at)),
+          at_(at),
+          width_(left.width),
+          height_(left.height),
+          wanted_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)),
+          points_(wanted_.size()) {}
 
     /// False: the window round the pixel is not in the picture.
     bool want(const Eigen::Vector2i& pixel) {
@@ -50,14 +56,17 @@ public:
     void look() {
         tbb::parallel_for(0, height_, [&](int y) {
             for (int x = 0; x < width_; ++x) {
-                const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
+                const std::size_t i =
+                    static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
                 if (!wanted_[i]) continue;
                 const auto sight = room_.true_sight(SimulatedRig::Camera::left, Vector2d(x, y), at_);
                 if (sight && sight->lit_by) points_[i] = rig_from_ct_ * sight->p_in_ct;
             }
         });
     }
-    const std::optional<Vector3d>& at(const Eigen::Vector2i& pixel, int place) const { return points_[index(pixel, place)]; }
+    const std::optional<Vector3d>& at(const Eigen::Vector2i& pixel, int place) const {
+        return points_[index(pixel, place)];
+    }
 
 private:
     std::size_t index(const Eigen::Vector2i& pixel, int place) const {
@@ -79,7 +88,8 @@ std::optional<Eigen::Vector2i> pixel_of(const CameraModel& camera, const Vector3
 }
 
 /// Heights of the true skin over the point along its normal, in the 9 x 9 pixels; empty at an edge.
-std::optional<Window> heights_over(const Skin& skin, const Eigen::Vector2i& pixel, const Vector3d& p, const Vector3d& normal) {
+std::optional<Window> heights_over(const Skin& skin, const Eigen::Vector2i& pixel, const Vector3d& p,
+                                   const Vector3d& normal) {
     constexpr double kEdge_mm = 8;  // farther from the point is other skin: 9 pixels are 4 mm on it
     Window heights;
     for (int k = 0; k < kSide * kSide; ++k) {

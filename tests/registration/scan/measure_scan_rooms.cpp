@@ -38,15 +38,24 @@ Options parse(int argc, char** argv) {
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
         const auto next = [&] { return std::string(i + 1 < argc ? argv[++i] : ""); };
-        if (word == "--volume") o.volume = next();
-        else if (word == "--json") o.json = next();
-        else if (word == "--pictures") o.pictures = next();
-        else if (word == "--set") o.set = next();
-        else if (word == "--spoilt") o.spoilt = static_cast<unsigned>(std::stoul(next()));
-        else if (word == "paper") o.presets = {Preset::paper};
-        else if (word == "modern") o.presets = {Preset::modern};
-        else if (word == "both") o.presets = {Preset::paper, Preset::modern};
-        else (place++ == 0 ? o.seed : o.count) = static_cast<unsigned>(std::stoul(word));
+        if (word == "--volume")
+            o.volume = next();
+        else if (word == "--json")
+            o.json = next();
+        else if (word == "--pictures")
+            o.pictures = next();
+        else if (word == "--set")
+            o.set = next();
+        else if (word == "--spoilt")
+            o.spoilt = static_cast<unsigned>(std::stoul(next()));
+        else if (word == "paper")
+            o.presets = {Preset::paper};
+        else if (word == "modern")
+            o.presets = {Preset::modern};
+        else if (word == "both")
+            o.presets = {Preset::paper, Preset::modern};
+        else
+            (place++ == 0 ? o.seed : o.count) = static_cast<unsigned>(std::stoul(word));
     }
     return o;
 }
@@ -162,8 +171,10 @@ PresetTable run(Preset preset, const Options& options, const Volume& head, const
             const ScanResult scan = scan_from_capture(capture, room.calibration());
             if (scan.clean.kept.empty()) throw CheckFailedError("no skin was found", "-");
             Figures figures = figures_of_head(scan, room, capture.began);
-            for (auto& figure : figures_of_ball(sphere, random_room(preset, seed), options.set)) figures.push_back(std::move(figure));
-            for (auto& figure : figures_of_footprint(scan, room, options.set, capture.began)) figures.push_back(std::move(figure));
+            for (auto& figure : figures_of_ball(sphere, random_room(preset, seed), options.set))
+                figures.push_back(std::move(figure));
+            for (auto& figure : figures_of_footprint(scan, room, options.set, capture.began))
+                figures.push_back(std::move(figure));
             table.rooms.push_back(std::move(figures));
             if (k == 0 && !options.pictures.empty() && preset == options.presets.back())
                 write_scan_pictures(room, capture, scan, options.pictures);
@@ -202,8 +213,10 @@ Json print_table(const std::string& name, const PresetTable& table) {
         std::vector<double> values;
         for (const Figures& room : table.rooms) values.push_back(room[i].second);
         const auto [half, most, worst] = distribution(values);
-        fmt::print("{:32}{:>12}{:>12}{:>12}\n", table.rooms.front()[i].first, number(half), number(most), number(worst));
-        json["figures"][table.rooms.front()[i].first] = {{"median", half}, {"p95", most}, {"worst", worst}, {"rooms", values}};
+        fmt::print("{:32}{:>12}{:>12}{:>12}\n", table.rooms.front()[i].first, number(half), number(most),
+                   number(worst));
+        json["figures"][table.rooms.front()[i].first] = {
+            {"median", half}, {"p95", most}, {"worst", worst}, {"rooms", values}};
     }
     return json;
 }
@@ -211,19 +224,25 @@ Json print_table(const std::string& name, const PresetTable& table) {
 Json print_spoilt(const std::vector<Spoilt>& table) {
     Json json = Json::array();
     if (table.empty()) return json;
-    fmt::print("\n{:42}{:>9}{:>10}{:>11}{:>8}{:>9}{:>10}  said\n", "wrong on purpose", "noticed", "epipolar", "projector",
-               "after", "offset", "error mm");
+    fmt::print("\n{:42}{:>9}{:>10}{:>11}{:>8}{:>9}{:>10}  said\n", "wrong on purpose", "noticed", "epipolar",
+               "projector", "after", "offset", "error mm");
     for (const Spoilt& row : table) {
         const double n = row.rooms;
         std::string said;
         for (const auto& [verdict, count] : row.verdicts)
             said += fmt::format("{}{} {}", said.empty() ? "" : ", ", count, verdict);
-        fmt::print("{:42}{:>3} of {:>2}{:>10.3f}{:>11.3f}{:>8.3f}{:>9.3f}{:>10.3f}  {}\n", row.what, row.noticed, row.rooms,
-                   row.epipolar_px / n, row.projector_px / n, row.after_px / n, row.offset_px / n, row.error_mm / n, said);
-        json.push_back({{"what", row.what}, {"rooms", row.rooms}, {"noticed", row.noticed},
-                        {"epipolar_px", row.epipolar_px / n}, {"projector_px", row.projector_px / n},
-                        {"after_px", row.after_px / n}, {"offset_px", row.offset_px / n},
-                        {"median_error_mm", row.error_mm / n}, {"said", said}});
+        fmt::print("{:42}{:>3} of {:>2}{:>10.3f}{:>11.3f}{:>8.3f}{:>9.3f}{:>10.3f}  {}\n", row.what, row.noticed,
+                   row.rooms, row.epipolar_px / n, row.projector_px / n, row.after_px / n, row.offset_px / n,
+                   row.error_mm / n, said);
+        json.push_back({{"what", row.what},
+                        {"rooms", row.rooms},
+                        {"noticed", row.noticed},
+                        {"epipolar_px", row.epipolar_px / n},
+                        {"projector_px", row.projector_px / n},
+                        {"after_px", row.after_px / n},
+                        {"offset_px", row.offset_px / n},
+                        {"median_error_mm", row.error_mm / n},
+                        {"said", said}});
     }
     return json;
 }
