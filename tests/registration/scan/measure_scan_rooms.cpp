@@ -1,5 +1,6 @@
 // What a scan is worth in random simulated rooms: measure_scan_rooms [SEED] [COUNT] [paper|modern|both] [--volume FILE]
-// [--spoilt N] [--set full|fast|multi-frequency|multi-frequency-columns] [--json FILE] [--pictures FOLDER].
+// [--spoilt N] [--set full|fast|multi-frequency|multi-frequency-columns] [--json FILE] [--pictures FOLDER]
+// [--perfect] (a calibration without error).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,6 +29,7 @@ namespace {
 
 struct Options {
     unsigned seed = 1, count = 3, spoilt = 1;
+    bool perfect = false;
     std::vector<Preset> presets{Preset::paper, Preset::modern};
     std::string volume = "/usr/share/doc/invesalius-examples/examples/Cranium.inv3", json, pictures, set = "full";
 };
@@ -48,6 +50,8 @@ Options parse(int argc, char** argv) {
             o.set = next();
         else if (word == "--spoilt")
             o.spoilt = static_cast<unsigned>(std::stoul(next()));
+        else if (word == "--perfect")
+            o.perfect = true;
         else if (word == "paper")
             o.presets = {Preset::paper};
         else if (word == "modern")
@@ -119,13 +123,14 @@ Figures figures_of_ball(const Volume& sphere, simulation::RoomSettings settings,
             {"ball: noise, rms, all (mm)", cloud.noise_all_mm},
             {"ball: bias, size (mm)", std::abs(cloud.bias_mm)},
             {"ball: radius, error (mm)", std::abs(radius - kSphereRadius_mm)},
+            {"ball: radius, signed (mm)", radius - kSphereRadius_mm},
             {"ball: chi-square, mean", cloud.chi_square},
             {"ball: chi-square by median", cloud.chi_square_median}};
 }
 
 struct Spoilt {
     std::string what;
-    unsigned rooms = 0, noticed = 0;
+    unsigned rooms = 0, noticed = 0, placed = 0;  ///< `placed`: the projector could be placed by the points
     double epipolar_px = 0, projector_px = 0, after_px = 0, offset_px = 0, error_mm = 0;  // sums
     std::map<std::string, int> verdicts;
 };
@@ -144,6 +149,7 @@ void try_spoilt(const ScanCapture& capture, const SimulatedRig& room, std::vecto
         row.noticed += check.verdict != DriftCheck::Verdict::good;
         ++row.verdicts[text_of(check.verdict)];
         row.epipolar_px += check.epipolar_rms_px;
+        row.placed += check.projector_rms_px > 0;
         row.projector_px += check.projector_rms_px;
         row.after_px += check.projector_after_px;
         row.offset_px += scan.raw.projector_offset_px.norm();
@@ -166,13 +172,14 @@ PresetTable run(Preset preset, const Options& options, const Volume& head, const
     for (unsigned k = 0; k < options.count; ++k) {
         const unsigned seed = options.seed + k;
         try {
-            SimulatedRig room(head, {}, random_room(preset, seed));
+            simulation::RoomSettings settings = random_room(preset, seed);
+            if (options.perfect) settings.calibration_error = 0;
+            SimulatedRig room(head, {}, settings);
             const ScanCapture capture = capture_of(room, options.set);
             const ScanResult scan = scan_from_capture(capture, room.calibration());
             if (scan.clean.kept.empty()) throw CheckFailedError("no skin was found", "-");
             Figures figures = figures_of_head(scan, room, capture.began);
-            for (auto& figure : figures_of_ball(sphere, random_room(preset, seed), options.set))
-                figures.push_back(std::move(figure));
+            for (auto& figure : figures_of_ball(sphere, settings, options.set)) figures.push_back(std::move(figure));
             for (auto& figure : figures_of_footprint(scan, room, options.set, capture.began))
                 figures.push_back(std::move(figure));
             table.rooms.push_back(std::move(figures));
@@ -227,19 +234,20 @@ Json print_spoilt(const std::vector<Spoilt>& table) {
     fmt::print("\n{:42}{:>9}{:>10}{:>11}{:>8}{:>9}{:>10}  said\n", "wrong on purpose", "noticed", "epipolar",
                "projector", "after", "offset", "error mm");
     for (const Spoilt& row : table) {
-        const double n = row.rooms;
+        const double n = row.rooms, placed = std::max(1u, row.placed);
         std::string said;
         for (const auto& [verdict, count] : row.verdicts)
             said += fmt::format("{}{} {}", said.empty() ? "" : ", ", count, verdict);
         fmt::print("{:42}{:>3} of {:>2}{:>10.3f}{:>11.3f}{:>8.3f}{:>9.3f}{:>10.3f}  {}\n", row.what, row.noticed,
-                   row.rooms, row.epipolar_px / n, row.projector_px / n, row.after_px / n, row.offset_px / n,
+                   row.rooms, row.epipolar_px / n, row.projector_px / placed, row.after_px / placed, row.offset_px / n,
                    row.error_mm / n, said);
         json.push_back({{"what", row.what},
                         {"rooms", row.rooms},
                         {"noticed", row.noticed},
                         {"epipolar_px", row.epipolar_px / n},
-                        {"projector_px", row.projector_px / n},
-                        {"after_px", row.after_px / n},
+                        {"projector_placed", row.placed},
+                        {"projector_px", row.projector_px / placed},
+                        {"after_px", row.after_px / placed},
                         {"offset_px", row.offset_px / n},
                         {"median_error_mm", row.error_mm / n},
                         {"said", said}});
