@@ -44,6 +44,12 @@ std::vector<EarlierCheck> earlier_checks(const Json& log, const std::string& rig
     return checks;
 }
 
+std::string said_of_projector(const DriftCheck& check) {
+    if (check.projector_rms_px == 0) return "projector not placed";
+    return fmt::format("projector {:.2f} px ({:.2f} mm of light), moved {:.2f} mm", check.projector_rms_px,
+                       check.light_off_mm, check.moved_mm);
+}
+
 }  // namespace
 
 int run_check(const CheckOptions& options) {
@@ -87,11 +93,8 @@ int run_check(const CheckOptions& options) {
     if (options.json)
         std::cout << result.dump(2) << '\n';
     else
-        fmt::print(
-            "{}: {} points, epipolar error {:.2f} px, projector {:.2f} px ({:.2f} mm of light), moved {:.2f} mm; check {} in "
-            "{}.\n",
-            text_of(check.verdict), check.points, check.epipolar_rms_px, check.projector_rms_px, check.light_off_mm,
-            check.moved_mm, log["checks"].size(), file.string());
+        fmt::print("{}: {} points, epipolar error {:.2f} px, {}; check {} in {}.\n", text_of(check.verdict), check.points,
+                   check.epipolar_rms_px, said_of_projector(check), log["checks"].size(), file.string());
     if (check.verdict != DriftCheck::Verdict::good) throw CheckFailedError(check.reason, check.remedy);
     return 0;
 }

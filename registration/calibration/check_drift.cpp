@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
 
 namespace planlight {
@@ -14,51 +15,81 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 /// What a projector pixel is on the points, mm.
 double mm_per_px(const Triangulation& raw, const CameraModel& projector) {
     double sum = 0;
-    for (const auto& point : raw.by_cameras) sum += (projector.device_from_rig * point.p_in_rig).z() / projector.focal_x;
+    for (const auto& point : raw.by_cameras)
+        sum += (projector.device_from_rig * point.p_in_rig).z() / projector.focal_x;
     return raw.by_cameras.empty() ? 0 : sum / static_cast<double>(raw.by_cameras.size());
+}
+
+/// The size that 68.3 % of the distances from the epipolar lines do not exceed, pixels.
+double usual_epipolar_px(const Triangulation& raw) {
+    constexpr double kOneSigma = 0.683;
+    std::vector<double> sizes;
+    for (const auto& point : raw.by_cameras) sizes.push_back(std::abs(point.epipolar_px));
+    if (sizes.empty()) return 0;
+    const auto rank = sizes.begin() + static_cast<std::ptrdiff_t>(kOneSigma * static_cast<double>(sizes.size()));
+    std::nth_element(sizes.begin(), rank, sizes.end());
+    return *rank;
 }
 
 constexpr const char* kOtherDistortion =
     "If rig.json was written by another program, see that its distortion has the right sign; else calibrate again.";
 
+constexpr const char* kNotInView =
+    "Put the board or the patient where both cameras see it under the light. If it is there, calibrate the rig again.";
+
 bool cameras_bent(const BentResiduals& bent, const DriftLimits& limits) {
     const double off = std::abs(bent.k1_off);
-    return bent.k1_sigma < limits.camera_k1_known && off > limits.camera_k1 && off > limits.camera_k1_sigmas * bent.k1_sigma;
+    return bent.k1_sigma < limits.camera_k1_known && off > limits.camera_k1 &&
+           off > limits.camera_k1_sigmas * bent.k1_sigma;
 }
 
-void decide(DriftCheck& check, const DriftLimits& limits) {
+/// `placed`: the points were enough to place the projector by them. Moved cameras are told first: then they may not be.
+void decide(DriftCheck& check, bool placed, const DriftLimits& limits) {
     using Verdict = DriftCheck::Verdict;
-    if (check.epipolar_rms_px > limits.epipolar_px) {
+    if (check.points < limits.min_points) {
+        check.reason = fmt::format(
+            "only {} points are seen by both cameras under the light; {} over a good part of the picture are needed",
+            check.points, limits.min_points);
+        check.remedy = kNotInView;
+    } else if (check.epipolar_rms_px > limits.epipolar_px) {
         check.verdict = Verdict::cameras_moved;
-        check.reason =
-            fmt::format("the cameras do not fit each other any more: {:.2f} px from the epipolar lines; {:.2f} is the limit",
-                        check.epipolar_rms_px, limits.epipolar_px);
+        check.reason = fmt::format(
+            "the cameras do not fit each other any more: {:.2f} px from the epipolar lines; {:.2f} is the limit",
+            check.epipolar_rms_px, limits.epipolar_px);
         check.remedy = "Calibrate the rig again.";
+    } else if (!placed) {
+        check.reason = "what both cameras see under the light lies too close together to place the projector by it";
+        check.remedy = kNotInView;
     } else if (check.projector_after_px > limits.projector_after_px) {
         check.verdict = Verdict::lens_changed;
         check.reason = fmt::format(
-            "the projector fits from no place ({:.2f} px left; {:.2f} is the limit): its zoom, focus or keystone was changed",
+            "the projector fits from no place ({:.2f} px left; {:.2f} is the limit): its zoom, focus or keystone was "
+            "changed",
             check.projector_after_px, limits.projector_after_px);
         check.remedy = "Set zoom, focus and keystone back, or calibrate the rig again.";
     } else if (cameras_bent(check.bent, limits)) {
         check.verdict = Verdict::distortion_wrong;
         check.reason = fmt::format(
-            "the distances from the epipolar lines are bent as by a wrong lens: a distortion k1 of the left or right camera is "
+            "the distances from the epipolar lines are bent as by a wrong lens: a distortion k1 of the left or right "
+            "camera is "
             "off by about {:.2f} ({:.2f} is the limit)",
             std::abs(check.bent.k1_off), limits.camera_k1);
         check.remedy = kOtherDistortion;
     } else if (check.bent.projector_px > limits.projector_bent_px) {
         check.verdict = Verdict::distortion_wrong;
         check.reason = fmt::format(
-            "the light is bent against the rig from place to place ({:.3f} px rms; {:.3f} is the limit), as by a wrong distortion "
+            "the light is bent against the rig from place to place ({:.3f} px rms; {:.3f} is the limit), as by a wrong "
+            "distortion "
             "of the projector or of both cameras",
             check.bent.projector_px, limits.projector_bent_px);
         check.remedy = kOtherDistortion;
     } else if (check.projector_rms_px > limits.projector_px) {
         check.verdict = Verdict::projector_moved;
-        check.reason = fmt::format("the projector moved by {:.2f} mm and {:.3f} degrees: light would land {:.2f} mm off",
-                                   check.moved_mm, check.turned * kDegrees, check.light_off_mm);
-        check.remedy = "Scans place the projector anew by themselves; calibrate the rig again if it was not moved on purpose.";
+        check.reason =
+            fmt::format("the projector moved by {:.2f} mm and {:.3f} degrees: light would land {:.2f} mm off",
+                        check.moved_mm, check.turned * kDegrees, check.light_off_mm);
+        check.remedy =
+            "Scans place the projector anew by themselves; calibrate the rig again if it was not moved on purpose.";
     } else {
         check.verdict = Verdict::good;
         check.reason = "the rig is as it was calibrated";
@@ -106,35 +137,32 @@ const char* text_of(DriftCheck::Verdict verdict) {
 DriftCheck check_drift(const ScanResult& scan, const RigCalibration& rig, const DriftLimits& limits) {
     DriftCheck check;
     check.points = scan.raw.by_cameras.size();
-    check.epipolar_rms_px = scan.raw.epipolar_rms_px;
-    if (check.points < limits.min_points || !scan.resection) {
-        check.reason = fmt::format(
-            "only {} points are seen by both cameras under the light; {} over a good part of the picture are needed",
-            check.points, limits.min_points);
-        check.remedy =
-            "Put the board or the patient where both cameras see it under the light. If it is there, calibrate the rig again.";
-        return check;
+    check.epipolar_rms_px = usual_epipolar_px(scan.raw);
+    if (scan.resection) {
+        check.projector_rms_px = std::numbers::sqrt2 * scan.resection->rms_before_px;  // said per axis there
+        check.projector_after_px = std::numbers::sqrt2 * scan.resection->rms_after_px;
+        RigCalibration placed = rig;
+        placed.projector = scan.resection->projector;
+        check.bent = bent_residuals(scan.raw, placed);
+        check.moved_mm = scan.resection->moved_mm;
+        check.turned = scan.resection->turned;
+        check.light_off_mm = check.projector_rms_px * mm_per_px(scan.raw, rig.projector);
     }
-    check.projector_rms_px = std::numbers::sqrt2 * scan.resection->rms_before_px;  // said per axis there
-    check.projector_after_px = std::numbers::sqrt2 * scan.resection->rms_after_px;
-    RigCalibration placed = rig;
-    placed.projector = scan.resection->projector;
-    check.bent = bent_residuals(scan.raw, placed);
-    check.moved_mm = scan.resection->moved_mm;
-    check.turned = scan.resection->turned;
-    check.light_off_mm = check.projector_rms_px * mm_per_px(scan.raw, rig.projector);
-    decide(check, limits);
+    decide(check, scan.resection.has_value(), limits);
     return check;
 }
 
 std::vector<DriftTrend> drift_trends(const std::vector<EarlierCheck>& checks, const DriftLimits& limits) {
-    if (checks.size() < 4) return {};
-    const auto [first, last] =
-        std::minmax_element(checks.begin(), checks.end(), [](const auto& a, const auto& b) { return a.day < b.day; });
-    if (last->day - first->day < 2) return {};
     std::vector<DriftTrend> trends;
     const auto add = [&](const char* what, double EarlierCheck::*value, double limit) {
-        const Line line = fit_line(checks, value);
+        std::vector<EarlierCheck> known;
+        std::copy_if(checks.begin(), checks.end(), std::back_inserter(known),
+                     [&](const auto& c) { return c.*value > 0; });
+        if (known.size() < 4) return;
+        const auto [first, last] =
+            std::minmax_element(known.begin(), known.end(), [](const auto& a, const auto& b) { return a.day < b.day; });
+        if (last->day - first->day < 2) return;
+        const Line line = fit_line(known, value);
         if (line.slope > 2 * line.slope_sigma && line.slope > 1e-4)
             trends.push_back({what, line.slope, std::max(0.0, (limit - line.at_last) / line.slope)});
     };

@@ -10,6 +10,7 @@
 
 #include "registration/calibration/calibrate_rig.h"
 #include "tests/registration/calibration/board_scene.h"
+#include "tests/registration/calibration/epipolar_error.h"
 
 namespace planlight {
 namespace {
@@ -22,6 +23,7 @@ struct Room {
     double length_mm = 0, scale_mm = 0;
     double point_rms_mm = 0, point_p95_mm = 0, predicted_rms_mm = 0, light_p95_mm = 0, predicted_light_rms_mm = 0,
            light_rms_mm = 0;
+    double epipolar_px = 0;  ///< rms over the working volume
 };
 
 RigEstimate devices_of(const RigCalibration& rig) {
@@ -30,8 +32,8 @@ RigEstimate devices_of(const RigCalibration& rig) {
     return estimate;
 }
 
-/// Scans the points of the working volume without any noise: their true pixels, the calibrated rig. What is left after a
-/// common turn and shift is the calibration's error.
+/// Scans the points of the working volume without any noise: their true pixels, the calibrated rig. What is left after
+/// a common turn and shift is the calibration's error.
 void compare(const Calibration& calibration, const RigCalibration& truth, Room& room) {
     const VolumeError& volume = *calibration.volume;
     const RigEstimate true_rig = devices_of(truth);
@@ -39,10 +41,14 @@ void compare(const Calibration& calibration, const RigCalibration& truth, Room& 
         truth.left_camera.device_from_rig.inverse();  // the found rig frame is the left camera's
     std::vector<Vector3d> found, wanted;
     double predicted = 0, light_predicted = 0;
-    std::vector<double> light;
+    std::vector<double> light, epipolar;
     for (std::size_t i = 0; i < volume.points.size(); ++i) {
         if (!volume.seen[i]) continue;
         const Vector3d p = true_from_found * volume.points[i];
+        const auto epipolar_px =
+            test::epipolar_error_px(truth.left_camera, truth.right_camera, *calibration.device(DeviceName::left_camera),
+                                    *calibration.device(DeviceName::right_camera), p);
+        if (epipolar_px) epipolar.push_back(*epipolar_px);
         PixelsOfPoint pixels;
         for (std::size_t d = 0; d < 3; ++d) {
             const auto pixel = project(*true_rig.devices[d], p);
@@ -54,11 +60,12 @@ void compare(const Calibration& calibration, const RigCalibration& truth, Room& 
         wanted.push_back(p);
         predicted += volume.sigma_mm[i] * volume.sigma_mm[i];
         if (!pixels[0] || !pixels[1] || !pixels[2] || std::isnan(volume.light_sigma_mm[i])) continue;
-        const auto by_cameras =
-            triangulate_pixels(calibration.bundle.rig, {pixels[0], pixels[1], std::nullopt}, kScanSigma_px, volume.points[i]);
+        const auto by_cameras = triangulate_pixels(calibration.bundle.rig, {pixels[0], pixels[1], std::nullopt},
+                                                   kScanSigma_px, volume.points[i]);
         if (!by_cameras) continue;
         const double mm_per_px = (truth.projector.device_from_rig * p).z() / truth.projector.focal_x;
-        light.push_back(mm_per_px * (*project(*calibration.device(DeviceName::projector), *by_cameras) - *pixels[2]).norm());
+        light.push_back(mm_per_px *
+                        (*project(*calibration.device(DeviceName::projector), *by_cameras) - *pixels[2]).norm());
         light_predicted += volume.light_sigma_mm[i] * volume.light_sigma_mm[i];
     }
     Eigen::Matrix3Xd a(3, found.size()), b(3, found.size());
@@ -74,6 +81,8 @@ void compare(const Calibration& calibration, const RigCalibration& truth, Room& 
         square += errors.back() * errors.back();
     }
     for (const double e : light) light_square += e * e;
+    for (const double e : epipolar) room.epipolar_px += e * e / static_cast<double>(epipolar.size());
+    room.epipolar_px = std::sqrt(room.epipolar_px);
     std::sort(errors.begin(), errors.end());
     std::sort(light.begin(), light.end());
     const auto n = static_cast<double>(errors.size()), m = static_cast<double>(std::max<std::size_t>(1, light.size()));
@@ -126,12 +135,15 @@ int main(int argc, char** argv) {
             room.scale_mm = calibration.held_out.length_mean_mm;
             compare(calibration, simulated.true_rig(), room);
             fmt::print(
-                "seed {}: held out {:.3f} {:.3f} {:.3f} px; length {:.3f} mm a 200; points off {:.4f} mm rms, said {:.4f}; "
-                "light off {:.4f}, said {:.4f}; bend {:.3f} {:.3f} {:.3f}; left out {} {} {}; factor {:.2f}\n",
-                settings.seed, room.held_out_px[0], room.held_out_px[1], room.held_out_px[2], room.length_mm, room.point_rms_mm,
-                room.predicted_rms_mm, room.light_rms_mm, room.predicted_light_rms_mm, calibration.bundle.rig.bend_mm.x(),
-                calibration.bundle.rig.bend_mm.y(), calibration.bundle.rig.bend_mm.z(), calibration.bundle.left_out[0],
-                calibration.bundle.left_out[1], calibration.bundle.left_out[2], calibration.held_out.uncertainty_factor);
+                "seed {}: held out {:.3f} {:.3f} {:.3f} px; length {:.3f} mm a 200; points off {:.4f} mm rms, said "
+                "{:.4f}; "
+                "light off {:.4f}, said {:.4f}; epipolar {:.3f} px; bend {:.3f} {:.3f} {:.3f}; left out {} {} {}; "
+                "factor {:.2f}\n",
+                settings.seed, room.held_out_px[0], room.held_out_px[1], room.held_out_px[2], room.length_mm,
+                room.point_rms_mm, room.predicted_rms_mm, room.light_rms_mm, room.predicted_light_rms_mm,
+                room.epipolar_px, calibration.bundle.rig.bend_mm.x(), calibration.bundle.rig.bend_mm.y(),
+                calibration.bundle.rig.bend_mm.z(), calibration.bundle.left_out[0], calibration.bundle.left_out[1],
+                calibration.bundle.left_out[2], calibration.held_out.uncertainty_factor);
         }
         std::fflush(stdout);
         rooms.push_back(room);
@@ -146,10 +158,13 @@ int main(int argc, char** argv) {
                std::count_if(rooms.begin(), rooms.end(), [](const Room& r) { return r.refused; }));
     const char* names[] = {"left camera, held-out poses, px", "right camera, held-out poses, px",
                            "projector, held-out poses, px"};
-    for (std::size_t d = 0; d < 3; ++d) print_distribution(names[d], values([&](const Room& r) { return r.held_out_px[d]; }));
+    for (std::size_t d = 0; d < 3; ++d)
+        print_distribution(names[d], values([&](const Room& r) { return r.held_out_px[d]; }));
     print_distribution("length error, mm a 200 mm, rms of a room", values([](const Room& r) { return r.length_mm; }));
     print_distribution("points of the working volume, mm, 95 %", values([](const Room& r) { return r.point_p95_mm; }));
     print_distribution("light sent to a point, mm, 95 %", values([](const Room& r) { return r.light_p95_mm; }));
+    print_distribution("off the true epipolar lines, px, rms of a room",
+                       values([](const Room& r) { return r.epipolar_px; }));
     print_distribution("points: true rms by stated sigma",
                        values([](const Room& r) { return r.point_rms_mm / r.predicted_rms_mm; }));
     print_distribution("light: true rms by stated sigma",

@@ -1,5 +1,6 @@
 // What a scan is worth in random simulated rooms: measure_scan_rooms [SEED] [COUNT] [paper|modern|both] [--volume FILE]
-// [--spoilt N] [--set full|fast|multi-frequency|multi-frequency-columns] [--json FILE] [--pictures FOLDER].
+// [--spoilt N] [--set full|fast|multi-frequency|multi-frequency-columns] [--json FILE] [--pictures FOLDER]
+// [--perfect] (a calibration without error).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include "planning_io/safe_write.h"
 #include "planning_io/types/error.h"
 #include "registration/calibration/check_drift.h"
+#include "tests/registration/scan/footprint_figures.h"
 #include "tests/registration/scan/random_rooms.h"
 #include "tests/registration/scan/scan_figures.h"
 #include "tests/registration/scan/scan_pictures.h"
@@ -27,6 +29,7 @@ namespace {
 
 struct Options {
     unsigned seed = 1, count = 3, spoilt = 1;
+    bool perfect = false;
     std::vector<Preset> presets{Preset::paper, Preset::modern};
     std::string volume = "/usr/share/doc/invesalius-examples/examples/Cranium.inv3", json, pictures, set = "full";
 };
@@ -37,15 +40,26 @@ Options parse(int argc, char** argv) {
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
         const auto next = [&] { return std::string(i + 1 < argc ? argv[++i] : ""); };
-        if (word == "--volume") o.volume = next();
-        else if (word == "--json") o.json = next();
-        else if (word == "--pictures") o.pictures = next();
-        else if (word == "--set") o.set = next();
-        else if (word == "--spoilt") o.spoilt = static_cast<unsigned>(std::stoul(next()));
-        else if (word == "paper") o.presets = {Preset::paper};
-        else if (word == "modern") o.presets = {Preset::modern};
-        else if (word == "both") o.presets = {Preset::paper, Preset::modern};
-        else (place++ == 0 ? o.seed : o.count) = static_cast<unsigned>(std::stoul(word));
+        if (word == "--volume")
+            o.volume = next();
+        else if (word == "--json")
+            o.json = next();
+        else if (word == "--pictures")
+            o.pictures = next();
+        else if (word == "--set")
+            o.set = next();
+        else if (word == "--spoilt")
+            o.spoilt = static_cast<unsigned>(std::stoul(next()));
+        else if (word == "--perfect")
+            o.perfect = true;
+        else if (word == "paper")
+            o.presets = {Preset::paper};
+        else if (word == "modern")
+            o.presets = {Preset::modern};
+        else if (word == "both")
+            o.presets = {Preset::paper, Preset::modern};
+        else
+            (place++ == 0 ? o.seed : o.count) = static_cast<unsigned>(std::stoul(word));
     }
     return o;
 }
@@ -62,6 +76,7 @@ Figures figures_of_head(const ScanResult& scan, const SimulatedRig& room, Instan
     code.wrong += right.wrong;
     code.wrong_inside += right.wrong_inside;
     code.wrong_facing += right.wrong_facing;
+    const DriftCheck check = check_drift(scan, room.calibration());
     const double decoded = std::max<double>(1, static_cast<double>(code.looked_at));
     return {{"noise, rms, facing (mm)", cloud.noise_mm},
             {"noise, rms, all (mm)", cloud.noise_all_mm},
@@ -74,10 +89,26 @@ Figures figures_of_head(const ScanResult& scan, const SimulatedRig& room, Instan
             {"wrong codes, silhouettes too", static_cast<double>(code.wrong) / decoded},
             {"chi-square, mean", cloud.chi_square},
             {"chi-square by median", cloud.chi_square_median},
-            {"epipolar rms (px)", scan.raw.epipolar_rms_px},
+            {"epipolar, usual (px)", check.epipolar_rms_px},
+            {"epipolar rms, wrong partners too", scan.raw.epipolar_rms_px},
+            {"check: k1 off, size", std::abs(check.bent.k1_off)},
+            {"check: k1 off by its sigma", std::abs(check.bent.k1_off) / std::max(1e-9, check.bent.k1_sigma)},
+            {"check: light bent (px)", check.bent.projector_px},
+            {"check: not called good", check.verdict == DriftCheck::Verdict::good ? 0.0 : 1.0},
             {"projector off (px)", scan.raw.projector_offset_px.norm()},
             {"points", static_cast<double>(cloud.points)},
             {"signed bias (mm)", cloud.bias_mm}};
+}
+
+/// Where the noise on the head comes from: a second scan of the same room, other noise.
+Figures figures_of_footprint(const ScanResult& scan, SimulatedRig& room, const std::string& set, Instant at) {
+    const ScanResult again = scan_from_capture(capture_of(room, set), room.calibration());
+    const FootprintFigures f = footprint_figures(scan, again, room, room.calibration(), at);
+    return {{"off the skin at the pixel (mm)", f.at_point_mm},
+            {"off it, blurred by the lens (mm)", f.by_lens_mm},
+            {"off it, over 5 x 5 pixels (mm)", f.by_window_mm},
+            {"two scans / sqrt 2 (mm)", f.repeat_mm},
+            {"points of both scans", static_cast<double>(f.repeated)}};
 }
 
 /// The same room with a smooth ball of skin instead of the head: there is no detail in it that a scan could miss.
@@ -92,13 +123,14 @@ Figures figures_of_ball(const Volume& sphere, simulation::RoomSettings settings,
             {"ball: noise, rms, all (mm)", cloud.noise_all_mm},
             {"ball: bias, size (mm)", std::abs(cloud.bias_mm)},
             {"ball: radius, error (mm)", std::abs(radius - kSphereRadius_mm)},
+            {"ball: radius, signed (mm)", radius - kSphereRadius_mm},
             {"ball: chi-square, mean", cloud.chi_square},
             {"ball: chi-square by median", cloud.chi_square_median}};
 }
 
 struct Spoilt {
     std::string what;
-    unsigned rooms = 0, noticed = 0;
+    unsigned rooms = 0, noticed = 0, placed = 0;  ///< `placed`: the projector could be placed by the points
     double epipolar_px = 0, projector_px = 0, after_px = 0, offset_px = 0, error_mm = 0;  // sums
     std::map<std::string, int> verdicts;
 };
@@ -117,6 +149,7 @@ void try_spoilt(const ScanCapture& capture, const SimulatedRig& room, std::vecto
         row.noticed += check.verdict != DriftCheck::Verdict::good;
         ++row.verdicts[text_of(check.verdict)];
         row.epipolar_px += check.epipolar_rms_px;
+        row.placed += check.projector_rms_px > 0;
         row.projector_px += check.projector_rms_px;
         row.after_px += check.projector_after_px;
         row.offset_px += scan.raw.projector_offset_px.norm();
@@ -139,12 +172,16 @@ PresetTable run(Preset preset, const Options& options, const Volume& head, const
     for (unsigned k = 0; k < options.count; ++k) {
         const unsigned seed = options.seed + k;
         try {
-            SimulatedRig room(head, {}, random_room(preset, seed));
+            simulation::RoomSettings settings = random_room(preset, seed);
+            if (options.perfect) settings.calibration_error = 0;
+            SimulatedRig room(head, {}, settings);
             const ScanCapture capture = capture_of(room, options.set);
             const ScanResult scan = scan_from_capture(capture, room.calibration());
             if (scan.clean.kept.empty()) throw CheckFailedError("no skin was found", "-");
             Figures figures = figures_of_head(scan, room, capture.began);
-            for (auto& figure : figures_of_ball(sphere, random_room(preset, seed), options.set)) figures.push_back(std::move(figure));
+            for (auto& figure : figures_of_ball(sphere, settings, options.set)) figures.push_back(std::move(figure));
+            for (auto& figure : figures_of_footprint(scan, room, options.set, capture.began))
+                figures.push_back(std::move(figure));
             table.rooms.push_back(std::move(figures));
             if (k == 0 && !options.pictures.empty() && preset == options.presets.back())
                 write_scan_pictures(room, capture, scan, options.pictures);
@@ -183,8 +220,10 @@ Json print_table(const std::string& name, const PresetTable& table) {
         std::vector<double> values;
         for (const Figures& room : table.rooms) values.push_back(room[i].second);
         const auto [half, most, worst] = distribution(values);
-        fmt::print("{:32}{:>12}{:>12}{:>12}\n", table.rooms.front()[i].first, number(half), number(most), number(worst));
-        json["figures"][table.rooms.front()[i].first] = {{"median", half}, {"p95", most}, {"worst", worst}, {"rooms", values}};
+        fmt::print("{:32}{:>12}{:>12}{:>12}\n", table.rooms.front()[i].first, number(half), number(most),
+                   number(worst));
+        json["figures"][table.rooms.front()[i].first] = {
+            {"median", half}, {"p95", most}, {"worst", worst}, {"rooms", values}};
     }
     return json;
 }
@@ -192,19 +231,26 @@ Json print_table(const std::string& name, const PresetTable& table) {
 Json print_spoilt(const std::vector<Spoilt>& table) {
     Json json = Json::array();
     if (table.empty()) return json;
-    fmt::print("\n{:42}{:>9}{:>10}{:>11}{:>8}{:>9}{:>10}  said\n", "wrong on purpose", "noticed", "epipolar", "projector",
-               "after", "offset", "error mm");
+    fmt::print("\n{:42}{:>9}{:>10}{:>11}{:>8}{:>9}{:>10}  said\n", "wrong on purpose", "noticed", "epipolar",
+               "projector", "after", "offset", "error mm");
     for (const Spoilt& row : table) {
-        const double n = row.rooms;
+        const double n = row.rooms, placed = std::max(1u, row.placed);
         std::string said;
         for (const auto& [verdict, count] : row.verdicts)
             said += fmt::format("{}{} {}", said.empty() ? "" : ", ", count, verdict);
-        fmt::print("{:42}{:>3} of {:>2}{:>10.3f}{:>11.3f}{:>8.3f}{:>9.3f}{:>10.3f}  {}\n", row.what, row.noticed, row.rooms,
-                   row.epipolar_px / n, row.projector_px / n, row.after_px / n, row.offset_px / n, row.error_mm / n, said);
-        json.push_back({{"what", row.what}, {"rooms", row.rooms}, {"noticed", row.noticed},
-                        {"epipolar_px", row.epipolar_px / n}, {"projector_px", row.projector_px / n},
-                        {"after_px", row.after_px / n}, {"offset_px", row.offset_px / n},
-                        {"median_error_mm", row.error_mm / n}, {"said", said}});
+        fmt::print("{:42}{:>3} of {:>2}{:>10.3f}{:>11.3f}{:>8.3f}{:>9.3f}{:>10.3f}  {}\n", row.what, row.noticed,
+                   row.rooms, row.epipolar_px / n, row.projector_px / placed, row.after_px / placed, row.offset_px / n,
+                   row.error_mm / n, said);
+        json.push_back({{"what", row.what},
+                        {"rooms", row.rooms},
+                        {"noticed", row.noticed},
+                        {"epipolar_px", row.epipolar_px / n},
+                        {"projector_placed", row.placed},
+                        {"projector_px", row.projector_px / placed},
+                        {"after_px", row.after_px / placed},
+                        {"offset_px", row.offset_px / n},
+                        {"median_error_mm", row.error_mm / n},
+                        {"said", said}});
     }
     return json;
 }

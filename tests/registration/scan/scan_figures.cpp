@@ -55,8 +55,8 @@ private:
 };
 
 /// The distances to the skin as their mean in small cubes and what scatters about it.
-void split_error(const std::vector<Vector3d>& points, const std::vector<double>& errors, const std::vector<bool>& facing,
-                 CloudFigures& figures) {
+void split_error(const std::vector<Vector3d>& points, const std::vector<double>& errors,
+                 const std::vector<bool>& facing, CloudFigures& figures) {
     constexpr double kCube_mm = 4;
     constexpr std::size_t kLeast = 6;
     double squares = 0, squares_facing = 0, all = 0, all_facing = 0, slow = 0, cubes = 0, sum = 0;
@@ -111,7 +111,8 @@ bool faces(const CameraModel& device, const Vector3d& p_in_rig, const Vector3d& 
 bool on_sticker(const SimulatedRig& room, const Vector3d& p_in_ct) {
     constexpr double kSticker_mm = 9;
     const auto& markers = room.true_markers_in_ct();
-    return std::any_of(markers.begin(), markers.end(), [&](const Vector3d& m) { return (m - p_in_ct).norm() < kSticker_mm; });
+    return std::any_of(markers.begin(), markers.end(),
+                       [&](const Vector3d& m) { return (m - p_in_ct).norm() < kSticker_mm; });
 }
 
 /// Something else than smooth skin within 3 pixels: the light there comes from several places at once.
@@ -134,19 +135,30 @@ CloudFigures cloud_figures(const ScanResult& scan, const SimulatedRig& room, con
     CloudFigures figures;
     figures.points = cloud.size();
     const std::vector<double> errors = room.scan_errors_mm(cloud.points_in_rig, at);
-    const RigidTransform ct_from_rig = room.true_rig_from_ct(at).inverse();
-    std::vector<bool> facing;
-    for (std::size_t i = 0; i < cloud.size(); ++i)
-        facing.push_back(faces(rig.projector, cloud.points_in_rig[i], cloud.normals_in_rig[i]) &&
-                         !on_sticker(room, ct_from_rig * cloud.points_in_rig[i]));
-    split_error(cloud.points_in_rig, errors, facing, figures);
+    split_error(cloud.points_in_rig, errors, facing_points(cloud, room, rig, at), figures);
     judge_covariance(cloud, errors, rig, figures);
     figures.completeness = completeness(cloud.points_in_rig, room, room.true_rig(), at);
     return figures;
 }
 
-double completeness(const std::vector<Vector3d>& points_in_rig, const SimulatedRig& room, const RigCalibration& true_rig,
-                    Instant at) {
+std::vector<bool> facing_points(const PointCloud& cloud, const SimulatedRig& room, const RigCalibration& rig,
+                                Instant at) {
+    const RigidTransform ct_from_rig = room.true_rig_from_ct(at).inverse();
+    std::vector<bool> facing;
+    for (std::size_t i = 0; i < cloud.size(); ++i)
+        facing.push_back(faces(rig.projector, cloud.points_in_rig[i], cloud.normals_in_rig[i]) &&
+                         !on_sticker(room, ct_from_rig * cloud.points_in_rig[i]));
+    return facing;
+}
+
+double scatter_in_cubes_mm(const std::vector<Vector3d>& points, const std::vector<double>& errors) {
+    CloudFigures figures;
+    split_error(points, errors, std::vector<bool>(points.size(), true), figures);
+    return figures.noise_mm;
+}
+
+double completeness(const std::vector<Vector3d>& points_in_rig, const SimulatedRig& room,
+                    const RigCalibration& true_rig, Instant at) {
     constexpr double kReach_mm = 2;
     const Cubes cubes(points_in_rig, kReach_mm);
     const RigidTransform rig_from_ct = room.true_rig_from_ct(at);

@@ -5,9 +5,9 @@
 namespace planlight::scan_rooms {
 namespace {
 
-/// Turned about its own upright axis, where it stands.
-void turn(CameraModel& device, double degrees) {
-    const Eigen::AngleAxisd by(degrees * M_PI / 180, Eigen::Vector3d::UnitY());
+/// Turned about an axis of its own (the upright one), where it stands.
+void turn(CameraModel& device, double degrees, const Eigen::Vector3d& axis = Eigen::Vector3d::UnitY()) {
+    const Eigen::AngleAxisd by(degrees * M_PI / 180, axis);
     device.device_from_rig = RigidTransform(by) * device.device_from_rig;
 }
 
@@ -27,6 +27,8 @@ std::vector<SpoiltRig> spoilt_rigs() {
         {"nothing wrong", [](RigCalibration&) {}},
         {"projector turned 0.2 degrees", [](RigCalibration& r) { turn(r.projector, 0.2); }},
         {"right camera turned 0.1 degrees sideways", [](RigCalibration& r) { turn(r.right_camera, 0.1); }},
+        {"right camera turned 0.02 degrees upwards",
+         [](RigCalibration& r) { turn(r.right_camera, 0.02, Eigen::Vector3d::UnitX()); }},
         {"left focal length +1 %", [](RigCalibration& r) { stretch(r.left_camera, 1.01); }},
         {"both cameras' focal lengths +1 %",
          [](RigCalibration& r) {
