@@ -30,7 +30,7 @@ struct DriftCheck {
     std::string reason, remedy;  ///< remedy empty when good
     std::size_t points = 0;
     /// What 68.3 % of the points stay within of their epipolar line: of normal noise its rms. A handful of wrong
-    /// partners, 50 px off, makes a rms of 0.44 px in a room where all others have 0.08, and this none.
+    /// partners, 50 px off, makes a rms of 0.44 px in a room where 68.3 % have 0.08, and this none.
     double epipolar_rms_px = 0;
     double projector_rms_px = 0;      ///< as calibrated; 0, as all below: not known, too few points fit to place it
     double projector_after_px = 0;    ///< placed anew by this scan
