@@ -108,24 +108,28 @@ void sum_at_rim(const DecodedView& view, int x, int y, Sums& sums) {
 }
 
 /// What is left after the fit must be roughness and noise, and the pixel itself must not stand off.
-bool smooth(double residual, double freedom, double own_squared, double sigma_px, double directions) {
+PLANLIGHT_INLINE bool smooth(double residual, double freedom, double own_squared, double sigma_px, double directions) {
     const double allowed = kRoughness_px * kRoughness_px + 9 * sigma_px * sigma_px;
     return residual <= directions * freedom * allowed && own_squared <= 9 * directions * allowed;
 }
 
-/// The fit over all 25 neighbours: sums of x, y and x y vanish, those of x^2 and y^2 are 50.
-std::optional<LocalCode> fit_whole(const Sums& s, const Eigen::Vector2d& centre, double sigma_px, double directions) {
-    const Eigen::Vector2d c(s.c[0], s.c[1]), cx(s.cx[0], s.cx[1]), cy(s.cy[0], s.cy[1]);
-    const double residual = s.cc - c.squaredNorm() / kWhole - (cx.squaredNorm() + cy.squaredNorm()) / 50;
-    if (!smooth(residual, kWhole - 3, c.squaredNorm() / (kWhole * kWhole), sigma_px, directions)) return std::nullopt;
-    LocalCode local{centre + c / kWhole, {}, true, sigma_px / (2 * kReach + 1)};
-    local.by_pixel << cx / 50, cy / 50;
-    return local;
+/// The fit over all 25 neighbours: sums of x, y and x y vanish, those of x^2 and y^2 are 50. Nearly all fits are of these.
+PLANLIGHT_INLINE bool fit_whole(const Sums& s, double column, double row, double sigma_px, double directions, LocalCode& local) {
+    constexpr double kByCount = 1.0 / kWhole, kBySquares = 1.0 / 50, kByReach = 1.0 / (2 * kReach + 1);
+    const double c = s.c[0], r = s.c[1], cx = s.cx[0], rx = s.cx[1], cy = s.cy[0], ry = s.cy[1];
+    const double centres = (c * c + r * r) * kByCount;
+    const double residual = s.cc - centres - (cx * cx + rx * rx + cy * cy + ry * ry) * kBySquares;
+    if (!smooth(residual, kWhole - 3, centres * kByCount, sigma_px, directions)) return false;
+    local.code = {column + c * kByCount, row + r * kByCount};
+    local.by_pixel << cx * kBySquares, cy * kBySquares, rx * kBySquares, ry * kBySquares;
+    local.whole = true;
+    local.sigma_px = sigma_px * kByReach;
+    return true;
 }
 
 /// The fit over what there is of them.
-std::optional<LocalCode> fit_part(const Sums& s, const Eigen::Vector2d& centre, double sigma_px, double directions) {
-    if (s.n < kMinNeighbours) return std::nullopt;
+bool fit_part(const Sums& s, const Eigen::Vector2d& centre, double sigma_px, double directions, LocalCode& local) {
+    if (s.n < kMinNeighbours) return false;
     Eigen::Matrix3d A;
     A << s.n, s.x, s.y, s.x, s.xx, s.xy, s.y, s.xy, s.yy;
     Eigen::Matrix<double, 3, 2> b;
@@ -133,30 +137,34 @@ std::optional<LocalCode> fit_part(const Sums& s, const Eigen::Vector2d& centre, 
     bool invertible = false;
     Eigen::Matrix3d inverse;
     A.computeInverseWithCheck(inverse, invertible, 1e-6);
-    if (!invertible) return std::nullopt;
+    if (!invertible) return false;
     const Eigen::Matrix<double, 3, 2> fit = inverse * b;
     const double residual = s.cc - (fit.array() * b.array()).sum();
-    if (!smooth(residual, s.n - 3, fit.row(0).squaredNorm(), sigma_px, directions)) return std::nullopt;
-    return LocalCode{centre + fit.row(0).transpose(), fit.bottomRows<2>().transpose(), false,
-                     sigma_px * std::sqrt(inverse(0, 0))};
+    if (!smooth(residual, s.n - 3, fit.row(0).squaredNorm(), sigma_px, directions)) return false;
+    local = {centre + fit.row(0).transpose(), fit.bottomRows<2>().transpose(), false, sigma_px * std::sqrt(inverse(0, 0))};
+    return true;
 }
 
 }  // namespace
 
-std::optional<LocalCode> local_code(const DecodedView& view, int x, int y) {
+bool fit_local_code(const DecodedView& view, int x, int y, LocalCode& local) {
     const std::size_t i =
         static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
-    if (std::isnan(view.column[i])) return std::nullopt;
+    if (std::isnan(view.column[i])) return false;
     const bool rows = !view.row.empty();
-    const double directions = rows ? 2 : 1;
-    const Eigen::Vector2d centre(view.column[i], rows ? view.row[i] : 0.0);
+    const double directions = rows ? 2 : 1, column = view.column[i], row = rows ? view.row[i] : 0.0;
     Sums sums;
     if (x >= kReach && y >= kReach && x + kReach < view.width && y + kReach + 1 < view.height && view.width > 8)
         sum_neighbours(&view.column[i], rows ? &view.row[i] : nullptr, view.width, kMaxJump_px, sums);
     else
         sum_at_rim(view, x, y, sums);
-    return sums.n == kWhole ? fit_whole(sums, centre, view.sigma_px[i], directions)
-                            : fit_part(sums, centre, view.sigma_px[i], directions);
+    return sums.n == kWhole ? fit_whole(sums, column, row, view.sigma_px[i], directions, local)
+                            : fit_part(sums, {column, row}, view.sigma_px[i], directions, local);
+}
+
+std::optional<LocalCode> local_code(const DecodedView& view, int x, int y) {
+    LocalCode local;
+    return fit_local_code(view, x, y, local) ? std::optional(local) : std::nullopt;
 }
 
 CodeIndex::CodeIndex(const DecodedView& view, int projector_width, int projector_height)
@@ -178,8 +186,8 @@ CodeIndex::CodeIndex(const DecodedView& view, int projector_width, int projector
     }
 }
 
-std::optional<CodeIndex::Match> CodeIndex::find(const Eigen::Vector2d& code) const {
-    if (!(code.minCoeff() > -kCell_px)) return std::nullopt;
+bool CodeIndex::find(const Eigen::Vector2d& code, Match& match) const {
+    if (!(code.minCoeff() > -kCell_px)) return false;
     const int c = static_cast<int>((code.x() + 0.5) / kCell_px), r = static_cast<int>((code.y() + 0.5) / kCell_px);
     for (int ring = 0; ring <= kRings; ++ring)
         for (int y = std::max(0, r - ring); y <= std::min(rows_ - 1, r + ring); ++y)
@@ -187,29 +195,35 @@ std::optional<CodeIndex::Match> CodeIndex::find(const Eigen::Vector2d& code) con
                 if (std::max(std::abs(y - r), std::abs(x - c)) != ring) continue;
                 const std::int32_t start =
                     pixel_in_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x)];
-                if (start < 0) continue;
-                if (const auto match = find_from(code, {start % view_.width, start / view_.width})) return match;
+                if (start >= 0 && find_from(code, {start % view_.width, start / view_.width}, match)) return true;
             }
-    return std::nullopt;
+    return false;
 }
 
-std::optional<CodeIndex::Match> CodeIndex::find_from(const Eigen::Vector2d& code, const Eigen::Vector2d& pixel) const {
+bool CodeIndex::find_from(const Eigen::Vector2d& code, const Eigen::Vector2d& pixel, Match& match) const {
     Eigen::Vector2d at = pixel;
+    LocalCode& local = match.local;
     for (int step = 0; step < kMaxSteps; ++step) {
-        if (!(at.minCoeff() > -0.5 && at.x() < view_.width - 0.5 && at.y() < view_.height - 0.5)) return std::nullopt;
+        if (!(at.minCoeff() > -0.5 && at.x() < view_.width - 0.5 && at.y() < view_.height - 0.5)) return false;
         const int x = static_cast<int>(at.x() + 0.5), y = static_cast<int>(at.y() + 0.5);
-        const auto local = local_code(view_, x, y);
-        if (!local) return std::nullopt;
+        if (!fit_local_code(view_, x, y, local)) return false;
         // The view's rows and columns must both be resolved there, or the place is not determined.
-        const double determinant = local->by_pixel.determinant();
-        if (std::abs(determinant) < 1e-3 * local->by_pixel.squaredNorm()) return std::nullopt;
-        const Eigen::Matrix2d pixel_by_code = local->by_pixel.inverse();
-        const Eigen::Vector2d d = pixel_by_code * (code - local->code);
+        const Eigen::Matrix2d& by_pixel = local.by_pixel;
+        const double determinant = by_pixel(0, 0) * by_pixel(1, 1) - by_pixel(0, 1) * by_pixel(1, 0);
+        if (std::abs(determinant) < 1e-3 * by_pixel.squaredNorm()) return false;
+        const double by_determinant = 1 / determinant;
+        match.pixel_by_code << by_pixel(1, 1) * by_determinant, -by_pixel(0, 1) * by_determinant,
+            -by_pixel(1, 0) * by_determinant, by_pixel(0, 0) * by_determinant;
+        const Eigen::Vector2d d = match.pixel_by_code * (code - local.code);
         at = Eigen::Vector2d(x, y) + d;
-        if (d.cwiseAbs().maxCoeff() <= 0.75) return Match{code, at, *local, pixel_by_code};
-        if (d.cwiseAbs().maxCoeff() > kMaxWay_px) return std::nullopt;
+        if (d.cwiseAbs().maxCoeff() <= 0.75) {
+            match.code = code;
+            match.pixel = at;
+            return true;
+        }
+        if (d.cwiseAbs().maxCoeff() > kMaxWay_px) return false;
     }
-    return std::nullopt;
+    return false;
 }
 
 }  // namespace planlight

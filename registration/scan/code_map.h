@@ -21,6 +21,9 @@ struct LocalCode {
 /// where the neighbours do not lie on one smooth map (a depth edge, a hair, a glint).
 std::optional<LocalCode> local_code(const DecodedView& view, int x, int y);
 
+/// The same without a copy: false, and `local` not to be used, where there is none.
+bool fit_local_code(const DecodedView& view, int x, int y, LocalCode& local);
+
 /// Where in a view a projector pixel is seen: the inverse of the view's code.
 class CodeIndex {
 public:
@@ -31,11 +34,12 @@ public:
         LocalCode local;                ///< around the nearest whole pixel
         Eigen::Matrix2d pixel_by_code;  ///< inverse of its derivative
     };
-    /// The sub-pixel place in the view that has this code; empty when no smooth piece of code there contains it.
-    std::optional<Match> find(const Eigen::Vector2d& code) const;
+    /// The sub-pixel place in the view that has this code; false when no smooth piece of code there contains it (`match` is
+    /// then not to be used).
+    bool find(const Eigen::Vector2d& code, Match& match) const;
 
-    /// The same, searched from a place nearby; empty also when the way there is broken.
-    std::optional<Match> find_from(const Eigen::Vector2d& code, const Eigen::Vector2d& pixel) const;
+    /// The same, searched from a place nearby; false also when the way there is broken.
+    bool find_from(const Eigen::Vector2d& code, const Eigen::Vector2d& pixel, Match& match) const;
 
 private:
     const DecodedView& view_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "registration/scan/code_map.h"
 
@@ -52,7 +53,7 @@ std::vector<Line> for_lines(const DecodedView& view, int stride, const Make& mak
     return lines;
 }
 
-void join(const std::vector<Line>& lines, std::vector<ViewMatch> Line::*part, std::vector<ViewMatch>& all) {
+void join(const std::vector<Line>& lines, std::vector<ViewMatch> Line::*part, LargeArray<ViewMatch>& all) {
     std::vector<std::size_t> begin{0};
     for (const Line& line : lines) begin.push_back(begin.back() + (line.*part).size());
     all.resize(begin.back());
@@ -62,52 +63,61 @@ void join(const std::vector<Line>& lines, std::vector<ViewMatch> Line::*part, st
 }
 
 /// Along a line the partners follow each other: each search begins where the last match and its derivative say.
-std::optional<CodeIndex::Match> find_along(const CodeIndex& index, const Eigen::Vector2d& code,
-                                           std::optional<CodeIndex::Match>& last) {
-    constexpr double kNear_px = 12;
-    std::optional<CodeIndex::Match> match;
-    if (last) {
-        const Eigen::Vector2d way = last->pixel_by_code * (code - last->code);
-        if (way.cwiseAbs().maxCoeff() < kNear_px) match = index.find_from(code, last->pixel + way);
+class Follower {
+public:
+    explicit Follower(const CodeIndex& index) : index_(index) {}
+    /// The partner of a code, until the next call; null where there is none.
+    const CodeIndex::Match* find(const Eigen::Vector2d& code) {
+        constexpr double kNear_px = 12;
+        bool found = false;
+        if (known_) {
+            const Eigen::Vector2d way = match_.pixel_by_code * (code - match_.code);
+            if (way.cwiseAbs().maxCoeff() < kNear_px) found = index_.find_from(code, match_.pixel + way, match_);
+        }
+        known_ = found || index_.find(code, match_);
+        return known_ ? &match_ : nullptr;
     }
-    if (!match) match = index.find(code);
-    last = match;
-    return match;
-}
+
+private:
+    const CodeIndex& index_;
+    CodeIndex::Match match_;
+    bool known_ = false;
+};
 
 ViewMatch alone(int x, int y, const LocalCode& local) { return {Eigen::Vector2d(x, y), local.code, local.sigma_px, local.whole}; }
 
 void match_line(const DecodedView& left, const CodeIndex& in_right, int y, int stride, Seen& seen, Line& line) {
-    std::optional<CodeIndex::Match> last;
+    Follower partners(in_right);
+    LocalCode local;
     const float* column = left.column.data() + static_cast<std::ptrdiff_t>(y) * left.width;
     for (int x = 0; x < left.width; x += stride) {
         if (std::isnan(column[x])) continue;
-        const auto local = local_code(left, x, y);
-        if (!local) {
+        if (!fit_local_code(left, x, y, local)) {
             ++line.ragged;
             continue;
         }
-        ViewMatch match = alone(x, y, *local);
-        const auto partner = find_along(in_right, local->code, last);
+        const CodeIndex::Match* partner = partners.find(local.code);
         if (!partner) {
-            line.alone.push_back(match);
+            line.alone.push_back(alone(x, y, local));
             continue;
         }
+        if (line.both.empty()) line.both.reserve(static_cast<std::size_t>((left.width - x) / stride + 1));
+        ViewMatch& match = line.both.emplace_back(alone(x, y, local));
         match.right = partner->pixel;
         match.right_by_code = partner->pixel_by_code;
         match.right_sigma_px = partner->local.sigma_px;
         seen.mark(match.right);
-        line.both.push_back(match);
     }
 }
 
 void match_right_line(const DecodedView& right, const CodeIndex& in_left, int y, int stride, Seen& seen, Line& line) {
-    std::optional<CodeIndex::Match> last;
+    Follower partners(in_left);
+    LocalCode local;
     const float* column = right.column.data() + static_cast<std::ptrdiff_t>(y) * right.width;
     for (int x = 0; x < right.width; x += stride) {
         if (std::isnan(column[x]) || seen.marked(Eigen::Vector2d(x, y))) continue;
-        const auto local = local_code(right, x, y);  // ragged pixels were counted in the left view
-        if (local && !find_along(in_left, local->code, last)) line.alone.push_back(alone(x, y, *local));
+        if (!fit_local_code(right, x, y, local)) continue;  // ragged pixels were counted in the left view
+        if (!partners.find(local.code)) line.alone.push_back(alone(x, y, local));
     }
 }
 

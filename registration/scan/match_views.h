@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <vector>
 
+#include "planning_io/types/large_array.h"
 #include "registration/scan/decode_stripes.h"
 #include "registration/scan/triangulate.h"
 
@@ -22,7 +22,7 @@ struct ViewMatch {
 
 /// What the codes alone say, before any geometry: it holds for every calibration of the rig.
 struct ViewMatches {
-    std::vector<ViewMatch> both, left_only, right_only;  ///< in the order of the pixels of the left (right) picture
+    LargeArray<ViewMatch> both, left_only, right_only;  ///< in the order of the pixels of the left (right) picture
     std::size_t ragged = 0;                              ///< left pixels around which the code is not smooth
     Stride stride;
 };

@@ -204,7 +204,7 @@ bool near_an_edge(const ViewMatch& match, const CameraModel& projector) {
 }
 
 /// The matches of one camera that may be used, every `every`-th.
-std::vector<const ViewMatch*> usable(const std::vector<ViewMatch>& matches, const CameraModel& projector, std::size_t every,
+std::vector<const ViewMatch*> usable(const LargeArray<ViewMatch>& matches, const CameraModel& projector, std::size_t every,
                                      Triangulation& result) {
     std::vector<const ViewMatch*> chosen;
     for (std::size_t i = 0; i < matches.size(); i += every) {

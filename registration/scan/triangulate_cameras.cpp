@@ -172,18 +172,18 @@ struct Matcher {
         else if (!in_volume(rig.left_camera, outcome.p_in_rig, settings)) outcome.kind = Kind::outside_volume;
     }
     void both_directions(const Vector2d& pixel, const Ray& sight, const LocalCode& local, PointOutcome& outcome) const {
-        const auto match = by_code->find(local.code);
-        if (!match) return;
+        CodeIndex::Match match;
+        if (!by_code->find(local.code, match)) return;
         outcome.kind = PointOutcome::Kind::disagree;
-        const auto other = ray_through(rig.right_camera, match->pixel);
+        const auto other = ray_through(rig.right_camera, match.pixel);
         const auto start = other ? between_rays(sight, *other) : std::nullopt;
         if (!start) return;
         outcome.placed_by_cameras = true;
         outcome.p_by_cameras = *start;
-        outcome.epipolar_px = off_the_line(sight, *start, match->pixel, rig.right_camera);
-        const double code_sigma = std::hypot(local.sigma_px, match->local.sigma_px);
-        const double by_code_px = match->local.by_pixel.inverse().norm() / std::sqrt(2.0);
-        place_by_both({pixel, match->pixel, std::hypot(settings.camera_sigma_px, by_code_px * code_sigma)}, rig, *start, settings,
+        outcome.epipolar_px = off_the_line(sight, *start, match.pixel, rig.right_camera);
+        const double code_sigma = std::hypot(local.sigma_px, match.local.sigma_px);
+        const double by_code_px = match.local.by_pixel.inverse().norm() / std::sqrt(2.0);
+        place_by_both({pixel, match.pixel, std::hypot(settings.camera_sigma_px, by_code_px * code_sigma)}, rig, *start, settings,
                       outcome);
     }
     void columns_only(const Ray& sight, const LocalCode& local, PointOutcome& outcome, int y) const {
