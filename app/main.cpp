@@ -240,6 +240,10 @@ void add_projector(CLI::App& app, ProjectorOptions& o) {
     sub->add_option("--refresh-hz", o.refresh_hz, "Of the projector")
         ->capture_default_str()
         ->check(CLI::Range(10.0, 1000.0));
+    sub->add_option("--refresh-tolerance-hz", o.refresh_tolerance_hz,
+                    "How well that is known; a few thousandths tell cycles apart that 0.1 does not")
+        ->capture_default_str()
+        ->check(CLI::Range(1e-6, 10.0));
     sub->add_option("--configured-ms", o.configured_delay_ms,
                     "The delay in force, to be compared (default: as recorded)")
         ->check(CLI::Range(0.0, 10000.0));

@@ -27,6 +27,7 @@ void evaluate(const std::string& part, LightRecording recording, const Projector
     if (part == "response") report.response = measure_response(recording);
     CycleSettings cycle;
     cycle.refresh_hz = options.refresh_hz;
+    cycle.refresh_tolerance_hz = options.refresh_tolerance_hz;
     if (part == "cycle") report.cycle = measure_cycle(recording, cycle);
     LatencySettings latency;
     latency.refresh_hz = options.refresh_hz;

@@ -76,21 +76,6 @@ void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
     warn(problem);
 }
 
-/// What `scan_from_capture` checks of a whole sequence, for one that lacks fringes or fine bits.
-void check_partial_sequence(const ScanCapture& capture, const Path& folder) {
-    if (capture.partial.empty() || !capture.check_sequence) return;
-    for (const auto& [frames, camera] : {std::pair{&capture.left, "left"}, {&capture.right, "right"}}) {
-        if (frames->empty()) continue;
-        const SequenceCheck check = check_sequence(*frames, capture.stripes, capture.partial);
-        if (check.problems.empty()) continue;
-        throw CheckFailedError(
-            fmt::format("{}: the {} camera's frames do not show the sequence: {} ({:.0f} % of the lit pixels)", folder.string(),
-                        camera, check.problems[0].what, 100 * check.problems[0].share),
-            "Scan again; if it comes back, check the delay between projector and cameras and the names of the pictures. "
-            "\"check_sequence\": false in capture.json takes them as they are.");
-    }
-}
-
 /// One camera needs both directions: nothing else says whether a pixel was read right.
 void check_directions(const ScanCapture& capture, const RigCalibration& rig, const Path& folder) {
     if (capture.stripes.rows || (!capture.right.empty() && present(rig.right_camera))) return;
@@ -125,7 +110,6 @@ int run_scan(const ScanOptions& options) {
         captures.push_back(scan_capture_from(read_capture_of(rig, folder), folder));
         check_sizes(captures.back(), rig, folder);
         check_directions(captures.back(), rig, folder);
-        check_partial_sequence(captures.back(), folder);
         if (captures.back().stripes.rows != captures.front().stripes.rows ||
             captures.back().right.empty() != captures.front().right.empty())
             throw InputError(folder, "has other directions or cameras than the first capture",

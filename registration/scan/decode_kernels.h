@@ -23,14 +23,14 @@ inline void expect_next(const std::uint8_t* frame, std::size_t blocks_ahead = 1)
     for (std::size_t at = 0; at < kBlock; at += 64) __builtin_prefetch(next + at);
 }
 
-/// Lines of frames that will be needed two blocks later, asked for a few at a time while something else is computed: the
-/// processor forgets most of what it is asked for at once.
+/// Lines of the frames' next block, asked for a few at a time while something else is computed: of what it is asked for all at
+/// once, by `decide_bits`, the processor forgets a part.
 class LinesAhead {
 public:
     LinesAhead(const std::uint8_t* const* frames, std::size_t count) : frames_(frames), lines_(count * kLines) {}
     void ask_for_four() {
         if (next_ >= lines_) return;
-        const std::uint8_t* line = frames_[next_ / kLines] + 2 * kBlock + next_ % kLines * kLine;
+        const std::uint8_t* line = frames_[next_ / kLines] + kBlock + next_ % kLines * kLine;
         for (std::size_t i = 0; i < 4; ++i) __builtin_prefetch(line + i * kLine);
         next_ += 4;
     }

@@ -38,15 +38,17 @@ void check_size(const DecodedView& view, const CameraModel& camera, const char* 
                         view.height, camera.width, camera.height));
 }
 
-/// The check of one camera's frames; empty where they are not the whole sequence.
-SequenceCheck sequence_of(const std::vector<GrayImage>& frames, const StripeSettings& stripes) {
-    const bool whole = stripes.phase_steps >= 3 && frames.size() == stripe_sequence(stripes).size();
-    return whole ? check_sequence(frames, stripes) : SequenceCheck{};
+/// The check of one camera's frames; empty where it has none.
+SequenceCheck sequence_of(const std::vector<GrayImage>& frames, const ScanCapture& capture) {
+    if (frames.empty()) return {};
+    if (!capture.partial.empty()) return check_sequence(frames, capture.stripes, capture.partial);
+    const bool whole = capture.stripes.phase_steps >= 3 && frames.size() == stripe_sequence(capture.stripes).size();
+    return whole ? check_sequence(frames, capture.stripes) : SequenceCheck{};
 }
 
 void refuse_wrong_sequence(const ScanCapture& capture, ScanResult& result) {
-    tbb::parallel_invoke([&] { result.left_sequence = sequence_of(capture.left, capture.stripes); },
-                         [&] { result.right_sequence = sequence_of(capture.right, capture.stripes); });
+    tbb::parallel_invoke([&] { result.left_sequence = sequence_of(capture.left, capture); },
+                         [&] { result.right_sequence = sequence_of(capture.right, capture); });
     for (const auto& [check, camera] : {std::pair{&result.left_sequence, "left"}, {&result.right_sequence, "right"}})
         if (!check->problems.empty())
             throw CheckFailedError(fmt::format("the {} camera's frames do not show the sequence: {} ({:.0f} % of the lit pixels)",

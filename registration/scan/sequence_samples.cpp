@@ -72,8 +72,8 @@ Bytes values_at(const GrayImage& frame, const std::vector<std::size_t>& pixels, 
     return values;
 }
 
-/// How much of a change is light and not noise: a quarter of that of the best lit places (one in a hundred). (A camera that encodes for a
-/// screen has 30 grey of noise in the dark.)
+/// How much of a change is light and not noise: a quarter of that of the best lit places (one in a hundred). A camera that
+/// encodes for a screen has 30 grey of noise in the dark.
 int least_change(const Bytes& low, const Bytes& high) {
     std::vector<int> changes;
     for (std::size_t i = 0; i < low.size(); ++i)

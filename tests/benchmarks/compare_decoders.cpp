@@ -8,6 +8,7 @@
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <numeric>
 #include <opencv2/core.hpp>
 #include <opencv2/structured_light.hpp>
 #include <string>
@@ -74,6 +75,17 @@ struct Contestant {
     std::function<std::string()> tell = [] { return std::string(); };
 
     static double least(const std::vector<double>& v) { return *std::min_element(v.begin(), v.end()); }
+    static double mean(const std::vector<double>& v) {
+        return std::accumulate(v.begin(), v.end(), 0.0) / static_cast<double>(v.size());
+    }
+    /// The median over the rounds of this one's time by the other's of the same round: what else the machine did then
+    /// slowed both.
+    double by(const Contestant& other) const {
+        std::vector<double> ratios;
+        for (std::size_t r = 0; r < wall_s.size(); ++r) ratios.push_back(wall_s[r] / other.wall_s[r]);
+        std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
+        return ratios[ratios.size() / 2];
+    }
 };
 
 void time(Contestant& one) { test::time_round(one.run, one.wall_s, one.processor_s); }
@@ -235,13 +247,13 @@ void compare(const Scene& scene, int rounds, bool with_peers) {
             if (one.name.starts_with("OpenCV") && r >= 3) continue;
             time(one);
         }
-    fmt::print("\n{}: {} pictures of 1920 x 1080, {:.0f} MB; best of {} rounds (OpenCV: of {})\n", scene.name,
-               2 * scene.frames[0].size(), scene.megabytes, rounds, std::min(rounds, 3));
-    fmt::print("{:30} {:>9} {:>9} {:>9}\n", "", "wall ms", "CPU ms", "x read");
+    fmt::print("\n{}: {} pictures of 1920 x 1080, {:.0f} MB; {} rounds (OpenCV: {})\n", scene.name, 2 * scene.frames[0].size(),
+               scene.megabytes, rounds, std::min(rounds, 3));
+    fmt::print("{:30} {:>9} {:>9} {:>9} {:>9}\n", "", "least ms", "by least", "x read", "mean CPU");
     for (const Contestant& one : all)
-        fmt::print("{:30} {:>9.1f} {:>9.1f} {:>9.2f}  {}\n", one.name, 1e3 * Contestant::least(one.wall_s),
-                   1e3 * Contestant::least(one.processor_s), Contestant::least(one.wall_s) / Contestant::least(all[0].wall_s),
-                   one.tell());
+        fmt::print("{:30} {:>9.1f} {:>9.2f} {:>9.2f} {:>9.1f}  {}\n", one.name, 1e3 * Contestant::least(one.wall_s),
+                   Contestant::least(one.wall_s) / Contestant::least(all[0].wall_s), one.by(all[0]),
+                   1e3 * Contestant::mean(one.processor_s), one.tell());
 }
 
 }  // namespace
