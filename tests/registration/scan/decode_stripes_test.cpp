@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
+#include "registration/scan/gray_code.h"
 #include "tests/registration/scan/stripe_room.h"
 
 namespace planlight {
@@ -276,6 +278,67 @@ TEST(DecodeStripes, ADisturbedGrayFrameDropsPixelsInsteadOfMovingThem) {
     const Errors e = errors_of(decode_stripes(s.frames, s.stripes), s.truth);
     EXPECT_LT(static_cast<double>(e.column.size()), 0.2 * static_cast<double>(e.lit));
     EXPECT_LT(static_cast<double>(e.wrong), 1e-4 * static_cast<double>(e.lit));
+}
+
+/// A picture of 1500 x 7 pixels, dark but for every 517th, which is lit from a place of its own; `drawn` is what the projector
+/// shows there (0 to 1).
+constexpr int kSparseWidth = 1500, kSparseHeight = 7;
+constexpr std::size_t kEvery = 517;
+Eigen::Vector2i place_of(std::size_t i) { return {static_cast<int>(i * 37 % 800), static_cast<int>(i * 53 % 600)}; }
+
+template <class Drawn>
+GrayImage sparse_picture(unsigned seed, const Drawn& drawn) {
+    std::mt19937 random(seed);
+    std::uniform_int_distribution<int> noise(18, 22);
+    GrayImage picture(kSparseWidth, kSparseHeight);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+        const double light = i % kEvery == 0 ? 150 * drawn(place_of(i)) : 0;
+        picture.pixels[i] = static_cast<std::uint8_t>(noise(random) + std::lround(light));
+    }
+    return picture;
+}
+
+void expect_only_the_lit(const DecodedView& view, double allowed_px) {
+    std::size_t lit = 0;
+    for (std::size_t i = 0; i < view.column.size(); ++i) {
+        if (i % kEvery != 0) {
+            EXPECT_TRUE(std::isnan(view.column[i]) && std::isnan(view.row[i]) && std::isnan(view.sigma_px[i])) << i;
+            continue;
+        }
+        ++lit;
+        EXPECT_NEAR(view.column[i], place_of(i).x(), allowed_px) << i;
+        EXPECT_NEAR(view.row[i], place_of(i).y(), allowed_px) << i;
+    }
+    EXPECT_EQ(view.decoded, lit);
+    EXPECT_EQ(view.decoded + view.dark + view.saturated + view.uncertain, view.column.size());
+}
+
+// The decoders leave what holds no light early: never with a lit pixel in it.
+TEST(DecodeStripes, AFewLitPixelsInTheDarkAreFound) {
+    StripeSettings stripes;
+    stripes.width = 800, stripes.height = 600;
+    std::vector<GrayImage> frames;
+    for (const StripePattern& pattern : stripe_sequence(stripes)) {
+        const RgbImage shown = draw_stripes(stripes, pattern);
+        frames.push_back(sparse_picture(static_cast<unsigned>(frames.size()), [&](const Eigen::Vector2i& place) {
+            return shown.at(place.x(), place.y())[1] / 255.0;
+        }));
+    }
+    expect_only_the_lit(decode_stripes(frames, stripes), 0.3);
+}
+
+TEST(GrayCode, AFewLitPixelsInTheDarkAreFound) {
+    std::vector<GrayImage> frames;
+    for (const StripePattern& pattern : gray_code_patterns(800, 600)) {
+        const bool inverse = pattern.kind == StripePattern::Kind::gray_bit_inverse;
+        frames.push_back(sparse_picture(static_cast<unsigned>(frames.size()), [&](const Eigen::Vector2i& place) {
+            if (pattern.kind == StripePattern::Kind::white || pattern.kind == StripePattern::Kind::black)
+                return pattern.kind == StripePattern::Kind::white ? 1.0 : 0.0;
+            const int at = pattern.along_rows ? place.y() : place.x(), gray = at ^ (at >> 1);
+            return ((gray >> (9 - pattern.index)) & 1) != (inverse ? 1 : 0) ? 1.0 : 0.0;  // 10 bits, coarsest first
+        }));
+    }
+    expect_only_the_lit(decode_gray_code(frames, 800, 600), 0);
 }
 
 TEST(DecodeStripes, AMissingOrForeignFrameIsRefused) {
