@@ -1,6 +1,5 @@
 #include "registration/scan/pair_kernel.h"
 
-#include <array>
 #include <cstring>
 #include <limits>
 
