@@ -35,8 +35,9 @@ struct SequenceCheck {
 SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes);
 
 /// The same for a capture that is not all of the sequence (no fringes, bits missing at the fine end): `patterns` says what
-/// the frames are, in their order. What cannot be judged without the missing ones is not.
+/// the frames are, in their order. What cannot be judged without the missing ones is not. `patchy`: a board, whose dark
+/// squares hide the edges of one bit and not of another, so that how often they change is not judged.
 SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes,
-                             const std::vector<StripePattern>& patterns);
+                             const std::vector<StripePattern>& patterns, bool patchy = false);
 
 }  // namespace planlight
