@@ -4,10 +4,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "app/commands/capture_conversion.h"
 #include "app/commands/commands.h"
 #include "app/console.h"
 #include "planning_io/image_file.h"
-#include "planning_io/recording_files.h"
 #include "planning_io/safe_write.h"
 #include "planning_io/types/error.h"
 #include "registration/scan/stripe_patterns.h"
@@ -49,27 +49,14 @@ std::vector<StripePattern> sequence_of(const StripeSettings& stripes) {
     }
 }
 
-/// capture.json as it stands beside captures of this sequence.
-CaptureFolder settings_of(const StripeSettings& stripes, const std::vector<StripePattern>& sequence) {
-    CaptureFolder capture;
-    capture.projector_width = stripes.width;
-    capture.projector_height = stripes.height;
-    capture.phase_steps = stripes.phase_steps;
-    capture.phase_period_px = stripes.phase_period_px;
-    capture.order_periods_px = stripes.order_periods_px;
-    capture.order_steps = stripes.order_steps;
-    capture.rows = stripes.rows;
-    capture.inverse = stripes.inverse;
-    for (const StripePattern& pattern : sequence) capture.names.push_back(pattern.name);
-    return capture;
-}
-
 }  // namespace
 
 int run_patterns(const PatternsOptions& options) {
     const StripeSettings stripes = stripes_of(options);
     const auto sequence = sequence_of(stripes);
-    const CaptureFolder settings = settings_of(stripes, sequence);
+    ScanCapture capture;
+    capture.stripes = stripes;
+    const CaptureFolder settings = capture_folder_from(capture);
     nlohmann::json result = {{"projector_width", stripes.width}, {"projector_height", stripes.height},
                              {"phase_steps", stripes.phase_steps}, {"phase_period_px", stripes.phase_period_px},
                              {"rows", stripes.rows}, {"inverse", stripes.inverse}, {"patterns", settings.names}};
