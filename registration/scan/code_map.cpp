@@ -22,10 +22,23 @@ constexpr int kMaxSteps = 5;
 constexpr int kCell_px = 4, kRings = 2;  // of the index: a view may see the projector's pixels coarsely
 constexpr double kMaxWay_px = 16;        // from where the search begins to what it finds
 
+// Of the quadratic fit over all 25 neighbours: sums of (x^2 - 2)^2, and what is then taken off the mean at the centre.
+constexpr double kQuadraticSquares = 70, kMeanOfSquares = 2;
+// A code with this noise (projector pixels) is fitted half way between a plane and a quadric: the quadric's value at the
+// centre has sqrt(0.114) times the noise more, and skin's detail bends the code by about 0.06 px over the window.
+constexpr double kHalfWaySigma_px = 0.2;
+// Over what variance (camera pixels squared, an axis) the lens and the skin spread light: a lens as it is focused (0.6 to
+// 0.8 px), and as much again in the skin.
+constexpr double kSpread_px2 = 1;
+// Slope of the light's logarithm, a pixel, above which it is more an edge (of the projector's picture, a shadow, ink) than
+// the shading of a surface: there the code is no quadric and the light not spread evenly about its slope.
+constexpr double kEdge = 0.16;
+
 /// Sums of a weighted affine fit, weights 0 or 1, about the centre's own code (column, row).
 struct Sums {
     float n = 0, c[2] = {}, cx[2] = {}, cy[2] = {}, cc = 0;
-    float x = 0, y = 0, xx = 0, xy = 0, yy = 0;  ///< set where n is less than kWhole: else x, y, xy vanish
+    float squares[2] = {}, light = 0, light_x = 0, light_y = 0;  ///< of (x^2 + y^2) code; of light, and x and y times it
+    float x = 0, y = 0, xx = 0, xy = 0, yy = 0;   ///< set where n is less than kWhole: else x, y, xy vanish
 };
 
 typedef float Lanes __attribute__((vector_size(32)));
@@ -44,14 +57,15 @@ PLANLIGHT_INLINE void sum_lanes(const Lanes& a, const Lanes& b, const Lanes& c, 
 }
 
 /// The sums over the 5 x 5 neighbours that are decoded and no jump away. Five rows of eight lanes, of which five count;
-/// `column` and `row` point at the centre pixel, with three more floats to read behind the last neighbour. Null `row`:
-/// columns only.
-PLANLIGHT_CLONES void sum_neighbours(const float* column, const float* row, std::ptrdiff_t width, float max_jump_px,
-                                     Sums& sums) {
+/// `column`, `row` and `dim` point at the centre pixel, with three more floats to read behind the last neighbour. Null
+/// `row`: columns only.
+PLANLIGHT_CLONES void sum_neighbours(const float* column, const float* row, const float* dim, std::ptrdiff_t width,
+                                     float max_jump_px, Sums& sums) {
     const Mask use = {-1, -1, -1, -1, -1, 0, 0, 0}, size_only = Mask{} + 0x7fffffff;
     const Lanes dx = {-2, -1, 0, 1, 2, 0, 0, 0}, limit = Lanes{} + max_jump_px, column_here = Lanes{} + *column,
                 row_here = Lanes{} + (row ? *row : 0);
-    Lanes c = {}, r = {}, c_by_y = {}, r_by_y = {}, squares = {}, n = {}, y = {}, yy = {};
+    Lanes c = {}, r = {}, c_by_y = {}, r_by_y = {}, c_by_yy = {}, r_by_yy = {}, squares = {}, light = {}, light_by_y = {};
+    Lanes n = {}, y = {}, yy = {};
 #pragma GCC unroll 5
     for (int dy = -kReach; dy <= kReach; ++dy) {
         const auto by = static_cast<float>(dy);
@@ -66,10 +80,17 @@ PLANLIGHT_CLONES void sum_neighbours(const float* column, const float* row, std:
             dr = (Lanes)((Mask)dr & good);
             r += dr;
             r_by_y += by * dr;
+            r_by_yy += by * by * dr;
         }
         dc = (Lanes)((Mask)dc & good);
         c += dc;
         c_by_y += by * dc;
+        c_by_yy += by * by * dc;
+        Lanes bright;
+        std::memcpy(&bright, dim + dy * width - kReach, sizeof bright);
+        bright = (Lanes)((Mask)(1 / bright) & good);
+        light += bright;
+        light_by_y += by * bright;
         squares += dc * dc + dr * dr;
         const Lanes one = (Lanes)((Mask)(Lanes{} + 1) & good);
         n += one;
@@ -81,7 +102,13 @@ PLANLIGHT_CLONES void sum_neighbours(const float* column, const float* row, std:
     sum_lanes(dx * c, dx * r, squares, n, second);
     sums.c[0] = first[0], sums.c[1] = first[1], sums.cy[0] = first[2], sums.cy[1] = first[3];
     sums.cx[0] = second[0], sums.cx[1] = second[1], sums.cc = second[2], sums.n = second[3];
-    if (sums.n == kWhole) return;
+    if (sums.n == kWhole) {
+        sum_lanes(dx * dx * c + c_by_yy, dx * dx * r + r_by_yy, dx * light, light_by_y, first);
+        sum_lanes(light, Lanes{}, Lanes{}, Lanes{}, second);
+        sums.squares[0] = first[0], sums.squares[1] = first[1], sums.light_x = first[2], sums.light_y = first[3];
+        sums.light = second[0];
+        return;
+    }
     sum_lanes(dx * n, dx * dx * n, dx * y, y, first);
     sum_lanes(yy, Lanes{}, Lanes{}, Lanes{}, second);
     sums.x = first[0], sums.xx = first[1], sums.xy = first[2], sums.y = first[3], sums.yy = second[0];
@@ -90,9 +117,10 @@ PLANLIGHT_CLONES void sum_neighbours(const float* column, const float* row, std:
 /// The same at the rim of a picture: on a copy of the neighbourhood, what lies outside is not decoded.
 void sum_at_rim(const DecodedView& view, int x, int y, Sums& sums) {
     constexpr int kSide = 2 * kReach + 1, kStep = 8;
-    std::array<float, kSide * kStep> column, row;
+    std::array<float, kSide * kStep> column, row, dim;
     column.fill(std::numeric_limits<float>::quiet_NaN());
     row.fill(0);
+    dim.fill(0);
     for (int dy = 0; dy < kSide; ++dy)
         for (int dx = 0; dx < kSide; ++dx) {
             const int px = x + dx - kReach, py = y + dy - kReach;
@@ -104,7 +132,7 @@ void sum_at_rim(const DecodedView& view, int x, int y, Sums& sums) {
             if (!view.row.empty()) row[to] = view.row[from];
         }
     constexpr std::size_t kCentre = kReach * kStep + kReach;
-    sum_neighbours(&column[kCentre], &row[kCentre], kStep, kMaxJump_px, sums);
+    sum_neighbours(&column[kCentre], &row[kCentre], &dim[kCentre], kStep, kMaxJump_px, sums);
 }
 
 /// What is left after the fit must be roughness and noise, and the pixel itself must not stand off.
@@ -115,15 +143,25 @@ PLANLIGHT_INLINE bool smooth(double residual, double freedom, double own_squared
 
 /// The fit over all 25 neighbours: sums of x, y and x y vanish, those of x^2 and y^2 are 50. Nearly all fits are of these.
 PLANLIGHT_INLINE bool fit_whole(const Sums& s, double column, double row, double sigma_px, double directions, LocalCode& local) {
-    constexpr double kByCount = 1.0 / kWhole, kBySquares = 1.0 / 50, kByReach = 1.0 / (2 * kReach + 1);
+    constexpr double kByCount = 1.0 / kWhole, kBySquares = 1.0 / 50;
     const double c = s.c[0], r = s.c[1], cx = s.cx[0], rx = s.cx[1], cy = s.cy[0], ry = s.cy[1];
     const double centres = (c * c + r * r) * kByCount;
     const double residual = s.cc - centres - (cx * cx + rx * rx + cy * cy + ry * ry) * kBySquares;
     if (!smooth(residual, kWhole - 3, centres * kByCount, sigma_px, directions)) return false;
-    local.code = {column + c * kByCount, row + r * kByCount};
     local.by_pixel << cx * kBySquares, cy * kBySquares, rx * kBySquares, ry * kBySquares;
     local.whole = true;
-    local.sigma_px = sigma_px * kByReach;
+    const double by_light = kBySquares / (kByCount * s.light), slope_x = s.light_x * by_light, slope_y = s.light_y * by_light;
+    const double steep = (slope_x * slope_x + slope_y * slope_y) * (1 / (kEdge * kEdge)), even = 1 / (1 + steep * steep);
+    // The quadric: half its second derivatives, summed, from the sums of (x^2 - 2 + y^2 - 2) times the code.
+    const double quadric = even / (1 + sigma_px * sigma_px * (1 / (kHalfWaySigma_px * kHalfWaySigma_px)));
+    const double bend = -kMeanOfSquares * quadric / kQuadraticSquares;
+    // Lens and skin bring a pixel more light from where there is more: its code is that of a place nearer to the light.
+    const double towards_x = kSpread_px2 * even * slope_x, towards_y = kSpread_px2 * even * slope_y;
+    const double own_c = c * kByCount + bend * (s.squares[0] - 2 * kMeanOfSquares * c),
+                 own_r = r * kByCount + bend * (s.squares[1] - 2 * kMeanOfSquares * r);
+    local.code = {column + own_c - (cx * towards_x + cy * towards_y) * kBySquares,
+                  row + own_r - (rx * towards_x + ry * towards_y) * kBySquares};
+    local.sigma_px = sigma_px * std::sqrt(kByCount + 2 * kMeanOfSquares * kMeanOfSquares / kQuadraticSquares * quadric * quadric);
     return true;
 }
 
@@ -153,9 +191,10 @@ bool fit_local_code(const DecodedView& view, int x, int y, LocalCode& local) {
     if (std::isnan(view.column[i])) return false;
     const bool rows = !view.row.empty();
     const double directions = rows ? 2 : 1, column = view.column[i], row = rows ? view.row[i] : 0.0;
+    const float* dim = &dimness_of(view)[i];
     Sums sums;
     if (x >= kReach && y >= kReach && x + kReach < view.width && y + kReach + 1 < view.height && view.width > 8)
-        sum_neighbours(&view.column[i], rows ? &view.row[i] : nullptr, view.width, kMaxJump_px, sums);
+        sum_neighbours(&view.column[i], rows ? &view.row[i] : nullptr, dim, view.width, kMaxJump_px, sums);
     else
         sum_at_rim(view, x, y, sums);
     return sums.n == kWhole ? fit_whole(sums, column, row, view.sigma_px[i], directions, local)

@@ -22,9 +22,15 @@ struct DecodedView {
     int width = 0, height = 0;       ///< of the camera
     LargeArray<float> column, row;  ///< projector pixels (sub-pixel); `row` empty when only columns were coded
     LargeArray<float> sigma_px;     ///< one standard deviation of `column`, projector pixels
+    LargeArray<float> dimness;      ///< inverse of the projector's light, in any unit; empty: sigma_px, which goes with it
     double noise_grey = 0;           ///< one standard deviation of a grey value, as measured or given
     std::size_t decoded = 0, dark = 0, saturated = 0, uncertain = 0;  ///< pixels, by what became of them
 };
+
+/// `dimness` of a view as it is used: sigma_px where it has none of its own.
+inline const LargeArray<float>& dimness_of(const DecodedView& view) {
+    return view.dimness.empty() ? view.sigma_px : view.dimness;
+}
 
 /// Decodes one camera's frames, in the order of `stripe_sequence(settings)`. Throws std::invalid_argument when their
 /// number or sizes do not fit.

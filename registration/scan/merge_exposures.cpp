@@ -53,6 +53,15 @@ void check_one_pose(const LargeArray<float>& code, const LargeArray<float>& othe
         "Scan again; the patient and the rig must rest from the first exposure to the last.");
 }
 
+/// How much dimmer the projector's light is in the other exposure: the median over what both decoded; 1 where that is little.
+float dimmer_by(const DecodedView& view, const DecodedView& other) {
+    constexpr std::size_t kEnough = 100;
+    std::vector<float> ratio;
+    for (std::size_t i = 0; i < view.column.size(); ++i)
+        if (!std::isnan(view.column[i]) && !std::isnan(other.column[i])) ratio.push_back(dimness_of(other)[i] / dimness_of(view)[i]);
+    return ratio.size() < kEnough ? 1 : middle_of(ratio);
+}
+
 }  // namespace
 
 void take_better(DecodedView& view, const DecodedView& other) {
@@ -61,6 +70,8 @@ void take_better(DecodedView& view, const DecodedView& other) {
         throw std::invalid_argument("take_better: views of different sizes or directions");
     check_one_pose(view.column, other.column, view, other);
     if (!view.row.empty()) check_one_pose(view.row, other.row, view, other);
+    const float dimmer = dimmer_by(view, other);
+    if (view.dimness.empty()) view.dimness.assign(view.sigma_px.begin(), view.sigma_px.end());
     view.decoded = 0;
     for (std::size_t i = 0; i < view.column.size(); ++i) {
         const bool better = !std::isnan(other.column[i]) && !(view.sigma_px[i] <= other.sigma_px[i]);
@@ -68,6 +79,7 @@ void take_better(DecodedView& view, const DecodedView& other) {
             view.column[i] = other.column[i];
             if (!view.row.empty()) view.row[i] = other.row[i];
             view.sigma_px[i] = other.sigma_px[i];
+            view.dimness[i] = dimness_of(other)[i] / dimmer;
         }
         view.decoded += !std::isnan(view.column[i]);
     }
