@@ -12,27 +12,30 @@
 namespace planlight {
 namespace {
 
-constexpr int kReach = 2;            // 5 x 5 neighbours
-constexpr int kWhole = (2 * kReach + 1) * (2 * kReach + 1);
+constexpr int kReach = 2, kSide = 2 * kReach + 1;  // 5 x 5 neighbours
+constexpr int kWhole = kSide * kSide;
+constexpr float kByCount = 1.0f / kWhole, kBySquares = 1.0f / 50;  // of a plane over all of them
 constexpr int kMinNeighbours = 12;   // about half of them
-constexpr double kRoughness_px = 0.25;  // rms about the affine map that the surface's own curvature and texture may make
+constexpr float kRoughness_px = 0.25f;  // rms about the affine map that the surface's own curvature and texture may make
 // A camera pixel spans a few projector pixels at most; a jump of more is another surface, not a slope.
 constexpr float kMaxJump_px = 12;
 constexpr int kMaxSteps = 5;
 constexpr int kCell_px = 4, kRings = 2;  // of the index: a view may see the projector's pixels coarsely
+constexpr int kTries = 4;  // from cells where the search fails: nearly all of them end at the same edge
 constexpr double kMaxWay_px = 16;        // from where the search begins to what it finds
 
 // Of the quadratic fit over all 25 neighbours: sums of (x^2 - 2)^2, and what is then taken off the mean at the centre.
-constexpr double kQuadraticSquares = 70, kMeanOfSquares = 2;
+constexpr float kQuadraticSquares = 70, kMeanOfSquares = 2;
+constexpr float kQuadricVariance = 2 * kMeanOfSquares * kMeanOfSquares / kQuadraticSquares;  // what that adds, of one pixel's
 // A code with this noise (projector pixels) is fitted half way between a plane and a quadric: the quadric's value at the
 // centre has sqrt(0.114) times the noise more, and skin's detail bends the code by about 0.06 px over the window.
-constexpr double kHalfWaySigma_px = 0.2;
+constexpr float kHalfWaySigma_px = 0.2f;
 // Over what variance (camera pixels squared, an axis) the lens and the skin spread light: a lens as it is focused (0.6 to
 // 0.8 px), and as much again in the skin.
-constexpr double kSpread_px2 = 1;
+constexpr float kSpread_px2 = 1;
 // Slope of the light's logarithm, a pixel, above which it is more an edge (of the projector's picture, a shadow, ink) than
 // the shading of a surface: there the code is no quadric and the light not spread evenly about its slope.
-constexpr double kEdge = 0.16;
+constexpr float kEdge = 0.16f;
 
 /// Sums of a weighted affine fit, weights 0 or 1, about the centre's own code (column, row).
 struct Sums {
@@ -116,7 +119,7 @@ PLANLIGHT_CLONES void sum_neighbours(const float* column, const float* row, cons
 
 /// The same at the rim of a picture: on a copy of the neighbourhood, what lies outside is not decoded.
 void sum_at_rim(const DecodedView& view, int x, int y, Sums& sums) {
-    constexpr int kSide = 2 * kReach + 1, kStep = 8;
+    constexpr int kStep = 8;
     std::array<float, kSide * kStep> column, row, dim;
     column.fill(std::numeric_limits<float>::quiet_NaN());
     row.fill(0);
@@ -136,37 +139,41 @@ void sum_at_rim(const DecodedView& view, int x, int y, Sums& sums) {
 }
 
 /// What is left after the fit must be roughness and noise, and the pixel itself must not stand off.
-PLANLIGHT_INLINE bool smooth(double residual, double freedom, double own_squared, double sigma_px, double directions) {
-    const double allowed = kRoughness_px * kRoughness_px + 9 * sigma_px * sigma_px;
+PLANLIGHT_INLINE bool smooth(float residual, float freedom, float own_squared, float sigma_px, float directions) {
+    const float allowed = kRoughness_px * kRoughness_px + 9 * sigma_px * sigma_px;
     return residual <= directions * freedom * allowed && own_squared <= 9 * directions * allowed;
 }
 
-/// The fit over all 25 neighbours: sums of x, y and x y vanish, those of x^2 and y^2 are 50. Nearly all fits are of these.
-PLANLIGHT_INLINE bool fit_whole(const Sums& s, double column, double row, double sigma_px, double directions, LocalCode& local) {
-    constexpr double kByCount = 1.0 / kWhole, kBySquares = 1.0 / 50;
-    const double c = s.c[0], r = s.c[1], cx = s.cx[0], rx = s.cx[1], cy = s.cy[0], ry = s.cy[1];
-    const double centres = (c * c + r * r) * kByCount;
-    const double residual = s.cc - centres - (cx * cx + rx * rx + cy * cy + ry * ry) * kBySquares;
+/// The plane over all 25 neighbours: sums of x, y and x y vanish, those of x^2 and y^2 are 50. Nearly all fits are of these.
+PLANLIGHT_INLINE bool fit_whole(const Sums& s, double column, double row, float sigma_px, float directions, LocalCode& local) {
+    const float c = s.c[0], r = s.c[1], cx = s.cx[0], rx = s.cx[1], cy = s.cy[0], ry = s.cy[1];
+    const float centres = (c * c + r * r) * kByCount;
+    const float residual = s.cc - centres - (cx * cx + rx * rx + cy * cy + ry * ry) * kBySquares;
     if (!smooth(residual, kWhole - 3, centres * kByCount, sigma_px, directions)) return false;
     local.by_pixel << cx * kBySquares, cy * kBySquares, rx * kBySquares, ry * kBySquares;
+    local.code = {column + c * kByCount, row + r * kByCount};
     local.whole = true;
-    const double by_light = kBySquares / (kByCount * s.light), slope_x = s.light_x * by_light, slope_y = s.light_y * by_light;
-    const double steep = (slope_x * slope_x + slope_y * slope_y) * (1 / (kEdge * kEdge)), even = 1 / (1 + steep * steep);
-    // The quadric: half its second derivatives, summed, from the sums of (x^2 - 2 + y^2 - 2) times the code.
-    const double quadric = even / (1 + sigma_px * sigma_px * (1 / (kHalfWaySigma_px * kHalfWaySigma_px)));
-    const double bend = -kMeanOfSquares * quadric / kQuadraticSquares;
-    // Lens and skin bring a pixel more light from where there is more: its code is that of a place nearer to the light.
-    const double towards_x = kSpread_px2 * even * slope_x, towards_y = kSpread_px2 * even * slope_y;
-    const double own_c = c * kByCount + bend * (s.squares[0] - 2 * kMeanOfSquares * c),
-                 own_r = r * kByCount + bend * (s.squares[1] - 2 * kMeanOfSquares * r);
-    local.code = {column + own_c - (cx * towards_x + cy * towards_y) * kBySquares,
-                  row + own_r - (rx * towards_x + ry * towards_y) * kBySquares};
-    local.sigma_px = sigma_px * std::sqrt(kByCount + 2 * kMeanOfSquares * kMeanOfSquares / kQuadraticSquares * quadric * quadric);
+    local.sigma_px = sigma_px * (1.0f / kSide);
     return true;
 }
 
+/// From the plane over all neighbours to what the code is at the centre: the quadric there, and as it would be without
+/// the light that lens and skin bring from beside it, more from where there is more.
+PLANLIGHT_INLINE void sharpen(const Sums& s, float sigma_px, LocalCode& local) {
+    const float by_light = kBySquares * kWhole / s.light, slope_x = s.light_x * by_light, slope_y = s.light_y * by_light;
+    const float steep = (slope_x * slope_x + slope_y * slope_y) * (1 / (kEdge * kEdge));
+    const float noisy = 1 + sigma_px * sigma_px * (1 / (kHalfWaySigma_px * kHalfWaySigma_px));
+    const float quadric = 1 / ((1 + steep * steep) * noisy), towards = kSpread_px2 * kBySquares * quadric * noisy;
+    // Half the second derivatives, summed, come from the sums of (x^2 - 2 + y^2 - 2) times the code.
+    const float bend = -kMeanOfSquares * quadric * (1 / kQuadraticSquares);
+    const float x = towards * slope_x, y = towards * slope_y;
+    local.code.x() += bend * (s.squares[0] - 2 * kMeanOfSquares * s.c[0]) - (s.cx[0] * x + s.cy[0] * y);
+    local.code.y() += bend * (s.squares[1] - 2 * kMeanOfSquares * s.c[1]) - (s.cx[1] * x + s.cy[1] * y);
+    local.sigma_px = sigma_px * std::sqrt(kByCount + kQuadricVariance * quadric * quadric);
+}
+
 /// The fit over what there is of them.
-bool fit_part(const Sums& s, const Eigen::Vector2d& centre, double sigma_px, double directions, LocalCode& local) {
+bool fit_part(const Sums& s, const Eigen::Vector2d& centre, float sigma_px, float directions, LocalCode& local) {
     if (s.n < kMinNeighbours) return false;
     Eigen::Matrix3d A;
     A << s.n, s.x, s.y, s.x, s.xx, s.xy, s.y, s.xy, s.yy;
@@ -178,27 +185,39 @@ bool fit_part(const Sums& s, const Eigen::Vector2d& centre, double sigma_px, dou
     if (!invertible) return false;
     const Eigen::Matrix<double, 3, 2> fit = inverse * b;
     const double residual = s.cc - (fit.array() * b.array()).sum();
-    if (!smooth(residual, s.n - 3, fit.row(0).squaredNorm(), sigma_px, directions)) return false;
+    if (!smooth(static_cast<float>(residual), s.n - 3, static_cast<float>(fit.row(0).squaredNorm()), sigma_px, directions))
+        return false;
     local = {centre + fit.row(0).transpose(), fit.bottomRows<2>().transpose(), false, sigma_px * std::sqrt(inverse(0, 0))};
     return true;
 }
 
-}  // namespace
+std::size_t place_of(const DecodedView& view, int x, int y) {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
+}
 
-bool fit_local_code(const DecodedView& view, int x, int y, LocalCode& local) {
-    const std::size_t i =
-        static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width) + static_cast<std::size_t>(x);
+/// The plane over the neighbours: enough to find where to go.
+PLANLIGHT_INLINE bool fit_plane(const DecodedView& view, int x, int y, Sums& sums, LocalCode& local) {
+    const std::size_t i = place_of(view, x, y);
     if (std::isnan(view.column[i])) return false;
     const bool rows = !view.row.empty();
-    const double directions = rows ? 2 : 1, column = view.column[i], row = rows ? view.row[i] : 0.0;
+    const double column = view.column[i], row = rows ? view.row[i] : 0.0;
+    const float directions = rows ? 2 : 1;
     const float* dim = &dimness_of(view)[i];
-    Sums sums;
     if (x >= kReach && y >= kReach && x + kReach < view.width && y + kReach + 1 < view.height && view.width > 8)
         sum_neighbours(&view.column[i], rows ? &view.row[i] : nullptr, dim, view.width, kMaxJump_px, sums);
     else
         sum_at_rim(view, x, y, sums);
     return sums.n == kWhole ? fit_whole(sums, column, row, view.sigma_px[i], directions, local)
                             : fit_part(sums, {column, row}, view.sigma_px[i], directions, local);
+}
+
+}  // namespace
+
+bool fit_local_code(const DecodedView& view, int x, int y, LocalCode& local) {
+    Sums sums;
+    if (!fit_plane(view, x, y, sums, local)) return false;
+    if (local.whole) sharpen(sums, view.sigma_px[place_of(view, x, y)], local);
+    return true;
 }
 
 std::optional<LocalCode> local_code(const DecodedView& view, int x, int y) {
@@ -210,10 +229,10 @@ CodeIndex::CodeIndex(const DecodedView& view, int projector_width, int projector
     : view_(view), columns_((projector_width + kCell_px - 1) / kCell_px), rows_((projector_height + kCell_px - 1) / kCell_px),
       pixel_in_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), -1) {
     constexpr float kByCell = 1.0f / kCell_px;
-    // Every second pixel of every second line: a piece of code without one of them is too small to be fitted.
-    for (int y = 0; y < view.height; y += 2) {
+    // Every third pixel of every third line: a piece of code without one of them is too small to be fitted.
+    for (int y = 0; y < view.height; y += 3) {
         const std::size_t line = static_cast<std::size_t>(y) * static_cast<std::size_t>(view.width);
-        for (int x = 0; x < view.width; x += 2) {
+        for (int x = 0; x < view.width; x += 3) {
             const std::size_t i = line + static_cast<std::size_t>(x);
             if (!(view.column[i] >= -0.5f && view.row[i] >= -0.5f)) continue;  // NaN as well
             const int c = static_cast<int>((view.column[i] + 0.5f) * kByCell),
@@ -228,13 +247,16 @@ CodeIndex::CodeIndex(const DecodedView& view, int projector_width, int projector
 bool CodeIndex::find(const Eigen::Vector2d& code, Match& match) const {
     if (!(code.minCoeff() > -kCell_px)) return false;
     const int c = static_cast<int>((code.x() + 0.5) / kCell_px), r = static_cast<int>((code.y() + 0.5) / kCell_px);
+    int tries = 0;
     for (int ring = 0; ring <= kRings; ++ring)
         for (int y = std::max(0, r - ring); y <= std::min(rows_ - 1, r + ring); ++y)
             for (int x = std::max(0, c - ring); x <= std::min(columns_ - 1, c + ring); ++x) {
                 if (std::max(std::abs(y - r), std::abs(x - c)) != ring) continue;
                 const std::int32_t start =
                     pixel_in_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x)];
-                if (start >= 0 && find_from(code, {start % view_.width, start / view_.width}, match)) return true;
+                if (start < 0) continue;
+                if (find_from(code, {start % view_.width, start / view_.width}, match)) return true;
+                if (++tries == kTries) return false;
             }
     return false;
 }
@@ -245,7 +267,8 @@ bool CodeIndex::find_from(const Eigen::Vector2d& code, const Eigen::Vector2d& pi
     for (int step = 0; step < kMaxSteps; ++step) {
         if (!(at.minCoeff() > -0.5 && at.x() < view_.width - 0.5 && at.y() < view_.height - 0.5)) return false;
         const int x = static_cast<int>(at.x() + 0.5), y = static_cast<int>(at.y() + 0.5);
-        if (!fit_local_code(view_, x, y, local)) return false;
+        Sums sums;
+        if (!fit_plane(view_, x, y, sums, local)) return false;
         // The view's rows and columns must both be resolved there, or the place is not determined.
         const Eigen::Matrix2d& by_pixel = local.by_pixel;
         const double determinant = by_pixel(0, 0) * by_pixel(1, 1) - by_pixel(0, 1) * by_pixel(1, 0);
@@ -256,8 +279,9 @@ bool CodeIndex::find_from(const Eigen::Vector2d& code, const Eigen::Vector2d& pi
         const Eigen::Vector2d d = match.pixel_by_code * (code - local.code);
         at = Eigen::Vector2d(x, y) + d;
         if (d.cwiseAbs().maxCoeff() <= 0.75) {
+            if (local.whole) sharpen(sums, view_.sigma_px[place_of(view_, x, y)], local);
             match.code = code;
-            match.pixel = at;
+            match.pixel = Eigen::Vector2d(x, y) + match.pixel_by_code * (code - local.code);
             return true;
         }
         if (d.cwiseAbs().maxCoeff() > kMaxWay_px) return false;

@@ -23,15 +23,25 @@ public:
           rows_(view.height / stride.y + 1),
           cells_(std::make_unique<std::atomic<bool>[]>(static_cast<std::size_t>(columns_) *
                                                        static_cast<std::size_t>(rows_))) {}
-    void mark(const Eigen::Vector2d& pixel) { cell(pixel).store(true, std::memory_order_relaxed); }
-    bool marked(const Eigen::Vector2d& pixel) { return cell(pixel).load(std::memory_order_relaxed); }
+    void mark(const Eigen::Vector2d& pixel) { cells_[place(column(pixel), row(pixel))].store(true, std::memory_order_relaxed); }
+    /// That rectangle's, or one's beside it: the partners of a left grid do not meet every rectangle.
+    bool marked(const Eigen::Vector2d& pixel) const {
+        const int c = column(pixel), r = row(pixel);
+        return set(c, r) || set(std::max(0, c - 1), r) || set(std::min(columns_ - 1, c + 1), r) || set(c, std::max(0, r - 1)) ||
+               set(c, std::min(rows_ - 1, r + 1));
+    }
 
 private:
-    std::atomic<bool>& cell(const Eigen::Vector2d& pixel) {
-        const int c = std::clamp(static_cast<int>(pixel.x() / stride_.x + 0.5), 0, columns_ - 1);
-        const int r = std::clamp(static_cast<int>(pixel.y() / stride_.y + 0.5), 0, rows_ - 1);
-        return cells_[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(c)];
+    int column(const Eigen::Vector2d& pixel) const {
+        return std::clamp(static_cast<int>(pixel.x() / stride_.x + 0.5), 0, columns_ - 1);
     }
+    int row(const Eigen::Vector2d& pixel) const {
+        return std::clamp(static_cast<int>(pixel.y() / stride_.y + 0.5), 0, rows_ - 1);
+    }
+    std::size_t place(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    }
+    bool set(int column, int row) const { return cells_[place(column, row)].load(std::memory_order_relaxed); }
     Stride stride_;
     int columns_, rows_;
     std::unique_ptr<std::atomic<bool>[]> cells_;

@@ -92,16 +92,15 @@ struct Part {
     std::vector<const ViewMatch*> matches;
     std::size_t disagree = 0, outside_volume = 0;
 
-    std::vector<float> offset_x, offset_y;
+    std::size_t by_cameras = 0;
     double epipolar_squares = 0;
     std::vector<Triangulation::ByCameras> sample;
+    std::vector<float> offset_x, offset_y;  // of the sample
 
     void reserve(std::size_t n) {
         points.reserve(n);
         sigma_mm.reserve(n);
         matches.reserve(n);
-        offset_x.reserve(n);
-        offset_y.reserve(n);
     }
 };
 
@@ -122,11 +121,12 @@ void keep_evidence(const std::vector<const ViewMatch*>& matches, std::size_t beg
     const Points& p = batch.points;
     for (std::size_t i = 0; i < batch.count; ++i) {
         if (p.good[i] == 0) continue;
+        ++part.by_cameras;
+        part.epipolar_squares += p.epipolar[i] * p.epipolar[i];
+        if ((begin + i) % sample_every != 0) continue;
         part.offset_x.push_back(static_cast<float>(p.offset_x[i]));
         part.offset_y.push_back(static_cast<float>(p.offset_y[i]));
-        part.epipolar_squares += p.epipolar[i] * p.epipolar[i];
-        if ((begin + i) % sample_every == 0)
-            part.sample.push_back({{p.start_x[i], p.start_y[i], p.start_z[i]}, matches[begin + i]->code, p.epipolar[i]});
+        part.sample.push_back({{p.start_x[i], p.start_y[i], p.start_z[i]}, matches[begin + i]->code, p.epipolar[i]});
     }
 }
 
@@ -183,14 +183,16 @@ double median(std::vector<float>& values) {
 void tell_evidence(const std::vector<Part>& parts, Triangulation& result) {
     std::vector<float> offset_x, offset_y;
     double squares = 0;
+    std::size_t count = 0;
     for (const Part& part : parts) {
+        count += part.by_cameras;
         offset_x.insert(offset_x.end(), part.offset_x.begin(), part.offset_x.end());
         offset_y.insert(offset_y.end(), part.offset_y.begin(), part.offset_y.end());
         result.by_cameras.insert(result.by_cameras.end(), part.sample.begin(), part.sample.end());
         squares += part.epipolar_squares;
     }
     if (offset_x.empty()) return;
-    result.epipolar_rms_px = std::sqrt(squares / static_cast<double>(offset_x.size()));
+    result.epipolar_rms_px = std::sqrt(squares / static_cast<double>(count));
     tbb::parallel_invoke([&] { result.projector_offset_px.x() = median(offset_x); },
                          [&] { result.projector_offset_px.y() = median(offset_y); });
 }
@@ -240,8 +242,13 @@ Triangulation place_matches(const ViewMatches& matches, const RigCalibration& ri
         result.no_partner = matches.left_only.size();
         return result;
     }
-    for (const auto& [alone, seen] : {std::pair{&matches.left_only, Seen::left_only}, {&matches.right_only, Seen::right_only}})
-        append(place_all(usable(*alone, rig.projector, every, result), devices, seen, settings), seen, result);
+    std::vector<Part> left, right;
+    const auto left_only = usable(matches.left_only, rig.projector, every, result),
+               right_only = usable(matches.right_only, rig.projector, every, result);
+    tbb::parallel_invoke([&] { left = place_all(left_only, devices, Seen::left_only, settings); },
+                         [&] { right = place_all(right_only, devices, Seen::right_only, settings); });
+    append(left, Seen::left_only, result);
+    append(right, Seen::right_only, result);
     return result;
 }
 

@@ -69,7 +69,7 @@ void triangulate_and_resect(const ScanSettings& settings, ScanResult& result, Ri
         result.raw = triangulate(result.left, result.right, rig, settings.triangulation);
         return;
     }
-    constexpr std::size_t kEnough = 10000;
+    constexpr std::size_t kEnough = 6000;
     const ViewMatches matches = match_views(result.left, result.right, rig, settings.triangulation);
     TriangulationSettings by_cameras = settings.triangulation;
     by_cameras.one_camera = false;

@@ -15,7 +15,7 @@ struct TriangulationSettings {
     double max_residual_sigma = 3.5;  ///< three-view agreement: normalised residual above which a point is dropped
     double near_mm = 200, far_mm = 3000;  ///< from the projector: the working volume
     bool one_camera = true;               ///< also points that only one camera and the projector see
-    int stride = 0;  ///< every how many camera pixels a point is made; 0: so that a view makes at most 100,000
+    int stride = 0;  ///< every how many camera pixels a point is made; 0: so that a view makes at most 75,000
 };
 
 /// Every how many camera pixels along a line, and every how many lines, a point is made.
@@ -36,8 +36,8 @@ struct Triangulation {
     Stride stride;  ///< as used
 
     /// Evidence about the calibration, over the points that both cameras placed without the projector: the median of
-    /// (decoded - expected) projector pixel, and the rms distance from the epipolar line in camera pixels. Points that
-    /// the gate drops count as well, or a rig that is off would look fine.
+    /// (decoded - expected) projector pixel (of the sample below), and the rms distance from the epipolar line in camera
+    /// pixels. Points that the gate drops count as well, or a rig that is off would look fine.
     Eigen::Vector2d projector_offset_px = Eigen::Vector2d::Zero();
     double epipolar_rms_px = 0;
 

@@ -64,7 +64,7 @@ bool in_volume(const CameraModel& projector, const Eigen::Vector3d& p_in_rig, co
 }
 
 Stride stride_for(std::size_t decoded, const TriangulationSettings& settings) {
-    constexpr std::size_t kMaxPoints = 100000;
+    constexpr std::size_t kMaxPoints = 75000;
     if (settings.stride > 0) return {settings.stride, settings.stride};
     Stride stride;
     while (decoded > kMaxPoints * static_cast<std::size_t>(stride.x * stride.y))

@@ -31,7 +31,7 @@ std::optional<Eigen::Vector3d> between_rays(const Ray& a, const Ray& b);
 
 bool in_volume(const CameraModel& projector, const Eigen::Vector3d& p_in_rig, const TriangulationSettings& settings);
 
-/// The strides of settings, or those that make at most 100,000 points of this many pixels.
+/// The strides of settings, or those that make at most 75,000 points of this many pixels.
 Stride stride_for(std::size_t decoded, const TriangulationSettings& settings);
 
 /// Adds the outcomes to the result: points, counts and the evidence about the calibration.

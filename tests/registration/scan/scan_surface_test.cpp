@@ -127,7 +127,7 @@ TEST(ScanSurface, ColumnsAloneSufficeWhereThreeViewsMeet) {
     left.row.clear();
     right.row.clear();
     const Triangulation raw = triangulate(left, right, on_sphere().rig);
-    ASSERT_GT(raw.three_view, 50000u);
+    ASSERT_GT(raw.three_view, 30000u);
     EXPECT_EQ(raw.two_view, 0u);
     double squares = 0;
     std::size_t far = 0;
@@ -166,7 +166,7 @@ TEST(ScanSurface, OneCameraBlockedLeavesTwoViewPoints) {
     std::fill(blind.row.begin(), blind.row.end(), NAN);
     const Triangulation raw = triangulate(on_sphere().result.left, blind, on_sphere().rig);
     EXPECT_EQ(raw.three_view, 0u);
-    EXPECT_GT(raw.two_view, 50000u);
+    EXPECT_GT(raw.two_view, 30000u);
     for (std::size_t i = 0; i < raw.cloud.size(); i += 11) {
         const double off = (raw.cloud.points_in_rig[i] - kCentre).norm() - 80;
         ASSERT_LT(std::abs(off), 5 * raw.cloud.sigma_mm[i]);
@@ -175,7 +175,7 @@ TEST(ScanSurface, OneCameraBlockedLeavesTwoViewPoints) {
     both_only.one_camera = false;
     const Triangulation none = triangulate(on_sphere().result.left, blind, on_sphere().rig, both_only);
     EXPECT_TRUE(none.cloud.empty());
-    EXPECT_GT(none.no_partner, 50000u);
+    EXPECT_GT(none.no_partner, 30000u);
 }
 
 // Mutations of the rig: each must be seen, by the gate or by the evidence, and the sound rig must not be.
@@ -254,9 +254,9 @@ TEST(RemoveOutliers, AFloatingScrapIsRemovedAndTheHeadStays) {
     const auto at_scrap = [&](const Eigen::Vector3d& p) { return (p - kCentre).norm() > 110; };
     const auto& raw = s.result.raw.cloud.points_in_rig;
     const auto& kept = s.result.clean.kept.points_in_rig;
-    EXPECT_GT(std::count_if(raw.begin(), raw.end(), at_scrap), 100);
+    EXPECT_GT(std::count_if(raw.begin(), raw.end(), at_scrap), 50);
     EXPECT_EQ(std::count_if(kept.begin(), kept.end(), at_scrap), 0);
-    EXPECT_GT(s.result.clean.small_piece, 100u);
+    EXPECT_GT(s.result.clean.small_piece, 50u);
     EXPECT_GT(kept.size(), 20000u);
     std::size_t far = 0;
     for (const auto& p : kept) far += std::abs((p - kCentre).norm() - 80) > 1 ? 1u : 0u;
