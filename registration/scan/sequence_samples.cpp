@@ -72,6 +72,27 @@ Bytes values_at(const GrayImage& frame, const std::vector<std::size_t>& pixels, 
     return values;
 }
 
+/// Leaves out the pixels that show no light in white, black and the first pictures after them: most of a picture is not lit, and
+/// were one of these the wrong frame, the others would still show the light.
+void leave_out_dark(std::span<const GrayImage> frames, const Samples& s, std::vector<std::size_t>& pixels) {
+    constexpr std::size_t kFirst = 8;
+    Bytes low = values_at(frames[s.white], pixels, 0), high = low;
+    const auto add = [&](const GrayImage& frame) {
+        const Bytes values = values_at(frame, pixels, 0);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            low[i] = std::min(low[i], values[i]);
+            high[i] = std::max(high[i], values[i]);
+        }
+    };
+    add(frames[s.black]);
+    for (std::size_t f = 0; f < std::min(kFirst, frames.size()); ++f)
+        if (f != s.white && f != s.black) add(frames[f]);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < pixels.size(); ++i)
+        if (high[i] - low[i] >= kLit_grey) pixels[kept++] = pixels[i];
+    pixels.resize(kept);
+}
+
 /// How much of a change is light and not noise: a quarter of that of the best lit places (one in a hundred). A camera that
 /// encodes for a screen has 30 grey of noise in the dark.
 int least_change(const Bytes& low, const Bytes& high) {
@@ -132,6 +153,7 @@ Samples gather_samples(std::span<const GrayImage> frames, const StripeSettings& 
     s.stripes = stripes;
     sort_frames(frames, s);
     std::vector<std::size_t> pixels = sample_of(frames[0]);
+    leave_out_dark(frames, s, pixels);
     for (const GrayImage& frame : frames) s.here.push_back(values_at(frame, pixels, 0));
     keep_lit(choose_lit(s), pixels, s);
     s.around.resize(frames.size());

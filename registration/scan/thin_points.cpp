@@ -119,7 +119,8 @@ std::vector<std::size_t> thin_evenly(const std::vector<Eigen::Vector3f>& points,
     const float size = std::max((high - low).maxCoeff(), 1e-6f);
     Cubes cubes(points, low, high - low);
     float fine = cubes.finest_mm(), coarse = 2 * size;  // coarse: one cube
-    // A surface's cubes go with the inverse square of their edge: start there, then bisect on the logarithm.
+    // A surface's cubes go with the inverse square of their edge, with less where cubes hold single points: start there, then
+    // bisect on the logarithm.
     float edge = std::max(size / std::sqrt(static_cast<float>(max_points)), fine);
     for (int step = 0; step < 24 && coarse > 1.01f * fine; ++step) {
         const float ratio = static_cast<float>(cubes.count(edge)) / static_cast<float>(max_points);
@@ -129,7 +130,7 @@ std::vector<std::size_t> thin_evenly(const std::vector<Eigen::Vector3f>& points,
         } else {
             fine = edge;
         }
-        const float guess = edge * std::sqrt(std::max(ratio, 1e-6f) / 0.99f);
+        const float guess = edge * std::pow(std::max(ratio, 1e-6f) / 0.99f, ratio < 1 ? 0.75f : 0.5f);
         edge = guess > fine * 1.001f && guess < coarse * 0.999f ? guess : std::sqrt(fine * coarse);
     }
     return cubes.nearest(coarse);
