@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -82,6 +83,7 @@ Off off_the_sphere(const PointCloud& cloud) {
         sizes.push_back(std::abs(e));
     }
     off.rms = std::sqrt(off.rms);
+    fmt::print("off the true sphere: mean {:.3f}, rms {:.3f} mm\n", off.mean, off.rms);
     std::sort(sizes.begin(), sizes.end());
     if (!sizes.empty()) off.p99 = sizes[sizes.size() * 99 / 100];
     return off;

@@ -17,8 +17,16 @@ using simulation::SimulatedRig;
 constexpr int kReach = 4, kSide = 2 * kReach + 1;
 using Window = std::array<double, kSide * kSide>;
 
-/// Weights of the 9 x 9 pixels that sum to one: the lens's Gaussian, averaged over a box of (2 reach + 1) squared
-/// pixels.
+/// Weight of a pixel in the value at the centre of a quadric fitted over (2 reach + 1) squared pixels; 1 for reach 0.
+double quadric_weight(int x, int y, int reach) {
+    if (reach == 0) return 1;
+    const double side = 2 * reach + 1, mean = reach * (reach + 1) / 3.0;  // of x^2
+    double squares = 0;                                                   // of x^2 - mean, over all pixels
+    for (int u = -reach; u <= reach; ++u) squares += side * (u * u - mean) * (u * u - mean);
+    return 1 / (side * side) - mean * (x * x + y * y - 2 * mean) / squares;
+}
+
+/// Weights of the 9 x 9 pixels that sum to one: the lens's Gaussian, then that fit.
 Window window_of(int reach) {
     constexpr double kLens_px = 0.7;
     Window weights{};
@@ -28,7 +36,8 @@ Window window_of(int reach) {
             double& w = weights[static_cast<std::size_t>((y + kReach) * kSide + x + kReach)];
             for (int v = -reach; v <= reach; ++v)
                 for (int u = -reach; u <= reach; ++u)
-                    w += std::exp(-0.5 * ((x - u) * (x - u) + (y - v) * (y - v)) / (kLens_px * kLens_px));
+                    w += quadric_weight(u, v, reach) *
+                         std::exp(-0.5 * ((x - u) * (x - u) + (y - v) * (y - v)) / (kLens_px * kLens_px));
             sum += w;
         }
     for (double& w : weights) w /= sum;

@@ -11,7 +11,7 @@ struct FootprintFigures {
     std::size_t points = 0;
     double at_point_mm = 0;   ///< scatter of the distance to the true skin at the point's own pixel
     double by_lens_mm = 0;    ///< to the true skin averaged as the camera's lens and pixel do (Gaussian, sigma 0.7 px)
-    double by_window_mm = 0;  ///< to that, averaged once more over the 5 x 5 pixels of the scan's affine fits
+    double by_window_mm = 0;  ///< to that, and fitted by a quadric over 5 x 5 pixels, as the scan does
     double repeat_mm =
         0;  ///< rms difference of two scans of the same room along the normal, by sqrt 2: the scan's own noise
     std::size_t repeated = 0;  ///< points of both scans

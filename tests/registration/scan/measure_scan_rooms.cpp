@@ -106,7 +106,7 @@ Figures figures_of_footprint(const ScanResult& scan, SimulatedRig& room, const s
     const FootprintFigures f = footprint_figures(scan, again, room, room.calibration(), at);
     return {{"off the skin at the pixel (mm)", f.at_point_mm},
             {"off it, blurred by the lens (mm)", f.by_lens_mm},
-            {"off it, over 5 x 5 pixels (mm)", f.by_window_mm},
+            {"off it, fitted over 5 x 5 px (mm)", f.by_window_mm},
             {"two scans / sqrt 2 (mm)", f.repeat_mm},
             {"points of both scans", static_cast<double>(f.repeated)}};
 }
