@@ -1,8 +1,12 @@
 #include "registration/scan/resect_projector.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Cholesky>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
 namespace planlight {
@@ -42,7 +46,7 @@ struct Normal {
 };
 
 /// Normal equations about `projector`: rotation and translation in its frame, principal point, logarithm of the focal length.
-Normal linearise(const std::vector<const Pair*>& pairs, const CameraModel& projector) {
+Normal linearise_part(std::span<const Pair* const> pairs, const CameraModel& projector) {
     Normal normal;
     const Eigen::Matrix3d rig_from_device = projector.device_from_rig.linear().transpose();
     for (const Pair* pair : pairs) {
@@ -64,6 +68,24 @@ Normal linearise(const std::vector<const Pair*>& pairs, const CameraModel& proje
         normal.weights += weight;
     }
     return normal;
+}
+
+/// The same in parts, added in their order: the sum does not depend on the threads.
+Normal linearise(const std::vector<const Pair*>& pairs, const CameraModel& projector) {
+    constexpr std::size_t kParts = 8;
+    std::array<Normal, kParts> parts;
+    tbb::parallel_for(std::size_t{0}, kParts, [&](std::size_t k) {
+        const std::size_t begin = k * pairs.size() / kParts, end = (k + 1) * pairs.size() / kParts;
+        parts[k] = linearise_part(std::span(pairs).subspan(begin, end - begin), projector);
+    });
+    Normal sum;
+    for (const Normal& part : parts) {
+        sum.A += part.A;
+        sum.b += part.b;
+        sum.weighted_squares += part.weighted_squares;
+        sum.weights += part.weights;
+    }
+    return sum;
 }
 
 double rms_of(const Normal& normal) { return std::sqrt(normal.weighted_squares / std::max(2 * normal.weights, 1e-12)); }
@@ -97,7 +119,7 @@ std::optional<Resection> resect_projector(const Triangulation& raw, const RigCal
         if (!step.allFinite()) return std::nullopt;
         result.projector = stepped(result.projector, step);
         normal = linearise(pairs, result.projector);
-        if (step.head<3>().norm() < 1e-9 && step.segment<3>(3).norm() < 1e-6) break;
+        if (step.head<3>().norm() < 1e-8 && step.segment<3>(3).norm() < 1e-5) break;
     }
     result.rms_after_px = rms_of(normal);
     result.moved_mm = (result.projector.centre_in_rig() - rig.projector.centre_in_rig()).norm();
