@@ -11,6 +11,7 @@
 #include "planning_io/mesh_file.h"
 #include "planning_io/rig_file.h"
 #include "planning_io/types/error.h"
+#include "registration/calibration/check_drift.h"
 #include "registration/scan/merge_exposures.h"
 #include "registration/scan/surface_triangles.h"
 #include "registration/tracking/markers_in_scan.h"
@@ -26,6 +27,9 @@ std::string devices_of(const ScanResult& scan, const RigCalibration& rig) {
     if (!present(rig.projector)) return "two cameras";
     return scan.right.width > 1 ? "two cameras and the projector" : "one camera and the projector";
 }
+
+/// 0 is not known.
+nlohmann::json or_null(double value) { return value > 0 ? nlohmann::json(value) : nlohmann::json(); }
 
 /// Where the scan found the projector; null where it could not tell.
 nlohmann::json projector_of(const ScanResult& scan) {
@@ -46,6 +50,11 @@ void warn_of(const ScanResult& scan, const RigCalibration& rig) {
             "the projector was found {:.1f} mm and {:.2f} degrees from where {} has it; `planlight check` tells more",
             scan.resection->moved_mm, scan.resection->turned * 180 / std::numbers::pi,
             rig.made_on.empty() ? "the rig file" : "the calibration of " + rig.made_on));
+}
+
+std::string said_of_cameras(const ScanResult& scan) {
+    const double off_px = usual_epipolar_px(scan.raw);
+    return off_px > 0 ? fmt::format("; epipolar error {:.2f} px", off_px) : std::string();
 }
 
 nlohmann::json json_of(const ScanMovement& movement) {
@@ -143,7 +152,8 @@ int run_scan(const ScanOptions& options) {
                          {"lonely", scan.clean.lonely}, {"thinned", scan.clean.thinned}}},
             {"devices", devices_of(scan, rig)},
             {"code_step_px", scan.code_step_px},
-            {"epipolar_rms_px", scan.raw.epipolar_rms_px},
+            {"epipolar_px", or_null(usual_epipolar_px(scan.raw))},
+            {"epipolar_rms_px", or_null(scan.raw.epipolar_rms_px)},
             {"projector_offset_px", {scan.raw.projector_offset_px.x(), scan.raw.projector_offset_px.y()}},
             {"projector", projector_of(scan)},
             {"movement", json_of(movement)},
@@ -154,9 +164,9 @@ int run_scan(const ScanOptions& options) {
               {"outliers", scan.outliers_s}}}};
         std::cout << result.dump(2) << '\n';
     } else {
-        fmt::print("{} points by {} in {} (raw {}; off the rays {}, jumps {}, grazing {}, small pieces {}, lonely {}).\n",
+        fmt::print("{} points by {} in {} (raw {}; off the rays {}, jumps {}, grazing {}, small pieces {}, lonely {}){}.\n",
                    scan.clean.kept.size(), devices_of(scan, rig), options.out.string(), scan.raw.cloud.size(),
-                   scan.raw.disagree, scan.clean.jump, scan.clean.grazing, scan.clean.small_piece, scan.clean.lonely);
+                   scan.raw.disagree, scan.clean.jump, scan.clean.grazing, scan.clean.small_piece, scan.clean.lonely, said_of_cameras(scan));
         if (!options.surface_out.empty())
             fmt::print("{} triangles over them in {}.\n", triangles.size(), options.surface_out.string());
     }

@@ -35,7 +35,7 @@ PLANLIGHT_CLONES void add_frame(const std::uint8_t* frame, const float* weights,
 
 }  // namespace
 
-std::string explain(const Samples& s, std::size_t frame) {
+std::optional<std::size_t> twin_of(const Samples& s, std::size_t frame) {
     std::optional<std::size_t> twin;
     double best = 0.02;
     for (std::size_t other = 0; other < s.here.size(); ++other) {
@@ -48,6 +48,11 @@ std::string explain(const Samples& s, std::size_t frame) {
             twin = other;
         }
     }
+    return twin;
+}
+
+std::string explain(const Samples& s, std::size_t frame) {
+    const auto twin = twin_of(s, frame);
     return twin ? fmt::format("; {} looks like {}", s.name(frame), s.name(*twin)) : "";
 }
 
