@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
 
 #include "tests/registration/scan/stripe_room.h"
 
@@ -56,6 +57,16 @@ TEST(CheckDrift, AFewWrongPartnersAreNoMovedCamera) {
 }
 
 /// A tenth of a degree puts the light 1.5 mm off at 0.9 m: noticed, and said in mm.
+// One figure for `scan` and `check`: that of the points, not of the wrong partners among them.
+TEST(CheckDrift, TheUsualEpipolarDistanceIsThatOfNormalNoiseWhateverAFewPointsDo) {
+    std::mt19937 random(2);
+    std::normal_distribution<double> noise(0, 0.1);
+    Triangulation raw;
+    EXPECT_EQ(usual_epipolar_px(raw), 0) << "not known";
+    for (int i = 0; i < 20000; ++i) raw.by_cameras.push_back({{}, {}, i % 1000 == 0 ? 50.0 : noise(random)});
+    EXPECT_NEAR(usual_epipolar_px(raw), 0.1, 0.003);
+}
+
 TEST(CheckDrift, AKnockedProjectorIsNoticedAndMeasured) {
     RigCalibration rig = scanned().rig;
     rig.projector.device_from_rig = turned_by(0.1, Eigen::Vector3d::UnitY()) * rig.projector.device_from_rig;

@@ -161,3 +161,51 @@ TEST(Explore, DISABLED_Table) {
 
 }  // namespace
 }  // namespace planlight
+#include "registration/scan/scan_movement.h"
+#include "registration/scan/camera_gamma.h"
+namespace planlight {
+namespace {
+std::vector<GrayImage> encoded(const std::vector<GrayImage>& frames, double noise_grey, bool srgb, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal(0, 1);
+    std::vector<double> noise(1 << 18);
+    for (double& n : noise) n = normal(random);
+    std::vector<GrayImage> out = frames;
+    for (GrayImage& f : out) {
+        std::size_t at = random();
+        for (auto& p : f.pixels) {
+            if (at % 997 == 0) at = random();
+            const double sigma = std::sqrt(noise_grey * noise_grey + p * 0.01);  // shot noise of 25,000 electrons
+            const double light = std::clamp((p + sigma * noise[at++ % noise.size()]) / 255, 0.0, 1.0);
+            const double value = srgb ? (light < 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055) : std::pow(light, 1 / 2.2);
+            p = static_cast<std::uint8_t>(std::lround(255 * value));
+        }
+    }
+    return out;
+}
+TEST(ExploreGamma, DISABLED_Table) {
+    for (const int which : {0, 1})
+    for (const double ambient : {0.0, 1.0, 4.0, 18.0})
+        for (const double white : {190.0, 60.0}) {
+            Room room = room_of(which);
+            room.light.ambient_grey = ambient;
+            room.light.white_grey = white;
+            const StripeSettings s = stripes_of(room);
+            const auto frames = photograph(room, room.left, s, 1);
+            for (const bool srgb : {false, true})
+                for (const double noise : {0.3, 0.5, 0.7, 1.0, 2.0}) {
+                    ScanCapture shot;
+                    shot.stripes = s;
+                    shot.left = encoded(frames, noise, srgb, 5);
+                    const auto check = check_sequence(shot.left, s);
+                    const double gamma = camera_gamma(shot.left, even_moments(shot));
+                    const auto moved = movement_in_pictures(shot, 0.43);
+                    fmt::print("room {} ambient {} white {} {} noise {}: {} {} gamma {:.2f} moved {:.3f} {}-{}", which, ambient, white, srgb ? "srgb" : "2.2 ", noise, check.checked ? "" : "NOT CHECKED",
+                               check.problems.empty() ? "ok" : fmt::format("REFUSED {} {:.3f}", check.problems[0].what, check.problems[0].share), gamma, moved.moved_mm, moved.from, moved.to);
+                    const auto view = decode_stripes(shot.left, s);
+                    fmt::print(" decoded {}\n", view.decoded);
+                }
+        }
+}
+}  // namespace
+}  // namespace planlight
