@@ -28,16 +28,11 @@ struct Place {
 class Reader {
 public:
     Reader(std::span<const GrayImage> frames, const Samples& s, const Direction& direction)
-        : frames_(frames), s_(s), direction_(direction) {
-        std::vector<std::int16_t> contrast = s.contrast;
-        const auto middle = contrast.begin() + static_cast<std::ptrdiff_t>(contrast.size() / 2);
-        std::nth_element(contrast.begin(), middle, contrast.end());
-        least_ = std::max(kLit_grey, *middle / 4);
-    }
+        : frames_(frames), s_(s), direction_(direction) {}
 
     Code at(std::size_t pixel) const {
         const int white = frames_[s_.white].pixels[pixel], contrast = white - frames_[s_.black].pixels[pixel];
-        if (contrast < least_ || white >= kBright_grey) return {};
+        if (contrast < s_.least_change || white >= kBright_grey) return {};
         Code code{0, 0, contrast};
         for (std::size_t k = 0; k < direction_.gray.size(); ++k) {
             const int value = s_.difference(direction_, k, [&](std::size_t frame) { return int{frames_[frame].pixels[pixel]}; });
@@ -62,7 +57,6 @@ private:
     std::span<const GrayImage> frames_;
     const Samples& s_;
     const Direction& direction_;
-    int least_ = kLit_grey;
 };
 
 /// A step of the surface, an edge of a shadow or of a stain are likely to change the light.

@@ -72,16 +72,24 @@ Bytes values_at(const GrayImage& frame, const std::vector<std::size_t>& pixels, 
     return values;
 }
 
-/// How much of a change is light and not noise: a quarter of that of the best lit places (one in a hundred). A camera that
-/// encodes for a screen has 30 grey of noise in the dark.
-int least_change(const Bytes& low, const Bytes& high) {
-    std::vector<int> changes;
-    for (std::size_t i = 0; i < low.size(); ++i)
+int nth_of(std::vector<int>& values, std::size_t percent) {
+    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(values.size() * percent / 100);
+    std::nth_element(values.begin(), nth, values.end());
+    return *nth;
+}
+
+/// How much of a change is light and not noise: more than that of the places without light, of which every other one has white
+/// no brighter than black. A camera that encodes for a screen has 30 grey of noise there. Never more than a quarter of the
+/// change of the best lit places (one in a hundred): with white out of its place, lit ones are among the others.
+int least_change(const Bytes& low, const Bytes& high, const Bytes& white, const Bytes& black) {
+    constexpr double kMargin = 1.25;
+    std::vector<int> changes, unlit;
+    for (std::size_t i = 0; i < low.size(); ++i) {
         if (high[i] - low[i] >= kLit_grey) changes.push_back(high[i] - low[i]);
-    if (changes.empty()) return kLit_grey;
-    const auto strong = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() * 99 / 100);
-    std::nth_element(changes.begin(), strong, changes.end());
-    return std::max(kLit_grey, *strong / 4);
+        if (white[i] <= black[i]) unlit.push_back(high[i] - low[i]);
+    }
+    if (changes.empty() || unlit.empty()) return kLit_grey;
+    return std::max(kLit_grey, std::min(static_cast<int>(kMargin * nth_of(unlit, 95)), nth_of(changes, 99) / 4));
 }
 
 /// White must be the brightest frame and black the darkest wherever any light changes. The places in the list of those
@@ -94,9 +102,9 @@ std::vector<std::size_t> choose_lit(Samples& s) {
             high[i] = std::max(high[i], frame[i]);
         }
     std::vector<std::size_t> lit;
-    const int least = least_change(low, high);
+    s.least_change = least_change(low, high, s.here[s.white], s.here[s.black]);
     for (std::size_t i = 0; i < low.size(); ++i) {
-        if (high[i] - low[i] < least) continue;
+        if (high[i] - low[i] < s.least_change) continue;
         ++s.changing;
         const int allowed = (high[i] - low[i]) / 3, white = s.here[s.white][i], black = s.here[s.black][i];
         const bool is_white = high[i] - white <= allowed, is_black = black - low[i] <= allowed;

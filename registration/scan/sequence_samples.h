@@ -39,6 +39,7 @@ struct Samples {
     std::size_t white = 0, black = 1;  ///< frames
     std::array<Direction, 2> directions;
 
+    int least_change = kLit_grey;  ///< more than noise
     std::size_t changing = 0, not_white = 0,
                 not_black = 0;  ///< pixels in which any light changes; white (black) is not the end
     std::size_t lit = 0;        ///< pixels kept: white and black are the ends, and apart
