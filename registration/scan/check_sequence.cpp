@@ -49,10 +49,10 @@ void check_pairs(const Samples& s, const Direction& direction, SequenceCheck& ch
         std::size_t looked = 0, wrong = 0, far_off = 0;  // far off: more than an edge that moved, or a camera's gamma, can make
         for (std::size_t i = 0; i < s.lit; ++i) {
             const int off = std::abs(a[i] + b[i] - white[i] - black[i]);
-            far_off += off > 0.6 * s.contrast[i] + 4 * kNoise_grey;
+            far_off += off > 0.6 * s.contrast[i] + 3 * s.noise_grey;
             if (!flat[i]) continue;
             ++looked;
-            wrong += off > 0.35 * s.contrast[i] + 4 * kNoise_grey;
+            wrong += off > 0.35 * s.contrast[i] + 3 * s.noise_grey;
         }
         constexpr double kMost = 0.02, kMostFarOff = 0.1;
         if (looked < kEnough || share_of(wrong, looked) <= kMost) {  // fine stripes have no flat places

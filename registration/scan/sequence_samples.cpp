@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "registration/scan/picture_noise.h"
+
 namespace planlight::sequence {
 namespace {
 
@@ -72,24 +74,16 @@ Bytes values_at(const GrayImage& frame, const std::vector<std::size_t>& pixels, 
     return values;
 }
 
-int nth_of(std::vector<int>& values, std::size_t percent) {
-    const auto nth = values.begin() + static_cast<std::ptrdiff_t>(values.size() * percent / 100);
-    std::nth_element(values.begin(), nth, values.end());
-    return *nth;
-}
-
-/// How much of a change is light and not noise: more than that of the places without light, of which every other one has white
-/// no brighter than black. A camera that encodes for a screen has 30 grey of noise there. Never more than a quarter of the
-/// change of the best lit places (one in a hundred): with white out of its place, lit ones are among the others.
-int least_change(const Bytes& low, const Bytes& high, const Bytes& white, const Bytes& black) {
-    constexpr double kMargin = 1.25;
-    std::vector<int> changes, unlit;
-    for (std::size_t i = 0; i < low.size(); ++i) {
+/// How much of a change is light and not noise: more than noise makes of fifty frames. Never more than half of the change of the
+/// best lit places (one in a hundred): with white or black out of its place the noise is not known.
+int least_change(const Bytes& low, const Bytes& high, double dark_noise_grey) {
+    std::vector<int> changes;
+    for (std::size_t i = 0; i < low.size(); ++i)
         if (high[i] - low[i] >= kLit_grey) changes.push_back(high[i] - low[i]);
-        if (white[i] <= black[i]) unlit.push_back(high[i] - low[i]);
-    }
-    if (changes.empty() || unlit.empty()) return kLit_grey;
-    return std::max(kLit_grey, std::min(static_cast<int>(kMargin * nth_of(unlit, 95)), nth_of(changes, 99) / 4));
+    if (changes.empty()) return kLit_grey;
+    const auto strong = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() * 99 / 100);
+    std::nth_element(changes.begin(), strong, changes.end());
+    return std::max(kLit_grey, std::min(static_cast<int>(6 * dark_noise_grey), *strong / 2));
 }
 
 /// White must be the brightest frame and black the darkest wherever any light changes. The places in the list of those
@@ -102,11 +96,11 @@ std::vector<std::size_t> choose_lit(Samples& s) {
             high[i] = std::max(high[i], frame[i]);
         }
     std::vector<std::size_t> lit;
-    s.least_change = least_change(low, high, s.here[s.white], s.here[s.black]);
+    s.least_change = least_change(low, high, s.dark_noise_grey);
     for (std::size_t i = 0; i < low.size(); ++i) {
         if (high[i] - low[i] < s.least_change) continue;
         ++s.changing;
-        const int allowed = (high[i] - low[i]) / 3, white = s.here[s.white][i], black = s.here[s.black][i];
+        const int allowed = std::max((high[i] - low[i]) / 3, static_cast<int>(4 * s.noise_grey)), white = s.here[s.white][i], black = s.here[s.black][i];
         const bool is_white = high[i] - white <= allowed, is_black = black - low[i] <= allowed;
         s.not_white += !is_white;
         s.not_black += !is_black;
@@ -141,6 +135,8 @@ Samples gather_samples(std::span<const GrayImage> frames, const StripeSettings& 
     sort_frames(frames, s);
     std::vector<std::size_t> pixels = sample_of(frames[0]);
     for (const GrayImage& frame : frames) s.here.push_back(values_at(frame, pixels, 0));
+    s.noise_grey = std::max(kNoise_grey, noise_in_light(frames[s.white], frames[s.black]));
+    s.dark_noise_grey = noise_in_dark(frames[s.white], frames[s.black]);
     keep_lit(choose_lit(s), pixels, s);
     s.around.resize(frames.size());
     const std::ptrdiff_t line = std::ptrdiff_t{frames[0].width} * kFlat_px;
