@@ -12,6 +12,7 @@
 #include "planning_io/rig_file.h"
 #include "planning_io/types/error.h"
 #include "registration/calibration/check_drift.h"
+#include "registration/scan/camera_gamma.h"
 #include "registration/scan/merge_exposures.h"
 #include "registration/scan/surface_triangles.h"
 #include "registration/tracking/markers_in_scan.h"
@@ -77,9 +78,9 @@ void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
     const bool by_markers = movement.by == ScanMovement::By::markers;
     if (movement.moved_mm <= (by_markers ? 1 : 0.5) * options.max_movement_mm) return;
     const std::string problem = fmt::format(
-        "the patient moved {:.2f} mm during the scan (between {} and {}, by {}); {:g} mm is the limit", movement.moved_mm,
+        "the patient moved {:.2f} mm during the scan (between {} and {}, by {}); {:g} mm is the limit{}", movement.moved_mm,
         movement.from, movement.to, by_markers ? "the markers" : "the skin in the pictures, which show about half of it",
-        options.max_movement_mm);
+        options.max_movement_mm, said_of_gamma(movement.camera_gamma));
     if (!options.accept_movement)
         throw CheckFailedError(problem, "Scan again, or take the cloud as it is with --accept-movement.");
     warn(problem);

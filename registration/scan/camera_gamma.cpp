@@ -1,5 +1,7 @@
 #include "registration/scan/camera_gamma.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -70,6 +72,15 @@ double camera_gamma(const std::vector<GrayImage>& frames, const std::vector<Even
         (surplus(edges, middle) > 0 ? least : most) = middle;
     }
     return 0.5 * (least + most);
+}
+
+std::string said_of_gamma(double gamma) {
+    constexpr double kLeast = 1.3;
+    if (gamma < kLeast) return {};
+    return fmt::format(
+        "; the camera seems to encode its pictures for a screen (exponent {:.1f}), which may be the cause: set it to linear "
+        "(gamma 1, RAW)",
+        gamma);
 }
 
 std::vector<float> even_light_picture(const std::vector<GrayImage>& frames, const EvenMoment& moment, double gamma) {

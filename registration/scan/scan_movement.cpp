@@ -143,6 +143,7 @@ ScanMovement movement_in_pictures(const ScanCapture& capture, double mm_per_px) 
     const Template t = make_template(first, light_of_projector(capture.left, gamma), white, capture.left[1]);
     if (!t.determined) return movement;
     movement.by = ScanMovement::By::pictures;
+    movement.camera_gamma = gamma;
     movement.moments = static_cast<int>(moments.size());
     std::vector<Vector7d> maps;
     for (const auto& moment : moments)
