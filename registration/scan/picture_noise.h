@@ -5,8 +5,8 @@
 namespace planlight {
 
 /// The noise of one picture of a camera where there is light: one sigma, grey. From how much more white than black differs
-/// between a pixel and the next where white is brighter by 16 grey: of skin hardly (its texture is in both), of noise by twice its
-/// sigma. The median, so that edges do not count, and that it holds as well when white or black is another picture of the
+/// between a pixel and the next where white is brighter by 16 grey: of skin hardly (its texture is in both), of noise by twice
+/// its sigma. The median, so that edges do not count, and that it holds as well when white or black is another picture of the
 /// sequence. 0 where nothing is lit.
 double noise_in_light(const GrayImage& white, const GrayImage& black);
 

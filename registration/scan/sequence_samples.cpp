@@ -100,7 +100,8 @@ std::vector<std::size_t> choose_lit(Samples& s) {
     for (std::size_t i = 0; i < low.size(); ++i) {
         if (high[i] - low[i] < s.least_change) continue;
         ++s.changing;
-        const int allowed = std::max((high[i] - low[i]) / 3, static_cast<int>(4 * s.noise_grey)), white = s.here[s.white][i], black = s.here[s.black][i];
+        const int allowed = std::max((high[i] - low[i]) / 3, static_cast<int>(4 * s.noise_grey)),
+                  white = s.here[s.white][i], black = s.here[s.black][i];
         const bool is_white = high[i] - white <= allowed, is_black = black - low[i] <= allowed;
         s.not_white += !is_white;
         s.not_black += !is_black;

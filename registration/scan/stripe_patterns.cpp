@@ -43,7 +43,8 @@ std::uint8_t value_at(const StripeSettings& s, const StripePattern& pattern, int
 
 void add_direction(const StripeSettings& s, bool along_rows, std::vector<StripePattern>& sequence) {
     const std::string direction = along_rows ? "row" : "column";
-    for (StripePattern& pattern : gray_patterns(gray_bits(s, along_rows), along_rows, s.inverse)) sequence.push_back(std::move(pattern));
+    for (StripePattern& pattern : gray_patterns(gray_bits(s, along_rows), along_rows, s.inverse))
+        sequence.push_back(std::move(pattern));
     for (int step = 0; step < s.phase_steps; ++step)
         sequence.push_back({StripePattern::Kind::phase, along_rows, step, fmt::format("{}-phase-{}", direction, step)});
     for (int frequency = 1; frequency <= static_cast<int>(s.order_periods_px.size()); ++frequency)
