@@ -63,7 +63,8 @@ TEST(CheckDrift, TheUsualEpipolarDistanceIsThatOfNormalNoiseWhateverAFewPointsDo
     std::normal_distribution<double> noise(0, 0.1);
     Triangulation raw;
     EXPECT_EQ(usual_epipolar_px(raw), 0) << "not known";
-    for (int i = 0; i < 20000; ++i) raw.by_cameras.push_back({Eigen::Vector3d::Zero(), Eigen::Vector2d::Zero(), i % 1000 == 0 ? 50.0 : noise(random)});
+    for (int i = 0; i < 20000; ++i)
+        raw.by_cameras.push_back({Eigen::Vector3d::Zero(), Eigen::Vector2d::Zero(), i % 1000 == 0 ? 50.0 : noise(random)});
     EXPECT_NEAR(usual_epipolar_px(raw), 0.1, 0.003);
 }
 

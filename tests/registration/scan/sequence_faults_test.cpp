@@ -5,7 +5,8 @@
 
 #include "tests/registration/scan/spoilt_sequence.h"
 
-// Every kind of fault at every place of the sequences that have less to check them by than the usual one: no inverses, no fringes.
+// Every kind of fault at every place of the sequences that have less to check them by than the usual one: no inverses, or no
+// fringes.
 namespace planlight {
 namespace {
 
@@ -132,6 +133,17 @@ TEST(SequenceFaults, AMirroredOrHalfGrayCodeIsTold) {
     gray.frames[3] = gray.frames[0];
     gray.frames[2] = gray.frames[1];  // never lit: half the code, folded
     EXPECT_NE(said(checked(gray, gray.frames, 1)).find("turns back"), std::string::npos);
+}
+
+// 520 columns take as many bits as 800: nothing but the code itself shows that the projector has more of them.
+TEST(SequenceFaults, AProjectorToldSmallerThanItIsIsNoticed) {
+    for (const bool inverse : {false, true}) {
+        Sequence gray = gray_code_of(head_room(), 8, inverse);
+        const int bits = gray_bits(gray.stripes, false);
+        gray.stripes.width = 520;
+        ASSERT_EQ(gray_bits(gray.stripes, false), bits);
+        EXPECT_NE(said(checked(gray, gray.frames, 1)).find("beyond the projector's 520 columns"), std::string::npos);
+    }
 }
 
 }  // namespace
