@@ -69,8 +69,7 @@ struct AtEdges {
 
 struct Seen {
     std::size_t bits = 0, places = 0;
-    std::size_t resolved = 0;             ///< so many bits are, from the coarsest on
-    std::size_t numbered = 0, beyond = 0;  ///< places whose resolved bits are clear; and those past the projector's last pixel
+    std::size_t resolved = 0;  ///< so many bits are, from the coarsest on
     std::array<std::size_t, 2> pairs{};
     std::vector<std::size_t> clear;
     std::vector<std::array<std::size_t, 2>> clear_pairs, changes;
@@ -126,14 +125,6 @@ void look_along(const Code& a, const Code& b, std::size_t side, Seen& seen) {
     seen.down[side] += step == -1;
 }
 
-/// The first number of the resolved bits that no pixel of the projector has.
-int first_beyond(const Samples& s, bool along_rows, const Seen& seen) {
-    const double cell_px = s.stripes.phase_period_px / 2;
-    const int missing = gray_bits(s.stripes, along_rows) - static_cast<int>(seen.resolved);
-    const int size = along_rows ? s.stripes.height : s.stripes.width;
-    return static_cast<int>(std::ceil(size / std::ldexp(cell_px, std::max(0, missing))));
-}
-
 Seen look(std::span<const GrayImage> frames, const Samples& s, const Direction& direction) {
     const std::vector<Place> places = Reader(frames, s, direction).places();
     Seen seen;
@@ -152,10 +143,6 @@ Seen look(std::span<const GrayImage> frames, const Samples& s, const Direction& 
     for (const Place& place : places)
         for (std::size_t side = 0; side < 2; ++side)
             if (alike(place.here, place.next[side])) look_along(place.here, place.next[side], side, seen);
-    const std::uint32_t all = (1u << seen.resolved) - 1;
-    const int beyond = first_beyond(s, s.patterns[direction.gray.front()].along_rows, seen);
-    for (const Place& place : places)
-        if ((place.here.clear & all) == all) ++seen.numbered, seen.beyond += number_of(place.here.set, seen.resolved) >= beyond;
     return seen;
 }
 
@@ -227,18 +214,6 @@ void check_one_way(const Samples& s, const Direction& direction, const Seen& see
                               share_of(against, all)});
 }
 
-/// A projector that is told smaller than it is, with as many bits.
-void check_size(const Samples& s, const Direction& direction, const Seen& seen, SequenceCheck& check) {
-    constexpr double kMost = 0.03;
-    if (seen.numbered < kEnough || share_of(seen.beyond, seen.numbered) <= kMost) return;
-    const bool rows = s.patterns[direction.gray.front()].along_rows;
-    check.problems.push_back({direction.gray[0],
-                              fmt::format("the code of {} to {} goes on beyond the projector's {} {}, as its size is told",
-                                          s.name(direction.gray.front()), s.name(direction.gray.back()),
-                                          rows ? s.stripes.height : s.stripes.width, rows ? "rows" : "columns"),
-                              share_of(seen.beyond, seen.numbered)});
-}
-
 }  // namespace
 
 void check_nesting(std::span<const GrayImage> frames, const Samples& s, SequenceCheck& check) {
@@ -252,7 +227,6 @@ void check_nesting(std::span<const GrayImage> frames, const Samples& s, Sequence
         check_edges(s, direction, seen[d], check);
         check_twins(s, direction, check);
         if (check.problems.size() == before) check_one_way(s, direction, seen[d], check);
-        if (check.problems.size() == before) check_size(s, direction, seen[d], check);
     }
     if (!check.problems.empty() || seen[0].bits == 0 || seen[1].bits == 0) return;
     // Cameras and projector look at the same side of the surface: the code is turned at most, never a mirror image.
