@@ -1,7 +1,11 @@
 #include "planning_io/json_value.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <numeric>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "planning_io/types/error.h"
@@ -20,6 +24,29 @@ std::array<double, N> numbers(const JsonValue& value) {
     if (value.size() != N) value.refuse("must be " + std::to_string(N) + " numbers");
     std::array<double, N> result{};
     for (std::size_t i = 0; i < N; ++i) result[i] = value[i].number();
+    return result;
+}
+
+/// How many letters must be put in, taken out or exchanged to make one word of the other (Levenshtein).
+std::size_t letters_apart(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = std::exchange(row[0], i + 1);
+        for (std::size_t k = 0; k < b.size(); ++k) {
+            const std::size_t exchanged = diagonal + (a[i] == b[k] ? 0 : 1);
+            diagonal = row[k + 1];
+            row[k + 1] = std::min({exchanged, diagonal + 1, row[k] + 1});
+        }
+    }
+    return row.back();
+}
+
+/// Upper case and "-" or " " for "_" are no other word.
+std::string plain(std::string_view word) {
+    std::string result(word);
+    for (char& c : result)
+        c = c == '-' || c == ' ' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return result;
 }
 
@@ -58,6 +85,22 @@ std::optional<JsonValue> JsonValue::find(const char* key) const {
     const auto found = value_->find(key);
     if (found == value_->end() || found->is_null()) return std::nullopt;
     return JsonValue(*found, *file_, place_.empty() ? key : place_ + "." + key);
+}
+
+void JsonValue::has_only(std::initializer_list<const char*> known) const {
+    if (!value_->is_object()) refuse("must be an object");
+    for (const auto& entry : value_->items()) {
+        const std::string& name = entry.key();
+        const auto is_name = [&](const char* other) { return name == other; };
+        if (is_name("notes") || name.starts_with("x_") || std::any_of(known.begin(), known.end(), is_name)) continue;
+        const auto apart = [&](const char* other) { return letters_apart(plain(name), plain(other)); };
+        const char* nearest = *std::min_element(known.begin(), known.end(), [&](auto* a, auto* b) { return apart(a) < apart(b); });
+        const bool alike = 3 * apart(nearest) <= std::max<std::size_t>(3, std::string_view(nearest).size());
+        refuse("has a name that means nothing here, \"" + name + "\"" +
+                   (alike ? std::string("; is \"") + nearest + "\" meant?" : std::string()),
+               "Correct the name (planning_io/README.md lists them); notes of your own may stand under \"notes\" or under names "
+               "that begin with x_.");
+    }
 }
 
 JsonValue JsonValue::at(const char* key) const {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <filesystem>
+#include <initializer_list>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -27,6 +28,9 @@ public:
 
     JsonValue at(const char* key) const;
     std::optional<JsonValue> find(const char* key) const;  ///< empty when missing or null
+    /// Refuses an object that has a name besides these, "notes" and those that begin with "x_" (a person's own): a misspelt
+    /// name that may be missing would be passed over in silence.
+    void has_only(std::initializer_list<const char*> known) const;
     std::size_t size() const;                              ///< of an array
     JsonValue operator[](std::size_t i) const;
 

@@ -22,6 +22,7 @@ Instant instant_of(const JsonValue& value) {
 }
 
 LightOrder order_of(const JsonValue& value) {
+    value.has_only({"at_ns", "colour", "returned_ns", "promised_ns", "covered"});
     LightOrder order;
     order.at = instant_of(value.at("at_ns"));
     if (const auto returned = value.find("returned_ns")) order.returned = instant_of(*returned);
@@ -34,6 +35,7 @@ LightOrder order_of(const JsonValue& value) {
 }
 
 LightFile::Frame frame_of(const JsonValue& value) {
+    value.has_only({"picture", "number", "at_ns", "exposure_ns"});
     LightFile::Frame frame;
     frame.picture = value.at("picture").text();
     if (frame.picture.empty() || frame.picture.size() > 100 || frame.picture.front() == '.' ||
@@ -73,6 +75,7 @@ LightFile read_light_file(const fs::path& folder) {
     const Json json = parse_json(read_whole(file), file);
     const JsonValue root(json, file);
     check_format(root, "planlight light", kVersion, file);
+    root.has_only({"format", "version", "settle_ns", "orders", "frames"});
     LightFile light;
     if (const auto settle = root.find("settle_ns")) light.settle = Instant(settle->integer(0, kDay_ns));
     const JsonValue orders = root.at("orders"), frames = root.at("frames");
@@ -99,6 +102,7 @@ ProjectorFacts read_projector_file(const fs::path& file) {
     ProjectorFacts facts;
     facts.made_on = root.at("made_on").text();
     const JsonValue projector = root.at("projector");
+    projector.has_only({"width", "height", "monitor", "serial"});
     const auto size = [&](const char* key) {
         const auto value = projector.find(key);
         return value ? static_cast<int>(value->integer(0, 65535)) : 0;

@@ -124,6 +124,9 @@ void write_capture_settings(const CaptureFolder& capture, const fs::path& file) 
 CaptureFolder read_capture_settings(const fs::path& file) {
     const Json json = parse_file(file, "planlight capture");
     const JsonValue root(json, file);
+    root.has_only({"format", "version", "projector_width", "projector_height", "phase_steps", "phase_period_px", "rows", "inverse",
+                   "began_ns", "ended_ns", "names", "order_periods_px", "order_steps", "check_sequence", "left_serial",
+                   "right_serial", "projector_serial"});
     CaptureFolder capture;
     capture.projector_width = static_cast<int>(root.at("projector_width").integer(1, 65535));
     capture.projector_height = static_cast<int>(root.at("projector_height").integer(1, 65535));
@@ -188,10 +191,13 @@ void write_frames(const std::vector<RecordedFrame>& frames, const fs::path& fold
 std::vector<RecordedFrame> read_frames(const fs::path& folder) {
     const fs::path file = folder / "frames.json";
     const Json json = parse_file(file, "planlight frames");
-    const JsonValue list = JsonValue(json, file).at("frames");
+    const JsonValue root(json, file);
+    root.has_only({"format", "version", "frames"});
+    const JsonValue list = root.at("frames");
     std::vector<RecordedFrame> frames(list.size());
     for (std::size_t i = 0; i < frames.size(); ++i) {
         RecordedFrame& frame = frames[i];
+        list[i].has_only({"picture", "number", "at_ns", "exposure_ns"});
         const std::string name = list[i].at("picture").text();
         if (!name.ends_with(".png")) list[i].refuse("has a picture that is not a PNG file");
         check_name(name.substr(0, name.size() - 4), file);
@@ -285,10 +291,13 @@ void write_poses(const std::vector<TrackedPose>& poses, const fs::path& file) {
 
 std::vector<TrackedPose> read_poses(const fs::path& file) {
     const Json json = parse_file(file, "planlight poses");
-    const JsonValue list = JsonValue(json, file).at("poses");
+    const JsonValue root(json, file);
+    root.has_only({"format", "version", "poses"});
+    const JsonValue list = root.at("poses");
     std::vector<TrackedPose> poses(list.size());
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const JsonValue entry = list[i];
+        entry.has_only({"at_ns", "rig_from_patient", "markers_left", "markers_right", "residual_px", "predicted_error_mm", "reason"});
         TrackedPose& pose = poses[i];
         pose.at = instant_of(entry.at("at_ns"));
         if (const auto transform = entry.find("rig_from_patient")) pose.rig_from_patient = transform->transform();

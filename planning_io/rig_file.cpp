@@ -40,6 +40,8 @@ std::string serial_of(const JsonValue& value) {
 }
 
 CameraModel device_of(const JsonValue& value) {
+    value.has_only({"width", "height", "focal_x", "focal_y", "centre_x", "centre_y", "k1", "k2", "p1", "p2", "k3",
+                    "device_from_rig", "serial"});
     CameraModel d;
     d.width = static_cast<int>(value.at("width").integer(1, 65535));
     d.height = static_cast<int>(value.at("height").integer(1, 65535));
@@ -127,6 +129,7 @@ RigCalibration read_partial_rig(const fs::path& file) {
     const Json json = parse_json(read_whole(file), file);
     const JsonValue root(json, file);
     check_format(root, kFormat, kVersion, file);
+    root.has_only({"format", "version", "made_on", "reprojection_rms_px", "left_camera", "right_camera", "projector"});
     RigCalibration rig;
     rig.left_camera = device_of(root.at("left_camera"));
     rig.serials.left_camera = serial_of(root.at("left_camera"));

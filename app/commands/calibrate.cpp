@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "app/commands/capture_conversion.h"
 #include "app/commands/commands.h"
 #include "app/commands/device_check.h"
 #include "app/console.h"
@@ -10,21 +11,13 @@
 #include "planning_io/rig_file.h"
 #include "planning_io/safe_write.h"
 #include "planning_io/types/error.h"
-#include "registration/scan/gray_code.h"
 
 namespace planlight {
 namespace {
 
-StripeSettings stripes_of(const CaptureFolder& settings, const Path& pose) {
-    StripeSettings stripes;
-    stripes.width = settings.projector_width;
-    stripes.height = settings.projector_height;
-    stripes.phase_steps = settings.phase_steps;
-    stripes.phase_period_px = settings.phase_period_px;
-    stripes.order_periods_px = settings.order_periods_px;
-    stripes.order_steps = settings.order_steps;
-    stripes.rows = settings.rows;
-    stripes.inverse = settings.inverse;
+/// Refused where a board cannot be calibrated by it.
+StripeSettings calibration_light(const CaptureFolder& settings, const Path& pose) {
+    const StripeSettings stripes = stripes_of(settings);
     if (!stripes.rows)
         throw InputError(pose, "codes the projector's columns only", "Calibrate with a sequence that codes columns and rows.");
     if (stripes.phase_steps == 0 && !stripes.inverse)
@@ -33,15 +26,11 @@ StripeSettings stripes_of(const CaptureFolder& settings, const Path& pose) {
     return stripes;
 }
 
-std::vector<std::string> names_of(const StripeSettings& stripes, const Path& pose) {
-    if (stripes.phase_steps == 0) return gray_code_names(stripes.width, stripes.height);
-    try {
-        std::vector<std::string> names;
-        for (const StripePattern& pattern : stripe_sequence(stripes)) names.push_back(pattern.name);
-        return names;
-    } catch (const std::invalid_argument& error) {
-        throw InputError(pose, error.what(), "Correct capture.json.");
-    }
+std::vector<std::string> names_of(const std::optional<StripeSettings>& stripes, const Path& pose) {
+    std::vector<std::string> names;
+    if (stripes)
+        for (const StripePattern& pattern : patterns_of(*stripes, pose)) names.push_back(pattern.name);
+    return names;
 }
 
 struct Observed {
@@ -60,15 +49,14 @@ Observed observe_captures(const CalibrateOptions& options, const BoardSpec& boar
         const auto settings = pose_settings(folders[i]);
         std::optional<StripeSettings> stripes;
         if (settings) {
-            stripes = stripes_of(*settings, folders[i]);
+            stripes = calibration_light(*settings, folders[i]);
             observed.serials = joined_serials(observed.serials, settings->serials, folders[i]);
         }
         if (i > 0 && (stripes ? stripes->width : 0) != observed.projector_width)
             throw InputError(folders[i], "was captured under other light than the first pose",
                              "Capture all poses with one sequence.");
         if (stripes) observed.projector_width = stripes->width, observed.projector_height = stripes->height;
-        const PosePictures pictures =
-            read_pose(folders[i], stripes ? names_of(*stripes, folders[i]) : std::vector<std::string>{});
+        const PosePictures pictures = read_pose(folders[i], names_of(stripes, folders[i]));
         ObserveSettings observe;
         observe.check_sequence = !settings || settings->check_sequence;
         observed.poses.push_back({folders[i].filename().string(), observe_board(pictures.left, stripes, board, observe),

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "planning_io/types/error.h"
+#include "registration/scan/gray_code.h"
 
 namespace planlight {
 namespace {
@@ -13,34 +14,6 @@ using Kind = StripePattern::Kind;
 
 bool is_there(const CaptureFolder& folder, const std::string& name) {
     return std::find(folder.names.begin(), folder.names.end(), name) != folder.names.end();
-}
-
-/// The sequence that the capture's settings make; without fringes: white, black and the Gray bits.
-std::vector<StripePattern> wanted_patterns(StripeSettings stripes, const std::filesystem::path& named) {
-    const bool fringes = stripes.phase_steps > 0;
-    if (!fringes) {
-        stripes.phase_steps = 3;
-        stripes.phase_period_px = 4;  // the least that makes a sequence; its bits are one fewer a direction
-    }
-    std::vector<StripePattern> patterns;
-    try {
-        patterns = stripe_sequence(stripes);
-    } catch (const std::invalid_argument& error) {
-        throw InputError(named, error.what(), "Correct capture.json.");
-    }
-    if (fringes) return patterns;
-    patterns.clear();
-    for (const bool along_rows : {false, true}) {
-        if (along_rows && !stripes.rows) continue;
-        stripes.phase_period_px = 2;
-        for (int bit = 0; bit < gray_bits(stripes, along_rows); ++bit) {
-            const std::string name = fmt::format("{}-gray-{}", along_rows ? "row" : "column", bit);
-            patterns.push_back({Kind::gray_bit, along_rows, bit, name});
-            if (stripes.inverse) patterns.push_back({Kind::gray_bit_inverse, along_rows, bit, name + "-inverse"});
-        }
-    }
-    patterns.insert(patterns.begin(), {{Kind::white, false, 0, "white"}, {Kind::black, false, 0, "black"}});
-    return patterns;
 }
 
 /// What of the Gray code was captured: all but, maybe, the finest bits of a direction. Refused where a coarser one is
@@ -68,19 +41,35 @@ std::vector<StripePattern> gray_code_there(const std::vector<StripePattern>& wan
 
 }  // namespace
 
+StripeSettings stripes_of(const CaptureFolder& folder) {
+    StripeSettings stripes;
+    stripes.width = folder.projector_width;
+    stripes.height = folder.projector_height;
+    stripes.phase_steps = folder.phase_steps;
+    stripes.phase_period_px = folder.phase_steps > 0 ? folder.phase_period_px : 2;
+    stripes.order_periods_px = folder.order_periods_px;
+    stripes.order_steps = folder.order_steps;
+    stripes.rows = folder.rows;
+    stripes.inverse = folder.inverse;
+    return stripes;
+}
+
+std::vector<StripePattern> patterns_of(const StripeSettings& stripes, const std::filesystem::path& named) {
+    if (stripes.phase_steps == 0 && !stripes.order_periods_px.empty())
+        throw InputError(named, "has further fringes and no first one (\"phase_steps\": 0)", "Correct capture.json.");
+    if (stripes.phase_steps == 0) return gray_code_patterns(stripes);
+    try {
+        return stripe_sequence(stripes);
+    } catch (const std::invalid_argument& error) {
+        throw InputError(named, error.what(), "Correct capture.json.");
+    }
+}
+
 ScanCapture scan_capture_from(const CaptureFolder& folder, const std::filesystem::path& named) {
     ScanCapture capture;
-    capture.stripes.width = folder.projector_width;
-    capture.stripes.height = folder.projector_height;
-    capture.stripes.phase_steps = folder.phase_steps;
-    // A Gray code without fringes counts single projector pixels; its finest cell is half a period.
-    capture.stripes.phase_period_px = folder.phase_steps > 0 ? folder.phase_period_px : 2;
-    capture.stripes.order_periods_px = folder.order_periods_px;
-    capture.stripes.order_steps = folder.order_steps;
-    capture.stripes.rows = folder.rows;
-    capture.stripes.inverse = folder.inverse;
+    capture.stripes = stripes_of(folder);
     capture.check_sequence = folder.check_sequence;
-    auto patterns = wanted_patterns(capture.stripes, named);
+    auto patterns = patterns_of(capture.stripes, named);
     const bool whole = capture.stripes.phase_steps > 0 &&
                        std::all_of(patterns.begin(), patterns.end(), [&](const auto& p) { return is_there(folder, p.name); });
     if (!whole && !capture.stripes.order_periods_px.empty())

@@ -5,6 +5,14 @@
 
 namespace planlight {
 
+/// The coded light that capture.json says. A Gray code without fringes counts single projector pixels, whatever period is said:
+/// its finest cell is half of a period of 2.
+StripeSettings stripes_of(const CaptureFolder& folder);
+
+/// The pictures of that light, in its order; without fringes white, black and the Gray bits. Throws InputError when no sequence
+/// can be made of it; `named`: the file or folder that said so.
+std::vector<StripePattern> patterns_of(const StripeSettings& stripes, const std::filesystem::path& named);
+
 /// Between a scan's frames in memory and a capture folder. Throws InputError when the folder's pictures are not the
 /// sequence that its settings make; without fringes, or without the finest bits, what is left of it is `partial`.
 ScanCapture scan_capture_from(const CaptureFolder& folder, const std::filesystem::path& named);

@@ -31,12 +31,15 @@ Json read_log(const Path& file) {
     throw DamagedFileError(file, "is not a log of checks", "Move it away; a new one is begun.");
 }
 
+/// Logs of earlier programs have the same figure under the name of a rms, which it is not.
+double epipolar_of(const Json& entry) { return entry.at(entry.contains("epipolar_px") ? "epipolar_px" : "epipolar_rms_px"); }
+
 std::vector<EarlierCheck> earlier_checks(const Json& log, const std::string& rig_made_on, const Path& file) {
     std::vector<EarlierCheck> checks;
     try {
         for (const auto& entry : log.at("checks"))
             if (entry.at("rig_made_on") == rig_made_on && entry.at("verdict") != text_of(DriftCheck::Verdict::cannot_tell))
-                checks.push_back({entry.at("at_unix_s").get<double>() / 86400, entry.at("epipolar_rms_px").get<double>(),
+                checks.push_back({entry.at("at_unix_s").get<double>() / 86400, epipolar_of(entry),
                                   entry.at("projector_rms_px").get<double>()});
     } catch (const Json::exception&) {
         throw DamagedFileError(file, "holds a check that is not whole", "Move it away; a new one is begun.");
@@ -69,7 +72,7 @@ int run_check(const CheckOptions& options) {
                         {"rig_made_on", rig.made_on},
                         {"verdict", text_of(check.verdict)},
                         {"points", check.points},
-                        {"epipolar_rms_px", check.epipolar_rms_px},
+                        {"epipolar_px", check.epipolar_px},
                         {"projector_rms_px", check.projector_rms_px},
                         {"projector_after_px", check.projector_after_px},
                         {"camera_k1_off", check.bent.k1_off},
@@ -94,7 +97,7 @@ int run_check(const CheckOptions& options) {
         std::cout << result.dump(2) << '\n';
     else
         fmt::print("{}: {} points, epipolar error {:.2f} px, {}; check {} in {}.\n", text_of(check.verdict), check.points,
-                   check.epipolar_rms_px, said_of_projector(check), log["checks"].size(), file.string());
+                   check.epipolar_px, said_of_projector(check), log["checks"].size(), file.string());
     if (check.verdict != DriftCheck::Verdict::good) throw CheckFailedError(check.reason, check.remedy);
     return 0;
 }

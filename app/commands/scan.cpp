@@ -11,6 +11,8 @@
 #include "planning_io/mesh_file.h"
 #include "planning_io/rig_file.h"
 #include "planning_io/types/error.h"
+#include "registration/calibration/check_drift.h"
+#include "registration/scan/camera_gamma.h"
 #include "registration/scan/merge_exposures.h"
 #include "registration/scan/surface_triangles.h"
 #include "registration/tracking/markers_in_scan.h"
@@ -26,6 +28,9 @@ std::string devices_of(const ScanResult& scan, const RigCalibration& rig) {
     if (!present(rig.projector)) return "two cameras";
     return scan.right.width > 1 ? "two cameras and the projector" : "one camera and the projector";
 }
+
+/// 0 is not known.
+nlohmann::json or_null(double value) { return value > 0 ? nlohmann::json(value) : nlohmann::json(); }
 
 /// Where the scan found the projector; null where it could not tell.
 nlohmann::json projector_of(const ScanResult& scan) {
@@ -48,6 +53,11 @@ void warn_of(const ScanResult& scan, const RigCalibration& rig) {
             rig.made_on.empty() ? "the rig file" : "the calibration of " + rig.made_on));
 }
 
+std::string said_of_cameras(const ScanResult& scan) {
+    const double off_px = usual_epipolar_px(scan.raw);
+    return off_px > 0 ? fmt::format("; epipolar error {:.2f} px", off_px) : std::string();
+}
+
 nlohmann::json json_of(const ScanMovement& movement) {
     if (movement.by == ScanMovement::By::nothing) return nullptr;
     return {{"by", movement.by == ScanMovement::By::markers ? "markers" : "pictures"},
@@ -68,9 +78,9 @@ void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
     const bool by_markers = movement.by == ScanMovement::By::markers;
     if (movement.moved_mm <= (by_markers ? 1 : 0.5) * options.max_movement_mm) return;
     const std::string problem = fmt::format(
-        "the patient moved {:.2f} mm during the scan (between {} and {}, by {}); {:g} mm is the limit", movement.moved_mm,
+        "the patient moved {:.2f} mm during the scan (between {} and {}, by {}); {:g} mm is the limit{}", movement.moved_mm,
         movement.from, movement.to, by_markers ? "the markers" : "the skin in the pictures, which show about half of it",
-        options.max_movement_mm);
+        options.max_movement_mm, said_of_gamma(movement.camera_gamma));
     if (!options.accept_movement)
         throw CheckFailedError(problem, "Scan again, or take the cloud as it is with --accept-movement.");
     warn(problem);
@@ -143,7 +153,8 @@ int run_scan(const ScanOptions& options) {
                          {"lonely", scan.clean.lonely}, {"thinned", scan.clean.thinned}}},
             {"devices", devices_of(scan, rig)},
             {"code_step_px", scan.code_step_px},
-            {"epipolar_rms_px", scan.raw.epipolar_rms_px},
+            {"epipolar_px", or_null(usual_epipolar_px(scan.raw))},
+            {"epipolar_rms_px", or_null(scan.raw.epipolar_rms_px)},
             {"projector_offset_px", {scan.raw.projector_offset_px.x(), scan.raw.projector_offset_px.y()}},
             {"projector", projector_of(scan)},
             {"movement", json_of(movement)},
@@ -154,9 +165,9 @@ int run_scan(const ScanOptions& options) {
               {"outliers", scan.outliers_s}}}};
         std::cout << result.dump(2) << '\n';
     } else {
-        fmt::print("{} points by {} in {} (raw {}; off the rays {}, jumps {}, grazing {}, small pieces {}, lonely {}).\n",
+        fmt::print("{} points by {} in {} (raw {}; off the rays {}, jumps {}, grazing {}, small pieces {}, lonely {}){}.\n",
                    scan.clean.kept.size(), devices_of(scan, rig), options.out.string(), scan.raw.cloud.size(),
-                   scan.raw.disagree, scan.clean.jump, scan.clean.grazing, scan.clean.small_piece, scan.clean.lonely);
+                   scan.raw.disagree, scan.clean.jump, scan.clean.grazing, scan.clean.small_piece, scan.clean.lonely, said_of_cameras(scan));
         if (!options.surface_out.empty())
             fmt::print("{} triangles over them in {}.\n", triangles.size(), options.surface_out.string());
     }

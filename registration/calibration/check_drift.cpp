@@ -20,17 +20,6 @@ double mm_per_px(const Triangulation& raw, const CameraModel& projector) {
     return raw.by_cameras.empty() ? 0 : sum / static_cast<double>(raw.by_cameras.size());
 }
 
-/// The size that 68.3 % of the distances from the epipolar lines do not exceed, pixels.
-double usual_epipolar_px(const Triangulation& raw) {
-    constexpr double kOneSigma = 0.683;
-    std::vector<double> sizes;
-    for (const auto& point : raw.by_cameras) sizes.push_back(std::abs(point.epipolar_px));
-    if (sizes.empty()) return 0;
-    const auto rank = sizes.begin() + static_cast<std::ptrdiff_t>(kOneSigma * static_cast<double>(sizes.size()));
-    std::nth_element(sizes.begin(), rank, sizes.end());
-    return *rank;
-}
-
 constexpr const char* kOtherDistortion =
     "If rig.json was written by another program, see that its distortion has the right sign; else calibrate again.";
 
@@ -51,11 +40,11 @@ void decide(DriftCheck& check, bool placed, const DriftLimits& limits) {
             "only {} points are seen by both cameras under the light; {} over a good part of the picture are needed",
             check.points, limits.min_points);
         check.remedy = kNotInView;
-    } else if (check.epipolar_rms_px > limits.epipolar_px) {
+    } else if (check.epipolar_px > limits.epipolar_px) {
         check.verdict = Verdict::cameras_moved;
         check.reason = fmt::format(
             "the cameras do not fit each other any more: {:.2f} px from the epipolar lines; {:.2f} is the limit",
-            check.epipolar_rms_px, limits.epipolar_px);
+            check.epipolar_px, limits.epipolar_px);
         check.remedy = "Calibrate the rig again.";
     } else if (!placed) {
         check.reason = "what both cameras see under the light lies too close together to place the projector by it";
@@ -134,10 +123,20 @@ const char* text_of(DriftCheck::Verdict verdict) {
     return "cannot tell";
 }
 
+double usual_epipolar_px(const Triangulation& raw) {
+    constexpr double kOneSigma = 0.683;
+    std::vector<double> sizes;
+    for (const auto& point : raw.by_cameras) sizes.push_back(std::abs(point.epipolar_px));
+    if (sizes.empty()) return 0;
+    const auto rank = sizes.begin() + static_cast<std::ptrdiff_t>(kOneSigma * static_cast<double>(sizes.size()));
+    std::nth_element(sizes.begin(), rank, sizes.end());
+    return *rank;
+}
+
 DriftCheck check_drift(const ScanResult& scan, const RigCalibration& rig, const DriftLimits& limits) {
     DriftCheck check;
     check.points = scan.raw.by_cameras.size();
-    check.epipolar_rms_px = usual_epipolar_px(scan.raw);
+    check.epipolar_px = usual_epipolar_px(scan.raw);
     if (scan.resection) {
         check.projector_rms_px = std::numbers::sqrt2 * scan.resection->rms_before_px;  // said per axis there
         check.projector_after_px = std::numbers::sqrt2 * scan.resection->rms_after_px;
@@ -166,7 +165,7 @@ std::vector<DriftTrend> drift_trends(const std::vector<EarlierCheck>& checks, co
         if (line.slope > 2 * line.slope_sigma && line.slope > 1e-4)
             trends.push_back({what, line.slope, std::max(0.0, (limit - line.at_last) / line.slope)});
     };
-    add("epipolar error", &EarlierCheck::epipolar_rms_px, limits.epipolar_px);
+    add("epipolar error", &EarlierCheck::epipolar_px, limits.epipolar_px);
     add("projector", &EarlierCheck::projector_rms_px, limits.projector_px);
     return trends;
 }

@@ -29,9 +29,7 @@ struct DriftCheck {
     Verdict verdict = Verdict::cannot_tell;
     std::string reason, remedy;  ///< remedy empty when good
     std::size_t points = 0;
-    /// What 68.3 % of the points stay within of their epipolar line: of normal noise its rms. A handful of wrong
-    /// partners, 50 px off, makes a rms of 0.44 px in a room where 68.3 % have 0.08, and this none.
-    double epipolar_rms_px = 0;
+    double epipolar_px = 0;           ///< `usual_epipolar_px`
     double projector_rms_px = 0;      ///< as calibrated; 0, as all below: not known, too few points fit to place it
     double projector_after_px = 0;    ///< placed anew by this scan
     BentResiduals bent;               ///< with the projector placed anew
@@ -40,12 +38,17 @@ struct DriftCheck {
 };
 const char* text_of(DriftCheck::Verdict verdict);
 
+/// What 68.3 % of the points that both cameras placed stay within of their epipolar line, left camera pixels: of normal noise
+/// its rms. A handful of wrong partners, 50 px off, makes a rms (`Triangulation::epipolar_rms_px`) of 0.44 px in a room where
+/// 68.3 % have 0.08, and this none. 0: not known, for no point was placed across these lines (columns only, one camera).
+double usual_epipolar_px(const Triangulation& raw);
+
 DriftCheck check_drift(const ScanResult& scan, const RigCalibration& rig, const DriftLimits& limits = {});
 
 /// A check of an earlier day.
 struct EarlierCheck {
     double day = 0;                                    ///< any origin
-    double epipolar_rms_px = 0, projector_rms_px = 0;  ///< 0: not known
+    double epipolar_px = 0, projector_rms_px = 0;      ///< 0: not known
 };
 
 /// Where the checks are heading: a straight line through them, where there are at least four over at least two days and

@@ -156,7 +156,7 @@ BoardCorners mirrored_corners(const GrayImage& picture, const BoardSpec& board) 
 
 std::string wrong_in_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes) {
     const auto patterns =
-        stripes.phase_steps == 0 ? gray_code_patterns(stripes.width, stripes.height) : stripe_sequence(stripes);
+        stripes.phase_steps == 0 ? gray_code_patterns(stripes) : stripe_sequence(stripes);
     const SequenceCheck check = check_sequence(frames, stripes, patterns, true);
     if (check.problems.empty()) return {};
     return fmt::format("{} ({:.0f} % of the lit pixels)", check.problems[0].what, 100 * check.problems[0].share);

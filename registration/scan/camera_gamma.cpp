@@ -1,8 +1,13 @@
 #include "registration/scan/camera_gamma.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
+
+#include "registration/scan/picture_noise.h"
 
 namespace planlight {
 namespace {
@@ -27,12 +32,13 @@ std::vector<Edge> edges_of(const std::vector<GrayImage>& frames, const std::vect
     std::vector<Edge> edges;
     const auto& white = frames.at(0).pixels;
     const auto& black = frames.at(1).pixels;
+    const double least = std::max<double>(kLeastLight_grey, 5 * noise_in_dark(frames[0], frames[1]));
     for (const EvenMoment& moment : moments) {
         if (moment.frames.size() != 2 || moment.name == "white") continue;
         const auto &bit = frames.at(moment.frames[0]).pixels, &inverse = frames.at(moment.frames[1]).pixels;
         for (std::size_t i = 0; i < white.size(); i += 3) {
             const int light = white[i] - black[i];
-            if (light < kLeastLight_grey || white[i] >= kSaturated || 2 * std::abs(bit[i] - inverse[i]) > light) continue;
+            if (light < least || white[i] >= kSaturated || 2 * std::abs(bit[i] - inverse[i]) > light) continue;
             edges.push_back({white[i], black[i], bit[i], inverse[i]});
         }
     }
@@ -66,6 +72,15 @@ double camera_gamma(const std::vector<GrayImage>& frames, const std::vector<Even
         (surplus(edges, middle) > 0 ? least : most) = middle;
     }
     return 0.5 * (least + most);
+}
+
+std::string said_of_gamma(double gamma) {
+    constexpr double kLeast = 1.3;
+    if (gamma < kLeast) return {};
+    return fmt::format(
+        "; the camera seems to encode its pictures for a screen (exponent {:.1f}), which may be the cause: set it to linear "
+        "(gamma 1, RAW)",
+        gamma);
 }
 
 std::vector<float> even_light_picture(const std::vector<GrayImage>& frames, const EvenMoment& moment, double gamma) {

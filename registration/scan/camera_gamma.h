@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "registration/scan/even_pictures.h"
 
 namespace planlight {
@@ -9,6 +11,10 @@ namespace planlight {
 /// than white and black together; the exponent is the one with which they are alike. 1 also where that is within 5 % of the
 /// contrast, or too few edges are seen. `frames`: white, black, and what `moments` counts, of one camera.
 double camera_gamma(const std::vector<GrayImage>& frames, const std::vector<EvenMoment>& moments);
+
+/// "; the camera seems to encode its pictures for a screen (exponent 2.2): set it to linear (gamma 1, RAW)", where the exponent
+/// is above 1.3; else empty. For what such a camera may be the cause of.
+std::string said_of_gamma(double gamma);
 
 /// `even_picture` of light instead of grey values: each grey value g is 255 (g / 255)^gamma first.
 std::vector<float> even_light_picture(const std::vector<GrayImage>& frames, const EvenMoment& moment, double gamma);

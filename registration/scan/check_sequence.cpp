@@ -7,6 +7,7 @@
 
 #include "registration/processor_clones.h"
 #include "registration/scan/sequence_fringes.h"
+#include "registration/scan/sequence_nesting.h"
 #include "registration/scan/sequence_samples.h"
 
 namespace planlight {
@@ -45,14 +46,19 @@ void check_pairs(const Samples& s, const Direction& direction, SequenceCheck& ch
         for (std::size_t side = 0; side < 4; ++side)
             keep_flat(a.data(), b.data(), s.around[gray][side].data(), s.around[inverse][side].data(),
                       s.contrast.data(), flat.data(), s.lit);
-        std::size_t looked = 0, wrong = 0;
+        std::size_t looked = 0, wrong = 0, far_off = 0;  // far off: more than an edge that moved, or a camera's gamma, can make
         for (std::size_t i = 0; i < s.lit; ++i) {
+            const int off = std::abs(a[i] + b[i] - white[i] - black[i]);
+            far_off += off > 0.6 * s.contrast[i] + 3 * s.noise_grey;
             if (!flat[i]) continue;
             ++looked;
-            wrong += std::abs(a[i] + b[i] - white[i] - black[i]) > 0.35 * s.contrast[i] + 4 * kNoise_grey;
+            wrong += off > 0.35 * s.contrast[i] + 3 * s.noise_grey;
         }
-        constexpr double kMost = 0.02;
-        if (looked < kEnough || share_of(wrong, looked) <= kMost) continue;
+        constexpr double kMost = 0.02, kMostFarOff = 0.1;
+        if (looked < kEnough || share_of(wrong, looked) <= kMost) {  // fine stripes have no flat places
+            if (s.lit < kEnough || share_of(far_off, s.lit) <= kMostFarOff) continue;
+            wrong = far_off, looked = s.lit;
+        }
         check.problems.push_back({gray,
                                   fmt::format("{} and its inverse do not complete each other{}{}", s.name(gray),
                                               explain(s, gray), explain(s, inverse)),
@@ -106,6 +112,13 @@ void check_order(const Samples& s, const Direction& direction, SequenceCheck& ch
     }
 }
 
+/// A Gray code that has no fringes, or no inverses, to be judged by.
+bool judges_itself(const Samples& s) {
+    return std::any_of(s.directions.begin(), s.directions.end(), [](const Direction& d) {
+        return !d.gray.empty() && (d.phase.empty() || d.inverse.empty());
+    });
+}
+
 }  // namespace
 
 SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes) {
@@ -130,6 +143,7 @@ SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSett
         check_parity(samples, direction, fringes[0], check);
         if (!patchy) check_order(samples, direction, check);
     }
+    if (judges_itself(samples)) check_nesting(frames, samples, check);
     return check;
 }
 

@@ -29,7 +29,8 @@ struct SequenceCheck {
 /// white is the brightest frame and black the darkest; a Gray picture and its inverse add up to white and black; fringes
 /// have no share that the fringe and its gamma cannot make; the parity of the Gray code is that of the fringe's half;
 /// of two bits the finer one changes more often; fringes of several frequencies agree about the place.
-/// Not noticed: two whole bits, each with its inverse, swapped where they change fewer than four times over the lit surface
+/// A Gray code without fringes or without inverses is judged by what its bits do at each other's edges (`check_nesting`).
+/// Not noticed: with fringes and inverses two whole bits swapped where they change fewer than four times over the lit surface
 /// (the views then disagree about the place), and what makes no difference there (a doubled picture that looks the same).
 /// Throws std::invalid_argument when number or sizes of the frames do not fit.
 SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <stdexcept>
+#include <utility>
 
 #include "registration/scan/decode_gray_pairs.h"
 
@@ -17,22 +18,15 @@ int bits_for(int size) {
 
 }  // namespace
 
-std::vector<StripePattern> gray_code_patterns(int projector_width, int projector_height) {
+std::vector<StripePattern> gray_code_patterns(const StripeSettings& stripes) {
     using Kind = StripePattern::Kind;
     std::vector<StripePattern> patterns{{Kind::white, false, 0, "white"}, {Kind::black, false, 0, "black"}};
-    for (const bool along_rows : {false, true})
-        for (int bit = 0; bit < bits_for(along_rows ? projector_height : projector_width); ++bit) {
-            const std::string name = fmt::format("{}-gray-{}", along_rows ? "row" : "column", bit);
-            patterns.push_back({Kind::gray_bit, along_rows, bit, name});
-            patterns.push_back({Kind::gray_bit_inverse, along_rows, bit, name + "-inverse"});
-        }
+    for (const bool along_rows : {false, true}) {
+        if (along_rows && !stripes.rows) continue;
+        const int bits = bits_for(along_rows ? stripes.height : stripes.width);
+        for (StripePattern& pattern : gray_patterns(bits, along_rows, stripes.inverse)) patterns.push_back(std::move(pattern));
+    }
     return patterns;
-}
-
-std::vector<std::string> gray_code_names(int projector_width, int projector_height) {
-    std::vector<std::string> names;
-    for (const StripePattern& pattern : gray_code_patterns(projector_width, projector_height)) names.push_back(pattern.name);
-    return names;
 }
 
 DecodedView decode_gray_code(std::span<const GrayImage> frames, int projector_width, int projector_height) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "planning_io/types/error.h"
+#include "registration/scan/camera_gamma.h"
 #include "registration/scan/decode_capture.h"
 #include "registration/scan/merge_exposures.h"
 #include "registration/scan/place_matches.h"
@@ -49,12 +50,16 @@ SequenceCheck sequence_of(const std::vector<GrayImage>& frames, const ScanCaptur
 void refuse_wrong_sequence(const ScanCapture& capture, ScanResult& result) {
     tbb::parallel_invoke([&] { result.left_sequence = sequence_of(capture.left, capture); },
                          [&] { result.right_sequence = sequence_of(capture.right, capture); });
-    for (const auto& [check, camera] : {std::pair{&result.left_sequence, "left"}, {&result.right_sequence, "right"}})
-        if (!check->problems.empty())
-            throw CheckFailedError(fmt::format("the {} camera's frames do not show the sequence: {} ({:.0f} % of the lit pixels)",
-                                               camera, check->problems[0].what, 100 * check->problems[0].share),
-                                   "Scan again; if it comes back, check the delay between projector and cameras and the names of "
-                                   "the pictures. \"check_sequence\": false in capture.json takes them as they are.");
+    const auto judge = [&](const SequenceCheck& check, const std::vector<GrayImage>& frames, const char* camera) {
+        if (check.problems.empty()) return;
+        throw CheckFailedError(fmt::format("the {} camera's frames do not show the sequence: {} ({:.0f} % of the lit pixels){}",
+                                           camera, check.problems[0].what, 100 * check.problems[0].share,
+                                           said_of_gamma(camera_gamma(frames, even_moments(capture)))),
+                               "Scan again; if it comes back, check the delay between projector and cameras and the names of "
+                               "the pictures. \"check_sequence\": false in capture.json takes them as they are.");
+    };
+    judge(result.left_sequence, capture.left, "left");
+    judge(result.right_sequence, capture.right, "right");
 }
 
 bool use_resection(const ScanSettings& settings, ScanResult& result, RigCalibration& rig) {

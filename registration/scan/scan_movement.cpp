@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "registration/scan/camera_gamma.h"
+#include "registration/scan/picture_noise.h"
 
 namespace planlight {
 namespace {
@@ -52,13 +53,25 @@ std::vector<float> softened(const std::vector<float>& picture, int width, int he
     return soft;
 }
 
-Template make_template(const std::vector<float>& first, const GrayImage& white, const GrayImage& black) {
-    constexpr int kLeastLight_grey = 12, kSaturated = 250;
+/// White less black, 255 for all that a camera can show.
+std::vector<float> light_of_projector(const std::vector<GrayImage>& frames, double gamma) {
+    std::vector<float> light = even_light_picture(frames, {"white", 0, {0}}, gamma);  // twice the light, as of a pair
+    const std::vector<float> black = even_light_picture(frames, {"black", 0, {1}}, gamma);
+    for (std::size_t i = 0; i < light.size(); ++i) light[i] = (light[i] - black[i]) / 2;
+    return light;
+}
+
+/// `light`: white less black, in proportion to light also where the camera's grey values are not.
+Template make_template(const std::vector<float>& first, const std::vector<float>& light, const GrayImage& white,
+                       const GrayImage& black) {
+    constexpr int kSaturated = 250;
+    constexpr float kLeastLight_grey = 12;
+    const double noise_grey = 5 * noise_in_dark(white, black);
     constexpr float kSteepest = 60;  // grey a pixel (of twice the grey values): an edge of the head, not its skin
     Template t;
     const int width = white.width;
     const auto lit = [&](std::size_t i) {
-        return white.pixels[i] > black.pixels[i] + kLeastLight_grey && white.pixels[i] < kSaturated;
+        return light[i] > kLeastLight_grey && white.pixels[i] > black.pixels[i] + noise_grey && white.pixels[i] < kSaturated;
     };
     Eigen::Array2d sum = Eigen::Array2d::Zero(), squares = sum;
     for (int y = 4; y + 4 < white.height; ++y)
@@ -70,7 +83,7 @@ Template make_template(const std::vector<float>& first, const GrayImage& white, 
             const float dx = 0.5F * (first[i + 1] - first[i - 1]),
                         dy = 0.5F * (first[i + static_cast<std::size_t>(width)] - first[i - static_cast<std::size_t>(width)]);
             if (std::hypot(dx, dy) > kSteepest) continue;
-            t.pixels.push_back({x, y, dx, dy, static_cast<float>(white.pixels[i] - black.pixels[i])});
+            t.pixels.push_back({x, y, dx, dy, light[i]});
             sum += Eigen::Array2d(x, y);
             squares += Eigen::Array2d(x, y).square();
         }
@@ -127,9 +140,10 @@ ScanMovement movement_in_pictures(const ScanCapture& capture, double mm_per_px) 
         return softened(even_light_picture(capture.left, moment, gamma), white.width, white.height);
     };
     const auto first = even(moments.front());
-    const Template t = make_template(first, white, capture.left[1]);
+    const Template t = make_template(first, light_of_projector(capture.left, gamma), white, capture.left[1]);
     if (!t.determined) return movement;
     movement.by = ScanMovement::By::pictures;
+    movement.camera_gamma = gamma;
     movement.moments = static_cast<int>(moments.size());
     std::vector<Vector7d> maps;
     for (const auto& moment : moments)

@@ -15,6 +15,7 @@ struct ScanMovement {
     std::string from, to;  ///< names of the pictures at those moments
     int moments = 0;       ///< looked at
     int markers = 0;
+    double camera_gamma = 1;  ///< what was taken out of the pictures; by pictures only
 };
 
 /// From the skin itself, without markers: every even picture of the left camera (`even_moments`) is laid on the first by an

@@ -35,19 +35,24 @@ PLANLIGHT_CLONES void add_frame(const std::uint8_t* frame, const float* weights,
 
 }  // namespace
 
-std::string explain(const Samples& s, std::size_t frame) {
+std::optional<std::size_t> twin_of(const Samples& s, std::size_t frame) {
     std::optional<std::size_t> twin;
     double best = 0.02;
     for (std::size_t other = 0; other < s.here.size(); ++other) {
         if (other == frame) continue;
         std::size_t differ = 0;
         for (std::size_t i = 0; i < s.lit; ++i)
-            differ += std::abs(s.here[frame][i] - s.here[other][i]) > s.contrast[i] / 6 + 4 * kNoise_grey;
+            differ += std::abs(s.here[frame][i] - s.here[other][i]) > s.contrast[i] / 6 + 3 * s.noise_grey;
         if (const double share = share_of(differ, s.lit); share < best) {
             best = share;
             twin = other;
         }
     }
+    return twin;
+}
+
+std::string explain(const Samples& s, std::size_t frame) {
+    const auto twin = twin_of(s, frame);
     return twin ? fmt::format("; {} looks like {}", s.name(frame), s.name(*twin)) : "";
 }
 
@@ -87,7 +92,7 @@ void check_fringes(const Samples& s, const std::vector<std::size_t>& phases, con
     for (std::size_t i = 0; i < s.lit; ++i) {
         // Out of order frames may leave hardly any fringe: what a fringe of this light can have is its measure.
         const float strength = std::max(fringes[i].amplitude, 0.25f * s.contrast[i]);
-        wrong += fringes[i].residual_grey > 0.12f * strength + static_cast<float>(2 * kNoise_grey);
+        wrong += fringes[i].residual_grey > 0.12f * strength + static_cast<float>(2 * s.noise_grey);
     }
     constexpr double kMost = 0.12;
     if (s.lit < kEnough || share_of(wrong, s.lit) <= kMost) return;
@@ -106,7 +111,7 @@ void check_parity(const Samples& s, const Direction& direction, const std::vecto
     std::size_t looked = 0, wrong = 0;
     for (std::size_t i = 0; i < s.lit; ++i) {
         const int contrast = s.contrast[i];
-        if (fringes[i].amplitude < 0.1 * contrast + 2 * kNoise_grey) continue;
+        if (fringes[i].amplitude < 0.1 * contrast + 2 * s.noise_grey) continue;
         const double pixel_in_period = fringes[i].phase * half_px / std::numbers::pi + 0.5;  // from the edge of pixel 0
         const double cell = std::floor(pixel_in_period / half_px), in_cell = pixel_in_period / half_px - cell;
         if (in_cell < 0.3 || in_cell > 0.7) continue;  // near its borders a bit may go either way

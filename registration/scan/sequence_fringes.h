@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,8 +31,10 @@ void check_parity(const Samples& samples, const Direction& direction, const std:
 void check_frequencies(const Samples& samples, const Direction& direction, const std::vector<std::vector<Fringe>>& fringes,
                        SequenceCheck& check);
 
-/// "; A looks like B": another frame that looks just like this one although its picture is another; empty where there
-/// is none.
+/// Another frame that looks just like this one although its picture is another.
+std::optional<std::size_t> twin_of(const Samples& samples, std::size_t frame);
+
+/// "; A looks like B"; empty where there is none.
 std::string explain(const Samples& samples, std::size_t frame);
 
 }  // namespace planlight::sequence

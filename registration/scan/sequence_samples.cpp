@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "registration/scan/picture_noise.h"
+
 namespace planlight::sequence {
 namespace {
 
@@ -93,16 +95,16 @@ void leave_out_dark(std::span<const GrayImage> frames, const Samples& s, std::ve
     pixels.resize(kept);
 }
 
-/// How much of a change is light and not noise: a quarter of that of the best lit places (one in a hundred). A camera that
-/// encodes for a screen has 30 grey of noise in the dark.
-int least_change(const Bytes& low, const Bytes& high) {
+/// How much of a change is light and not noise: more than noise makes of fifty frames. Never more than half of the change of the
+/// best lit places (one in a hundred): with white or black out of its place the noise is not known.
+int least_change(const Bytes& low, const Bytes& high, double dark_noise_grey) {
     std::vector<int> changes;
     for (std::size_t i = 0; i < low.size(); ++i)
         if (high[i] - low[i] >= kLit_grey) changes.push_back(high[i] - low[i]);
     if (changes.empty()) return kLit_grey;
     const auto strong = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() * 99 / 100);
     std::nth_element(changes.begin(), strong, changes.end());
-    return std::max(kLit_grey, *strong / 4);
+    return std::max(kLit_grey, std::min(static_cast<int>(6 * dark_noise_grey), *strong / 2));
 }
 
 /// White must be the brightest frame and black the darkest wherever any light changes. The places in the list of those
@@ -115,11 +117,12 @@ std::vector<std::size_t> choose_lit(Samples& s) {
             high[i] = std::max(high[i], frame[i]);
         }
     std::vector<std::size_t> lit;
-    const int least = least_change(low, high);
+    s.least_change = least_change(low, high, s.dark_noise_grey);
     for (std::size_t i = 0; i < low.size(); ++i) {
-        if (high[i] - low[i] < least) continue;
+        if (high[i] - low[i] < s.least_change) continue;
         ++s.changing;
-        const int allowed = (high[i] - low[i]) / 3, white = s.here[s.white][i], black = s.here[s.black][i];
+        const int allowed = std::max((high[i] - low[i]) / 3, static_cast<int>(4 * s.noise_grey)),
+                  white = s.here[s.white][i], black = s.here[s.black][i];
         const bool is_white = high[i] - white <= allowed, is_black = black - low[i] <= allowed;
         s.not_white += !is_white;
         s.not_black += !is_black;
@@ -155,6 +158,8 @@ Samples gather_samples(std::span<const GrayImage> frames, const StripeSettings& 
     std::vector<std::size_t> pixels = sample_of(frames[0]);
     leave_out_dark(frames, s, pixels);
     for (const GrayImage& frame : frames) s.here.push_back(values_at(frame, pixels, 0));
+    s.noise_grey = std::max(kNoise_grey, noise_in_light(frames[s.white], frames[s.black]));
+    s.dark_noise_grey = noise_in_dark(frames[s.white], frames[s.black]);
     keep_lit(choose_lit(s), pixels, s);
     s.around.resize(frames.size());
     const std::ptrdiff_t line = std::ptrdiff_t{frames[0].width} * kFlat_px;

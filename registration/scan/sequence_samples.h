@@ -17,7 +17,7 @@ namespace planlight::sequence {
 inline constexpr int kLit_grey = 16;         // white - black of a pixel to look at
 inline constexpr int kBright_grey = 250;     // above it a sum says nothing
 inline constexpr int kFlat_px = 3;           // how far the neighbours of a pixel are that are looked at with it
-inline constexpr double kNoise_grey = 2;     // of one frame; what else is allowed goes with the contrast
+inline constexpr double kNoise_grey = 2;     // of one frame at least; what else is allowed goes with the contrast
 inline constexpr std::size_t kEnough = 200;  // pixels, to say anything
 
 /// The frames of one direction, by place in the sequence.
@@ -39,6 +39,8 @@ struct Samples {
     std::size_t white = 0, black = 1;  ///< frames
     std::array<Direction, 2> directions;
 
+    double noise_grey = kNoise_grey, dark_noise_grey = 0;  ///< one sigma, as measured where there is light and where not
+    int least_change = kLit_grey;                          ///< more is light
     std::size_t changing = 0, not_white = 0,
                 not_black = 0;  ///< pixels in which any light changes; white (black) is not the end
     std::size_t lit = 0;        ///< pixels kept: white and black are the ends, and apart

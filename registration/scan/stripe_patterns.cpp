@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 namespace planlight {
 namespace {
@@ -42,12 +43,8 @@ std::uint8_t value_at(const StripeSettings& s, const StripePattern& pattern, int
 
 void add_direction(const StripeSettings& s, bool along_rows, std::vector<StripePattern>& sequence) {
     const std::string direction = along_rows ? "row" : "column";
-    for (int bit = 0; bit < gray_bits(s, along_rows); ++bit) {
-        sequence.push_back({StripePattern::Kind::gray_bit, along_rows, bit, fmt::format("{}-gray-{}", direction, bit)});
-        if (s.inverse)
-            sequence.push_back({StripePattern::Kind::gray_bit_inverse, along_rows, bit,
-                                fmt::format("{}-gray-{}-inverse", direction, bit)});
-    }
+    for (StripePattern& pattern : gray_patterns(gray_bits(s, along_rows), along_rows, s.inverse))
+        sequence.push_back(std::move(pattern));
     for (int step = 0; step < s.phase_steps; ++step)
         sequence.push_back({StripePattern::Kind::phase, along_rows, step, fmt::format("{}-phase-{}", direction, step)});
     for (int frequency = 1; frequency <= static_cast<int>(s.order_periods_px.size()); ++frequency)
@@ -152,6 +149,16 @@ int gray_bits(const StripeSettings& settings, bool along_rows) {
     int bits = 1;
     while (bits < 30 && (1 << bits) < cells(settings, along_rows)) ++bits;
     return bits;
+}
+
+std::vector<StripePattern> gray_patterns(int bits, bool along_rows, bool inverse) {
+    std::vector<StripePattern> patterns;
+    for (int bit = 0; bit < bits; ++bit) {
+        const std::string name = fmt::format("{}-gray-{}", along_rows ? "row" : "column", bit);
+        patterns.push_back({StripePattern::Kind::gray_bit, along_rows, bit, name});
+        if (inverse) patterns.push_back({StripePattern::Kind::gray_bit_inverse, along_rows, bit, name + "-inverse"});
+    }
+    return patterns;
 }
 
 std::vector<StripePattern> stripe_sequence(const StripeSettings& settings) {

@@ -41,6 +41,10 @@ struct StripePattern {
     int frequency = 0;        ///< of a fringe: 0 the first, else of `order_periods_px` ("column-phase2-0" is the first of them)
 };
 
+/// The Gray pictures of one direction, coarsest bit first, each followed by its inverse where `inverse`: "row-gray-0",
+/// "row-gray-0-inverse" and so on.
+std::vector<StripePattern> gray_patterns(int bits, bool along_rows, bool inverse);
+
 /// The sequence in the order it is projected: white, black, then per direction Gray bits (with inverses) and phases, or the
 /// phases of all frequencies.
 std::vector<StripePattern> stripe_sequence(const StripeSettings& settings);

@@ -31,6 +31,7 @@ TEST_F(CommandsTest, StagesOnFilesFindThePatientWithinAMillimetreOfTheTruth) {
     const auto check = run_planlight("check room/capture --rig room/rig.json --json", root());
     ASSERT_EQ(check.exit_code, 0) << check.err;
     EXPECT_EQ(json::parse(check.out)["verdict"], "good") << "the patient's own scan checks the rig";
+    EXPECT_EQ(json::parse(check.out)["epipolar_px"], json::parse(scan.out)["epipolar_px"]) << "one figure, one name";
     const auto found = run_planlight(
         "register case --cloud cloud.ply --out registration.json --certificate match.html --json", root());
     ASSERT_EQ(found.exit_code, 0) << found.err;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <string>
+#include <utility>
 #include <vector>
 
 #include "registration/scan/stripe_patterns.h"
@@ -11,11 +11,7 @@ namespace planlight::test {
 inline std::vector<StripePattern> gray_columns(int bits) {
     std::vector<StripePattern> patterns{{StripePattern::Kind::white, false, 0, "white"},
                                         {StripePattern::Kind::black, false, 0, "black"}};
-    for (int bit = 0; bit < bits; ++bit) {
-        const std::string name = "column-gray-" + std::to_string(bit);
-        patterns.push_back({StripePattern::Kind::gray_bit, false, bit, name});
-        patterns.push_back({StripePattern::Kind::gray_bit_inverse, false, bit, name + "-inverse"});
-    }
+    for (StripePattern& pattern : gray_patterns(bits, false, true)) patterns.push_back(std::move(pattern));
     return patterns;
 }
 

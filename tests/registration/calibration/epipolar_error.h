@@ -7,7 +7,7 @@
 namespace planlight::test {
 
 /// How far, right-camera pixels, the true right pixel of a point lies from the epipolar line that the calibrated
-/// cameras draw of its true left pixel: what a calibration's error alone makes of `DriftCheck::epipolar_rms_px`.
+/// cameras draw of its true left pixel: what a calibration's error alone makes of `DriftCheck::epipolar_px`.
 /// `p_in_rig` in mm in the frame of the true cameras. Empty: one of the cameras does not see it. (Hartley &
 /// Zisserman, 9.1.)
 std::optional<double> epipolar_error_px(const CameraModel& true_left, const CameraModel& true_right,

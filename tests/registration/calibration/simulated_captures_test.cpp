@@ -150,12 +150,16 @@ TEST_F(SimulatedCaptures, OneDoubledFrameOrTwoSwappedFringesAreNamed) {
 
 TEST(GrayCode, DecodesItsOwnPatternsToTheirPixels) {
     const int width = 100, height = 70;
-    const auto names = gray_code_names(width, height);
-    ASSERT_EQ(names.size(), 2u + 2 * 7 + 2 * 7);
+    StripeSettings stripes;
+    stripes.width = width, stripes.height = height;
+    const auto patterns = gray_code_patterns(stripes);
+    ASSERT_EQ(patterns.size(), 2u + 2 * 7 + 2 * 7);
     std::vector<GrayImage> frames;
-    for (const std::string& name : names) {
+    for (const auto& [kind, along_rows, index, name, frequency] : patterns) {
         GrayImage frame(width, height, name == "white" ? 200 : 0);
         const bool row = name.starts_with("row"), inverse = name.ends_with("inverse");
+        EXPECT_EQ(row, along_rows);
+        EXPECT_EQ(inverse, kind == StripePattern::Kind::gray_bit_inverse);
         if (name.find("gray") != std::string::npos) {
             const int bit = 6 - (name[name.find("gray-") + 5] - '0');
             for (int y = 0; y < height; ++y)

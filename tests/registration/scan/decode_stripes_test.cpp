@@ -328,8 +328,10 @@ TEST(DecodeStripes, AFewLitPixelsInTheDarkAreFound) {
 }
 
 TEST(GrayCode, AFewLitPixelsInTheDarkAreFound) {
+    StripeSettings stripes;
+    stripes.width = 800, stripes.height = 600;
     std::vector<GrayImage> frames;
-    for (const StripePattern& pattern : gray_code_patterns(800, 600)) {
+    for (const StripePattern& pattern : gray_code_patterns(stripes)) {
         const bool inverse = pattern.kind == StripePattern::Kind::gray_bit_inverse;
         frames.push_back(sparse_picture(static_cast<unsigned>(frames.size()), [&](const Eigen::Vector2i& place) {
             if (pattern.kind == StripePattern::Kind::white || pattern.kind == StripePattern::Kind::black)

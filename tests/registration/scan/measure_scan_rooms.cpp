@@ -89,7 +89,7 @@ Figures figures_of_head(const ScanResult& scan, const SimulatedRig& room, Instan
             {"wrong codes, silhouettes too", static_cast<double>(code.wrong) / decoded},
             {"chi-square, mean", cloud.chi_square},
             {"chi-square by median", cloud.chi_square_median},
-            {"epipolar, usual (px)", check.epipolar_rms_px},
+            {"epipolar, usual (px)", check.epipolar_px},
             {"epipolar rms, wrong partners too", scan.raw.epipolar_rms_px},
             {"check: k1 off, size", std::abs(check.bent.k1_off)},
             {"check: k1 off by its sigma", std::abs(check.bent.k1_off) / std::max(1e-9, check.bent.k1_sigma)},
@@ -148,7 +148,7 @@ void try_spoilt(const ScanCapture& capture, const SimulatedRig& room, std::vecto
         ++row.rooms;
         row.noticed += check.verdict != DriftCheck::Verdict::good;
         ++row.verdicts[text_of(check.verdict)];
-        row.epipolar_px += check.epipolar_rms_px;
+        row.epipolar_px += check.epipolar_px;
         row.placed += check.projector_rms_px > 0;
         row.projector_px += check.projector_rms_px;
         row.after_px += check.projector_after_px;
