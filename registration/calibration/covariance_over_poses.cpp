@@ -12,8 +12,8 @@ using Eigen::VectorXd;
 
 /// Directions of which a pose tells all but this share alone: its residuals say nothing of its error there.
 constexpr double kLeastTold = 0.02;
-/// The factor that all directions have in common counts as so many poses: few poses say little of a single direction.
-constexpr double kPosesOfCommonFactor = 4;
+/// The factor that all directions have in common counts as one pose more: few say little of a single direction.
+constexpr double kPosesOfCommonFactor = 1;
 
 /// The poses' scores where the sum of all information is the unit matrix.
 struct Whitened {

@@ -15,9 +15,10 @@ using Eigen::Vector2d;
 using Vector9d = Eigen::Matrix<double, 9, 1>;
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 
-constexpr double kAlong = 0.4;                                  ///< squares of an edge to either side of its corner
-constexpr double kBesideMarked = 0.10, kBesidePlain = 0.25;     ///< squares to either side of an edge
-constexpr double kLeastBeside_px = 2.5;                         ///< less does not show an edge
+constexpr double kAlong = 0.4;       ///< squares of an edge to either side of its corner
+constexpr double kAlongMost_px = 24;  ///< farther off, distortion bends an edge
+constexpr double kRingOfMarked = 0.125, kRingOfPlain = 0.3;  ///< squares beside an edge that show nothing but the edge
+constexpr double kMargin_px = 1.5;                           ///< within which what lies beyond them shines in
 constexpr int kLeastPixels = 30, kRounds = 30, kPasses = 2;
 
 struct Sample {
@@ -65,12 +66,13 @@ struct Crossing {
 };
 
 /// Pixels along the four sides that meet in a corner. `px_of_square`: the board's two directions, a square each.
-std::vector<Sample> samples_round(const GrayImage& picture, const Vector2d& corner, const Matrix2d& px_of_square, double beside) {
+std::vector<Sample> samples_round(const GrayImage& picture, const Vector2d& corner, const Matrix2d& px_of_square, double ring) {
     const Matrix2d square_of_px = px_of_square.inverse();
-    const double reach_x = kAlong * px_of_square.row(0).cwiseAbs().sum(), reach_y = kAlong * px_of_square.row(1).cwiseAbs().sum();
-    // Of both directions: how many squares lie within a pixel across the edge.
+    const Vector2d along = (kAlongMost_px * px_of_square.colwise().norm().cwiseInverse().transpose()).cwiseMin(kAlong);
+    const double reach_x = px_of_square.row(0).cwiseAbs().dot(along), reach_y = px_of_square.row(1).cwiseAbs().dot(along);
+    // Of both directions: squares a pixel, straight off the edge.
     const Vector2d per_px = square_of_px.rowwise().norm();
-    const Vector2d widths = (kLeastBeside_px * per_px).cwiseMax(beside);
+    const Vector2d widths = (Vector2d::Constant(ring) - kMargin_px * per_px).cwiseMax(kMargin_px * per_px);
     std::vector<Sample> samples;
     const int x0 = std::max(0, static_cast<int>(corner.x() - reach_x)), y0 = std::max(0, static_cast<int>(corner.y() - reach_y));
     const int x1 = std::min(picture.width - 1, static_cast<int>(corner.x() + reach_x) + 1),
@@ -78,7 +80,7 @@ std::vector<Sample> samples_round(const GrayImage& picture, const Vector2d& corn
     for (int y = y0; y <= y1; ++y)
         for (int x = x0; x <= x1; ++x) {
             const Vector2d off(x - corner.x(), y - corner.y()), at = (square_of_px * off).cwiseAbs();
-            if (at.maxCoeff() < kAlong && (at.x() < widths.x() || at.y() < widths.y()))
+            if (at.x() < along.x() && at.y() < along.y() && (at.x() < widths.x() || at.y() < widths.y()))
                 samples.push_back({off, static_cast<double>(picture.at(x, y))});
         }
     return samples;
@@ -97,8 +99,8 @@ Crossing first_guess(const std::vector<Sample>& samples, const Matrix2d& px_of_s
     Crossing guess;
     const Vector2d x = px_of_square.col(0), y = px_of_square.col(1);
     const double side = x.x() * y.y() - x.y() * y.x() > 0 ? -1 : 1;  // of S(d0) S(d1) where both board directions are positive
-    guess.numbers << 0, 0, std::atan2(x.y(), x.x()), std::atan2(y.y(), y.x()), 1, (same + other) / 2, side * (same - other) / 2, 0,
-        0;
+    guess.numbers << 0, 0, std::atan2(x.y(), x.x()), std::atan2(y.y(), y.x()), 1, (same + other) / 2,
+        side * (same - other) / 2, 0, 0;
     return guess;
 }
 
@@ -148,14 +150,15 @@ void refine_corners(const GrayImage& picture, const BoardSpec& board, BoardCorne
     Eigen::Matrix3d h;
     for (int r = 0; r < 3; ++r)
         for (int c = 0; c < 3; ++c) h(r, c) = found.at<double>(r, c);
-    const double beside = board.kind == BoardSpec::Kind::charuco ? kBesideMarked : kBesidePlain;
+    const double ring = board.kind == BoardSpec::Kind::charuco ? kRingOfMarked : kRingOfPlain;
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const Eigen::Vector3d at = h * Eigen::Vector3d(squares[i].x, squares[i].y, 1);
         const Matrix2d px_of_square = (h.topLeftCorner<2, 2>() - at.hnormalized() * h.bottomLeftCorner<1, 2>()) / at.z();
         Vector2d corner = corners.pixels[i];
         for (int pass = 0; pass < kPasses; ++pass) {
-            const auto samples = samples_round(picture, corner, px_of_square, beside);
-            const auto moved = samples.size() < kLeastPixels ? std::nullopt : fit_crossing(samples, first_guess(samples, px_of_square));
+            const auto samples = samples_round(picture, corner, px_of_square, ring);
+            const auto moved =
+                samples.size() < kLeastPixels ? std::nullopt : fit_crossing(samples, first_guess(samples, px_of_square));
             corner += moved.value_or(Vector2d::Constant(1e9));
         }
         if ((px_of_square.inverse() * (corner - corners.pixels[i])).norm() < 0.25) corners.pixels[i] = corner;

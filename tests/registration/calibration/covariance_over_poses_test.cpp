@@ -1,0 +1,99 @@
+#include "registration/calibration/covariance_over_poses.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <random>
+
+namespace planlight {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr int kNumbers = 5, kRows = 80;
+
+/// Poses of a linear model, each with an error of its own that its residuals have in common, beside their noise of 1.
+std::vector<PoseInformation> poses_with(double common, int poses, std::mt19937& random) {
+    std::normal_distribution<double> normal;
+    std::vector<PoseInformation> all;
+    for (int pose = 0; pose < poses; ++pose) {
+        const MatrixXd J = MatrixXd::NullaryExpr(kRows, kNumbers, [&] { return 1 + 0.5 * normal(random); });
+        const double shift = common * normal(random);
+        const VectorXd r = VectorXd::NullaryExpr(kRows, [&] { return shift + normal(random); });
+        all.push_back({J.transpose() * J, J.transpose() * r});
+    }
+    return all;
+}
+
+struct Sums {
+    double true_square = 0, stated = 0, by_normal_matrix = 0;
+};
+
+/// Over many draws: the square of the estimate's error, what is stated, and what the normal matrix alone says.
+Sums over_draws(double common, int poses) {
+    std::mt19937 random(17);
+    Sums sums;
+    for (int draw = 0; draw < 400; ++draw) {
+        const auto all = poses_with(common, poses, random);
+        MatrixXd normal = MatrixXd::Zero(kNumbers, kNumbers);
+        VectorXd score = VectorXd::Zero(kNumbers);
+        for (const auto& pose : all) {
+            normal += pose.normal;
+            score += pose.score;
+        }
+        const VectorXd off = normal.ldlt().solve(score);
+        std::vector<PoseInformation> at_estimate = all;
+        for (auto& pose : at_estimate) pose.score -= pose.normal * off;
+        const auto stated = covariance_over_poses(at_estimate, MatrixXd::Zero(kNumbers, kNumbers));
+        sums.true_square += off.squaredNorm();
+        sums.stated += stated.covariance.trace();
+        sums.by_normal_matrix += normal.inverse().trace();
+    }
+    return sums;
+}
+
+// 400 draws of 5 numbers leave a tenth open.
+TEST(CovarianceOverPoses, IndependentErrorsAreStatedAsTheNormalMatrixSays) {
+    const Sums sums = over_draws(0, 8);
+    EXPECT_NEAR(sums.true_square / sums.by_normal_matrix, 1, 0.1);
+    EXPECT_NEAR(sums.true_square / sums.stated, 1, 0.15);
+}
+
+// A pose whose 80 residuals share an error of 0.7 of their noise says as much as a handful of residuals.
+TEST(CovarianceOverPoses, ErrorsThatAPoseHasInCommonAreStatedAndTheNormalMatrixAloneIsBlindToThem) {
+    for (const int poses : {5, 8, 14}) {
+        const Sums sums = over_draws(0.7, poses);
+        EXPECT_GT(sums.true_square / sums.by_normal_matrix, 1.8);
+        EXPECT_GT(sums.true_square / sums.stated, 0.5) << poses;
+        EXPECT_LT(sums.true_square / sums.stated, 1.4) << poses;
+    }
+}
+
+TEST(CovarianceOverPoses, TwoPosesCannotContradictEachOtherEnoughToBeAsked) {
+    std::mt19937 random(3);
+    const auto two = poses_with(5, 2, random);
+    const MatrixXd prior = MatrixXd::Identity(kNumbers, kNumbers);
+    const auto stated = covariance_over_poses(two, prior);
+    EXPECT_EQ(stated.factor, 1);
+    EXPECT_LT((stated.covariance - (two[0].normal + two[1].normal + prior).inverse()).norm(), 1e-9);
+}
+
+// What no pose tells stays as uncertain as the prior says, and the answer is finite.
+TEST(CovarianceOverPoses, ANumberThatOnlyThePriorKnowsKeepsItsUncertainty) {
+    std::mt19937 random(5);
+    auto poses = poses_with(0, 8, random);
+    for (auto& pose : poses) {
+        pose.normal.row(4).setZero();
+        pose.normal.col(4).setZero();
+        pose.score = VectorXd::Zero(kNumbers);
+    }
+    MatrixXd prior = MatrixXd::Zero(kNumbers, kNumbers);
+    prior(4, 4) = 4;
+    const auto stated = covariance_over_poses(poses, prior);
+    ASSERT_TRUE(stated.covariance.allFinite());
+    EXPECT_NEAR(stated.covariance(4, 4), 0.25, 1e-6);
+}
+
+}  // namespace
+}  // namespace planlight
