@@ -53,20 +53,22 @@ Sums over_draws(double common, int poses) {
     return sums;
 }
 
-// 400 draws of 5 numbers leave a tenth open.
-TEST(CovarianceOverPoses, IndependentErrorsAreStatedAsTheNormalMatrixSays) {
+// 400 draws of 5 numbers leave a tenth open. Leaving out one of eight poses is a little pessimistic, never the other way.
+TEST(CovarianceOverPoses, IndependentErrorsAreStatedAsTheNormalMatrixSaysOrALittleLarger) {
     const Sums sums = over_draws(0, 8);
     EXPECT_NEAR(sums.true_square / sums.by_normal_matrix, 1, 0.1);
-    EXPECT_NEAR(sums.true_square / sums.stated, 1, 0.15);
+    EXPECT_GT(sums.true_square / sums.stated, 0.7);
+    EXPECT_LT(sums.true_square / sums.stated, 1.1);
 }
 
-// A pose whose 80 residuals share an error of 0.7 of their noise says as much as a handful of residuals.
+// A pose whose 80 residuals share an error of 0.7 of their noise says as much as two residuals. The fewer the poses, the more
+// pessimistic: with five the stated sigma is 1.4 times the true error.
 TEST(CovarianceOverPoses, ErrorsThatAPoseHasInCommonAreStatedAndTheNormalMatrixAloneIsBlindToThem) {
     for (const int poses : {5, 8, 14}) {
         const Sums sums = over_draws(0.7, poses);
         EXPECT_GT(sums.true_square / sums.by_normal_matrix, 1.8);
-        EXPECT_GT(sums.true_square / sums.stated, 0.5) << poses;
-        EXPECT_LT(sums.true_square / sums.stated, 1.4) << poses;
+        EXPECT_GT(sums.true_square / sums.stated, 0.4) << poses;
+        EXPECT_LT(sums.true_square / sums.stated, 1.2) << poses;
     }
 }
 
