@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "registration/calibration/bundle_costs.h"
+#include "registration/calibration/covariance_over_poses.h"
 
 namespace planlight {
 namespace {
@@ -54,7 +55,8 @@ private:
     void measure_residuals();
     void update_sigmas();
     bool leave_out_outliers();
-    Eigen::MatrixXd covariance();
+    std::vector<double*> shared_blocks(std::vector<Eigen::Index>& where);
+    CovarianceOverPoses covariance();
     ceres::CostFunction* cost_of(const Measurement& m) const;
     std::vector<double*> blocks_of(const Measurement& m);
     BundleResult result(bool converged);
@@ -74,6 +76,8 @@ private:
     std::array<double, 3> sigma_px_{0.3, 0.3, 0.7};
     std::vector<Measurement> measurements_;
     std::unique_ptr<ceres::Problem> problem_;
+    std::vector<std::vector<ceres::ResidualBlockId>> residuals_of_pose_;
+    std::vector<ceres::ResidualBlockId> priors_;
 };
 
 Bundle::Bundle(const std::vector<PoseObservation>& poses, const BoardSpec& board, const RigEstimate& start,
@@ -116,16 +120,21 @@ std::vector<double*> Bundle::blocks_of(const Measurement& m) {
 
 void Bundle::build(double huber) {
     problem_ = std::make_unique<ceres::Problem>();
+    residuals_of_pose_.assign(poses_.size(), {});
+    priors_.clear();
     for (const Measurement& m : measurements_)
-        if (m.used) problem_->AddResidualBlock(cost_of(m), new ceres::HuberLoss(huber), blocks_of(m));
+        if (m.used)
+            residuals_of_pose_[m.pose].push_back(
+                problem_->AddResidualBlock(cost_of(m), new ceres::HuberLoss(huber), blocks_of(m)));
     for (const DeviceName name : kDevices) {
         const auto& d = rig_.device(name);
         if (!d || !problem_->HasParameterBlock(lens(name))) continue;
         const double diagonal = std::hypot(d->width, d->height),
                      corner_px = (name == DeviceName::projector ? 0.8 : 0.5) * diagonal;
-        problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<LensPrior, 6, 9>(new LensPrior{
-                                       settings_.aspect_sigma, corner_px / d->focal_x, corner_px, settings_.sixth_order}),
-                                   nullptr, lens(name));
+        priors_.push_back(problem_->AddResidualBlock(
+            new ceres::AutoDiffCostFunction<LensPrior, 6, 9>(
+                new LensPrior{settings_.aspect_sigma, corner_px / d->focal_x, corner_px, settings_.sixth_order}),
+            nullptr, lens(name)));
         if (settings_.rig_fixed)
             problem_->SetParameterBlockConstant(lens(name));
         else if (!settings_.sixth_order)
@@ -133,8 +142,8 @@ void Bundle::build(double huber) {
         if (settings_.rig_fixed || name == DeviceName::left_camera) problem_->SetParameterBlockConstant(place(name));
     }
     if (!problem_->HasParameterBlock(bend_.data())) return;
-    problem_->AddResidualBlock(new ceres::AutoDiffCostFunction<BendPrior, 3, 3>(new BendPrior{settings_.bend_sigma_mm}),
-                               nullptr, bend_.data());
+    priors_.push_back(problem_->AddResidualBlock(
+        new ceres::AutoDiffCostFunction<BendPrior, 3, 3>(new BendPrior{settings_.bend_sigma_mm}), nullptr, bend_.data()));
     if (settings_.rig_fixed || !settings_.bend) problem_->SetParameterBlockConstant(bend_.data());
 }
 
@@ -185,42 +194,66 @@ bool Bundle::leave_out_outliers() {
     return changed;
 }
 
-/// The inverse of the normal matrix, cut down to the numbers of the devices. Ceres weighs the residuals by their sigmas.
-Eigen::MatrixXd Bundle::covariance() {
-    ceres::Problem::EvaluateOptions options;
-    std::vector<Eigen::Index> where;  // of every column in numbers_of(rig)
+/// Columns of the numbers that all poses share: the devices' (those that are free), then the board's bend.
+std::vector<double*> Bundle::shared_blocks(std::vector<Eigen::Index>& where) {
+    std::vector<double*> blocks;
     Eigen::Index next = 0;
     for (const DeviceName name : kDevices) {
         if (!rig_.device(name)) continue;
-        options.parameter_blocks.push_back(lens(name));
+        blocks.push_back(lens(name));
         const int terms = settings_.sixth_order ? 9 : 8;
         for (int i = 0; i < terms; ++i) where.push_back(next + i);
         next += 9;
         if (name == DeviceName::left_camera) continue;
-        options.parameter_blocks.push_back(place(name));
+        blocks.push_back(place(name));
         for (int i = 0; i < 6; ++i) where.push_back(next + i);
         next += 6;
     }
-    const auto wanted = static_cast<Eigen::Index>(where.size());
-    for (auto& board : boards_)
-        if (problem_->HasParameterBlock(board.data())) options.parameter_blocks.push_back(board.data());
-    if (!problem_->IsParameterBlockConstant(bend_.data())) options.parameter_blocks.push_back(bend_.data());
-    ceres::CRSMatrix crs;
-    problem_->Evaluate(options, nullptr, nullptr, nullptr, &crs);
-    const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> J(crs.num_rows, crs.num_cols,
-                                                                           static_cast<Eigen::Index>(crs.values.size()),
-                                                                           crs.rows.data(), crs.cols.data(), crs.values.data());
-    const Eigen::SparseMatrix<double> columns = J;
-    Eigen::MatrixXd normal = Eigen::MatrixXd(Eigen::SparseMatrix<double>(columns.transpose() * columns));
-    const Eigen::VectorXd scale = normal.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
-    normal = scale.asDiagonal() * normal * scale.asDiagonal();
-    const Eigen::MatrixXd inverse =
-        scale.asDiagonal() * normal.ldlt().solve(Eigen::MatrixXd::Identity(normal.rows(), normal.cols())) * scale.asDiagonal();
-    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(next, next);
-    for (Eigen::Index r = 0; r < wanted; ++r)
-        for (Eigen::Index c = 0; c < wanted; ++c)
-            all(where[static_cast<std::size_t>(r)], where[static_cast<std::size_t>(c)]) = inverse(r, c);
-    return all;
+    if (!problem_->IsParameterBlockConstant(bend_.data())) blocks.push_back(bend_.data());
+    return blocks;
+}
+
+/// Normal matrix and score of the columns `shared` of some rows, the other columns (the pose of the board) eliminated.
+PoseInformation information_of(const Eigen::MatrixXd& rows, const Eigen::VectorXd& residuals, Eigen::Index shared) {
+    const Eigen::MatrixXd normal = rows.transpose() * rows;
+    const Eigen::VectorXd score = rows.transpose() * residuals;
+    const Eigen::Index own = rows.cols() - shared;
+    if (own == 0) return {normal, score};
+    const Eigen::MatrixXd carried =
+        normal.bottomRightCorner(own, own).ldlt().solve(normal.bottomLeftCorner(own, shared)).transpose();
+    return {normal.topLeftCorner(shared, shared) - carried * normal.bottomLeftCorner(own, shared),
+            score.head(shared) - carried * score.tail(own)};
+}
+
+/// Of `numbers_of(rig)`. Ceres weighs the residuals by their sigmas.
+CovarianceOverPoses Bundle::covariance() {
+    std::vector<Eigen::Index> where;  // of every shared column in numbers_of(rig)
+    ceres::Problem::EvaluateOptions options;
+    options.parameter_blocks = shared_blocks(where);
+    std::vector<PoseInformation> poses;
+    const auto evaluate = [&](const std::vector<ceres::ResidualBlockId>& residuals, double* board) {
+        ceres::Problem::EvaluateOptions some = options;
+        some.residual_blocks = residuals;
+        if (board) some.parameter_blocks.push_back(board);
+        std::vector<double> r;
+        ceres::CRSMatrix crs;
+        problem_->Evaluate(some, nullptr, &r, nullptr, &crs);
+        const Eigen::Map<const Eigen::SparseMatrix<double, Eigen::RowMajor>> J(
+            crs.num_rows, crs.num_cols, static_cast<Eigen::Index>(crs.values.size()), crs.rows.data(), crs.cols.data(),
+            crs.values.data());
+        return information_of(Eigen::MatrixXd(J), Eigen::Map<const Eigen::VectorXd>(r.data(), crs.num_rows),
+                              crs.num_cols - (board ? 6 : 0));
+    };
+    for (std::size_t i = 0; i < boards_.size(); ++i)
+        if (!residuals_of_pose_[i].empty()) poses.push_back(evaluate(residuals_of_pose_[i], boards_[i].data()));
+    CovarianceOverPoses found = covariance_over_poses(poses, evaluate(priors_, nullptr).normal);
+    const auto all = numbers_of(rig_).size();
+    Eigen::MatrixXd of_numbers = Eigen::MatrixXd::Zero(all, all);
+    for (std::size_t r = 0; r < where.size(); ++r)
+        for (std::size_t c = 0; c < where.size(); ++c)
+            of_numbers(where[r], where[c]) = found.covariance(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c));
+    found.covariance = of_numbers;
+    return found;
 }
 
 BundleResult Bundle::result(bool converged) {
@@ -269,7 +302,10 @@ BundleResult Bundle::run() {
     }
     build(2.5);
     BundleResult out = result(converged);
-    if (!settings_.rig_fixed) out.covariance = covariance();
+    if (settings_.rig_fixed) return out;
+    const CovarianceOverPoses uncertain = covariance();
+    out.covariance = uncertain.covariance;
+    out.uncertainty_factor = uncertain.factor;
     return out;
 }
 

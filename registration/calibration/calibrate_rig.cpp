@@ -70,36 +70,6 @@ void add_lengths(const std::vector<Placed>& placed, const BoardSpec& board, Leng
         }
 }
 
-/// Delete-group jackknife against the stated covariance: trace(C^-1 V) / n with V = (g - 1) / g sum of d d^T over the g
-/// groups' differences d from their mean (Efron & Tibshirani 1993, 11.5). Never under 1.
-double uncertainty_factor(const Eigen::MatrixXd& covariance, const std::vector<Eigen::VectorXd>& without_group) {
-    const auto groups = static_cast<double>(without_group.size());
-    std::vector<Eigen::Index> free;
-    for (Eigen::Index i = 0; i < covariance.rows(); ++i)
-        if (covariance(i, i) > 0) free.push_back(i);
-    const auto n = static_cast<Eigen::Index>(free.size());
-    if (n == 0 || without_group.size() < 2) return 1;
-    Eigen::VectorXd mean = Eigen::VectorXd::Zero(covariance.rows());
-    for (const auto& numbers : without_group) mean += numbers / groups;
-    Eigen::MatrixXd correlation(n, n);
-    const auto sigma = [&](Eigen::Index i) {
-        return std::sqrt(covariance(free[static_cast<std::size_t>(i)], free[static_cast<std::size_t>(i)]));
-    };
-    for (Eigen::Index r = 0; r < n; ++r)
-        for (Eigen::Index c = 0; c < n; ++c)
-            correlation(r, c) =
-                covariance(free[static_cast<std::size_t>(r)], free[static_cast<std::size_t>(c)]) / (sigma(r) * sigma(c));
-    const Eigen::LDLT<Eigen::MatrixXd> solver(correlation);
-    double sum = 0;
-    for (const auto& numbers : without_group) {
-        Eigen::VectorXd d(n);
-        for (Eigen::Index i = 0; i < n; ++i) d[i] = (numbers - mean)[free[static_cast<std::size_t>(i)]] / sigma(i);
-        sum += (groups - 1) / groups * d.dot(solver.solve(d));
-    }
-    const double square = sum / static_cast<double>(n);
-    return std::isfinite(square) ? std::max(1.0, std::sqrt(square)) : 1;
-}
-
 HeldOut hold_out(const std::vector<PoseObservation>& poses, const BoardSpec& board, const BundleResult& full,
                  const CalibrationSettings& settings) {
     HeldOut out;
@@ -109,12 +79,10 @@ HeldOut hold_out(const std::vector<PoseObservation>& poses, const BoardSpec& boa
         if (full.rig.rig_from_board[i]) seen.push_back(i);
     const std::size_t folds = std::min<std::size_t>(static_cast<std::size_t>(settings.folds), seen.size());
     std::array<double, 3> square{};
-    std::vector<Eigen::VectorXd> without_fold;
     for (std::size_t fold = 0; fold < folds; ++fold) {
         RigEstimate training = full.rig, test = full.rig;
         for (std::size_t k = 0; k < seen.size(); ++k) (k % folds == fold ? training : test).rig_from_board[seen[k]].reset();
         const BundleResult learnt = adjust_bundle(poses, board, training, settings.bundle);
-        without_fold.push_back(numbers_of(learnt.rig));
         test.devices = learnt.rig.devices;
         test.bend_mm = learnt.rig.bend_mm;
         BundleSettings fixed = settings.bundle;
@@ -131,7 +99,6 @@ HeldOut hold_out(const std::vector<PoseObservation>& poses, const BoardSpec& boa
     }
     for (std::size_t d = 0; d < 3; ++d)
         out.rms_px[d] = out.used[d] ? std::sqrt(square[d] / static_cast<double>(out.used[d])) : 0;
-    out.uncertainty_factor = uncertainty_factor(full.covariance, without_fold);
     out.lengths = lengths.count;
     if (lengths.count > 0) {
         out.length_rms_mm = std::sqrt(lengths.square / static_cast<double>(lengths.count));
@@ -175,9 +142,6 @@ Calibration calibrate_rig(const std::vector<PoseObservation>& poses, const Board
     calibration.volume = predict_volume_error(calibration.bundle, board);
     if (refused(judge_rig(poses, board, calibration, settings))) return calibration;
     calibration.held_out = hold_out(poses, board, calibration.bundle, settings);
-    calibration.bundle.covariance *= calibration.held_out.uncertainty_factor * calibration.held_out.uncertainty_factor;
-    calibration.volume = predict_volume_error(calibration.bundle, board);
-    if (refused(judge_rig(poses, board, calibration, settings))) return calibration;
     calibration.warnings = warnings_about(poses, calibration);
     return calibration;
 }

@@ -39,13 +39,10 @@ struct HeldOut {
     std::size_t lengths = 0;    ///< distances on the board measured by the rig, 150 to 250 mm where the board has them
     double length_rms_mm = 0;   ///< of a distance's error, taken to 200 mm
     double length_mean_mm = 0;  ///< the part that all share: scale
-    /// How much more the rig changes when poses are left out than its covariance says (1: as it says). Errors that are alike
-    /// within a pose make it more.
-    double uncertainty_factor = 1;
 };
 
 struct Calibration {
-    BundleResult bundle;  ///< from all poses; its covariance widened by `HeldOut::uncertainty_factor`
+    BundleResult bundle;  ///< from all poses
     HeldOut held_out;
     std::optional<VolumeError> volume;  ///< with two devices or more
     std::vector<std::string> warnings;

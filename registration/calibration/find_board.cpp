@@ -8,35 +8,12 @@
 #include <opencv2/imgproc.hpp>
 #include <set>
 
+#include "registration/calibration/refine_corners.h"
+
 namespace planlight {
 namespace {
 
 using Eigen::Vector2d;
-
-/// A sub-pixel window that stays on the four squares round a corner, and inside the ring of white round a marker.
-int window_of(double square_px) {
-    return std::clamp(static_cast<int>(std::floor(0.24 * square_px)), 2, 14);
-}
-
-/// Typical distance of neighbouring corners, pixels.
-double square_px(const BoardCorners& found, const BoardSpec& board) {
-    std::vector<double> sides;
-    for (std::size_t i = 0; i + 1 < found.size(); ++i)
-        if (found.ids[i + 1] == found.ids[i] + 1 && found.ids[i + 1] % board.corners_across() != 0)
-            sides.push_back((found.pixels[i + 1] - found.pixels[i]).norm());
-    if (sides.empty()) return 20;
-    std::nth_element(sides.begin(), sides.begin() + static_cast<std::ptrdiff_t>(sides.size() / 2), sides.end());
-    return sides[sides.size() / 2];
-}
-
-void refine(const cv::Mat& picture, BoardCorners& found, const BoardSpec& board) {
-    if (found.size() == 0) return;
-    std::vector<cv::Point2f> points;
-    for (const Vector2d& p : found.pixels) points.emplace_back(static_cast<float>(p.x()), static_cast<float>(p.y()));
-    const int window = window_of(square_px(found, board));
-    cv::cornerSubPix(picture, points, {window, window}, {-1, -1}, {cv::TermCriteria::EPS + cv::TermCriteria::COUNT, 60, 1e-4});
-    for (std::size_t i = 0; i < points.size(); ++i) found.pixels[i] = {points[i].x, points[i].y};
-}
 
 BoardCorners find_charuco(const cv::Mat& picture, const BoardSpec& spec) {
     const auto dictionary = cv::aruco::getPredefinedDictionary(cv::aruco::DICT_4X4_100);
@@ -102,7 +79,7 @@ BoardCorners find_board(const GrayImage& picture, const BoardSpec& board) {
     const cv::Mat view(picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.pixels.data()));
     try {
         BoardCorners found = board.kind == BoardSpec::Kind::charuco ? find_charuco(view, board) : find_chessboard(view, board);
-        refine(view, found, board);
+        refine_corners(picture, board, found);
         return found;
     } catch (const cv::Exception&) {  // pictures of a few pixels
         return {};
@@ -120,7 +97,7 @@ bool spans_a_plane(const BoardCorners& corners, const BoardSpec& board) {
 
 BoardCorners follow_board(const GrayImage& picture, const BoardCorners& corners, const BoardSpec& board) {
     BoardCorners found = corners;
-    refine(cv::Mat(picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.pixels.data())), found, board);
+    refine_corners(picture, board, found);
     return found;
 }
 

@@ -143,7 +143,7 @@ int main(int argc, char** argv) {
                 room.point_rms_mm, room.predicted_rms_mm, room.light_rms_mm, room.predicted_light_rms_mm,
                 room.epipolar_px, calibration.bundle.rig.bend_mm.x(), calibration.bundle.rig.bend_mm.y(),
                 calibration.bundle.rig.bend_mm.z(), calibration.bundle.left_out[0], calibration.bundle.left_out[1],
-                calibration.bundle.left_out[2], calibration.held_out.uncertainty_factor);
+                calibration.bundle.left_out[2], calibration.bundle.uncertainty_factor);
         }
         std::fflush(stdout);
         rooms.push_back(room);

@@ -95,7 +95,7 @@ void table(const char* name, const test::RealCaptures& captures) {
                ours.held_out.lengths, ours.held_out.length_mean_mm, ours.bundle.rig.bend_mm.x(), ours.bundle.rig.bend_mm.y(),
                ours.bundle.rig.bend_mm.z());
     if (ours.volume) fmt::print("; predicted {:.3f} (95 %)", ours.volume->p95_mm);
-    fmt::print("; uncertainty factor {:.2f}", ours.held_out.uncertainty_factor);
+    fmt::print("; uncertainty factor {:.2f}", ours.bundle.uncertainty_factor);
     fmt::print("\n");
     for (const std::string& warning : ours.warnings) fmt::print(" warning: {}\n", warning);
 }
