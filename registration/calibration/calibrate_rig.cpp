@@ -114,7 +114,7 @@ HeldOut hold_out(const std::vector<PoseObservation>& poses, const BoardSpec& boa
         RigEstimate training = full.rig, test = full.rig;
         for (std::size_t k = 0; k < seen.size(); ++k) (k % folds == fold ? training : test).rig_from_board[seen[k]].reset();
         const BundleResult learnt = adjust_bundle(poses, board, training, settings.bundle);
-        without_fold.push_back(numbers_of(learnt.rig));
+        without_fold.push_back(numbers_near(learnt.rig, numbers_of(full.rig)));
         test.devices = learnt.rig.devices;
         test.bend_mm = learnt.rig.bend_mm;
         BundleSettings fixed = settings.bundle;

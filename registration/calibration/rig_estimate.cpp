@@ -1,6 +1,7 @@
 #include "registration/calibration/rig_estimate.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace planlight {
 
@@ -57,6 +58,24 @@ VectorXd numbers_of(const RigEstimate& rig) {
         for (int i = 0; i < 3; ++i) numbers.push_back(shift[i]);
     }
     return Eigen::Map<const VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+}
+
+VectorXd numbers_near(const RigEstimate& rig, const VectorXd& others) {
+    VectorXd numbers = numbers_of(rig);
+    Eigen::Index next = 0;
+    for (const DeviceName name : kDevices) {
+        if (!rig.device(name)) continue;
+        next += 9;
+        if (name == DeviceName::left_camera) continue;
+        const Vector3d turn = numbers.segment<3>(next), other = others.segment<3>(next);
+        const double angle = turn.norm();
+        if (angle > 0) {
+            const Vector3d round = turn * (1 - 2 * std::numbers::pi / angle);
+            if ((round - other).norm() < (turn - other).norm()) numbers.segment<3>(next) = round;
+        }
+        next += 6;
+    }
+    return numbers;
 }
 
 RigEstimate with_numbers(const RigEstimate& rig, const VectorXd& numbers) {

@@ -40,6 +40,10 @@ std::optional<Eigen::Vector3d> board_point(const CameraModel& camera, const Eige
 Eigen::VectorXd numbers_of(const RigEstimate& rig);
 RigEstimate with_numbers(const RigEstimate& rig, const Eigen::VectorXd& numbers);
 
+/// numbers_of, to be compared with those of another rig of the same devices. A turn w is also the turn w (1 - 2 pi / |w|):
+/// beyond 180 degrees the vector of `numbers_of` jumps to the other side. Of both this takes the one nearer to `others`.
+Eigen::VectorXd numbers_near(const RigEstimate& rig, const Eigen::VectorXd& others);
+
 inline const CameraObservation& view_of(const PoseObservation& pose, DeviceName camera) {
     return camera == DeviceName::left_camera ? pose.left : pose.right;
 }

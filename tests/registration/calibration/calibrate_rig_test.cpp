@@ -95,6 +95,28 @@ TEST(CalibrateRig, ABentBoardIsFoundBent) {
     EXPECT_FALSE(found.warnings.empty());
 }
 
+/// A camera or a projector hung upside down is turned by about 180 degrees against the left camera, where a rotation vector
+/// jumps from one side to the other: the rigs of the held-out poses are the same rig, on either side of that. Picture for
+/// picture it is the same measurement as with the device upright, so the predicted error is that one too (10 %: each rig
+/// draws its own noise in its own pixels).
+TEST(CalibrateRig, ADeviceHungUpsideDownIsAsGoodAsAnUprightOne) {
+    const Calibration upright = calibrated(test::ideal_room(), test::ideal_room().observe());
+    ASSERT_FALSE(upright.refusal) << upright.refusal->reason;
+    for (const bool camera : {true, false}) {
+        test::IdealRoom room = test::ideal_room();
+        CameraModel& device = camera ? room.rig.right_camera : room.rig.projector;
+        RigidTransform turned_from_upright = RigidTransform::Identity();
+        turned_from_upright.linear() = Vector3d(-1, -1, 1).asDiagonal();
+        device.device_from_rig = turned_from_upright * device.device_from_rig;
+        device.centre_x = device.width - 1 - device.centre_x;
+        device.centre_y = device.height - 1 - device.centre_y;
+        device.p1 = -device.p1, device.p2 = -device.p2;
+        const Calibration found = calibrated(room, room.observe());
+        ASSERT_FALSE(found.refusal) << found.refusal->reason;
+        EXPECT_NEAR(found.volume->p95_mm / upright.volume->p95_mm, 1, 0.1) << (camera ? "camera" : "projector");
+    }
+}
+
 TEST(CalibrateRig, OneCameraAndAProjectorAreEnough) {
     const test::IdealRoom room = test::ideal_room();
     auto poses = room.observe();
