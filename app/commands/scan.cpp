@@ -11,6 +11,7 @@
 #include "planning_io/mesh_file.h"
 #include "planning_io/rig_file.h"
 #include "planning_io/types/error.h"
+#include "registration/calibration/check_drift.h"
 #include "registration/scan/merge_exposures.h"
 #include "registration/scan/surface_triangles.h"
 #include "registration/tracking/markers_in_scan.h"
@@ -46,6 +47,9 @@ void warn_of(const ScanResult& scan, const RigCalibration& rig) {
             "the projector was found {:.1f} mm and {:.2f} degrees from where {} has it; `planlight check` tells more",
             scan.resection->moved_mm, scan.resection->turned * 180 / std::numbers::pi,
             rig.made_on.empty() ? "the rig file" : "the calibration of " + rig.made_on));
+    const DriftCheck drift = check_drift(scan, rig);
+    if (drift.verdict == DriftCheck::Verdict::cameras_moved)
+        warn(fmt::format("{}; the cloud may be off by millimetres and nothing in it shows where. {}", drift.reason, drift.remedy));
 }
 
 nlohmann::json json_of(const ScanMovement& movement) {

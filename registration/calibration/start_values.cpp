@@ -213,6 +213,36 @@ std::optional<double> misfit_anywhere(const CameraModel& device, const std::vect
     return lengths.size() < 30 ? std::nullopt : std::optional(std::sqrt(square / static_cast<double>(lengths.size())));
 }
 
+std::vector<PoseObservation> named_as_left(std::vector<PoseObservation> poses, const BoardSpec& board) {
+    if (board.has_a_top()) return poses;
+    const auto left = calibrate_camera(poses, DeviceName::left_camera, board),
+               right = calibrate_camera(poses, DeviceName::right_camera, board);
+    if (!left || !right) return poses;
+    RigidTransform half_turn = RigidTransform::Identity();  // of the board in its plane, about its middle
+    half_turn.linear() = Vector3d(-1, -1, 1).asDiagonal();
+    half_turn.translation() = Vector3d(board.width_mm(), board.height_mm(), 0);
+    std::vector<RigidTransform> as_named, turned_round;
+    std::vector<std::size_t> which;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        if (!left->camera_from_board[i] || !right->camera_from_board[i]) continue;
+        which.push_back(i);
+        const RigidTransform board_from_left = left->camera_from_board[i]->inverse();
+        as_named.push_back(*right->camera_from_board[i] * board_from_left);
+        turned_round.push_back(*right->camera_from_board[i] * half_turn * board_from_left);
+    }
+    std::vector<RigidTransform> suggested = as_named;
+    suggested.insert(suggested.end(), turned_round.begin(), turned_round.end());
+    const auto right_from_left = middle_of(suggested);
+    for (std::size_t k = 0; k < which.size(); ++k) {
+        if (angle_between(as_named[k], *right_from_left) <= angle_between(turned_round[k], *right_from_left)) continue;
+        BoardCorners& corners = poses[which[k]].right.corners;
+        for (int& id : corners.ids) id = board.corner_count() - 1 - id;
+        std::reverse(corners.ids.begin(), corners.ids.end());
+        std::reverse(corners.pixels.begin(), corners.pixels.end());
+    }
+    return poses;
+}
+
 StartValues find_camera_start(const std::vector<PoseObservation>& poses, const BoardSpec& board) {
     StartValues start;
     const auto left = calibrate_camera(poses, DeviceName::left_camera, board);
