@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <opencv2/calib3d.hpp>
+#include <tuple>
+#include <utility>
 
 namespace planlight {
 namespace {
@@ -87,6 +90,42 @@ std::optional<RigidTransform> middle_of(const std::vector<RigidTransform>& sugge
         }
     }
     return best;
+}
+
+/// A turn of a chessboard in its plane that puts corners on corners: corner i comes to where corner `names[i]` was.
+struct BoardTurn {
+    std::vector<int> names;
+    RigidTransform to_from;
+};
+
+/// None, by half, and of a square board by a quarter either way.
+std::vector<BoardTurn> turns_of(const BoardSpec& board) {
+    const int across = board.corners_across(), down = board.corners_down();
+    std::vector<BoardTurn> turns;
+    for (int quarters = 0; quarters < 4; quarters += across == down ? 1 : 2) {
+        BoardTurn turn;
+        for (int id = 0; id < board.corner_count(); ++id) {
+            int x = id % across, y = id / across;
+            if (quarters == 2) x = across - 1 - x, y = down - 1 - y;
+            if (quarters == 1) x = across - 1 - std::exchange(y, x);
+            if (quarters == 3) y = down - 1 - std::exchange(x, y);
+            turn.names.push_back(y * across + x);
+        }
+        const Vector3d middle(board.width_mm() / 2, board.height_mm() / 2, 0);
+        turn.to_from.linear() = Eigen::AngleAxisd(quarters * std::numbers::pi / 2, Vector3d::UnitZ()).toRotationMatrix();
+        turn.to_from.translation() = middle - turn.to_from.linear() * middle;
+        turns.push_back(std::move(turn));
+    }
+    return turns;
+}
+
+/// Keeps the names in ascending order.
+void rename(BoardCorners& corners, const BoardTurn& turn) {
+    std::vector<std::pair<int, Vector2d>> named;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        named.emplace_back(turn.names[static_cast<std::size_t>(corners.ids[i])], corners.pixels[i]);
+    std::sort(named.begin(), named.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (std::size_t i = 0; i < named.size(); ++i) std::tie(corners.ids[i], corners.pixels[i]) = named[i];
 }
 
 Eigen::Matrix<double, 12, 1> smallest_vector(const Eigen::MatrixXd& rows) {
@@ -218,27 +257,23 @@ std::vector<PoseObservation> named_as_left(std::vector<PoseObservation> poses, c
     const auto left = calibrate_camera(poses, DeviceName::left_camera, board),
                right = calibrate_camera(poses, DeviceName::right_camera, board);
     if (!left || !right) return poses;
-    RigidTransform half_turn = RigidTransform::Identity();  // of the board in its plane, about its middle
-    half_turn.linear() = Vector3d(-1, -1, 1).asDiagonal();
-    half_turn.translation() = Vector3d(board.width_mm(), board.height_mm(), 0);
-    std::vector<RigidTransform> as_named, turned_round;
+    const std::vector<BoardTurn> turns = turns_of(board);
+    std::vector<RigidTransform> suggested;
     std::vector<std::size_t> which;
     for (std::size_t i = 0; i < poses.size(); ++i) {
         if (!left->camera_from_board[i] || !right->camera_from_board[i]) continue;
         which.push_back(i);
-        const RigidTransform board_from_left = left->camera_from_board[i]->inverse();
-        as_named.push_back(*right->camera_from_board[i] * board_from_left);
-        turned_round.push_back(*right->camera_from_board[i] * half_turn * board_from_left);
+        for (const BoardTurn& turn : turns)
+            suggested.push_back(*right->camera_from_board[i] * turn.to_from.inverse() * left->camera_from_board[i]->inverse());
     }
-    std::vector<RigidTransform> suggested = as_named;
-    suggested.insert(suggested.end(), turned_round.begin(), turned_round.end());
     const auto right_from_left = middle_of(suggested);
     for (std::size_t k = 0; k < which.size(); ++k) {
-        if (angle_between(as_named[k], *right_from_left) <= angle_between(turned_round[k], *right_from_left)) continue;
-        BoardCorners& corners = poses[which[k]].right.corners;
-        for (int& id : corners.ids) id = board.corner_count() - 1 - id;
-        std::reverse(corners.ids.begin(), corners.ids.end());
-        std::reverse(corners.pixels.begin(), corners.pixels.end());
+        std::size_t nearest = 0;
+        for (std::size_t t = 1; t < turns.size(); ++t)
+            if (angle_between(suggested[k * turns.size() + t], *right_from_left) <
+                angle_between(suggested[k * turns.size() + nearest], *right_from_left))
+                nearest = t;
+        rename(poses[which[k]].right.corners, turns[nearest]);
     }
     return poses;
 }
