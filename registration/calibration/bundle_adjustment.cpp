@@ -269,7 +269,8 @@ BundleResult Bundle::run() {
     }
     build(2.5);
     BundleResult out = result(converged);
-    for (Numbers6& place : places_) place = twist_of(transform_of(place));  // the turns that numbers_of says, also near 180 degrees
+    // The covariance is of the turns that numbers_of says, also beyond 180 degrees.
+    for (Numbers6& place : places_) place = twist_of(transform_of(place));
     if (!settings_.rig_fixed) out.covariance = covariance();
     return out;
 }

@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <opencv2/calib3d.hpp>
-#include <tuple>
-#include <utility>
+
+#include "registration/calibration/board_turns.h"
 
 namespace planlight {
 namespace {
@@ -90,42 +89,6 @@ std::optional<RigidTransform> middle_of(const std::vector<RigidTransform>& sugge
         }
     }
     return best;
-}
-
-/// A turn of a chessboard in its plane that puts corners on corners: corner i comes to where corner `names[i]` was.
-struct BoardTurn {
-    std::vector<int> names;
-    RigidTransform to_from;
-};
-
-/// None, by half, and of a square board by a quarter either way.
-std::vector<BoardTurn> turns_of(const BoardSpec& board) {
-    const int across = board.corners_across(), down = board.corners_down();
-    std::vector<BoardTurn> turns;
-    for (int quarters = 0; quarters < 4; quarters += across == down ? 1 : 2) {
-        BoardTurn turn;
-        for (int id = 0; id < board.corner_count(); ++id) {
-            int x = id % across, y = id / across;
-            if (quarters == 2) x = across - 1 - x, y = down - 1 - y;
-            if (quarters == 1) x = across - 1 - std::exchange(y, x);
-            if (quarters == 3) y = down - 1 - std::exchange(x, y);
-            turn.names.push_back(y * across + x);
-        }
-        const Vector3d middle(board.width_mm() / 2, board.height_mm() / 2, 0);
-        turn.to_from.linear() = Eigen::AngleAxisd(quarters * std::numbers::pi / 2, Vector3d::UnitZ()).toRotationMatrix();
-        turn.to_from.translation() = middle - turn.to_from.linear() * middle;
-        turns.push_back(std::move(turn));
-    }
-    return turns;
-}
-
-/// Keeps the names in ascending order.
-void rename(BoardCorners& corners, const BoardTurn& turn) {
-    std::vector<std::pair<int, Vector2d>> named;
-    for (std::size_t i = 0; i < corners.size(); ++i)
-        named.emplace_back(turn.names[static_cast<std::size_t>(corners.ids[i])], corners.pixels[i]);
-    std::sort(named.begin(), named.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (std::size_t i = 0; i < named.size(); ++i) std::tie(corners.ids[i], corners.pixels[i]) = named[i];
 }
 
 Eigen::Matrix<double, 12, 1> smallest_vector(const Eigen::MatrixXd& rows) {
