@@ -45,6 +45,7 @@ std::vector<GrayImage> read_camera(const fs::path& pose, const char* camera, con
                                          pictures.back().height, pictures.front().width, pictures.front().height),
                              "Capture all pictures with the same settings.");
     }
+    check_depth(pictures, *find_picture(pose / camera / names.front()));
     return pictures;
 }
 

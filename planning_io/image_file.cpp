@@ -99,6 +99,20 @@ RgbImage read_rgb(const fs::path& file) {
     return rgb;
 }
 
+void check_depth(const std::vector<GrayImage>& pictures, const fs::path& file) {
+    constexpr std::uint8_t kTwelveBits = 4095 / 257 + 1;
+    for (const GrayImage& picture : pictures)
+        for (const std::uint8_t value : picture.pixels)
+            if (value > kTwelveBits) return;
+    const std::string bytes = read_whole(file);
+    const cv::Mat picture = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data())),
+                                         cv::IMREAD_ANYDEPTH | cv::IMREAD_ANYCOLOR);
+    if (picture.depth() == CV_16U)
+        throw InputError(file, "has 16 bits, and no picture of this camera is brighter than 4095 of 65535",
+                         "If the camera has 10 or 12 bits, store them at the upper end (times 64, or 16), or as 8 bits; else "
+                         "expose longer.");
+}
+
 void check_same_size(const GrayImage& picture, const GrayImage& first, const std::filesystem::path& file) {
     if (picture.width != first.width || picture.height != first.height)
         throw InputError(file,

@@ -166,6 +166,8 @@ CaptureFolder read_capture(const fs::path& folder) {
         read_picture(capture.left, picture_file(folder / "left", name));
         if (right) read_picture(capture.right, picture_file(folder / "right", name));
     }
+    check_depth(capture.left, picture_file(folder / "left", capture.names.front()));
+    if (right) check_depth(capture.right, picture_file(folder / "right", capture.names.front()));
     return capture;
 }
 

@@ -31,8 +31,13 @@ Json read_log(const Path& file) {
     throw DamagedFileError(file, "is not a log of checks", "Move it away; a new one is begun.");
 }
 
+/// Null is what was not known.
+double known(const Json& number) { return number.is_null() ? 0 : number.get<double>(); }
+
 /// Logs of earlier programs have the same figure under the name of a rms, which it is not.
-double epipolar_of(const Json& entry) { return entry.at(entry.contains("epipolar_px") ? "epipolar_px" : "epipolar_rms_px"); }
+double epipolar_of(const Json& entry) {
+    return known(entry.at(entry.contains("epipolar_px") ? "epipolar_px" : "epipolar_rms_px"));
+}
 
 std::vector<EarlierCheck> earlier_checks(const Json& log, const std::string& rig_made_on, const Path& file) {
     std::vector<EarlierCheck> checks;
@@ -40,7 +45,7 @@ std::vector<EarlierCheck> earlier_checks(const Json& log, const std::string& rig
         for (const auto& entry : log.at("checks"))
             if (entry.at("rig_made_on") == rig_made_on && entry.at("verdict") != text_of(DriftCheck::Verdict::cannot_tell))
                 checks.push_back({entry.at("at_unix_s").get<double>() / 86400, epipolar_of(entry),
-                                  entry.at("projector_rms_px").get<double>()});
+                                  known(entry.at("projector_rms_px"))});
     } catch (const Json::exception&) {
         throw DamagedFileError(file, "holds a check that is not whole", "Move it away; a new one is begun.");
     }
@@ -68,19 +73,20 @@ int run_check(const CheckOptions& options) {
     Json log = read_log(file);
     const DriftCheck check = check_drift(scan_from_capture(capture, rig), rig);
     const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+    const auto if_placed = [&](double value) { return check.projector_rms_px == 0 ? Json() : Json(value); };
     const Json entry = {{"at_unix_s", now},
                         {"rig_made_on", rig.made_on},
                         {"verdict", text_of(check.verdict)},
                         {"points", check.points},
                         {"epipolar_px", check.epipolar_px},
-                        {"projector_rms_px", check.projector_rms_px},
-                        {"projector_after_px", check.projector_after_px},
-                        {"camera_k1_off", check.bent.k1_off},
-                        {"camera_k1_sigma", check.bent.k1_sigma},
-                        {"projector_bent_px", check.bent.projector_px},
-                        {"light_off_mm", check.light_off_mm},
-                        {"projector_moved_mm", check.moved_mm},
-                        {"projector_turned_deg", check.turned * 180 / std::numbers::pi}};
+                        {"projector_rms_px", if_placed(check.projector_rms_px)},
+                        {"projector_after_px", if_placed(check.projector_after_px)},
+                        {"camera_k1_off", if_placed(check.bent.k1_off)},
+                        {"camera_k1_sigma", if_placed(check.bent.k1_sigma)},
+                        {"projector_bent_px", if_placed(check.bent.projector_px)},
+                        {"light_off_mm", if_placed(check.light_off_mm)},
+                        {"projector_moved_mm", if_placed(check.moved_mm)},
+                        {"projector_turned_deg", if_placed(check.turned * 180 / std::numbers::pi)}};
     log["checks"].push_back(entry);
     const auto trends = drift_trends(earlier_checks(log, rig.made_on, file));
     write_safely(file, log.dump(2) + "\n");

@@ -42,8 +42,8 @@ nlohmann::json projector_of(const ScanResult& scan) {
 
 void warn_of(const ScanResult& scan, const RigCalibration& rig) {
     if (scan.code_step_px > 0)
-        warn(fmt::format("the light was read to {:g} projector pixels only: there are no fringes that the cameras resolve; the "
-                         "cloud is coarser",
+        warn(fmt::format("the light was read to {:g} projector pixels only: the fringes, or the finest bits that count them, are "
+                         "not in the capture or not resolved by the cameras; the cloud is coarser",
                          scan.code_step_px));
     constexpr double kMoved_mm = 1, kTurned = 0.0035;  // 0.2 degrees
     if (scan.resection_used && (scan.resection->moved_mm > kMoved_mm || scan.resection->turned > kTurned))
@@ -51,6 +51,11 @@ void warn_of(const ScanResult& scan, const RigCalibration& rig) {
             "the projector was found {:.1f} mm and {:.2f} degrees from where {} has it; `planlight check` tells more",
             scan.resection->moved_mm, scan.resection->turned * 180 / std::numbers::pi,
             rig.made_on.empty() ? "the rig file" : "the calibration of " + rig.made_on));
+    if (scan.code_step_px > 0) return;  // cells are no measure of the cameras
+    const DriftCheck drift = check_drift(scan, rig);
+    if (drift.verdict == DriftCheck::Verdict::cameras_moved)
+        warn(fmt::format("{}; the cloud may be off by millimetres and nothing in it shows where. {}", drift.reason,
+                         drift.remedy));
 }
 
 std::string said_of_cameras(const ScanResult& scan) {

@@ -164,8 +164,9 @@ std::string calibration_summary(const CalibrationReport& report) {
             text += fmt::format("  {:<12} {:.3f} px on held-out poses\n", text_of(name),
                                 c.held_out.rms_px[static_cast<std::size_t>(name)]);
     if (c.held_out.lengths > 0)
-        text += fmt::format("  lengths      {:.3f} mm a 200 mm (scale {:+.3f})\n", c.held_out.length_rms_mm,
-                            c.held_out.length_mean_mm);
+        text += fmt::format(
+            "  lengths      {:.3f} mm a 200 mm, {:+.3f} common to all, if the square is {:g} mm: nothing else can tell\n",
+            c.held_out.length_rms_mm, c.held_out.length_mean_mm, report.board.square_mm);
     if (c.volume)
         text += fmt::format("  points       {:.3f} mm (95 % of the working volume, one sigma, from the rig alone)\n",
                             c.volume->p95_mm);
@@ -228,8 +229,10 @@ void write_calibration_html(const CalibrationReport& report, const std::filesyst
         "on poses that the calibration had not seen. Behind &plusmn;: one standard deviation.</p>";
     if (c.held_out.lengths > 0)
         body += fmt::format(
-            "<p>{} lengths on held-out boards: {:.3f} mm a 200 mm root mean square, {:+.3f} mm of it common to all.</p>",
-            c.held_out.lengths, c.held_out.length_rms_mm, c.held_out.length_mean_mm);
+            "<p>{} lengths on held-out boards: {:.3f} mm a 200 mm root mean square, {:+.3f} mm of it common to all. All lengths "
+            "are by the board's square of {:g} mm, as it was said: were it another, every scan would be too large or too small "
+            "by as much, and nothing here would show it. Measure ten squares with a calliper.</p>",
+            c.held_out.lengths, c.held_out.length_rms_mm, c.held_out.length_mean_mm, report.board.square_mm);
     for (const std::string& change : report.changes) body += fmt::format("<p>{}</p>", html_escaped(change));
     if (c.volume) {
         const double full = std::max(0.02, std::ceil(c.volume->worst_mm * 50) / 50);

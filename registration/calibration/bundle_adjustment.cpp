@@ -303,6 +303,8 @@ BundleResult Bundle::run() {
     build(2.5);
     BundleResult out = result(converged);
     if (settings_.rig_fixed) return out;
+    // The covariance is of the turns that numbers_of says, also beyond 180 degrees.
+    for (Numbers6& place : places_) place = twist_of(transform_of(place));
     const CovarianceOverPoses uncertain = covariance();
     out.covariance = uncertain.covariance;
     out.uncertainty_factor = uncertain.factor;

@@ -109,14 +109,15 @@ HeldOut hold_out(const std::vector<PoseObservation>& poses, const BoardSpec& boa
 
 }  // namespace
 
-Calibration calibrate_rig(const std::vector<PoseObservation>& poses, const BoardSpec& board, int projector_width,
+Calibration calibrate_rig(const std::vector<PoseObservation>& observed, const BoardSpec& board, int projector_width,
                           int projector_height, const CalibrationSettings& settings) {
     Calibration calibration;
     const auto refused = [&](std::optional<Refusal> refusal) {
         calibration.refusal = std::move(refusal);
         return calibration.refusal.has_value();
     };
-    if (refused(judge_pictures(poses, board, settings))) return calibration;
+    if (refused(judge_pictures(observed, board, settings))) return calibration;
+    const std::vector<PoseObservation> poses = named_as_left(observed, board);
     StartValues start = find_camera_start(poses, board);
     if (!start.failure.empty()) {
         refused(Refusal{start.failure, "Capture more poses of the board, tilted 15 to 40 degrees every way."});

@@ -72,6 +72,7 @@ BundleResult with_right_mirrored(const std::vector<PoseObservation>& poses, cons
             const int x = id % across, y = id / across;
             id = board.has_a_top() ? (down - 1 - y) * across + x : y * across + across - 1 - x;
         }
+    mirrored = named_as_left(std::move(mirrored), board);
     const StartValues start = find_camera_start(mirrored, board);
     BundleSettings corners = settings.bundle;
     corners.light = false;

@@ -1,6 +1,7 @@
 #include "registration/calibration/rig_estimate.h"
 
 #include <cmath>
+#include <numbers>
 
 namespace planlight {
 

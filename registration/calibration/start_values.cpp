@@ -8,6 +8,8 @@
 #include <limits>
 #include <opencv2/calib3d.hpp>
 
+#include "registration/calibration/board_turns.h"
+
 namespace planlight {
 namespace {
 
@@ -211,6 +213,32 @@ std::optional<double> misfit_anywhere(const CameraModel& device, const std::vect
     double square = 0;
     for (const double length : lengths) square += length * length;
     return lengths.size() < 30 ? std::nullopt : std::optional(std::sqrt(square / static_cast<double>(lengths.size())));
+}
+
+std::vector<PoseObservation> named_as_left(std::vector<PoseObservation> poses, const BoardSpec& board) {
+    if (board.has_a_top()) return poses;
+    const auto left = calibrate_camera(poses, DeviceName::left_camera, board),
+               right = calibrate_camera(poses, DeviceName::right_camera, board);
+    if (!left || !right) return poses;
+    const std::vector<BoardTurn> turns = turns_of(board);
+    std::vector<RigidTransform> suggested;
+    std::vector<std::size_t> which;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        if (!left->camera_from_board[i] || !right->camera_from_board[i]) continue;
+        which.push_back(i);
+        for (const BoardTurn& turn : turns)
+            suggested.push_back(*right->camera_from_board[i] * turn.to_from.inverse() * left->camera_from_board[i]->inverse());
+    }
+    const auto right_from_left = middle_of(suggested);
+    for (std::size_t k = 0; k < which.size(); ++k) {
+        std::size_t nearest = 0;
+        for (std::size_t t = 1; t < turns.size(); ++t)
+            if (angle_between(suggested[k * turns.size() + t], *right_from_left) <
+                angle_between(suggested[k * turns.size() + nearest], *right_from_left))
+                nearest = t;
+        rename(poses[which[k]].right.corners, turns[nearest]);
+    }
+    return poses;
 }
 
 StartValues find_camera_start(const std::vector<PoseObservation>& poses, const BoardSpec& board) {

@@ -14,6 +14,12 @@ struct StartValues {
     bool projector_mirrored = false;  ///< the lit points fit only a projector whose picture is mirrored
 };
 
+/// A chessboard that looks the same when turned by half a turn (a square one: whose corners lie the same by a quarter) has
+/// its corners named by where they stand in each picture: a camera that hangs upside down, or a board that lies on its side,
+/// has them named from another end. The right camera's names, turned in each pose so that the cameras stand to each other as
+/// in most others. Other boards: unchanged.
+std::vector<PoseObservation> named_as_left(std::vector<PoseObservation> poses, const BoardSpec& board);
+
 /// Cameras by Zhang 2000 (OpenCV); the right camera from the poses that both see.
 StartValues find_camera_start(const std::vector<PoseObservation>& poses, const BoardSpec& board);
 

@@ -90,6 +90,43 @@ TEST_F(GrayCodeFolder, OfColumnsOnlyNeedsTwoCameras) {
     expect_refused(scan(capture_, rig_), 3, "columns only, and there is one camera");
 }
 
+/// A left lens that was focused anew (0.5 % of its focal length) bends the cloud by millimetres, while most of what it still
+/// keeps looks well: the scan itself says that the cameras do not fit. In what `check` prints of a projector that it could not
+/// place there is no 0, which would read as a perfect one.
+TEST(ScanCommand, SaysThatTheCamerasDoNotFitEachOther) {
+    const TemporaryFolder folder;
+    const auto room = stripe_room::paper_room(stripe_room::sphere({120, -40, 360}, 80));
+    const StripeSettings stripes = stripe_room::stripes_of(room);
+    const ScanCapture shot = stripe_room::capture(room, stripes);
+    CaptureFolder capture;
+    capture.projector_width = stripes.width, capture.projector_height = stripes.height;
+    capture.phase_steps = stripes.phase_steps, capture.phase_period_px = stripes.phase_period_px;
+    for (const StripePattern& pattern : stripe_sequence(stripes)) capture.names.push_back(pattern.name);
+    capture.left = shot.left, capture.right = shot.right;
+    write_capture(capture, folder.path() / "capture");
+    const RigCalibration rig = stripe_room::rig_of(room);
+    write_rig(rig, folder.path() / "rig.json");
+    const char* const words = "cameras do not fit each other";
+    const auto good = run_planlight("scan capture --rig rig.json --out cloud.ply", folder.path());
+    EXPECT_EQ(good.exit_code, 0) << good.err;
+    EXPECT_EQ(good.err.find(words), std::string::npos) << good.err;
+    RigCalibration refocused = rig;
+    refocused.left_camera.focal_x *= 1.005, refocused.left_camera.focal_y *= 1.005;
+    write_rig(refocused, folder.path() / "rig.json");
+    EXPECT_NE(run_planlight("scan capture --rig rig.json --out cloud.ply", folder.path()).err.find(words), std::string::npos);
+    RigCalibration turned = rig;
+    const Eigen::AngleAxisd upwards(0.02, Eigen::Vector3d::UnitX());
+    turned.right_camera.device_from_rig = RigidTransform(upwards) * turned.right_camera.device_from_rig;
+    write_rig(turned, folder.path() / "rig.json");
+    const auto checked = run_planlight("check capture --rig rig.json --json", folder.path());
+    EXPECT_EQ(checked.exit_code, 6);
+    const json result = json::parse(checked.out);
+    EXPECT_GT(result.at("epipolar_rms_px").get<double>(), 1);
+    for (const char* name : {"projector_rms_px", "projector_after_px", "light_off_mm", "projector_moved_mm", "camera_k1_off"})
+        EXPECT_TRUE(result.at(name).is_null()) << name;
+    EXPECT_EQ(run_planlight("check capture --rig rig.json", folder.path()).exit_code, 6) << "the log with nulls is read back";
+}
+
 TEST(PatternsCommand, WritesTheSettingsOfItsCapturesAndNothingOverAnother) {
     const TemporaryFolder folder;
     const fs::path& root = folder.path();

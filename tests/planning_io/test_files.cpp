@@ -1,7 +1,9 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+#include <opencv2/imgcodecs.hpp>
 
 #include "planning_io/case_folder.h"
 #include "planning_io/image_file.h"
@@ -46,6 +48,27 @@ TEST(SafeWrite, AFailedWriteLeavesTheOldFileAndNothingElse) {
     EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
     EXPECT_THROW(read_whole(folder.path()), InputError);
     EXPECT_THROW(read_whole(folder.path() / "none"), InputError);
+}
+
+/// Twelve bits at the lower end of sixteen read as nearly black, and a scan then finds a tenth of the skin, or none; at the
+/// upper end they are read. A dark picture among brighter ones is nothing to refuse.
+TEST(ImageFile, TwelveBitsAtTheLowerEndOfSixteenAreRefused) {
+    const test::TemporaryFolder folder;
+    const auto pictures = [&](int factor) {
+        std::vector<GrayImage> read;
+        for (const int value : {0, 4095}) {
+            const fs::path file = folder.path() / fmt::format("{}.png", value);
+            cv::imwrite(file.string(), cv::Mat(20, 30, CV_16UC1, cv::Scalar(value * factor)));
+            read.push_back(read_gray(file));
+        }
+        return read;
+    };
+    const fs::path dark = folder.path() / "0.png";
+    EXPECT_THROW(check_depth(pictures(1), dark), InputError);
+    EXPECT_NO_THROW(check_depth(pictures(16), dark));
+    EXPECT_EQ(pictures(16).back().at(3, 3), 255);
+    write_png(GrayImage(30, 20), dark);
+    EXPECT_NO_THROW(check_depth({read_gray(dark)}, dark)) << "8 bits, dark: for others to judge";
 }
 
 TEST(ImageFile, PicturesReadBackAndCutOnesAreRefused) {
