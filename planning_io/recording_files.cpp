@@ -131,7 +131,8 @@ CaptureFolder read_capture_settings(const fs::path& file) {
     capture.projector_width = static_cast<int>(root.at("projector_width").integer(1, 65535));
     capture.projector_height = static_cast<int>(root.at("projector_height").integer(1, 65535));
     capture.phase_steps = static_cast<int>(root.at("phase_steps").integer(0, 1000));
-    capture.phase_period_px = root.at("phase_period_px").number(0, 1e5);
+    if (capture.phase_steps > 0 || root.find("phase_period_px"))  // a Gray code without fringes has none
+        capture.phase_period_px = root.at("phase_period_px").number(0, 1e5);
     if (const auto periods = root.find("order_periods_px")) {
         if (periods->size() > 8) periods->refuse("must be a list of at most 8 periods");
         for (std::size_t i = 0; i < periods->size(); ++i) capture.order_periods_px.push_back((*periods)[i].number(0, 1e5));

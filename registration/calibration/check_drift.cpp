@@ -32,6 +32,15 @@ bool cameras_bent(const BentResiduals& bent, const DriftLimits& limits) {
            off > limits.camera_k1_sigmas * bent.k1_sigma;
 }
 
+/// Empty where the light was read well enough to judge a rig by it.
+std::string unfit(const ScanResult& scan, const DriftLimits& limits) {
+    if (scan.code_step_px > limits.code_step_px)
+        return fmt::format("the light was read to {:.0f} projector pixels; to judge the rig it takes {:.0f}", scan.code_step_px,
+                           limits.code_step_px);
+    if (scan.left.row.empty() || scan.right.row.empty()) return "the light codes columns only; to judge the rig it takes rows too";
+    return {};
+}
+
 /// `placed`: the points were enough to place the projector by them. Moved cameras are told first: then they may not be.
 void decide(DriftCheck& check, bool placed, const DriftLimits& limits) {
     using Verdict = DriftCheck::Verdict;
@@ -147,7 +156,9 @@ DriftCheck check_drift(const ScanResult& scan, const RigCalibration& rig, const 
         check.turned = scan.resection->turned;
         check.light_off_mm = check.projector_rms_px * mm_per_px(scan.raw, rig.projector);
     }
-    decide(check, scan.resection.has_value(), limits);
+    check.reason = unfit(scan, limits);
+    if (check.reason.empty()) decide(check, scan.resection.has_value(), limits);
+    else check.remedy = "Show the full sequence of `planlight patterns`.";
     return check;
 }
 

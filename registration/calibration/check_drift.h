@@ -17,6 +17,7 @@ struct DriftLimits {
         0.8;  ///< rms length between the decoded projector pixel and the rig's: a third of a mm on the patient
     double projector_after_px = 0.5;  ///< the same once the projector is placed anew: more is another lens setting
     std::size_t min_points = 500;     ///< seen by both cameras under the light
+    double code_step_px = 2;  ///< projector pixels to which the light must be read (ScanResult::code_step_px)
     /// A bend (see BentResiduals) beyond what good rigs show: in 40 simulated rooms at most 0.09, 3.1 sigma and 0.053 px.
     double camera_k1 = 0.1, camera_k1_sigmas = 4.5;
     double camera_k1_known = 0.04;  ///< sigma above which the surface is too small to tell

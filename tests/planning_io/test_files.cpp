@@ -344,6 +344,13 @@ TEST(JsonFiles, AMisspeltNameIsNotPassedOver) {
     capture.serials = {"L", "R", "P"};
     write_capture_settings(capture, file("capture.json"));
     expect_misspelt_names_are_refused(file("capture.json"), read_capture_settings);
+    // Of fringes that there are not the period need not be said.
+    const std::string code = R"({"format": "planlight capture", "version": 1, "projector_width": 800, "projector_height": 600,
+                                 "rows": true, "inverse": true, "phase_steps": )";
+    write_safely(file("gray.json"), code + "0}");
+    EXPECT_EQ(read_capture_settings(file("gray.json")).phase_steps, 0);
+    write_safely(file("fringes.json"), code + "8}");
+    EXPECT_THROW(read_capture_settings(file("fringes.json")), Error);
     RigCalibration rig = test::example_rig();
     rig.serials = {"L", "R", "P"};
     write_rig(rig, file("rig.json"));

@@ -99,7 +99,8 @@ TEST(CalibrateRig, ABentBoardIsFoundBent) {
 
 /// A device that hangs upside down beside another and looks at the same place is turned by just 180 degrees against it. There
 /// a rotation vector jumps from one side to the other, and the rigs of the held-out poses came to lie on both: one and the
-/// same rig, far apart by its numbers. The prediction is that of the device upright (20 %: other pixels, other noise).
+/// same rig, far apart by its numbers. The prediction is that of the device upright, but for what a covariance over so few poses
+/// scatters by itself: turned by other angles it is 0.011 to 0.019 mm as well. It was 76 m.
 TEST(CalibrateRig, ADeviceHungUpsideDownIsAsGoodAsAnUprightOne) {
     const Calibration upright = calibrated(test::ideal_room(), test::ideal_room().observe());
     ASSERT_FALSE(upright.refusal) << upright.refusal->reason;
@@ -117,7 +118,8 @@ TEST(CalibrateRig, ADeviceHungUpsideDownIsAsGoodAsAnUprightOne) {
         device.centre_y = device.height - 1 - device.centre_y;
         const Calibration found = calibrated(room, room.observe());
         ASSERT_FALSE(found.refusal) << found.refusal->reason;
-        EXPECT_NEAR(found.volume->p95_mm / upright.volume->p95_mm, 1, 0.2) << (camera ? "camera" : "projector");
+        EXPECT_LT(found.volume->p95_mm, 2 * upright.volume->p95_mm) << (camera ? "camera" : "projector");
+        EXPECT_GT(found.volume->p95_mm, 0.5 * upright.volume->p95_mm) << (camera ? "camera" : "projector");
     }
 }
 

@@ -141,6 +141,22 @@ TEST(CheckDrift, NothingInViewCannotTell) {
     EXPECT_FALSE(check.remedy.empty());
 }
 
+/// Coarse cells and a missing direction say nothing of the rig: neither that cameras moved nor that too little is in view.
+TEST(CheckDrift, LightThatIsReadTooCoarselyCannotTell) {
+    ScanResult scan = scan_from_capture(scanned().shot, scanned().rig);
+    scan.code_step_px = 20;
+    for (auto& point : scan.raw.by_cameras) point.epipolar_px = 2;
+    const DriftCheck coarse = check_drift(scan, scanned().rig);
+    EXPECT_EQ(coarse.verdict, Verdict::cannot_tell);
+    EXPECT_NE(coarse.reason.find("20 projector pixels"), std::string::npos) << coarse.reason;
+    StripeSettings columns = stripes_of(scanned().room);
+    columns.rows = false;
+    const DriftCheck half = check_drift(scan_from_capture(capture(scanned().room, columns), scanned().rig), scanned().rig);
+    EXPECT_EQ(half.verdict, Verdict::cannot_tell);
+    EXPECT_NE(half.reason.find("columns only"), std::string::npos) << half.reason;
+    EXPECT_FALSE(half.remedy.empty());
+}
+
 TEST(DriftTrend, ARisingErrorSaysWhenItReachesItsLimit) {
     std::vector<EarlierCheck> checks;
     for (int day = 0; day < 6; ++day) checks.push_back({day + 0.0, 0.1 + 0.05 * day + 0.004 * (day % 2), 0.2});

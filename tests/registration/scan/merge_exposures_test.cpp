@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "planning_io/types/error.h"
 #include "tests/registration/scan/stripe_room.h"
@@ -48,6 +49,28 @@ TEST(MergeExposures, ASaturatedPixelTakesTheDarkerOneAndADarkPixelTheBrighter) {
     // What the glare alone puts off the sphere stays; nothing is added.
     EXPECT_LE(far_off(merged.raw.cloud.points_in_rig),
               far_off(glare.raw.cloud.points_in_rig) + far_off(gloom.raw.cloud.points_in_rig));
+}
+
+/// The light of two exposures is one light: where the brighter one is blind it goes on as the darker one saw it, and does not
+/// fall to a third there.
+TEST(MergeExposures, TheLightGoesOnFromOneToTheOther) {
+    DecodedView bright;
+    bright.width = 40, bright.height = 20;
+    const auto dimness = [](std::size_t i) { return 0.02f * std::exp(0.03f * static_cast<float>(i % 40)); };
+    for (std::size_t i = 0; i < 800; ++i) {
+        bright.column.push_back(static_cast<float>(i % 40));
+        bright.row.push_back(static_cast<float>(i / 40));
+        bright.sigma_px.push_back(dimness(i));
+    }
+    DecodedView dark = bright;
+    for (float& sigma : dark.sigma_px) sigma *= 3;
+    for (std::size_t i = 0; i < 800; ++i)
+        if (i % 40 < 12) bright.column[i] = bright.row[i] = bright.sigma_px[i] = std::numeric_limits<float>::quiet_NaN();
+    take_better(bright, dark);
+    for (std::size_t i = 0; i < 800; ++i) {
+        ASSERT_EQ(bright.sigma_px[i], (i % 40 < 12 ? 3 : 1) * dimness(i)) << i;  // the noise is what it is
+        ASSERT_NEAR(dimness_of(bright)[i], dimness(i), 1e-6) << i;
+    }
 }
 
 /// Moist skin: a glint of five times the skin's light, at another place for each camera. The darker captures that the session
