@@ -172,7 +172,8 @@ int run_scan(const ScanOptions& options) {
     } else {
         fmt::print("{} points by {} in {} (raw {}; off the rays {}, jumps {}, grazing {}, small pieces {}, lonely {}){}.\n",
                    scan.clean.kept.size(), devices_of(scan, rig), options.out.string(), scan.raw.cloud.size(),
-                   scan.raw.disagree, scan.clean.jump, scan.clean.grazing, scan.clean.small_piece, scan.clean.lonely, said_of_cameras(scan));
+                   scan.raw.disagree, scan.clean.jump, scan.clean.grazing, scan.clean.small_piece, scan.clean.lonely,
+                   said_of_cameras(scan));
         if (!options.surface_out.empty())
             fmt::print("{} triangles over them in {}.\n", triangles.size(), options.surface_out.string());
     }

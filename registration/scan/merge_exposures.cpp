@@ -58,7 +58,8 @@ float dimmer_by(const DecodedView& view, const DecodedView& other) {
     constexpr std::size_t kEnough = 100;
     std::vector<float> ratio;
     for (std::size_t i = 0; i < view.column.size(); ++i)
-        if (!std::isnan(view.column[i]) && !std::isnan(other.column[i])) ratio.push_back(dimness_of(other)[i] / dimness_of(view)[i]);
+        if (!std::isnan(view.column[i]) && !std::isnan(other.column[i]))
+            ratio.push_back(dimness_of(other)[i] / dimness_of(view)[i]);
     return ratio.size() < kEnough ? 1 : middle_of(ratio);
 }
 

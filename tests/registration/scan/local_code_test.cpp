@@ -73,7 +73,8 @@ TEST(LocalCode, IsTakenBackFromTheLight) {
     constexpr double kRise = 0.04;
     const Map seen = [&](double x, double y) { return Vector2d(400 + 1.1 * (x + kRise), 300 + 0.9 * y + 0.1 * (x + kRise)); };
     const auto dim = [&](double x, double) { return std::exp(-kRise * x); };
-    const auto even = local_code(view_of(seen, 0.02), kMiddle, kMiddle), lit = local_code(view_of(seen, 0.02, dim), kMiddle, kMiddle);
+    const auto even = local_code(view_of(seen, 0.02), kMiddle, kMiddle),
+               lit = local_code(view_of(seen, 0.02, dim), kMiddle, kMiddle);
     ASSERT_TRUE(even && lit);
     EXPECT_NEAR(even->code.x() - 400, 1.1 * kRise, 1e-3);
     EXPECT_NEAR(lit->code.x(), 400, 0.05 * kRise);
