@@ -1,5 +1,7 @@
 #include "registration/scan/decode_capture.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -63,12 +65,19 @@ std::size_t lit_pixels(const GrayImage& white, const GrayImage& black) {
 DecodedCapture decode_capture(const ScanCapture& capture, bool with_right, const DecodeSettings& settings) {
     const bool right = with_right && !capture.right.empty();
     if (!capture.partial.empty()) return by_gray(capture, right, settings);
-    DecodedCapture decoded{decode_stripes(capture.left, capture.stripes, settings), std::nullopt, 0};
-    if (right) decoded.right = decode_stripes(capture.right, capture.stripes, settings);
+    DecodedCapture decoded;
+    tbb::parallel_invoke([&] { decoded.left = decode_stripes(capture.left, capture.stripes, settings); },
+                         [&] {
+                             if (right) decoded.right = decode_stripes(capture.right, capture.stripes, settings);
+                         });
     constexpr double kLeastDecoded = 0.02;
-    const auto lit = static_cast<double>(lit_pixels(capture.left[0], capture.left[1]));
     const bool gray_code = capture.stripes.order_periods_px.empty();
-    if (!gray_code || static_cast<double>(decoded.left.decoded) >= kLeastDecoded * lit) return decoded;
+    const auto enough_of = [&](std::size_t pixels) {
+        return static_cast<double>(decoded.left.decoded) >= kLeastDecoded * static_cast<double>(pixels);
+    };
+    // Of all pixels is more than of the lit ones, and they need not be counted.
+    if (!gray_code || enough_of(decoded.left.column.size())) return decoded;
+    if (enough_of(lit_pixels(capture.left[0], capture.left[1]))) return decoded;
     DecodedCapture coarse = by_gray(capture, right, settings);
     return coarse.left.decoded > 10 * (decoded.left.decoded + 100) ? coarse : decoded;
 }
