@@ -1,7 +1,6 @@
 #include "registration/calibration/rig_estimate.h"
 
 #include <cmath>
-#include <numbers>
 
 namespace planlight {
 

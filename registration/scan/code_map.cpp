@@ -123,7 +123,7 @@ void sum_at_rim(const DecodedView& view, int x, int y, Sums& sums) {
     std::array<float, kSide * kStep> column, row, dim;
     column.fill(std::numeric_limits<float>::quiet_NaN());
     row.fill(0);
-    dim.fill(0);
+    dim.fill(1);
     for (int dy = 0; dy < kSide; ++dy)
         for (int dx = 0; dx < kSide; ++dx) {
             const int px = x + dx - kReach, py = y + dy - kReach;
@@ -133,6 +133,7 @@ void sum_at_rim(const DecodedView& view, int x, int y, Sums& sums) {
             const auto to = static_cast<std::size_t>(dy * kStep + dx);
             column[to] = view.column[from];
             if (!view.row.empty()) row[to] = view.row[from];
+            dim[to] = dimness_of(view)[from];
         }
     constexpr std::size_t kCentre = kReach * kStep + kReach;
     sum_neighbours(&column[kCentre], &row[kCentre], &dim[kCentre], kStep, kMaxJump_px, sums);

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -42,6 +43,21 @@ TEST(LocalCode, IsThatOfTheCentreOnABentSurface) {
     EXPECT_NEAR(local->code.y(), 300, 1e-3);  // and here 0.07 px more
     EXPECT_NEAR(local->by_pixel(0, 0), 1.1, 1e-4);
     EXPECT_NEAR(local->by_pixel(1, 1), 0.9, 1e-4);
+}
+
+/// All neighbours are there two lines from the picture's rim as well; nearer, the plane is fitted to what there is.
+TEST(LocalCode, IsTheSameBesideTheRimOfThePicture) {
+    const Map flat = [](double x, double y) { return Vector2d(400 + 1.1 * x, 300 + 0.9 * y); };
+    const DecodedView view = view_of(flat, 0.02);
+    for (const int y : {0, 1, 2, 3, kSize - 4, kSize - 3, kSize - 2, kSize - 1})
+        for (const int x : {0, 2, kMiddle, kSize - 3, kSize - 1}) {
+            const auto local = local_code(view, x, y);
+            if (!local) continue;  // a corner has too few neighbours
+            EXPECT_NEAR(local->code.x(), 400 + 1.1 * (x - kMiddle), 1e-3) << x << " " << y;
+            EXPECT_NEAR(local->code.y(), 300 + 0.9 * (y - kMiddle), 1e-3) << x << " " << y;
+            EXPECT_EQ(local->whole, std::min({x, y, kSize - 1 - x, kSize - 1 - y}) >= 2);
+        }
+    EXPECT_TRUE(local_code(view, kMiddle, kSize - 3));
 }
 
 /// What it says of its own noise is so, from little noise (a quadric) to much (a plane).
