@@ -6,8 +6,8 @@
 #include <chrono>
 #include <ctime>
 
-#include "planning_io/mesh_file.h"
-#include "planning_io/read_volume.h"
+#include "planning_io/surface/mesh_file.h"
+#include "planning_io/volume/read_volume.h"
 #include "projection/check_plan.h"
 
 namespace planlight {

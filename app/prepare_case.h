@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
-#include "planning_io/case_folder.h"
-#include "planning_io/surface_file.h"
+#include "planning_io/case/case_folder.h"
+#include "planning_io/surface/surface_file.h"
 #include "planning_io/types/volume.h"
 #include "segmentation/build_skin_lut.h"
 #include "segmentation/segment_skin.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "planning_io/types/error.h"
-#include "registration/scan/merge_exposures.h"
+#include "registration/scan/decode/merge_exposures.h"
 #include "registration/tracking/markers_in_scan.h"
 
 namespace planlight {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "planning_io/case_folder.h"
+#include "planning_io/case/case_folder.h"
 #include "planning_io/types/registration_result.h"
 #include "planning_io/types/rig_calibration.h"
 #include "projection/overlay_loop.h"

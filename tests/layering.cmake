@@ -2,12 +2,12 @@
 file(GLOB_RECURSE files RELATIVE ${SOURCE} ${SOURCE}/planning_io/*.h ${SOURCE}/planning_io/*.cpp ${SOURCE}/segmentation/*.h
   ${SOURCE}/segmentation/*.cpp ${SOURCE}/registration/*.h ${SOURCE}/registration/*.cpp ${SOURCE}/projection/*.h
   ${SOURCE}/projection/*.cpp ${SOURCE}/app/*.h ${SOURCE}/app/*.cpp)
-set(forbidden_planning_io/types "planning_io/[a-z_]+\\.h|segmentation/|registration/|projection/|app/|vtk|opencv2/|CGAL/")
+set(forbidden_planning_io/types "planning_io/(files|dicom|volume|plan|surface|case)/|segmentation/|registration/|projection/|app/|vtk|opencv2/|CGAL/")
 set(forbidden_planning_io "segmentation/|registration/|projection/|app/|tests/")
 set(forbidden_segmentation "registration/|projection/|app/|tests/")
 set(forbidden_registration "segmentation/|projection/|app/|tests/|registration/simulation/")
 set(forbidden_registration/simulation
-  "segmentation/|projection/|app/|tests/|registration/(scan|matching|tracking|calibration)/|planning_io/[a-z_]+\\.h")
+  "segmentation/|projection/|app/|tests/|registration/(scan|matching|tracking|calibration)/|planning_io/(files|dicom|volume|plan|surface|case)/")
 set(forbidden_projection "segmentation/|app/|tests/|registration/simulation/")
 set(forbidden_app "tests/")
 set(bad 0)

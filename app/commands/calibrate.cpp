@@ -3,17 +3,25 @@
 #include <iostream>
 
 #include "app/commands/capture_conversion.h"
+#include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/device_check.h"
 #include "app/console.h"
 #include "app/report/calibration_report.h"
-#include "planning_io/board_captures.h"
-#include "planning_io/rig_file.h"
-#include "planning_io/safe_write.h"
+#include "planning_io/case/board_captures.h"
+#include "planning_io/case/rig_file.h"
+#include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
 namespace {
+
+struct CalibrateOptions {
+    Path captures, out = "rig.json";
+    std::string board;
+    std::string serial_left, serial_right, serial_projector;  ///< empty: as capture.json says
+    bool json = false;
+};
 
 /// Refused where a board cannot be calibrated by it.
 StripeSettings calibration_light(const CaptureFolder& settings, const Path& pose) {
@@ -84,8 +92,6 @@ std::optional<RigCalibration> previous_rig(const Path& file) {
     }
 }
 
-}  // namespace
-
 int run_calibrate(const CalibrateOptions& options) {
     const BoardSpec board = parse_board(options.board);
     check_can_write(options.out);  // before minutes of work, not after
@@ -113,6 +119,27 @@ int run_calibrate(const CalibrateOptions& options) {
     else
         fmt::print("{}{} and {}.\n", calibration_summary(report), html.string(), json.string());
     return 0;
+}
+
+}  // namespace
+
+Run add_calibrate(CLI::App& app) {
+    const auto options = std::make_shared<CalibrateOptions>();
+    CalibrateOptions& o = *options;
+    auto* sub = add_command(app, "calibrate", "Captures of a board under coded light -> rig.json, or a refusal (exit 6)",
+                        "calibrate captures --board \"charuco 10x7 25 mm\" --out rig.json");
+    sub->add_option("captures", o.captures, "Folder with one folder a pose")->required();
+    sub->add_option("--board", o.board,
+                    "The board, its square as measured: \"charuco 10x7 24.98 mm\" or \"chessboard 9x6 25 mm\"")
+        ->required();
+    sub->add_option("--serial-left", o.serial_left,
+                    "Serial of the left camera, kept in rig.json (default: as capture.json says)");
+    sub->add_option("--serial-right", o.serial_right, "Of the right camera");
+    sub->add_option("--serial-projector", o.serial_projector,
+                    "Of the projector; `projector --identify` tells it where the monitor does");
+    sub->add_option("--out", o.out, "rig.json to write; the report stands beside it")->capture_default_str();
+    json_flag(sub, o.json);
+    return [options] { return run_calibrate(*options); };
 }
 
 }  // namespace planlight

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "planning_io/types/error.h"
-#include "registration/scan/gray_code.h"
+#include "registration/scan/decode/gray_code.h"
 
 namespace planlight {
 namespace {

@@ -7,16 +7,22 @@
 #include <numbers>
 
 #include "app/commands/capture_conversion.h"
+#include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/device_check.h"
 #include "app/console.h"
-#include "planning_io/rig_file.h"
-#include "planning_io/safe_write.h"
+#include "planning_io/case/rig_file.h"
+#include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "registration/calibration/check_drift.h"
 
 namespace planlight {
 namespace {
+
+struct CheckOptions {
+    Path capture, rig, log;  ///< log empty: beside the rig file
+    bool json = false;
+};
 
 using Json = nlohmann::ordered_json;
 
@@ -57,8 +63,6 @@ std::string said_of_projector(const DriftCheck& check) {
     return fmt::format("projector {:.2f} px ({:.2f} mm of light), moved {:.2f} mm", check.projector_rms_px,
                        check.light_off_mm, check.moved_mm);
 }
-
-}  // namespace
 
 int run_check(const CheckOptions& options) {
     const RigCalibration rig = read_rig(options.rig);
@@ -106,6 +110,20 @@ int run_check(const CheckOptions& options) {
                    check.epipolar_px, said_of_projector(check), log["checks"].size(), file.string());
     if (check.verdict != DriftCheck::Verdict::good) throw CheckFailedError(check.reason, check.remedy);
     return 0;
+}
+
+}  // namespace
+
+Run add_check(CLI::App& app) {
+    const auto options = std::make_shared<CheckOptions>();
+    CheckOptions& o = *options;
+    auto* sub = add_command(app, "check", "One scan of anything against rig.json: has the rig moved? (exit 6 if so)",
+                        "check room/capture --rig room/rig.json");
+    sub->add_option("capture", o.capture, "Capture folder of a scan: a board, a phantom, the patient")->required();
+    sub->add_option("--rig", o.rig, "rig.json")->required();
+    sub->add_option("--log", o.log, "Where the checks are kept for the trend (default: beside rig.json)");
+    json_flag(sub, o.json);
+    return [options] { return run_check(*options); };
 }
 
 }  // namespace planlight

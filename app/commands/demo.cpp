@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/example_plan.h"
 #include "app/console.h"
@@ -9,12 +10,21 @@
 #include "app/evaluation/chain_report.h"
 #include "app/evaluation/run_rooms.h"
 #include "app/live/live_window.h"
-#include "planning_io/plan_file.h"
-#include "planning_io/read_volume.h"
+#include "planning_io/plan/plan_file.h"
+#include "planning_io/volume/read_volume.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
 namespace {
+
+struct DemoOptions {
+    Path volume = "/usr/share/doc/invesalius-examples/examples/Cranium.inv3";
+    Path plan, out = "planlight-demo";
+    std::string preset = "both";
+    unsigned seed = 1;
+    int seeds = 1, jobs = 1;
+    bool headless = false, no_pictures = false, json = false;
+};
 
 std::vector<simulation::Preset> presets_of(const DemoOptions& options) {
     using simulation::Preset;
@@ -32,8 +42,6 @@ void print_summary(const PresetSummary& s) {
                    r.goal.empty() ? "" : r.reached ? "  reached: " + r.goal : "  MISSED: " + r.goal);
     for (const auto& refusal : s.refusals) fmt::print("  refused: {}\n", refusal);
 }
-
-}  // namespace
 
 int run_demo(const DemoOptions& options) {
     if (!std::filesystem::exists(options.volume))
@@ -88,6 +96,30 @@ int run_demo(const DemoOptions& options) {
         return run_live(volume, prepared.prepared, drawing, live);
     }
     return 0;
+}
+
+}  // namespace
+
+Run add_demo(CLI::App& app) {
+    const auto options = std::make_shared<DemoOptions>();
+    DemoOptions& o = *options;
+    auto* sub = add_command(app, "demo", "The whole chain on the example patient, with a report of how true the light was",
+                        "demo --headless --seed 3 --out demo-3");
+    sub->add_option("--volume", o.volume, "Patient")->capture_default_str();
+    sub->add_option("--plan", o.plan, "Plan (default: the example plan)");
+    sub->add_option("--preset", o.preset, "modern, paper or both")
+        ->check(CLI::IsMember({"modern", "paper", "both"}))
+        ->capture_default_str();
+    sub->add_option("--seed", o.seed, "First seed of the simulated rooms")->capture_default_str();
+    sub->add_option("--seeds", o.seeds, "Rooms a preset")->capture_default_str()->check(CLI::Range(1, 10000));
+    sub->add_option("--jobs", o.jobs, "Rooms at a time (they slow each other down: read the times with one)")
+        ->capture_default_str()
+        ->check(CLI::Range(1, 256));
+    sub->add_flag("--headless", o.headless, "No windows, even where there is a display");
+    sub->add_flag("--no-pictures", o.no_pictures, "No pictures in the report (a machine without OpenGL)");
+    sub->add_option("--out", o.out, "Folder of report.html and report.json")->capture_default_str();
+    json_flag(sub, o.json);
+    return [options] { return run_demo(*options); };
 }
 
 }  // namespace planlight

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "planning_io/recording_files.h"
+#include "planning_io/case/capture_folder.h"
 
 namespace planlight {
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "planning_io/plan_file.h"
+#include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {

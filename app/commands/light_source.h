@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "registration/projector/light_recording.h"
-#include "registration/projector/record_light.h"
+#include "registration/projector_measurement/light_recording.h"
+#include "registration/projector_measurement/record_light.h"
 #include "registration/simulation/board_room.h"
 
 namespace planlight {

@@ -5,15 +5,25 @@
 #include <stdexcept>
 
 #include "app/commands/capture_conversion.h"
+#include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/console.h"
-#include "planning_io/image_file.h"
-#include "planning_io/safe_write.h"
+#include "planning_io/files/image_file.h"
+#include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
-#include "registration/scan/stripe_patterns.h"
+#include "registration/scan/pattern/stripe_patterns.h"
 
 namespace planlight {
 namespace {
+
+struct PatternsOptions {
+    Path out;
+    int width = 1920, height = 1080, phase_steps = 8;
+    double phase_period_px = 16;
+    std::string set = "full";  ///< or "fast", "multi-frequency"
+    bool columns_only = false;  ///< no rows
+    bool json = false;
+};
 
 /// Refused where two options contradict each other: the pictures would not be those that were asked for.
 StripeSettings stripes_of(const PatternsOptions& options) {
@@ -49,8 +59,6 @@ std::vector<StripePattern> sequence_of(const StripeSettings& stripes) {
     }
 }
 
-}  // namespace
-
 int run_patterns(const PatternsOptions& options) {
     const StripeSettings stripes = stripes_of(options);
     const auto sequence = sequence_of(stripes);
@@ -82,6 +90,30 @@ int run_patterns(const PatternsOptions& options) {
             "them.\n",
             sequence.size(), stripes.width, stripes.height, options.out.string());
     return 0;
+}
+
+}  // namespace
+
+Run add_patterns(CLI::App& app) {
+    const auto options = std::make_shared<PatternsOptions>();
+    PatternsOptions& o = *options;
+    auto* sub = add_command(app, "patterns", "Write the coded-light sequence as pictures to project",
+                        "patterns --width 1920 --height 1080 --out patterns");
+    sub->add_option("--width", o.width, "Of the projector, pixels")->capture_default_str()->check(CLI::Range(64, 8192));
+    sub->add_option("--height", o.height, "Of the projector, pixels")->capture_default_str()->check(CLI::Range(64, 8192));
+    sub->add_option("--phase-steps", o.phase_steps, "Shifts a direction")->capture_default_str()->check(CLI::Range(3, 32));
+    sub->add_option("--set", o.set,
+                    "full: columns and rows, each bit with its inverse; fast: a third of the pictures, columns only, 5 shifts; "
+                    "multi-frequency: fringes of three or four periods instead of the Gray code")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"full", "fast", "multi-frequency"}));
+    sub->add_flag("--columns-only", o.columns_only, "Half the pictures (not with the set fast, which has no rows); points then need both cameras");
+    sub->add_option("--phase-period-px", o.phase_period_px, "Projector pixels a fringe")
+        ->capture_default_str()
+        ->check(CLI::Range(4.0, 256.0));
+    sub->add_option("--out", o.out, "Folder to write")->required();
+    json_flag(sub, o.json);
+    return [options] { return run_patterns(*options); };
 }
 
 }  // namespace planlight

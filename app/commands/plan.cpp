@@ -3,21 +3,29 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/plan_options.h"
 #include "app/console.h"
 #include "app/prepare_case.h"
-#include "planning_io/case_folder.h"
-#include "planning_io/plan_file.h"
-#include "planning_io/plan_rtstruct.h"
-#include "planning_io/plan_shapes.h"
-#include "planning_io/read_volume.h"
+#include "planning_io/case/case_folder.h"
+#include "planning_io/plan/plan_file.h"
+#include "planning_io/plan/plan_rtstruct.h"
+#include "planning_io/plan/plan_shapes.h"
+#include "planning_io/volume/read_volume.h"
 #include "planning_io/types/error.h"
 #include "projection/check_plan.h"
 #include "projection/mid_plane.h"
 
 namespace planlight {
 namespace {
+
+struct PlanOptions {
+    std::vector<Path> files;
+    Path case_folder, volume, out;
+    std::string series_uid, frame, accept_frame;
+    bool json = false;
+};
 
 /// What the plan is checked against: nothing, a volume, or a case.
 struct Patient {
@@ -124,8 +132,6 @@ void write(const PlanImport& read, const Patient& patient, const PlanOptions& op
     } else throw InputError(out, "is of no kind that a plan is written as", "End its name in .mrk.json, .vtp or .dcm.");
 }
 
-}  // namespace
-
 int run_plan(const PlanOptions& options) {
     const Patient patient = read_patient(options);
     const auto settings = plan_settings(options.frame, options.accept_frame,
@@ -159,6 +165,26 @@ int run_plan(const PlanOptions& options) {
     }
     fmt::print("{} plan items{}:\n{}", read.plan.size(), options.out.empty() ? "" : " in " + options.out.string(), list.lines);
     return 0;
+}
+
+}  // namespace
+
+Run add_plan(CLI::App& app) {
+    const auto options = std::make_shared<PlanOptions>();
+    PlanOptions& o = *options;
+    auto* sub = add_command(app, "plan", "Plan files -> checked, listed, converted",
+                        "plan trajectories.csv --frame RAS --case case --out plan.mrk.json");
+    sub->add_option(
+           "files", o.files,
+           "3D Slicer markups (.mrk.json, .fcsv), RTSTRUCT (.dcm), trajectories (.csv, .tsv), lines (.vtp, .vtk, .ply, .obj)")
+        ->required();
+    sub->add_option("--case", o.case_folder, "Check against this case's skin");
+    sub->add_option("--volume", o.volume, "Check against this volume's box and frame of reference");
+    sub->add_option("--series", o.series_uid, "UID of the DICOM series, where the folder holds several");
+    plan_frame_options(sub, o.frame, o.accept_frame);
+    sub->add_option("--out", o.out, "Write the whole plan: .mrk.json, .vtp, or .dcm (RTSTRUCT)");
+    json_flag(sub, o.json);
+    return [options] { return run_plan(*options); };
 }
 
 }  // namespace planlight

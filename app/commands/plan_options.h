@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "planning_io/plan_import.h"
+#include "planning_io/plan/plan_import.h"
 
 namespace planlight {
 

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <optional>
 
+#include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/plan_options.h"
 #include "app/console.h"
@@ -10,9 +11,22 @@
 #include "app/live/live_window.h"
 #include "app/prepare_case.h"
 #include "app/report/preparation_report.h"
-#include "planning_io/read_volume.h"
+#include "planning_io/volume/read_volume.h"
 
 namespace planlight {
+namespace {
+
+struct PrepareOptions {
+    Path volume, plan, out;
+    std::string series_uid;
+    std::string frame, accept_frame;  ///< of a plan that does not say its coordinate system; a DICOM frame of reference
+    Path surface;                     ///< to project on, instead of the skin
+    std::string surface_frame, segment;
+    double threshold = 0;  ///< HU; 0 = found from the histogram
+    double voxel_mm = 1;
+    bool anonymous = false;  ///< no UID and no file name of the volume in the case folder
+    bool replace = false, preview = false, json = false;
+};
 
 int run_prepare(const PrepareOptions& options) {
     ProgressBar bar;
@@ -60,6 +74,38 @@ int run_prepare(const PrepareOptions& options) {
     }
     if (options.preview) show_model(model_of_case(the_case, drawing));
     return 0;
+}
+
+}  // namespace
+
+Run add_prepare(CLI::App& app) {
+    const auto options = std::make_shared<PrepareOptions>();
+    PrepareOptions& o = *options;
+    auto* sub = add_command(app, "prepare", "CT or MR volume and plan -> case folder (skin, LUT, plan, checksums)",
+                        "prepare Cranium.inv3 --plan frontal_defect.mrk.json --out case");
+    sub->add_option("volume", o.volume, "DICOM folder or file, NIfTI, NRRD, MetaImage, or InVesalius project (.inv3)")
+        ->required();
+    sub->add_option("--plan", o.plan,
+                    "Plan file, or a folder of them: .mrk.json, .fcsv, RTSTRUCT, tables, lines (see planning_io/README.md)")
+        ->required();
+    plan_frame_options(sub, o.frame, o.accept_frame);
+    sub->add_option(
+        "--surface", o.surface,
+        "Surface to project on instead of the skin: bone, or any other (.stl, .ply, .obj, .vtp, .vtk, DICOM SEG or RTSTRUCT)");
+    sub->add_option("--surface-frame", o.surface_frame, "Coordinate system of a surface that does not say its own")
+        ->check(CLI::IsMember({"LPS", "RAS"}));
+    sub->add_option("--segment", o.segment, "Which segment or ROI of a DICOM SEG or RTSTRUCT, by its name");
+    sub->add_option("--out", o.out, "Case folder to write")->required();
+    sub->add_option("--series", o.series_uid, "UID or number of the DICOM series, where the folder holds several");
+    sub->add_flag("--anonymous", o.anonymous, "Leave UIDs and file names of the volume out of the case folder");
+    sub->add_option("--threshold", o.threshold, "Skin threshold, HU (default: found from the histogram)");
+    sub->add_option("--voxel-mm", o.voxel_mm, "Edge of the LUT's cubic voxels")
+        ->capture_default_str()
+        ->check(CLI::Range(0.25, 10.0));
+    sub->add_flag("--replace", o.replace, "Replace an existing case folder");
+    sub->add_flag("--preview", o.preview, "Open the operator window on the result");
+    json_flag(sub, o.json);
+    return [options] { return run_prepare(*options); };
 }
 
 }  // namespace planlight

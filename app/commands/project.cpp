@@ -4,16 +4,24 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/console.h"
 #include "app/session.h"
-#include "planning_io/image_file.h"
-#include "planning_io/recording_files.h"
-#include "planning_io/rig_file.h"
+#include "planning_io/files/image_file.h"
+#include "planning_io/case/registration_file.h"
+#include "planning_io/case/poses_file.h"
+#include "planning_io/case/rig_file.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
 namespace {
+
+struct ProjectOptions {
+    Path case_folder, rig, registration, poses, out;
+    int frame = -1;  ///< of the poses; -1: the last
+    bool confirmed = false, json = false;
+};
 
 /// The pose to draw for: refused when there is none, as the live session is dark then.
 RigidTransform pose_to_draw(const ProjectOptions& options) {
@@ -39,8 +47,6 @@ void check_verdict(const RegistrationResult& registration, const ProjectOptions&
                                ? "Look at the overlay on landmarks and give --confirmed, or scan again."
                                : "Scan again.");
 }
-
-}  // namespace
 
 int run_project(const ProjectOptions& options) {
     const Case the_case = read_case(options.case_folder);
@@ -68,6 +74,24 @@ int run_project(const ProjectOptions& options) {
                   << '\n';
     else fmt::print("{} items in {} ({} lit pixels).\n", items.size(), options.out.string(), lit);
     return 0;
+}
+
+}  // namespace
+
+Run add_project(CLI::App& app) {
+    const auto options = std::make_shared<ProjectOptions>();
+    ProjectOptions& o = *options;
+    auto* sub = add_command(app, "project", "Case, registration and pose -> the projector's picture",
+                        "project case --rig room/rig.json --registration registration.json --out light.png");
+    sub->add_option("case", o.case_folder, "Case folder")->required();
+    sub->add_option("--rig", o.rig, "rig.json")->required();
+    sub->add_option("--registration", o.registration, "registration.json")->required();
+    sub->add_option("--poses", o.poses, "poses.json (default: the patient has not moved since the scan)");
+    sub->add_option("--frame", o.frame, "Which pose (default: the last)");
+    sub->add_flag("--confirmed", o.confirmed, "The overlay was looked at on landmarks (for the verdict `ask`)");
+    sub->add_option("--out", o.out, "Picture to write (.png)")->required();
+    json_flag(sub, o.json);
+    return [options] { return run_project(*options); };
 }
 
 }  // namespace planlight

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <iostream>
 
+#include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/live/projector_options.h"
 #include "app/commands/light_source.h"
 #include "app/console.h"
 #include "app/live/identify_monitors.h"
 #include "app/live/show_light.h"
 #include "app/report/projector_report.h"
-#include "planning_io/safe_write.h"
+#include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -82,7 +84,7 @@ void measure_recorded(const ProjectorOptions& options, ProjectorReport& report) 
     if (!any)
         throw InputError(options.recording,
                          "holds no recording of light (latency/, response/ or cycle/, each with its light.json)",
-                         "Record one; registration/projector/README.md says how.");
+                         "Record one; registration/projector_measurement/README.md says how.");
 }
 
 template <class Result>
@@ -90,8 +92,6 @@ void throw_if_refused(const std::optional<Result>& result, const char* what) {
     if (result && result->refusal)
         throw CheckFailedError(fmt::format("{}: {}", what, result->refusal->reason), result->refusal->remedy);
 }
-
-}  // namespace
 
 int run_projector(const ProjectorOptions& options) {
     if (options.identify) return identify_monitors(options);
@@ -124,6 +124,68 @@ int run_projector(const ProjectorOptions& options) {
     write_projector_html(report, page);
     if (!options.json) fmt::print("{} and {}.\n", options.out.string(), page.string());
     return 0;
+}
+
+}  // namespace
+
+Run add_projector(CLI::App& app) {
+    const auto options = std::make_shared<ProjectorOptions>();
+    ProjectorOptions& o = *options;
+    auto* sub = add_command(
+        app, "projector", "What the projector really does: gamma, colour cycle, latency; which monitor it is",
+        "projector recording --configured-ms 25 --serial X7K2 --out projector.json\n"
+        "  planlight projector --simulate paper --seed 3 --light wheel-hz=120 delay-ms=12 --out projector.json\n"
+        "  planlight projector --identify\n"
+        "  planlight projector --show --monitor HDMI-2 --frames-hz 60 --keep recording");
+    auto* recording =
+        sub->add_option("recording", o.recording, "Folder with latency/, response/, cycle/ (any of them)");
+    auto* simulate =
+        sub->add_option("--simulate", o.simulate, "Measure the simulated room's projector instead: modern or paper")
+            ->check(CLI::IsMember({"modern", "paper"}))
+            ->excludes(recording);
+    sub->add_option("--seed", o.seed, "Of the simulated room, and of the order of greys")->capture_default_str();
+    sub->add_option("--light", o.light,
+                    "Of the simulated room, NAME=NUMBER: gamma, dark-end, wheel-hz, mains-hz, delay-ms, ...")
+        ->needs(simulate);
+    sub->add_option("--keep", o.keep, "Folder to keep what was recorded, or shown, in")->excludes(recording);
+    sub->add_option("--part", o.part, "latency, response, cycle or all")
+        ->check(CLI::IsMember({"all", "latency", "response", "cycle"}))
+        ->capture_default_str();
+    sub->add_option("--refresh-hz", o.refresh_hz, "Of the projector")
+        ->capture_default_str()
+        ->check(CLI::Range(10.0, 1000.0));
+    sub->add_option("--refresh-tolerance-hz", o.refresh_tolerance_hz,
+                    "How well that is known; a few thousandths tell cycles apart that 0.1 does not")
+        ->capture_default_str()
+        ->check(CLI::Range(1e-6, 10.0));
+    sub->add_option("--configured-ms", o.configured_delay_ms,
+                    "The delay in force, to be compared (default: as recorded)")
+        ->check(CLI::Range(0.0, 10000.0));
+    sub->add_option("--serial", o.serial, "Of the projector, as on its label");
+    sub->add_option("--monitor", o.monitor, "Monitor that it is");
+    auto* show = sub->add_flag("--show", o.show,
+                               "Show the light of each part on --monitor for your own cameras, and keep the orders; "
+                               "nobody may lie there")
+                     ->excludes(recording)
+                     ->excludes(simulate);
+    sub->add_option("--frames-hz", o.frames_hz, "Of your own cameras")
+        ->capture_default_str()
+        ->check(CLI::Range(1.0, 1000.0))
+        ->needs(show);
+    auto* identify =
+        sub->add_flag(
+               "--identify", o.identify,
+               "Every monitor shows its own name for a while, then goes dark; nobody may lie under the projector")
+            ->excludes(recording)
+            ->excludes(show)
+            ->excludes(simulate);
+    sub->add_option("--seconds", o.seconds, "Of --identify; 0 only lists the monitors")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 60.0))
+        ->needs(identify);
+    sub->add_option("--out", o.out, "projector.json to write; the page stands beside it");
+    json_flag(sub, o.json);
+    return [options] { return run_projector(*options); };
 }
 
 }  // namespace planlight

@@ -4,20 +4,34 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/live/case_model.h"
 #include "app/report/registration_certificate.h"
-#include "planning_io/case_folder.h"
-#include "planning_io/mesh_file.h"
-#include "planning_io/point_pairs_file.h"
-#include "planning_io/recording_files.h"
-#include "planning_io/slicer_transform.h"
+#include "planning_io/case/case_folder.h"
+#include "planning_io/surface/mesh_file.h"
+#include "planning_io/plan/point_pairs_file.h"
+#include "planning_io/case/registration_file.h"
+#include "planning_io/case/slicer_transform.h"
 #include "planning_io/types/error.h"
 #include "registration/matching/cloud_normals.h"
 #include "registration/matching/register_with_landmarks.h"
 
 namespace planlight {
 namespace {
+
+struct RegisterOptions {
+    Path case_folder, cloud, out;
+    Path pairs;             ///< landmarks: a check of the cloud's match, or, without a cloud, the match
+    Path slicer_transform;  ///< to write; empty: not wanted
+    Path certificate;       ///< page to write; empty: not wanted
+    std::string unit = "mm";
+    bool in_rig = false;
+    std::vector<double> viewpoint_in_rig;  ///< 3 numbers, mm; empty: not said
+    std::string icp = "signed-distance";
+    unsigned seed = 1;
+    bool json = false;
+};
 
 const char* name_of(Verdict verdict) {
     return verdict == Verdict::yes ? "yes" : verdict == Verdict::ask ? "ask" : "no";
@@ -49,8 +63,6 @@ RegistrationResult match(const RegisterOptions& options, const Case& the_case, s
     cloud = std::make_shared<PointCloud>(cloud_of(options));
     return register_with_landmarks(*cloud, the_case.lut, pairs, settings);
 }
-
-}  // namespace
 
 int run_register(const RegisterOptions& options) {
     const Case the_case = read_case(options.case_folder);
@@ -108,6 +120,38 @@ int run_register(const RegisterOptions& options) {
             "the patient was not found: " + fmt::format("{}", fmt::join(result.reasons, "; ")),
             "Scan again from a side that shows more of the head, and check that this is the patient of the case.");
     return 0;
+}
+
+}  // namespace
+
+Run add_register(CLI::App& app) {
+    const auto options = std::make_shared<RegisterOptions>();
+    RegisterOptions& o = *options;
+    auto* sub = add_command(app, "register", "Cloud and case -> where the patient lies (T_ini), or a refusal (exit 6)",
+                        "register case --cloud cloud.ply --out registration.json");
+    sub->add_option("case", o.case_folder, "Case folder")->required();
+    auto* cloud = sub->add_option("--cloud", o.cloud, "Clean cloud (.ply), of `scan` or of any scanner");
+    sub->add_option("--unit", o.unit, "Unit of the cloud's numbers")
+        ->check(CLI::IsMember({"mm", "cm", "m", "um", "inch"}))
+        ->capture_default_str()
+        ->needs(cloud);
+    sub->add_flag("--in-rig", o.in_rig, "The cloud is in the rig's frame though it does not say so")->needs(cloud);
+    sub->add_option("--viewpoint", o.viewpoint_in_rig,
+                    "Where the scanner stood (rig, mm): then the space it looked through must be free in the CT too; a cloud "
+                    "without normals needs it")
+        ->expected(3)
+        ->needs(cloud);
+    sub->add_option("--pairs", o.pairs,
+                    "Landmarks (.csv: name, ct and rig coordinates; `review --landmarks` clicks them): they check the cloud's "
+                    "match, help where it is refused, or, without a cloud, are the match");
+    sub->add_option("--certificate", o.certificate, "Write a page (.html) with what the match is worth, in words and pictures");
+    sub->add_option("--out", o.out, "registration.json to write")->required();
+    sub->add_option("--slicer", o.slicer_transform, "Transform for 3D Slicer to write (.tfm): it lays the cloud on the CT");
+    sub->add_option("--icp", o.icp, "Fine match: signed-distance, or closest-point as in the paper")
+        ->check(CLI::IsMember({"signed-distance", "closest-point"}))->capture_default_str();
+    sub->add_option("--seed", o.seed, "Of the search")->capture_default_str();
+    json_flag(sub, o.json);
+    return [options] { return run_register(*options); };
 }
 
 }  // namespace planlight

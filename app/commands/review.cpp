@@ -3,22 +3,30 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/console.h"
 #include "app/live/case_model.h"
 #include "app/live/clickable_scan.h"
 #include "app/live/live_window.h"
 #include "app/windows/scene_view.h"
-#include "planning_io/case_folder.h"
-#include "planning_io/image_file.h"
-#include "planning_io/mesh_file.h"
-#include "planning_io/point_pairs_file.h"
-#include "planning_io/recording_files.h"
+#include "planning_io/case/case_folder.h"
+#include "planning_io/files/image_file.h"
+#include "planning_io/surface/mesh_file.h"
+#include "planning_io/plan/point_pairs_file.h"
+#include "planning_io/case/registration_file.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
 
 namespace {
+
+struct ReviewOptions {
+    Path case_folder, picture, registration, cloud;
+    Path landmarks;              ///< table to click landmarks into; empty: not wanted
+    std::string view = "after";  ///< before, after, error
+    bool json = false;
+};
 
 void set_status(const RegistrationResult& found, OperatorModel& model) {
     if (found.verdict == Verdict::yes) {
@@ -60,8 +68,6 @@ int run_landmarks(const ReviewOptions& options, const CaseDrawing& drawing, cons
     return 0;
 }
 
-}  // namespace
-
 int run_review(const ReviewOptions& options) {
     const Case the_case = read_case(options.case_folder);
     const CaseDrawing drawing(the_case);
@@ -101,6 +107,30 @@ int run_review(const ReviewOptions& options) {
     if (!options.landmarks.empty()) return run_landmarks(options, drawing, *cloud, model);
     show_model(model, view);
     return 0;
+}
+
+}  // namespace
+
+Run add_review(CLI::App& app) {
+    const auto options = std::make_shared<ReviewOptions>();
+    ReviewOptions& o = *options;
+    auto* sub = add_command(app, "review", "Look at a prepared case, or at a match on it, in the operator window",
+                        "review case --registration registration.json --cloud cloud.ply");
+    sub->add_option("case", o.case_folder, "Case folder")->required();
+    auto* match = sub->add_option("--registration", o.registration, "A match to look at (registration.json of `register`)");
+    auto* cloud = sub->add_option(
+        "--cloud", o.cloud, "The scan (.ply, mm): shown on the skin, coloured by distance, as it was matched, or to click on");
+    auto* landmarks = sub->add_option(
+        "--landmarks", o.landmarks, "Click landmarks on the skin and the scan, and keep them in this table (.csv) for `register --pairs`");
+    landmarks->needs(cloud);
+    sub->add_option("--view", o.view, "before or after the fine match, or error: how far off the match may be")
+        ->check(CLI::IsMember({"before", "after", "error"}))
+        ->capture_default_str()
+        ->needs(match);
+    sub->add_option("--picture", o.picture, "Write a picture (.png) instead of opening a window; needs no display")
+        ->excludes(landmarks);
+    json_flag(sub, o.json);
+    return [options] { return run_review(*options); };
 }
 
 }  // namespace planlight

@@ -5,20 +5,29 @@
 #include <numbers>
 
 #include "app/commands/capture_conversion.h"
+#include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/device_check.h"
 #include "app/console.h"
-#include "planning_io/mesh_file.h"
-#include "planning_io/rig_file.h"
+#include "planning_io/surface/mesh_file.h"
+#include "planning_io/case/rig_file.h"
 #include "planning_io/types/error.h"
 #include "registration/calibration/check_drift.h"
-#include "registration/scan/camera_gamma.h"
-#include "registration/scan/merge_exposures.h"
-#include "registration/scan/surface_triangles.h"
+#include "registration/scan/check/camera_gamma.h"
+#include "registration/scan/decode/merge_exposures.h"
+#include "registration/scan/clean/surface_triangles.h"
 #include "registration/tracking/markers_in_scan.h"
 
 namespace planlight {
 namespace {
+
+struct ScanOptions {
+    Path capture, rig, out, raw_out;
+    Path surface_out;               ///< the same points with triangles; empty: not wanted
+    std::vector<Path> exposures;    ///< further captures of the same pose
+    double max_movement_mm = 0.15;  ///< of the patient during the scan
+    bool accept_movement = false, json = false;
+};
 
 nlohmann::json counts(const DecodedView& view) {
     return {{"decoded", view.decoded}, {"dark", view.dark}, {"saturated", view.saturated}, {"uncertain", view.uncertain}};
@@ -114,8 +123,6 @@ void judge_fit(const ScanResult& scan, const RigCalibration& rig) {
                                "Check that the projector lights the patient and that rig.json belongs to this capture.");
 }
 
-}  // namespace
-
 int run_scan(const ScanOptions& options) {
     const RigCalibration rig = read_partial_rig(options.rig);
     std::vector<ScanCapture> captures;
@@ -178,6 +185,27 @@ int run_scan(const ScanOptions& options) {
             fmt::print("{} triangles over them in {}.\n", triangles.size(), options.surface_out.string());
     }
     return 0;
+}
+
+}  // namespace
+
+Run add_scan(CLI::App& app) {
+    const auto options = std::make_shared<ScanOptions>();
+    ScanOptions& o = *options;
+    auto* sub = add_command(app, "scan", "Captured stripe pictures -> cloud of skin points in rig",
+                        "scan room/capture --rig room/rig.json --out cloud.ply");
+    sub->add_option("capture", o.capture, "Capture folder")->required();
+    sub->add_option("--exposure", o.exposures, "Another capture of the same pose, darker or brighter; may be said again");
+    sub->add_option("--rig", o.rig, "rig.json")->required();
+    sub->add_option("--out", o.out, "Clean cloud (.ply)")->required();
+    sub->add_option("--raw", o.raw_out, "Also the cloud before the outliers were removed (.ply)");
+    sub->add_option("--surface", o.surface_out, "Also the scan as a triangulated surface (.ply: the same points, with faces)");
+    sub->add_option("--max-movement-mm", o.max_movement_mm, "Of the patient during the scan; more is refused (exit 6)")
+        ->capture_default_str()
+        ->check(CLI::Range(0.01, 100.0));
+    sub->add_flag("--accept-movement", o.accept_movement, "Write the cloud of a patient who moved; only warn");
+    json_flag(sub, o.json);
+    return [options] { return run_scan(*options); };
 }
 
 }  // namespace planlight

@@ -1,10 +1,25 @@
+#include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/live/live_window.h"
-#include "planning_io/case_folder.h"
-#include "planning_io/read_volume.h"
+#include "planning_io/case/case_folder.h"
+#include "planning_io/volume/read_volume.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
+namespace {
+
+struct SessionOptions {
+    Path case_folder, volume;
+    Path keep;  ///< folder for every match; empty: CASE/registrations
+    std::string preset = "paper", projector_monitor, operator_monitor;
+    unsigned seed = 1;
+    double speed_mm_s = 20;
+    bool autoplay = false;
+    double end_after_s = 0;  ///< wall time; 0 = until the window is closed
+    Path screenshots;
+    double light_delay_ms = -1;  ///< of the projector window; below 0: the default, or what `projector_file` says
+    Path projector_file;         ///< projector.json of the monitor; empty: none
+};
 
 int run_session(const SessionOptions& options) {
     const Case the_case = read_case(options.case_folder);
@@ -25,6 +40,36 @@ int run_session(const SessionOptions& options) {
     live.screenshots = options.screenshots;
     live.keep_matches_in = options.keep.empty() ? options.case_folder / kRegistrationsFolder : options.keep;
     return run_live(volume, the_case, CaseDrawing(the_case), live);
+}
+
+}  // namespace
+
+Run add_session(CLI::App& app) {
+    const auto options = std::make_shared<SessionOptions>();
+    SessionOptions& o = *options;
+    auto* sub = add_command(app, "session", "Live: operator window and projector window, on the simulated room, the head moving",
+                        "session case --volume Cranium.inv3 --projector HDMI-2");
+    sub->add_option("case", o.case_folder, "Case folder")->required();
+    sub->add_option("--volume", o.volume, "The simulated patient: the volume that the case was made from")->required();
+    sub->add_option("--keep", o.keep, "Folder that keeps every match and its scan (default: CASE/registrations)");
+    preset_option(sub, o.preset);
+    sub->add_option(
+        "--projector", o.projector_monitor,
+        "Monitor (name or number) that is the projector; without it the light is shown in the operator window only");
+    auto* delay = sub->add_option("--light-delay-ms", o.light_delay_ms,
+                                  "From showing to light, as `projector` measured it (default: 25)")
+                      ->check(CLI::Range(0.0, 10000.0));
+    sub->add_option("--projector-file", o.projector_file,
+                    "projector.json of `projector`: its delay is used; another monitor, resolution or serial is "
+                    "refused (exit 6)")
+        ->excludes(delay);
+    sub->add_option("--operator", o.operator_monitor, "Monitor of the operator window (default: the primary one)");
+    sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str();
+    sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")->capture_default_str()->check(CLI::Range(0.0, 500.0));
+    sub->add_flag("--autoplay", o.autoplay, "Scan, register and track by itself");
+    sub->add_option("--end-after-s", o.end_after_s, "Close after this many seconds of tracking");
+    sub->add_option("--screenshots", o.screenshots, "Folder for screenshots of every step");
+    return [options] { return run_session(*options); };
 }
 
 }  // namespace planlight

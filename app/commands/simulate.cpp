@@ -4,30 +4,29 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/capture_conversion.h"
+#include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/simulate_options.h"
 #include "app/console.h"
-#include "planning_io/plan_file.h"
-#include "planning_io/read_volume.h"
-#include "planning_io/rig_file.h"
-#include "planning_io/safe_write.h"
+#include "planning_io/plan/plan_file.h"
+#include "planning_io/volume/read_volume.h"
+#include "planning_io/case/rig_file.h"
+#include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "registration/simulation/simulated_rig.h"
 
 namespace planlight {
 namespace {
 
-std::vector<RecordedFrame> record_frames(simulation::SimulatedRig& rig, const SimulateOptions& options, ProgressBar& bar) {
+std::vector<StereoFrame> record_frames(simulation::SimulatedRig& rig, const SimulateOptions& options, ProgressBar& bar) {
     rig.set_motion({options.speed_mm_s, rig.clock().now()});
-    std::vector<RecordedFrame> frames;
+    std::vector<StereoFrame> frames;
     for (int i = 0; i < options.frames; ++i) {
-        const StereoFrame frame = rig.cameras().grab(rig.clock().now(), std::chrono::seconds(1));
-        frames.push_back({frame.left, frame.right, frame.at, frame.exposure, frame.number});
+        frames.push_back(rig.cameras().grab(rig.clock().now(), std::chrono::seconds(1)));
         bar.show("frames", static_cast<double>(i + 1) / options.frames);
     }
     return frames;
 }
-
-}  // namespace
 
 int run_simulate(const SimulateOptions& options) {
     if (!options.board.empty()) return run_simulate_board(options);
@@ -69,6 +68,29 @@ int run_simulate(const SimulateOptions& options) {
         fmt::print("{}: rig.json, capture ({} pictures a camera), frames ({}), truth.json.\n", options.out.string(),
                    capture.left.size(), frames.size());
     return 0;
+}
+
+}  // namespace
+
+Run add_simulate(CLI::App& app) {
+    const auto options = std::make_shared<SimulateOptions>();
+    SimulateOptions& o = *options;
+    auto* sub = add_command(app, "simulate", "Captures of a simulated room, with ground truth in a file of its own",
+                        "simulate Cranium.inv3 --plan frontal_defect.mrk.json --preset paper --seed 3 --out room");
+    sub->add_option("volume", o.volume, "The patient: DICOM folder or file, or InVesalius project");
+    sub->add_option("--board", o.board,
+                    "Instead of a patient a calibration board, as for `calibrate`; writes captures/ and truth.json");
+    sub->add_option("--poses", o.poses, "Of the board")->capture_default_str()->check(CLI::Range(1, 1000));
+    sub->add_option("--plan", o.plan, "Plan, so that markers keep clear of it");
+    preset_option(sub, o.preset);
+    sub->add_option("--seed", o.seed, "Of everything random")->capture_default_str();
+    sub->add_option("--frames", o.frames, "Tracking frames after the scan")->capture_default_str()->check(CLI::Range(0, 10000));
+    sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head in the tracking frames")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 500.0));
+    sub->add_option("--out", o.out, "Folder to write: rig.json, capture/, frames/, truth.json")->required();
+    json_flag(sub, o.json);
+    return [options] { return run_simulate(*options); };
 }
 
 }  // namespace planlight

@@ -4,9 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/capture_conversion.h"
-#include "app/commands/commands.h"
+#include "app/commands/simulate_options.h"
 #include "app/console.h"
-#include "planning_io/safe_write.h"
+#include "planning_io/files/safe_write.h"
 #include "registration/calibration/draw_board.h"
 #include "registration/simulation/board_room.h"
 

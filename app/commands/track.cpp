@@ -5,31 +5,32 @@
 #include <nlohmann/json.hpp>
 
 #include "app/commands/capture_conversion.h"
+#include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/device_check.h"
 #include "app/console.h"
-#include "planning_io/recording_files.h"
-#include "planning_io/rig_file.h"
+#include "planning_io/case/frames_folder.h"
+#include "planning_io/case/poses_file.h"
+#include "planning_io/case/rig_file.h"
 #include "planning_io/types/error.h"
 #include "registration/tracking/track_patient.h"
 
 namespace planlight {
 namespace {
 
-StereoFrame stereo_frame(const RecordedFrame& recorded) {
-    return {recorded.left, recorded.right, recorded.at, recorded.exposure, recorded.number};
-}
+struct TrackOptions {
+    Path frames, rig, capture, out;
+    bool json = false;
+};
 
 StereoFrame reference_frame(const TrackOptions& options, const RigCalibration& rig,
-                            const std::vector<RecordedFrame>& frames) {
-    if (options.capture.empty()) return stereo_frame(frames.front());
+                            const std::vector<StereoFrame>& frames) {
+    if (options.capture.empty()) return frames.front();
     const ScanCapture capture = scan_capture_from(read_capture_of(rig, options.capture), options.capture);
     if (capture.right.empty())
         throw InputError(options.capture, "has the left camera's pictures only", "Markers need both cameras: capture with both.");
     return {capture.left.front(), capture.right.front(), capture.began, Instant{}, 0};
 }
-
-}  // namespace
 
 int run_track(const TrackOptions& options) {
     const RigCalibration rig = read_rig(options.rig);
@@ -43,7 +44,7 @@ int run_track(const TrackOptions& options) {
     std::vector<TrackedPose> poses;
     ProgressBar bar;
     for (const auto& frame : frames) {
-        poses.push_back(tracker.update(stereo_frame(frame)));
+        poses.push_back(tracker.update(frame));
         bar.show("track", static_cast<double>(poses.size()) / static_cast<double>(frames.size()));
     }
     write_poses(poses, options.out);
@@ -59,6 +60,23 @@ int run_track(const TrackOptions& options) {
                    markers, worst_px);
     }
     return 0;
+}
+
+}  // namespace
+
+Run add_track(CLI::App& app) {
+    const auto options = std::make_shared<TrackOptions>();
+    TrackOptions& o = *options;
+    auto* sub = add_command(app, "track", "Recorded frames -> poses of the patient (T_cur)",
+                        "track room/frames --rig room/rig.json --capture room/capture --out poses.json");
+    sub->add_option("frames", o.frames, "Folder of recorded frames")->required();
+    sub->add_option("--rig", o.rig, "rig.json")->required();
+    sub->add_option(
+        "--capture", o.capture,
+        "Capture folder of the scan: its white picture holds the reference markers (default: the first frame)");
+    sub->add_option("--out", o.out, "poses.json to write")->required();
+    json_flag(sub, o.json);
+    return [options] { return run_track(*options); };
 }
 
 }  // namespace planlight

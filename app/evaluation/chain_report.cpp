@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "planning_io/safe_write.h"
+#include "planning_io/files/safe_write.h"
 
 namespace planlight {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "app/evaluation/chain_report.h"
 #include "app/report/html_page.h"
-#include "planning_io/safe_write.h"
+#include "planning_io/files/safe_write.h"
 
 namespace planlight {
 namespace {

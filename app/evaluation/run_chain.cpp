@@ -7,7 +7,7 @@
 #include <numbers>
 #include <random>
 
-#include "planning_io/plan_file.h"
+#include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {

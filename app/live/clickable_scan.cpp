@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "registration/scan/surface_triangles.h"
+#include "registration/scan/clean/surface_triangles.h"
 
 namespace planlight {
 namespace {

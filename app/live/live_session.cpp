@@ -1,7 +1,7 @@
 #include "app/live/live_session.h"
 
 #include "app/live/case_model.h"
-#include "planning_io/plan_file.h"
+#include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {

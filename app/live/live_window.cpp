@@ -11,7 +11,7 @@
 #include "app/live/live_session.h"
 #include "app/live/steady_clock.h"
 #include "app/windows/operator_window.h"
-#include "planning_io/image_file.h"
+#include "planning_io/files/image_file.h"
 #include "planning_io/types/error.h"
 #include "projection/projector_window.h"
 

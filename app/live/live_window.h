@@ -6,7 +6,7 @@
 
 #include "app/session.h"
 #include "app/windows/operator_model.h"
-#include "planning_io/light_file.h"
+#include "planning_io/case/light_file.h"
 #include "planning_io/types/point_pair.h"
 #include "planning_io/types/volume.h"
 #include "registration/simulation/simulated_rig.h"

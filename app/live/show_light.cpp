@@ -10,8 +10,8 @@
 #include "app/commands/light_source.h"
 #include "app/console.h"
 #include "app/live/steady_clock.h"
-#include "planning_io/light_file.h"
-#include "planning_io/safe_write.h"
+#include "planning_io/case/light_file.h"
+#include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "projection/projector_window.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "app/commands/commands.h"
+#include "app/live/projector_options.h"
 
 namespace planlight {
 

@@ -8,8 +8,8 @@
 #include <numbers>
 
 #include "app/report/html_page.h"
-#include "planning_io/rig_file.h"
-#include "planning_io/safe_write.h"
+#include "planning_io/case/rig_file.h"
+#include "planning_io/files/safe_write.h"
 
 namespace planlight {
 namespace {

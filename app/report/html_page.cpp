@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "planning_io/image_file.h"
-#include "planning_io/safe_write.h"
+#include "planning_io/files/image_file.h"
+#include "planning_io/files/safe_write.h"
 
 namespace planlight {
 namespace {

@@ -7,8 +7,8 @@
 #include "app/report/html_page.h"
 #include "app/report/projector_report.h"
 #include "app/report/svg_chart.h"
-#include "planning_io/safe_write.h"
-#include "registration/projector/fit_response.h"
+#include "planning_io/files/safe_write.h"
+#include "registration/projector_measurement/fit_response.h"
 
 namespace planlight {
 namespace {

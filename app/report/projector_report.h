@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "registration/projector/light_findings.h"
+#include "registration/projector_measurement/light_findings.h"
 
 namespace planlight {
 

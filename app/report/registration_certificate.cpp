@@ -7,10 +7,10 @@
 #include "app/live/case_model.h"
 #include "app/report/html_page.h"
 #include "app/windows/scene_view.h"
-#include "planning_io/mesh_file.h"
-#include "planning_io/point_pairs_file.h"
-#include "planning_io/recording_files.h"
-#include "planning_io/safe_write.h"
+#include "planning_io/surface/mesh_file.h"
+#include "planning_io/plan/point_pairs_file.h"
+#include "planning_io/case/registration_file.h"
+#include "planning_io/files/safe_write.h"
 
 namespace planlight {
 namespace {

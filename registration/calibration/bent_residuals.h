@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "planning_io/types/rig_calibration.h"
-#include "registration/scan/triangulate.h"
+#include "registration/scan/triangulate/triangulate.h"
 
 namespace planlight {
 

@@ -7,7 +7,7 @@
 
 #include "registration/calibration/judge_calibration.h"
 #include "registration/calibration/judge_pictures.h"
-#include "registration/calibration/start_values.h"
+#include "registration/calibration/initial_calibration.h"
 
 namespace planlight {
 namespace {
@@ -118,7 +118,7 @@ Calibration calibrate_rig(const std::vector<PoseObservation>& observed, const Bo
     };
     if (refused(judge_pictures(observed, board, settings))) return calibration;
     const std::vector<PoseObservation> poses = named_as_left(observed, board);
-    StartValues start = find_camera_start(poses, board);
+    InitialCalibration start = calibrate_cameras_initially(poses, board);
     if (!start.failure.empty()) {
         refused(Refusal{start.failure, "Capture more poses of the board, tilted 15 to 40 degrees every way."});
         return calibration;
@@ -130,7 +130,7 @@ Calibration calibrate_rig(const std::vector<PoseObservation>& observed, const Bo
     if (refused(judge_cameras(poses, board, calibration.bundle, settings))) return calibration;
     if (projector_width > 0) {
         start.rig = calibration.bundle.rig;
-        add_projector_start(poses, board, projector_width, projector_height, start);
+        add_initial_projector(poses, board, projector_width, projector_height, start);
         if (start.projector_mirrored &&
             refused(Refusal{"the projector's picture is mirrored",
                             "Switch the projector from rear to front projection, then capture again."}))

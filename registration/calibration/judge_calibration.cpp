@@ -52,7 +52,7 @@ BundleResult camera_alone(const std::vector<PoseObservation>& poses, const Board
         if (camera == DeviceName::right_camera) pose.left = pose.right;
         pose.right = {};
     }
-    const StartValues start = find_camera_start(own, board);
+    const InitialCalibration start = calibrate_cameras_initially(own, board);
     BundleSettings corners = settings.bundle;
     corners.light = false;
     return start.failure.empty() ? adjust_bundle(own, board, start.rig, corners) : BundleResult{};
@@ -73,7 +73,7 @@ BundleResult with_right_mirrored(const std::vector<PoseObservation>& poses, cons
             id = board.has_a_top() ? (down - 1 - y) * across + x : y * across + across - 1 - x;
         }
     mirrored = named_as_left(std::move(mirrored), board);
-    const StartValues start = find_camera_start(mirrored, board);
+    const InitialCalibration start = calibrate_cameras_initially(mirrored, board);
     BundleSettings corners = settings.bundle;
     corners.light = false;
     return start.failure.empty() ? adjust_bundle(mirrored, board, start.rig, corners) : BundleResult{};

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "registration/calibration/calibrate_rig.h"
-#include "registration/calibration/start_values.h"
+#include "registration/calibration/initial_calibration.h"
 
 namespace planlight {
 

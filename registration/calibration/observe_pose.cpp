@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "registration/scan/check_sequence.h"
-#include "registration/scan/gray_code.h"
+#include "registration/scan/check/check_sequence.h"
+#include "registration/scan/decode/gray_code.h"
 
 namespace planlight {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "planning_io/types/image.h"
 #include "registration/calibration/find_board.h"
-#include "registration/scan/decode_stripes.h"
+#include "registration/scan/decode/decode_stripes.h"
 
 namespace planlight {
 

@@ -125,7 +125,7 @@ FineMatch match_finely(const PointCloud& cloud, const SkinLut& lut, const RigidT
     const auto start = std::chrono::steady_clock::now();
     result.initial_patient_from_ct = start_ct_from_rig.inverse();
     IcpResult icp = refine_icp(cloud, lut, start_ct_from_rig, settings.icp);
-    const MovedSkinPose settled = settle_on_moved_skin(cloud, lut, icp.ct_from_rig, settings.skin);
+    const DeformablePose settled = refine_pose_deformable(cloud, lut, icp.ct_from_rig, settings.skin);
     if (settings.moved_skin) icp.ct_from_rig = settled.ct_from_rig;
     result.covariance = settled.covariance;
     result.skin_movement_mm = settled.movement_mm;

@@ -5,15 +5,15 @@
 #include "planning_io/types/registration_result.h"
 #include "registration/matching/initial_match.h"
 #include "registration/matching/refine_icp.h"
-#include "registration/matching/settle_on_moved_skin.h"
+#include "registration/matching/refine_pose_deformable.h"
 
 namespace planlight {
 
 struct RegistrationSettings {
     InitialMatchSettings initial;
     IcpSettings icp;
-    bool moved_skin = true;             ///< end the fine match with settle_on_moved_skin; false: the ICP's pose as it is
-    MovedSkinSettings skin;
+    bool moved_skin = true;             ///< end the fine match with refine_pose_deformable; false: the ICP's pose as it is
+    DeformableSettings skin;
     int min_points = 1000;
     double min_extent_mm = 60;          ///< second largest extent of the cloud
     double min_runner_up_ratio = 1.15;  ///< below: ask; below 1.05: no

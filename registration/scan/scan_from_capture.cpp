@@ -8,12 +8,12 @@
 #include <utility>
 
 #include "planning_io/types/error.h"
-#include "registration/scan/camera_gamma.h"
-#include "registration/scan/decode_capture.h"
-#include "registration/scan/merge_exposures.h"
-#include "registration/scan/place_matches.h"
+#include "registration/scan/check/camera_gamma.h"
+#include "registration/scan/decode/decode_capture.h"
+#include "registration/scan/decode/merge_exposures.h"
+#include "registration/scan/triangulate/triangulate_matches.h"
 #include "registration/scan/scan_surface.h"
-#include "registration/scan/triangulate_cameras.h"
+#include "registration/scan/triangulate/triangulate_cameras.h"
 
 namespace planlight {
 namespace {
@@ -54,7 +54,7 @@ void refuse_wrong_sequence(const ScanCapture& capture, ScanResult& result) {
         if (check.problems.empty()) return;
         throw CheckFailedError(fmt::format("the {} camera's frames do not show the sequence: {} ({:.0f} % of the lit pixels){}",
                                            camera, check.problems[0].what, 100 * check.problems[0].share,
-                                           said_of_gamma(camera_gamma(frames, even_moments(capture)))),
+                                           said_of_gamma(camera_gamma(frames, uniform_light_frames(capture)))),
                                "Scan again; if it comes back, check the delay between projector and cameras and the names of "
                                "the pictures. \"check_sequence\": false in capture.json takes them as they are.");
     };
@@ -79,9 +79,9 @@ void triangulate_and_resect(const ScanSettings& settings, ScanResult& result, Ri
     TriangulationSettings by_cameras = settings.triangulation;
     by_cameras.one_camera = false;
     result.resection =
-        resect_projector(place_matches(matches, rig, by_cameras, 1 + matches.both.size() / kEnough), rig, settings.resection);
+        resect_projector(triangulate_matches(matches, rig, by_cameras, 1 + matches.both.size() / kEnough), rig, settings.resection);
     result.resection_used = use_resection(settings, result, rig);
-    result.raw = place_matches(matches, rig, settings.triangulation);
+    result.raw = triangulate_matches(matches, rig, settings.triangulation);
 }
 
 /// A view in which nothing is seen, for the camera that is not there.
@@ -118,7 +118,7 @@ void decode(const ScanCapture& capture, const RigCalibration& rig, const DecodeS
 }
 
 /// The points, and the rig they were made with: its projector may be one that the scan placed anew.
-RigCalibration place_points(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings,
+RigCalibration triangulate_points(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings,
                             ScanResult& result) {
     RigCalibration rig_now = rig;
     if (!present(rig.projector)) {
@@ -153,7 +153,7 @@ ScanResult scan_from_exposures(std::span<const ScanCapture> captures, const RigC
         }
         result.decode_s += watch.lap_s();
     }
-    const RigCalibration rig_now = place_points(captures.front(), rig, settings, result);
+    const RigCalibration rig_now = triangulate_points(captures.front(), rig, settings, result);
     result.triangulate_s = watch.lap_s();
     result.clean = remove_outliers(result.raw, rig_now, settings.outliers);
     result.outliers_s = watch.lap_s();

@@ -8,11 +8,11 @@
 #include "planning_io/types/rig_calibration.h"
 #include "registration/devices/projector.h"
 #include "registration/devices/stereo_camera.h"
-#include "registration/scan/check_sequence.h"
-#include "registration/scan/decode_stripes.h"
-#include "registration/scan/remove_outliers.h"
-#include "registration/scan/resect_projector.h"
-#include "registration/scan/triangulate.h"
+#include "registration/scan/check/check_sequence.h"
+#include "registration/scan/decode/decode_stripes.h"
+#include "registration/scan/clean/remove_outliers.h"
+#include "registration/scan/triangulate/resect_projector.h"
+#include "registration/scan/triangulate/triangulate.h"
 
 namespace planlight {
 

@@ -1,6 +1,6 @@
 #include "registration/tracking/markers_in_scan.h"
 
-#include "registration/scan/even_pictures.h"
+#include "registration/scan/movement/uniform_light_frames.h"
 
 namespace planlight {
 namespace {
@@ -13,10 +13,10 @@ struct Look {
 std::vector<Look> looks_of(const ScanCapture& capture, PatientTracker& tracker) {
     std::vector<Look> looks;
     const double lasted_s = seconds(capture.ended - capture.began);
-    for (const EvenMoment& moment : even_moments(capture)) {
+    for (const UniformLightFrame& moment : uniform_light_frames(capture)) {
         StereoFrame frame;
-        frame.left = half_even_picture(capture.left, moment);
-        frame.right = half_even_picture(capture.right, moment);
+        frame.left = half_uniform_light(capture.left, moment);
+        frame.right = half_uniform_light(capture.right, moment);
         frame.at = capture.began + from_seconds(moment.when * lasted_s);
         if (looks.empty() && tracker.markers().empty()) tracker.set_reference(frame);
         const TrackedPose pose = tracker.update(frame);

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "planning_io/recording_files.h"
-#include "planning_io/rig_file.h"
+#include "planning_io/case/capture_folder.h"
+#include "planning_io/case/rig_file.h"
 #include "tests/app/run_command.h"
 #include "tests/registration/scan/stripe_room.h"
 #include "tests/support/test_data.h"

@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "app/prepare_case.h"
-#include "planning_io/invesalius_project.h"
-#include "planning_io/mesh_file.h"
-#include "planning_io/plan_file.h"
-#include "planning_io/read_volume.h"
-#include "planning_io/surface_file.h"
+#include "planning_io/volume/invesalius_project.h"
+#include "planning_io/surface/mesh_file.h"
+#include "planning_io/plan/plan_file.h"
+#include "planning_io/volume/read_volume.h"
+#include "planning_io/surface/surface_file.h"
 #include "planning_io/types/error.h"
 #include "projection/check_plan.h"
 #include "projection/mid_plane.h"

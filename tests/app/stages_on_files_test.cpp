@@ -4,9 +4,9 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "planning_io/mesh_file.h"
-#include "planning_io/point_pairs_file.h"
-#include "planning_io/rig_file.h"
+#include "planning_io/surface/mesh_file.h"
+#include "planning_io/plan/point_pairs_file.h"
+#include "planning_io/case/rig_file.h"
 #include "tests/app/on_example_patient.h"
 
 namespace planlight::test {

@@ -6,8 +6,8 @@
 #include "app/evaluation/chain_report.h"
 #include "app/evaluation/run_chain.h"
 #include "app/prepare_case.h"
-#include "planning_io/plan_file.h"
-#include "planning_io/read_volume.h"
+#include "planning_io/plan/plan_file.h"
+#include "planning_io/volume/read_volume.h"
 #include "planning_io/types/error.h"
 #include "tests/support/test_data.h"
 

@@ -15,7 +15,7 @@
 #include <thread>
 
 #include "registration/processor_clones.h"
-#include "registration/scan/decode_gray_pairs.h"
+#include "registration/scan/decode/decode_gray_pairs.h"
 #include "tests/benchmarks/time_round.h"
 #include "tests/registration/scan/stripe_room.h"
 

@@ -24,8 +24,8 @@
 #include <sstream>
 #include <thread>
 
-#include "planning_io/read_volume.h"
-#include "planning_io/skin_lut_file.h"
+#include "planning_io/volume/read_volume.h"
+#include "planning_io/case/skin_lut_file.h"
 #include "segmentation/build_skin_lut.h"
 #include "segmentation/nearest_transform.h"
 #include "segmentation/segment_skin.h"

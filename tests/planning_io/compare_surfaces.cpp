@@ -2,7 +2,7 @@
 
 #include <cstdlib>
 
-#include "planning_io/read_volume.h"
+#include "planning_io/volume/read_volume.h"
 #include "planning_io/types/error.h"
 #include "tests/planning_io/surface_distance.h"
 

@@ -6,8 +6,8 @@
 #include <set>
 #include <vector>
 
-#include "planning_io/plan_import.h"
-#include "planning_io/read_volume.h"
+#include "planning_io/plan/plan_import.h"
+#include "planning_io/volume/read_volume.h"
 #include "planning_io/types/error.h"
 #include "tests/planning_io/plan_cases.h"
 #include "tests/planning_io/volume_cases.h"

@@ -4,10 +4,10 @@
 
 #include <limits>
 
-#include "planning_io/plan_file.h"
-#include "planning_io/plan_rtstruct.h"
-#include "planning_io/plan_shapes.h"
-#include "planning_io/safe_write.h"
+#include "planning_io/plan/plan_file.h"
+#include "planning_io/plan/plan_rtstruct.h"
+#include "planning_io/plan/plan_shapes.h"
+#include "planning_io/files/safe_write.h"
 #include "tests/support/analytic_head.h"
 
 namespace planlight::test {

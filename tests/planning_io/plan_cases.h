@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "planning_io/plan_import.h"
+#include "planning_io/plan/plan_import.h"
 #include "projection/check_plan.h"
 
 namespace planlight::test {

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <stdexcept>
 
-#include "planning_io/safe_write.h"
+#include "planning_io/files/safe_write.h"
 #include "tests/planning_io/synthetic_files.h"
 #include "tests/planning_io/volume_cases.h"
 

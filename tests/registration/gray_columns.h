@@ -3,7 +3,7 @@
 #include <utility>
 #include <vector>
 
-#include "registration/scan/stripe_patterns.h"
+#include "registration/scan/pattern/stripe_patterns.h"
 
 namespace planlight::test {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "registration/calibration/calibrate_rig.h"
-#include "registration/calibration/start_values.h"
+#include "registration/calibration/initial_calibration.h"
 #include "tests/registration/calibration/ideal_board.h"
 
 namespace planlight {
@@ -61,8 +61,8 @@ TEST(CalibrateRig, TheCovarianceSaysHowWrongTheNumbersAre) {
     int count = 0;
     for (unsigned seed = 1; seed <= 12; ++seed) {
         const auto poses = room.observe(seed);
-        StartValues start = find_camera_start(poses, room.board);
-        add_projector_start(poses, room.board, 800, 600, start);
+        InitialCalibration start = calibrate_cameras_initially(poses, room.board);
+        add_initial_projector(poses, room.board, 800, 600, start);
         const BundleResult bundle = adjust_bundle(poses, room.board, start.rig);
         const Eigen::VectorXd off = numbers_of(bundle.rig) - wanted;
         for (const Eigen::Index i : {0, 2, 3, 4, 9, 11, 12, 18, 19, 20, 21, 24, 26, 27, 33, 34, 35, 36, 37, 38}) {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "registration/calibration/calibrate_rig.h"
-#include "registration/calibration/start_values.h"
+#include "registration/calibration/initial_calibration.h"
 #include "tests/registration/calibration/real_captures.h"
 
 namespace planlight {

@@ -4,7 +4,7 @@
 
 #include <opencv2/core.hpp>
 
-#include "planning_io/image_file.h"
+#include "planning_io/files/image_file.h"
 #include "tests/support/test_data.h"
 
 namespace planlight::test {

@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "registration/calibration/calibrate_rig.h"
-#include "registration/scan/gray_code.h"
+#include "registration/scan/decode/gray_code.h"
 #include "registration/scan/scan_surface.h"
 #include "tests/registration/calibration/board_scene.h"
 

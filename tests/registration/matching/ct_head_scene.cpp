@@ -5,7 +5,7 @@
 #include <memory>
 #include <random>
 
-#include "planning_io/read_volume.h"
+#include "planning_io/volume/read_volume.h"
 #include "segmentation/build_skin_lut.h"
 #include "segmentation/segment_skin.h"
 #include "tests/support/test_data.h"

@@ -12,7 +12,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "planning_io/read_volume.h"
+#include "planning_io/volume/read_volume.h"
 #include "segmentation/build_skin_lut.h"
 #include "segmentation/segment_skin.h"
 #include "tests/support/analytic_head.h"

@@ -6,7 +6,7 @@
 
 #include "planning_io/types/image.h"
 #include "planning_io/types/point_cloud.h"
-#include "registration/scan/decode_stripes.h"
+#include "registration/scan/decode/decode_stripes.h"
 
 // Small pictures for the pages: a cloud, a code map, a legend with its unit.
 namespace planlight::scan_rooms {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "planning_io/mesh_file.h"
+#include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
 
 using namespace planlight;

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "planning_io/read_volume.h"
+#include "planning_io/volume/read_volume.h"
 #include "planning_io/types/error.h"
 #include "registration/tracking/markers_in_scan.h"
 #include "tests/registration/scan/random_rooms.h"

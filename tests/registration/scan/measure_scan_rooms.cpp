@@ -9,8 +9,8 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "planning_io/read_volume.h"
-#include "planning_io/safe_write.h"
+#include "planning_io/volume/read_volume.h"
+#include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "registration/calibration/check_drift.h"
 #include "tests/registration/scan/footprint_figures.h"

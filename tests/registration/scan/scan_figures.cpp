@@ -8,7 +8,7 @@
 #include <cmath>
 #include <unordered_map>
 
-#include "registration/scan/point_covariance.h"
+#include "registration/scan/triangulate/point_covariance.h"
 
 namespace planlight::scan_rooms {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "planning_io/image_file.h"
-#include "registration/scan/point_covariance.h"
+#include "planning_io/files/image_file.h"
+#include "registration/scan/triangulate/point_covariance.h"
 #include "tests/registration/scan/draw_scan.h"
 
 namespace planlight::scan_rooms {

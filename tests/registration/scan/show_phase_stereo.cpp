@@ -13,11 +13,11 @@
 #include <filesystem>
 #include <numbers>
 
-#include "planning_io/image_file.h"
-#include "planning_io/mesh_file.h"
+#include "planning_io/files/image_file.h"
+#include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
-#include "registration/scan/remove_outliers.h"
-#include "registration/scan/triangulate_cameras.h"
+#include "registration/scan/clean/remove_outliers.h"
+#include "registration/scan/triangulate/triangulate_cameras.h"
 #include "tests/registration/scan/draw_scan.h"
 
 using namespace planlight;

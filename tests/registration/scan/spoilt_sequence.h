@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "registration/scan/check_sequence.h"
+#include "registration/scan/check/check_sequence.h"
 #include "tests/registration/scan/stripe_room.h"
 
 // Captures with frames that are late, doubled, missing or exchanged, for the tests of the sequence check.

@@ -2,7 +2,7 @@
 
 #include <chrono>
 
-#include "planning_io/invesalius_project.h"
+#include "planning_io/volume/invesalius_project.h"
 #include "registration/simulation/simulated_rig.h"
 #include "registration/simulation/true_surface.h"
 #include "tests/support/test_data.h"

@@ -1,0 +1,27 @@
+#include "app/commands/command_line.h"
+
+namespace planlight {
+
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& what, const std::string& example) {
+    CLI::App* command = app.add_subcommand(name, what);
+    command->footer("Example:\n  planlight " + example);
+    return command;
+}
+
+void json_flag(CLI::App* command, bool& json) { command->add_flag("--json", json, "Print the result as JSON on standard output"); }
+
+CLI::Option* preset_option(CLI::App* command, std::string& preset) {
+    return command
+        ->add_option("--preset", preset,
+                     "Simulated room: modern (1920x1080, two 1920x1200) or paper (800x600, two 744x576)")
+        ->check(CLI::IsMember({"modern", "paper"}))
+        ->capture_default_str();
+}
+
+void plan_frame_options(CLI::App* command, std::string& frame, std::string& accept_frame) {
+    command->add_option("--frame", frame, "Coordinate system of plan files that do not say their own")
+        ->check(CLI::IsMember({"LPS", "RAS"}));
+    command->add_option("--accept-frame", accept_frame, "DICOM frame of reference (UID) that is known to be the volume's");
+}
+
+}  // namespace planlight

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+// What the commands' options share. Heavy (CLI11): for the commands' .cpp files only.
+namespace planlight {
+
+using Path = std::filesystem::path;
+
+/// A command of the program with its help and its example.
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& what, const std::string& example);
+
+void json_flag(CLI::App* command, bool& json);
+
+/// --preset: the simulated room.
+CLI::Option* preset_option(CLI::App* command, std::string& preset);
+
+/// --frame and --accept-frame, of plan files that do not say their coordinate system.
+void plan_frame_options(CLI::App* command, std::string& frame, std::string& accept_frame);
+
+}  // namespace planlight

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace planlight {
+
+struct SimulateOptions {
+    std::filesystem::path volume, plan, out;
+    std::string board;  ///< captures of a calibration board instead of a patient
+    int poses = 15;
+    std::string preset = "modern";
+    unsigned seed = 1;
+    int frames = 20;
+    double speed_mm_s = 20;
+    bool json = false;
+};
+int run_simulate_board(const SimulateOptions& options);  ///< with `board` given
+
+}  // namespace planlight

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "planning_io/types/stereo_frame.h"
+
+namespace planlight {
+
+/// A recorded run of stereo frames for tracking: frames.json (times, numbers) and left/NNNNNN.png, right/NNNNNN.png.
+void write_frames(const std::vector<StereoFrame>& frames, const std::filesystem::path& folder);
+std::vector<StereoFrame> read_frames(const std::filesystem::path& folder);
+
+}  // namespace planlight

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "planning_io/dicom/dicom_slices.h"
+
+namespace planlight {
+
+/// One DICOM object as it lies in a folder.
+struct DicomFile {
+    std::filesystem::path path;
+    std::string readable_as;  ///< where to read it from: `path`, or its inflated copy in memory
+    std::string series_uid, modality, description, number, storage_class, rescale_type;
+    bool localizer = false;
+    bool damaged = false;  ///< the header ends too early or makes no sense
+    bool has_padding = false;
+    int padding = 0, padding_limit = 0;  ///< stored values that stand for "nothing was measured", from - to
+    std::vector<DicomSlice> slices;      ///< one, or one a frame; empty for an object without pixels
+};
+
+/// The files of one series, in the order of their names.
+struct DicomSeries {
+    std::string uid, modality, description, number;
+    std::vector<DicomFile> files;
+    int slices() const;
+    std::vector<DicomSlice> all_slices() const;
+    /// CT or MR image objects (Enhanced ones too), and not localizers only.
+    bool is_volume() const;
+};
+
+struct DicomFolder {
+    std::vector<DicomSeries> series;
+    std::vector<std::filesystem::path> unreadable;  ///< DICOM files whose header cannot be read
+};
+
+/// Finds every DICOM object in a folder (ten levels deep, whatever the files are called; DICOMDIR is not needed and not
+/// believed). Throws InputError for more than 200,000 files, and for what cannot be opened: it may be a slice. Crashes on
+/// some damaged files: to be called in a child process.
+DicomFolder find_dicom(const std::filesystem::path& folder, int depth);
+
+/// Whether a file is a DICOMDIR by its name: it stands for its folder.
+bool is_dicom_directory(const std::filesystem::path& file);
+
+/// The series of that UID or number; else that of `file`; else the only volume. Throws InputError with the list of
+/// series when there is none or more than one, DamagedFileError when a file of the folder cannot be told to be of
+/// another series.
+DicomSeries choose_series(const DicomFolder& folder, const std::filesystem::path& path, const std::string& wanted);
+
+}  // namespace planlight

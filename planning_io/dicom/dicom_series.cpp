@@ -1,0 +1,186 @@
+#include "planning_io/dicom/dicom_series.h"
+
+#include <fmt/format.h>
+#include <vtkDICOMReader.h>
+#include <vtkDataArray.h>
+#include <vtkImageData.h>
+#include <vtkIntArray.h>
+#include <vtkMatrix4x4.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkStringArray.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numbers>
+#include <vector>
+
+#include "planning_io/dicom/dicom_folder.h"
+#include "planning_io/dicom/dicom_values.h"
+#include "planning_io/files/header_text.h"
+#include "planning_io/types/error.h"
+#include "planning_io/volume/volume_checks.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kScanDepth = 10;
+constexpr double kTilted = 1e-3;  // radians
+constexpr const char* kCopyAgain = "Copy or export the series again.";
+
+/// File and frame of each slice of the reader's volume.
+using SliceOrder = std::vector<std::pair<std::size_t, std::size_t>>;
+
+SliceOrder order_of(vtkDICOMReader* reader, const DicomSeries& series, const fs::path& path) {
+    vtkIntArray *files = reader->GetFileIndexArray(), *frames = reader->GetFrameIndexArray();
+    SliceOrder order;
+    for (vtkIdType s = 0; files && s < files->GetNumberOfTuples(); ++s)
+        order.emplace_back(
+            static_cast<std::size_t>(files->GetComponent(s, 0)),
+            frames && frames->GetNumberOfTuples() > s ? static_cast<std::size_t>(frames->GetComponent(s, 0)) : 0);
+    if (static_cast<int>(order.size()) != series.slices() || (files && files->GetNumberOfComponents() != 1))
+        throw InputError(
+            path, fmt::format("its {} pictures do not stack to one volume ({} slices)", series.slices(), order.size()),
+            "Export one series of one time point.");
+    return order;
+}
+
+/// The file that cannot be unpacked by itself; `path` when each can.
+fs::path damaged_file_of(const DicomSeries& series, const fs::path& path) {
+    for (const auto& file : series.files) {
+        vtkNew<vtkDICOMReader> reader;
+        reader->SetFileName(file.readable_as.c_str());
+        reader->Update();
+        if (reader->GetErrorCode()) return file.path;
+    }
+    return path;
+}
+
+/// The affine from the slices' own positions must agree with vtk-dicom's reading of them: two readings, one geometry.
+void check_against_reader(vtkDICOMReader* reader, const Volume& volume, const fs::path& path) {
+    const double* spacing = reader->GetOutput()->GetSpacing();
+    for (int corner = 0; corner < 8; ++corner) {
+        const Eigen::Vector3d voxel((corner & 1) * (volume.size[0] - 1), ((corner >> 1) & 1) * (volume.size[1] - 1),
+                                    (corner >> 2) * (volume.size[2] - 1));
+        const std::array<double, 4> in{voxel.x() * spacing[0], voxel.y() * spacing[1], voxel.z() * spacing[2], 1};
+        std::array<double, 4> out{};
+        reader->GetPatientMatrix()->MultiplyPoint(in.data(), out.data());
+        if (!((volume.ct_from_voxel * voxel - Eigen::Vector3d(out[0], out[1], out[2])).norm() < 0.1))
+            throw DamagedFileError(path, "two readings of its geometry disagree by more than 0.1 mm", kCopyAgain);
+    }
+}
+
+template <class T>
+void copy_as(vtkDataArray* scalars, Volume& volume) {
+    const T* stored = static_cast<const T*>(scalars->GetVoidPointer(0));
+    std::transform(stored, stored + volume.values.size(), volume.values.begin(), [](T v) { return static_cast<float>(v); });
+}
+
+void copy_stored_values(vtkImageData* image, Volume& volume, const fs::path& path) {
+    vtkDataArray* scalars = image->GetPointData()->GetScalars();
+    const auto count = volume.index(0, 0, volume.size[2]);
+    std::array<int, 3> dimensions{};
+    image->GetDimensions(dimensions.data());
+    if (dimensions != volume.size || !scalars || scalars->GetNumberOfComponents() != 1 ||
+        static_cast<std::size_t>(scalars->GetNumberOfTuples()) != count)
+        throw DamagedFileError(path, "its pictures could not be unpacked", kCopyAgain);
+    volume.values.resize(count);
+    switch (scalars->GetDataType()) {
+        case VTK_UNSIGNED_SHORT: return copy_as<unsigned short>(scalars, volume);
+        case VTK_SHORT: return copy_as<short>(scalars, volume);
+        case VTK_UNSIGNED_CHAR: return copy_as<unsigned char>(scalars, volume);
+        default: break;
+    }
+    for (std::size_t i = 0; i < count; ++i)
+        volume.values[i] = static_cast<float>(scalars->GetComponent(static_cast<vtkIdType>(i), 0));
+}
+
+void note_geometry(const DicomSeries& series, Volume& volume) {
+    if (const double tilt = tilt_of(volume.ct_from_voxel); tilt > kTilted)
+        volume.notes.push_back(
+            fmt::format("the gantry was tilted by {:.1f} degrees: the slices stay where they were, sheared",
+                        tilt * 180 / std::numbers::pi));
+    for (const auto& slice : series.all_slices())
+        if (transfer_syntax_of(slice.transfer_syntax) == TransferSyntax::lossy) {
+            volume.notes.push_back("the pictures were compressed with loss");
+            return;
+        }
+}
+
+/// What a file is, for people: by its storage class (DICOM PS3.6 A), else by its modality.
+std::string words_of_class(const DicomFile& file) {
+    static const std::map<std::string, std::string> kWords = {
+        {"1.1", "a computed radiograph"},        {"3.1", "an ultrasound sequence"}, {"6.1", "an ultrasound picture"},
+        {"7", "a secondary capture"},            {"7.4", "a secondary capture"},    {"9.1.1", "an electrocardiogram"},
+        {"20", "a nuclear medicine image"},      {"66.4", "a segmentation"},        {"88.11", "a report"},
+        {"88.22", "a report"},                   {"88.33", "a report"},             {"88.59", "a list of key pictures"},
+        {"104.1", "a PDF"},                      {"128", "a PET image"},            {"481.2", "a radiotherapy dose"},
+        {"481.3", "a plan (RTSTRUCT)"},          {"481.5", "a radiotherapy plan"}};
+    const std::string before = "1.2.840.10008.5.1.4.1.1.";
+    if (file.storage_class.starts_with(before))
+        if (const auto words = kWords.find(file.storage_class.substr(before.size())); words != kWords.end()) return words->second;
+    return fmt::format("of modality \"{}\", storage class {}", file.modality, file.storage_class);
+}
+
+/// A localizer that a scanner put into the series of the slices is not one of them.
+int leave_localizers_aside(DicomSeries& series) {
+    const auto before = series.files.size();
+    if (std::any_of(series.files.begin(), series.files.end(), [](const DicomFile& f) { return !f.localizer; }))
+        std::erase_if(series.files, [](const DicomFile& f) { return f.localizer; });
+    return static_cast<int>(before - series.files.size());
+}
+
+}  // namespace
+
+Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
+    const bool is_folder = fs::is_directory(path);
+    const bool is_index = !is_folder && is_dicom_directory(path);
+    const fs::path folder = is_folder ? path : path.has_parent_path() ? path.parent_path() : fs::path(".");
+    DicomSeries series = choose_series(find_dicom(folder, is_folder || is_index ? kScanDepth : 1), path, wanted);
+    const int localizers = leave_localizers_aside(series);
+    for (const auto& file : series.files)
+        if (file.damaged) throw DamagedFileError(file.path, "is damaged or cut short in its header", kCopyAgain);
+    if (!series.is_volume())
+        throw InputError(path,
+                         "is no CT or MR volume but " + words_of_class(series.files.front()),
+                         "Give a series of CT or MR image objects.");
+    if (const auto fault = fault_of(series.all_slices())) throw InputError(path, fault->problem, fault->remedy);
+
+    vtkNew<vtkStringArray> names;
+    for (const auto& file : series.files) names->InsertNextValue(file.readable_as);
+    vtkNew<vtkDICOMReader> reader;
+    reader->SetFileNames(names);
+    reader->SetMemoryRowOrderToFileNative();
+    reader->AutoRescaleOff();
+    reader->UpdateInformation();
+    if (!reader->GetErrorCode()) reader->Update();
+    if (reader->GetErrorCode()) throw DamagedFileError(damaged_file_of(series, path), "is damaged or cut short", kCopyAgain);
+
+    std::vector<DicomSlice> slices;
+    std::vector<SliceValues> meaning;
+    for (const auto& [file, frame] : order_of(reader, series, path)) {
+        const DicomFile& of = series.files.at(file);
+        slices.push_back(of.slices.at(frame));
+        meaning.push_back({slices.back().slope, slices.back().intercept, of.has_padding, of.padding, of.padding_limit});
+    }
+    Volume volume;
+    volume.size = {slices[0].columns, slices[0].rows, static_cast<int>(slices.size())};
+    volume.ct_from_voxel = ct_from_voxel_of(slices);
+    volume.modality = series.modality;
+    volume.frame_of_reference_uid = slices[0].frame_of_reference_uid;
+    volume.source = fmt::format("DICOM series {}", series.uid);
+    if (localizers > 0)
+        volume.notes.push_back("left aside: " + counted(localizers, "localizer picture") + " of the series");
+    note_geometry(series, volume);
+    check_against_reader(reader, volume, path);
+    copy_stored_values(reader->GetOutput(), volume, path);
+    rescale(volume, meaning, series.files.front().rescale_type, slices.front().has_rescale);
+    make_right_handed(volume);
+    check_for_skin(volume, path);
+    return volume;
+}
+
+}  // namespace planlight

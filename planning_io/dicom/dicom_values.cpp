@@ -1,0 +1,116 @@
+#include "planning_io/dicom/dicom_values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+
+namespace planlight {
+namespace {
+
+constexpr float kAir_hu = -1000, kLeast_hu = -1024, kNoAirAbove_hu = -500;
+constexpr double kLeastCornerShare = 0.005;  ///< of a slice
+
+/// Marks of the pixels that hold what `wanted` says and are joined to the edge of the picture through others like them.
+std::vector<char> joined_to_edge(int columns, int rows, const std::function<bool(std::size_t)>& wanted) {
+    std::vector<char> marks(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows), 0);
+    std::vector<std::pair<int, int>> open;
+    const auto visit = [&](int i, int j) {
+        if (i < 0 || j < 0 || i >= columns || j >= rows) return;
+        const std::size_t at =
+            static_cast<std::size_t>(j) * static_cast<std::size_t>(columns) + static_cast<std::size_t>(i);
+        if (marks[at] || !wanted(at)) return;
+        marks[at] = 1;
+        open.emplace_back(i, j);
+    };
+    for (int i = 0; i < columns; ++i) visit(i, 0), visit(i, rows - 1);
+    for (int j = 0; j < rows; ++j) visit(0, j), visit(columns - 1, j);
+    while (!open.empty()) {
+        const auto [i, j] = open.back();
+        open.pop_back();
+        visit(i - 1, j), visit(i + 1, j), visit(i, j - 1), visit(i, j + 1);
+    }
+    return marks;
+}
+
+/// Marks of all slices' padding, of the stored values; empty when there is none.
+std::vector<char> padding_of(const Volume& volume, const std::vector<SliceValues>& slices) {
+    const std::size_t slab = volume.index(0, 0, 1);
+    std::vector<char> marks;
+    if (std::none_of(slices.begin(), slices.end(), [](const SliceValues& s) { return s.has_padding; })) return marks;
+    for (std::size_t k = 0; k < slices.size(); ++k) {
+        if (!slices[k].has_padding) {
+            marks.resize((k + 1) * slab, 0);
+            continue;
+        }
+        const float* stored = volume.values.data() + k * slab;
+        const auto low = static_cast<float>(slices[k].padding), high = static_cast<float>(slices[k].padding_limit);
+        const auto of_slice = joined_to_edge(volume.size[0], volume.size[1],
+                                             [&](std::size_t at) { return stored[at] >= low && stored[at] <= high; });
+        marks.insert(marks.end(), of_slice.begin(), of_slice.end());
+    }
+    return marks;
+}
+
+float least_of(const Volume& volume, const std::vector<char>& padding) {
+    float least = std::numeric_limits<float>::max();
+    for (std::size_t i = 0; i < volume.values.size(); ++i)
+        if (padding.empty() || !padding[i]) least = std::min(least, volume.values[i]);
+    return least;
+}
+
+/// Slope 1, intercept 0 and nothing below zero in a CT: stored values without their unit, not HU; nor is a CT without
+/// air.
+bool values_are_hu(const Volume& volume, float least, const std::vector<SliceValues>& slices,
+                   const std::string& rescale_type) {
+    if (volume.modality != "CT" || (!rescale_type.empty() && rescale_type != "HU")) return false;
+    const bool offset =
+        std::any_of(slices.begin(), slices.end(), [](const SliceValues& s) { return s.intercept != 0; });
+    return (offset || least < 0) && least <= kNoAirAbove_hu;
+}
+
+/// Exactly 0 HU, joined to the edge and more than a few pixels: no scanner measures water to the last digit outside of
+/// a head.
+std::size_t fill_corners(Volume& volume) {
+    const std::size_t slab = volume.index(0, 0, 1);
+    std::size_t filled = 0;
+    for (int k = 0; k < volume.size[2]; ++k) {
+        float* values = volume.values.data() + static_cast<std::size_t>(k) * slab;
+        const auto marks =
+            joined_to_edge(volume.size[0], volume.size[1], [&](std::size_t at) { return values[at] == 0; });
+        const auto count = static_cast<std::size_t>(std::count(marks.begin(), marks.end(), 1));
+        if (static_cast<double>(count) < kLeastCornerShare * static_cast<double>(slab)) continue;
+        for (std::size_t at = 0; at < slab; ++at)
+            if (marks[at]) values[at] = kAir_hu;
+        filled += count;
+    }
+    return filled;
+}
+
+}  // namespace
+
+void rescale(Volume& volume, const std::vector<SliceValues>& slices, const std::string& rescale_type,
+             bool has_rescale) {
+    const std::vector<char> padding = padding_of(volume, slices);
+    const std::size_t slab = volume.index(0, 0, 1);
+    for (std::size_t k = 0; k < slices.size(); ++k)
+        for (std::size_t i = k * slab; i < (k + 1) * slab; ++i)
+            volume.values[i] = static_cast<float>(volume.values[i] * slices[k].slope + slices[k].intercept);
+    const float least = least_of(volume, padding);
+    volume.is_hu = values_are_hu(volume, least, slices, rescale_type);
+    const auto padded = std::count(padding.begin(), padding.end(), 1);
+    for (std::size_t i = 0; i < padding.size(); ++i)
+        if (padding[i]) volume.values[i] = volume.is_hu ? kAir_hu : least;
+    if (padded > 0) volume.notes.push_back(fmt::format("{} voxels of padding were made air", padded));
+    if (volume.modality == "CT" && !has_rescale)
+        volume.notes.push_back("the CT has no rescale slope and intercept: 1 and 0 are used");
+    if (!volume.is_hu) return;
+    for (float& v : volume.values)
+        if (v < kLeast_hu) v = kLeast_hu;
+    if (const auto filled = fill_corners(volume); filled > 0)
+        volume.notes.push_back(
+            fmt::format("{} voxels of exactly 0 HU at the pictures' edges were made air: fill, not water", filled));
+}
+
+}  // namespace planlight

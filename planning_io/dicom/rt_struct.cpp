@@ -1,0 +1,145 @@
+#include "planning_io/dicom/rt_struct.h"
+
+#include <fmt/format.h>
+#include <vtkDICOMDictionary.h>
+#include <vtkDICOMItem.h>
+#include <vtkDICOMMetaData.h>
+#include <vtkDICOMParser.h>
+#include <vtkDICOMSequence.h>
+#include <vtkNew.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+
+#include "planning_io/dicom/dicom_nesting.h"
+#include "planning_io/files/sandboxed_process.h"
+#include "planning_io/files/safe_write.h"
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kCopyAgain = "Export the structure set again.";
+constexpr const char* kRtStructClass = "1.2.840.10008.5.1.4.1.1.481.3";
+
+std::string text(const vtkDICOMValue& value) {
+    std::string result = value.IsValid() ? value.AsUTF8String() : std::string();
+    while (!result.empty() && (result.back() == ' ' || result.back() == '\0')) result.pop_back();
+    return result;
+}
+
+std::vector<double> numbers(const vtkDICOMValue& value) {
+    std::vector<double> list(value.GetNumberOfValues());
+    for (std::size_t i = 0; i < list.size(); ++i) list[i] = value.GetDouble(i);
+    return list;
+}
+
+std::vector<RtRoi> rois_of(vtkDICOMMetaData* meta, const fs::path& file) {
+    const std::string kind = text(meta->Get(DC::SOPClassUID)), modality = text(meta->Get(DC::Modality));
+    if (kind != kRtStructClass)
+        throw InputError(file, "is DICOM of modality " + (modality.empty() ? "unknown" : modality) + ", not an RT Structure Set",
+                         modality == "SEG"
+                             ? "Give it to `planlight prepare --surface`, or export the plan's contours as RTSTRUCT."
+                             : "Export the plan as RT Structure Set.");
+    std::vector<RtRoi> rois;
+    std::map<int, std::size_t> by_number;
+    const vtkDICOMSequence sets = meta->Get(DC::StructureSetROISequence);
+    for (std::size_t i = 0; i < sets.GetNumberOfItems(); ++i) {
+        const vtkDICOMItem& item = sets.GetItem(i);
+        if (!by_number.emplace(item.Get(DC::ROINumber).AsInt(), i).second)
+            throw InputError(file, fmt::format("has two ROIs of the number {}", item.Get(DC::ROINumber).AsInt()), kCopyAgain);
+        rois.push_back({text(item.Get(DC::ROIName)),
+                        text(item.Get(DC::ROIDescription)),
+                        text(item.Get(DC::ReferencedFrameOfReferenceUID)),
+                        {},
+                        {}});
+    }
+    const vtkDICOMSequence drawn = meta->Get(DC::ROIContourSequence);
+    for (std::size_t i = 0; i < drawn.GetNumberOfItems(); ++i) {
+        const vtkDICOMItem& item = drawn.GetItem(i);
+        const auto at = by_number.find(item.Get(DC::ReferencedROINumber).AsInt());
+        if (at == by_number.end())
+            throw DamagedFileError(
+                file, fmt::format("has contours of an ROI {} that it does not name", item.Get(DC::ReferencedROINumber).AsInt()),
+                kCopyAgain);
+        RtRoi& roi = rois[at->second];
+        if (item.Get(DC::ROIDisplayColor).IsValid()) roi.colour = numbers(item.Get(DC::ROIDisplayColor));
+        const vtkDICOMSequence contours = item.Get(DC::ContourSequence);
+        for (std::size_t c = 0; c < contours.GetNumberOfItems(); ++c) {
+            const vtkDICOMItem& contour = contours.GetItem(c);
+            RtContour read{text(contour.Get(DC::ContourGeometricType)), numbers(contour.Get(DC::ContourData))};
+            const int points = contour.Get(DC::NumberOfContourPoints).AsInt();
+            if (static_cast<std::size_t>(3 * std::max(points, 0)) != read.numbers.size())
+                throw DamagedFileError(file,
+                                       fmt::format("ROI \"{}\", contour {}: announces {} points and holds {} numbers", roi.name,
+                                                   c + 1, points, read.numbers.size()),
+                                       kCopyAgain);
+            roi.contours.push_back(std::move(read));
+        }
+    }
+    return rois;
+}
+
+void parse(Parcel& parcel, const fs::path& file) {
+    if (!dicom_nests_to_its_end(read_whole(file))) throw DamagedFileError(file, "is damaged or cut short", kCopyAgain);
+    vtkNew<vtkDICOMMetaData> meta;
+    vtkNew<vtkDICOMParser> parser;
+    parser->SetFileName(file.c_str());
+    parser->SetMetaData(meta);
+    parser->Update();
+    if (parser->GetErrorCode() != 0) throw DamagedFileError(file, "is damaged or cut short", kCopyAgain);
+    const auto rois = rois_of(meta, file);
+    const vtkDICOMSequence frames = meta->Get(DC::ReferencedFrameOfReferenceSequence);
+    std::string frame = text(meta->Get(DC::FrameOfReferenceUID));
+    if (frames.GetNumberOfItems() > 0) frame = text(frames.GetItem(0).Get(DC::FrameOfReferenceUID));
+    parcel.put(frame);
+    parcel.put(static_cast<std::uint64_t>(rois.size()));
+    for (const RtRoi& roi : rois) {
+        for (const auto& said : {roi.name, roi.description, roi.frame_of_reference_uid}) parcel.put(said);
+        parcel.put(roi.colour);
+        parcel.put(static_cast<std::uint64_t>(roi.contours.size()));
+        for (const RtContour& contour : roi.contours) parcel.put(contour.type), parcel.put(contour.numbers);
+    }
+}
+
+std::vector<RtRoi> unpack(Parcel& parcel) {
+    std::vector<RtRoi> rois(parcel.get<std::uint64_t>());
+    for (RtRoi& roi : rois) {
+        roi.name = parcel.get_text();
+        roi.description = parcel.get_text();
+        roi.frame_of_reference_uid = parcel.get_text();
+        roi.colour = parcel.get_list<double>();
+        roi.contours.resize(parcel.get<std::uint64_t>());
+        for (RtContour& contour : roi.contours) contour.type = parcel.get_text(), contour.numbers = parcel.get_list<double>();
+    }
+    return rois;
+}
+
+}  // namespace
+
+bool is_rt_struct(const fs::path& file) {
+    std::string head(4096, '\0');
+    std::ifstream in(file, std::ios::binary);
+    in.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(in.gcount()));
+    return head.find(kRtStructClass) != std::string::npos;
+}
+
+RtStruct read_rt_struct(const fs::path& file) {
+    Parcel parcel = parse_in_child(file, {"DICOM file"}, [&](Parcel& p) { parse(p, file); });
+    RtStruct set;
+    set.frame_of_reference_uid = parcel.get_text();
+    set.rois = unpack(parcel);
+    if (set.rois.empty()) throw InputError(file, "names no ROI", "Export the structure set with the plan's contours.");
+    if (set.frame_of_reference_uid.empty()) set.frame_of_reference_uid = set.rois.front().frame_of_reference_uid;
+    for (const RtRoi& roi : set.rois)
+        if (!roi.frame_of_reference_uid.empty() && roi.frame_of_reference_uid != set.frame_of_reference_uid)
+            throw InputError(file, "ROI \"" + roi.name + "\" is in another frame of reference, " + roi.frame_of_reference_uid,
+                             "Export the ROIs of one CT.");
+    return set;
+}
+
+}  // namespace planlight

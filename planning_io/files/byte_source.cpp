@@ -1,0 +1,188 @@
+#include "planning_io/files/byte_source.h"
+
+#include <fmt/format.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kCopyAgain = "Copy or export the file again.";
+constexpr std::uint64_t kMostInflation = 1040;  // deflate's limit is 1032 : 1
+constexpr std::size_t kBlock = std::size_t{1} << 18;
+
+template <class T>
+float number_at(const unsigned char* at, bool swap) {
+    std::array<unsigned char, sizeof(T)> bytes;
+    std::memcpy(bytes.data(), at, sizeof(T));
+    if (swap) std::reverse(bytes.begin(), bytes.end());
+    return static_cast<float>(std::bit_cast<T>(bytes));
+}
+
+template <class T>
+void append(const std::vector<unsigned char>& bytes, std::size_t count, bool swap, std::vector<float>& values) {
+    for (std::size_t i = 0; i < count; ++i) values.push_back(number_at<T>(bytes.data() + i * sizeof(T), swap));
+}
+
+void append(VoxelType type, const std::vector<unsigned char>& bytes, std::size_t count, bool swap,
+            std::vector<float>& values) {
+    switch (type) {
+        case VoxelType::int8:
+            return append<std::int8_t>(bytes, count, swap, values);
+        case VoxelType::uint8:
+            return append<std::uint8_t>(bytes, count, swap, values);
+        case VoxelType::int16:
+            return append<std::int16_t>(bytes, count, swap, values);
+        case VoxelType::uint16:
+            return append<std::uint16_t>(bytes, count, swap, values);
+        case VoxelType::int32:
+            return append<std::int32_t>(bytes, count, swap, values);
+        case VoxelType::uint32:
+            return append<std::uint32_t>(bytes, count, swap, values);
+        case VoxelType::int64:
+            return append<std::int64_t>(bytes, count, swap, values);
+        case VoxelType::uint64:
+            return append<std::uint64_t>(bytes, count, swap, values);
+        case VoxelType::float32:
+            return append<float>(bytes, count, swap, values);
+        case VoxelType::float64:
+            return append<double>(bytes, count, swap, values);
+    }
+}
+
+}  // namespace
+
+struct ByteSource::Inflater {
+    z_stream stream{};
+    std::vector<unsigned char> block = std::vector<unsigned char>(kBlock);
+    bool at_end = false;
+    Inflater() { inflateInit2(&stream, 15 + 32); }  // gzip or zlib, told apart by their first bytes
+    ~Inflater() { inflateEnd(&stream); }
+    Inflater(const Inflater&) = delete;
+    Inflater& operator=(const Inflater&) = delete;
+};
+
+ByteSource::ByteSource(const fs::path& file, std::uint64_t offset, Packing packing) : file_(file) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error))
+        throw InputError(file, "is not a readable file", "Check the name of the file.");
+    const auto size = fs::file_size(file, error);
+    in_.open(file, std::ios::binary);
+    if (error || !in_) throw InputError(file, "cannot be opened", "Check the permissions of the file.");
+    if (offset > size)
+        throw DamagedFileError(file, fmt::format("has {} bytes, and its voxels would begin at byte {}", size, offset),
+                               kCopyAgain);
+    in_.seekg(static_cast<std::streamoff>(offset));
+    stored_bytes_ = size - offset;
+    if (packing == Packing::deflate) inflater_ = std::make_unique<Inflater>();
+}
+
+ByteSource::~ByteSource() = default;
+
+std::uint64_t ByteSource::upper_bound() const {
+    return inflater_ ? stored_bytes_ * kMostInflation : stored_bytes_;
+}
+
+std::size_t ByteSource::some(unsigned char* to, std::size_t bytes) {
+    if (!inflater_) {
+        in_.read(reinterpret_cast<char*>(to), static_cast<std::streamsize>(bytes));
+        return static_cast<std::size_t>(in_.gcount());
+    }
+    z_stream& z = inflater_->stream;
+    z.next_out = to;
+    z.avail_out = static_cast<uInt>(std::min(bytes, kBlock));
+    const uInt wanted = z.avail_out;
+    while (z.avail_out == wanted && !inflater_->at_end) {
+        if (z.avail_in == 0) {
+            in_.read(reinterpret_cast<char*>(inflater_->block.data()), static_cast<std::streamsize>(kBlock));
+            z.next_in = inflater_->block.data();
+            z.avail_in = static_cast<uInt>(in_.gcount());
+            if (z.avail_in == 0)
+                throw DamagedFileError(file_, "is cut short: its packed voxels have no end", kCopyAgain);
+        }
+        const int code = inflate(&z, Z_NO_FLUSH);
+        if (code == Z_STREAM_END)
+            inflater_->at_end = true;
+        else if (code != Z_OK && code != Z_BUF_ERROR)
+            throw DamagedFileError(file_, "is damaged: its packed voxels or their checksum are wrong", kCopyAgain);
+    }
+    return wanted - z.avail_out;
+}
+
+void ByteSource::read(void* to, std::size_t bytes) {
+    auto* at = static_cast<unsigned char*>(to);
+    for (std::size_t done = 0; done < bytes;) {
+        const std::size_t got = some(at + done, bytes - done);
+        if (got == 0)
+            throw DamagedFileError(file_, fmt::format("is cut short: {} bytes are missing", bytes - done), kCopyAgain);
+        done += got;
+    }
+}
+
+void ByteSource::skip(std::uint64_t bytes) {
+    std::vector<unsigned char> rest(static_cast<std::size_t>(std::min<std::uint64_t>(bytes, kBlock)));
+    for (; bytes > 0; bytes -= std::min<std::uint64_t>(bytes, rest.size()))
+        read(rest.data(), static_cast<std::size_t>(std::min<std::uint64_t>(bytes, rest.size())));
+}
+
+void ByteSource::finish(std::uint64_t allowed) {
+    std::vector<unsigned char> rest(kBlock);
+    std::uint64_t more = 0;
+    while (const std::size_t got = some(rest.data(), rest.size())) {
+        more += got;
+        if (more > allowed) throw DamagedFileError(file_, "holds more voxels than its header says", kCopyAgain);
+    }
+}
+
+std::size_t bytes_of(VoxelType type) {
+    switch (type) {
+        case VoxelType::int8:
+        case VoxelType::uint8:
+            return 1;
+        case VoxelType::int16:
+        case VoxelType::uint16:
+            return 2;
+        case VoxelType::int32:
+        case VoxelType::uint32:
+        case VoxelType::float32:
+            return 4;
+        case VoxelType::int64:
+        case VoxelType::uint64:
+        case VoxelType::float64:
+            return 8;
+    }
+    return 1;
+}
+
+std::vector<float> read_voxels(ByteSource& source, VoxelType type, bool big_endian, std::size_t count) {
+    const std::size_t each = bytes_of(type);
+    if (count > source.upper_bound() / each)
+        throw DamagedFileError(
+            source.file(), fmt::format("is cut short: it cannot hold the {} voxels of its header", count), kCopyAgain);
+    std::vector<float> values;
+    values.reserve(count);
+    std::vector<unsigned char> block(kBlock);
+    const bool swap = big_endian != (std::endian::native == std::endian::big);
+    while (values.size() < count) {
+        const std::size_t now = std::min(count - values.size(), kBlock / each);
+        source.read(block.data(), now * each);
+        append(type, block, now, swap, values);
+    }
+    source.finish(4096);
+    const auto odd = std::count_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); });
+    if (odd > 0)
+        throw DamagedFileError(source.file(), fmt::format("holds {} voxels that are not numbers", odd),
+                               "Replace them by the value of air, and save it again.");
+    return values;
+}
+
+}  // namespace planlight

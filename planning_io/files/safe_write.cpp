@@ -1,0 +1,152 @@
+#include "planning_io/files/safe_write.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+#include <random>
+
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kDiskRemedy = "Check the free space and the permissions of the folder, then write again.";
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& doing) {
+    const int code = errno;
+    if (code == ENOENT && !fs::exists(file.has_parent_path() ? file.parent_path() : fs::path(".")))
+        throw DiskError(file, doing + ": its folder does not exist",
+                        "Make the folder " + file.parent_path().string() + " first.");
+    throw DiskError(file, doing + (code ? std::string(": ") + std::strerror(code) : std::string()), kDiskRemedy);
+}
+
+/// A new empty file (or folder) beside `file`, with the permissions that the user's umask gives.
+fs::path make_temporary_beside(const fs::path& file, bool folder = false) {
+    std::random_device random;
+    for (int attempt = 0; attempt < 100; ++attempt) {
+        fs::path temporary = file;
+        temporary += ".part-" + std::to_string(random());
+        const int made = folder ? ::mkdir(temporary.c_str(), 0777)
+                                : ::open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+        if (made >= 0) {
+            if (!folder) ::close(made);
+            return temporary;
+        }
+        if (errno != EEXIST) refuse(file, "cannot be written");
+    }
+    refuse(file, "cannot be written, no free temporary name");
+}
+
+void sync(const fs::path& path, const fs::path& file) {
+    const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    if (fd < 0) refuse(file, "cannot be opened for syncing");
+    const int failed = ::fsync(fd);
+    const int code = errno;
+    ::close(fd);
+    errno = code;
+    if (failed && code != EINVAL) refuse(file, "cannot be synced to the disk");
+}
+
+void write_into(const fs::path& path, const fs::path& file, const std::function<void(std::ostream&)>& write) {
+    std::ofstream out(path, std::ios::binary | std::ios::trunc);
+    errno = 0;
+    if (out) write(out);
+    out.close();
+    if (!out) refuse(file, "cannot be written");
+}
+
+struct RemoveUnlessKept {
+    fs::path path;
+    bool kept = false;
+    ~RemoveUnlessKept() {
+        if (!kept) ::unlink(path.c_str());
+    }
+};
+
+/// Removes what is left there: the half-written folder, or the old one after an exchange.
+struct RemoveFolder {
+    fs::path path;
+    ~RemoveFolder() {
+        std::error_code ignored;
+        fs::remove_all(path, ignored);
+    }
+};
+
+}  // namespace
+
+void write_safely(const fs::path& file_or_link, const std::function<void(std::ostream&)>& write) {
+    std::error_code ignored;
+    const fs::path file = fs::is_symlink(file_or_link, ignored) ? fs::weakly_canonical(file_or_link, ignored) : file_or_link;
+    if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored)) {
+        if (fs::is_directory(file, ignored)) throw DiskError(file, "is a folder, not a file", "Name a file.");
+        return write_into(file, file, write);  // a pipe or a device is written to, never replaced
+    }
+    RemoveUnlessKept temporary{make_temporary_beside(file)};
+    write_into(temporary.path, file, write);
+    sync(temporary.path, file);
+    if (::rename(temporary.path.c_str(), file.c_str()) != 0) refuse(file, "cannot be put in place");
+    temporary.kept = true;
+    sync(file.has_parent_path() ? file.parent_path() : fs::path("."), file);
+}
+
+void write_safely(const fs::path& file, const std::string& content) {
+    write_safely(file, [&](std::ostream& out) { out.write(content.data(), static_cast<std::streamsize>(content.size())); });
+}
+
+void check_can_write(const fs::path& file) {
+    std::error_code ignored;
+    if (fs::is_directory(file, ignored)) throw DiskError(file, "is a folder, not a file", "Name a file.");
+    if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored)) return;
+    RemoveUnlessKept{make_temporary_beside(fs::is_symlink(file, ignored) ? fs::weakly_canonical(file, ignored) : file)};
+}
+
+void write_folder_safely(const fs::path& folder, bool replace, const std::function<void(const fs::path&)>& fill) {
+    fs::path target = folder;
+    if (!target.has_filename()) target = target.parent_path();  // "case/" means "case"
+    const bool there = fs::exists(target), empty = there && fs::is_directory(target) && fs::is_empty(target);
+    if (there && !fs::is_directory(target)) throw InputError(target, "is a file, not a folder", "Name another folder.");
+    if (there && !empty && !replace)
+        throw InputError(target, "exists already and is not empty",
+                         "Name a new folder, remove this one, or give --replace if the command has it.");
+    RemoveFolder temporary{make_temporary_beside(target, true)};
+    fill(temporary.path);
+    sync(temporary.path, target);
+    const bool exchange = there && !empty;
+    if (::renameat2(AT_FDCWD, temporary.path.c_str(), AT_FDCWD, target.c_str(), exchange ? RENAME_EXCHANGE : 0) != 0) {
+        if (!exchange || (errno != EINVAL && errno != ENOSYS)) refuse(target, "cannot be put in place");
+        RemoveFolder old{make_temporary_beside(target, true)};  // a file system that cannot exchange: two steps
+        if (::rename(target.c_str(), old.path.c_str()) != 0) refuse(target, "cannot be put in place");
+        if (::rename(temporary.path.c_str(), target.c_str()) != 0) {
+            ::rename(old.path.c_str(), target.c_str());
+            refuse(target, "cannot be put in place");
+        }
+    }
+    sync(target.has_parent_path() ? target.parent_path() : fs::path("."), target);
+}
+
+std::string read_whole(const fs::path& file) {
+    std::error_code ignored;
+    const auto status = fs::status(file, ignored);
+    if (!fs::exists(status)) throw InputError(file, "does not exist", "Check the name of the file.");
+    if (fs::is_directory(status)) throw InputError(file, "is a folder, not a file", "Name the file itself.");
+    if (!fs::is_regular_file(status)) throw InputError(file, "is a pipe or a device, not a file", "Copy its content to a file.");
+    std::ifstream in(file, std::ios::binary);
+    std::string content;
+    const auto size = fs::file_size(file, ignored);
+    if (!ignored) content.reserve(size);
+    std::array<char, 1 << 16> block{};
+    while (in.read(block.data(), block.size()) || in.gcount() > 0)
+        content.append(block.data(), static_cast<std::size_t>(in.gcount()));
+    if (!in.eof()) throw InputError(file, "cannot be read", "Check the permissions of the file and the disk it is on.");
+    return content;
+}
+
+}  // namespace planlight

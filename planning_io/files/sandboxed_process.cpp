@@ -1,0 +1,148 @@
+#include "planning_io/files/sandboxed_process.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdint>
+#include <cstdio>
+#include <new>
+#include <utility>
+
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr rlim_t kMaxMemoryBytes = rlim_t{4} << 30;
+constexpr rlim_t kMaxAnswerBytes = rlim_t{8} << 30;
+constexpr rlim_t kMaxOpenFiles = 4096;
+constexpr const char* kCopyAgain = "Copy or export it again from where it came from.";
+
+enum class Outcome : std::uint32_t { parsed, refused, damaged };
+
+void limit_this_process(const ChildLimits& limits) {
+    rlim_t already = 0;  // of address space that the parent brought along
+    if (std::FILE* status = std::fopen("/proc/self/statm", "r")) {
+        unsigned long pages = 0;
+        if (std::fscanf(status, "%lu", &pages) == 1) already = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
+        std::fclose(status);
+    }
+    const auto limit = [](auto what, rlim_t value) {
+        const rlimit both{value, value};
+        setrlimit(what, &both);
+    };
+    limit(RLIMIT_AS, already + kMaxMemoryBytes);
+    limit(RLIMIT_CPU, limits.processor_s);
+    limit(RLIMIT_FSIZE, kMaxAnswerBytes);
+    limit(RLIMIT_NOFILE, kMaxOpenFiles);
+    limit(RLIMIT_CORE, 0);
+    alarm(limits.wait_s);
+    if (const int nowhere = open("/dev/null", O_WRONLY); nowhere >= 0) {  // the parsers' own chatter
+        dup2(nowhere, STDERR_FILENO);
+        dup2(nowhere, STDOUT_FILENO);
+    }
+}
+
+[[noreturn]] void be_the_child(Parcel& parcel, const fs::path& file, const ChildLimits& limits,
+                               const std::function<void(Parcel&)>& parse) {
+    limit_this_process(limits);
+    const auto fail = [&](Outcome outcome, const std::string& problem, const std::string& remedy) {
+        parcel.empty();
+        parcel.put(outcome);
+        parcel.put(problem);
+        parcel.put(remedy);
+    };
+    try {
+        parcel.put(Outcome::parsed);
+        parse(parcel);
+    } catch (const Error& e) {
+        fail(e.exit_code == ExitCode::file_damaged ? Outcome::damaged : Outcome::refused, e.what(), e.remedy);
+    } catch (const std::bad_alloc&) {
+        fail(Outcome::refused, file.string() + ": needs more than 4 GiB of memory", limits.when_too_large);
+    } catch (const std::exception& e) {
+        fail(Outcome::damaged, file.string() + ": cannot be read (" + e.what() + ")", kCopyAgain);
+    }
+    _exit(0);
+}
+
+/// Throws what the child's end means, if it did not end well.
+void check_end(int status, const fs::path& file, const ChildLimits& limits) {
+    if (WIFSIGNALED(status)) {
+        const int signal = WTERMSIG(status);
+        const bool slow = signal == SIGXCPU || signal == SIGKILL || signal == SIGALRM;
+        throw DamagedFileError(file,
+                               slow ? "took longer to read than a sound " + limits.what + " does"
+                                    : "made the reader of a " + limits.what + " crash (signal " + std::to_string(signal) + ")",
+                               kCopyAgain);
+    }
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        throw DamagedFileError(file, "could not be read to its end", kCopyAgain);
+}
+
+}  // namespace
+
+Parcel::Parcel() : fd_(memfd_create("planlight-parcel", MFD_CLOEXEC)) {}
+Parcel::~Parcel() {
+    if (fd_ >= 0) close(fd_);
+}
+Parcel::Parcel(Parcel&& other) noexcept : fd_(std::exchange(other.fd_, -1)), left_(other.left_) {}
+
+void Parcel::empty() {
+    if (ftruncate(fd_, 0) != 0 || lseek(fd_, 0, SEEK_SET) != 0) throw std::runtime_error("the parcel cannot be emptied");
+}
+
+void Parcel::begin_reading() {
+    struct stat status {};
+    left_ = fstat(fd_, &status) == 0 && lseek(fd_, 0, SEEK_SET) == 0 ? static_cast<std::uint64_t>(status.st_size) : 0;
+}
+
+void Parcel::write_all(const void* from, std::size_t bytes) {
+    const auto* at = static_cast<const char*>(from);
+    while (bytes > 0) {
+        const ssize_t moved = write(fd_, at, bytes);
+        if (moved < 0 && errno == EINTR) continue;
+        if (moved <= 0) throw std::runtime_error("there is no room for what was read");
+        at += moved, bytes -= static_cast<std::size_t>(moved);
+    }
+}
+
+void Parcel::read_all(void* to, std::size_t bytes) {
+    if (bytes > left_) throw std::out_of_range("parcel");
+    auto* at = static_cast<char*>(to);
+    while (bytes > 0) {
+        const ssize_t moved = read(fd_, at, bytes);
+        if (moved < 0 && errno == EINTR) continue;
+        if (moved <= 0) throw std::out_of_range("parcel");
+        at += moved, bytes -= static_cast<std::size_t>(moved), left_ -= static_cast<std::uint64_t>(moved);
+    }
+}
+
+Parcel parse_in_child(const fs::path& file, const ChildLimits& limits, const std::function<void(Parcel&)>& parse) {
+    Parcel parcel;
+    const pid_t child = parcel.is_open() ? fork() : -1;
+    if (child < 0) throw DiskError(file, "no child process could be started to read it", "Close other programs and try again.");
+    if (child == 0) be_the_child(parcel, file, limits, parse);
+    int status = 0;
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
+    check_end(status, file, limits);
+    parcel.begin_reading();
+    if (parcel.left() < sizeof(Outcome)) throw DamagedFileError(file, "could not be read to its end", kCopyAgain);
+    const auto outcome = parcel.get<Outcome>();
+    if (outcome == Outcome::parsed) return parcel;
+    const std::string problem = parcel.get_text(), remedy = parcel.get_text();
+    if (outcome == Outcome::refused) throw InputError({}, problem, remedy);
+    const auto colon = problem.find(": ");  // the sentence begins with the file at fault
+    if (colon == std::string::npos) throw DamagedFileError(file, problem, remedy);
+    throw DamagedFileError(problem.substr(0, colon), problem.substr(colon + 2), remedy);
+}
+
+}  // namespace planlight

@@ -1,0 +1,160 @@
+#include "planning_io/plan/plan_import.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "planning_io/plan/plan_fcsv.h"
+#include "planning_io/plan/plan_file.h"
+#include "planning_io/plan/plan_markup.h"
+#include "planning_io/plan/plan_rtstruct.h"
+#include "planning_io/plan/plan_shapes.h"
+#include "planning_io/plan/plan_table.h"
+#include "planning_io/files/safe_write.h"
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLeastAcross_mm = 2;     // a plan for a head; one in metres is 0.2 "mm" across
+constexpr double kMostAcross_mm = 1000;
+
+std::string lower(std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+}
+
+bool ends(const fs::path& file, const char* ending) { return lower(file.filename().string()).ends_with(ending); }
+
+/// The minor version of the schema 1.0.x that the file names.
+int schema_minor(const JsonValue& root) {
+    if (!root.find("@schema"))
+        root.refuse("names no \"@schema\": it is no markups file of 3D Slicer",
+                    "Save the plan from 3D Slicer as .mrk.json.");
+    const std::string schema = root.at("@schema").text();
+    const std::string before = "markups-schema-v1.0.";
+    const auto at = schema.find(before);
+    if (at == std::string::npos || at + before.size() >= schema.size() ||
+        !std::isdigit(static_cast<unsigned char>(schema[at + before.size()])))
+        root.at("@schema").refuse("is \"" + schema + "\", not a 3D Slicer markups schema 1.0.x",
+                                  "Save the plan from 3D Slicer as .mrk.json.");
+    return schema[at + before.size()] - '0';
+}
+
+PlanImport read_markups(const std::string& content, const fs::path& file, const PlanImportSettings& settings) {
+    PlanImport read;
+    const Json json = parse_json(content, file);
+    const JsonValue root(json, file);
+    const int minor = schema_minor(root);
+    const JsonValue markups = root.at("markups");
+    for (std::size_t i = 0; i < markups.size(); ++i) {
+        append_markup(read.plan, markups[i], minor >= 3, plan_name_of(file));
+        settled_space(space_named(markups[i].at("coordinateSystem").text()), settings.space, file, "");
+    }
+    return read;
+}
+
+bool is_dicom(const std::string& content) { return content.size() >= 132 && content.compare(128, 4, "DICM") == 0; }
+
+/// Files that planning programs write beside their plans, and what to do with them.
+void refuse_known_others(const std::string& content, const fs::path& file) {
+    const auto refuse = [&](const std::string& what, const std::string& remedy) {
+        throw InputError(file, "is " + what + ", not a plan", remedy);
+    };
+    if (content.starts_with("PK\x03\x04")) refuse("a spreadsheet or another zip archive", "Save its table as CSV, or unpack it.");
+    if (content.starts_with("# Annotation file") || ends(file, ".acsv"))
+        refuse("an annotation of 3D Slicer 4, which says no frame", "Open it in 3D Slicer and save it as markups (.mrk.json).");
+    if (content.starts_with("<MRML") || ends(file, ".mrml") || ends(file, ".mrb"))
+        refuse("a scene of 3D Slicer", "Save the plan's markups from 3D Slicer as .mrk.json.");
+    if (ends(file, ".vtm")) refuse("a list of surfaces", "Name the .vtp files one by one.");
+}
+
+PlanImport read_one(const fs::path& file, const PlanImportSettings& settings) {
+    const std::string content = read_whole(file);
+    if (content.empty()) throw DamagedFileError(file, "is empty", "Export the plan again.");
+    refuse_known_others(content, file);
+    if (is_dicom(content) || ends(file, ".dcm")) return read_rtstruct(file, settings);  // old ones have no "DICM" at byte 128
+    if (ends(file, ".json")) return read_markups(content, file, settings);
+    if (ends(file, ".fcsv") || content.starts_with("# Markups fiducial file") || content.starts_with("# Fiducial List file"))
+        return read_fcsv(content, file, settings);
+    if (ends(file, ".csv") || ends(file, ".tsv") || ends(file, ".txt")) return read_trajectory_table(content, file, settings);
+    for (const char* ending : {".vtp", ".vtk", ".ply", ".obj", ".stl"})
+        if (ends(file, ending)) return read_shape_plan(file, settings);
+    throw InputError(file, "is of no kind that a plan is read from",
+                     "Give 3D Slicer markups (.mrk.json, .fcsv), DICOM RTSTRUCT (.dcm), a table of trajectories (.csv, .tsv), or "
+                     "lines (.vtp, .vtk, .ply, .obj).");
+}
+
+bool is_plan_name(const fs::path& file) {
+    for (const char* ending : {".mrk.json", ".fcsv", ".csv", ".tsv", ".dcm", ".vtp", ".vtk", ".ply", ".obj", ".stl"})
+        if (ends(file, ending)) return true;
+    return false;
+}
+
+/// Units that cannot be: more than one point, and all of them within 2 mm or more than a metre apart.
+void check_extent(const Plan& plan, const fs::path& file) {
+    const auto points = points_of(plan);
+    if (points.size() < 2) return;
+    Eigen::Vector3d low = points.front(), high = low;
+    for (const auto& p : points) {
+        low = low.cwiseMin(p);
+        high = high.cwiseMax(p);
+    }
+    const double across_mm = (high - low).norm();
+    if (across_mm == 0)
+        throw InputError(file, fmt::format("has all its {} points at one place", points.size()), "Export the plan again.");
+    if (!(across_mm >= kLeastAcross_mm) || across_mm > kMostAcross_mm)
+        throw InputError(file, fmt::format("the whole plan is {:.3g} mm across: its numbers cannot be millimetres", across_mm),
+                         "Export the plan in mm.");
+}
+
+}  // namespace
+
+std::string plan_name_of(const fs::path& file) {
+    std::string name = file.filename().string();
+    for (const char* ending : {".mrk.json", ".json"})
+        if (ends(file, ending)) return name.substr(0, name.size() - std::string(ending).size());
+    return file.stem().string();
+}
+
+void append(PlanImport& to, PlanImport more) {
+    if (!more.frame_of_reference_uid.empty() && !to.frame_of_reference_uid.empty() &&
+        more.frame_of_reference_uid != to.frame_of_reference_uid)
+        throw InputError({},
+                         "The plan's files are in two frames of reference, " + to.frame_of_reference_uid + " and " +
+                             more.frame_of_reference_uid,
+                         "Give the plan of one CT.");
+    if (to.frame_of_reference_uid.empty()) to.frame_of_reference_uid = more.frame_of_reference_uid;
+    const auto move = [](auto& into, auto& from) {
+        into.insert(into.end(), std::make_move_iterator(from.begin()), std::make_move_iterator(from.end()));
+    };
+    move(to.plan.trajectories, more.plan.trajectories);
+    move(to.plan.boreholes, more.plan.boreholes);
+    move(to.plan.osteotomy_lines, more.plan.osteotomy_lines);
+    move(to.plan.cut_planes, more.plan.cut_planes);
+    move(to.notes, more.notes);
+}
+
+PlanImport import_plan(const fs::path& file_or_folder, const PlanImportSettings& settings) {
+    if (!fs::is_directory(file_or_folder)) {
+        PlanImport read = read_one(file_or_folder, settings);
+        check_extent(read.plan, file_or_folder);
+        return read;
+    }
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(file_or_folder))
+        if (is_plan_name(entry.path())) files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    if (files.empty())
+        throw InputError(file_or_folder, "holds no plan file",
+                         "Save the plan's markups from 3D Slicer (.mrk.json) into this folder.");
+    PlanImport all;
+    for (const auto& file : files) append(all, read_one(file, settings));
+    check_extent(all.plan, file_or_folder);
+    return all;
+}
+
+}  // namespace planlight

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "planning_io/plan/plan_import.h"
+#include "planning_io/types/triangle_mesh.h"
+
+namespace planlight {
+
+/// The surface of one solid of an RT Structure Set: its closed contours on even, parallel slices, drawn into voxels of 1 mm
+/// (contours within contours are holes), as `surface_of_mask` gives it. `roi` is its name, and needed when several are solids.
+/// Slices without a contour are empty. Throws InputError, by name.
+TriangleMesh read_roi_surface(const std::filesystem::path& file, const std::string& roi, const PlanImportSettings& settings,
+                              std::vector<std::string>& notes);
+
+}  // namespace planlight

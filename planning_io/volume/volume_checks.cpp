@@ -1,0 +1,143 @@
+#include "planning_io/volume/volume_checks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "planning_io/files/header_text.h"
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMostMagnitude_mm = 1e4, kShortest_mm = 10, kLongest_mm = 3000;
+constexpr float kNoAirAbove_hu = -500;
+constexpr const char* kExportAgain = "Export the volume again from the scanner or the archive.";
+
+/// Every voxel, or every few of a large volume.
+std::vector<float> sample_of(const Volume& volume) {
+    const std::size_t step = std::max<std::size_t>(1, volume.values.size() / 2'000'000);
+    std::vector<float> sample;
+    for (std::size_t i = 0; i < volume.values.size(); i += step) sample.push_back(volume.values[i]);
+    return sample;
+}
+
+/// Between air and body: -300 HU, or for other values the level that parts them best (Otsu 1979).
+double air_level(const Volume& volume, const std::vector<float>& sample, float low, float high) {
+    if (volume.is_hu) return -300;
+    constexpr int kBins = 256;
+    std::vector<double> bins(kBins, 0);
+    const double width = (static_cast<double>(high) - low) / kBins;
+    for (const float v : sample) bins[static_cast<std::size_t>(std::clamp((v - low) / width, 0.0, kBins - 1.0))] += 1;
+    double all = 0, moment = 0, below = 0, moment_below = 0, best = -1;
+    int level = 0;
+    for (int b = 0; b < kBins; ++b)
+        all += bins[static_cast<std::size_t>(b)], moment += b * bins[static_cast<std::size_t>(b)];
+    for (int b = 0; b < kBins - 1; ++b) {
+        below += bins[static_cast<std::size_t>(b)], moment_below += b * bins[static_cast<std::size_t>(b)];
+        if (below == 0 || below == all) continue;
+        const double apart = moment_below / below - (moment - moment_below) / (all - below);
+        if (const double between = below * (all - below) * apart * apart; between > best) best = between, level = b;
+    }
+    return low + (level + 1) * width;
+}
+
+/// How many of the six sides have air in more than one voxel of a hundred.
+int sides_with_air(const Volume& volume, double level) {
+    const auto [nx, ny, nz] = volume.size;
+    const std::array<int, 3> n{nx, ny, nz};
+    int sides = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        for (const int end : {0, n[axis] - 1}) {
+            const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+            long air = 0;
+            std::array<int, 3> at{};
+            at[axis] = end;
+            for (at[u] = 0; at[u] < n[u]; ++at[u])
+                for (at[v] = 0; at[v] < n[v]; ++at[v]) air += volume.at(at[0], at[1], at[2]) < level;
+            sides += 100 * air > static_cast<long>(n[u]) * n[v];
+        }
+    return sides;
+}
+
+}  // namespace
+
+void check_grid(const Volume& volume, const fs::path& file, double tolerance) {
+    const Eigen::Matrix3d axes = volume.ct_from_voxel.linear();
+    if (!volume.ct_from_voxel.matrix().allFinite())
+        throw InputError(file, "has a geometry with a value that is not a number", kExportAgain);
+    for (int a = 0; a < 3; ++a) {
+        const double spacing = axes.col(a).norm();
+        const int count = volume.size[static_cast<std::size_t>(a)];
+        if (!(spacing > 0.01) || !(spacing < 20))
+            throw InputError(file, fmt::format("has a spacing of {:.4g} mm along axis {}", spacing, a + 1),
+                             "Check its units, or export it again.");
+        if (count < kFewestSlices)
+            throw InputError(file,
+                             fmt::format("has {} along axis {}, fewer than {}", counted(count, "slice"), a + 1, kFewestSlices),
+                             "Give the whole series of thin slices.");
+        if (spacing * count < kShortest_mm || spacing * count > kLongest_mm)
+            throw InputError(file,
+                             fmt::format("is {:.4g} mm long along axis {}, which is no head", spacing * count, a + 1),
+                             "Check its units, or export it again.");
+        for (int b = 0; b < a; ++b) {
+            const double cosine = std::abs(axes.col(a).normalized().dot(axes.col(b).normalized()));
+            if (cosine > tolerance)
+                throw InputError(file,
+                                 fmt::format("has axes {} and {} that are not perpendicular (the cosine between them "
+                                             "is {:.2g}, at most {} is right)",
+                                             b + 1, a + 1, cosine, tolerance),
+                                 "Give the DICOM series, or resample the volume to perpendicular axes.");
+        }
+    }
+    if (volume.ct_from_voxel.translation().cwiseAbs().maxCoeff() > kMostMagnitude_mm)
+        throw InputError(
+            file,
+            fmt::format("begins {:.0f} mm from the origin of its frame", volume.ct_from_voxel.translation().norm()),
+            "Check its units and its origin.");
+}
+
+void make_right_handed(Volume& volume) {
+    if (volume.ct_from_voxel.linear().determinant() > 0) return;
+    const auto slab = static_cast<std::ptrdiff_t>(volume.index(0, 0, 1));
+    const int last = volume.size[2] - 1;
+    for (int k = 0; k < last - k; ++k) {
+        const auto low = volume.values.begin() + k * slab;
+        std::swap_ranges(low, low + slab, volume.values.begin() + (last - k) * slab);
+    }
+    volume.ct_from_voxel.translation() += last * volume.ct_from_voxel.linear().col(2);
+    volume.ct_from_voxel.linear().col(2) *= -1;
+}
+
+void tell_modality_by_values(Volume& volume) {
+    const float least = *std::min_element(volume.values.begin(), volume.values.end());
+    volume.is_hu = least <= kNoAirAbove_hu;
+    volume.modality = volume.is_hu ? "CT" : "MR";
+    volume.notes.push_back(
+        fmt::format("the file does not say whether it is CT or MR: taken for {}, because its least value is {:.0f}",
+                    volume.modality, least));
+}
+
+void check_for_skin(const Volume& volume, const fs::path& file) {
+    const auto refuse = [&](const std::string& what) {
+        throw InputError(file, "has no skin in it: " + what, "Give a volume of the head with air around it.");
+    };
+    const std::vector<float> sample = sample_of(volume);
+    const auto [low, high] = std::minmax_element(sample.begin(), sample.end());
+    if (sample.empty() || *low == *high) refuse(fmt::format("every voxel is {:.0f}", sample.empty() ? 0 : *low));
+    const double level = air_level(volume, sample, *low, *high);
+    const auto body = std::count_if(sample.begin(), sample.end(), [&](float v) { return v >= level; });
+    const double share = 100.0 * static_cast<double>(body) / static_cast<double>(sample.size());
+    if (share < 0.2) refuse(fmt::format("only {:.2f} % of the voxels are denser than air ({:.0f})", share, level));
+    if (share > 99.8) refuse(fmt::format("only {:.2f} % of the voxels are air (below {:.0f})", 100 - share, level));
+    if (sides_with_air(volume, level) == 0)
+        refuse(fmt::format("the body fills the volume to all six sides ({:.0f} % of it is denser than {:.0f})", share,
+                           level));
+}
+
+}  // namespace planlight

@@ -1,0 +1,150 @@
+#include "registration/scan/check/check_sequence.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "registration/processor_clones.h"
+#include "registration/scan/check/sequence_fringes.h"
+#include "registration/scan/check/sequence_nesting.h"
+#include "registration/scan/check/sequence_samples.h"
+
+namespace planlight {
+namespace {
+
+using namespace sequence;
+
+void check_ends(const Samples& s, SequenceCheck& check) {
+    check.pixels = s.changing;
+    check.checked = s.changing >= kEnough;
+    constexpr double kMost = 0.05;
+    if (check.checked && share_of(s.not_white, s.changing) > kMost)
+        check.problems.push_back({s.white, "white is not the brightest", share_of(s.not_white, s.changing)});
+    if (check.checked && share_of(s.not_black, s.changing) > kMost)
+        check.problems.push_back({s.black, "black is not the darkest", share_of(s.not_black, s.changing)});
+}
+
+/// Marks the pixels whose neighbours in all four directions have the same difference of two frames: no edge, no blur.
+PLANLIGHT_CLONES void keep_flat(const std::uint8_t* a, const std::uint8_t* b, const std::uint8_t* next_a,
+                                const std::uint8_t* next_b, const std::int16_t* contrast, std::uint8_t* __restrict flat,
+                                std::size_t n) {
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto off = static_cast<std::int16_t>((next_a[i] - next_b[i]) - (a[i] - b[i]));
+        const auto allowed = static_cast<std::int16_t>(contrast[i] / 4 + 4),
+                   size = off < 0 ? static_cast<std::int16_t>(-off) : off;
+        flat[i] = static_cast<std::uint8_t>(flat[i] & (size <= allowed ? 1 : 0));
+    }
+}
+
+void check_pairs(const Samples& s, const Direction& direction, SequenceCheck& check) {
+    Bytes flat(s.lit);
+    for (std::size_t k = 0; k < direction.inverse.size(); ++k) {
+        const std::size_t gray = direction.gray[k], inverse = direction.inverse[k];
+        const Bytes &a = s.here[gray], &b = s.here[inverse], &white = s.here[s.white], &black = s.here[s.black];
+        std::fill(flat.begin(), flat.end(), std::uint8_t{1});
+        for (std::size_t side = 0; side < 4; ++side)
+            keep_flat(a.data(), b.data(), s.around[gray][side].data(), s.around[inverse][side].data(),
+                      s.contrast.data(), flat.data(), s.lit);
+        std::size_t looked = 0, wrong = 0, far_off = 0;  // far off: more than an edge that moved, or a camera's gamma, can make
+        for (std::size_t i = 0; i < s.lit; ++i) {
+            const int off = std::abs(a[i] + b[i] - white[i] - black[i]);
+            far_off += off > 0.6 * s.contrast[i] + 3 * s.noise_grey;
+            if (!flat[i]) continue;
+            ++looked;
+            wrong += off > 0.35 * s.contrast[i] + 3 * s.noise_grey;
+        }
+        constexpr double kMost = 0.02, kMostFarOff = 0.1;
+        if (looked < kEnough || share_of(wrong, looked) <= kMost) {  // fine stripes have no flat places
+            if (s.lit < kEnough || share_of(far_off, s.lit) <= kMostFarOff) continue;
+            wrong = far_off, looked = s.lit;
+        }
+        check.problems.push_back({gray,
+                                  fmt::format("{} and its inverse do not complete each other{}{}", s.name(gray),
+                                              explain(s, gray), explain(s, inverse)),
+                                  share_of(wrong, looked)});
+    }
+}
+
+/// How often a bit changes clearly between pixels and their neighbours to the right and below.
+struct Changes {
+    std::size_t changed = 0, looked = 0;
+    bool resolved = false;  ///< a bit too fine for the optics changes where noise will
+};
+
+Changes changes_of(const Samples& s, const Direction& direction, std::size_t bit) {
+    Changes changes;
+    std::size_t clear = 0;
+    for (std::size_t i = 0; i < s.lit; ++i) {
+        const int here = s.difference(direction, bit, [&](std::size_t frame) { return int{s.here[frame][i]}; });
+        clear += 2 * std::abs(here) > s.contrast[i];
+        for (const std::size_t side : {std::size_t{1}, std::size_t{3}}) {
+            if ((side == 1 ? s.contrast_right : s.contrast_below)[i] < kLit_grey) continue;
+            const int there =
+                s.difference(direction, bit, [&](std::size_t frame) { return int{s.around[frame][side][i]}; });
+            ++changes.looked;
+            changes.changed +=
+                (here > 0) != (there > 0) && std::min(std::abs(here), std::abs(there)) * 4 > s.contrast[i];
+        }
+    }
+    changes.resolved = share_of(clear, s.lit) > 0.6;
+    return changes;
+}
+
+/// Of two bits the finer one changes more often.
+void check_order(const Samples& s, const Direction& direction, SequenceCheck& check) {
+    const std::size_t bits = direction.gray.size();
+    std::vector<Changes> changes;
+    double lines = 0;  // the finest bit changes every other half period; the one before half as often, and so on
+    for (std::size_t k = 0; k < bits; ++k) {
+        changes.push_back(changes_of(s, direction, k));
+        lines = std::max(lines, static_cast<double>(changes[k].changed));
+    }
+    for (std::size_t k = 0; k + 1 < bits; ++k) {
+        const double expected = lines / std::pow(2.0, static_cast<double>(bits - 1 - k));
+        // Too few stripes over the surface to count on.
+        if (expected < lines / 32 || expected < 60 || !changes[k + 1].resolved) continue;
+        if (static_cast<double>(changes[k].changed) > 1.25 * static_cast<double>(changes[k + 1].changed))
+            check.problems.push_back(
+                {direction.gray[k],
+                 fmt::format("{} has finer stripes than {}", s.name(direction.gray[k]), s.name(direction.gray[k + 1])),
+                 share_of(changes[k].changed, changes[k].looked)});
+    }
+}
+
+/// A Gray code that has no fringes, or no inverses, to be judged by.
+bool judges_itself(const Samples& s) {
+    return std::any_of(s.directions.begin(), s.directions.end(), [](const Direction& d) {
+        return !d.gray.empty() && (d.phase.empty() || d.inverse.empty());
+    });
+}
+
+}  // namespace
+
+SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes) {
+    return check_sequence(frames, stripes, stripe_sequence(stripes));
+}
+
+SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes,
+                             const std::vector<StripePattern>& patterns, bool patchy) {
+    const Samples samples = gather_samples(frames, stripes, patterns);
+    SequenceCheck check;
+    check_ends(samples, check);
+    check.checked = check.checked && (samples.lit >= kEnough || !check.problems.empty());
+    if (!check.checked || !check.problems.empty()) return check;
+    for (const Direction& direction : samples.directions) {
+        std::vector<std::vector<Fringe>> fringes{fringes_of(samples, direction.phase)};
+        for (const auto& phases : direction.further) fringes.push_back(fringes_of(samples, phases));
+        check_pairs(samples, direction, check);
+        if (!direction.phase.empty()) check_fringes(samples, direction.phase, fringes[0], check);
+        for (std::size_t k = 0; k < direction.further.size(); ++k)
+            check_fringes(samples, direction.further[k], fringes[k + 1], check);
+        check_frequencies(samples, direction, fringes, check);
+        check_parity(samples, direction, fringes[0], check);
+        if (!patchy) check_order(samples, direction, check);
+    }
+    if (judges_itself(samples)) check_nesting(frames, samples, check);
+    return check;
+}
+
+}  // namespace planlight

@@ -1,0 +1,42 @@
+#include "registration/scan/decode/gray_code.h"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "registration/scan/decode/decode_gray_pairs.h"
+
+namespace planlight {
+namespace {
+
+int bits_for(int size) {
+    int bits = 1;
+    while ((1 << bits) < size) ++bits;
+    return bits;
+}
+
+}  // namespace
+
+std::vector<StripePattern> gray_code_patterns(const StripeSettings& stripes) {
+    using Kind = StripePattern::Kind;
+    std::vector<StripePattern> patterns{{Kind::white, false, 0, "white"}, {Kind::black, false, 0, "black"}};
+    for (const bool along_rows : {false, true}) {
+        if (along_rows && !stripes.rows) continue;
+        const int bits = bits_for(along_rows ? stripes.height : stripes.width);
+        for (StripePattern& pattern : gray_patterns(bits, along_rows, stripes.inverse)) patterns.push_back(std::move(pattern));
+    }
+    return patterns;
+}
+
+DecodedView decode_gray_code(std::span<const GrayImage> frames, int projector_width, int projector_height) {
+    const int column_bits = bits_for(projector_width), row_bits = bits_for(projector_height);
+    if (frames.size() != static_cast<std::size_t>(2 + 2 * column_bits + 2 * row_bits))
+        throw std::invalid_argument(
+            fmt::format("decode_gray_code: {} frames, {} are needed", frames.size(), 2 + 2 * column_bits + 2 * row_bits));
+    const auto column_frames = static_cast<std::size_t>(2 * column_bits);
+    return decode_gray_pairs({frames[0], frames[1], frames.subspan(2, column_frames), frames.subspan(2 + column_frames),
+                              projector_width, projector_height});
+}
+
+}  // namespace planlight

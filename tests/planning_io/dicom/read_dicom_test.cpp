@@ -1,0 +1,163 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "planning_io/dicom/dicom_slices.h"
+#include "planning_io/volume/read_volume.h"
+#include "planning_io/files/safe_write.h"
+#include "planning_io/types/error.h"
+#include "tests/planning_io/synthetic_series.h"
+#include "tests/support/test_data.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+
+/// 20 slices of 1.5 mm with a gantry tilted by `shear` mm in y for each slice.
+std::vector<DicomSlice> a_stack(double shear_mm = 0) {
+    std::vector<DicomSlice> slices;
+    for (int k = 0; k < 20; ++k) {
+        DicomSlice& slice = slices.emplace_back();
+        slice.file = "slice" + std::to_string(k);
+        slice.position_in_ct = {-100, -120 + shear_mm * k, 7 + 1.5 * k};
+        slice.row_direction = Vector3d::UnitX();
+        slice.column_direction = Vector3d::UnitY();
+        slice.column_spacing_mm = 0.5;
+        slice.row_spacing_mm = 0.6;
+        slice.columns = 512;
+        slice.rows = 400;
+    }
+    return slices;
+}
+
+std::string problem(const std::vector<DicomSlice>& slices) {
+    const auto fault = fault_of(slices);
+    return fault ? fault->problem : "";
+}
+
+TEST(DicomSlices, AnEvenStackInAnyOrderIsAVolumeAndATiltIsKept) {
+    auto slices = a_stack();
+    std::reverse(slices.begin() + 3, slices.end());
+    EXPECT_EQ(problem(slices), "");
+    EXPECT_EQ(problem(a_stack(0.4)), "");
+    const Eigen::Affine3d ct_from_voxel = ct_from_voxel_of(a_stack(0.4));
+    EXPECT_LT((ct_from_voxel * Vector3d(10, 20, 5) - Vector3d(-100 + 5, -120 + 12 + 2, 7 + 7.5)).norm(), 1e-9);
+}
+
+class DicomFolder : public ::testing::Test {
+protected:
+    /// A copy of a third-party series that may be spoilt; skips without it.
+    bool copy(const char* name) {
+        const auto series = test::third_party_data(name);
+        if (!series) return false;
+        for (const auto& entry : fs::directory_iterator(*series)) {
+            if (!entry.is_regular_file()) continue;
+            const fs::path copy = folder_.path() / entry.path().filename();
+            fs::copy_file(entry.path(), copy);
+            fs::permissions(copy, fs::perms::owner_all);
+            if (fs::file_size(copy) > 100000) files_.push_back(copy);
+        }
+        std::sort(files_.begin(), files_.end());
+        return true;
+    }
+    test::TemporaryFolder folder_;
+    std::vector<fs::path> files_;
+};
+
+TEST_F(DicomFolder, PhantomWithoutTiltIsHuAndRightHanded) {
+    if (!copy("ct/philips_skull_phantom/plain_5mm")) GTEST_SKIP() << "the phantom is not here";
+    const Volume volume = read_volume(folder_.path());
+    EXPECT_EQ(volume.modality, "CT");
+    EXPECT_TRUE(volume.is_hu);
+    EXPECT_GT(volume.ct_from_voxel.linear().determinant(), 0);
+    EXPECT_NEAR(volume.spacing_mm().z(), 5, 0.01);
+    EXPECT_LE(*std::min_element(volume.values.begin(), volume.values.end()), -900) << "air";
+    EXPECT_FALSE(volume.frame_of_reference_uid.empty());
+    EXPECT_EQ(hash_of(read_volume(files_.front())), hash_of(volume)) << "any file of the series stands for it";
+}
+
+TEST_F(DicomFolder, AMissingADoubleAndACutSliceAreRefused) {
+    if (!copy("ct/philips_skull_phantom/plain_5mm")) GTEST_SKIP() << "the phantom is not here";
+    ASSERT_GT(files_.size(), 18u);
+    const fs::path middle = files_[files_.size() / 2];
+    const std::string whole = read_whole(middle);
+    EXPECT_NO_THROW(read_volume(folder_.path()));
+    fs::remove(middle);
+    EXPECT_THROW(read_volume(folder_.path()), InputError);
+    write_safely(middle, whole);
+    write_safely(folder_.path() / "again", whole);
+    EXPECT_THROW(read_volume(folder_.path()), InputError);
+    fs::remove(folder_.path() / "again");
+    for (const double part : {0.004, 0.3, 0.95}) {
+        write_safely(middle, whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size()))));
+        EXPECT_THROW(read_volume(folder_.path()), Error) << "cut at " << part;
+    }
+}
+
+TEST(DicomThirdParty, GantryTiltIsKeptAsShear) {
+    const auto series = test::third_party_data("ct/philips_skull_phantom/tilt_minus18p5");
+    if (!series) GTEST_SKIP() << "the phantom is not here";
+    const Volume volume = read_volume(*series);
+    const Eigen::Matrix3d axes = volume.ct_from_voxel.linear().colwise().normalized();
+    const double tilt_deg = std::acos(axes.col(0).cross(axes.col(1)).dot(axes.col(2))) * 180 / 3.14159265358979;
+    EXPECT_NEAR(tilt_deg, 18.5, 0.1);  // the gantry's angle as the scanner wrote it
+    EXPECT_GT(volume.ct_from_voxel.linear().determinant(), 0);
+}
+
+TEST(DicomThirdParty, StoredValuesWithoutAnOffsetAreNotCalledHu) {
+    const auto series = test::third_party_data("ct/slicer_cthead_dicom");
+    if (!series) GTEST_SKIP() << "the series is not here";
+    const Volume volume = read_volume(*series);
+    EXPECT_EQ(volume.modality, "CT");
+    EXPECT_FALSE(volume.is_hu);
+    EXPECT_GT(volume.ct_from_voxel.linear().determinant(), 0);
+}
+
+TEST(DicomThirdParty, BadFilesAreRefusedInWordsAndNeverCrashUs) {
+    const auto folder = test::third_party_data("dicom_bad/single_files");
+    if (!folder) GTEST_SKIP() << "the bad files are not here";
+    int read = 0, refused = 0;
+    for (const auto& entry : fs::directory_iterator(*folder)) {
+        if (!entry.is_regular_file() || refused > 25) continue;
+        const test::TemporaryFolder alone;
+        const fs::path file = alone.path() / entry.path().filename();
+        fs::copy_file(entry.path(), file);
+        try {
+            read_volume(file);
+            ++read;
+        } catch (const Error& e) {
+            ++refused;
+            EXPECT_FALSE(e.remedy.empty()) << entry.path();
+        }
+    }
+    EXPECT_EQ(read, 0) << "a single picture is no volume";
+    EXPECT_GT(refused, 10);
+}
+
+/// Frames are looked up one by one: the work must grow with their number, not with its square, or the child's limit is
+/// met.
+TEST(EnhancedDicom, SixHundredFramesAreWithinTheChildsLimits) {
+    const test::TemporaryFolder folder;
+    test::Grid grid;
+    grid.size[2] = 600;
+    grid.ct_from_voxel.linear().col(2) *= 24.0 / 600;
+    test::write_series({test::enhanced_object(grid)}, folder.path());
+    const Volume volume = read_volume(folder.path());
+    EXPECT_EQ(volume.size[2], 600);
+    EXPECT_NEAR(volume.spacing_mm().z(), 0.16, 1e-6);
+}
+
+TEST(DicomRefusals, AFolderWithoutDicomIsRefused) {
+    const test::TemporaryFolder folder;
+    EXPECT_THROW(read_volume(folder.path()), InputError);
+    write_safely(folder.path() / "notes.txt", "nothing");
+    EXPECT_THROW(read_volume(folder.path()), InputError);
+    EXPECT_THROW(read_volume(folder.path() / "notes.txt"), InputError);
+}
+
+}  // namespace
+}  // namespace planlight

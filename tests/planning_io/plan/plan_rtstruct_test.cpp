@@ -1,0 +1,120 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "planning_io/plan/plan_rtstruct.h"
+#include "planning_io/files/safe_write.h"
+#include "planning_io/types/error.h"
+#include "tests/planning_io/plan_facts.h"
+#include "tests/support/test_data.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kData = fs::path(PLANLIGHT_SOURCE_DIR) / "tests" / "data" / "plans";
+const RtStructIdentity kIdentity{"a1b2c3d4", "1.2.826.0.1.3680043.8.498.7", "2026-11-21T14:30:00Z"};
+const PlanImportSettings kSameCt{{}, kIdentity.frame_of_reference_uid};
+
+std::string refusal(const fs::path& file, const PlanImportSettings& settings) {
+    try {
+        import_plan(file, settings);
+    } catch (const Error& e) {
+        return std::string(e.what()) + " " + e.remedy;
+    }
+    return {};
+}
+
+/// A plan whose names DICOM can hold: not empty, at most 64 characters, no backslash.
+Plan dicom_plan(unsigned seed) {
+    Plan plan = test::random_plan(seed);
+    int number = 0;
+    const auto rename = [&](auto& items) {
+        for (auto& item : items) item.name = "item ä " + std::to_string(++number);
+    };
+    rename(plan.trajectories);
+    rename(plan.boreholes);
+    rename(plan.osteotomy_lines);
+    rename(plan.cut_planes);
+    return plan;
+}
+
+TEST(PlanRtStruct, RandomPlansComeBackToTheDigitsThatDicomHas) {
+    const test::TemporaryFolder folder;
+    for (unsigned seed = 1; seed <= 40; ++seed) {
+        const Plan plan = dicom_plan(seed);
+        write_plan_rtstruct(plan, kIdentity, folder.path() / "plan.dcm");
+        const PlanImport read = import_plan(folder.path() / "plan.dcm", kSameCt);
+        EXPECT_TRUE(read.notes.empty());
+        EXPECT_EQ(read.frame_of_reference_uid, kIdentity.frame_of_reference_uid);
+        test::expect_same(plan, read.plan, 1e-9, 0.5 / 255 + 1e-6);  // 16 characters a number, a byte a colour
+        if (testing::Test::HasFailure()) FAIL() << "seed " << seed;
+    }
+}
+
+TEST(PlanRtStruct, AnotherFrameOfReferenceIsRefusedWithBothNames) {
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.path() / "plan.dcm";
+    write_plan_rtstruct(dicom_plan(1), kIdentity, file);
+    const std::string other = refusal(file, {{}, "1.2.3"});
+    EXPECT_NE(other.find(kIdentity.frame_of_reference_uid), std::string::npos) << other;
+    EXPECT_NE(other.find("1.2.3"), std::string::npos) << other;
+    EXPECT_NE(refusal(file, {{}, ""}).find("--accept-frame " + kIdentity.frame_of_reference_uid), std::string::npos);
+    EXPECT_NE(refusal(file, {Space::ras, kIdentity.frame_of_reference_uid}).find("always LPS"), std::string::npos);
+    const PlanImport unchecked = import_plan(file);
+    ASSERT_EQ(unchecked.notes.size(), 1U);
+    EXPECT_NE(unchecked.notes[0].find("not checked"), std::string::npos);
+    EXPECT_THROW(write_plan_rtstruct(dicom_plan(1), {"code", "", ""}, folder.path() / "none.dcm"), InputError);
+    EXPECT_FALSE(fs::exists(folder.path() / "none.dcm"));
+}
+
+TEST(PlanRtStruct, ACutOrFlippedFileNeverCrashesTheProgramAndACutOneIsRefused) {
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.path() / "plan.dcm";
+    write_plan_rtstruct(dicom_plan(5), kIdentity, file);
+    const std::string whole = read_whole(file);
+    for (std::size_t part = 1; part < 40; ++part) {
+        write_safely(folder.path() / "cut.dcm", whole.substr(0, whole.size() * part / 40));
+        EXPECT_FALSE(refusal(folder.path() / "cut.dcm", kSameCt).empty()) << part;
+    }
+    write_safely(folder.path() / "long.dcm", whole + whole.substr(400, 9));
+    EXPECT_FALSE(refusal(folder.path() / "long.dcm", kSameCt).empty());
+    for (std::size_t i = 140; i < whole.size(); i += whole.size() / 60) {
+        std::string flipped = whole;
+        flipped[i] = static_cast<char>(flipped[i] ^ 0x24);
+        write_safely(folder.path() / "flipped.dcm", flipped);
+        EXPECT_NO_FATAL_FAILURE(refusal(folder.path() / "flipped.dcm", kSameCt));  // anything but another exception, or the end
+    }
+}
+
+TEST(PlanRtStruct, RealFilesAreReadOrRefusedWithTheReason) {
+    // The patient's contour on three slices is a solid; both isocentres lie at the origin.
+    EXPECT_NE(refusal(kData / "pydicom_rtstruct.dcm", {}).find("all its 2 points at one place"), std::string::npos);
+    EXPECT_NE(refusal(kData / "pydicom_rtplan_truncated.dcm", {}).find("damaged or cut short"), std::string::npos);
+    const auto file = test::third_party_data("plans/dicompyler_rtstruct_ct/rtss.dcm");
+    if (!file) GTEST_SKIP() << "third-party plans are not here";
+    const PlanImport read = import_plan(*file, {{}, "2.16.840.1.113662.2.12.0.3057.1241703565.36"});
+    EXPECT_EQ(read.plan.size() + read.notes.size(), 11U);  // ten ROIs, of which one has two points or contours
+    std::string notes;
+    for (const auto& note : read.notes) notes += note + "\n";
+    EXPECT_NE(notes.find("ROI \"Areola\" has no contours"), std::string::npos) << notes;
+    EXPECT_NE(notes.find("ROI \"BODY\" has contours at 98 heights: a solid"), std::string::npos) << notes;
+}
+
+TEST(PlanRtStruct, DcmtkReadsWhatIsWritten) {
+    if (std::system("command -v dcmdump >/dev/null 2>&1") != 0) GTEST_SKIP() << "dcmtk is not installed";
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.path() / "plan.dcm", dump = folder.path() / "dump.txt";
+    const Plan plan = dicom_plan(2);
+    write_plan_rtstruct(plan, kIdentity, file);
+    ASSERT_EQ(std::system(("dcmdump -q '" + file.string() + "' > '" + dump.string() + "' 2>&1").c_str()), 0);
+    const std::string text = read_whole(dump);
+    std::size_t names = 0;
+    for (auto at = text.find("ROIName"); at != std::string::npos; at = text.find("ROIName", at + 1)) ++names;
+    EXPECT_EQ(names, plan.size());
+    EXPECT_EQ(text.find("E: "), std::string::npos) << text.substr(0, 500);
+}
+
+}  // namespace
+}  // namespace planlight

@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "registration/matching/register_patient.h"
+#include "tests/registration/matching/ct_head_scene.h"
+#include "tests/registration/matching/matching_scenes.h"
+
+namespace planlight::test {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Front, half left, half right, left, from the CT's middle, 0.9 m away.
+PointCloud ct_view(const CtHead& head, unsigned i, double width_mm, int points) {
+    static const std::vector<Vector3d> kDirections{{0.1, -1, 0.15}, {0.8, -0.7, 0.1}, {-0.75, -0.7, 0.2}, {1, -0.25, 0.1}};
+    const Vector3d size(head.volume.size[0], head.volume.size[1], head.volume.size[2]);
+    const Vector3d middle = head.volume.ct_from_voxel * Vector3d(0.5 * size);
+    return scan_of_ct(head.volume, middle + 900 * kDirections[i % kDirections.size()].normalized(), width_mm, points, i);
+}
+
+struct Trial {
+    double error_mm, start_error_mm, match_s, icp_s, share;
+    Verdict verdict;
+    std::string reasons;
+};
+
+Trial trial(const CtHead& head, unsigned i, double width_mm, double noise_mm, double strays) {
+    const RigidTransform rig_from_ct = random_pose(1000 + i);
+    const PointCloud cloud = spoiled(moved(ct_view(head, i, width_mm, 20000), rig_from_ct), noise_mm, strays, i);
+    const RegistrationResult result = register_patient(cloud, head.lut);
+    std::string reasons;
+    for (const auto& reason : result.reasons) reasons += reason + "; ";
+    const RigidTransform truth = rig_from_ct.inverse();
+    return {target_error_mm(result.patient_from_ct.inverse(), truth, cloud),
+            target_error_mm(result.initial_patient_from_ct.inverse(), truth, cloud), result.initial_match_s, result.refine_s,
+            result.inlier_fraction, result.verdict, reasons};
+}
+
+std::string spread(const std::string& name, std::vector<double> values) {
+    std::sort(values.begin(), values.end());
+    const auto n = values.size();
+    return fmt::format("  {}: median {:.3f}, 95 % {:.3f}, worst {:.3f}\n", name, values[n / 2],
+                       values[std::min(n - 1, n * 95 / 100)], values[n - 1]);
+}
+
+TEST(CtHead, IsFoundFromTwentyOfTwentyPoses) {
+    const CtHead* head = ct_head();
+    if (!head) GTEST_SKIP() << "the package invesalius-examples is not installed";
+    for (unsigned i = 0; i < 20; ++i) {
+        const Trial t = trial(*head, i, 190, 0.3 + 0.1 * (i % 3), 0.05 + 0.1 * (i % 2));
+        // The decimated mesh (0.15 mm) and the 2 mm distance field stand between the scan and the table.
+        EXPECT_LT(t.error_mm, 0.5) << i;
+        EXPECT_NE(t.verdict, Verdict::no) << i << ": " << t.reasons;
+    }
+}
+
+TEST(CtHead, MirroredIsNotAYes) {
+    const CtHead* head = ct_head();
+    if (!head) GTEST_SKIP() << "the package invesalius-examples is not installed";
+    for (unsigned i = 0; i < 4; ++i) {
+        PointCloud cloud = ct_view(*head, i, 190, 12000);
+        for (auto& p : cloud.points_in_rig) p.x() = -p.x();
+        for (auto& n : cloud.normals_in_rig) n.x() = -n.x();
+        const RegistrationResult result = register_patient(spoiled(moved(cloud, random_pose(i)), 0.4, 0.1, i), head->lut);
+        EXPECT_NE(result.verdict, Verdict::yes) << i << " mirror ratio " << result.mirror_ratio;
+    }
+}
+
+/// The figures of the README: `matching_test --gtest_also_run_disabled_tests --gtest_filter=*Figures*`.
+TEST(CtHead, DISABLED_Figures) {
+    const CtHead* head = ct_head();
+    if (!head) GTEST_SKIP() << "the package invesalius-examples is not installed";
+    for (const auto& [width_mm, noise_mm, strays] :
+         {std::tuple{190., 0.3, 0.05}, {190., 0.5, 0.25}, {140., 0.4, 0.15}, {100., 0.4, 0.15}}) {
+        std::vector<double> errors, starts, match_s, icp_s;
+        int found = 0, verdicts[3] = {}, wrong_yes = 0;
+        std::string reasons;
+        for (unsigned i = 0; i < 40; ++i) {
+            const Trial t = trial(*head, i, width_mm, noise_mm, strays);
+            found += t.error_mm < 2;
+            ++verdicts[static_cast<int>(t.verdict)];
+            wrong_yes += t.verdict == Verdict::yes && t.error_mm > 1;
+            errors.push_back(t.error_mm);
+            starts.push_back(t.start_error_mm);
+            match_s.push_back(t.match_s);
+            icp_s.push_back(t.icp_s);
+            if (t.verdict != Verdict::yes) reasons += fmt::format("    {}: {:.2f} mm, {}\n", i, t.error_mm, t.reasons);
+        }
+        fmt::print("{} mm wide, noise {} mm, {:.0f} % strays: found {}/40, yes {} ask {} no {}, wrong yes {}\n",
+                   width_mm, noise_mm, 100 * strays, found, verdicts[0], verdicts[1], verdicts[2], wrong_yes);
+        fmt::print("{}{}{}{}", spread("error at targets 60 mm deep, mm", errors), spread("same before the ICP, mm", starts),
+                   spread("initial match, s", match_s), spread("ICP, s", icp_s));
+        if (std::getenv("PLANLIGHT_REASONS")) fmt::print("{}", reasons);
+    }
+}
+
+}  // namespace
+}  // namespace planlight::test

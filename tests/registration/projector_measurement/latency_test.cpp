@@ -1,0 +1,204 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "registration/projector_measurement/light_findings.h"
+#include "registration/projector_measurement/record_light.h"
+#include "tests/registration/projector_measurement/card_room.h"
+#include "tests/registration/projector_measurement/light_scene.h"
+
+namespace planlight {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+LightRecording flashed(const test::LightScene& scene, Instant bit = milliseconds(60)) {
+    const auto orders = test::flashes(flash_code(), bit);
+    return scene.record(orders, orders.back().at + milliseconds(900));
+}
+
+bool says(const LatencyResult& result, const std::string& word) {
+    const auto findings = findings_of(result);
+    return std::any_of(findings.begin(), findings.end(),
+                       [&](const auto& f) { return f.what.find(word) != std::string::npos; });
+}
+
+TEST(FlashCode, NoWindowOfSixBitsComesTwice) {
+    const auto code = flash_code();
+    ASSERT_EQ(code.size(), 63U);
+    std::set<unsigned> windows;
+    for (std::size_t i = 0; i < 63; ++i) {
+        unsigned window = 0;
+        for (std::size_t k = 0; k < 6; ++k) window = 2 * window + code[(i + k) % 63];
+        windows.insert(window);
+    }
+    EXPECT_EQ(windows.size(), 63U);
+}
+
+TEST(Latency, IsFoundToAFractionOfAnExposureAndNeverOffByAFrameOrAFlash) {
+    for (const int delay_us : {3100, 17000, 25000, 58000, 61000, 122300, 250000, 480000}) {
+        test::LightScene scene;
+        scene.delay = microseconds(delay_us);
+        const LatencyResult r = measure_latency(flashed(scene));
+        ASSERT_FALSE(r.refusal) << delay_us << ": " << r.refusal->reason;
+        EXPECT_NEAR(1e3 * r.median_s, delay_us / 1e3, 0.3) << delay_us;
+        EXPECT_GE(r.light_delay_s, delay_us / 1e6);
+        EXPECT_LT(r.light_delay_s, delay_us / 1e6 + 0.006);
+        EXPECT_EQ(r.unseen, 0U);
+        EXPECT_GT(r.exact, 4U);
+    }
+}
+
+TEST(Latency, WithoutAChangeWithinAnExposureOnlyTheTimeBetweenExposuresIsClaimed) {
+    test::LightScene scene;
+    scene.exposure = microseconds(50);  // hardly ever open
+    const LatencyResult r = measure_latency(flashed(scene));
+    ASSERT_FALSE(r.refusal);
+    EXPECT_NEAR(1e3 * r.median_s, 40, 4);
+    EXPECT_LT(std::abs(1e3 * r.median_s - 40), 3 * 1e3 * r.median_sigma_s);
+    EXPECT_GT(r.median_sigma_s, 2e-4);
+}
+
+TEST(Latency, ABrokenPromiseIsSaidWithTheDelayToSet) {
+    test::LightScene scene;
+    auto recording = flashed(scene);
+    const auto promise = [&](Instant delay) {
+        for (LightOrder& order : recording.orders) order.returned = order.at, order.promised = order.at + delay;
+        return measure_latency(recording);
+    };
+    const LatencyResult early = promise(milliseconds(25));
+    ASSERT_TRUE(early.promise);
+    EXPECT_EQ(early.promise->broken, 0U + std::count_if(early.delays.begin(), early.delays.end(),
+                                                        [](const auto& d) { return d.at_least_s > 0.0255; }));
+    EXPECT_NEAR(1e3 * early.promise->too_early_s, 15, 0.5);
+    EXPECT_TRUE(says(early, "too early"));
+    EXPECT_FALSE(says(promise(milliseconds(44)), "promised"));
+    EXPECT_TRUE(says(promise(milliseconds(80)), "too long"));
+}
+
+TEST(Latency, AClockThatIsAheadIsRefusedNotMeasured) {
+    test::LightScene scene;
+    auto recording = flashed(scene);
+    for (auto& frame : recording.frames) frame.at -= milliseconds(120);
+    const LatencyResult r = measure_latency(recording);
+    ASSERT_TRUE(r.refusal);
+    EXPECT_NE(r.refusal->reason.find("before it was ordered"), std::string::npos);
+}
+
+TEST(Latency, WhatRepeatsOrDoesNotFitOrIsTooFastIsRefused) {
+    test::LightScene scene;
+    std::vector<bool> regular;
+    for (int i = 0; i < 63; ++i) regular.push_back(i % 2 == 0);
+    auto orders = test::flashes(regular, milliseconds(60));
+    for (std::size_t i = 3; i < orders.size(); ++i)
+        orders[i].at = milliseconds(1800) + static_cast<int>(i - 3) * milliseconds(60);
+    const LatencyResult repeats = measure_latency(scene.record(orders, orders.back().at + milliseconds(900)));
+    ASSERT_TRUE(repeats.refusal);
+    EXPECT_NE(repeats.refusal->reason.find("repeat"), std::string::npos);
+
+    auto recording = flashed(scene);
+    std::mt19937 random(3);
+    for (LightOrder& order : recording.orders)
+        if (order.at > milliseconds(1700)) order.at = milliseconds(1800) + milliseconds(random() % 3800);
+    std::sort(recording.orders.begin(), recording.orders.end(),
+              [](const auto& a, const auto& b) { return a.at < b.at; });
+    EXPECT_TRUE(measure_latency(recording).refusal);
+
+    const LatencyResult slow = measure_latency(flashed(scene, milliseconds(25)));
+    ASSERT_TRUE(slow.refusal);
+    EXPECT_NE(slow.refusal->reason.find("too slow"), std::string::npos);
+
+    test::LightScene dark;
+    dark.white_grey = dark.room_grey + 1;
+    EXPECT_TRUE(measure_latency(flashed(dark)).refusal);
+}
+
+TEST(Latency, UnsteadyLightCostsPrecisionNotTruth) {
+    test::LightScene scene;
+    scene.delay = microseconds(33000);
+    for (const double amplitude : {0.05, 0.3, 0.6}) {
+        scene.lamp_at = [=](double t) { return 1 + amplitude * std::sin(2 * M_PI * 57.3 * t); };
+        const LatencyResult r = measure_latency(flashed(scene));
+        ASSERT_FALSE(r.refusal) << amplitude << ": " << r.refusal->reason;
+        EXPECT_NEAR(1e3 * r.median_s, 33, 3) << amplitude;
+        EXPECT_LT(std::abs(r.median_s - 0.033), 4 * r.median_sigma_s + 1e-4) << amplitude;
+        EXPECT_GE(r.light_delay_s, 0.033);
+        EXPECT_LT(r.light_delay_s, 0.050);
+    }
+}
+
+TEST(Latency, PicturesLeftOutAndFramesLostAreCounted) {
+    test::LightScene scene;
+    auto recording = flashed(scene);
+    auto seen = recording;
+    // The projector never showed orders 10 and 20; the cameras lost three frames of a steady time.
+    auto shown = recording.orders;
+    shown.erase(shown.begin() + 20);
+    shown.erase(shown.begin() + 10);
+    recording = scene.record(shown, shown.back().at + milliseconds(900));
+    recording.orders = seen.orders;
+    recording.frames.erase(recording.frames.begin() + 20, recording.frames.begin() + 23);
+    const LatencyResult r = measure_latency(recording);
+    ASSERT_FALSE(r.refusal) << r.refusal->reason;
+    EXPECT_EQ(r.unseen, 2U);
+    EXPECT_EQ(r.frames.lost, 3U);
+    EXPECT_NEAR(1e3 * r.median_s, 40, 0.3);
+    EXPECT_TRUE(says(r, "never became light"));
+    EXPECT_TRUE(says(r, "lost 3 frames"));
+}
+
+TEST(Latency, InTheSimulatedRoomJitterAndRefreshAreSeenAndTheDelayToSetCoversEveryPicture) {
+    for (const double refresh_hz : {0.0, 60.0}) {
+        simulation::BoardRoomSettings settings;
+        settings.preset = simulation::Preset::paper;
+        settings.seed = 9;
+        settings.light.whole_exposure = true;
+        settings.light.untold_delay = milliseconds(31);
+        settings.light.jitter = milliseconds(8);
+        settings.light.refresh_hz = refresh_hz;
+        test::CardRoom card(settings);
+        const LightRecording recording = record_latency(card.bench);
+        const LatencyResult r = measure_latency(recording);
+        ASSERT_FALSE(r.refusal) << r.refusal->reason;
+        const auto truth = test::true_delays_s(recording, card.room.true_lights());
+        double mean = 0, square = 0;
+        for (const double d : truth) mean += d / static_cast<double>(truth.size());
+        for (const double d : truth) square += (d - mean) * (d - mean) / static_cast<double>(truth.size());
+        EXPECT_NEAR(1e3 * r.median_s, 1e3 * mean, 2);
+        EXPECT_LT(std::abs(r.median_s - mean), 3 * r.median_sigma_s);
+        EXPECT_NEAR(1e3 * r.jitter_s, 1e3 * std::sqrt(square), 2.5);
+        EXPECT_GE(r.light_delay_s, *std::max_element(truth.begin(), truth.end()));
+        ASSERT_TRUE(r.promise);
+        EXPECT_NEAR(1e3 * r.promise->delay_s, 25, 1e-6) << "as the simulated projector promises";
+        EXPECT_GT(r.promise->broken, 20U);
+        EXPECT_TRUE(says(r, "too early"));
+    }
+}
+
+TEST(Recorder, LeavesTheProjectorDarkAlsoWhenACameraFails) {
+    struct Failing : StereoCamera {
+        StereoFrame grab(Instant, milliseconds) override { throw std::runtime_error("unplugged"); }
+    } failing;
+    struct Dark : Projector {
+        int dark = 0;
+        int width() const override { return 64; }
+        int height() const override { return 48; }
+        Instant show(const RgbImage&, Instant) override { return dark = 0, Instant{}; }
+        void go_dark() noexcept override { dark = 1; }
+    } projector;
+    struct Still : Clock {
+        Instant now() const override { return {}; }
+    } clock;
+    const LightBench bench{projector, failing, clock, [](Instant) {}, {}, {}};
+    EXPECT_ANY_THROW(record_latency(bench));
+    EXPECT_EQ(projector.dark, 1);
+    EXPECT_ANY_THROW(record_response(bench));
+    EXPECT_EQ(projector.dark, 1);
+}
+
+}  // namespace
+}  // namespace planlight

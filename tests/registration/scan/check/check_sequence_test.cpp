@@ -1,0 +1,270 @@
+#include "registration/scan/check/check_sequence.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "planning_io/types/error.h"
+#include "registration/scan/movement/scan_movement.h"
+#include "tests/registration/scan/spoilt_sequence.h"
+#include "tests/registration/scan/stripe_room.h"
+
+namespace planlight {
+namespace {
+
+using namespace stripe_room;
+using spoilt_sequence::changed, spoilt_sequence::said, spoilt_sequence::with_noise;
+
+const Eigen::Vector3d kCentre(120, -40, 360), kPlace(120, -40, 300);
+
+struct Scene {
+    StripeSettings stripes;
+    std::vector<GrayImage> frames;  // without noise
+};
+
+Scene scene(Surface surface, double ambient_grey, double white_grey = 190) {
+    Room room = paper_room(std::move(surface));
+    room.light.noise_grey = 0;
+    room.light.ambient_grey = ambient_grey;
+    room.light.white_grey = white_grey;
+    return {stripes_of(room), photograph(room, room.left, stripes_of(room), 1)};
+}
+
+const Scene& head() {
+    static const Scene s = scene(sphere(kCentre, 80), 18);
+    return s;
+}
+const Scene& moved_head() {  // by 0.2 mm, most of it in depth, where it changes the code
+    static const Scene s = scene(sphere(kCentre + Eigen::Vector3d(0.05, 0.05, -0.19), 80), 18);
+    return s;
+}
+const Scene& bright_room() {
+    static const Scene s = scene(plane(kPlace, Eigen::Vector3d(0.35, 0.2, -1).normalized(), 100), 60);
+    return s;
+}
+
+TEST(CheckSequence, CleanCapturesAreNeverRefused) {
+    for (const Scene* s : {&head(), &bright_room()})
+        for (unsigned seed = 0; seed < 12; ++seed) {
+            const double sigma = 0.5 + 0.25 * (seed % 12);  // to 3.25 grey
+            const SequenceCheck check = check_sequence(with_noise(s->frames, sigma, seed), s->stripes);
+            EXPECT_TRUE(check.checked);
+            EXPECT_TRUE(check.problems.empty()) << "noise " << sigma << ": " << said(check);
+        }
+}
+
+TEST(CheckSequence, AHeadThatMovesAFifthOfAMillimetreIsNotRefused) {
+    for (std::size_t from = 1; from < head().frames.size(); from += 3) {
+        std::vector<GrayImage> frames = head().frames;
+        std::copy(moved_head().frames.begin() + static_cast<std::ptrdiff_t>(from), moved_head().frames.end(),
+                  frames.begin() + static_cast<std::ptrdiff_t>(from));
+        const SequenceCheck check = check_sequence(with_noise(frames, 1.5, static_cast<unsigned>(from)), head().stripes);
+        EXPECT_TRUE(check.problems.empty()) << from << ": " << said(check);
+    }
+}
+
+/// Faults of a real rig from frame m on, and of a careless hand.
+enum class Fault { late_once, late_from_here, missing, late_by_two, swapped_with_next, inverted, swapped_anywhere };
+
+std::vector<GrayImage> spoil(const Scene& s, Fault fault, std::size_t m, std::mt19937& random) {
+    std::vector<GrayImage> f = s.frames;
+    const std::size_t n = f.size();
+    switch (fault) {
+        case Fault::late_once: f[m] = s.frames[m - 1]; break;
+        case Fault::late_from_here:
+            for (std::size_t i = m; i < n; ++i) f[i] = s.frames[i - 1];
+            break;
+        case Fault::missing:
+            for (std::size_t i = m; i < n; ++i) f[i] = s.frames[std::min(i + 1, n - 1)];
+            break;
+        case Fault::late_by_two:
+            for (std::size_t i = std::max<std::size_t>(m, 2); i < n; ++i) f[i] = s.frames[i - 2];
+            break;
+        case Fault::swapped_with_next: std::swap(f[m], f[m == n - 1 ? m - 1 : m + 1]); break;
+        case Fault::inverted: {
+            const auto sequence = stripe_sequence(s.stripes);
+            while (sequence[m].kind != StripePattern::Kind::gray_bit) m = 2 + random() % (n - 2);
+            std::swap(f[m], f[m + 1]);
+            break;
+        }
+        case Fault::swapped_anywhere: std::swap(f[m], f[random() % n]); break;
+    }
+    return f;
+}
+
+class FaultIsNoticed : public testing::TestWithParam<Fault> {};
+
+TEST_P(FaultIsNoticed, WhereverItHappens) {
+    std::mt19937 random(11 + static_cast<unsigned>(GetParam()));
+    std::size_t noticed = 0, harmless = 0;
+    for (const Scene* s : {&head(), &bright_room()})
+        for (std::size_t m = 1; m < s->frames.size(); m += s == &head() ? 1 : 3) {
+            const std::vector<GrayImage> spoilt = spoil(*s, GetParam(), m, random);
+            if (changed(s->frames, spoilt) < 0.05) {  // the pictures look alike on this surface
+                ++harmless;
+                continue;
+            }
+            const SequenceCheck check = check_sequence(with_noise(spoilt, 1.5, static_cast<unsigned>(random())), s->stripes);
+            EXPECT_FALSE(check.problems.empty()) << "frame " << m << " of " << (s == &head() ? "head" : "plane");
+            noticed += !check.problems.empty();
+        }
+    EXPECT_GT(noticed, 50u);
+    EXPECT_LT(harmless, 5u);
+}
+
+INSTANTIATE_TEST_SUITE_P(Faults, FaultIsNoticed,
+                         testing::Values(Fault::late_once, Fault::late_from_here, Fault::missing, Fault::late_by_two,
+                                         Fault::swapped_with_next, Fault::inverted, Fault::swapped_anywhere));
+
+TEST(CheckSequence, ThePictureIsNamed) {
+    std::vector<GrayImage> frames = head().frames;
+    const auto sequence = stripe_sequence(head().stripes);
+    const std::size_t doubled = 10;  // the frame shows what was there before
+    ASSERT_EQ(sequence[doubled].name, "column-gray-4");
+    frames[doubled] = frames[doubled - 1];
+    const SequenceCheck check = check_sequence(with_noise(frames, 1.5, 3), head().stripes);
+    ASSERT_FALSE(check.problems.empty());
+    EXPECT_EQ(check.problems[0].frame, doubled);
+    EXPECT_NE(check.problems[0].what.find("column-gray-4 looks like column-gray-3-inverse"), std::string::npos) << said(check);
+}
+
+TEST(CheckSequence, SwappedFineBitsAreNoticed) {
+    const auto sequence = stripe_sequence(head().stripes);
+    std::size_t finest = 0;
+    for (std::size_t i = 0; i < sequence.size(); ++i)
+        if (sequence[i].kind == StripePattern::Kind::gray_bit && !sequence[i].along_rows) finest = i;
+    for (const std::size_t back : {2u, 4u}) {
+        std::vector<GrayImage> frames = head().frames;
+        std::swap(frames[finest], frames[finest - back]);
+        std::swap(frames[finest + 1], frames[finest + 1 - back]);
+        EXPECT_FALSE(check_sequence(frames, head().stripes).problems.empty()) << back;
+    }
+}
+
+TEST(CheckSequence, FramesThatDoNotFitTheSequenceAreAFaultOfTheCaller) {
+    auto patterns = stripe_sequence(head().stripes);
+    patterns[0].kind = StripePattern::Kind::black;
+    EXPECT_THROW(check_sequence(head().frames, head().stripes, patterns), std::invalid_argument) << "no white";
+}
+
+TEST(CheckSequence, AScanNamesThePictureAndRefuses) {
+    Room room = paper_room(sphere(kCentre, 80));
+    ScanCapture shot = capture(room, stripes_of(room));
+    shot.right[20] = shot.right[19];
+    try {
+        scan_from_capture(shot, rig_of(room));
+        FAIL() << "a doubled frame was scanned";
+    } catch (const CheckFailedError& e) {
+        EXPECT_NE(std::string(e.what()).find(stripe_sequence(shot.stripes)[20].name), std::string::npos) << e.what();
+    }
+    ScanSettings as_it_is;
+    as_it_is.check_sequence = false;
+    EXPECT_NO_THROW(scan_from_capture(shot, rig_of(room), as_it_is));
+}
+
+TEST(CheckSequence, EdgesShadowsAndAModernRigAreNotRefused) {
+    const Eigen::Vector3d towards = Eigen::Vector3d(0.1, 0.35, -1).normalized();
+    Room room = modern_room(nearest_of({sphere(kCentre, 60), plane(kPlace + 80 * Eigen::Vector3d(0, 0, 1), -towards, 90),
+                                        plane(kPlace + 120 * towards, -towards, 15)}));
+    room.light.white_grey = 90;
+    const ScanCapture shot = capture(room, stripes_of(room));
+    for (const auto* frames : {&shot.left, &shot.right}) {
+        const SequenceCheck check = check_sequence(*frames, shot.stripes);
+        EXPECT_TRUE(check.checked);
+        EXPECT_TRUE(check.problems.empty()) << said(check);
+    }
+}
+
+/// What a camera makes of light, 255 the most it can show, that encodes its pictures for a screen: read noise and, of 25,000
+/// electrons, shot noise, and then the power of 1 / 2.2.
+std::vector<GrayImage> encoded(std::vector<GrayImage> frames, double noise_grey, unsigned seed) {
+    std::mt19937 random(seed);
+    std::normal_distribution<double> normal;
+    std::vector<double> noise(1 << 18);
+    for (double& n : noise) n = normal(random);
+    for (GrayImage& frame : frames) {
+        std::size_t at = random();
+        for (auto& p : frame.pixels) {
+            const double sigma = std::hypot(noise_grey, 0.1 * std::sqrt(p));
+            const double light = std::clamp((p + sigma * noise[at++ % noise.size()]) / 255, 0.0, 1.0);
+            p = static_cast<std::uint8_t>(std::lround(255 * std::pow(light, 1 / 2.2)));
+        }
+    }
+    return frames;
+}
+
+// 1 grey of noise in the dark becomes 20 in a picture of gamma 2.2: no light, so white need not be the brightest there.
+TEST(CheckSequence, ACameraThatEncodesForAScreenIsNotRefusedForItsNoiseInTheDark) {
+    const Scene dim_skin = scene(sphere(kCentre, 80), 18, 60);
+    const SequenceCheck dim = check_sequence(encoded(dim_skin.frames, 0.5, 5), dim_skin.stripes);
+    EXPECT_TRUE(dim.checked && dim.problems.empty()) << said(dim);
+    for (const double ambient_grey : {0.0, 4.0, 18.0}) {
+        const Scene dim_room = scene(sphere(kCentre, 80), ambient_grey);
+        ScanCapture shot;
+        shot.stripes = dim_room.stripes;
+        for (const double noise_grey : {0.3, 0.5, 1.0}) {
+            shot.left = encoded(dim_room.frames, noise_grey, 5);
+            const SequenceCheck check = check_sequence(shot.left, dim_room.stripes);
+            EXPECT_TRUE(check.checked);
+            EXPECT_TRUE(check.problems.empty()) << ambient_grey << ", " << noise_grey << ": " << said(check);
+            const auto moved = movement_in_pictures(shot, 0.43);
+            EXPECT_NEAR(moved.camera_gamma, 2.2, 0.05);
+            EXPECT_LT(moved.moved_mm, 0.075) << "half of the limit, as `scan` asks of pictures: a still ball without any texture";
+        }
+        std::swap(shot.left[10], shot.left[14]);
+        EXPECT_FALSE(check_sequence(shot.left, dim_room.stripes).problems.empty()) << "and faults are noticed still";
+    }
+}
+
+// A white drape beside the skin, of which a fault shows nothing: the coarsest bit inverted is there what the next one is.
+TEST(CheckSequence, AFaultThatOnlySkinShowsIsNoticedBesideABrightDrape) {
+    Room room = paper_room(sphere(kCentre, 80));
+    room.light.noise_grey = 0;
+    const Truth truth = truth_of(room, room.left);
+    const StripeSettings stripes = stripes_of(room);
+    constexpr double kFirst = 262;  // from 256 to 512 the coarsest bit is dark, the next one lit
+    std::vector<double> columns;
+    for (const auto& code : truth.code)
+        if (code.x() > kFirst && code.x() < 506) columns.push_back(code.x());
+    std::sort(columns.begin(), columns.end());
+    const auto lit = static_cast<double>(
+        std::count_if(truth.code.begin(), truth.code.end(), [](const auto& code) { return !std::isnan(code.x()); }));
+    for (const double brighter : {4.5, 6.0}) {
+        room.light.white_grey = 36;
+        const auto skin = photograph(room, room.left, stripes, 1);
+        room.light.white_grey = brighter * 36;
+        const auto drape = photograph(room, room.left, stripes, 1);
+        for (const double share : {0.02, 0.1, 0.2}) {
+            const auto many = static_cast<std::size_t>(share * lit);
+            ASSERT_LT(many, columns.size());
+            const double last = columns[many];
+            std::vector<GrayImage> frames = skin;
+            for (std::size_t f = 0; f < frames.size(); ++f)
+                for (std::size_t i = 0; i < truth.code.size(); ++i)
+                    if (truth.code[i].x() > kFirst && truth.code[i].x() < last) frames[f].pixels[i] = drape[f].pixels[i];
+            const auto clean = check_sequence(with_noise(frames, 1.5, 1), stripes);
+            EXPECT_TRUE(clean.checked && clean.problems.empty()) << said(clean);
+            ASSERT_EQ(stripe_sequence(stripes)[4].name, "column-gray-1");
+            frames[4] = frames[3];  // late: the inverse of column-gray-0 again
+            frames[5] = frames[2];
+            const auto check = check_sequence(with_noise(frames, 1.5, 1), stripes);
+            EXPECT_FALSE(check.problems.empty()) << brighter << " times brighter over " << 100 * share << " %: " << said(check);
+        }
+    }
+}
+
+TEST(CheckSequence, DarknessIsNotChecked) {
+    std::vector<GrayImage> frames(head().frames.size(), GrayImage(744, 576, 20));
+    const SequenceCheck check = check_sequence(with_noise(frames, 1.5, 1), head().stripes);
+    EXPECT_FALSE(check.checked);
+    EXPECT_TRUE(check.problems.empty());
+    frames.pop_back();
+    EXPECT_THROW(check_sequence(frames, head().stripes), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace planlight

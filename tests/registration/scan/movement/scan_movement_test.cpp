@@ -1,0 +1,144 @@
+#include "registration/scan/movement/scan_movement.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <random>
+
+#include "registration/scan/check/camera_gamma.h"
+#include "registration/scan/movement/uniform_light_frames.h"
+#include "tests/registration/gray_columns.h"
+
+namespace planlight {
+namespace {
+
+constexpr int kWidth = 320, kHeight = 240, kBits = 6;
+
+/// Skin with patches of a few pixels to a few tens, as it looks when moved by (dx, dy) pixels.
+double skin(double x, double y) {
+    return 120 + 18 * std::sin(0.31 * x + 0.2 * y) + 14 * std::sin(0.23 * y - 0.11 * x + 1) +
+           10 * std::sin(0.9 * x) * std::sin(0.8 * y);
+}
+
+/// A Gray code of columns whose patient is at `at(share)` (pixels) when a share of the pictures is taken.
+ScanCapture capture_of(const std::function<Eigen::Vector2d(double)>& at, double gain_at_the_end = 1) {
+    ScanCapture capture;
+    capture.stripes.width = kWidth;
+    capture.stripes.height = kHeight;
+    capture.stripes.rows = false;
+    capture.partial = test::gray_columns(kBits);
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise(0, 1.5);
+    for (std::size_t k = 0; k < capture.partial.size(); ++k) {
+        const double share = static_cast<double>(k) / static_cast<double>(capture.partial.size() - 1);
+        const Eigen::Vector2d d = at(share);
+        const double gain = 1 + (gain_at_the_end - 1) * share;
+        GrayImage frame(kWidth, kHeight);
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                const auto kind = capture.partial[k].kind;
+                bool lit = kind == StripePattern::Kind::white;
+                if (k >= 2) lit = ((x >> (kBits - capture.partial[k].index)) % 2 == 0) == (kind == StripePattern::Kind::gray_bit);
+                const bool head = std::hypot(x - kWidth / 2.0 - d.x(), y - kHeight / 2.0 - d.y()) < 100;
+                const double light = head ? skin(x - d.x(), y - d.y()) * ((lit ? gain : 0) + 0.12) : 3;
+                frame.at(x, y) = static_cast<std::uint8_t>(std::clamp(std::lround(light + noise(random)), 0L, 255L));
+            }
+        capture.left.push_back(std::move(frame));
+    }
+    return capture;
+}
+
+/// The same with the edges of the stripes blurred over three pixels, by a camera that gives light to the power 1 / `gamma`.
+ScanCapture encoded_capture(double gamma, const Eigen::Vector2d& way_px) {
+    ScanCapture capture = capture_of([](double) { return Eigen::Vector2d(0, 0); });
+    std::mt19937 random(7);
+    std::normal_distribution<double> noise(0, 0.7);
+    for (std::size_t k = 0; k < capture.partial.size(); ++k) {
+        const auto& pattern = capture.partial[k];
+        const Eigen::Vector2d d = way_px * static_cast<double>(k) / static_cast<double>(capture.partial.size() - 1);
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                double lit = pattern.kind == StripePattern::Kind::white ? 1 : 0;
+                for (int i = -1; k >= 2 && i <= 1; ++i)
+                    lit += (((x + i) >> (kBits - pattern.index)) % 2 == 0) == (pattern.kind == StripePattern::Kind::gray_bit)
+                               ? 1.0 / 3
+                               : 0.0;
+                const bool head = std::hypot(x - kWidth / 2.0 - d.x(), y - kHeight / 2.0 - d.y()) < 100;
+                const double light = head ? skin(x - d.x(), y - d.y()) * (lit + 0.12) : 3;
+                const double grey = 255 * std::pow(light / 255, 1 / gamma) + noise(random);
+                capture.left[k].at(x, y) = static_cast<std::uint8_t>(std::clamp(std::lround(grey), 0L, 255L));
+            }
+    }
+    return capture;
+}
+
+ScanMovement seen(const ScanCapture& capture) { return movement_in_pictures(capture, 0.42); }
+
+TEST(ScanMovement, APatientAtRestMovesByTheNoiseOnly) {
+    const ScanMovement movement = seen(capture_of([](double) { return Eigen::Vector2d(0, 0); }));
+    EXPECT_EQ(movement.by, ScanMovement::By::pictures);
+    EXPECT_EQ(movement.moments, 1 + kBits);
+    EXPECT_LT(movement.moved_mm, 0.02);
+}
+
+// Where a stripe's edge halves the light, such a camera shows more than half: stripes are left in the sum of a bit and its
+// inverse. They are no movement.
+TEST(ScanMovement, ACameraThatEncodesForAScreenIsUnderstood) {
+    for (const double gamma : {1.0, 1.8, 2.2}) {
+        const ScanCapture still = encoded_capture(gamma, {0, 0});
+        EXPECT_NEAR(camera_gamma(still.left, uniform_light_frames(still)), gamma, 0.12);
+        EXPECT_LT(seen(still).moved_mm, 0.03) << gamma;
+        const Eigen::Vector2d way_px(0.4, -0.3);
+        EXPECT_NEAR(seen(encoded_capture(gamma, way_px)).moved_mm, 0.42 * 0.5 * 12 / 13, 0.03) << gamma;
+    }
+}
+
+TEST(ScanMovement, AShiftAcrossThePictureIsMeasured) {
+    for (const double way_px : {0.25, 0.5, 1.0}) {
+        const ScanMovement movement =
+            seen(capture_of([&](double share) -> Eigen::Vector2d { return way_px * share * Eigen::Vector2d(0.8, -0.6); }));
+        // The first and the last moment are half a pair of pictures inside the sequence: 12 of 13 steps.
+        EXPECT_NEAR(movement.moved_mm, 0.42 * way_px * 12 / 13, 0.02 + 0.05 * way_px) << way_px;
+        EXPECT_EQ(movement.from, "white");
+        EXPECT_EQ(movement.to, "column-gray-5");
+    }
+}
+
+TEST(ScanMovement, AMovementBackAndForthIsNotMissed) {
+    const ScanMovement movement =
+        seen(capture_of([](double share) { return Eigen::Vector2d(std::sin(M_PI * share), 0); }));
+    EXPECT_GT(movement.moved_mm, 0.3) << "first and last picture are alike";
+}
+
+TEST(ScanMovement, ALampThatFadesIsNoMovement) {
+    EXPECT_LT(seen(capture_of([](double) { return Eigen::Vector2d(0, 0); }, 0.9)).moved_mm, 0.03);
+}
+
+TEST(ScanMovement, IsNotKnownWithoutLightOrInverses) {
+    ScanCapture dark = capture_of([](double) { return Eigen::Vector2d(0, 0); });
+    for (GrayImage& frame : dark.left) frame = GrayImage(kWidth, kHeight, 3);
+    EXPECT_EQ(seen(dark).by, ScanMovement::By::nothing);
+    ScanCapture single = capture_of([](double) { return Eigen::Vector2d(0, 0); });
+    for (std::size_t k = single.partial.size(); k-- > 0;)
+        if (single.partial[k].kind == StripePattern::Kind::gray_bit_inverse) {
+            single.partial.erase(single.partial.begin() + static_cast<std::ptrdiff_t>(k));
+            single.left.erase(single.left.begin() + static_cast<std::ptrdiff_t>(k));
+        }
+    EXPECT_EQ(seen(single).by, ScanMovement::By::nothing);
+}
+
+TEST(ScanMovement, EvenPicturesHoldNoStripes) {
+    const ScanCapture capture = capture_of([](double) { return Eigen::Vector2d(0, 0); });
+    const auto moments = uniform_light_frames(capture);
+    const auto first = sum_uniform_light(capture.left, moments[0]);
+    for (std::size_t m = 1; m < moments.size(); ++m) {
+        const auto later = sum_uniform_light(capture.left, moments[m]);
+        double squares = 0;
+        for (std::size_t i = 0; i < first.size(); ++i) squares += std::pow(static_cast<double>(first[i] - later[i]), 2);
+        EXPECT_LT(std::sqrt(squares / static_cast<double>(first.size())), 3.5) << "four times the noise of 1.53";
+    }
+}
+
+}  // namespace
+}  // namespace planlight
