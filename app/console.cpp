@@ -16,7 +16,9 @@ namespace planlight {
 
 ProgressBar::ProgressBar() : terminal_(isatty(STDERR_FILENO) == 1) {}
 
-ProgressBar::~ProgressBar() { end_line(); }
+ProgressBar::~ProgressBar() {
+    end_line();
+}
 
 void ProgressBar::show(const std::string& step, double share) {
     if (!terminal_) return;
@@ -47,7 +49,9 @@ void ProgressBar::note(const std::string& line) {
     fmt::print(stderr, "{}\n", line);
 }
 
-void warn(const std::string& text) { fmt::print(stderr, "warning: {}\n", text); }
+void warn(const std::string& text) {
+    fmt::print(stderr, "warning: {}\n", text);
+}
 
 std::string today() {
     const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
@@ -67,7 +71,8 @@ int run_and_explain(const std::function<int()>& command) {
     } catch (const std::bad_alloc&) {
         fmt::print(stderr, "planlight: there is not enough memory. Close other programs, or use larger voxels.\n");
     } catch (const std::exception& fault) {
-        fmt::print(stderr, "planlight: a fault of ours: {}. Please report it with the command that you gave.\n", fault.what());
+        fmt::print(stderr, "planlight: a fault of ours: {}. Please report it with the command that you gave.\n",
+                   fault.what());
     }
     return static_cast<int>(ExitCode::our_fault);
 }

@@ -10,25 +10,13 @@ using namespace planlight;
 
 /// In the order of the help.
 constexpr Run (*kCommands[])(CLI::App&) = {
-    add_demo,
-    add_prepare,
-    add_plan,
-    add_patterns,
-    add_board,
-    add_calibrate,
-    add_check,
-    add_scan,
-    add_register,
-    add_track,
-    add_project,
-    add_projector,
-    add_session,
-    add_review,
-    add_simulate,
+    add_demo,     add_prepare, add_plan,    add_patterns,  add_board,   add_calibrate, add_check,    add_scan,
+    add_register, add_track,   add_project, add_projector, add_session, add_review,    add_simulate,
 };
 
 constexpr const char* kExitCodes =
-    "Exit codes: 0 done, 2 usage, 3 input refused, 4 file damaged or of another version, 5 device, 6 a check failed, 7 disk,\n"
+    "Exit codes: 0 done, 2 usage, 3 input refused, 4 file damaged or of another version, 5 device, 6 a check failed, 7 "
+    "disk,\n"
     "70 a fault of ours.";
 
 }  // namespace

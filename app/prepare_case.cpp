@@ -25,10 +25,11 @@ double timed(const std::string& name, const std::function<void(const std::string
 }
 
 /// The LUT, what belongs to the volume, and the plan checked: of a case that has its skin.
-void finish(Preparation& done, const Volume& volume, const Plan& plan, const LutSettings& lut, const std::string& created,
-            const std::function<void(const std::string&, double)>& progress) {
+void finish(Preparation& done, const Volume& volume, const Plan& plan, const LutSettings& lut,
+            const std::string& created, const std::function<void(const std::string&, double)>& progress) {
     Case& the_case = done.prepared;
-    done.lut_s = timed("table", progress, [&](const auto& share) { the_case.lut = build_skin_lut(the_case.skin, lut, share); });
+    done.lut_s =
+        timed("table", progress, [&](const auto& share) { the_case.lut = build_skin_lut(the_case.skin, lut, share); });
     the_case.volume_hash = hash_of(volume);
     the_case.frame_of_reference_uid = volume.frame_of_reference_uid;
     the_case.lut.volume_hash = the_case.volume_hash;
@@ -54,8 +55,8 @@ Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSetti
     Case& the_case = done.prepared;
     SkinMask mask;
     done.segment_s = timed("skin", progress, [&](const auto& share) { mask = segment_skin(volume, skin, share); });
-    done.triangulate_s =
-        timed("surface", progress, [&](const auto& share) { the_case.skin = triangulate_skin(volume, mask, skin, share); });
+    done.triangulate_s = timed("surface", progress,
+                               [&](const auto& share) { the_case.skin = triangulate_skin(volume, mask, skin, share); });
     the_case.skin_edge_sigma_mm = skin_edge_sigma_mm(volume, mask, the_case.skin);
     done.threshold = mask.threshold;
     done.brightness_ratio = mask.bias.ratio();
@@ -74,7 +75,8 @@ Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSetti
 }
 
 Preparation prepare_case_on(const Volume& volume, const SurfaceFile& surface, const Plan& plan, const LutSettings& lut,
-                            const std::string& created, const std::function<void(const std::string&, double)>& progress) {
+                            const std::string& created,
+                            const std::function<void(const std::string&, double)>& progress) {
     Preparation done;
     done.on_given_surface = true;
     done.prepared.skin = surface.mesh;

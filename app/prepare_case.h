@@ -25,11 +25,13 @@ struct Preparation {
 /// PREPARE: volume -> outer skin -> mesh -> LUT, plan checked against the skin (its warnings go into the case).
 /// `progress(step, share)` names the step and how far it is, 0..1; may be empty. `created` is an ISO 8601 date.
 Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSettings& skin, const LutSettings& lut,
-                         const std::string& created, const std::function<void(const std::string&, double)>& progress = {});
+                         const std::string& created,
+                         const std::function<void(const std::string&, double)>& progress = {});
 
 /// The same on a surface that somebody else segmented (`mesh` as `read_surface` gives it, its `notes` become warnings).
 Preparation prepare_case_on(const Volume& volume, const SurfaceFile& surface, const Plan& plan, const LutSettings& lut,
-                            const std::string& created, const std::function<void(const std::string&, double)>& progress = {});
+                            const std::string& created,
+                            const std::function<void(const std::string&, double)>& progress = {});
 
 /// Now, as ISO 8601 in UTC.
 std::string iso_date_now();

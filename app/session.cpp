@@ -35,7 +35,9 @@ Session::Session(const Case& the_case, const CaseDrawing& drawing, const RigCali
     projector_.go_dark();
 }
 
-Session::~Session() { go_dark(); }
+Session::~Session() {
+    go_dark();
+}
 
 void Session::go_dark() noexcept {
     overlay_.reset();
@@ -56,9 +58,10 @@ const ScanResult& Session::scan(const std::function<void(int, int)>& progress) {
             std::max(moved_at_the_end_mm(), movement_of_markers(*capture_, rig_, settings_.tracking).moved_mm);
         if (motion_in_scan_mm_ <= settings_.max_motion_in_scan_mm) break;
         if (scans_repeated_ + 1 >= settings_.max_scans)
-            throw CheckFailedError(fmt::format("the patient moved {:.2f} mm during the scan, and in the {} before it as well",
-                                               motion_in_scan_mm_, scans_repeated_),
-                                   "Have the patient lie still and scan again.");
+            throw CheckFailedError(
+                fmt::format("the patient moved {:.2f} mm during the scan, and in the {} before it as well",
+                            motion_in_scan_mm_, scans_repeated_),
+                "Have the patient lie still and scan again.");
     }
     std::vector<ScanCapture> exposures;
     exposures.push_back(std::move(*capture_));
@@ -76,9 +79,9 @@ void Session::take_reference(const ScanCapture& capture) {
     const StereoFrame white{capture.left.front(), capture.right.front(), capture.began, Instant{}, 0};
     const auto found = tracker_.set_reference(white).size();
     if (static_cast<int>(found) < settings_.min_reference_markers)
-        throw CheckFailedError(
-            fmt::format("only {} markers were found by both cameras; {} are needed", found, settings_.min_reference_markers),
-            "Paste markers where both cameras see them, or turn the light up, and scan again.");
+        throw CheckFailedError(fmt::format("only {} markers were found by both cameras; {} are needed", found,
+                                           settings_.min_reference_markers),
+                               "Paste markers where both cameras see them, or turn the light up, and scan again.");
 }
 
 /// The paper's patient must not move during the scan; ours is asked once more under white light after the last picture.
@@ -88,7 +91,8 @@ double Session::moved_at_the_end_mm() {
     const Instant lit_from = projector_.show(white, clock_.now() + settings_.patience);
     const TrackedPose pose = tracker_.update(cameras_.grab(lit_from, settings_.patience));
     if (!pose.rig_from_patient)
-        throw CheckFailedError("the markers were lost during the scan: " + pose.reason, "Free the markers and scan again.");
+        throw CheckFailedError("the markers were lost during the scan: " + pose.reason,
+                               "Free the markers and scan again.");
     double moved_mm = 0;
     for (const auto& marker : tracker_.markers()) {
         const Eigen::Vector3d& p_in_patient = marker.centre_in_patient;
@@ -118,7 +122,8 @@ void Session::draw_beside_markers() {
     overlay_.reset();
     DrawingSettings drawing = settings_.drawing;
     const RigidTransform ct_from_patient = registration_->patient_from_ct.inverse();
-    for (const auto& marker : tracker_.markers()) drawing.keep_clear_in_ct.push_back(ct_from_patient * marker.centre_in_patient);
+    for (const auto& marker : tracker_.markers())
+        drawing.keep_clear_in_ct.push_back(ct_from_patient * marker.centre_in_patient);
     drawing_ = draw_plan(case_.plan, skin_, drawing);
 }
 
@@ -126,7 +131,8 @@ void Session::start_overlay() {
     auto& keep_dark = settings_.overlay.render.keep_dark_in_patient;
     keep_dark.clear();
     for (const auto& marker : tracker_.markers()) keep_dark.push_back(marker.centre_in_patient);
-    overlay_ = std::make_unique<OverlayLoop>(projector_, clock_, renderer_, drawing_, *registration_, settings_.overlay);
+    overlay_ =
+        std::make_unique<OverlayLoop>(projector_, clock_, renderer_, drawing_, *registration_, settings_.overlay);
     if (confirmed_) overlay_->set_operator_confirmed(true);
 }
 

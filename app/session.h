@@ -24,9 +24,10 @@ struct SessionSettings {
     DrawingSettings drawing;
     double max_motion_in_scan_mm = 0.15;  ///< of any marker between two moments of a scan; above: the scan is repeated
     int max_scans = 3;                    ///< so often at most, then refused
-    int min_reference_markers = 5;       ///< found in both pictures at the scan
+    int min_reference_markers = 5;        ///< found in both pictures at the scan
     std::chrono::milliseconds patience{1000};
-    /// Called between seeing and showing, so that a simulated clock can be told how long the computing took. May be empty.
+    /// Called between seeing and showing, so that a simulated clock can be told how long the computing took. May be
+    /// empty.
     std::function<void()> while_computing;
 };
 
@@ -51,17 +52,18 @@ public:
             StereoCamera& cameras, const Clock& clock, SessionSettings settings = {});
     ~Session();
 
-    /// SCAN: shows the stripes, makes the cloud, takes the markers of the first picture as reference. Repeats it when the
-    /// patient moved (the markers are looked at in every picture that is even light when summed with its inverse, and once
-    /// more under white light at the end). Throws CheckFailedError when the patient did not lie still in `max_scans` scans,
-    /// or too few markers were found.
+    /// SCAN: shows the stripes, makes the cloud, takes the markers of the first picture as reference. Repeats it when
+    /// the patient moved (the markers are looked at in every picture that is even light when summed with its inverse,
+    /// and once more under white light at the end). Throws CheckFailedError when the patient did not lie still in
+    /// `max_scans` scans, or too few markers were found.
     const ScanResult& scan(const std::function<void(int, int)>& progress = {});
 
-    /// MATCH: T_ini from the last scan; landmarks check it, and help where it is refused (`register_with_landmarks`). Throws
-    /// CheckFailedError without a scan.
+    /// MATCH: T_ini from the last scan; landmarks check it, and help where it is refused (`register_with_landmarks`).
+    /// Throws CheckFailedError without a scan.
     const RegistrationResult& find_patient(const std::vector<PointPair>& landmarks = {});
 
-    /// The operator's word that the match was looked at (needed for the verdict `ask`). It holds for the last match only, through darkness too.
+    /// The operator's word that the match was looked at (needed for the verdict `ask`). It holds for the last match
+    /// only, through darkness too.
     void confirm();
 
     /// TRACK and DRAW once: a frame, its pose T_cur, the picture for T_global = T_cur T_ini or darkness.
@@ -83,7 +85,8 @@ public:
     const RegistrationResult* registration() const { return registration_ ? &*registration_ : nullptr; }
     const PatientTracker& tracker() const { return tracker_; }
     const DrawingRenderer& renderer() const { return renderer_; }
-    /// The plan as this session draws it: labels lie beside the markers, so that none is cut by the darkness round them.
+    /// The plan as this session draws it: labels lie beside the markers, so that none is cut by the darkness round
+    /// them.
     const PlanDrawing& drawing() const { return drawing_; }
     const RenderSettings& render_settings() const { return settings_.overlay.render; }
     double motion_in_scan_mm() const { return motion_in_scan_mm_; }

@@ -14,14 +14,16 @@ using Eigen::Vector3d;
 /// Collects sentences that all begin with the item's name.
 class Faults {
 public:
-    Faults(const char* kind, const std::string& name) : name_(name.empty() ? fmt::format("{} without a name", kind) : name) {}
+    Faults(const char* kind, const std::string& name)
+        : name_(name.empty() ? fmt::format("{} without a name", kind) : name) {}
     template <typename... Args>
     void add(fmt::format_string<Args...> text, Args&&... args) {
         sentences_.push_back(name_ + ": " + fmt::format(text, std::forward<Args>(args)...));
     }
     void check_distance(const char* what, double distance_mm, const DrawingSettings& s) {
         if (distance_mm > s.max_distance_to_skin_mm)
-            add("{} is {:.1f} mm from the skin (at most {:.0f} mm expected){}", what, distance_mm, s.max_distance_to_skin_mm,
+            add("{} is {:.1f} mm from the skin (at most {:.0f} mm expected){}", what, distance_mm,
+                s.max_distance_to_skin_mm,
                 distance_mm > kTooFarFactor * s.max_distance_to_skin_mm ? "; it is not drawn" : "");
     }
     std::vector<std::string> sentences() { return std::move(sentences_); }
@@ -31,7 +33,9 @@ private:
     std::vector<std::string> sentences_;
 };
 
-double distance_mm(const SkinSurface& skin, const Vector3d& p) { return (skin.nearest(p).p_in_ct - p).norm(); }
+double distance_mm(const SkinSurface& skin, const Vector3d& p) {
+    return (skin.nearest(p).p_in_ct - p).norm();
+}
 
 }  // namespace
 

@@ -17,8 +17,8 @@ inline bool finite(const Trajectory& t) {
     return t.entry_in_ct.allFinite() && t.target_in_ct.allFinite() && std::isfinite(t.diameter_mm);
 }
 inline bool finite(const Borehole& b) {
-    return b.position_in_ct.allFinite() && (!b.axis_in_ct || b.axis_in_ct->allFinite()) && std::isfinite(b.diameter_mm) &&
-           std::isfinite(b.depth_mm);
+    return b.position_in_ct.allFinite() && (!b.axis_in_ct || b.axis_in_ct->allFinite()) &&
+           std::isfinite(b.diameter_mm) && std::isfinite(b.depth_mm);
 }
 inline bool finite(const OsteotomyLine& o) {
     for (const auto& p : o.points_in_ct)
@@ -30,8 +30,8 @@ inline bool finite(const CutPlane& c) {
            std::isfinite(c.width_mm) && std::isfinite(c.height_mm);
 }
 
-/// True when the point lies under the skin, or when three of four straight ways from it end at the surface: in the cranium under
-/// a surface of bone, which has no inside of its own and holes.
+/// True when the point lies under the skin, or when three of four straight ways from it end at the surface: in the
+/// cranium under a surface of bone, which has no inside of its own and holes.
 bool in_the_body(const SkinSurface& skin, const Eigen::Vector3d& p_in_ct);
 
 /// What is wrong with one item, one sentence each, by name.

@@ -20,13 +20,25 @@ using Eigen::Vector3d;
 constexpr double kFinestFit_mm = 0.2;  // of any plan on a skin of triangles
 
 /// The points of an item that must lie near the skin.
-std::vector<Vector3d> skin_points(const Trajectory& t) { return {t.entry_in_ct}; }
-std::vector<Vector3d> skin_points(const Borehole& b) { return {b.position_in_ct}; }
-std::vector<Vector3d> skin_points(const OsteotomyLine& o) { return o.points_in_ct; }
-std::vector<Vector3d> skin_points(const CutPlane&) { return {}; }
+std::vector<Vector3d> skin_points(const Trajectory& t) {
+    return {t.entry_in_ct};
+}
+std::vector<Vector3d> skin_points(const Borehole& b) {
+    return {b.position_in_ct};
+}
+std::vector<Vector3d> skin_points(const OsteotomyLine& o) {
+    return o.points_in_ct;
+}
+std::vector<Vector3d> skin_points(const CutPlane&) {
+    return {};
+}
 
-std::vector<Vector3d> all_points(const Trajectory& t) { return {t.entry_in_ct, t.target_in_ct}; }
-std::vector<Vector3d> all_points(const CutPlane& c) { return {c.origin_in_ct}; }
+std::vector<Vector3d> all_points(const Trajectory& t) {
+    return {t.entry_in_ct, t.target_in_ct};
+}
+std::vector<Vector3d> all_points(const CutPlane& c) {
+    return {c.origin_in_ct};
+}
 template <class Item>
 std::vector<Vector3d> all_points(const Item& item) {
     return skin_points(item);
@@ -64,8 +76,8 @@ public:
         if (items_ > 0) verdict_.share_far = static_cast<double>(far_items_) / items_;
         if (items_ > 0 && verdict_.share_far > settings_.max_share_far)
             verdict_.stops.push_back(
-                fmt::format("{} of {} items lie more than {:.0f} mm from the skin (median of all points {:.1f} mm)", far_items_,
-                            items_, settings_.near_skin_mm, verdict_.median_to_skin_mm));
+                fmt::format("{} of {} items lie more than {:.0f} mm from the skin (median of all points {:.1f} mm)",
+                            far_items_, items_, settings_.near_skin_mm, verdict_.median_to_skin_mm));
         check_alternatives();
         return std::move(verdict_);
     }
@@ -92,8 +104,8 @@ private:
             }
         }
         if (out_mm > settings_.outside_volume_mm)
-            stop(name, "its point ({:.0f}, {:.0f}, {:.0f}) lies {:.0f} mm outside the volume", worst.x(), worst.y(), worst.z(),
-                 out_mm);
+            stop(name, "its point ({:.0f}, {:.0f}, {:.0f}) lies {:.0f} mm outside the volume", worst.x(), worst.y(),
+                 worst.z(), out_mm);
     }
 
     void check_near_skin(const std::string& name, const std::vector<Vector3d>& points) {
@@ -102,7 +114,8 @@ private:
         points_.insert(points_.end(), points.begin(), points.end());
         if (far_mm > settings_.near_skin_mm) ++far_items_;
         if (far_mm > settings_.too_far_mm)
-            stop(name, "it is {:.1f} mm from the skin, too far to be drawn (at most {:.0f} mm)", far_mm, settings_.too_far_mm);
+            stop(name, "it is {:.1f} mm from the skin, too far to be drawn (at most {:.0f} mm)", far_mm,
+                 settings_.too_far_mm);
     }
 
     void check_side(const std::string& name, const std::vector<Vector3d>& points) {
@@ -112,7 +125,8 @@ private:
             mid_plane_ = find_mid_plane(skin_);
             looked_for_mid_plane_ = true;
             if (!mid_plane_)
-                verdict_.warnings.push_back("the middle of the head was not found: sides in names could not be checked");
+                verdict_.warnings.push_back(
+                    "the middle of the head was not found: sides in names could not be checked");
         }
         if (!mid_plane_) return;
         double left_mm = 0;  // of the item's first point (an entry), or of the middle of a line
@@ -129,10 +143,12 @@ private:
         if (t.length_mm() < 1) return stop(t.name, "entry and target are only {:.2f} mm apart", t.length_mm());
         if (entry_mm > settings_.near_skin_mm && in_the_body(skin_, t.entry_in_ct) &&
             (target_mm < settings_.near_skin_mm || !target_inside))
-            return stop(t.name,
-                        "entry and target are swapped: the entry lies {:.1f} mm under the skin, the target {:.1f} mm from it",
-                        entry_mm, target_mm);
-        if (!target_inside && target_mm > 1) stop(t.name, "its target lies outside the body, {:.1f} mm from the skin", target_mm);
+            return stop(
+                t.name,
+                "entry and target are swapped: the entry lies {:.1f} mm under the skin, the target {:.1f} mm from it",
+                entry_mm, target_mm);
+        if (!target_inside && target_mm > 1)
+            stop(t.name, "its target lies outside the body, {:.1f} mm from the skin", target_mm);
         if (t.length_mm() > settings_.max_depth_mm)
             stop(t.name, "it is {:.0f} mm deep (at most {:.0f} mm)", t.length_mm(), settings_.max_depth_mm);
     }
@@ -157,15 +173,16 @@ private:
         }
         Vector3d centre = (low + high) / 2;
         if (volume_)
-            centre = volume_->ct_from_voxel * (Vector3d(volume_->size[0] - 1, volume_->size[1] - 1, volume_->size[2] - 1) / 2);
+            centre = volume_->ct_from_voxel *
+                     (Vector3d(volume_->size[0] - 1, volume_->size[1] - 1, volume_->size[2] - 1) / 2);
         const auto other = best_alternative(points_, skin_, centre);
         if (!other || other->fit_mm > settings_.turned_fit_mm ||
             verdict_.median_to_skin_mm < settings_.turned_gain * std::max(other->fit_mm, kFinestFit_mm))
             return;
-        verdict_.stops.push_back(
-            fmt::format("the plan lies a median of {:.1f} mm off the skin; with {} it would lie within {:.1f} mm: its axes are "
-                        "exchanged or flipped",
-                        verdict_.median_to_skin_mm, other->words, other->fit_mm));
+        verdict_.stops.push_back(fmt::format(
+            "the plan lies a median of {:.1f} mm off the skin; with {} it would lie within {:.1f} mm: its axes are "
+            "exchanged or flipped",
+            verdict_.median_to_skin_mm, other->words, other->fit_mm));
     }
 
     const SkinSurface& skin_;
@@ -196,11 +213,13 @@ void refuse_stopped_plan(const PlanVerdict& verdict) {
     if (verdict.stops.empty()) return;
     constexpr std::size_t kMostSaid = 4;
     std::string said;
-    for (std::size_t i = 0; i < std::min(kMostSaid, verdict.stops.size()); ++i) said += (i > 0 ? "; " : "") + verdict.stops[i];
+    for (std::size_t i = 0; i < std::min(kMostSaid, verdict.stops.size()); ++i)
+        said += (i > 0 ? "; " : "") + verdict.stops[i];
     if (verdict.stops.size() > kMostSaid) said += fmt::format("; and {} more", verdict.stops.size() - kMostSaid);
-    throw InputError({}, "The plan does not fit this patient: " + said,
-                     "Check that it was made on this CT, its coordinate system and its units; a plan on bone is projected on the "
-                     "bone (--surface).");
+    throw InputError(
+        {}, "The plan does not fit this patient: " + said,
+        "Check that it was made on this CT, its coordinate system and its units; a plan on bone is projected on the "
+        "bone (--surface).");
 }
 
 }  // namespace planlight

@@ -13,14 +13,16 @@
 namespace planlight {
 
 struct PlanCheckSettings {
-    double near_skin_mm = 10;       ///< an entry, borehole or line farther from the skin is warned of
-    double too_far_mm = 30;         ///< and is not drawn from here on: the plan is stopped
-    double max_depth_mm = 200;      ///< of a trajectory or a borehole
-    double outside_volume_mm = 2;   ///< beyond the outermost voxel centres
-    double side_margin_mm = 5;      ///< nearer to the mid-plane than this, an item may be called left or right
-    double max_share_far = 0.5;     ///< of the items farther than `near_skin_mm` from the skin; from here on the plan is stopped
-    double turned_fit_mm = 1;       ///< a turned or mirrored copy of the plan with 90 % of its points this near to the skin ...
-    double turned_gain = 3;         ///< ... and this many times nearer than half of the plan's own: stopped
+    double near_skin_mm = 10;      ///< an entry, borehole or line farther from the skin is warned of
+    double too_far_mm = 30;        ///< and is not drawn from here on: the plan is stopped
+    double max_depth_mm = 200;     ///< of a trajectory or a borehole
+    double outside_volume_mm = 2;  ///< beyond the outermost voxel centres
+    double side_margin_mm = 5;     ///< nearer to the mid-plane than this, an item may be called left or right
+    double max_share_far =
+        0.5;  ///< of the items farther than `near_skin_mm` from the skin; from here on the plan is stopped
+    double turned_fit_mm =
+        1;  ///< a turned or mirrored copy of the plan with 90 % of its points this near to the skin ...
+    double turned_gain = 3;  ///< ... and this many times nearer than half of the plan's own: stopped
 };
 
 /// The box of a volume's voxel centres: what lies outside was never scanned.
@@ -28,18 +30,22 @@ struct VolumeBox {
     Eigen::Affine3d ct_from_voxel = Eigen::Affine3d::Identity();
     std::array<int, 3> size{0, 0, 0};
 };
-inline VolumeBox box_of(const Volume& volume) { return {volume.ct_from_voxel, volume.size}; }
+inline VolumeBox box_of(const Volume& volume) {
+    return {volume.ct_from_voxel, volume.size};
+}
 
 /// What a plan looks like on the skin that it is to be shown on.
 struct PlanVerdict {
-    std::vector<std::string> stops;     ///< the plan must not be shown: one sentence each, with the item's name and the numbers
+    std::vector<std::string>
+        stops;  ///< the plan must not be shown: one sentence each, with the item's name and the numbers
     std::vector<std::string> warnings;  ///< one sentence each, with the item's name
     double median_to_skin_mm = 0;       ///< of entries, boreholes and lines' points
     double share_far = 0;               ///< of the items, farther than `near_skin_mm`
 };
 
-/// Judges a plan by its patient's skin: entries near the skin, targets inside, nothing swapped, zero, NaN or outside the volume,
-/// sides as their names say, and no turned or mirrored copy of the plan that fits the skin far better than the plan does.
+/// Judges a plan by its patient's skin: entries near the skin, targets inside, nothing swapped, zero, NaN or outside
+/// the volume, sides as their names say, and no turned or mirrored copy of the plan that fits the skin far better than
+/// the plan does.
 PlanVerdict check_plan(const Plan& plan, const SkinSurface& skin, const std::optional<VolumeBox>& volume = std::nullopt,
                        const PlanCheckSettings& settings = {});
 

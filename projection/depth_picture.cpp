@@ -57,7 +57,8 @@ void DepthPicture::draw(const CameraModel& projector_from_ct) {
         seen_[i] << (pixel->x() + 0.5) / kBlock_px - 0.5, (pixel->y() + 0.5) / kBlock_px - 0.5, 1 / depth;
     }
     for (const auto& t : triangles_) {
-        const std::array<Vector3d, 3> corners{seen_[static_cast<std::size_t>(t[0])], seen_[static_cast<std::size_t>(t[1])],
+        const std::array<Vector3d, 3> corners{seen_[static_cast<std::size_t>(t[0])],
+                                              seen_[static_cast<std::size_t>(t[1])],
                                               seen_[static_cast<std::size_t>(t[2])]};
         if (corners[0].z() > 0 && corners[1].z() > 0 && corners[2].z() > 0) draw_triangle(corners);
     }

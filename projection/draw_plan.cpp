@@ -20,7 +20,8 @@ constexpr Rgb kOsteotomyGreen{40, 255, 70};
 constexpr Rgb kBoreholeCyan{0, 210, 255};
 constexpr Rgb kTrajectoryAmber{255, 180, 0};
 constexpr Rgb kCutPlaneMagenta{255, 60, 255};
-constexpr double kSymbolRadius_mm = 3;  // of a trajectory's ring when the instrument's diameter is not given, or is smaller
+constexpr double kSymbolRadius_mm =
+    3;  // of a trajectory's ring when the instrument's diameter is not given, or is smaller
 
 Rgb chosen(const std::optional<Colour>& own, Rgb usual) {
     if (!own) return usual;
@@ -68,8 +69,8 @@ private:
     }
     DrawnItem& item(int i) { return drawing.items[static_cast<std::size_t>(i)]; }
     void add(StrokeKind kind, int item_index, Rgb colour, double width_mm, const SkinLine& line);
-    void add_bar(StrokeKind kind, int item_index, Rgb colour, const Point& at, const Vector3d& direction, double back_mm,
-                 double ahead_mm);
+    void add_bar(StrokeKind kind, int item_index, Rgb colour, const Point& at, const Vector3d& direction,
+                 double back_mm, double ahead_mm);
     void add_ticks(int item_index, Rgb colour, const SkinLine& line);
     void wish(int item_index, std::vector<Point> anchors, double keep_off_mm, std::optional<Vector3d> away_from = {});
     void wish_along(int item_index, const SkinLine& line);
@@ -95,8 +96,8 @@ void Drawer::add(StrokeKind kind, int item_index, Rgb colour, double width_mm, c
     drawing.strokes.push_back(std::move(stroke));
 }
 
-void Drawer::add_bar(StrokeKind kind, int item_index, Rgb colour, const Point& at, const Vector3d& direction, double back_mm,
-                     double ahead_mm) {
+void Drawer::add_bar(StrokeKind kind, int item_index, Rgb colour, const Point& at, const Vector3d& direction,
+                     double back_mm, double ahead_mm) {
     add(kind, item_index, colour, 0.7 * settings_.line_width_mm,
         bar(skin_, at, direction, back_mm, ahead_mm, settings_.max_segment_mm));
 }
@@ -162,14 +163,16 @@ void Drawer::draw(const Borehole& hole) {
     }
     const Point nearest = skin_.nearest(hole.position_in_ct);
     const Point at = hole.axis_in_ct && hole.axis_in_ct->norm() > 0.5
-                         ? on_skin_along(skin_, hole.position_in_ct, hole.axis_in_ct->normalized()) : nearest;
+                         ? on_skin_along(skin_, hole.position_in_ct, hole.axis_in_ct->normalized())
+                         : nearest;
     const int i = begin(StrokeKind::borehole, hole.name, at.p_in_ct, (nearest.p_in_ct - hole.position_in_ct).norm(),
                         faults(hole, skin_, settings_));
     if (too_far(item(i))) return;
     const Rgb colour = chosen(hole.colour, kBoreholeCyan);
     const double radius_mm = std::max(hole.diameter_mm / 2, 0.0);
     if (radius_mm > 0) {
-        add(StrokeKind::borehole, i, colour, settings_.line_width_mm, circle(skin_, at, radius_mm, settings_.max_segment_mm));
+        add(StrokeKind::borehole, i, colour, settings_.line_width_mm,
+            circle(skin_, at, radius_mm, settings_.max_segment_mm));
         item(i).label += fmt::format("  ⌀{}", mm(hole.diameter_mm));
     }
     if (hole.depth_mm > 0) item(i).label += fmt::format("  {} mm deep", mm(hole.depth_mm));
@@ -197,7 +200,8 @@ void Drawer::draw(const Trajectory& t) {
                                 mm(t.length_mm()));
     const Rgb colour = chosen(t.colour, kTrajectoryAmber);
     const double radius_mm = std::max(t.diameter_mm / 2, kSymbolRadius_mm), arm_mm = radius_mm + 2.5;
-    add(StrokeKind::trajectory, i, colour, settings_.line_width_mm, circle(skin_, at, radius_mm, settings_.max_segment_mm));
+    add(StrokeKind::trajectory, i, colour, settings_.line_width_mm,
+        circle(skin_, at, radius_mm, settings_.max_segment_mm));
     const TextFrame frame = text_frame(at, settings_.up_in_ct);
     add_bar(StrokeKind::trajectory, i, colour, at, frame.right_in_ct, arm_mm, arm_mm);
     add_bar(StrokeKind::trajectory, i, colour, at, frame.up_in_ct, arm_mm, arm_mm);
@@ -215,7 +219,8 @@ void Drawer::draw(const CutPlane& plane) {
     const bool drawable = finite(plane) && std::abs(plane.normal_in_ct.norm() - 1) < 1e-3 &&
                           std::abs(plane.first_axis_in_ct.norm() - 1) < 1e-3 &&
                           std::abs(plane.normal_in_ct.dot(plane.first_axis_in_ct)) < 1e-3;
-    const std::vector<SkinLine> lines = drawable ? trace(skin_, plane, settings_.max_segment_mm) : std::vector<SkinLine>();
+    const std::vector<SkinLine> lines =
+        drawable ? trace(skin_, plane, settings_.max_segment_mm) : std::vector<SkinLine>();
     const int i = begin(StrokeKind::cut_plane, plane.name,
                         lines.empty() ? Vector3d::Zero() : lines.front().points.front().p_in_ct, 0, warnings);
     if (lines.empty()) return;

@@ -15,22 +15,22 @@ enum class StrokeKind { osteotomy_line, borehole, trajectory, cut_plane, tick, l
 /// A line on the skin of constant width, measured along the skin.
 struct Stroke {
     StrokeKind kind = StrokeKind::osteotomy_line;
-    int item = -1;                                ///< index into PlanDrawing::items
+    int item = -1;  ///< index into PlanDrawing::items
     Rgb colour{255, 255, 255};
     double width_mm = 0.8;
     bool closed = false;
-    std::vector<Eigen::Vector3d> points_in_ct;    ///< on the skin, at most `max_segment_mm` apart
-    std::vector<Eigen::Vector3d> normals_in_ct;   ///< outward, one per point
+    std::vector<Eigen::Vector3d> points_in_ct;   ///< on the skin, at most `max_segment_mm` apart
+    std::vector<Eigen::Vector3d> normals_in_ct;  ///< outward, one per point
 };
 
 /// One plan item as drawn: where it was wanted and what is said about it.
 struct DrawnItem {
     StrokeKind kind;
     std::string name;
-    std::string label;                     ///< the text beside it, e.g. "B1  ⌀7  6 mm deep"
-    Eigen::Vector3d anchor_in_ct;          ///< its place on the skin
-    double distance_to_skin_mm = 0;        ///< of the plan's point(s) to the skin, largest
-    std::vector<std::string> warnings;     ///< in words, with the item's name
+    std::string label;                  ///< the text beside it, e.g. "B1  ⌀7  6 mm deep"
+    Eigen::Vector3d anchor_in_ct;       ///< its place on the skin
+    double distance_to_skin_mm = 0;     ///< of the plan's point(s) to the skin, largest
+    std::vector<std::string> warnings;  ///< in words, with the item's name
 };
 
 /// The plan in the skin's own metric: what is light on the skin, independent of projector and pose.
@@ -47,14 +47,15 @@ struct DrawingSettings {
     Eigen::Vector3d up_in_ct{0, 0, 1};              ///< which way text stands up
     double max_distance_to_skin_mm = 10;            ///< a plan point farther from skin is warned of, by name
     bool labels = true;
-    std::vector<Eigen::Vector3d> keep_clear_in_ct;  ///< marker centres: labels are not put within `keep_clear_radius_mm`
+    std::vector<Eigen::Vector3d>
+        keep_clear_in_ct;  ///< marker centres: labels are not put within `keep_clear_radius_mm`
     double keep_clear_radius_mm = 11;
 };
 
 /// Draws every item of the plan on the skin: lengths along geodesics, circles of their diameter, labels upright.
 ///
-/// Items come in the order osteotomy lines, boreholes, trajectories, cut planes. One that is not finite, or lies more than
-/// three times `max_distance_to_skin_mm` from the skin, has no strokes, and a warning.
+/// Items come in the order osteotomy lines, boreholes, trajectories, cut planes. One that is not finite, or lies more
+/// than three times `max_distance_to_skin_mm` from the skin, has no strokes, and a warning.
 PlanDrawing draw_plan(const Plan& plan, const SkinSurface& skin, const DrawingSettings& settings = {});
 
 }  // namespace planlight

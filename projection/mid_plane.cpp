@@ -1,4 +1,5 @@
 #include "projection/mid_plane.h"
+#include "planning_io/types/statistics.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -12,10 +13,10 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kSamples = 500;
 constexpr int kRounds = 200;           // a round head turns slowly
-constexpr double kStill = 1e-4;         // change of the normal per round
+constexpr double kStill = 1e-4;        // change of the normal per round
 constexpr double kMaxTilt_cos = 0.82;  // 35 degrees
 constexpr double kMaxResidual_mm = 6;
-constexpr double kFarPair_mm = 25;     // no counterpart on the other side: the cut end of the volume
+constexpr double kFarPair_mm = 25;  // no counterpart on the other side: the cut end of the volume
 
 std::vector<Vector3d> samples_of(const TriangleMesh& mesh) {
     std::vector<Vector3d> skin;
@@ -27,15 +28,12 @@ std::vector<Vector3d> samples_of(const TriangleMesh& mesh) {
     return some;
 }
 
-Vector3d mirrored(const Vector3d& p, const MidPlane& plane) { return p - 2 * plane.left_mm(p) * plane.normal_in_ct; }
-
-double median(std::vector<double> values) {
-    std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-    return values[values.size() / 2];
+Vector3d mirrored(const Vector3d& p, const MidPlane& plane) {
+    return p - 2 * plane.left_mm(p) * plane.normal_in_ct;
 }
 
-/// The plane that mirrors the points `p` onto their partners `q` in the least squares: through the middle of all, its normal
-/// the direction in which they are most opposed.
+/// The plane that mirrors the points `p` onto their partners `q` in the least squares: through the middle of all, its
+/// normal the direction in which they are most opposed.
 MidPlane plane_of_pairs(const std::vector<Vector3d>& p, const std::vector<Vector3d>& q, const Vector3d& old_normal) {
     Vector3d p_mean = Vector3d::Zero(), q_mean = Vector3d::Zero();
     for (std::size_t i = 0; i < p.size(); ++i) p_mean += p[i], q_mean += q[i];
@@ -74,7 +72,8 @@ std::optional<MidPlane> find_mid_plane(const SkinSurface& skin) {
         if (p.size() < samples.size() / 2) return std::nullopt;
         plane.residual_mm = median(far);
         const MidPlane next = plane_of_pairs(p, q, plane.normal_in_ct);
-        const double change = (next.normal_in_ct - plane.normal_in_ct).norm() + std::abs(next.left_mm(plane.point_in_ct)) / 100;
+        const double change =
+            (next.normal_in_ct - plane.normal_in_ct).norm() + std::abs(next.left_mm(plane.point_in_ct)) / 100;
         if (round == kRounds || change < kStill) break;
         plane = next;
     }

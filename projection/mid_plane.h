@@ -14,9 +14,9 @@ struct MidPlane {
     double left_mm(const Eigen::Vector3d& p_in_ct) const { return normal_in_ct.dot(p_in_ct - point_in_ct); }
 };
 
-/// Fits the plane by matching the mirrored skin to the skin, from the plane across the middle of the skin's box (LPS: x is
-/// left). Empty when what was found is tilted by more than 35 degrees or mirrors the skin no better than 6 mm: then nobody
-/// can tell left from right by it.
+/// Fits the plane by matching the mirrored skin to the skin, from the plane across the middle of the skin's box (LPS: x
+/// is left). Empty when what was found is tilted by more than 35 degrees or mirrors the skin no better than 6 mm: then
+/// nobody can tell left from right by it.
 std::optional<MidPlane> find_mid_plane(const SkinSurface& skin);
 
 }  // namespace planlight

@@ -7,13 +7,16 @@
 namespace planlight {
 namespace {
 
-double ms(Instant t) { return 1e3 * seconds(t); }
+double ms(Instant t) {
+    return 1e3 * seconds(t);
+}
 
 /// Why this registration must not be drawn; empty when it may.
 std::string registration_refusal(const RegistrationResult& registration, bool confirmed) {
     const std::string first = registration.reasons.empty() ? "" : ": " + registration.reasons.front();
     if (registration.verdict == Verdict::no) return "the patient is not registered" + first;
-    if (registration.verdict == Verdict::ask && !confirmed) return "the registration awaits a person's confirmation" + first;
+    if (registration.verdict == Verdict::ask && !confirmed)
+        return "the registration awaits a person's confirmation" + first;
     if (!is_rigid(registration.patient_from_ct.matrix())) return "the registration is not a rigid transform";
     return "";
 }
@@ -26,7 +29,8 @@ std::string pose_refusal(const TrackedPose& pose, Instant now, const OverlaySett
     const Instant age = now - pose.at;
     if (age > s.max_pose_age)
         return fmt::format("the last pose is {:.0f} ms old (at most {:.0f} ms)", ms(age), ms(s.max_pose_age));
-    if (age < -s.max_pose_age) return fmt::format("the pose is dated {:.0f} ms in the future: the clocks disagree", -ms(age));
+    if (age < -s.max_pose_age)
+        return fmt::format("the pose is dated {:.0f} ms in the future: the clocks disagree", -ms(age));
     if (!(pose.predicted_error_mm <= s.max_predicted_error_mm))
         return fmt::format("the pose is uncertain by {:.2f} mm (at most {:.2f} mm)", pose.predicted_error_mm,
                            s.max_predicted_error_mm);
@@ -92,16 +96,21 @@ OverlayStep OverlayLoop::Parts::draw(const TrackedPose& pose) {
     return step;
 }
 
-OverlayLoop::OverlayLoop(Projector& projector, const Clock& clock, const DrawingRenderer& renderer, const PlanDrawing& drawing,
-                         const RegistrationResult& registration, const OverlaySettings& settings)
+OverlayLoop::OverlayLoop(Projector& projector, const Clock& clock, const DrawingRenderer& renderer,
+                         const PlanDrawing& drawing, const RegistrationResult& registration,
+                         const OverlaySettings& settings)
     : parts_(new Parts{projector, clock, renderer, drawing, registration, settings, PosePredictor(),
                        registration.patient_from_ct * middle_in_ct(drawing)}) {
     projector.go_dark();
 }
 
-OverlayLoop::~OverlayLoop() { parts_->projector.go_dark(); }
+OverlayLoop::~OverlayLoop() {
+    parts_->projector.go_dark();
+}
 
-void OverlayLoop::set_operator_confirmed(bool confirmed) { parts_->settings.operator_confirmed = confirmed; }
+void OverlayLoop::set_operator_confirmed(bool confirmed) {
+    parts_->settings.operator_confirmed = confirmed;
+}
 
 OverlayStep OverlayLoop::step(const TrackedPose& pose) {
     try {

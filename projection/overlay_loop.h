@@ -13,10 +13,10 @@
 namespace planlight {
 
 struct OverlaySettings {
-    Instant max_pose_age = std::chrono::milliseconds(75);   ///< an older pose is not drawn
+    Instant max_pose_age = std::chrono::milliseconds(75);  ///< an older pose is not drawn
     Instant picture_validity = std::chrono::milliseconds(75);
-    Instant light_delay = std::chrono::milliseconds(25);    ///< from show to light, for the prediction
-    double max_predicted_error_mm = 1.0;                    ///< above: dark
+    Instant light_delay = std::chrono::milliseconds(25);  ///< from show to light, for the prediction
+    double max_predicted_error_mm = 1.0;                  ///< above: dark
     bool predict = true;
     bool operator_confirmed = false;  ///< a person has looked at the overlay on landmarks: a verdict `ask` is drawn
     RenderSettings render;
@@ -25,10 +25,10 @@ struct OverlaySettings {
 /// What the overlay did with one pose.
 struct OverlayStep {
     bool lit = false;
-    std::string reason;              ///< why it is dark, in words; empty when lit
-    RgbImage picture;                ///< what was shown (black when dark)
+    std::string reason;  ///< why it is dark, in words; empty when lit
+    RgbImage picture;    ///< what was shown (black when dark)
     RenderCounts counts;
-    Instant lit_from{};              ///< when it is light on the skin
+    Instant lit_from{};                                       ///< when it is light on the skin
     RigidTransform rig_from_ct = RigidTransform::Identity();  ///< T_global it was drawn for
 };
 

@@ -96,7 +96,8 @@ PictureThread::PictureThread(GLFWwindow* window, int width, int height, const Cl
     wanted_ = 1;
     thread_ = std::thread([this] { run(); });
     std::unique_lock lock(mutex_);
-    if (drawn_changed_.wait_for(lock, 5 * kPatience, [&] { return drawn_ >= 1 || !failure_.empty(); }) && failure_.empty())
+    if (drawn_changed_.wait_for(lock, 5 * kPatience, [&] { return drawn_ >= 1 || !failure_.empty(); }) &&
+        failure_.empty())
         return;
     const std::string problem = failure_.empty() ? "the graphics driver does not answer" : failure_;
     stop_ = true;

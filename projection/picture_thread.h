@@ -23,7 +23,8 @@ public:
     PictureThread(const PictureThread&) = delete;
     PictureThread& operator=(const PictureThread&) = delete;
 
-    /// Returns when the picture has been handed to the display. Throws DeviceError when that fails or takes over a second.
+    /// Returns when the picture has been handed to the display. Throws DeviceError when that fails or takes over a
+    /// second.
     void show(const RgbImage& picture, Instant valid_until);
     /// Returns when black has been handed to the display, after a second at most.
     void go_dark() noexcept;
@@ -43,10 +44,10 @@ private:
 
     mutable std::mutex mutex_;
     std::condition_variable wanted_changed_, drawn_changed_;
-    RgbImage picture_;                     ///< empty: black
+    RgbImage picture_;  ///< empty: black
     Instant valid_until_{};
     bool lit_ = false, stop_ = false;
-    std::uint64_t wanted_ = 0, drawn_ = 0; ///< counts of requests
+    std::uint64_t wanted_ = 0, drawn_ = 0;  ///< counts of requests
     std::string failure_;
     std::thread thread_;
 };

@@ -16,9 +16,9 @@ using Eigen::Vector3d;
 using Point = SkinSurface::Point;
 
 constexpr double kLineSpacing = 1.65;  // of the text height
-constexpr double kMaxWidth_mm = 44;    // of a text line: its ends are 22 mm from its middle, where the map is still true
+constexpr double kMaxWidth_mm = 44;  // of a text line: its ends are 22 mm from its middle, where the map is still true
 constexpr Rgb kWhite{235, 235, 235};
-constexpr double kClear_mm = 2.6;      // between a text's outline and anything drawn
+constexpr double kClear_mm = 2.6;  // between a text's outline and anything drawn
 
 struct Candidate {
     TextFrame frame;
@@ -94,7 +94,8 @@ void draw_glyph(const SkinSurface& skin, const TextFrame& text, const Glyph& g, 
     for (const auto& line : g.lines) {
         std::vector<Point> points;
         for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-            const Vector2d a = h * (line[i] - Vector2d(g.width / 2, 0.5)), b = h * (line[i + 1] - Vector2d(g.width / 2, 0.5));
+            const Vector2d a = h * (line[i] - Vector2d(g.width / 2, 0.5)),
+                           b = h * (line[i + 1] - Vector2d(g.width / 2, 0.5));
             const int n = std::max(1, static_cast<int>(std::ceil((b - a).norm() / settings.max_segment_mm)));
             for (int k = i == 0 ? 0 : 1; k <= n; ++k)
                 if (const auto p = on_skin(skin, f, a + (b - a) * k / n)) points.push_back(*p);
@@ -127,8 +128,8 @@ double reach_mm(const TextBlock& block, double angle) {
 }
 
 /// The best place at `gap_mm` beyond what is drawn at the anchors.
-void try_ring(const LabelWish& wish, const SkinSurface& skin, const DrawingSettings& settings, const OccupiedSkin& occupied,
-              const TextBlock& block, double gap_mm, Candidate& best) {
+void try_ring(const LabelWish& wish, const SkinSurface& skin, const DrawingSettings& settings,
+              const OccupiedSkin& occupied, const TextBlock& block, double gap_mm, Candidate& best) {
     constexpr int kDirections = 16;
     for (std::size_t a = 0; a < wish.anchors.size(); ++a) {
         const TextFrame at_anchor = text_frame(wish.anchors[a], settings.up_in_ct);
@@ -141,7 +142,8 @@ void try_ring(const LabelWish& wish, const SkinSurface& skin, const DrawingSetti
             double cost = gap_mm + 0.3 * static_cast<double>(a) + 2 * std::abs(std::sin(angle)) +
                           (std::cos(angle) < -0.1 ? 0.5 : 0) +
                           30 * (1 - middle->normal_in_ct.dot(wish.facing_in_ct.value_or(wish.anchors[a].normal_in_ct)));
-            if (wish.away_from_in_ct && (middle->p_in_ct - *wish.away_from_in_ct).norm() < (from - *wish.away_from_in_ct).norm())
+            if (wish.away_from_in_ct &&
+                (middle->p_in_ct - *wish.away_from_in_ct).norm() < (from - *wish.away_from_in_ct).norm())
                 cost += 15;
             if (best.overlaps == 0 && cost >= best.cost) continue;
             const TextFrame frame = text_frame(*middle, settings.up_in_ct);
@@ -212,7 +214,8 @@ TextBlock lay_out(const std::string& text, double text_height_mm) {
 TextFrame text_frame(const Point& at, const Vector3d& up_in_ct) {
     const auto tangent = [&](const Vector3d& v) { return Vector3d(v - v.dot(at.normal_in_ct) * at.normal_in_ct); };
     Vector3d up = tangent(up_in_ct.normalized());
-    if (up.norm() < 0.25) {  // on top of the head: read by someone who stands before the face (ct is LPS: +y is posterior)
+    if (up.norm() <
+        0.25) {  // on top of the head: read by someone who stands before the face (ct is LPS: +y is posterior)
         const Vector3d back = std::abs(up_in_ct.normalized().y()) > 0.9 ? Vector3d(0, 0, -1) : Vector3d(0, 1, 0);
         up = tangent(at.normal_in_ct.dot(up_in_ct) > 0 ? back : Vector3d(-back));
     }

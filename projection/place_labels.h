@@ -26,9 +26,9 @@ private:
 /// A text to be put beside something.
 struct LabelWish {
     int item = -1;
-    std::string text;                        ///< parts that may stand on lines of their own are parted by two blanks
-    std::vector<SkinSurface::Point> anchors; ///< places it may stand beside, best first
-    double keep_off_mm = 1.5;                ///< half size of what is drawn at the anchor
+    std::string text;                         ///< parts that may stand on lines of their own are parted by two blanks
+    std::vector<SkinSurface::Point> anchors;  ///< places it may stand beside, best first
+    double keep_off_mm = 1.5;                 ///< half size of what is drawn at the anchor
     std::optional<Eigen::Vector3d> away_from_in_ct;  ///< the side that is left free: the middle of a closed line
     std::optional<Eigen::Vector3d> facing_in_ct;     ///< unit: skin that faces this way is preferred
 };

@@ -45,7 +45,8 @@ std::vector<Matrix3d> axis_permutations_and_flips() {
     do {
         for (int flips = 0; flips < 8; ++flips) {
             Matrix3d m = Matrix3d::Zero();
-            for (int row = 0; row < 3; ++row) m(row, order[static_cast<std::size_t>(row)]) = (flips >> row) & 1 ? -1 : 1;
+            for (int row = 0; row < 3; ++row)
+                m(row, order[static_cast<std::size_t>(row)]) = (flips >> row) & 1 ? -1 : 1;
             all.push_back(m);
         }
     } while (std::next_permutation(order.begin(), order.end()));
@@ -55,8 +56,9 @@ std::vector<Matrix3d> axis_permutations_and_flips() {
 double distance_quantile(const std::vector<Vector3d>& points, const SkinSurface& skin, double share) {
     std::vector<double> far;
     for (const auto& p : points) far.push_back((skin.nearest(p).p_in_ct - p).norm());
-    const auto at = far.begin() + static_cast<std::ptrdiff_t>(std::min(
-                                      far.size() - 1, static_cast<std::size_t>(share * static_cast<double>(far.size()))));
+    const auto at =
+        far.begin() + static_cast<std::ptrdiff_t>(
+                          std::min(far.size() - 1, static_cast<std::size_t>(share * static_cast<double>(far.size()))));
     std::nth_element(far.begin(), at, far.end());
     return *at;
 }
@@ -74,7 +76,8 @@ std::optional<Alternative> best_alternative(const std::vector<Vector3d>& points,
             for (const auto& p : some) copy.push_back(all[i] * (p - about) + about);
             const double fit = distance_quantile(copy, skin, 0.9);
             if (!best || fit < best->fit_mm)
-                best = Alternative{all[i], words_of(all[i]) + (about_centre ? " about the middle of the volume" : ""), fit};
+                best = Alternative{all[i], words_of(all[i]) + (about_centre ? " about the middle of the volume" : ""),
+                                   fit};
         }
     return best;
 }

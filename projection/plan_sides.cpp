@@ -13,7 +13,8 @@ std::vector<std::string> words_of(const std::string& name) {
     for (const char c : name) {
         if (std::isalnum(static_cast<unsigned char>(c)) || (c & 0x80))
             words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-        else if (!words.back().empty()) words.emplace_back();
+        else if (!words.back().empty())
+            words.emplace_back();
     }
     if (words.back().empty()) words.pop_back();
     return words;

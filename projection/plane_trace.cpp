@@ -55,10 +55,12 @@ std::vector<Chain> chains(const Cut& cut) {
         Chain chain{cut.points[start]};
         used[start] = true;
         for (std::size_t at = start;;) {
-            const auto next = std::find_if(cut.joined[at].begin(), cut.joined[at].end(), [&](auto i) { return !used[i]; });
+            const auto next =
+                std::find_if(cut.joined[at].begin(), cut.joined[at].end(), [&](auto i) { return !used[i]; });
             if (next == cut.joined[at].end()) {
                 const auto& j = cut.joined[at];
-                if (chain.size() > 2 && std::find(j.begin(), j.end(), start) != j.end()) chain.push_back(cut.points[start]);
+                if (chain.size() > 2 && std::find(j.begin(), j.end(), start) != j.end())
+                    chain.push_back(cut.points[start]);
                 return chain;
             }
             at = *next;

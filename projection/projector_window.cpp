@@ -18,7 +18,8 @@ namespace planlight {
 namespace {
 
 constexpr auto kLandingPatience = std::chrono::milliseconds(1500);
-constexpr auto kSettled = std::chrono::milliseconds(150);  ///< a window manager may still move a window that just landed
+constexpr auto kSettled =
+    std::chrono::milliseconds(150);  ///< a window manager may still move a window that just landed
 
 std::vector<GLFWmonitor*> monitors_now() {
     int count = 0;
@@ -42,8 +43,8 @@ Monitor describe(GLFWmonitor* monitor) {
 std::string names_of(const std::vector<Monitor>& monitors) {
     std::string names;
     for (const Monitor& m : monitors)
-        names += (names.empty() ? "" : ", ") + m.name + " (" + std::to_string(m.width) + "x" + std::to_string(m.height) +
-                 (m.primary ? ", primary)" : ")");
+        names += (names.empty() ? "" : ", ") + m.name + " (" + std::to_string(m.width) + "x" +
+                 std::to_string(m.height) + (m.primary ? ", primary)" : ")");
     return names.empty() ? "none" : names;
 }
 
@@ -61,7 +62,8 @@ std::size_t choose(const std::vector<Monitor>& monitors, const std::string& want
                           "connect the projector, or name one of these");
     if (!allow_only_monitor && (found->primary || monitors.size() == 1))
         throw DeviceError("projector window",
-                          "monitor " + found->name + (monitors.size() == 1 ? " is the only one" : " is the primary one") +
+                          "monitor " + found->name +
+                              (monitors.size() == 1 ? " is the only one" : " is the primary one") +
                               ": the light would cover the operator's screen; there is: " + names_of(monitors),
                           "choose the projector's monitor, or make the operator's screen the primary one");
     return static_cast<std::size_t>(found - monitors.begin());
@@ -124,9 +126,8 @@ struct ProjectorWindow::Parts {
         monitor = describe(handle);
         window = hidden_window(monitor);
         glfwSetWindowUserPointer(window, this);
-        glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) {
-            static_cast<Parts*>(glfwGetWindowUserPointer(w))->damaged = true;
-        });
+        glfwSetWindowRefreshCallback(
+            window, [](GLFWwindow* w) { static_cast<Parts*>(glfwGetWindowUserPointer(w))->damaged = true; });
         try {
             picture.emplace(window, monitor.width, monitor.height, clock);
             land();
@@ -160,7 +161,8 @@ struct ProjectorWindow::Parts {
                 glfwSetWindowPos(window, monitor.x, monitor.y);
             }
             if (problem.empty() && now - wrong_at > kSettled) break;
-            if (now - start > kLandingPatience) refuse(problem.empty() ? "the window does not stay on its monitor" : problem);
+            if (now - start > kLandingPatience)
+                refuse(problem.empty() ? "the window does not stay on its monitor" : problem);
             std::this_thread::sleep_for(std::chrono::milliseconds(10));
         }
         picture->redraw();
@@ -175,7 +177,8 @@ struct ProjectorWindow::Parts {
         if (now.x != monitor.x || now.y != monitor.y || now.width != monitor.width || now.height != monitor.height)
             return "monitor " + monitor.name + " is now " + rectangle(now.x, now.y, now.width, now.height) + ", was " +
                    rectangle(monitor.x, monitor.y, monitor.width, monitor.height);
-        if (glfwGetWindowAttrib(window, GLFW_ICONIFIED) == GLFW_TRUE || glfwGetWindowAttrib(window, GLFW_VISIBLE) == GLFW_FALSE)
+        if (glfwGetWindowAttrib(window, GLFW_ICONIFIED) == GLFW_TRUE ||
+            glfwGetWindowAttrib(window, GLFW_VISIBLE) == GLFW_FALSE)
             return "the window is not seen";
         int x = 0, y = 0, width = 0, height = 0;
         glfwGetWindowPos(window, &x, &y);
@@ -205,10 +208,18 @@ ProjectorWindow::ProjectorWindow(const std::string& monitor, const Clock& clock,
     : parts_(std::make_unique<Parts>(monitor, clock, allow_only_monitor, settings)) {}
 ProjectorWindow::~ProjectorWindow() = default;
 
-int ProjectorWindow::width() const { return parts_->monitor.width; }
-int ProjectorWindow::height() const { return parts_->monitor.height; }
-bool ProjectorWindow::dark() const { return parts_->picture->dark(); }
-void ProjectorWindow::go_dark() noexcept { parts_->picture->go_dark(); }
+int ProjectorWindow::width() const {
+    return parts_->monitor.width;
+}
+int ProjectorWindow::height() const {
+    return parts_->monitor.height;
+}
+bool ProjectorWindow::dark() const {
+    return parts_->picture->dark();
+}
+void ProjectorWindow::go_dark() noexcept {
+    parts_->picture->go_dark();
+}
 
 Instant ProjectorWindow::show(const RgbImage& picture, Instant valid_until) {
     if (picture.width != width() || picture.height != height()) {

@@ -13,8 +13,8 @@ struct Monitor {
     std::string name;
     int x = 0, y = 0, width = 0, height = 0;  ///< virtual desktop pixels
     bool primary = false;
-    double refresh_hz = 0;             ///< 0: not known
-    std::string model, serial;         ///< of its EDID, where X11 tells one; else empty
+    double refresh_hz = 0;      ///< 0: not known
+    std::string model, serial;  ///< of its EDID, where X11 tells one; else empty
 };
 
 /// The monitors there are now. Throws DeviceError when there is no display at all.
@@ -30,8 +30,9 @@ struct ProjectorWindowSettings {
 /// All members are called from the main thread.
 class ProjectorWindow final : public Projector {
 public:
-    /// Opens on the monitor of that name (or index as text). Throws DeviceError when there is no such monitor, when it is
-    /// the only one or the primary one and `allow_only_monitor` is false, or when the window does not land exactly on it.
+    /// Opens on the monitor of that name (or index as text). Throws DeviceError when there is no such monitor, when it
+    /// is the only one or the primary one and `allow_only_monitor` is false, or when the window does not land exactly
+    /// on it.
     ProjectorWindow(const std::string& monitor, const Clock& clock, bool allow_only_monitor = false,
                     const ProjectorWindowSettings& settings = {});
     ~ProjectorWindow() override;
@@ -41,8 +42,8 @@ public:
     Instant show(const RgbImage& picture, Instant valid_until) override;
     void go_dark() noexcept override;
 
-    /// To be called often: darkens an expired picture, checks that the window still covers its monitor and nothing else.
-    /// Throws DeviceError when it does not (monitor unplugged, window moved); the window is dark and hidden then.
+    /// To be called often: darkens an expired picture, checks that the window still covers its monitor and nothing
+    /// else. Throws DeviceError when it does not (monitor unplugged, window moved); the window is dark and hidden then.
     void refresh();
     bool dark() const;
 

@@ -60,7 +60,8 @@ void darken_markers(const CameraModel& projector, const RigidTransform& rig_from
 }  // namespace
 
 struct DrawingRenderer::Parts {
-    Parts(const SkinSurface& s, const CameraModel& p) : skin(s), projector(p), depth(s.mesh()), raster(p.width, p.height) {}
+    Parts(const SkinSurface& s, const CameraModel& p)
+        : skin(s), projector(p), depth(s.mesh()), raster(p.width, p.height) {}
 
     void light_points(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts);
     LitPoint light_point(const Vector3d& p_in_ct, const Vector3d& normal_in_ct, double steepest_cosine,
@@ -127,17 +128,20 @@ std::array<Vector2d, 2> DrawingRenderer::Parts::edges(const Stroke& stroke, std:
     const Vector3d side = stroke.normals_in_ct[at].cross(along).normalized();
     Vector2d half = point.pixel_by_ct * side * (stroke.width_mm / 2);
     const Vector2d along_px = point.pixel_by_ct * along;
-    const double width_px = 2 * std::abs(half.x() * along_px.y() - half.y() * along_px.x()) / std::max(1e-12, along_px.norm());
+    const double width_px =
+        2 * std::abs(half.x() * along_px.y() - half.y() * along_px.x()) / std::max(1e-12, along_px.norm());
     if (width_px < kMin_width_px) half *= std::min(4.0, kMin_width_px / std::max(1e-12, width_px));
     Vector2d centre = point.pixel;
-    if (other != nullptr && !smooth) centre += point.pixel_by_ct * own * (outwards * stroke.width_mm / 2);  // fills the corner
+    if (other != nullptr && !smooth)
+        centre += point.pixel_by_ct * own * (outwards * stroke.width_mm / 2);  // fills the corner
     return {centre + half, centre - half};
 }
 
 void DrawingRenderer::Parts::add_ribbon(const Stroke& stroke) {
     const std::size_t count = points.size(), segments = stroke.closed ? count : count - 1;
     const auto direction = [&](std::size_t segment) {
-        return Vector3d((stroke.points_in_ct[(segment + 1) % count] - stroke.points_in_ct[segment % count]).normalized());
+        return Vector3d(
+            (stroke.points_in_ct[(segment + 1) % count] - stroke.points_in_ct[segment % count]).normalized());
     };
     for (std::size_t i = 0; i < segments; ++i) {
         const std::size_t j = (i + 1) % count;
@@ -155,12 +159,17 @@ void DrawingRenderer::Parts::add_ribbon(const Stroke& stroke) {
 DrawingRenderer::DrawingRenderer(const SkinSurface& skin, const CameraModel& projector)
     : parts_(std::make_unique<Parts>(skin, projector)) {
     if (projector.width <= 0 || projector.height <= 0 || !(projector.focal_x > 0) || !(projector.focal_y > 0))
-        throw InputError("", "the projector's calibration has no picture size or focal length", "calibrate the rig again");
+        throw InputError("", "the projector's calibration has no picture size or focal length",
+                         "calibrate the rig again");
 }
 DrawingRenderer::~DrawingRenderer() = default;
 
-int DrawingRenderer::width() const { return parts_->projector.width; }
-int DrawingRenderer::height() const { return parts_->projector.height; }
+int DrawingRenderer::width() const {
+    return parts_->projector.width;
+}
+int DrawingRenderer::height() const {
+    return parts_->projector.height;
+}
 
 RgbImage DrawingRenderer::render(const PlanDrawing& drawing, const RigidTransform& rig_from_ct,
                                  const RigidTransform& rig_from_patient, const RenderSettings& settings) const {
@@ -169,8 +178,9 @@ RgbImage DrawingRenderer::render(const PlanDrawing& drawing, const RigidTransfor
     return picture;
 }
 
-RenderCounts DrawingRenderer::render_into(RgbImage& picture, const PlanDrawing& drawing, const RigidTransform& rig_from_ct,
-                                          const RigidTransform& rig_from_patient, const RenderSettings& settings) const {
+RenderCounts DrawingRenderer::render_into(RgbImage& picture, const PlanDrawing& drawing,
+                                          const RigidTransform& rig_from_ct, const RigidTransform& rig_from_patient,
+                                          const RenderSettings& settings) const {
     Parts& parts = *parts_;
     const std::lock_guard lock(parts.in_use);
     picture.width = width();

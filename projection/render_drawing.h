@@ -9,12 +9,12 @@
 namespace planlight {
 
 struct RenderSettings {
-    double steepest = 1.31;               ///< radians (75 degrees) between skin normal and light: beyond it nothing is drawn
+    double steepest = 1.31;  ///< radians (75 degrees) between skin normal and light: beyond it nothing is drawn
     double brightness = 1;
-    double halo_mm = 1.2;                 ///< darkness kept round the markers' stickers
+    double halo_mm = 1.2;                               ///< darkness kept round the markers' stickers
     std::vector<Eigen::Vector3d> keep_dark_in_patient;  ///< marker centres that no light may touch
     double keep_dark_radius_mm = 9;
-    int only_item = -1;                   ///< draw one item alone (for measuring); -1 draws all
+    int only_item = -1;  ///< draw one item alone (for measuring); -1 draws all
 };
 
 /// What became of the drawing's points in one picture.
@@ -27,8 +27,8 @@ struct RenderCounts {
 };
 
 /// Renders drawings for the projector's view: true occlusion by the skin, lens distortion, anti-aliased strokes.
-/// Holds the depth mesh, so that a picture a frame costs only the strokes. Keeps a reference to `skin`. May be called from
-/// several threads (one waits for the other).
+/// Holds the depth mesh, so that a picture a frame costs only the strokes. Keeps a reference to `skin`. May be called
+/// from several threads (one waits for the other).
 class DrawingRenderer {
 public:
     DrawingRenderer(const SkinSurface& skin, const CameraModel& projector);
@@ -44,7 +44,7 @@ public:
                              const RigidTransform& rig_from_patient = RigidTransform::Identity(),
                              const RenderSettings& settings = {}) const;
 
-    int width() const;   ///< of the projector, pixels
+    int width() const;  ///< of the projector, pixels
     int height() const;
 
 private:

@@ -59,7 +59,8 @@ SkinLine laid_chord(const SkinSurface& skin, const Point& from, const Point& to,
     return line;
 }
 
-SkinLine straight_way(const SkinSurface& skin, const Point& from, const Point& to, double max_segment_mm, int halvings) {
+SkinLine straight_way(const SkinSurface& skin, const Point& from, const Point& to, double max_segment_mm,
+                      int halvings) {
     const double chord_mm = (to.p_in_ct - from.p_in_ct).norm();
     const Shot shot = shoot(skin, from, to, max_segment_mm);
     if (shot.gap_mm < std::max(0.05, 0.02 * chord_mm)) return spread_gap(skin, shot.way, to);
@@ -77,7 +78,8 @@ double length_mm(const SkinLine& line) {
     double length = 0;
     for (std::size_t i = 0; i + 1 < line.points.size(); ++i)
         length += (line.points[i + 1].p_in_ct - line.points[i].p_in_ct).norm();
-    if (line.closed && line.points.size() > 1) length += (line.points.front().p_in_ct - line.points.back().p_in_ct).norm();
+    if (line.closed && line.points.size() > 1)
+        length += (line.points.front().p_in_ct - line.points.back().p_in_ct).norm();
     return length;
 }
 
@@ -115,8 +117,8 @@ SkinLine circle(const SkinSurface& skin, const Point& centre, double radius_mm, 
     return line;
 }
 
-SkinLine bar(const SkinSurface& skin, const Point& centre, const Vector3d& direction_in_ct, double back_mm, double ahead_mm,
-             double max_segment_mm) {
+SkinLine bar(const SkinSurface& skin, const Point& centre, const Vector3d& direction_in_ct, double back_mm,
+             double ahead_mm, double max_segment_mm) {
     const Vector3d tangent =
         (direction_in_ct - direction_in_ct.dot(centre.normal_in_ct) * centre.normal_in_ct).normalized();
     SkinLine line;

@@ -16,22 +16,25 @@ struct SkinLine {
 
 double length_mm(const SkinLine& line);
 
-/// The straight way (geodesic) from one skin point to another, points at most `max_segment_mm` apart, both ends included.
+/// The straight way (geodesic) from one skin point to another, points at most `max_segment_mm` apart, both ends
+/// included.
 ///
-/// Found by shooting: walk, look where one arrives, correct the start direction. What is left of the gap on rough skin is
-/// spread over the way (at most 2 % of it); where shooting does not arrive, the way is halved at the skin under its middle.
+/// Found by shooting: walk, look where one arrives, correct the start direction. What is left of the gap on rough skin
+/// is spread over the way (at most 2 % of it); where shooting does not arrive, the way is halved at the skin under its
+/// middle.
 SkinLine straight_way(const SkinSurface& skin, const SkinSurface::Point& from, const SkinSurface::Point& to,
                       double max_segment_mm);
 
 /// Straight ways through all points in turn. Points nearer than 1e-6 mm to the one before are dropped.
-SkinLine join(const SkinSurface& skin, const std::vector<SkinSurface::Point>& points, bool closed, double max_segment_mm);
+SkinLine join(const SkinSurface& skin, const std::vector<SkinSurface::Point>& points, bool closed,
+              double max_segment_mm);
 
 /// All points at `radius_mm` from `centre` along the skin.
 SkinLine circle(const SkinSurface& skin, const SkinSurface::Point& centre, double radius_mm, double max_segment_mm);
 
 /// A straight line through `centre`, from `back_mm` behind to `ahead_mm` before it (negative: that far short of it).
-SkinLine bar(const SkinSurface& skin, const SkinSurface::Point& centre, const Eigen::Vector3d& direction_in_ct, double back_mm,
-             double ahead_mm, double max_segment_mm);
+SkinLine bar(const SkinSurface& skin, const SkinSurface::Point& centre, const Eigen::Vector3d& direction_in_ct,
+             double back_mm, double ahead_mm, double max_segment_mm);
 
 /// Where the plane's rectangle cuts the skin; the longest piece first, pieces under 1 mm dropped.
 std::vector<SkinLine> trace(const SkinSurface& skin, const CutPlane& plane, double max_segment_mm);

@@ -22,8 +22,12 @@ using Triangles = std::vector<Kernel::Triangle_3>;
 using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
 using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
 
-Kernel::Point_3 to_cgal(const Vector3d& p) { return {p.x(), p.y(), p.z()}; }
-Vector3d to_eigen(const Kernel::Point_3& p) { return {p.x(), p.y(), p.z()}; }
+Kernel::Point_3 to_cgal(const Vector3d& p) {
+    return {p.x(), p.y(), p.z()};
+}
+Vector3d to_eigen(const Kernel::Point_3& p) {
+    return {p.x(), p.y(), p.z()};
+}
 Kernel::Ray_3 to_cgal(const Ray& ray) {
     return {to_cgal(ray.origin), Kernel::Vector_3(ray.direction.x(), ray.direction.y(), ray.direction.z())};
 }
@@ -38,7 +42,8 @@ void check(const TriangleMesh& mesh) {
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         for (const auto v : mesh.triangles[t])
             if (v < 0 || v >= count)
-                throw InputError("", fmt::format("triangle {} of the skin mesh names vertex {} of {}", t, v, count), remedy);
+                throw InputError("", fmt::format("triangle {} of the skin mesh names vertex {} of {}", t, v, count),
+                                 remedy);
 }
 
 TriangleMesh checked(TriangleMesh mesh) {
@@ -126,9 +131,9 @@ std::optional<SkinSurface::Way> SkinSurface::walk_way(const Point& start, const 
         stops_mm.push_back(length_mm * static_cast<double>(i) / static_cast<double>(segments));
     Way way{{start}, {}};
     way.points.reserve(segments + 1);
-    const auto end = parts_->walk.go({start.triangle, start.p_in_ct, direction}, length_mm, stops_mm, [&](const auto& place) {
-        way.points.push_back(parts_->point(place.p_in_ct, place.triangle));
-    });
+    const auto end =
+        parts_->walk.go({start.triangle, start.p_in_ct, direction}, length_mm, stops_mm,
+                        [&](const auto& place) { way.points.push_back(parts_->point(place.p_in_ct, place.triangle)); });
     if (!end) return std::nullopt;
     const Vector3d n = way.points.back().normal_in_ct;
     way.direction_at_end_in_ct =
@@ -149,6 +154,8 @@ bool SkinSurface::real_skin(const Point& point) const {
     return std::all_of(v.begin(), v.end(), [&](std::int32_t i) { return flags[static_cast<std::size_t>(i)] == kSkin; });
 }
 
-const TriangleMesh& SkinSurface::mesh() const { return parts_->mesh; }
+const TriangleMesh& SkinSurface::mesh() const {
+    return parts_->mesh;
+}
 
 }  // namespace planlight

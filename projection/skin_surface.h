@@ -34,7 +34,8 @@ public:
     /// Empty when the way leaves the mesh.
     std::optional<Point> walk(const Point& start, const Eigen::Vector3d& tangent_in_ct) const;
 
-    /// A straight way with points at most `max_segment_mm` apart, its two ends among them, and where it heads at its end.
+    /// A straight way with points at most `max_segment_mm` apart, its two ends among them, and where it heads at its
+    /// end.
     struct Way {
         std::vector<Point> points;
         Eigen::Vector3d direction_at_end_in_ct;  ///< unit, tangent to the skin

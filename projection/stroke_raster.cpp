@@ -6,9 +6,12 @@
 namespace planlight {
 
 StrokeRaster::StrokeRaster(int width, int height)
-    : width_(width), height_(height), coverage_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0.0f) {}
+    : width_(width),
+      height_(height),
+      coverage_(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0.0f) {}
 
-/// One edge's signed area per pixel, so that sums along rows give coverage (Levien 2016, font-rs). Corner-origin pixels.
+/// One edge's signed area per pixel, so that sums along rows give coverage (Levien 2016, font-rs). Corner-origin
+/// pixels.
 void StrokeRaster::add_edge(Eigen::Vector2d from, Eigen::Vector2d to) {
     if (from.y() == to.y()) return;
     const double sign = from.y() < to.y() ? 1 : -1;

@@ -8,8 +8,8 @@
 
 namespace planlight {
 
-/// Fills small four-sided shapes with exact pixel coverage. Shapes of one stroke add up (shared edges leave no seam), and
-/// are then laid on the picture as one.
+/// Fills small four-sided shapes with exact pixel coverage. Shapes of one stroke add up (shared edges leave no seam),
+/// and are then laid on the picture as one.
 ///
 /// Pixel (0,0) is the centre of the top-left pixel: a pixel covers half a pixel to each side of its centre.
 class StrokeRaster {

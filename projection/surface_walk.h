@@ -10,8 +10,8 @@
 
 namespace planlight {
 
-/// Straight ways over a triangle mesh: within a triangle a line, across an edge the line that unfolding the two triangles
-/// makes straight (Polthier & Schmies 1998).
+/// Straight ways over a triangle mesh: within a triangle a line, across an edge the line that unfolding the two
+/// triangles makes straight (Polthier & Schmies 1998).
 class SurfaceWalk {
 public:
     explicit SurfaceWalk(const TriangleMesh& mesh);  ///< keeps a reference
@@ -21,8 +21,8 @@ public:
         Eigen::Vector3d p_in_ct;
         Eigen::Vector3d direction_in_ct;  ///< unit, in the plane of the triangle
     };
-    /// From `start` straight for `length_mm`. `visit(place, way_mm)` is called for each of `stops_mm`, ascending, on the way.
-    /// Empty when the way leaves the mesh.
+    /// From `start` straight for `length_mm`. `visit(place, way_mm)` is called for each of `stops_mm`, ascending, on
+    /// the way. Empty when the way leaves the mesh.
     std::optional<Place> go(Place start, double length_mm, const std::vector<double>& stops_mm,
                             const std::function<void(const Place&)>& visit) const;
 

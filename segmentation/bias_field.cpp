@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "planning_io/types/statistics.h"
 #include "segmentation/skin_threshold.h"
 
 namespace planlight {
@@ -20,7 +21,9 @@ constexpr int kRounds = 12;
 constexpr double kSettled = 0.005;  // of a factor: no voxel of the skin moves by it
 constexpr double kOutlying = 2.5;   // deviations
 
-double unit(int i, int size) { return size > 1 ? 2.0 * i / (size - 1) - 1 : 0; }
+double unit(int i, int size) {
+    return size > 1 ? 2.0 * i / (size - 1) - 1 : 0;
+}
 
 Row terms(double x, double y, double z) {
     Row row;
@@ -37,7 +40,8 @@ struct Sample {
 std::vector<Sample> samples_of(const Volume& volume) {
     std::size_t count = 1;
     for (const int n : volume.size) count *= static_cast<std::size_t>(n);
-    const int stride = std::max(1, static_cast<int>(std::cbrt(static_cast<double>(count) / static_cast<double>(kSamples))));
+    const int stride =
+        std::max(1, static_cast<int>(std::cbrt(static_cast<double>(count) / static_cast<double>(kSamples))));
     std::vector<Sample> samples;
     for (int k = stride / 2; k < volume.size[2]; k += stride)
         for (int j = stride / 2; j < volume.size[1]; j += stride)
@@ -48,15 +52,11 @@ std::vector<Sample> samples_of(const Volume& volume) {
     return samples;
 }
 
-double median(std::vector<double> values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
-/// The polynomial nearest to the tissue's logarithms. `row` is a voxel of the tissue with what the polynomial leaves there.
+/// The polynomial nearest to the tissue's logarithms. `row` is a voxel of the tissue with what the polynomial leaves
+/// there.
 Row fitted(const std::vector<const Sample*>& tissue) {
-    Eigen::Matrix<double, 10, 10> normal = 1e-6 * static_cast<double>(tissue.size()) * Eigen::Matrix<double, 10, 10>::Identity();
+    Eigen::Matrix<double, 10, 10> normal =
+        1e-6 * static_cast<double>(tissue.size()) * Eigen::Matrix<double, 10, 10>::Identity();
     Row right = Row::Zero();
     for (const Sample* s : tissue) {
         normal.noalias() += s->terms * s->terms.transpose();
@@ -71,7 +71,8 @@ std::vector<const Sample*> tissue_of(const std::vector<Sample>& samples, const R
     line.size = {static_cast<int>(samples.size()), 1, 1};
     line.values.reserve(samples.size());
     std::vector<double> level;
-    for (const Sample& s : samples) line.values.push_back(static_cast<float>(std::exp(s.log_value - s.terms.dot(log_bias))));
+    for (const Sample& s : samples)
+        line.values.push_back(static_cast<float>(std::exp(s.log_value - s.terms.dot(log_bias))));
     const double threshold = skin_threshold(line);
     std::vector<const Sample*> over;
     for (std::size_t i = 0; i < samples.size(); ++i)
@@ -92,7 +93,9 @@ std::vector<const Sample*> tissue_of(const std::vector<Sample>& samples, const R
 
 }  // namespace
 
-double BiasField::ratio() const { return std::exp(log_high - log_low); }
+double BiasField::ratio() const {
+    return std::exp(log_high - log_low);
+}
 
 BiasField fit_bias(const Volume& volume) {
     const std::vector<Sample> samples = samples_of(volume);
@@ -126,7 +129,8 @@ Volume without_bias(Volume volume, const BiasField& bias) {
     tbb::parallel_for(0, volume.size[2], [&](int k) {
         for (int j = 0; j < volume.size[1]; ++j)
             for (int i = 0; i < volume.size[0]; ++i) {
-                const double at = log_bias.dot(terms(unit(i, volume.size[0]), unit(j, volume.size[1]), unit(k, volume.size[2])));
+                const double at =
+                    log_bias.dot(terms(unit(i, volume.size[0]), unit(j, volume.size[1]), unit(k, volume.size[2])));
                 volume.values[volume.index(i, j, k)] *=
                     static_cast<float>(std::exp(-std::clamp(at, bias.log_low, bias.log_high)));
             }

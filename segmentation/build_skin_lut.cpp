@@ -20,11 +20,13 @@ constexpr double kMostVoxelsAlongAxis = 16384;  // squared distances stay within
 void check(const TriangleMesh& skin, const LutSettings& settings) {
     if (skin.triangles.empty()) throw InputError({}, "The skin mesh has no triangles.", "Segment the skin first.");
     for (const auto& p : skin.vertices_in_ct)
-        if (!p.allFinite()) throw InputError({}, "The skin mesh has a vertex that is not a number.", "Make the mesh again.");
+        if (!p.allFinite())
+            throw InputError({}, "The skin mesh has a vertex that is not a number.", "Make the mesh again.");
     for (const auto& t : skin.triangles)
         for (const auto corner : t)
             if (corner < 0 || static_cast<std::size_t>(corner) >= skin.vertices_in_ct.size())
-                throw InputError({}, "A triangle of the skin mesh names a vertex that is not there.", "Make the mesh again.");
+                throw InputError({}, "A triangle of the skin mesh names a vertex that is not there.",
+                                 "Make the mesh again.");
     if (!(settings.voxel_mm > 0) || !(settings.distance_voxel_mm > 0) || !(settings.margin_mm >= 0))
         throw InputError({}, "The voxels of the table must have a size and the margin must not be negative.",
                          "Give a voxel size above 0 mm.");
@@ -45,7 +47,8 @@ std::array<int, 3> size_for(const Vector3d& extent_mm, double voxel_mm) {
 
 }  // namespace
 
-SkinLut build_skin_lut(const TriangleMesh& skin, const LutSettings& settings, const std::function<void(double)>& progress) {
+SkinLut build_skin_lut(const TriangleMesh& skin, const LutSettings& settings,
+                       const std::function<void(double)>& progress) {
     const auto report = [&](double done) {
         if (progress) progress(done);
     };

@@ -10,7 +10,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+double cross(const Vector2d& a, const Vector2d& b) {
+    return a.x() * b.y() - a.y() * b.x();
+}
 
 /// Along which the fans are seen: the sum of the old fan's area normals.
 std::optional<Eigen::Matrix<double, 2, 3>> view_of(const Vector3d& v, std::span<const Vector3d> ring) {
@@ -46,7 +48,7 @@ std::optional<double> collapse_bound(const Vector3d& v, std::span<const Vector3d
     if (!covers_once(flat)) return std::nullopt;
     const Vector3d& q = ring[target];
     const Vector2d& q_flat = flat[target];
-    double most = -1;  // squared, over the crossings; below 0 while the place of v is not found
+    double most = -1;                          // squared, over the crossings; below 0 while the place of v is not found
     for (std::size_t j = 1; j + 1 < n; ++j) {  // the new triangles (q, ring[a], ring[b])
         const std::size_t a = (target + j) % n, b = (target + j + 1) % n;
         const Vector2d u = flat[a] - q_flat, w = flat[b] - q_flat;

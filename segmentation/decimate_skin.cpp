@@ -27,8 +27,8 @@ using HalfEdgeMesh = OpenMesh::TriMesh_ArrayKernelT<Traits>;
 using Vertex = HalfEdgeMesh::VertexHandle;
 using HalfEdge = HalfEdgeMesh::HalfedgeHandle;
 
-constexpr double kLeastTurn = 0.7;      // cosine between a triangle and what replaces it
-constexpr double kLeastQuality = 0.3;   // of a new triangle: 1 for equal sides, 0 for none left
+constexpr double kLeastTurn = 0.7;     // cosine between a triangle and what replaces it
+constexpr double kLeastQuality = 0.3;  // of a new triangle: 1 for equal sides, 0 for none left
 
 class Decimation {
 public:
@@ -79,7 +79,8 @@ private:
     double& error_mm(Vertex v) { return error_mm_[static_cast<std::size_t>(v.idx())]; }
 
     void try_to_remove(Vertex v, double limit_mm) {
-        if (halves_.status(v).deleted() || halves_.is_isolated(v) || halves_.is_boundary(v) || error_mm(v) >= limit_mm) return;
+        if (halves_.status(v).deleted() || halves_.is_isolated(v) || halves_.is_boundary(v) || error_mm(v) >= limit_mm)
+            return;
         ways_.clear();
         for (const HalfEdge h : halves_.voh_range(v)) {
             if (flag(halves_.to_vertex_handle(h)) != flag(v)) continue;

@@ -7,19 +7,21 @@
 #include <queue>
 #include <utility>
 
+#include "planning_io/types/statistics.h"
 #include "segmentation/outside_air.h"
 
 namespace planlight {
 namespace {
 
-constexpr double kEarReach_mm = 40;      // from the thick head along the piece; an adult ear stands out by 15-30 mm
+constexpr double kEarReach_mm = 40;  // from the thick head along the piece; an adult ear stands out by 15-30 mm
 constexpr double kSpeck_ml = 0.05;
-constexpr int kLevels = 4;               // thresholds tried to make a contact let go
+constexpr int kLevels = 4;  // thresholds tried to make a contact let go
 
 enum State : std::uint8_t { kAir = 0, kBody = 1, kHanging = 2, kInPiece = 3, kGone = 4 };
 
 /// How far the piece reaches from the body, along itself, mm (Dijkstra over face neighbours, stopped beyond the ear's
-/// reach). Face steps overestimate diagonals by up to sqrt(3); steps are scaled by 0.7 for the mean. Negative: no contact.
+/// reach). Face steps overestimate diagonals by up to sqrt(3); steps are scaled by 0.7 for the mean. Negative: no
+/// contact.
 double reach_mm(const Mask& state, const VoxelGrid& grid, const std::vector<std::size_t>& piece,
                 std::vector<float>& distance) {
     using Entry = std::pair<float, std::size_t>;
@@ -67,7 +69,12 @@ void take_back_fringe(Mask& state, const VoxelGrid& grid, std::vector<std::size_
 class Pieces {
 public:
     Pieces(Mask& state, const std::vector<float>& values, double threshold, double soft, const VoxelGrid& grid)
-        : state_(state), values_(values), threshold_(threshold), soft_(soft), grid_(grid), distance_(state.size(), 0.0F) {}
+        : state_(state),
+          values_(values),
+          threshold_(threshold),
+          soft_(soft),
+          grid_(grid),
+          distance_(state.size(), 0.0F) {}
 
     /// Judges every hanging piece; `state` becomes body or gone.
     void judge() {
@@ -127,9 +134,7 @@ double median_value(const std::vector<float>& values, const Mask& where) {
     for (std::size_t i = 0; i < where.size(); i += 13)
         if (where[i]) sample.push_back(values[i]);
     if (sample.empty()) return 0;
-    const auto middle = sample.begin() + static_cast<std::ptrdiff_t>(sample.size() / 2);
-    std::nth_element(sample.begin(), middle, sample.end());
-    return *middle;
+    return median(std::move(sample));
 }
 
 void count_removed(const Mask& dense, const VoxelGrid& grid, DetachedBody& result) {
@@ -146,8 +151,8 @@ void count_removed(const Mask& dense, const VoxelGrid& grid, DetachedBody& resul
 
 }  // namespace
 
-DetachedBody detach_objects(const Mask& dense, const std::vector<float>& values, double threshold, const VoxelGrid& grid,
-                            double detach_radius_mm) {
+DetachedBody detach_objects(const Mask& dense, const std::vector<float>& values, double threshold,
+                            const VoxelGrid& grid, double detach_radius_mm) {
     DetachedBody result;
     Mask filled = outside_air(dense, grid);
     for (auto& v : filled) v = !v;
@@ -174,8 +179,9 @@ DetachedBody detach_objects(const Mask& dense, const std::vector<float>& values,
     result.body = std::move(state);
     count_removed(dense, grid, result);
     if (pieces.torn_ml >= kSpeck_ml)
-        result.warnings.push_back(fmt::format(
-            "Something of {:.1f} ml that touches the head was cut off; look at the skin where it was.", pieces.torn_ml));
+        result.warnings.push_back(
+            fmt::format("Something of {:.1f} ml that touches the head was cut off; look at the skin where it was.",
+                        pieces.torn_ml));
     return result;
 }
 

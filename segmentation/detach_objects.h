@@ -8,19 +8,20 @@
 namespace planlight {
 
 struct DetachedBody {
-    Mask body;                 ///< with its enclosed cavities filled
-    int pieces_removed = 0;    ///< of at least 0.05 ml
+    Mask body;               ///< with its enclosed cavities filled
+    int pieces_removed = 0;  ///< of at least 0.05 ml
     double removed_ml = 0;
     std::vector<std::string> warnings;
 };
 
 /// Keeps the head of all that is denser than air, and cuts off what merely touches it.
 ///
-/// An opening by `detach_radius_mm` leaves the cores of thick things; the largest is the head. What is thinner hangs on it:
-/// a piece that reaches no further than an ear from the core stays, skin position and all; one that reaches further (plate,
-/// strap, wire) is tried again at higher thresholds, where the contact of an ear with a plate lets go, and falls in the end.
-/// `values` are those of the volume, `threshold` the one that made `dense`. The body is empty when nothing is thick enough.
-DetachedBody detach_objects(const Mask& dense, const std::vector<float>& values, double threshold, const VoxelGrid& grid,
-                            double detach_radius_mm);
+/// An opening by `detach_radius_mm` leaves the cores of thick things; the largest is the head. What is thinner hangs on
+/// it: a piece that reaches no further than an ear from the core stays, skin position and all; one that reaches further
+/// (plate, strap, wire) is tried again at higher thresholds, where the contact of an ear with a plate lets go, and
+/// falls in the end. `values` are those of the volume, `threshold` the one that made `dense`. The body is empty when
+/// nothing is thick enough.
+DetachedBody detach_objects(const Mask& dense, const std::vector<float>& values, double threshold,
+                            const VoxelGrid& grid, double detach_radius_mm);
 
 }  // namespace planlight

@@ -70,7 +70,8 @@ Mask fill_tunnels(const Mask& body, const VoxelGrid& grid) {
         std::size_t at = 0;
         for (int k = 1; k <= grid.size[2]; ++k)
             for (int j = 1; j <= grid.size[1]; ++j) {
-                std::size_t v = static_cast<std::size_t>(k) * wide.slab() + static_cast<std::size_t>(j) * wide.row() + 1;
+                std::size_t v =
+                    static_cast<std::size_t>(k) * wide.slab() + static_cast<std::size_t>(j) * wide.row() + 1;
                 for (int i = 0; i < grid.size[0]; ++i) visit(at++, v++);
             }
     };
@@ -85,7 +86,8 @@ Mask fill_tunnels(const Mask& body, const VoxelGrid& grid) {
     };
     for_all([&](std::size_t, std::size_t v) {
         for (const int face : {4, 10, 12, 14, 16, 22})
-            if (state[v] == kBlock && state[v + static_cast<std::size_t>(step[static_cast<std::size_t>(face)])] == kAir) {
+            if (state[v] == kBlock &&
+                state[v + static_cast<std::size_t>(step[static_cast<std::size_t>(face)])] == kAir) {
                 state[v] = kQueued;
                 queue.push_back(v);
             }

@@ -11,7 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+std::size_t at(std::int32_t index) {
+    return static_cast<std::size_t>(index);
+}
 
 }  // namespace
 
@@ -19,7 +21,9 @@ MeshSides::MeshSides(const TriangleMesh& mesh)
     : mesh_(mesh), face_normals_(mesh.triangles.size()), corner_normals_(mesh.vertices_in_ct.size(), Vector3d::Zero()) {
     std::vector<Vector3d> angles(mesh.triangles.size());
     tbb::parallel_for(std::size_t{0}, angles.size(), [&](std::size_t t) {
-        const auto corner = [&](std::size_t c) -> const Vector3d& { return mesh_.vertices_in_ct[at(mesh_.triangles[t][c % 3])]; };
+        const auto corner = [&](std::size_t c) -> const Vector3d& {
+            return mesh_.vertices_in_ct[at(mesh_.triangles[t][c % 3])];
+        };
         face_normals_[t] = (corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized();
         for (std::size_t c = 0; c < 3; ++c) {
             const Vector3d u = (corner(c + 1) - corner(c)).normalized(), v = (corner(c + 2) - corner(c)).normalized();

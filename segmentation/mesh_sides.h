@@ -8,8 +8,8 @@
 
 namespace planlight {
 
-/// Which side of a mesh a point is on, whatever its nearest feature: the angle-weighted pseudonormals of faces, edges and
-/// corners (Baerentzen & Aanaes 2005).
+/// Which side of a mesh a point is on, whatever its nearest feature: the angle-weighted pseudonormals of faces, edges
+/// and corners (Baerentzen & Aanaes 2005).
 class MeshSides {
 public:
     explicit MeshSides(const TriangleMesh& mesh);
@@ -23,8 +23,9 @@ private:
     void find_neighbours();
 
     const TriangleMesh& mesh_;
-    std::vector<Eigen::Vector3d> face_normals_, corner_normals_;      // of each triangle, of each vertex
-    std::vector<std::array<std::uint32_t, 3>> neighbours_;  // across the edge opposite to each corner; itself at an opening
+    std::vector<Eigen::Vector3d> face_normals_, corner_normals_;  // of each triangle, of each vertex
+    std::vector<std::array<std::uint32_t, 3>>
+        neighbours_;  // across the edge opposite to each corner; itself at an opening
 };
 
 }  // namespace planlight

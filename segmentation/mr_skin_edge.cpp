@@ -15,7 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kStep_mm = 0.25;
-constexpr int kSide = 16;  // samples on each side of the vertex: 4 mm
+constexpr int kSide = 16;                           // samples on each side of the vertex: 4 mm
 using Profile = std::array<double, 2 * kSide + 1>;  // from the inside out
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -23,8 +23,8 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 double mean(const Profile& profile, double from_mm, double to_mm) {
     double sum = 0;
     int count = 0;
-    for (int s = static_cast<int>(std::lround(from_mm / kStep_mm)); s <= static_cast<int>(std::lround(to_mm / kStep_mm));
-         ++s, ++count)
+    for (int s = static_cast<int>(std::lround(from_mm / kStep_mm));
+         s <= static_cast<int>(std::lround(to_mm / kStep_mm)); ++s, ++count)
         sum += profile[static_cast<std::size_t>(s + kSide)];
     return sum / count;
 }
@@ -36,7 +36,8 @@ double half_way(const Profile& profile, double threshold, double reach_mm) {
     double found = kUnknown;
     for (std::size_t s = 0; s + 1 < profile.size(); ++s) {
         if (!(profile[s] >= half) || !(profile[s + 1] < half)) continue;
-        const double at = (static_cast<double>(s) + (profile[s] - half) / (profile[s] - profile[s + 1]) - kSide) * kStep_mm;
+        const double at =
+            (static_cast<double>(s) + (profile[s] - half) / (profile[s] - profile[s + 1]) - kSide) * kStep_mm;
         if (std::abs(at) <= reach_mm && !(std::abs(at) >= std::abs(found))) found = at;
     }
     return found;

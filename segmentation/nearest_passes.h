@@ -10,8 +10,8 @@ inline constexpr int kLanes = 32;
 
 /// A stripe of kLanes columns of the table, from column `x0`, and what the two passes over it read and write.
 ///
-/// A key is a squared distance (voxels) and, in its `bits` lowest bits, the number of the row or slice that it comes from:
-/// the least key is the least distance and, among equal ones, the first.
+/// A key is a squared distance (voxels) and, in its `bits` lowest bits, the number of the row or slice that it comes
+/// from: the least key is the least distance and, among equal ones, the first.
 template <class Key>
 struct Stripe {
     int size_x, size_y, size_z, x0;
@@ -21,10 +21,10 @@ struct Stripe {
     const std::uint16_t* skin_x;     ///< column of each skin voxel; they stand in the order of the table
     const int* slices;               ///< those with skin, rising
     int slice_count;
-    std::size_t row_step;            ///< lanes between two y in `keys` and `skin`
-    Key* keys;                       ///< [y][slice][lane]: squared distance within the slice | number of the slice
-    std::uint32_t* skin;             ///< [y][slice][lane]: nearest skin voxel within the slice
-    std::uint32_t* nearest;          ///< the table
+    std::size_t row_step;    ///< lanes between two y in `keys` and `skin`
+    Key* keys;               ///< [y][slice][lane]: squared distance within the slice | number of the slice
+    std::uint32_t* skin;     ///< [y][slice][lane]: nearest skin voxel within the slice
+    std::uint32_t* nearest;  ///< the table
 };
 
 /// Bytes of working memory that a call of either pass needs, aligned to 64.

@@ -1,5 +1,5 @@
-// The two passes, compiled once for each set of instructions by nearest_passes_*.cpp. Everything here has internal linkage
-// and nothing of the standard library is called, so that no code of one set can end up in another.
+// The two passes, compiled once for each set of instructions by nearest_passes_*.cpp. Everything here has internal
+// linkage and nothing of the standard library is called, so that no code of one set can end up in another.
 #pragma once
 
 #if defined(__AVX2__)
@@ -51,7 +51,8 @@ struct Range {
 constexpr int kMostBlends = 8;  // above it single loads are faster
 
 #if defined(__AVX512F__)
-PLANLIGHT_INLINE Lanes<std::uint32_t>::Vector gathered(const Lanes<std::uint32_t>::Vector& number, const std::uint32_t* entries) {
+PLANLIGHT_INLINE Lanes<std::uint32_t>::Vector gathered(const Lanes<std::uint32_t>::Vector& number,
+                                                       const std::uint32_t* entries) {
     static_assert(kLanes == 32);
     const __m512i lane = _mm512_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15);
     const __m512i at = _mm512_or_si512(_mm512_slli_epi32((__m512i)number, 5), lane);
@@ -65,7 +66,8 @@ PLANLIGHT_INLINE Range range_of(const Lanes<Key>& keys, Key mask) {
 #if defined(__AVX512F__)
     if constexpr (sizeof(Key) == 4) {
         const __m512i m = _mm512_set1_epi32(static_cast<int>(mask));
-        const __m512i w = _mm512_packus_epi32(_mm512_and_si512((__m512i)keys.v[0], m), _mm512_and_si512((__m512i)keys.v[1], m));
+        const __m512i w =
+            _mm512_packus_epi32(_mm512_and_si512((__m512i)keys.v[0], m), _mm512_and_si512((__m512i)keys.v[1], m));
         const __m512i inverse = _mm512_xor_si512(w, _mm512_set1_epi32(-1));
         const __m256i a = _mm256_min_epu16(_mm512_castsi512_si256(w), _mm512_extracti64x4_epi64(w, 1));
         const __m256i b = _mm256_min_epu16(_mm512_castsi512_si256(inverse), _mm512_extracti64x4_epi64(inverse, 1));
@@ -76,9 +78,12 @@ PLANLIGHT_INLINE Range range_of(const Lanes<Key>& keys, Key mask) {
 #elif defined(__AVX2__)
     if constexpr (sizeof(Key) == 4) {
         const __m256i m = _mm256_set1_epi32(static_cast<int>(mask));
-        const __m256i w0 = _mm256_packus_epi32(_mm256_and_si256((__m256i)keys.v[0], m), _mm256_and_si256((__m256i)keys.v[1], m));
-        const __m256i w1 = _mm256_packus_epi32(_mm256_and_si256((__m256i)keys.v[2], m), _mm256_and_si256((__m256i)keys.v[3], m));
-        const __m256i a = _mm256_min_epu16(w0, w1), b = _mm256_xor_si256(_mm256_max_epu16(w0, w1), _mm256_set1_epi32(-1));
+        const __m256i w0 =
+            _mm256_packus_epi32(_mm256_and_si256((__m256i)keys.v[0], m), _mm256_and_si256((__m256i)keys.v[1], m));
+        const __m256i w1 =
+            _mm256_packus_epi32(_mm256_and_si256((__m256i)keys.v[2], m), _mm256_and_si256((__m256i)keys.v[3], m));
+        const __m256i a = _mm256_min_epu16(w0, w1),
+                      b = _mm256_xor_si256(_mm256_max_epu16(w0, w1), _mm256_set1_epi32(-1));
         const __m128i low = _mm_minpos_epu16(_mm_min_epu16(_mm256_castsi256_si128(a), _mm256_extracti128_si256(a, 1)));
         const __m128i high = _mm_minpos_epu16(_mm_min_epu16(_mm256_castsi256_si128(b), _mm256_extracti128_si256(b, 1)));
         return {_mm_cvtsi128_si32(low) & 0xFFFF, 0xFFFF ^ (_mm_cvtsi128_si32(high) & 0xFFFF)};
@@ -100,8 +105,8 @@ PLANLIGHT_INLINE Range range_of(const Lanes<Key>& keys, Key mask) {
 /// The first best candidate never falls when q grows (each parabola has the same width), so what was found at two
 /// positions bounds the search between them: divide and conquer, n log n.
 template <class Key, class Put>
-PLANLIGHT_INLINE void least_along_line(const Stripe<Key>& stripe, const Key* keys, const int* place, int count, int n, int* low,
-                                       int* high, Put&& put) {
+PLANLIGHT_INLINE void least_along_line(const Stripe<Key>& stripe, const Key* keys, const int* place, int count, int n,
+                                       int* low, int* high, Put&& put) {
     const Key mask = (Key{1} << stripe.bits) - 1;
     int step = 1;
     while (2 * step <= n) step *= 2;
@@ -129,7 +134,8 @@ PLANLIGHT_INLINE void least_along_line(const Stripe<Key>& stripe, const Key* key
 
 /// The entry of each lane's candidate: entries[c][lane], c in the lowest bits of the lane's key.
 template <class Key>
-PLANLIGHT_INLINE void entries_of(const Lanes<Key>& keys, Key mask, Range range, const std::uint32_t* entries, std::uint32_t* to) {
+PLANLIGHT_INLINE void entries_of(const Lanes<Key>& keys, Key mask, Range range, const std::uint32_t* entries,
+                                 std::uint32_t* to) {
     if constexpr (sizeof(Key) == 4) {
         Lanes<Key> found;
         found.load(entries + range.low * kLanes);
@@ -162,16 +168,18 @@ PLANLIGHT_INLINE void entries_of(const Lanes<Key>& keys, Key mask, Range range, 
 PLANLIGHT_INLINE std::uint32_t first_from(const std::uint16_t* skin_x, std::uint32_t begin, std::uint32_t end, int x) {
     while (begin < end) {
         const std::uint32_t middle = begin + (end - begin) / 2;
-        if (skin_x[middle] < x) begin = middle + 1;
-        else end = middle;
+        if (skin_x[middle] < x)
+            begin = middle + 1;
+        else
+            end = middle;
     }
     return begin;
 }
 
 /// The nearest skin voxel of the same row for each lane: those between the lanes, and one beyond on each side.
 template <class Key>
-PLANLIGHT_INLINE void along_row(const Stripe<Key>& stripe, std::uint32_t begin, std::uint32_t end, int row_number, Key* keys,
-                                std::uint32_t* skin) {
+PLANLIGHT_INLINE void along_row(const Stripe<Key>& stripe, std::uint32_t begin, std::uint32_t end, int row_number,
+                                Key* keys, std::uint32_t* skin) {
     const Key mask = (Key{1} << stripe.bits) - 1;
     std::uint32_t first = first_from(stripe.skin_x, begin, end, stripe.x0);
     std::uint32_t last = first_from(stripe.skin_x, first, end, stripe.x0 + kLanes);
@@ -208,13 +216,15 @@ void in_slice(const Stripe<Key>& stripe, int slice, void* scratch) {
         along_row(stripe, row_begin[y], row_begin[y + 1], rows, keys + rows * kLanes, skin + rows * kLanes);
         ++rows;
     }
-    least_along_line(stripe, keys, place, rows, stripe.size_y, low, high, [&](int y, const Lanes<Key>& best, Range range) {
-        const std::size_t at = static_cast<std::size_t>(y) * stripe.row_step + static_cast<std::size_t>(slice) * kLanes;
-        for (int i = 0; i < Lanes<Key>::kCount; ++i)
-            *reinterpret_cast<typename Lanes<Key>::Unaligned*>(stripe.keys + at + i * Lanes<Key>::kWidth) =
-                (best.v[i] & ~mask) | static_cast<Key>(slice);
-        entries_of(best, mask, range, skin, stripe.skin + at);
-    });
+    least_along_line(
+        stripe, keys, place, rows, stripe.size_y, low, high, [&](int y, const Lanes<Key>& best, Range range) {
+            const std::size_t at =
+                static_cast<std::size_t>(y) * stripe.row_step + static_cast<std::size_t>(slice) * kLanes;
+            for (int i = 0; i < Lanes<Key>::kCount; ++i)
+                *reinterpret_cast<typename Lanes<Key>::Unaligned*>(stripe.keys + at + i * Lanes<Key>::kWidth) =
+                    (best.v[i] & ~mask) | static_cast<Key>(slice);
+            entries_of(best, mask, range, skin, stripe.skin + at);
+        });
 }
 
 template <class Key>
@@ -228,17 +238,19 @@ void across_slices(const Stripe<Key>& stripe, int y, void* scratch) {
     const int lanes = stripe.size_x - stripe.x0 < kLanes ? stripe.size_x - stripe.x0 : kLanes;
     least_along_line(stripe, keys, stripe.slices, stripe.slice_count, stripe.size_z, low, high,
                      [&](int z, const Lanes<Key>& best, Range range) {
-        std::uint32_t* to = stripe.nearest +
-            (static_cast<std::size_t>(z) * static_cast<std::size_t>(stripe.size_y) + static_cast<std::size_t>(y)) *
-                static_cast<std::size_t>(stripe.size_x) + static_cast<std::size_t>(stripe.x0);
-        if (lanes == kLanes) {
-            entries_of(best, mask, range, skin, to);
-        } else {
-            alignas(64) std::uint32_t part[kLanes];
-            entries_of(best, mask, range, skin, part);
-            __builtin_memcpy(to, part, static_cast<std::size_t>(lanes) * sizeof(std::uint32_t));
-        }
-    });
+                         std::uint32_t* to = stripe.nearest +
+                                             (static_cast<std::size_t>(z) * static_cast<std::size_t>(stripe.size_y) +
+                                              static_cast<std::size_t>(y)) *
+                                                 static_cast<std::size_t>(stripe.size_x) +
+                                             static_cast<std::size_t>(stripe.x0);
+                         if (lanes == kLanes) {
+                             entries_of(best, mask, range, skin, to);
+                         } else {
+                             alignas(64) std::uint32_t part[kLanes];
+                             entries_of(best, mask, range, skin, part);
+                             __builtin_memcpy(to, part, static_cast<std::size_t>(lanes) * sizeof(std::uint32_t));
+                         }
+                     });
 }
 
 }  // namespace

@@ -13,7 +13,9 @@ namespace {
 
 using namespace nearest_passes;
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
 
 template <class Key>
 const Passes<Key>& passes_for(VectorPath path) {
@@ -23,15 +25,17 @@ const Passes<Key>& passes_for(VectorPath path) {
                : can_use(VectorPath::avx2) ? VectorPath::avx2
                                            : VectorPath::plain;
     if (!can_use(path)) throw std::logic_error("this processor does not have the instructions asked for");
-    if constexpr (kNarrow) return path == VectorPath::avx512 ? kAvx512 : path == VectorPath::avx2 ? kAvx2 : kPlain;
-    else return path == VectorPath::avx512 ? kAvx512Wide : path == VectorPath::avx2 ? kAvx2Wide : kPlainWide;
+    if constexpr (kNarrow)
+        return path == VectorPath::avx512 ? kAvx512 : path == VectorPath::avx2 ? kAvx2 : kPlain;
+    else
+        return path == VectorPath::avx512 ? kAvx512Wide : path == VectorPath::avx2 ? kAvx2Wide : kPlainWide;
 }
 
 /// The skin voxels by rows of the table.
 struct SkinRows {
     std::vector<std::uint32_t> begin;  // of each row; one more
     std::vector<std::uint16_t> x;
-    std::vector<int> slices;           // with skin
+    std::vector<int> slices;  // with skin
 
     explicit SkinRows(const SkinLut& lut) : begin(at(lut.size[1]) * at(lut.size[2]) + 1), x(lut.skin.size()) {
         std::size_t row = 0;
@@ -65,7 +69,8 @@ void transform(SkinLut& lut, const SkinRows& rows, unsigned bits, VectorPath pat
     const Passes<Key>& passes = passes_for<Key>(path);
     const int longest = *std::max_element(lut.size.begin(), lut.size.end());
     const std::vector<Key> squares = squares_of<Key>(longest, bits);
-    const std::size_t row_step = (rows.slices.size() + 1) * kLanes;  // one more: no power of two, which would crowd the caches
+    const std::size_t row_step =
+        (rows.slices.size() + 1) * kLanes;  // one more: no power of two, which would crowd the caches
     LargeArray<Key> keys(row_step * at(lut.size[1]));
     LargeArray<std::uint32_t> skin(keys.size());
     Stripe<Key> stripe{.size_x = lut.size[0],
@@ -103,8 +108,10 @@ bool can_use(VectorPath path) {
         case VectorPath::avx512:
             return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
                    __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-        case VectorPath::avx2: return __builtin_cpu_supports("avx2");
-        default: return true;
+        case VectorPath::avx2:
+            return __builtin_cpu_supports("avx2");
+        default:
+            return true;
     }
 }
 
@@ -117,8 +124,10 @@ void point_to_nearest(SkinLut& lut, VectorPath path) {
     const unsigned bits = std::max(6U, static_cast<unsigned>(std::bit_width(most - 1)));
     std::uint64_t furthest = 0;  // squared
     for (const int n : lut.size) furthest += at(n - 1) * at(n - 1);
-    if (furthest >> (32 - bits) == 0) transform<std::uint32_t>(lut, rows, bits, path);
-    else transform<std::uint64_t>(lut, rows, bits, path);
+    if (furthest >> (32 - bits) == 0)
+        transform<std::uint32_t>(lut, rows, bits, path);
+    else
+        transform<std::uint64_t>(lut, rows, bits, path);
 }
 
 }  // namespace planlight

@@ -4,10 +4,12 @@ namespace planlight {
 namespace {
 
 std::size_t offset(const VoxelGrid& grid, int i, int j, int k) {
-    return static_cast<std::size_t>(k) * grid.slab() + static_cast<std::size_t>(j) * grid.row() + static_cast<std::size_t>(i);
+    return static_cast<std::size_t>(k) * grid.slab() + static_cast<std::size_t>(j) * grid.row() +
+           static_cast<std::size_t>(i);
 }
 
-/// Free voxels of one face of the array (axis fixed at its first or last index) that reach the face's rim inside the face.
+/// Free voxels of one face of the array (axis fixed at its first or last index) that reach the face's rim inside the
+/// face.
 void add_face_seeds(const Mask& solid, const VoxelGrid& grid, int axis, bool last, std::vector<std::size_t>& seeds) {
     const int a = axis == 0 ? 1 : 0, b = axis == 2 ? 1 : 2;
     const int na = grid.size[static_cast<std::size_t>(a)], nb = grid.size[static_cast<std::size_t>(b)];
@@ -23,7 +25,8 @@ void add_face_seeds(const Mask& solid, const VoxelGrid& grid, int axis, bool las
     std::vector<std::size_t> rim;
     for (std::size_t f = 0; f < face.size(); ++f) {
         face[f] = solid[volume_index(f)];
-        const int x = static_cast<int>(f % static_cast<std::size_t>(na)), y = static_cast<int>(f / static_cast<std::size_t>(na));
+        const int x = static_cast<int>(f % static_cast<std::size_t>(na)),
+                  y = static_cast<int>(f / static_cast<std::size_t>(na));
         if (x == 0 || y == 0 || x == na - 1 || y == nb - 1) rim.push_back(f);
     }
     std::vector<std::size_t> reached;

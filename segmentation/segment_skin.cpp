@@ -34,9 +34,11 @@ void warn_of_cut_sides(const Mask& body, const VoxelGrid& grid, std::vector<std:
         const std::size_t i = v % ni, j = v / ni % nj;
         at_side += body[v] && (i == 0 || j == 0 || i + 1 == ni || j + 1 == nj);
     }
-    const double area_cm2 = static_cast<double>(at_side) * grid.spacing_mm.prod() / grid.spacing_mm.head<2>().mean() / 100;
+    const double area_cm2 =
+        static_cast<double>(at_side) * grid.spacing_mm.prod() / grid.spacing_mm.head<2>().mean() / 100;
     if (area_cm2 > 1)
-        warnings.push_back(fmt::format("The head is cut by the sides of the volume over about {:.0f} square cm.", area_cm2));
+        warnings.push_back(
+            fmt::format("The head is cut by the sides of the volume over about {:.0f} square cm.", area_cm2));
 }
 
 }  // namespace

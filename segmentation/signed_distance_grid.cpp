@@ -16,24 +16,26 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr float kUnknown = std::numeric_limits<float>::max();
-constexpr int kRow = 8;       // nodes that are looked at together
-constexpr int kLayers = 6;    // of the grid that one task owns
+constexpr int kRow = 8;             // nodes that are looked at together
+constexpr int kLayers = 6;          // of the grid that one task owns
 constexpr float kSlack_mm = 1e-3F;  // above the rounding of all that is kept as float
 
-std::size_t at(std::int32_t index) { return static_cast<std::size_t>(index); }
+std::size_t at(std::int32_t index) {
+    return static_cast<std::size_t>(index);
+}
 
 /// A triangle and a box of nodes, seen from the triangle's centre; mm.
 struct Look {
-    float x, y, z;                    ///< the first node
+    float x, y, z;  ///< the first node
     float step;
     float normal_x, normal_y, normal_z;
-    float radius;                     ///< of the triangle round its centre
+    float radius;  ///< of the triangle round its centre
     int count_x, count_y, count_z;
-    std::size_t first, row, slab;     ///< node's index, and strides
+    std::size_t first, row, slab;  ///< node's index, and strides
 };
 
-/// The nodes that may lie nearer to the triangle than `bound_mm` says: their distance from its plane, and within the plane
-/// from its circle, leaves that open. Appends their indices to `found`, returns how many.
+/// The nodes that may lie nearer to the triangle than `bound_mm` says: their distance from its plane, and within the
+/// plane from its circle, leaves that open. Appends their indices to `found`, returns how many.
 __attribute__((target_clones("avx2", "default"))) std::size_t open_nodes(const Look& look, const float* bound_mm,
                                                                          std::uint32_t* found) {
     std::size_t count = 0;
@@ -65,7 +67,11 @@ __attribute__((target_clones("avx2", "default"))) std::size_t open_nodes(const L
 class DistanceGrid {
 public:
     DistanceGrid(const TriangleMesh& skin, SkinLut& lut)
-        : skin_(skin), lut_(lut), sides_(skin), row_(at(lut.distance_size[0])), slab_(row_ * at(lut.distance_size[1])),
+        : skin_(skin),
+          lut_(lut),
+          sides_(skin),
+          row_(at(lut.distance_size[0])),
+          slab_(row_ * at(lut.distance_size[1])),
           bound_mm_(slab_ * at(lut.distance_size[2])) {
         lut_.distance_mm = {};
         lut_.distance_mm.resize(slab_ * at(lut.distance_size[2]));
@@ -114,7 +120,8 @@ private:
                 bins[at(b)].push_back(static_cast<std::uint32_t>(t));
         }
         tbb::parallel_for(0, blocks, [&](int b) {
-            Layers layers{b * kLayers, std::min((b + 1) * kLayers, lut_.distance_size[2]), at(b * kLayers) * slab_, {}, {}};
+            Layers layers{
+                b * kLayers, std::min((b + 1) * kLayers, lut_.distance_size[2]), at(b * kLayers) * slab_, {}, {}};
             const auto first = bound_mm_.begin() + static_cast<std::ptrdiff_t>(layers.first_node);
             layers.bound_mm.assign(first, first + static_cast<std::ptrdiff_t>(at(layers.end - layers.begin) * slab_));
             for (float& bound : layers.bound_mm) bound = std::min(bound + kSlack_mm, static_cast<float>(kExactBand_mm));
@@ -123,29 +130,39 @@ private:
         });
     }
 
-    /// Beyond the band: the pointer's distance, with the sign of the band last crossed on the way from the table's side.
+    /// Beyond the band: the pointer's distance, with the sign of the band last crossed on the way from the table's
+    /// side.
     void put_signs() {
         tbb::parallel_for(std::size_t{0}, lut_.distance_mm.size() / row_, [&](std::size_t line) {
             float* row = lut_.distance_mm.data() + line * row_;
             bool inside = false;
             for (std::size_t i = 0; i < row_; ++i) {
                 const float mm = bound_mm_[line * row_ + i];
-                if (row[i] != kUnknown) inside = row[i] < 0;
-                else row[i] = inside ? -mm : mm;
+                if (row[i] != kUnknown)
+                    inside = row[i] < 0;
+                else
+                    row[i] = inside ? -mm : mm;
             }
         });
     }
 
-    Vector3d position(int i, int j, int k) const { return lut_.origin_in_ct + lut_.distance_voxel_mm * Vector3d(i, j, k); }
-    const Vector3d& corner(std::size_t t, std::size_t c) const { return skin_.vertices_in_ct[at(skin_.triangles[t][c])]; }
+    Vector3d position(int i, int j, int k) const {
+        return lut_.origin_in_ct + lut_.distance_voxel_mm * Vector3d(i, j, k);
+    }
+    const Vector3d& corner(std::size_t t, std::size_t c) const {
+        return skin_.vertices_in_ct[at(skin_.triangles[t][c])];
+    }
 
     /// First and last nodes within the band round a triangle.
     std::pair<Eigen::Vector3i, Eigen::Vector3i> range(std::size_t t) const {
-        const Vector3d low = corner(t, 0).cwiseMin(corner(t, 1)).cwiseMin(corner(t, 2)) - Vector3d::Constant(kExactBand_mm);
-        const Vector3d high = corner(t, 0).cwiseMax(corner(t, 1)).cwiseMax(corner(t, 2)) + Vector3d::Constant(kExactBand_mm);
+        const Vector3d low =
+            corner(t, 0).cwiseMin(corner(t, 1)).cwiseMin(corner(t, 2)) - Vector3d::Constant(kExactBand_mm);
+        const Vector3d high =
+            corner(t, 0).cwiseMax(corner(t, 1)).cwiseMax(corner(t, 2)) + Vector3d::Constant(kExactBand_mm);
         const Eigen::Vector3i last(lut_.distance_size[0] - 1, lut_.distance_size[1] - 1, lut_.distance_size[2] - 1);
-        return {((low - lut_.origin_in_ct) / lut_.distance_voxel_mm).array().ceil().cast<int>().cwiseMax(0),
-                ((high - lut_.origin_in_ct) / lut_.distance_voxel_mm).array().floor().cast<int>().matrix().cwiseMin(last)};
+        return {
+            ((low - lut_.origin_in_ct) / lut_.distance_voxel_mm).array().ceil().cast<int>().cwiseMax(0),
+            ((high - lut_.origin_in_ct) / lut_.distance_voxel_mm).array().floor().cast<int>().matrix().cwiseMin(last)};
     }
 
     void put(std::size_t t, Layers& layers) {
@@ -166,12 +183,13 @@ private:
                         row_,       slab_};
         layers.open.resize(static_cast<std::size_t>(count.prod()));
         const std::size_t found = open_nodes(look, layers.bound_mm.data(), layers.open.data());
-        for (std::size_t n = 0; n < found; ++n) offer(t, layers.first_node + layers.open[n], layers.bound_mm[layers.open[n]]);
+        for (std::size_t n = 0; n < found; ++n)
+            offer(t, layers.first_node + layers.open[n], layers.bound_mm[layers.open[n]]);
     }
 
     void offer(std::size_t t, std::size_t node, float& bound_mm) {
-        const Vector3d p =
-            position(static_cast<int>(node % row_), static_cast<int>(node % slab_ / row_), static_cast<int>(node / slab_));
+        const Vector3d p = position(static_cast<int>(node % row_), static_cast<int>(node % slab_ / row_),
+                                    static_cast<int>(node / slab_));
         const Vector3d w = closest_weights(p, corner(t, 0), corner(t, 1), corner(t, 2));
         const Vector3d offset = p - (w.x() * corner(t, 0) + w.y() * corner(t, 1) + w.z() * corner(t, 2));
         const double far = offset.norm();
@@ -189,6 +207,8 @@ private:
 
 }  // namespace
 
-void fill_signed_distance(const TriangleMesh& skin, SkinLut& lut) { DistanceGrid(skin, lut); }
+void fill_signed_distance(const TriangleMesh& skin, SkinLut& lut) {
+    DistanceGrid(skin, lut);
+}
 
 }  // namespace planlight

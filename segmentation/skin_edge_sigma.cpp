@@ -2,6 +2,7 @@
 #include <cmath>
 #include <vector>
 
+#include "planning_io/types/statistics.h"
 #include "segmentation/segment_skin.h"
 #include "segmentation/volume_sample.h"
 
@@ -10,19 +11,13 @@ namespace {
 
 constexpr double kAside_mm = 0.5;  // from the skin, for its slope: within the blur of the edge
 
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 /// Of a voxel within the body, along the first axis.
 double noise_of(const Volume& volume, const SkinMask& mask) {
     std::vector<double> seconds;
     for (std::size_t v = 1; v + 1 < volume.values.size(); v += 5)
         if (mask.body[v - 1] && mask.body[v] && mask.body[v + 1])
-            seconds.push_back(std::abs(static_cast<double>(volume.values[v - 1] - 2 * volume.values[v] + volume.values[v + 1])));
+            seconds.push_back(
+                std::abs(static_cast<double>(volume.values[v - 1] - 2 * volume.values[v] + volume.values[v + 1])));
     return 1.4826 * median(std::move(seconds)) / std::sqrt(6.0);  // 1 + 4 + 1 times the variance of one
 }
 
@@ -36,7 +31,8 @@ double skin_edge_sigma_mm(const Volume& volume, const SkinMask& mask, const Tria
         const Eigen::Vector3d at = voxel_from_ct * skin.vertices_in_ct[v],
                               aside = voxel_from_ct.linear() * (kAside_mm * skin.normals_in_ct[v]);
         const auto inside = value_at(volume, at - aside), outside = value_at(volume, at + aside);
-        if (inside && outside && std::isfinite(*inside - *outside)) slopes.push_back((*inside - *outside) / (2 * kAside_mm));
+        if (inside && outside && std::isfinite(*inside - *outside))
+            slopes.push_back((*inside - *outside) / (2 * kAside_mm));
     }
     const double slope = median(std::move(slopes));
     return slope > 0 ? noise_of(volume, mask) / slope : 0;

@@ -52,7 +52,8 @@ SkinField skin_field(const Volume& volume, const SkinMask& mask) {
     return field;
 }
 
-std::uint8_t flag_of_edge(const Volume& volume, const SkinMask& mask, const Eigen::Vector3i& a, const Eigen::Vector3i& b) {
+std::uint8_t flag_of_edge(const Volume& volume, const SkinMask& mask, const Eigen::Vector3i& a,
+                          const Eigen::Vector3i& b) {
     std::uint8_t flag = kSkin;
     for (const Eigen::Vector3i& end : {a, b}) {
         const Eigen::Vector3i v = end - Eigen::Vector3i::Ones();
@@ -82,7 +83,8 @@ Eigen::Vector3d gradient(const SkinField& field, const Eigen::Vector3d& at) {
             const int last = field.size[static_cast<std::size_t>(axis)] - 1;
             low[axis] = std::max(v[axis] - 1, 0);
             high[axis] = std::min(v[axis] + 1, last);
-            const auto rise = static_cast<double>(field.at(high.x(), high.y(), high.z()) - field.at(low.x(), low.y(), low.z()));
+            const auto rise =
+                static_cast<double>(field.at(high.x(), high.y(), high.z()) - field.at(low.x(), low.y(), low.z()));
             sum[axis] += weight * rise / std::max(1, high[axis] - low[axis]);
         }
     }

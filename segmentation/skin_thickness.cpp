@@ -38,8 +38,10 @@ std::vector<float> skin_thickness(const Volume& volume, const TriangleMesh& skin
     tbb::parallel_for(std::size_t{0}, thickness_mm.size(), [&](std::size_t v) {
         if (!skin.flags.empty() && skin.flags[v] != kSkin) return;
         const Vector3d step = voxel_from_ct.linear() * (-step_mm * skin.normals_in_ct[v]);
-        const auto crossing = first_crossing(volume, voxel_from_ct * skin.vertices_in_ct[v], step, steps, settings.bone_hu);
-        if (crossing && *crossing * step_mm <= settings.longest_mm) thickness_mm[v] = static_cast<float>(*crossing * step_mm);
+        const auto crossing =
+            first_crossing(volume, voxel_from_ct * skin.vertices_in_ct[v], step, steps, settings.bone_hu);
+        if (crossing && *crossing * step_mm <= settings.longest_mm)
+            thickness_mm[v] = static_cast<float>(*crossing * step_mm);
     });
     return thickness_mm;
 }

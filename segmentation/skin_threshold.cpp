@@ -15,7 +15,8 @@ struct Histogram {
 
     double centre(std::size_t bin) const { return low + (static_cast<double>(bin) + 0.5) * bin_width; }
     std::size_t bin(double value) const {
-        return static_cast<std::size_t>(std::clamp((value - low) / bin_width, 0.0, static_cast<double>(counts.size()) - 1));
+        return static_cast<std::size_t>(
+            std::clamp((value - low) / bin_width, 0.0, static_cast<double>(counts.size()) - 1));
     }
 };
 

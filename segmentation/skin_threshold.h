@@ -6,8 +6,8 @@ namespace planlight {
 
 /// Where air ends and the body begins, in the volume's own unit.
 ///
-/// HU: the middle between the air peak and the soft-tissue peak, kept within [-500, -150]. Otherwise: the middle between
-/// the peaks on both sides of Otsu's threshold (Otsu 1979). Throws InputError when there are no two peaks.
+/// HU: the middle between the air peak and the soft-tissue peak, kept within [-500, -150]. Otherwise: the middle
+/// between the peaks on both sides of Otsu's threshold (Otsu 1979). Throws InputError when there are no two peaks.
 double skin_threshold(const Volume& volume);
 
 }  // namespace planlight

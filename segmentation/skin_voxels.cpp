@@ -17,7 +17,9 @@ using Corners = std::array<Vector3d, 3>;
 constexpr int kLayers = 4;  // of the table that one task owns
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
 
 Corners corners_in_voxels(const TriangleMesh& skin, const SkinLut& lut, const std::array<std::int32_t, 3>& triangle) {
     Corners t;
@@ -29,7 +31,10 @@ Corners corners_in_voxels(const TriangleMesh& skin, const SkinLut& lut, const st
 class Layers {
 public:
     Layers(const TriangleMesh& skin, const SkinLut& lut, int first)
-        : skin_(skin), lut_(lut), first_(first), end_(std::min(first + kLayers, lut.size[2])),
+        : skin_(skin),
+          lut_(lut),
+          first_(first),
+          end_(std::min(first + kLayers, lut.size[2])),
           number_(at(lut.size[0]) * at(lut.size[1]) * at(end_ - first), kNone) {}
 
     void mark(const std::array<std::int32_t, 3>& triangle) {
@@ -48,7 +53,8 @@ public:
         for (const SkinPoint& s : points_) ++begin[row_of(s) + 1];
         for (std::size_t r = 1; r < begin.size(); ++r) begin[r] += begin[r - 1];
         std::vector<std::uint32_t> next = begin;
-        for (std::size_t s = 0; s < points_.size(); ++s) order[next[row_of(points_[s])]++] = static_cast<std::uint32_t>(s);
+        for (std::size_t s = 0; s < points_.size(); ++s)
+            order[next[row_of(points_[s])]++] = static_cast<std::uint32_t>(s);
         for (std::size_t r = 0; r + 1 < begin.size(); ++r)
             std::sort(order.begin() + begin[r], order.begin() + begin[r + 1],
                       [&](std::uint32_t a, std::uint32_t b) { return points_[a].voxel[0] < points_[b].voxel[0]; });

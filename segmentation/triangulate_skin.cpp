@@ -1,6 +1,6 @@
 #include <vtkCellArray.h>
-#include <vtkFlyingEdges3D.h>
 #include <vtkFloatArray.h>
+#include <vtkFlyingEdges3D.h>
 #include <vtkImageData.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
@@ -87,7 +87,9 @@ TriangleMesh largest_shell(const TriangleMesh& mesh) {
 }
 
 /// Of a closed mesh of one piece.
-bool has_handles(const TriangleMesh& mesh) { return mesh.vertices_in_ct.size() != mesh.triangles.size() / 2 + 2; }
+bool has_handles(const TriangleMesh& mesh) {
+    return mesh.vertices_in_ct.size() != mesh.triangles.size() / 2 + 2;
+}
 
 /// Flags and outward normals (unit, in ct) from the field; vertices exactly on their grid edge, still in field voxels.
 void describe_vertices(TriangleMesh& mesh, const Volume& volume, const SkinMask& mask, const SkinField& field) {
@@ -146,7 +148,8 @@ void smooth_lids(TriangleMesh& mesh) {
 void mend_normals(TriangleMesh& mesh) {
     const std::vector<Vector3d> by_area = area_normals(mesh);
     for (std::size_t v = 0; v < by_area.size(); ++v)
-        if (mesh.flags[v] != kSkin || !(mesh.normals_in_ct[v].dot(by_area[v]) > 0.5)) mesh.normals_in_ct[v] = by_area[v];
+        if (mesh.flags[v] != kSkin || !(mesh.normals_in_ct[v].dot(by_area[v]) > 0.5))
+            mesh.normals_in_ct[v] = by_area[v];
 }
 
 }  // namespace

@@ -12,7 +12,8 @@ inline std::optional<double> value_at(const Volume& volume, const Eigen::Vector3
     for (int a = 0; a < 3; ++a)
         if (low[a] < 0 || low[a] + 1 >= volume.size[static_cast<std::size_t>(a)]) return std::nullopt;
     const Eigen::Vector3d f = voxel - low.cast<double>();
-    const std::size_t row = static_cast<std::size_t>(volume.size[0]), slab = row * static_cast<std::size_t>(volume.size[1]);
+    const std::size_t row = static_cast<std::size_t>(volume.size[0]),
+                      slab = row * static_cast<std::size_t>(volume.size[1]);
     const float* at = volume.values.data() + volume.index(low.x(), low.y(), low.z());
     const auto along_x = [&](std::size_t from) {
         return (1 - f.x()) * static_cast<double>(at[from]) + f.x() * static_cast<double>(at[from + 1]);

@@ -8,7 +8,8 @@
 namespace planlight {
 namespace {
 
-// Squared distances above the radius are only "far": the passes look no further than the radius, so they cost O(radius).
+// Squared distances above the radius are only "far": the passes look no further than the radius, so they cost
+// O(radius).
 constexpr float kFar = 1e9F;
 
 void distance_along_row(const std::uint8_t* mask, std::uint8_t target, float* squared, int n, double spacing_mm) {
@@ -28,13 +29,14 @@ void distance_along_row(const std::uint8_t* mask, std::uint8_t target, float* sq
 }
 
 /// out = min over offsets o of in[o lines away] + (o spacing)^2, for one line of `length` values.
-void min_over_offsets(const float* in, float* out, std::size_t length, std::size_t stride, int at, int n, double spacing_mm,
-                      double radius_mm) {
+void min_over_offsets(const float* in, float* out, std::size_t length, std::size_t stride, int at, int n,
+                      double spacing_mm, double radius_mm) {
     std::copy_n(in, length, out);
     const int reach = static_cast<int>(std::floor(radius_mm / spacing_mm));
     for (int o = -reach; o <= reach; ++o) {
         if (o == 0 || at + o < 0 || at + o >= n) continue;
-        const float* other = o < 0 ? in - static_cast<std::size_t>(-o) * stride : in + static_cast<std::size_t>(o) * stride;
+        const float* other =
+            o < 0 ? in - static_cast<std::size_t>(-o) * stride : in + static_cast<std::size_t>(o) * stride;
         const auto add = static_cast<float>((o * spacing_mm) * (o * spacing_mm));
         for (std::size_t i = 0; i < length; ++i) out[i] = std::min(out[i], other[i] + add);
     }
@@ -42,7 +44,9 @@ void min_over_offsets(const float* in, float* out, std::size_t length, std::size
 
 }  // namespace
 
-VoxelGrid grid_of(const Volume& volume) { return {volume.size, volume.spacing_mm()}; }
+VoxelGrid grid_of(const Volume& volume) {
+    return {volume.size, volume.spacing_mm()};
+}
 
 Mask within(const Mask& mask, std::uint8_t target, const VoxelGrid& grid, double radius_mm) {
     std::vector<float> a(grid.count()), b(grid.count());
@@ -74,7 +78,9 @@ Mask erode(const Mask& mask, const VoxelGrid& grid, double radius_mm) {
     return result;
 }
 
-Mask dilate(const Mask& mask, const VoxelGrid& grid, double radius_mm) { return within(mask, 1, grid, radius_mm); }
+Mask dilate(const Mask& mask, const VoxelGrid& grid, double radius_mm) {
+    return within(mask, 1, grid, radius_mm);
+}
 
 Mask close(const Mask& mask, const VoxelGrid& grid, double radius_mm) {
     VoxelGrid padded = grid;

@@ -25,14 +25,16 @@ VoxelGrid grid_of(const Volume& volume);
 
 using Mask = std::vector<std::uint8_t>;
 
-/// Voxels within `radius_mm` (Euclidean, between centres) of a voxel whose value is `target`. Outside the array is nothing.
+/// Voxels within `radius_mm` (Euclidean, between centres) of a voxel whose value is `target`. Outside the array is
+/// nothing.
 Mask within(const Mask& mask, std::uint8_t target, const VoxelGrid& grid, double radius_mm);
 
 /// Ball morphology. The array's border neither erodes nor feeds: a body cut by the end of the volume stays whole there.
 Mask erode(const Mask& mask, const VoxelGrid& grid, double radius_mm);
 Mask dilate(const Mask& mask, const VoxelGrid& grid, double radius_mm);
 
-/// Dilation, then erosion, in a space that is empty beyond the array: the dome of a head cut by the last slice stays itself.
+/// Dilation, then erosion, in a space that is empty beyond the array: the dome of a head cut by the last slice stays
+/// itself.
 Mask close(const Mask& mask, const VoxelGrid& grid, double radius_mm);
 
 /// Calls `visit(neighbour_index)` for the up to six face neighbours.

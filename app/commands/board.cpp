@@ -33,7 +33,8 @@ int run_board(const BoardOptions& options) {
         std::cout << result.dump(2) << '\n';
     else
         fmt::print(
-            "{} and {}: {}, {:.1f} x {:.1f} mm. Print at 100 %, glue it on a flat plate, measure its width, and give the\n"
+            "{} and {}: {}, {:.1f} x {:.1f} mm. Print at 100 %, glue it on a flat plate, measure its width, and give "
+            "the\n"
             "measured square to `calibrate --board`.\n",
             png.string(), pdf.string(), text_of(board), board.width_mm(), board.height_mm());
     return 0;
@@ -44,8 +45,9 @@ int run_board(const BoardOptions& options) {
 Run add_board(CLI::App& app) {
     const auto options = std::make_shared<BoardOptions>();
     BoardOptions& o = *options;
-    auto* sub = add_command(app, "board", "Draw the calibration board to print (PNG and PDF, true size, grey instead of black)",
-                        "board --board \"charuco 10x7 25 mm\" --out board");
+    auto* sub =
+        add_command(app, "board", "Draw the calibration board to print (PNG and PDF, true size, grey instead of black)",
+                    "board --board \"charuco 10x7 25 mm\" --out board");
     sub->add_option("--board", o.board,
                     "charuco COLUMNSxROWS (squares) or chessboard COLUMNSxROWS (inner corners), and the square in mm")
         ->capture_default_str();

@@ -27,7 +27,8 @@ struct CalibrateOptions {
 StripeSettings calibration_light(const CaptureFolder& settings, const Path& pose) {
     const StripeSettings stripes = stripes_of(settings);
     if (!stripes.rows)
-        throw InputError(pose, "codes the projector's columns only", "Calibrate with a sequence that codes columns and rows.");
+        throw InputError(pose, "codes the projector's columns only",
+                         "Calibrate with a sequence that codes columns and rows.");
     if (stripes.phase_steps == 0 && !stripes.inverse)
         throw InputError(pose, "is a Gray code without fringes and without inverse pictures",
                          "Capture each Gray picture and its inverse.");
@@ -96,7 +97,8 @@ int run_calibrate(const CalibrateOptions& options) {
     const BoardSpec board = parse_board(options.board);
     check_can_write(options.out);  // before minutes of work, not after
     const Observed observed = observe_captures(options, board);
-    const Calibration calibration = calibrate_rig(observed.poses, board, observed.projector_width, observed.projector_height);
+    const Calibration calibration =
+        calibrate_rig(observed.poses, board, observed.projector_width, observed.projector_height);
     if (calibration.refusal) throw CheckFailedError(calibration.refusal->reason, calibration.refusal->remedy);
     CalibrationReport report{calibration, observed.poses, board, today(), {}, {}, observed.serials};
     if (calibration.makes_a_rig()) {
@@ -126,8 +128,9 @@ int run_calibrate(const CalibrateOptions& options) {
 Run add_calibrate(CLI::App& app) {
     const auto options = std::make_shared<CalibrateOptions>();
     CalibrateOptions& o = *options;
-    auto* sub = add_command(app, "calibrate", "Captures of a board under coded light -> rig.json, or a refusal (exit 6)",
-                        "calibrate captures --board \"charuco 10x7 25 mm\" --out rig.json");
+    auto* sub =
+        add_command(app, "calibrate", "Captures of a board under coded light -> rig.json, or a refusal (exit 6)",
+                    "calibrate captures --board \"charuco 10x7 25 mm\" --out rig.json");
     sub->add_option("captures", o.captures, "Folder with one folder a pose")->required();
     sub->add_option("--board", o.board,
                     "The board, its square as measured: \"charuco 10x7 24.98 mm\" or \"chessboard 9x6 25 mm\"")

@@ -70,8 +70,9 @@ ScanCapture scan_capture_from(const CaptureFolder& folder, const std::filesystem
     capture.stripes = stripes_of(folder);
     capture.check_sequence = folder.check_sequence;
     auto patterns = patterns_of(capture.stripes, named);
-    const bool whole = capture.stripes.phase_steps > 0 &&
-                       std::all_of(patterns.begin(), patterns.end(), [&](const auto& p) { return is_there(folder, p.name); });
+    const bool whole =
+        capture.stripes.phase_steps > 0 &&
+        std::all_of(patterns.begin(), patterns.end(), [&](const auto& p) { return is_there(folder, p.name); });
     if (!whole && !capture.stripes.order_periods_px.empty())
         throw InputError(named, "a picture of the fringes of several frequencies is missing",
                          "Capture the whole sequence that `planlight patterns --set multi-frequency` writes.");

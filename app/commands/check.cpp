@@ -28,7 +28,8 @@ using Json = nlohmann::ordered_json;
 
 /// The checks so far; those of another rig file are no part of the trend.
 Json read_log(const Path& file) {
-    if (!std::filesystem::exists(file)) return {{"format", "planlight checks"}, {"version", 1}, {"checks", Json::array()}};
+    if (!std::filesystem::exists(file))
+        return {{"format", "planlight checks"}, {"version", 1}, {"checks", Json::array()}};
     try {
         Json log = Json::parse(read_whole(file));
         if (log.at("format") == "planlight checks" && log.at("version") == 1 && log.at("checks").is_array()) return log;
@@ -38,7 +39,9 @@ Json read_log(const Path& file) {
 }
 
 /// Null is what was not known.
-double known(const Json& number) { return number.is_null() ? 0 : number.get<double>(); }
+double known(const Json& number) {
+    return number.is_null() ? 0 : number.get<double>();
+}
 
 /// Logs of earlier programs have the same figure under the name of a rms, which it is not.
 double epipolar_of(const Json& entry) {
@@ -49,7 +52,8 @@ std::vector<EarlierCheck> earlier_checks(const Json& log, const std::string& rig
     std::vector<EarlierCheck> checks;
     try {
         for (const auto& entry : log.at("checks"))
-            if (entry.at("rig_made_on") == rig_made_on && entry.at("verdict") != text_of(DriftCheck::Verdict::cannot_tell))
+            if (entry.at("rig_made_on") == rig_made_on &&
+                entry.at("verdict") != text_of(DriftCheck::Verdict::cannot_tell))
                 checks.push_back({entry.at("at_unix_s").get<double>() / 86400, epipolar_of(entry),
                                   known(entry.at("projector_rms_px"))});
     } catch (const Json::exception&) {
@@ -106,8 +110,8 @@ int run_check(const CheckOptions& options) {
     if (options.json)
         std::cout << result.dump(2) << '\n';
     else
-        fmt::print("{}: {} points, epipolar error {:.2f} px, {}; check {} in {}.\n", text_of(check.verdict), check.points,
-                   check.epipolar_px, said_of_projector(check), log["checks"].size(), file.string());
+        fmt::print("{}: {} points, epipolar error {:.2f} px, {}; check {} in {}.\n", text_of(check.verdict),
+                   check.points, check.epipolar_px, said_of_projector(check), log["checks"].size(), file.string());
     if (check.verdict != DriftCheck::Verdict::good) throw CheckFailedError(check.reason, check.remedy);
     return 0;
 }
@@ -118,7 +122,7 @@ Run add_check(CLI::App& app) {
     const auto options = std::make_shared<CheckOptions>();
     CheckOptions& o = *options;
     auto* sub = add_command(app, "check", "One scan of anything against rig.json: has the rig moved? (exit 6 if so)",
-                        "check room/capture --rig room/rig.json");
+                            "check room/capture --rig room/rig.json");
     sub->add_option("capture", o.capture, "Capture folder of a scan: a board, a phantom, the patient")->required();
     sub->add_option("--rig", o.rig, "rig.json")->required();
     sub->add_option("--log", o.log, "Where the checks are kept for the trend (default: beside rig.json)");

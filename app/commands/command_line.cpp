@@ -8,7 +8,9 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
     return command;
 }
 
-void json_flag(CLI::App* command, bool& json) { command->add_flag("--json", json, "Print the result as JSON on standard output"); }
+void json_flag(CLI::App* command, bool& json) {
+    command->add_flag("--json", json, "Print the result as JSON on standard output");
+}
 
 CLI::Option* preset_option(CLI::App* command, std::string& preset) {
     return command
@@ -21,7 +23,8 @@ CLI::Option* preset_option(CLI::App* command, std::string& preset) {
 void plan_frame_options(CLI::App* command, std::string& frame, std::string& accept_frame) {
     command->add_option("--frame", frame, "Coordinate system of plan files that do not say their own")
         ->check(CLI::IsMember({"LPS", "RAS"}));
-    command->add_option("--accept-frame", accept_frame, "DICOM frame of reference (UID) that is known to be the volume's");
+    command->add_option("--accept-frame", accept_frame,
+                        "DICOM frame of reference (UID) that is known to be the volume's");
 }
 
 }  // namespace planlight

@@ -6,8 +6,8 @@ namespace CLI {
 class App;
 }
 
-// The commands of the program. Each adds itself with its options to the command line, and gives what runs it once the line
-// has been parsed: the exit code of a run that was not refused.
+// The commands of the program. Each adds itself with its options to the command line, and gives what runs it once the
+// line has been parsed: the exit code of a run that was not refused.
 namespace planlight {
 
 using Run = std::function<int()>;

@@ -11,8 +11,8 @@
 #include "app/evaluation/run_rooms.h"
 #include "app/live/live_window.h"
 #include "planning_io/plan/plan_file.h"
-#include "planning_io/volume/read_volume.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/read_volume.h"
 
 namespace planlight {
 namespace {
@@ -34,12 +34,15 @@ std::vector<simulation::Preset> presets_of(const DemoOptions& options) {
 }
 
 void print_summary(const PresetSummary& s) {
-    fmt::print("\n{} room: {} of {} patients found, {} refused, {:.0f} updates a second{}\n", s.preset, s.matched_right, s.rooms,
-               s.refused, s.updates_per_s, s.reached() ? "" : "   (a goal was missed)");
+    fmt::print("\n{} room: {} of {} patients found, {} refused, {:.0f} updates a second{}\n", s.preset, s.matched_right,
+               s.rooms, s.refused, s.updates_per_s, s.reached() ? "" : "   (a goal was missed)");
     fmt::print("  {:<36}{:>9}{:>9}{:>9}\n", "", "median", "95 %", "worst");
     for (const auto& r : s.rows)
-        fmt::print("  {:<36}{:>9.3f}{:>9.3f}{:>9.3f} {:<4}{}\n", r.name, r.found.median, r.found.p95, r.found.worst, r.unit,
-                   r.goal.empty() ? "" : r.reached ? "  reached: " + r.goal : "  MISSED: " + r.goal);
+        fmt::print("  {:<36}{:>9.3f}{:>9.3f}{:>9.3f} {:<4}{}\n", r.name, r.found.median, r.found.p95, r.found.worst,
+                   r.unit,
+                   r.goal.empty() ? ""
+                   : r.reached    ? "  reached: " + r.goal
+                                  : "  MISSED: " + r.goal);
     for (const auto& refusal : s.refusals) fmt::print("  refused: {}\n", refusal);
 }
 
@@ -103,8 +106,9 @@ int run_demo(const DemoOptions& options) {
 Run add_demo(CLI::App& app) {
     const auto options = std::make_shared<DemoOptions>();
     DemoOptions& o = *options;
-    auto* sub = add_command(app, "demo", "The whole chain on the example patient, with a report of how true the light was",
-                        "demo --headless --seed 3 --out demo-3");
+    auto* sub =
+        add_command(app, "demo", "The whole chain on the example patient, with a report of how true the light was",
+                    "demo --headless --seed 3 --out demo-3");
     sub->add_option("--volume", o.volume, "Patient")->capture_default_str();
     sub->add_option("--plan", o.plan, "Plan (default: the example plan)");
     sub->add_option("--preset", o.preset, "modern, paper or both")

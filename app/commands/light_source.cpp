@@ -5,8 +5,8 @@
 #include <charconv>
 #include <map>
 
-#include "planning_io/files/image_file.h"
 #include "planning_io/case/light_file.h"
+#include "planning_io/files/image_file.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 

@@ -20,7 +20,7 @@ struct PatternsOptions {
     Path out;
     int width = 1920, height = 1080, phase_steps = 8;
     double phase_period_px = 16;
-    std::string set = "full";  ///< or "fast", "multi-frequency"
+    std::string set = "full";   ///< or "fast", "multi-frequency"
     bool columns_only = false;  ///< no rows
     bool json = false;
 };
@@ -65,9 +65,13 @@ int run_patterns(const PatternsOptions& options) {
     ScanCapture capture;
     capture.stripes = stripes;
     const CaptureFolder settings = capture_folder_from(capture);
-    nlohmann::json result = {{"projector_width", stripes.width}, {"projector_height", stripes.height},
-                             {"phase_steps", stripes.phase_steps}, {"phase_period_px", stripes.phase_period_px},
-                             {"rows", stripes.rows}, {"inverse", stripes.inverse}, {"patterns", settings.names}};
+    nlohmann::json result = {{"projector_width", stripes.width},
+                             {"projector_height", stripes.height},
+                             {"phase_steps", stripes.phase_steps},
+                             {"phase_period_px", stripes.phase_period_px},
+                             {"rows", stripes.rows},
+                             {"inverse", stripes.inverse},
+                             {"patterns", settings.names}};
     if (!stripes.order_periods_px.empty()) {
         result["order_periods_px"] = stripes.order_periods_px;
         result["order_steps"] = stripes.order_steps;
@@ -86,7 +90,8 @@ int run_patterns(const PatternsOptions& options) {
         std::cout << result.dump(2) << '\n';
     else
         fmt::print(
-            "{} patterns of {} x {} pixels in {}, in the order of patterns.json; capture.json is for beside the captures of "
+            "{} patterns of {} x {} pixels in {}, in the order of patterns.json; capture.json is for beside the "
+            "captures of "
             "them.\n",
             sequence.size(), stripes.width, stripes.height, options.out.string());
     return 0;
@@ -98,16 +103,22 @@ Run add_patterns(CLI::App& app) {
     const auto options = std::make_shared<PatternsOptions>();
     PatternsOptions& o = *options;
     auto* sub = add_command(app, "patterns", "Write the coded-light sequence as pictures to project",
-                        "patterns --width 1920 --height 1080 --out patterns");
+                            "patterns --width 1920 --height 1080 --out patterns");
     sub->add_option("--width", o.width, "Of the projector, pixels")->capture_default_str()->check(CLI::Range(64, 8192));
-    sub->add_option("--height", o.height, "Of the projector, pixels")->capture_default_str()->check(CLI::Range(64, 8192));
-    sub->add_option("--phase-steps", o.phase_steps, "Shifts a direction")->capture_default_str()->check(CLI::Range(3, 32));
-    sub->add_option("--set", o.set,
-                    "full: columns and rows, each bit with its inverse; fast: a third of the pictures, columns only, 5 shifts; "
-                    "multi-frequency: fringes of three or four periods instead of the Gray code")
+    sub->add_option("--height", o.height, "Of the projector, pixels")
+        ->capture_default_str()
+        ->check(CLI::Range(64, 8192));
+    sub->add_option("--phase-steps", o.phase_steps, "Shifts a direction")
+        ->capture_default_str()
+        ->check(CLI::Range(3, 32));
+    sub->add_option(
+           "--set", o.set,
+           "full: columns and rows, each bit with its inverse; fast: a third of the pictures, columns only, 5 shifts; "
+           "multi-frequency: fringes of three or four periods instead of the Gray code")
         ->capture_default_str()
         ->check(CLI::IsMember({"full", "fast", "multi-frequency"}));
-    sub->add_flag("--columns-only", o.columns_only, "Half the pictures (not with the set fast, which has no rows); points then need both cameras");
+    sub->add_flag("--columns-only", o.columns_only,
+                  "Half the pictures (not with the set fast, which has no rows); points then need both cameras");
     sub->add_option("--phase-period-px", o.phase_period_px, "Projector pixels a fringe")
         ->capture_default_str()
         ->check(CLI::Range(4.0, 256.0));

@@ -12,8 +12,8 @@
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/plan/plan_rtstruct.h"
 #include "planning_io/plan/plan_shapes.h"
-#include "planning_io/volume/read_volume.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/read_volume.h"
 #include "projection/check_plan.h"
 #include "projection/mid_plane.h"
 
@@ -48,7 +48,8 @@ Patient read_patient(const PlanOptions& options) {
         const Volume volume = read_volume(options.volume, options.series_uid);
         const std::string code = hash_of(volume).substr(0, 8);
         if (patient.known && patient.code != code)
-            throw InputError(options.volume, "is not the volume of this case (" + code + ", the case is " + patient.code + ")",
+            throw InputError(options.volume,
+                             "is not the volume of this case (" + code + ", the case is " + patient.code + ")",
                              "Name the volume that the case was prepared from.");
         patient.known = true;
         patient.code = code;
@@ -63,9 +64,10 @@ void check_in_box(const Plan& plan, const VolumeBox& box) {
         const Eigen::Vector3d v = box.ct_from_voxel.inverse() * p;
         for (int axis = 0; axis < 3; ++axis)
             if (v[axis] < -2 || v[axis] > box.size[static_cast<std::size_t>(axis)] + 1)
-                throw InputError(
-                    {}, fmt::format("The plan's point ({:.0f}, {:.0f}, {:.0f}) lies outside the volume", p.x(), p.y(), p.z()),
-                    "Check that it was made on this CT, its coordinate system and its units.");
+                throw InputError({},
+                                 fmt::format("The plan's point ({:.0f}, {:.0f}, {:.0f}) lies outside the volume", p.x(),
+                                             p.y(), p.z()),
+                                 "Check that it was made on this CT, its coordinate system and its units.");
     }
 }
 
@@ -102,19 +104,21 @@ private:
 void list_plan(Listing& list, const Plan& plan) {
     for (const auto& o : plan.osteotomy_lines) {
         double way = 0;
-        for (std::size_t i = 1; i < o.points_in_ct.size(); ++i) way += (o.points_in_ct[i] - o.points_in_ct[i - 1]).norm();
+        for (std::size_t i = 1; i < o.points_in_ct.size(); ++i)
+            way += (o.points_in_ct[i] - o.points_in_ct[i - 1]).norm();
         if (o.closed) way += (o.points_in_ct.front() - o.points_in_ct.back()).norm();
         list.add("osteotomy line", o.name,
                  fmt::format("{}, {} points, {:.1f} mm", o.closed ? "closed" : "open", o.points_in_ct.size(), way),
                  o.points_in_ct.front());
     }
     for (const auto& b : plan.boreholes)
-        list.add("borehole", b.name, fmt::format("diameter {:g} mm, depth {:g} mm", b.diameter_mm, b.depth_mm), b.position_in_ct);
+        list.add("borehole", b.name, fmt::format("diameter {:g} mm, depth {:g} mm", b.diameter_mm, b.depth_mm),
+                 b.position_in_ct);
     for (const auto& t : plan.trajectories)
-        list.add(
-            "trajectory", t.name,
-            fmt::format("{:.1f} mm{}", t.length_mm(), t.diameter_mm > 0 ? fmt::format(", diameter {:g} mm", t.diameter_mm) : ""),
-            t.entry_in_ct);
+        list.add("trajectory", t.name,
+                 fmt::format("{:.1f} mm{}", t.length_mm(),
+                             t.diameter_mm > 0 ? fmt::format(", diameter {:g} mm", t.diameter_mm) : ""),
+                 t.entry_in_ct);
     for (const auto& c : plan.cut_planes)
         list.add("cut plane", c.name, fmt::format("{:g} x {:g} mm", c.width_mm, c.height_mm), c.origin_in_ct);
 }
@@ -123,13 +127,16 @@ void write(const PlanImport& read, const Patient& patient, const PlanOptions& op
     const Plan& plan = read.plan;
     const Path& out = options.out;
     const std::string name = out.filename().string();
-    if (name.ends_with(".mrk.json")) write_plan(plan, out);
-    else if (name.ends_with(".vtp")) write_plan_vtp(plan, out);
+    if (name.ends_with(".mrk.json"))
+        write_plan(plan, out);
+    else if (name.ends_with(".vtp"))
+        write_plan_vtp(plan, out);
     else if (name.ends_with(".dcm")) {
         const std::string frame = patient.known ? patient.frame_of_reference_uid : read.frame_of_reference_uid;
-        write_plan_rtstruct(plan, {patient.code, options.accept_frame.empty() ? frame : options.accept_frame, iso_date_now()},
-                            out);
-    } else throw InputError(out, "is of no kind that a plan is written as", "End its name in .mrk.json, .vtp or .dcm.");
+        write_plan_rtstruct(
+            plan, {patient.code, options.accept_frame.empty() ? frame : options.accept_frame, iso_date_now()}, out);
+    } else
+        throw InputError(out, "is of no kind that a plan is written as", "End its name in .mrk.json, .vtp or .dcm.");
 }
 
 int run_plan(const PlanOptions& options) {
@@ -163,7 +170,8 @@ int run_plan(const PlanOptions& options) {
         std::cout << result.dump(2) << '\n';
         return 0;
     }
-    fmt::print("{} plan items{}:\n{}", read.plan.size(), options.out.empty() ? "" : " in " + options.out.string(), list.lines);
+    fmt::print("{} plan items{}:\n{}", read.plan.size(), options.out.empty() ? "" : " in " + options.out.string(),
+               list.lines);
     return 0;
 }
 
@@ -173,10 +181,10 @@ Run add_plan(CLI::App& app) {
     const auto options = std::make_shared<PlanOptions>();
     PlanOptions& o = *options;
     auto* sub = add_command(app, "plan", "Plan files -> checked, listed, converted",
-                        "plan trajectories.csv --frame RAS --case case --out plan.mrk.json");
-    sub->add_option(
-           "files", o.files,
-           "3D Slicer markups (.mrk.json, .fcsv), RTSTRUCT (.dcm), trajectories (.csv, .tsv), lines (.vtp, .vtk, .ply, .obj)")
+                            "plan trajectories.csv --frame RAS --case case --out plan.mrk.json");
+    sub->add_option("files", o.files,
+                    "3D Slicer markups (.mrk.json, .fcsv), RTSTRUCT (.dcm), trajectories (.csv, .tsv), lines (.vtp, "
+                    ".vtk, .ply, .obj)")
         ->required();
     sub->add_option("--case", o.case_folder, "Check against this case's skin");
     sub->add_option("--volume", o.volume, "Check against this volume's box and frame of reference");

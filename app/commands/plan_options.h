@@ -7,7 +7,8 @@
 
 namespace planlight {
 
-/// What --frame and --accept-frame say, and the CT's own frame of reference (not given: there is no CT to check against).
+/// What --frame and --accept-frame say, and the CT's own frame of reference (not given: there is no CT to check
+/// against).
 inline PlanImportSettings plan_settings(const std::string& frame, const std::string& accepted_uid,
                                         const std::optional<std::string>& uid_of_ct) {
     PlanImportSettings settings;

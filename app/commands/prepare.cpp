@@ -82,16 +82,17 @@ Run add_prepare(CLI::App& app) {
     const auto options = std::make_shared<PrepareOptions>();
     PrepareOptions& o = *options;
     auto* sub = add_command(app, "prepare", "CT or MR volume and plan -> case folder (skin, LUT, plan, checksums)",
-                        "prepare Cranium.inv3 --plan frontal_defect.mrk.json --out case");
+                            "prepare Cranium.inv3 --plan frontal_defect.mrk.json --out case");
     sub->add_option("volume", o.volume, "DICOM folder or file, NIfTI, NRRD, MetaImage, or InVesalius project (.inv3)")
         ->required();
-    sub->add_option("--plan", o.plan,
-                    "Plan file, or a folder of them: .mrk.json, .fcsv, RTSTRUCT, tables, lines (see planning_io/README.md)")
+    sub->add_option(
+           "--plan", o.plan,
+           "Plan file, or a folder of them: .mrk.json, .fcsv, RTSTRUCT, tables, lines (see planning_io/README.md)")
         ->required();
     plan_frame_options(sub, o.frame, o.accept_frame);
-    sub->add_option(
-        "--surface", o.surface,
-        "Surface to project on instead of the skin: bone, or any other (.stl, .ply, .obj, .vtp, .vtk, DICOM SEG or RTSTRUCT)");
+    sub->add_option("--surface", o.surface,
+                    "Surface to project on instead of the skin: bone, or any other (.stl, .ply, .obj, .vtp, .vtk, "
+                    "DICOM SEG or RTSTRUCT)");
     sub->add_option("--surface-frame", o.surface_frame, "Coordinate system of a surface that does not say its own")
         ->check(CLI::IsMember({"LPS", "RAS"}));
     sub->add_option("--segment", o.segment, "Which segment or ROI of a DICOM SEG or RTSTRUCT, by its name");

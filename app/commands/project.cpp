@@ -8,10 +8,10 @@
 #include "app/commands/commands.h"
 #include "app/console.h"
 #include "app/session.h"
-#include "planning_io/files/image_file.h"
-#include "planning_io/case/registration_file.h"
 #include "planning_io/case/poses_file.h"
+#include "planning_io/case/registration_file.h"
 #include "planning_io/case/rig_file.h"
+#include "planning_io/files/image_file.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -40,7 +40,8 @@ RigidTransform pose_to_draw(const ProjectOptions& options) {
 }
 
 void check_verdict(const RegistrationResult& registration, const ProjectOptions& options) {
-    const bool usable = registration.verdict == Verdict::yes || (registration.verdict == Verdict::ask && options.confirmed);
+    const bool usable =
+        registration.verdict == Verdict::yes || (registration.verdict == Verdict::ask && options.confirmed);
     if (usable) return;
     throw CheckFailedError(fmt::format("the registration may not be used: {}", fmt::join(registration.reasons, "; ")),
                            registration.verdict == Verdict::ask
@@ -56,8 +57,8 @@ int run_project(const ProjectOptions& options) {
     const RigidTransform rig_from_patient = pose_to_draw(options);
     const CaseDrawing drawing(the_case);
     const DrawingRenderer renderer(drawing.skin, rig.projector);
-    const RgbImage picture =
-        renderer.render(drawing.drawing, rig_from_patient * registration.patient_from_ct, rig_from_patient);  // T_global
+    const RgbImage picture = renderer.render(drawing.drawing, rig_from_patient * registration.patient_from_ct,
+                                             rig_from_patient);  // T_global
     write_png(picture, options.out);
     const auto lit = std::count_if(picture.pixels.begin(), picture.pixels.end(),
                                    [](const Rgb& p) { return p[0] + p[1] + p[2] > 0; });
@@ -72,7 +73,8 @@ int run_project(const ProjectOptions& options) {
     if (options.json)
         std::cout << nlohmann::json{{"picture", options.out.string()}, {"lit_pixels", lit}, {"items", items}}.dump(2)
                   << '\n';
-    else fmt::print("{} items in {} ({} lit pixels).\n", items.size(), options.out.string(), lit);
+    else
+        fmt::print("{} items in {} ({} lit pixels).\n", items.size(), options.out.string(), lit);
     return 0;
 }
 
@@ -82,7 +84,7 @@ Run add_project(CLI::App& app) {
     const auto options = std::make_shared<ProjectOptions>();
     ProjectOptions& o = *options;
     auto* sub = add_command(app, "project", "Case, registration and pose -> the projector's picture",
-                        "project case --rig room/rig.json --registration registration.json --out light.png");
+                            "project case --rig room/rig.json --registration registration.json --out light.png");
     sub->add_option("case", o.case_folder, "Case folder")->required();
     sub->add_option("--rig", o.rig, "rig.json")->required();
     sub->add_option("--registration", o.registration, "registration.json")->required();

@@ -5,10 +5,10 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
-#include "app/live/projector_options.h"
 #include "app/commands/light_source.h"
 #include "app/console.h"
 #include "app/live/identify_monitors.h"
+#include "app/live/projector_options.h"
 #include "app/live/show_light.h"
 #include "app/report/projector_report.h"
 #include "planning_io/files/safe_write.h"

@@ -9,10 +9,10 @@
 #include "app/live/case_model.h"
 #include "app/report/registration_certificate.h"
 #include "planning_io/case/case_folder.h"
-#include "planning_io/surface/mesh_file.h"
-#include "planning_io/plan/point_pairs_file.h"
 #include "planning_io/case/registration_file.h"
 #include "planning_io/case/slicer_transform.h"
+#include "planning_io/plan/point_pairs_file.h"
+#include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
 #include "registration/matching/cloud_normals.h"
 #include "registration/matching/register_with_landmarks.h"
@@ -46,15 +46,18 @@ PointCloud cloud_of(const RegisterOptions& options) {
     PointCloud cloud = read_cloud(options.cloud, {unit_in_mm(options.unit), options.in_rig});
     if (!cloud.normals_in_rig.empty()) return cloud;
     if (options.viewpoint_in_rig.empty())
-        throw InputError(options.cloud, "has no normals, and nothing says from where it was seen",
-                         "Say --viewpoint X Y Z: where the scanner stood, in the rig's frame, mm (0 0 0 for most scanners).");
+        throw InputError(
+            options.cloud, "has no normals, and nothing says from where it was seen",
+            "Say --viewpoint X Y Z: where the scanner stood, in the rig's frame, mm (0 0 0 for most scanners).");
     return with_normals(cloud, Eigen::Vector3d(options.viewpoint_in_rig.data()));
 }
 
-RegistrationResult match(const RegisterOptions& options, const Case& the_case, std::shared_ptr<const PointCloud>& cloud) {
+RegistrationResult match(const RegisterOptions& options, const Case& the_case,
+                         std::shared_ptr<const PointCloud>& cloud) {
     if (options.cloud.empty() && options.pairs.empty())
         throw Error(ExitCode::usage, "neither --cloud nor --pairs is given", "Give the scan, landmarks, or both.");
-    const std::vector<PointPair> pairs = options.pairs.empty() ? std::vector<PointPair>{} : read_point_pairs(options.pairs);
+    const std::vector<PointPair> pairs =
+        options.pairs.empty() ? std::vector<PointPair>{} : read_point_pairs(options.pairs);
     if (options.cloud.empty()) return register_point_pairs(pairs);
     RegistrationSettings settings;
     settings.initial.seed = options.seed;
@@ -82,37 +85,38 @@ int run_register(const RegisterOptions& options) {
         const Eigen::Matrix4d m = result.patient_from_ct.matrix();
         nlohmann::json matrix = nlohmann::json::array();
         for (int r = 0; r < 4; ++r) matrix.push_back({m(r, 0), m(r, 1), m(r, 2), m(r, 3)});
-        const nlohmann::json out = {{"verdict", name_of(result.verdict)},
-                                    {"reasons", result.reasons},
-                                    {"patient_from_ct", matrix},
-                                    {"points", result.points},
-                                    {"residual_rms_mm", result.residual_rms_mm},
-                                    {"residual_median_mm", result.residual_median_mm},
-                                    {"inlier_fraction", result.inlier_fraction},
-                                    {"runner_up_ratio", result.runner_up_ratio},
-                                    {"agreeing_bases", result.agreeing_bases},
-                                    {"weakest_sigma_mm", result.weakest_sigma_mm},
-                                    {"mirror_ratio", result.mirror_ratio},
-                                    {"blocked_fraction", result.blocked_fraction ? nlohmann::json(*result.blocked_fraction)
-                                                                                 : nlohmann::json()},
-                                    {"landmarks_off_mm", result.landmarks_off_mm ? nlohmann::json(*result.landmarks_off_mm)
-                                                                                 : nlohmann::json()},
-                                    {"scale", result.scale},
-                                    {"scale_sigma", result.scale_sigma},
-                                    {"skin_movement_mm", result.skin_movement_mm},
-                                    {"skin_offset_mm", result.skin_offset_mm},
-                                    {"items", items},
-                                    {"seconds", {{"initial", result.initial_match_s}, {"fine", result.refine_s}}}};
+        const nlohmann::json out = {
+            {"verdict", name_of(result.verdict)},
+            {"reasons", result.reasons},
+            {"patient_from_ct", matrix},
+            {"points", result.points},
+            {"residual_rms_mm", result.residual_rms_mm},
+            {"residual_median_mm", result.residual_median_mm},
+            {"inlier_fraction", result.inlier_fraction},
+            {"runner_up_ratio", result.runner_up_ratio},
+            {"agreeing_bases", result.agreeing_bases},
+            {"weakest_sigma_mm", result.weakest_sigma_mm},
+            {"mirror_ratio", result.mirror_ratio},
+            {"blocked_fraction", result.blocked_fraction ? nlohmann::json(*result.blocked_fraction) : nlohmann::json()},
+            {"landmarks_off_mm", result.landmarks_off_mm ? nlohmann::json(*result.landmarks_off_mm) : nlohmann::json()},
+            {"scale", result.scale},
+            {"scale_sigma", result.scale_sigma},
+            {"skin_movement_mm", result.skin_movement_mm},
+            {"skin_offset_mm", result.skin_offset_mm},
+            {"items", items},
+            {"seconds", {{"initial", result.initial_match_s}, {"fine", result.refine_s}}}};
         std::cout << out.dump(2) << '\n';
     } else {
         if (options.cloud.empty())
-            fmt::print("{}: {} landmarks, {:.2f} mm rms.\n", name_of(result.verdict), result.points, result.residual_rms_mm);
+            fmt::print("{}: {} landmarks, {:.2f} mm rms.\n", name_of(result.verdict), result.points,
+                       result.residual_rms_mm);
         else
             fmt::print("{}: residual {:.2f} mm rms, {:.0f} % of {} points on the skin, runner-up {:.2f} times worse.\n",
-                   name_of(result.verdict), result.residual_rms_mm, 100 * result.inlier_fraction, result.points,
-                   result.runner_up_ratio);
+                       name_of(result.verdict), result.residual_rms_mm, 100 * result.inlier_fraction, result.points,
+                       result.runner_up_ratio);
         for (const auto& item : items)
-            fmt::print("  {}: within {:.1f} mm (95 %)\n", item["name"].get<std::string>(), item["predicted_95_mm"].get<double>());
+            fmt::print("  {}: within {:.1f} mm (95 %)\n", item["name"].get<std::string>(),
+                       item["predicted_95_mm"].get<double>());
         for (const auto& reason : result.reasons) fmt::print("  {}\n", reason);
     }
     if (result.verdict == Verdict::no)
@@ -128,7 +132,7 @@ Run add_register(CLI::App& app) {
     const auto options = std::make_shared<RegisterOptions>();
     RegisterOptions& o = *options;
     auto* sub = add_command(app, "register", "Cloud and case -> where the patient lies (T_ini), or a refusal (exit 6)",
-                        "register case --cloud cloud.ply --out registration.json");
+                            "register case --cloud cloud.ply --out registration.json");
     sub->add_option("case", o.case_folder, "Case folder")->required();
     auto* cloud = sub->add_option("--cloud", o.cloud, "Clean cloud (.ply), of `scan` or of any scanner");
     sub->add_option("--unit", o.unit, "Unit of the cloud's numbers")
@@ -136,19 +140,24 @@ Run add_register(CLI::App& app) {
         ->capture_default_str()
         ->needs(cloud);
     sub->add_flag("--in-rig", o.in_rig, "The cloud is in the rig's frame though it does not say so")->needs(cloud);
-    sub->add_option("--viewpoint", o.viewpoint_in_rig,
-                    "Where the scanner stood (rig, mm): then the space it looked through must be free in the CT too; a cloud "
-                    "without normals needs it")
+    sub->add_option(
+           "--viewpoint", o.viewpoint_in_rig,
+           "Where the scanner stood (rig, mm): then the space it looked through must be free in the CT too; a cloud "
+           "without normals needs it")
         ->expected(3)
         ->needs(cloud);
-    sub->add_option("--pairs", o.pairs,
-                    "Landmarks (.csv: name, ct and rig coordinates; `review --landmarks` clicks them): they check the cloud's "
-                    "match, help where it is refused, or, without a cloud, are the match");
-    sub->add_option("--certificate", o.certificate, "Write a page (.html) with what the match is worth, in words and pictures");
+    sub->add_option(
+        "--pairs", o.pairs,
+        "Landmarks (.csv: name, ct and rig coordinates; `review --landmarks` clicks them): they check the cloud's "
+        "match, help where it is refused, or, without a cloud, are the match");
+    sub->add_option("--certificate", o.certificate,
+                    "Write a page (.html) with what the match is worth, in words and pictures");
     sub->add_option("--out", o.out, "registration.json to write")->required();
-    sub->add_option("--slicer", o.slicer_transform, "Transform for 3D Slicer to write (.tfm): it lays the cloud on the CT");
+    sub->add_option("--slicer", o.slicer_transform,
+                    "Transform for 3D Slicer to write (.tfm): it lays the cloud on the CT");
     sub->add_option("--icp", o.icp, "Fine match: signed-distance, or closest-point as in the paper")
-        ->check(CLI::IsMember({"signed-distance", "closest-point"}))->capture_default_str();
+        ->check(CLI::IsMember({"signed-distance", "closest-point"}))
+        ->capture_default_str();
     sub->add_option("--seed", o.seed, "Of the search")->capture_default_str();
     json_flag(sub, o.json);
     return [options] { return run_register(*options); };

@@ -11,10 +11,10 @@
 #include "app/live/live_window.h"
 #include "app/windows/scene_view.h"
 #include "planning_io/case/case_folder.h"
-#include "planning_io/files/image_file.h"
-#include "planning_io/surface/mesh_file.h"
-#include "planning_io/plan/point_pairs_file.h"
 #include "planning_io/case/registration_file.h"
+#include "planning_io/files/image_file.h"
+#include "planning_io/plan/point_pairs_file.h"
+#include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -47,7 +47,8 @@ std::shared_ptr<const PointCloud> cloud_of(const ReviewOptions& options) {
 }
 
 /// The window until landmarks are used or it is closed; what was clicked is kept either way.
-int run_landmarks(const ReviewOptions& options, const CaseDrawing& drawing, const PointCloud& cloud, OperatorModel model) {
+int run_landmarks(const ReviewOptions& options, const CaseDrawing& drawing, const PointCloud& cloud,
+                  OperatorModel model) {
     const bool is_there = std::filesystem::exists(options.landmarks);
     const std::vector<PointPair> already = is_there ? read_point_pairs(options.landmarks) : std::vector<PointPair>{};
     const auto clickable = clickable_scan(cloud);
@@ -56,15 +57,17 @@ int run_landmarks(const ReviewOptions& options, const CaseDrawing& drawing, cons
                          "Take the cloud of `planlight scan`, or give it normals.");
     model.landmarks = LandmarkViews{&drawing.skin, clickable};
     model.use_landmarks = "Save landmarks";
-    if (!model.fit) model.status = {StatusKind::ready, "Click landmarks on the skin and on the scan.", {"Nothing is projected."}};
+    if (!model.fit)
+        model.status = {StatusKind::ready, "Click landmarks on the skin and on the scan.", {"Nothing is projected."}};
     const std::vector<PointPair> pairs = click_landmarks(model, already);
     if (pairs.empty()) {
         fmt::print("No landmarks were clicked; nothing was written.\n");
         return 0;
     }
     write_point_pairs(pairs, options.landmarks);
-    fmt::print("{} landmarks in {}. Next: planlight register {} --cloud {} --pairs {} --out registration.json\n", pairs.size(),
-               options.landmarks.string(), options.case_folder.string(), options.cloud.string(), options.landmarks.string());
+    fmt::print("{} landmarks in {}. Next: planlight register {} --cloud {} --pairs {} --out registration.json\n",
+               pairs.size(), options.landmarks.string(), options.case_folder.string(), options.cloud.string(),
+               options.landmarks.string());
     return 0;
 }
 
@@ -93,7 +96,8 @@ int run_review(const ReviewOptions& options) {
                                     {"created", the_case.created},
                                     {"items", items},
                                     {"warnings", the_case.warnings},
-                                    {"match", found ? nlohmann::json(evidence_of(*found)) : nlohmann::json()}}.dump(2)
+                                    {"match", found ? nlohmann::json(evidence_of(*found)) : nlohmann::json()}}
+                         .dump(2)
                   << '\n';
     if (!options.picture.empty()) {
         write_png(render_scene(scene_of_fit(model, view), view_of_plan(drawing.drawing)), options.picture);
@@ -115,13 +119,16 @@ Run add_review(CLI::App& app) {
     const auto options = std::make_shared<ReviewOptions>();
     ReviewOptions& o = *options;
     auto* sub = add_command(app, "review", "Look at a prepared case, or at a match on it, in the operator window",
-                        "review case --registration registration.json --cloud cloud.ply");
+                            "review case --registration registration.json --cloud cloud.ply");
     sub->add_option("case", o.case_folder, "Case folder")->required();
-    auto* match = sub->add_option("--registration", o.registration, "A match to look at (registration.json of `register`)");
+    auto* match =
+        sub->add_option("--registration", o.registration, "A match to look at (registration.json of `register`)");
     auto* cloud = sub->add_option(
-        "--cloud", o.cloud, "The scan (.ply, mm): shown on the skin, coloured by distance, as it was matched, or to click on");
+        "--cloud", o.cloud,
+        "The scan (.ply, mm): shown on the skin, coloured by distance, as it was matched, or to click on");
     auto* landmarks = sub->add_option(
-        "--landmarks", o.landmarks, "Click landmarks on the skin and the scan, and keep them in this table (.csv) for `register --pairs`");
+        "--landmarks", o.landmarks,
+        "Click landmarks on the skin and the scan, and keep them in this table (.csv) for `register --pairs`");
     landmarks->needs(cloud);
     sub->add_option("--view", o.view, "before or after the fine match, or error: how far off the match may be")
         ->check(CLI::IsMember({"before", "after", "error"}))

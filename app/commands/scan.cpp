@@ -9,13 +9,13 @@
 #include "app/commands/commands.h"
 #include "app/commands/device_check.h"
 #include "app/console.h"
-#include "planning_io/surface/mesh_file.h"
 #include "planning_io/case/rig_file.h"
+#include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
 #include "registration/calibration/check_drift.h"
 #include "registration/scan/check/camera_gamma.h"
-#include "registration/scan/decode/merge_exposures.h"
 #include "registration/scan/clean/surface_triangles.h"
+#include "registration/scan/decode/merge_exposures.h"
 #include "registration/tracking/markers_in_scan.h"
 
 namespace planlight {
@@ -30,7 +30,8 @@ struct ScanOptions {
 };
 
 nlohmann::json counts(const DecodedView& view) {
-    return {{"decoded", view.decoded}, {"dark", view.dark}, {"saturated", view.saturated}, {"uncertain", view.uncertain}};
+    return {
+        {"decoded", view.decoded}, {"dark", view.dark}, {"saturated", view.saturated}, {"uncertain", view.uncertain}};
 }
 
 std::string devices_of(const ScanResult& scan, const RigCalibration& rig) {
@@ -39,21 +40,26 @@ std::string devices_of(const ScanResult& scan, const RigCalibration& rig) {
 }
 
 /// 0 is not known.
-nlohmann::json or_null(double value) { return value > 0 ? nlohmann::json(value) : nlohmann::json(); }
+nlohmann::json or_null(double value) {
+    return value > 0 ? nlohmann::json(value) : nlohmann::json();
+}
 
 /// Where the scan found the projector; null where it could not tell.
 nlohmann::json projector_of(const ScanResult& scan) {
     if (!scan.resection) return nullptr;
-    return {{"rms_before_px", scan.resection->rms_before_px}, {"rms_after_px", scan.resection->rms_after_px},
-            {"moved_mm", scan.resection->moved_mm},           {"turned_deg", scan.resection->turned * 180 / std::numbers::pi},
+    return {{"rms_before_px", scan.resection->rms_before_px},
+            {"rms_after_px", scan.resection->rms_after_px},
+            {"moved_mm", scan.resection->moved_mm},
+            {"turned_deg", scan.resection->turned * 180 / std::numbers::pi},
             {"used", scan.resection_used}};
 }
 
 void warn_of(const ScanResult& scan, const RigCalibration& rig) {
     if (scan.code_step_px > 0)
-        warn(fmt::format("the light was read to {:g} projector pixels only: the fringes, or the finest bits that count them, are "
-                         "not in the capture or not resolved by the cameras; the cloud is coarser",
-                         scan.code_step_px));
+        warn(fmt::format(
+            "the light was read to {:g} projector pixels only: the fringes, or the finest bits that count them, are "
+            "not in the capture or not resolved by the cameras; the cloud is coarser",
+            scan.code_step_px));
     constexpr double kMoved_mm = 1, kTurned = 0.0035;  // 0.2 degrees
     if (scan.resection_used && (scan.resection->moved_mm > kMoved_mm || scan.resection->turned > kTurned))
         warn(fmt::format(
@@ -91,10 +97,11 @@ void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
     // Pictures show about half of a way (scan_movement.h).
     const bool by_markers = movement.by == ScanMovement::By::markers;
     if (movement.moved_mm <= (by_markers ? 1 : 0.5) * options.max_movement_mm) return;
-    const std::string problem = fmt::format(
-        "the patient moved {:.2f} mm during the scan (between {} and {}, by {}); {:g} mm is the limit{}", movement.moved_mm,
-        movement.from, movement.to, by_markers ? "the markers" : "the skin in the pictures, which show about half of it",
-        options.max_movement_mm, said_of_gamma(movement.camera_gamma));
+    const std::string problem =
+        fmt::format("the patient moved {:.2f} mm during the scan (between {} and {}, by {}); {:g} mm is the limit{}",
+                    movement.moved_mm, movement.from, movement.to,
+                    by_markers ? "the markers" : "the skin in the pictures, which show about half of it",
+                    options.max_movement_mm, said_of_gamma(movement.camera_gamma));
     if (!options.accept_movement)
         throw CheckFailedError(problem, "Scan again, or take the cloud as it is with --accept-movement.");
     warn(problem);
@@ -113,14 +120,17 @@ void judge_fit(const ScanResult& scan, const RigCalibration& rig) {
     const double off = static_cast<double>(scan.raw.disagree), on = static_cast<double>(scan.raw.cloud.size());
     if (off + on > 0 && off > kMostOff * (off + on))
         throw CheckFailedError(
-            fmt::format("the capture does not fit the rig file: {} of {} places that the light was read at lie off the rays of {}",
+            fmt::format("the capture does not fit the rig file: {} of {} places that the light was read at lie off the "
+                        "rays of {}",
                         scan.raw.disagree, scan.raw.disagree + scan.raw.cloud.size(), devices_of(scan, rig)),
-            "Use the rig.json of this rig; check that left and right are not swapped and no picture is mirrored; if the rig was "
+            "Use the rig.json of this rig; check that left and right are not swapped and no picture is mirrored; if "
+            "the rig was "
             "moved, calibrate it again.");
     if (scan.clean.kept.empty())
-        throw CheckFailedError(fmt::format("no skin was found in the capture ({} of {} pixels of the left picture decoded)",
-                                           scan.left.decoded, scan.left.width * scan.left.height),
-                               "Check that the projector lights the patient and that rig.json belongs to this capture.");
+        throw CheckFailedError(
+            fmt::format("no skin was found in the capture ({} of {} pixels of the left picture decoded)",
+                        scan.left.decoded, scan.left.width * scan.left.height),
+            "Check that the projector lights the patient and that rig.json belongs to this capture.");
 }
 
 int run_scan(const ScanOptions& options) {
@@ -159,10 +169,15 @@ int run_scan(const ScanOptions& options) {
             {"right", counts(scan.right)},
             {"three_view", scan.raw.three_view},
             {"two_view", scan.raw.two_view},
-            {"removed", {{"no_partner", scan.raw.no_partner}, {"disagree", scan.raw.disagree},
-                         {"outside_volume", scan.raw.outside_volume}, {"jump", scan.clean.jump},
-                         {"grazing", scan.clean.grazing}, {"small_piece", scan.clean.small_piece},
-                         {"lonely", scan.clean.lonely}, {"thinned", scan.clean.thinned}}},
+            {"removed",
+             {{"no_partner", scan.raw.no_partner},
+              {"disagree", scan.raw.disagree},
+              {"outside_volume", scan.raw.outside_volume},
+              {"jump", scan.clean.jump},
+              {"grazing", scan.clean.grazing},
+              {"small_piece", scan.clean.small_piece},
+              {"lonely", scan.clean.lonely},
+              {"thinned", scan.clean.thinned}}},
             {"devices", devices_of(scan, rig)},
             {"code_step_px", scan.code_step_px},
             {"epipolar_px", or_null(usual_epipolar_px(scan.raw))},
@@ -177,10 +192,11 @@ int run_scan(const ScanOptions& options) {
               {"outliers", scan.outliers_s}}}};
         std::cout << result.dump(2) << '\n';
     } else {
-        fmt::print("{} points by {} in {} (raw {}; off the rays {}, jumps {}, grazing {}, small pieces {}, lonely {}){}.\n",
-                   scan.clean.kept.size(), devices_of(scan, rig), options.out.string(), scan.raw.cloud.size(),
-                   scan.raw.disagree, scan.clean.jump, scan.clean.grazing, scan.clean.small_piece, scan.clean.lonely,
-                   said_of_cameras(scan));
+        fmt::print(
+            "{} points by {} in {} (raw {}; off the rays {}, jumps {}, grazing {}, small pieces {}, lonely {}){}.\n",
+            scan.clean.kept.size(), devices_of(scan, rig), options.out.string(), scan.raw.cloud.size(),
+            scan.raw.disagree, scan.clean.jump, scan.clean.grazing, scan.clean.small_piece, scan.clean.lonely,
+            said_of_cameras(scan));
         if (!options.surface_out.empty())
             fmt::print("{} triangles over them in {}.\n", triangles.size(), options.surface_out.string());
     }
@@ -193,13 +209,15 @@ Run add_scan(CLI::App& app) {
     const auto options = std::make_shared<ScanOptions>();
     ScanOptions& o = *options;
     auto* sub = add_command(app, "scan", "Captured stripe pictures -> cloud of skin points in rig",
-                        "scan room/capture --rig room/rig.json --out cloud.ply");
+                            "scan room/capture --rig room/rig.json --out cloud.ply");
     sub->add_option("capture", o.capture, "Capture folder")->required();
-    sub->add_option("--exposure", o.exposures, "Another capture of the same pose, darker or brighter; may be said again");
+    sub->add_option("--exposure", o.exposures,
+                    "Another capture of the same pose, darker or brighter; may be said again");
     sub->add_option("--rig", o.rig, "rig.json")->required();
     sub->add_option("--out", o.out, "Clean cloud (.ply)")->required();
     sub->add_option("--raw", o.raw_out, "Also the cloud before the outliers were removed (.ply)");
-    sub->add_option("--surface", o.surface_out, "Also the scan as a triangulated surface (.ply: the same points, with faces)");
+    sub->add_option("--surface", o.surface_out,
+                    "Also the scan as a triangulated surface (.ply: the same points, with faces)");
     sub->add_option("--max-movement-mm", o.max_movement_mm, "Of the patient during the scan; more is refused (exit 6)")
         ->capture_default_str()
         ->check(CLI::Range(0.01, 100.0));

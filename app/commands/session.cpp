@@ -2,8 +2,8 @@
 #include "app/commands/commands.h"
 #include "app/live/live_window.h"
 #include "planning_io/case/case_folder.h"
-#include "planning_io/volume/read_volume.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/read_volume.h"
 
 namespace planlight {
 namespace {
@@ -47,8 +47,9 @@ int run_session(const SessionOptions& options) {
 Run add_session(CLI::App& app) {
     const auto options = std::make_shared<SessionOptions>();
     SessionOptions& o = *options;
-    auto* sub = add_command(app, "session", "Live: operator window and projector window, on the simulated room, the head moving",
-                        "session case --volume Cranium.inv3 --projector HDMI-2");
+    auto* sub = add_command(app, "session",
+                            "Live: operator window and projector window, on the simulated room, the head moving",
+                            "session case --volume Cranium.inv3 --projector HDMI-2");
     sub->add_option("case", o.case_folder, "Case folder")->required();
     sub->add_option("--volume", o.volume, "The simulated patient: the volume that the case was made from")->required();
     sub->add_option("--keep", o.keep, "Folder that keeps every match and its scan (default: CASE/registrations)");
@@ -65,7 +66,9 @@ Run add_session(CLI::App& app) {
         ->excludes(delay);
     sub->add_option("--operator", o.operator_monitor, "Monitor of the operator window (default: the primary one)");
     sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str();
-    sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")->capture_default_str()->check(CLI::Range(0.0, 500.0));
+    sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 500.0));
     sub->add_flag("--autoplay", o.autoplay, "Scan, register and track by itself");
     sub->add_option("--end-after-s", o.end_after_s, "Close after this many seconds of tracking");
     sub->add_option("--screenshots", o.screenshots, "Folder for screenshots of every step");

@@ -8,17 +8,18 @@
 #include "app/commands/commands.h"
 #include "app/commands/simulate_options.h"
 #include "app/console.h"
-#include "planning_io/plan/plan_file.h"
-#include "planning_io/volume/read_volume.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/read_volume.h"
 #include "registration/simulation/simulated_rig.h"
 
 namespace planlight {
 namespace {
 
-std::vector<StereoFrame> record_frames(simulation::SimulatedRig& rig, const SimulateOptions& options, ProgressBar& bar) {
+std::vector<StereoFrame> record_frames(simulation::SimulatedRig& rig, const SimulateOptions& options,
+                                       ProgressBar& bar) {
     rig.set_motion({options.speed_mm_s, rig.clock().now()});
     std::vector<StereoFrame> frames;
     for (int i = 0; i < options.frames; ++i) {
@@ -44,9 +45,9 @@ int run_simulate(const SimulateOptions& options) {
     StripeSettings stripes;
     stripes.width = rig.projector().width();
     stripes.height = rig.projector().height();
-    const ScanCapture capture = capture_scan(rig.projector(), rig.cameras(), rig.clock(), stripes, [&](int done, int of) {
-        bar.show("scan", static_cast<double>(done) / of);
-    });
+    const ScanCapture capture =
+        capture_scan(rig.projector(), rig.cameras(), rig.clock(), stripes,
+                     [&](int done, int of) { bar.show("scan", static_cast<double>(done) / of); });
     write_capture(capture_folder_from(capture), options.out / "capture");
     const auto frames = record_frames(rig, options, bar);
     write_frames(frames, options.out / "frames");
@@ -61,9 +62,13 @@ int run_simulate(const SimulateOptions& options) {
     for (const auto& frame : frames)
         truth["frames"].push_back({{"number", frame.number}, {"rig_from_ct", rows(rig.true_rig_from_ct(frame.at))}});
     write_safely(options.out / "truth.json", truth.dump(2) + "\n");
-    const nlohmann::json result = {{"folder", options.out.string()}, {"preset", options.preset}, {"seed", options.seed},
-                                   {"patterns", capture.left.size()}, {"frames", frames.size()}};
-    if (options.json) std::cout << result.dump(2) << '\n';
+    const nlohmann::json result = {{"folder", options.out.string()},
+                                   {"preset", options.preset},
+                                   {"seed", options.seed},
+                                   {"patterns", capture.left.size()},
+                                   {"frames", frames.size()}};
+    if (options.json)
+        std::cout << result.dump(2) << '\n';
     else
         fmt::print("{}: rig.json, capture ({} pictures a camera), frames ({}), truth.json.\n", options.out.string(),
                    capture.left.size(), frames.size());
@@ -76,7 +81,7 @@ Run add_simulate(CLI::App& app) {
     const auto options = std::make_shared<SimulateOptions>();
     SimulateOptions& o = *options;
     auto* sub = add_command(app, "simulate", "Captures of a simulated room, with ground truth in a file of its own",
-                        "simulate Cranium.inv3 --plan frontal_defect.mrk.json --preset paper --seed 3 --out room");
+                            "simulate Cranium.inv3 --plan frontal_defect.mrk.json --preset paper --seed 3 --out room");
     sub->add_option("volume", o.volume, "The patient: DICOM folder or file, or InVesalius project");
     sub->add_option("--board", o.board,
                     "Instead of a patient a calibration board, as for `calibrate`; writes captures/ and truth.json");
@@ -84,7 +89,9 @@ Run add_simulate(CLI::App& app) {
     sub->add_option("--plan", o.plan, "Plan, so that markers keep clear of it");
     preset_option(sub, o.preset);
     sub->add_option("--seed", o.seed, "Of everything random")->capture_default_str();
-    sub->add_option("--frames", o.frames, "Tracking frames after the scan")->capture_default_str()->check(CLI::Range(0, 10000));
+    sub->add_option("--frames", o.frames, "Tracking frames after the scan")
+        ->capture_default_str()
+        ->check(CLI::Range(0, 10000));
     sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head in the tracking frames")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 500.0));

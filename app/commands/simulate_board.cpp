@@ -30,9 +30,9 @@ int run_simulate_board(const SimulateOptions& options) {
     ProgressBar bar;
     for (int pose = 0; pose < room.poses(); ++pose) {
         room.lay(pose);
-        const ScanCapture capture =
-            capture_scan(room.projector(), room.cameras(), room.clock(), stripes,
-                         [&](int done, int of) { bar.show("poses", (pose + static_cast<double>(done) / of) / room.poses()); });
+        const ScanCapture capture = capture_scan(
+            room.projector(), room.cameras(), room.clock(), stripes,
+            [&](int done, int of) { bar.show("poses", (pose + static_cast<double>(done) / of) / room.poses()); });
         std::filesystem::create_directories(options.out / "captures");
         write_capture(capture_folder_from(capture), options.out / "captures" / fmt::format("pose-{:02}", pose));
     }
@@ -45,7 +45,8 @@ int run_simulate_board(const SimulateOptions& options) {
     if (options.json)
         std::cout << result.dump(2) << '\n';
     else
-        fmt::print("{}: captures of {} poses of a {}, truth.json.\n", options.out.string(), room.poses(), text_of(board));
+        fmt::print("{}: captures of {} poses of a {}, truth.json.\n", options.out.string(), room.poses(),
+                   text_of(board));
     return 0;
 }
 

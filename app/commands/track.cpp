@@ -28,7 +28,8 @@ StereoFrame reference_frame(const TrackOptions& options, const RigCalibration& r
     if (options.capture.empty()) return frames.front();
     const ScanCapture capture = scan_capture_from(read_capture_of(rig, options.capture), options.capture);
     if (capture.right.empty())
-        throw InputError(options.capture, "has the left camera's pictures only", "Markers need both cameras: capture with both.");
+        throw InputError(options.capture, "has the left camera's pictures only",
+                         "Markers need both cameras: capture with both.");
     return {capture.left.front(), capture.right.front(), capture.began, Instant{}, 0};
 }
 
@@ -36,11 +37,13 @@ int run_track(const TrackOptions& options) {
     const RigCalibration rig = read_rig(options.rig);
     PatientTracker tracker(rig);
     const auto frames = read_frames(options.frames);
-    if (frames.empty()) throw InputError(options.frames, "there is no frame in the folder", "Record at least one frame.");
+    if (frames.empty())
+        throw InputError(options.frames, "there is no frame in the folder", "Record at least one frame.");
     const auto markers = tracker.set_reference(reference_frame(options, rig, frames)).size();
     if (markers < 3)
-        throw CheckFailedError(fmt::format("only {} markers were found by both cameras in the reference picture", markers),
-                               "Paste at least five markers where both cameras see them.");
+        throw CheckFailedError(
+            fmt::format("only {} markers were found by both cameras in the reference picture", markers),
+            "Paste at least five markers where both cameras see them.");
     std::vector<TrackedPose> poses;
     ProgressBar bar;
     for (const auto& frame : frames) {
@@ -48,7 +51,8 @@ int run_track(const TrackOptions& options) {
         bar.show("track", static_cast<double>(poses.size()) / static_cast<double>(frames.size()));
     }
     write_poses(poses, options.out);
-    const auto found = std::count_if(poses.begin(), poses.end(), [](const auto& p) { return p.rig_from_patient.has_value(); });
+    const auto found =
+        std::count_if(poses.begin(), poses.end(), [](const auto& p) { return p.rig_from_patient.has_value(); });
     double worst_px = 0;
     for (const auto& pose : poses) worst_px = std::max(worst_px, pose.residual_px);
     if (options.json) {
@@ -68,7 +72,7 @@ Run add_track(CLI::App& app) {
     const auto options = std::make_shared<TrackOptions>();
     TrackOptions& o = *options;
     auto* sub = add_command(app, "track", "Recorded frames -> poses of the patient (T_cur)",
-                        "track room/frames --rig room/rig.json --capture room/capture --out poses.json");
+                            "track room/frames --rig room/rig.json --capture room/capture --out poses.json");
     sub->add_option("frames", o.frames, "Folder of recorded frames")->required();
     sub->add_option("--rig", o.rig, "rig.json")->required();
     sub->add_option(

@@ -88,10 +88,12 @@ void ChainPictures::take_scan(const Session& session) {
     const ScanResult& scan = *session.scanned();
     const auto sequence = stripe_sequence(capture.stripes);
     const auto named = [&](const std::string& name) {
-        const auto found = std::find_if(sequence.begin(), sequence.end(), [&](const auto& p) { return p.name == name; });
+        const auto found =
+            std::find_if(sequence.begin(), sequence.end(), [&](const auto& p) { return p.name == name; });
         return found == sequence.end() ? std::size_t{0} : static_cast<std::size_t>(found - sequence.begin());
     };
-    add("Coded light", "One Gray-code stripe picture and one phase picture as the left camera sees them (Fig. 2, left).",
+    add("Coded light",
+        "One Gray-code stripe picture and one phase picture as the left camera sees them (Fig. 2, left).",
         side_by_side(coloured(capture.left[named("column-gray-4")]), coloured(capture.left[named("column-phase-0")])));
     add("Decoded projector columns",
         fmt::format("Left camera, colours repeat every 64 columns; {} pixels decoded, the rest dropped.",
@@ -111,7 +113,8 @@ void ChainPictures::take_match(const Session& session) {
     scene.cloud = std::make_shared<PointCloud>(scan.clean.kept);
     scene.cloud_distance_mm = distances_to_skin_mm(*scene.cloud, scene.ct_from_rig, case_.lut);
     add("Cloud before and after the outliers were removed",
-        fmt::format("{} raw points, {} kept (Fig. 2, middle and right).", scan.raw.cloud.size(), scan.clean.kept.size()),
+        fmt::format("{} raw points, {} kept (Fig. 2, middle and right).", scan.raw.cloud.size(),
+                    scan.clean.kept.size()),
         side_by_side(raw, render_scene(scene, view, kSceneWidth, kSceneHeight)));
     if (found.verdict == Verdict::no) return;
     scene.skin = std::make_shared<TriangleMesh>(case_.skin);
@@ -123,9 +126,10 @@ void ChainPictures::take_match(const Session& session) {
     scene.ct_from_rig = after;
     scene.cloud_distance_mm = distances_to_skin_mm(*scene.cloud, scene.ct_from_rig, case_.lut, found.skin_offset_mm);
     add("Scan on skin before and after the fine match",
-        fmt::format("Residual {:.2f} mm rms, {:.0f} % of the points on the skin (Fig. 3). Distances are to the skin where this "
-                    "scan found it as a whole: {:+.2f} mm outside of the CT's.",
-                    found.residual_rms_mm, 100 * found.inlier_fraction, found.skin_offset_mm),
+        fmt::format(
+            "Residual {:.2f} mm rms, {:.0f} % of the points on the skin (Fig. 3). Distances are to the skin where this "
+            "scan found it as a whole: {:+.2f} mm outside of the CT's.",
+            found.residual_rms_mm, 100 * found.inlier_fraction, found.skin_offset_mm),
         side_by_side(before, render_scene(scene, view, kSceneWidth, kSceneHeight)));
     scene.cloud = nullptr;
     scene.cloud_distance_mm = nullptr;
@@ -135,8 +139,8 @@ void ChainPictures::take_match(const Session& session) {
         render_scene(scene, view, kSceneWidth, kSceneHeight));
 }
 
-void ChainPictures::take_light(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update,
-                               const std::string& stage) {
+void ChainPictures::take_light(const Session& session, const simulation::SimulatedRig& rig,
+                               const Session::Update& update, const std::string& stage) {
     int& updates = stage == "at rest" ? rest_updates_ : moving_updates_;
     if (++updates != kSettled || !update.overlay.lit || (stage != "at rest" && stage != "moving")) return;
     add("Cameras, " + stage,

@@ -6,8 +6,8 @@
 
 namespace planlight {
 
-/// Collects the pictures of one run for the report: patterns, clouds (Fig. 2), before and after the fine match (Fig. 3),
-/// cameras with projected plan and markers (Fig. 4), the projector's picture, the light on the skin.
+/// Collects the pictures of one run for the report: patterns, clouds (Fig. 2), before and after the fine match (Fig.
+/// 3), cameras with projected plan and markers (Fig. 4), the projector's picture, the light on the skin.
 class ChainPictures {
 public:
     ChainPictures(const Case& the_case, const CaseDrawing& drawing);

@@ -26,7 +26,8 @@ std::vector<double> gather(const std::vector<const ChainFigures*>& rooms, Get ge
     return all;
 }
 
-ReportRow row(const std::string& name, const std::string& unit, const std::vector<double>& values, double goal_p95 = 0) {
+ReportRow row(const std::string& name, const std::string& unit, const std::vector<double>& values,
+              double goal_p95 = 0) {
     ReportRow r{name, unit, distribution_of(values), {}, true};
     if (goal_p95 > 0) {
         r.goal = fmt::format("p95 at most {:g} {}", goal_p95, unit);
@@ -40,29 +41,35 @@ const char* word_for(Verdict verdict) {
 }
 
 Json room_json(const ChainFigures& room) {
-    Json j = {{"preset", room.preset},
-              {"seed", room.seed},
-              {"refused", room.refused},
-              {"scan", {{"patterns", room.patterns}, {"light_s", room.scan_simulated_s}, {"points", room.scan_points},
-                        {"decoded_left", room.decoded_left}, {"decoded_right", room.decoded_right},
-                        {"removed", room.removed}, {"bias_mm", room.scan_bias_mm},
-                        {"error_mm", to_json(distribution_of(room.scan_error_mm))}}},
-              {"initial_match_right", room.initial_match_right},
-              {"initial_error_mm", room.initial_error_mm},
-              {"tre_mm", to_json(distribution_of(room.tre_mm))},
-              {"tre_of_predicted_95_bound", to_json(distribution_of(room.tre_of_bound))},
-              {"tracking_error_mm", to_json(distribution_of(room.tracking_error_mm))},
-              {"overlay_at_rest_mm", to_json(distribution_of(room.at_rest.position_mm))},
-              {"overlay_moving_mm", to_json(distribution_of(room.moving.position_mm))},
-              {"circle_diameter_percent", to_json(distribution_of(room.at_rest.diameter_percent))},
-              {"tick_mm", to_json(distribution_of(room.at_rest.tick_mm))},
-              {"angle_deg", to_json(distribution_of(room.at_rest.angle_deg))},
-              {"strokes_not_on_the_patient", room.at_rest.unseen_strokes},
-              {"dark_updates", {{"at_rest", room.rest_dark}, {"moving", room.moving_dark}, {"reasons", room.dark_reasons}}},
-              {"one_marker_lost", {{"updates", room.lost_marker_updates}, {"lit", room.lost_marker_lit}}},
-              {"two_markers_left", {{"updates", room.too_few_updates}, {"lit", room.too_few_lit}}},
-              {"seconds", room.stage_s},
-              {"update_s", to_json(distribution_of(room.update_s))}};
+    Json j = {
+        {"preset", room.preset},
+        {"seed", room.seed},
+        {"refused", room.refused},
+        {"scan",
+         {{"patterns", room.patterns},
+          {"light_s", room.scan_simulated_s},
+          {"points", room.scan_points},
+          {"decoded_left", room.decoded_left},
+          {"decoded_right", room.decoded_right},
+          {"removed", room.removed},
+          {"bias_mm", room.scan_bias_mm},
+          {"error_mm", to_json(distribution_of(room.scan_error_mm))}}},
+        {"initial_match_right", room.initial_match_right},
+        {"initial_error_mm", room.initial_error_mm},
+        {"tre_mm", to_json(distribution_of(room.tre_mm))},
+        {"tre_of_predicted_95_bound", to_json(distribution_of(room.tre_of_bound))},
+        {"tracking_error_mm", to_json(distribution_of(room.tracking_error_mm))},
+        {"overlay_at_rest_mm", to_json(distribution_of(room.at_rest.position_mm))},
+        {"overlay_moving_mm", to_json(distribution_of(room.moving.position_mm))},
+        {"circle_diameter_percent", to_json(distribution_of(room.at_rest.diameter_percent))},
+        {"tick_mm", to_json(distribution_of(room.at_rest.tick_mm))},
+        {"angle_deg", to_json(distribution_of(room.at_rest.angle_deg))},
+        {"strokes_not_on_the_patient", room.at_rest.unseen_strokes},
+        {"dark_updates", {{"at_rest", room.rest_dark}, {"moving", room.moving_dark}, {"reasons", room.dark_reasons}}},
+        {"one_marker_lost", {{"updates", room.lost_marker_updates}, {"lit", room.lost_marker_lit}}},
+        {"two_markers_left", {{"updates", room.too_few_updates}, {"lit", room.too_few_lit}}},
+        {"seconds", room.stage_s},
+        {"update_s", to_json(distribution_of(room.update_s))}};
     if (room.registration)
         j["registration"] = {{"verdict", word_for(room.registration->verdict)},
                              {"reasons", room.registration->reasons},
@@ -98,10 +105,16 @@ Json summary_json(const PresetSummary& s) {
 
 Json preparation_json(const Preparation& prepared) {
     const Case& c = prepared.prepared;
-    return {{"case", c.code}, {"threshold", prepared.threshold}, {"body_ml", prepared.body_ml},
-            {"removed_ml", prepared.removed_ml}, {"removed_pieces", prepared.pieces_removed},
-            {"triangles", c.skin.triangles.size()}, {"lut_size", c.lut.size}, {"lut_voxel_mm", c.lut.voxel_mm},
-            {"skin_voxels", c.lut.skin.size()}, {"warnings", c.warnings},
+    return {{"case", c.code},
+            {"threshold", prepared.threshold},
+            {"body_ml", prepared.body_ml},
+            {"removed_ml", prepared.removed_ml},
+            {"removed_pieces", prepared.pieces_removed},
+            {"triangles", c.skin.triangles.size()},
+            {"lut_size", c.lut.size},
+            {"lut_voxel_mm", c.lut.voxel_mm},
+            {"skin_voxels", c.lut.skin.size()},
+            {"warnings", c.warnings},
             {"seconds", {{"skin", prepared.segment_s}, {"surface", prepared.triangulate_s}, {"lut", prepared.lut_s}}}};
 }
 
@@ -129,15 +142,16 @@ PresetSummary summarise(const std::vector<ChainFigures>& all, const std::string&
         s.too_few_lit += room->too_few_lit;
         s.too_few_updates += room->too_few_updates;
     }
-    s.rows = {row("scan points to true skin", "mm", gather(rooms, [](auto& r) { return r.scan_error_mm; })),
-              row("registration at plan points (TRE)", "mm", gather(rooms, [](auto& r) { return r.tre_mm; }), 1),
-              row("the same, of its predicted 95 % bound", "", gather(rooms, [](auto& r) { return r.tre_of_bound; }), 1),
-              row("overlay on skin at rest", "mm", gather(rooms, [](auto& r) { return r.at_rest.position_mm; }), 1),
-              row("overlay on skin, moving", "mm", gather(rooms, [](auto& r) { return r.moving.position_mm; }), 2),
-              row("tracked pose at plan points", "mm", gather(rooms, [](auto& r) { return r.tracking_error_mm; })),
-              row("10 mm between ticks", "mm", gather(rooms, [](auto& r) { return r.at_rest.tick_mm; })),
-              row("borehole diameter", "%", gather(rooms, [](auto& r) { return r.at_rest.diameter_percent; })),
-              row("right angles", "deg", gather(rooms, [](auto& r) { return r.at_rest.angle_deg; }))};
+    s.rows = {
+        row("scan points to true skin", "mm", gather(rooms, [](auto& r) { return r.scan_error_mm; })),
+        row("registration at plan points (TRE)", "mm", gather(rooms, [](auto& r) { return r.tre_mm; }), 1),
+        row("the same, of its predicted 95 % bound", "", gather(rooms, [](auto& r) { return r.tre_of_bound; }), 1),
+        row("overlay on skin at rest", "mm", gather(rooms, [](auto& r) { return r.at_rest.position_mm; }), 1),
+        row("overlay on skin, moving", "mm", gather(rooms, [](auto& r) { return r.moving.position_mm; }), 2),
+        row("tracked pose at plan points", "mm", gather(rooms, [](auto& r) { return r.tracking_error_mm; })),
+        row("10 mm between ticks", "mm", gather(rooms, [](auto& r) { return r.at_rest.tick_mm; })),
+        row("borehole diameter", "%", gather(rooms, [](auto& r) { return r.at_rest.diameter_percent; })),
+        row("right angles", "deg", gather(rooms, [](auto& r) { return r.at_rest.angle_deg; }))};
     auto update_s = gather(rooms, [](auto& r) { return r.update_s; });
     s.updates = static_cast<int>(update_s.size());
     for (double& t : update_s) t *= 1000;

@@ -14,8 +14,8 @@ namespace planlight {
 struct ReportRow {
     std::string name, unit;
     Distribution found;
-    std::string goal;      ///< in words; empty when there is none
-    bool reached = true;   ///< false only when there is a goal and it was missed
+    std::string goal;     ///< in words; empty when there is none
+    bool reached = true;  ///< false only when there is a goal and it was missed
 };
 
 /// All rooms of one preset together, refusals counted.
@@ -37,7 +37,7 @@ std::string write_report_json(const std::filesystem::path& file, const Preparati
                               const std::vector<ChainFigures>& rooms);
 
 /// report.html: one self-contained page with the figures and the pictures.
-void write_report_html(const std::filesystem::path& file, const Preparation& prepared, const std::vector<ChainFigures>& rooms,
-                       const std::vector<ReportPicture>& pictures);
+void write_report_html(const std::filesystem::path& file, const Preparation& prepared,
+                       const std::vector<ChainFigures>& rooms, const std::vector<ReportPicture>& pictures);
 
 }  // namespace planlight

@@ -14,10 +14,12 @@ std::string preset_section(const PresetSummary& s) {
     std::string html = fmt::format(
         "<h2>{} room</h2><div class=\"verdict {}\">{} {} of {} patients found from a random pose, {} refused; "
         "{:.0f} updates a second.</div>",
-        s.preset == "paper" ? "The paper's" : "The modern", mark, s.reached() ? "&#10003;" : "&#10007;", s.matched_right, s.rooms,
-        s.refused, s.updates_per_s);
-    html += "<table><tr><th>Error against the simulator's truth</th><th>median</th><th>95 %</th><th>worst</th><th>count</th>"
-            "<th>to reach</th></tr>";
+        s.preset == "paper" ? "The paper's" : "The modern", mark, s.reached() ? "&#10003;" : "&#10007;",
+        s.matched_right, s.rooms, s.refused, s.updates_per_s);
+    html +=
+        "<table><tr><th>Error against the simulator's truth</th><th>median</th><th>95 "
+        "%</th><th>worst</th><th>count</th>"
+        "<th>to reach</th></tr>";
     for (const auto& r : s.rows)
         html += fmt::format(
             "<tr><td>{}</td><td>{:.2f} {}</td><td class=\"{}\">{:.2f}</td><td>{:.2f}</td><td>{}</td><td>{}</td></tr>",
@@ -40,16 +42,16 @@ std::string preparation_section(const Preparation& p) {
         "<h2>Before the operation</h2><p>Skin at {:.0f}; {} pieces ({:.0f} ml: head holder, table, wires) taken away; "
         "{} triangles. LUT {} x {} x {} voxels of {:.1f} mm, each pointing to one of {} skin voxels. "
         "Skin {:.2f} s, surface {:.2f} s, LUT {:.2f} s.</p>",
-        p.threshold, p.pieces_removed, p.removed_ml, c.skin.triangles.size(), c.lut.size[0], c.lut.size[1], c.lut.size[2],
-        c.lut.voxel_mm, c.lut.skin.size(), p.segment_s, p.triangulate_s, p.lut_s);
+        p.threshold, p.pieces_removed, p.removed_ml, c.skin.triangles.size(), c.lut.size[0], c.lut.size[1],
+        c.lut.size[2], c.lut.voxel_mm, c.lut.skin.size(), p.segment_s, p.triangulate_s, p.lut_s);
     for (const auto& warning : c.warnings) html += fmt::format("<p class=\"no\">{}</p>", html_escaped(warning));
     return html;
 }
 
 }  // namespace
 
-void write_report_html(const std::filesystem::path& file, const Preparation& prepared, const std::vector<ChainFigures>& rooms,
-                       const std::vector<ReportPicture>& pictures) {
+void write_report_html(const std::filesystem::path& file, const Preparation& prepared,
+                       const std::vector<ChainFigures>& rooms, const std::vector<ReportPicture>& pictures) {
     std::string html = fmt::format(
         "<p class=\"muted\">Case {}. All errors are those of a simulated operating "
         "room with its own optics and the CT field as the true skin; no real projector or camera was measured. "

@@ -61,7 +61,8 @@ struct WantedLine {
     WantedLine(const std::vector<Vector3d>& planned, bool closed, const simulation::SimulatedRig& rig) {
         const std::size_t segments = closed ? planned.size() : planned.size() - 1;
         for (std::size_t i = 0; i < segments; ++i) {
-            const Vector3d a = rig.nearest_true_skin(planned[i]), b = rig.nearest_true_skin(planned[(i + 1) % planned.size()]);
+            const Vector3d a = rig.nearest_true_skin(planned[i]),
+                           b = rig.nearest_true_skin(planned[(i + 1) % planned.size()]);
             const int steps = std::max(1, static_cast<int>(std::ceil((b - a).norm() / 0.5)));
             for (int s = 0; s < steps; ++s) add(rig.nearest_true_skin(a + (b - a) * s / steps));
         }
@@ -141,7 +142,8 @@ void measure_ring(const Light& light, const Vector3d& planned, double diameter_m
     normal.normalize();
     const Vector3d off = ring->centre_in_ct - rig.nearest_true_skin(planned);
     errors.position_mm.push_back((off - off.dot(normal) * normal).norm());
-    if (shapes && diameter_mm > 0) errors.diameter_percent.push_back(std::abs(200 * ring->radius_mm / diameter_mm - 100));
+    if (shapes && diameter_mm > 0)
+        errors.diameter_percent.push_back(std::abs(200 * ring->radius_mm / diameter_mm - 100));
 }
 
 /// The direction of a lit straight stroke: the longest principal axis.
@@ -189,8 +191,8 @@ void OverlayErrors::append(const OverlayErrors& more) {
 }
 
 OverlayErrors measure_overlay(const simulation::SimulatedRig& rig, const Plan& plan, const PlanDrawing& drawing,
-                              const DrawingRenderer& renderer, const RenderSettings& render, const DrawnPicture& picture,
-                              bool shapes) {
+                              const DrawingRenderer& renderer, const RenderSettings& render,
+                              const DrawnPicture& picture, bool shapes) {
     constexpr double kTickEvery_mm = 10;
     OverlayErrors errors;
     for (std::size_t index = 0; index < drawing.items.size(); ++index) {
@@ -217,8 +219,10 @@ OverlayErrors measure_overlay(const simulation::SimulatedRig& rig, const Plan& p
             } else if (stroke.kind == StrokeKind::borehole) {
                 const auto hole = named(plan.boreholes, item.name);
                 if (hole == plan.boreholes.end()) continue;
-                if (stroke.closed) measure_ring(light, hole->position_in_ct, hole->diameter_mm, shapes, rig, errors);
-                else if (shapes) arms.push_back(direction_of(light));
+                if (stroke.closed)
+                    measure_ring(light, hole->position_in_ct, hole->diameter_mm, shapes, rig, errors);
+                else if (shapes)
+                    arms.push_back(direction_of(light));
             } else if (stroke.kind == StrokeKind::trajectory && stroke.closed) {
                 const auto trajectory = named(plan.trajectories, item.name);
                 if (trajectory != plan.trajectories.end())

@@ -9,9 +9,10 @@
 
 namespace planlight {
 
-/// Where the light of one picture truly fell, against where the plan wants it. One entry a measured place; signs dropped.
+/// Where the light of one picture truly fell, against where the plan wants it. One entry a measured place; signs
+/// dropped.
 struct OverlayErrors {
-    std::vector<double> position_mm;       ///< lines: sideways, per 2 mm of line; circles: of the centre, along the skin
+    std::vector<double> position_mm;  ///< lines: sideways, per 2 mm of line; circles: of the centre, along the skin
     std::vector<double> diameter_percent;  ///< of borehole circles
     std::vector<double> tick_mm;           ///< of the 10 mm between neighbouring ticks, along the line
     std::vector<double> angle_deg;         ///< of the right angle of the boreholes' crosses
@@ -31,7 +32,7 @@ struct DrawnPicture {
 /// the light of each of its pixels is followed to the true skin of the true head. Nothing of the product's geometry is
 /// used on the way back. `shapes` also measures diameters, ticks and angles.
 OverlayErrors measure_overlay(const simulation::SimulatedRig& rig, const Plan& plan, const PlanDrawing& drawing,
-                              const DrawingRenderer& renderer, const RenderSettings& render, const DrawnPicture& picture,
-                              bool shapes);
+                              const DrawingRenderer& renderer, const RenderSettings& render,
+                              const DrawnPicture& picture, bool shapes);
 
 }  // namespace planlight

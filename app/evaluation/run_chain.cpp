@@ -9,6 +9,7 @@
 
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/statistics.h"
 
 namespace planlight {
 namespace {
@@ -45,7 +46,8 @@ public:
                 follow(settings_.rest_updates, 3, "at rest", figures_.at_rest, figures_.rest_dark);
                 rig_.set_motion({settings_.speed_mm_s, rig_.clock().now()});
                 stage = "project while moving";
-                follow(settings_.moving_updates, settings_.measured_updates, "moving", figures_.moving, figures_.moving_dark);
+                follow(settings_.moving_updates, settings_.measured_updates, "moving", figures_.moving,
+                       figures_.moving_dark);
                 stage = "lost markers";
                 lose_markers();
             } else {
@@ -92,15 +94,18 @@ private:
         figures_.decoded_right = scanned.right.decoded;
         const auto& raw = scanned.raw;
         const auto& clean = scanned.clean;
-        figures_.removed = {{"no partner in the other camera", raw.no_partner}, {"views disagree", raw.disagree},
-                            {"outside the working volume", raw.outside_volume}, {"jump", clean.jump},
-                            {"grazing", clean.grazing}, {"small piece", clean.small_piece},
-                            {"lonely", clean.lonely}, {"thinned", clean.thinned}};
+        figures_.removed = {{"no partner in the other camera", raw.no_partner},
+                            {"views disagree", raw.disagree},
+                            {"outside the working volume", raw.outside_volume},
+                            {"jump", clean.jump},
+                            {"grazing", clean.grazing},
+                            {"small piece", clean.small_piece},
+                            {"lonely", clean.lonely},
+                            {"thinned", clean.thinned}};
         figures_.scan_points = clean.kept.size();
         auto errors = rig_.scan_errors_mm(clean.kept.points_in_rig, capture.began);
         if (!errors.empty()) {
-            std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
-            figures_.scan_bias_mm = errors[errors.size() / 2];
+            figures_.scan_bias_mm = median(errors);
         }
         for (double& e : errors) e = std::abs(e);
         figures_.scan_error_mm = std::move(errors);
@@ -124,16 +129,19 @@ private:
                 std::max(figures_.initial_error_mm, (found.initial_patient_from_ct * p - truth * p).norm());
         }
         const double turned_deg = angle_between(found.initial_patient_from_ct, truth) * 180 / std::numbers::pi;
-        figures_.initial_match_right = found.verdict != Verdict::no && figures_.initial_error_mm < 10 && turned_deg < 10;
+        figures_.initial_match_right =
+            found.verdict != Verdict::no && figures_.initial_error_mm < 10 && turned_deg < 10;
         if (found.verdict == Verdict::ask) {
-            // In the operating room a person looks at landmarks now. Here the truth looks: a wrong pose is not confirmed.
+            // In the operating room a person looks at landmarks now. Here the truth looks: a wrong pose is not
+            // confirmed.
             if (*std::max_element(figures_.tre_mm.begin(), figures_.tre_mm.end()) < 5) session_.confirm();
         }
         report_progress("register", 1);
         if (watcher_.registered) watcher_.registered(session_, rig_);
     }
 
-    /// Tracked updates; `measured` of them, evenly spread, are followed to the true skin at a random moment of their light.
+    /// Tracked updates; `measured` of them, evenly spread, are followed to the true skin at a random moment of their
+    /// light.
     void follow(int updates, int measured, const std::string& stage, OverlayErrors& errors, int& dark) {
         std::optional<DrawnPicture> waiting;
         for (int i = 0; i < updates; ++i) {
@@ -200,10 +208,12 @@ private:
 
 }  // namespace
 
-std::string name_of(simulation::Preset preset) { return preset == simulation::Preset::paper ? "paper" : "modern"; }
+std::string name_of(simulation::Preset preset) {
+    return preset == simulation::Preset::paper ? "paper" : "modern";
+}
 
-ChainFigures run_chain(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, const ChainSettings& settings,
-                       const ChainWatcher& watcher) {
+ChainFigures run_chain(const Volume& volume, const Case& the_case, const CaseDrawing& drawing,
+                       const ChainSettings& settings, const ChainWatcher& watcher) {
     return Chain(volume, the_case, drawing, settings, watcher).run();
 }
 

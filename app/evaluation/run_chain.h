@@ -16,10 +16,10 @@ namespace planlight {
 struct ChainSettings {
     simulation::Preset preset = simulation::Preset::modern;
     unsigned seed = 1;
-    int rest_updates = 12;             ///< tracked updates with the head at rest
-    int moving_updates = 40;           ///< with the head moving
-    int measured_updates = 12;         ///< of the moving ones, evenly spread, whose light is measured
-    double speed_mm_s = 20;            ///< peak speed of the moving head
+    int rest_updates = 12;                              ///< tracked updates with the head at rest
+    int moving_updates = 40;                            ///< with the head moving
+    int measured_updates = 12;                          ///< of the moving ones, evenly spread, whose light is measured
+    double speed_mm_s = 20;                             ///< peak speed of the moving head
     Instant computing = std::chrono::milliseconds(10);  ///< simulated time from seeing to showing
     std::function<void(RigCalibration&)> spoil_calibration;  ///< for tests: a wrong rig file; empty leaves it right
 };
@@ -45,31 +45,32 @@ struct ChainFigures {
     std::size_t decoded_left = 0, decoded_right = 0;
     std::map<std::string, std::size_t> removed;  ///< scan points by reason
     std::size_t scan_points = 0;
-    std::vector<double> scan_error_mm;           ///< absolute, clean cloud against the true skin
-    double scan_bias_mm = 0;                     ///< median, signed; positive outside
+    std::vector<double> scan_error_mm;  ///< absolute, clean cloud against the true skin
+    double scan_bias_mm = 0;            ///< median, signed; positive outside
 
     std::optional<RegistrationResult> registration;
-    bool initial_match_right = false;            ///< before the ICP: plan points within 10 mm, turned less than 10 degrees
+    bool initial_match_right = false;  ///< before the ICP: plan points within 10 mm, turned less than 10 degrees
     double initial_error_mm = 0;
-    std::vector<double> tre_mm;                  ///< at every plan point (targets included)
+    std::vector<double> tre_mm;  ///< at every plan point (targets included)
 
-    std::vector<double> tre_of_bound;            ///< the same / the 95 % bound that was predicted there
+    std::vector<double> tre_of_bound;  ///< the same / the 95 % bound that was predicted there
 
     OverlayErrors at_rest, moving;
-    int rest_dark = 0, moving_dark = 0;          ///< updates that gave no light
+    int rest_dark = 0, moving_dark = 0;  ///< updates that gave no light
     std::map<std::string, int> dark_reasons;
-    std::vector<double> tracking_error_mm;       ///< plan points: T_global of the frame against the truth, at rest and moving
+    std::vector<double>
+        tracking_error_mm;  ///< plan points: T_global of the frame against the truth, at rest and moving
 
     int lost_marker_updates = 0, lost_marker_lit = 0;  ///< one marker covered: must go on
     int too_few_updates = 0, too_few_lit = 0;          ///< two markers left: must be dark
 
-    std::map<std::string, double> stage_s;       ///< the product's own work per stage
-    std::vector<double> update_s;                ///< the product's own work per tracked update
+    std::map<std::string, double> stage_s;  ///< the product's own work per stage
+    std::vector<double> update_s;           ///< the product's own work per tracked update
 };
 
 /// Runs scan, match, track and draw in a simulated room and measures everything against its truth.
-ChainFigures run_chain(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, const ChainSettings& settings,
-                       const ChainWatcher& watcher = {});
+ChainFigures run_chain(const Volume& volume, const Case& the_case, const CaseDrawing& drawing,
+                       const ChainSettings& settings, const ChainWatcher& watcher = {});
 
 std::string name_of(simulation::Preset preset);
 

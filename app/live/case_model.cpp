@@ -75,7 +75,8 @@ std::vector<double> predicted_errors_mm(const Plan& plan, const RegistrationResu
     return errors;
 }
 
-std::shared_ptr<const std::vector<float>> predicted_on_skin_mm(const TriangleMesh& skin, const RegistrationResult& found) {
+std::shared_ptr<const std::vector<float>> predicted_on_skin_mm(const TriangleMesh& skin,
+                                                               const RegistrationResult& found) {
     auto errors = std::make_shared<std::vector<float>>();
     errors->reserve(skin.vertices_in_ct.size());
     for (const auto& p : skin.vertices_in_ct)
@@ -83,14 +84,15 @@ std::shared_ptr<const std::vector<float>> predicted_on_skin_mm(const TriangleMes
     return errors;
 }
 
-std::shared_ptr<const std::vector<float>> distances_to_skin_mm(const PointCloud& cloud, const RigidTransform& ct_from_rig,
-                                                               const SkinLut& lut, double skin_offset_mm) {
+std::shared_ptr<const std::vector<float>> distances_to_skin_mm(const PointCloud& cloud,
+                                                               const RigidTransform& ct_from_rig, const SkinLut& lut,
+                                                               double skin_offset_mm) {
     auto distances = std::make_shared<std::vector<float>>();
     distances->reserve(cloud.size());
     for (const auto& p_in_rig : cloud.points_in_rig) {
         const auto distance = lut.signed_distance(ct_from_rig * p_in_rig);
         distances->push_back(distance ? static_cast<float>(std::abs(distance->mm - skin_offset_mm))
-                                     : std::numeric_limits<float>::infinity());
+                                      : std::numeric_limits<float>::infinity());
     }
     return distances;
 }
@@ -106,17 +108,19 @@ std::vector<std::string> evidence_of(const RegistrationResult& result) {
         lines.push_back(fmt::format("The mirror image fits {:.1f} times worse; size of the head {:+.1f} ± {:.1f} %.",
                                     result.mirror_ratio, 100 * (1 / result.scale - 1), 100 * result.scale_sigma));
     if (result.landmarks_off_mm)
-        lines.push_back(
-            fmt::format("The farthest landmark lies {:.1f} mm from where the match puts it.", *result.landmarks_off_mm));
+        lines.push_back(fmt::format("The farthest landmark lies {:.1f} mm from where the match puts it.",
+                                    *result.landmarks_off_mm));
     if (result.moved_in_scan_mm)
-        lines.push_back(fmt::format("The patient moved by at most {:.2f} mm during the scan.", *result.moved_in_scan_mm));
-    if (result.blocked_fraction)
         lines.push_back(
-            fmt::format("{:.0f} % of the scan was seen through what is body in the CT.", 100 * *result.blocked_fraction));
+            fmt::format("The patient moved by at most {:.2f} mm during the scan.", *result.moved_in_scan_mm));
+    if (result.blocked_fraction)
+        lines.push_back(fmt::format("{:.0f} % of the scan was seen through what is body in the CT.",
+                                    100 * *result.blocked_fraction));
     lines.push_back(fmt::format("The skin lies {:.1f} mm {} that of the CT, and has moved by {:.1f} mm (rms).",
                                 std::abs(result.skin_offset_mm), result.skin_offset_mm < 0 ? "inside of" : "outside of",
                                 result.skin_movement_mm));
-    lines.push_back(fmt::format("Found in {:.2f} s, refined in {:.0f} ms.", result.initial_match_s, 1000 * result.refine_s));
+    lines.push_back(
+        fmt::format("Found in {:.2f} s, refined in {:.0f} ms.", result.initial_match_s, 1000 * result.refine_s));
     lines.insert(lines.end(), result.reasons.begin(), result.reasons.end());
     return lines;
 }

@@ -16,18 +16,20 @@ OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing);
 std::vector<double> predicted_errors_mm(const Plan& plan, const RegistrationResult& found);
 
 /// How far off each vertex of the skin may be by the registration, 95 %, mm; infinite where it cannot be told.
-std::shared_ptr<const std::vector<float>> predicted_on_skin_mm(const TriangleMesh& skin, const RegistrationResult& found);
+std::shared_ptr<const std::vector<float>> predicted_on_skin_mm(const TriangleMesh& skin,
+                                                               const RegistrationResult& found);
 
-/// The distance of each point to the skin, mm, or to where it lies `skin_offset_mm` outside of the CT's; infinite beyond the
-/// table.
-std::shared_ptr<const std::vector<float>> distances_to_skin_mm(const PointCloud& cloud, const RigidTransform& ct_from_rig,
-                                                               const SkinLut& lut, double skin_offset_mm = 0);
+/// The distance of each point to the skin, mm, or to where it lies `skin_offset_mm` outside of the CT's; infinite
+/// beyond the table.
+std::shared_ptr<const std::vector<float>> distances_to_skin_mm(const PointCloud& cloud,
+                                                               const RigidTransform& ct_from_rig, const SkinLut& lut,
+                                                               double skin_offset_mm = 0);
 
 /// What a registration was judged by, in words, one line each.
 std::vector<std::string> evidence_of(const RegistrationResult& result);
 
-/// Puts a match into the model: evidence and, unless its verdict is `no`, the predicted errors and the scan on the skin before
-/// and after the fine match. `cloud` may be null: then only what the result says.
+/// Puts a match into the model: evidence and, unless its verdict is `no`, the predicted errors and the scan on the skin
+/// before and after the fine match. `cloud` may be null: then only what the result says.
 void show_match(const Case& the_case, const RegistrationResult& found, const std::shared_ptr<const PointCloud>& cloud,
                 OperatorModel& model);
 

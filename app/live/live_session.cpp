@@ -36,7 +36,8 @@ private:
     LiveSession& session_;
 };
 
-LiveSession::LiveSession(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, const LiveSettings& settings)
+LiveSession::LiveSession(const Volume& volume, const Case& the_case, const CaseDrawing& drawing,
+                         const LiveSettings& settings)
     : case_(the_case), drawing_(drawing), settings_(settings), model_(model_of_case(the_case, drawing)) {
     set_status(StatusKind::ready, "The simulated room is being made.");
     thread_ = std::thread([this, &volume] {
@@ -92,7 +93,9 @@ LiveSession::Light LiveSession::light() const {
     return light_;
 }
 
-bool LiveSession::projecting() const { return projecting_; }
+bool LiveSession::projecting() const {
+    return projecting_;
+}
 
 std::string LiveSession::fault() const {
     const std::lock_guard lock(mutex_);
@@ -107,7 +110,9 @@ void LiveSession::set_status(StatusKind kind, const std::string& headline, std::
 void LiveSession::set_steps(int active, StepState state) {
     change_model([&](OperatorModel& m) {
         for (int i = 0; i < static_cast<int>(m.steps.size()); ++i)
-            m.steps[static_cast<std::size_t>(i)] = i < active ? StepState::done : i == active ? state : StepState::waiting;
+            m.steps[static_cast<std::size_t>(i)] = i < active    ? StepState::done
+                                                   : i == active ? state
+                                                                 : StepState::waiting;
     });
 }
 
@@ -160,7 +165,9 @@ void LiveSession::act(OperatorAction action, Session& session, simulation::Simul
             scan(session);
             return;
         case OperatorAction::do_register:
-        case OperatorAction::use_landmarks: find_patient(session, newest_landmarks()); return;
+        case OperatorAction::use_landmarks:
+            find_patient(session, newest_landmarks());
+            return;
         case OperatorAction::track:
             dark_wanted_ = false;
             following_ = true;
@@ -168,7 +175,9 @@ void LiveSession::act(OperatorAction action, Session& session, simulation::Simul
             moving_ = true;
             set_steps(5);
             break;
-        case OperatorAction::confirm: confirm(session); return;
+        case OperatorAction::confirm:
+            confirm(session);
+            return;
         case OperatorAction::dark:
         case OperatorAction::stop:
             following_ = projecting_ = false;
@@ -180,7 +189,8 @@ void LiveSession::act(OperatorAction action, Session& session, simulation::Simul
             });
             return;
         case OperatorAction::none:
-        case OperatorAction::quit: break;
+        case OperatorAction::quit:
+            break;
     }
     if (following_) follow(session, rig);
 }

@@ -20,14 +20,14 @@ namespace planlight {
 struct LiveSettings {
     simulation::Preset preset = simulation::Preset::paper;
     unsigned seed = 1;
-    double speed_mm_s = 20;  ///< peak speed of the head while it is tracked
+    double speed_mm_s = 20;                 ///< peak speed of the head while it is tracked
     std::filesystem::path keep_matches_in;  ///< every match and its scan in a folder of its own there; empty: not kept
 };
 
 /// A session on the simulated room that runs in a thread of its own, so that the windows answer while it computes.
 ///
-/// The window thread posts what the person wants and takes the newest model and the newest light. Simulated time runs as
-/// fast as the room can be computed, not as fast as the wall clock.
+/// The window thread posts what the person wants and takes the newest model and the newest light. Simulated time runs
+/// as fast as the room can be computed, not as fast as the wall clock.
 class LiveSession {
 public:
     LiveSession(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, const LiveSettings& settings);
@@ -61,7 +61,8 @@ private:
     void find_patient(Session& session, const std::vector<PointPair>& landmarks);
     void confirm(Session& session);
     std::vector<PointPair> newest_landmarks() const;
-    std::string keep(const RegistrationResult& found, const PointCloud& cloud, const std::vector<PointPair>& landmarks) const;
+    std::string keep(const RegistrationResult& found, const PointCloud& cloud,
+                     const std::vector<PointPair>& landmarks) const;
     void follow(Session& session, simulation::SimulatedRig& rig);
     void show_update(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update);
     void set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details = {});

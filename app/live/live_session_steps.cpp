@@ -29,7 +29,8 @@ void LiveSession::scan(Session& session) {
         m.track = {false, "register first"};
     });
     const ScanResult& scan = session.scan([&](int done, int of) {
-        set_status(StatusKind::scanning, fmt::format("Scanning: picture {} of {}.", done, of), {"Keep the patient still."});
+        set_status(StatusKind::scanning, fmt::format("Scanning: picture {} of {}.", done, of),
+                   {"Keep the patient still."});
     });
     const ScanCapture& capture = *session.capture();
     const auto clickable = clickable_scan(scan.clean.kept, &session.rig().left_camera);
@@ -42,7 +43,8 @@ void LiveSession::scan(Session& session) {
         if (clickable) m.landmarks = LandmarkViews{&drawing_.skin, clickable};
     });
     set_steps(3);
-    set_status(StatusKind::ready, fmt::format("{} points of skin scanned.", scan.clean.kept.size()), {"Register next."});
+    set_status(StatusKind::ready, fmt::format("{} points of skin scanned.", scan.clean.kept.size()),
+               {"Register next."});
 }
 
 std::vector<PointPair> LiveSession::newest_landmarks() const {
@@ -53,8 +55,9 @@ std::vector<PointPair> LiveSession::newest_landmarks() const {
 void LiveSession::find_patient(Session& session, const std::vector<PointPair>& landmarks) {
     following_ = projecting_ = false;
     session.go_dark();
-    set_status(StatusKind::matching, landmarks.empty() ? "Finding the patient."
-                                                       : fmt::format("Finding the patient, with {} landmarks.", landmarks.size()));
+    set_status(StatusKind::matching, landmarks.empty()
+                                         ? "Finding the patient."
+                                         : fmt::format("Finding the patient, with {} landmarks.", landmarks.size()));
     const RegistrationResult& found = session.find_patient(landmarks);
     OperatorModel shown = model();
     show_match(case_, found, std::make_shared<PointCloud>(session.scanned()->clean.kept), shown);
@@ -112,7 +115,8 @@ void LiveSession::follow(Session& session, simulation::SimulatedRig& rig) {
     show_update(session, rig, update);
 }
 
-void LiveSession::show_update(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update) {
+void LiveSession::show_update(const Session& session, const simulation::SimulatedRig& rig,
+                              const Session::Update& update) {
     const auto light = true_light_lines(session.drawing(), rig.calibration(), update.overlay, rig);
     Figures figures;
     figures.updates_per_s = 1 / std::max(update.times.total_s(), 1e-6);

@@ -18,7 +18,8 @@
 namespace planlight {
 namespace {
 
-/// Set by Ctrl-C or a polite kill: the loop ends as if the window had been closed, and everything is dark on the way out.
+/// Set by Ctrl-C or a polite kill: the loop ends as if the window had been closed, and everything is dark on the way
+/// out.
 volatile std::sig_atomic_t asked_to_end = 0;
 
 /// The simulated room needs longer for a picture than a real one; the projector window forgives it this much.
@@ -27,13 +28,15 @@ constexpr auto kPictureValidity = std::chrono::milliseconds(2500);
 /// The picture for a monitor of another size: scaled by nearest pixel, so that nothing is invented; black bars.
 RgbImage fitted(const RgbImage& picture, int width, int height) {
     if (picture.width == width && picture.height == height) return picture;
-    const double scale = std::min(static_cast<double>(width) / picture.width, static_cast<double>(height) / picture.height);
+    const double scale =
+        std::min(static_cast<double>(width) / picture.width, static_cast<double>(height) / picture.height);
     const double left = (width - scale * picture.width) / 2, top = (height - scale * picture.height) / 2;
     RgbImage out(width, height);
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
             const int sx = static_cast<int>((x + 0.5 - left) / scale), sy = static_cast<int>((y + 0.5 - top) / scale);
-            if (x + 0.5 > left && y + 0.5 > top && sx < picture.width && sy < picture.height) out.at(x, y) = picture.at(sx, sy);
+            if (x + 0.5 > left && y + 0.5 > top && sx < picture.width && sy < picture.height)
+                out.at(x, y) = picture.at(sx, sy);
         }
     return out;
 }
@@ -51,7 +54,8 @@ public:
             if (light.picture)
                 window_.show(fitted(*light.picture, window_.width(), window_.height()),
                              clock_.now() + kPictureValidity);
-            else window_.go_dark();
+            else
+                window_.go_dark();
         }
         window_.refresh();
     }
@@ -123,7 +127,8 @@ public:
         kind_ = kind;
         if (frames_ != kSettledFrames) return;
         write_png(window.screenshot(), folder_ / fmt::format("operator-{:02d}.png", ++number_));
-        if (const auto light = session.light().picture) write_png(*light, folder_ / fmt::format("light-{:02d}.png", number_));
+        if (const auto light = session.light().picture)
+            write_png(*light, folder_ / fmt::format("light-{:02d}.png", number_));
     }
 
 private:
@@ -134,7 +139,9 @@ private:
 
 }  // namespace
 
-bool display_is_there() { return std::getenv("DISPLAY") != nullptr && *std::getenv("DISPLAY") != '\0'; }
+bool display_is_there() {
+    return std::getenv("DISPLAY") != nullptr && *std::getenv("DISPLAY") != '\0';
+}
 
 int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, const LiveOptions& options) {
     OperatorWindowSettings window_settings;
@@ -147,7 +154,8 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
         light_settings.light_delay = options.projector.light_delay.value_or(light_settings.light_delay);
         light = std::make_unique<LightWindow>(monitor, light_settings);
     }
-    LiveSession session(volume, the_case, drawing, {options.preset, options.seed, options.speed_mm_s, options.keep_matches_in});
+    LiveSession session(volume, the_case, drawing,
+                        {options.preset, options.seed, options.speed_mm_s, options.keep_matches_in});
     Autoplay autoplay;
     Screenshots screenshots(options.screenshots);
     std::optional<std::chrono::steady_clock::time_point> projecting_since;
@@ -157,7 +165,8 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
         const OperatorAction action = window.frame(model);
         if (action == OperatorAction::quit) return 0;
         if (light && (action == OperatorAction::dark || action == OperatorAction::stop)) light->go_dark();
-        // Landmarks that stand in the window count for every match of their scan: a match that they refuse stays refused.
+        // Landmarks that stand in the window count for every match of their scan: a match that they refuse stays
+        // refused.
         if (action == OperatorAction::do_register || action == OperatorAction::use_landmarks)
             session.post_find_patient(window.landmarks());
         else

@@ -17,13 +17,14 @@ struct LiveOptions {
     simulation::Preset preset = simulation::Preset::paper;
     unsigned seed = 1;
     double speed_mm_s = 20;
-    std::string projector_monitor;  ///< name or number; empty: the first monitor that is not the primary one, if there is one
-    ProjectorFacts projector;       ///< what was measured of the projector; empty fields are not compared
-    std::string operator_monitor;   ///< empty: the primary one
-    bool autoplay = false;          ///< scan, register and track without a person
-    double end_after_s = 0;         ///< of projecting, wall time; 0 = until the window is closed
+    std::string
+        projector_monitor;  ///< name or number; empty: the first monitor that is not the primary one, if there is one
+    ProjectorFacts projector;               ///< what was measured of the projector; empty fields are not compared
+    std::string operator_monitor;           ///< empty: the primary one
+    bool autoplay = false;                  ///< scan, register and track without a person
+    double end_after_s = 0;                 ///< of projecting, wall time; 0 = until the window is closed
     std::filesystem::path keep_matches_in;  ///< folder for every match and its scan; empty = none
-    std::filesystem::path screenshots;  ///< folder for a picture of the operator window a step; empty = none
+    std::filesystem::path screenshots;      ///< folder for a picture of the operator window a step; empty = none
 };
 
 /// True when a window could be opened.
@@ -36,8 +37,8 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
 /// The operator window on a model that does not change, until it is closed. Throws DeviceError without a display.
 void show_model(const OperatorModel& model, FitView view = FitView::after);
 
-/// The same, with landmarks to be clicked from the start (the model has them), until they are used or the window is closed.
-/// Returns what was clicked on both sides.
+/// The same, with landmarks to be clicked from the start (the model has them), until they are used or the window is
+/// closed. Returns what was clicked on both sides.
 std::vector<PointPair> click_landmarks(const OperatorModel& model, const std::vector<PointPair>& already);
 
 }  // namespace planlight

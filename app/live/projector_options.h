@@ -7,7 +7,8 @@
 namespace planlight {
 
 struct ProjectorOptions {
-    std::filesystem::path recording, keep, out;       ///< `out`: projector.json, empty: not written; `keep`: folder for what is recorded
+    std::filesystem::path recording, keep,
+        out;                         ///< `out`: projector.json, empty: not written; `keep`: folder for what is recorded
     std::string simulate;            ///< preset of the simulated room; empty: none
     std::vector<std::string> light;  ///< of the simulated room, NAME=NUMBER
     std::string part = "all", monitor, serial;
@@ -16,7 +17,7 @@ struct ProjectorOptions {
     double configured_delay_ms = -1;  ///< the delay in force; below 0: as the recording says
     bool identify = false, show = false;
     double frames_hz = 25;  ///< of the cameras that look while `show`s
-    double seconds = 15;  ///< of `identify`
+    double seconds = 15;    ///< of `identify`
     bool json = false;
 };
 

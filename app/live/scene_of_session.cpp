@@ -18,8 +18,10 @@ std::shared_ptr<const std::vector<SceneMarker>> markers_in_ct(const PatientTrack
     return markers;
 }
 
-std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing& drawing, const RigCalibration& calibration,
-                                                               const OverlayStep& overlay, const simulation::SimulatedRig& rig) {
+std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing& drawing,
+                                                               const RigCalibration& calibration,
+                                                               const OverlayStep& overlay,
+                                                               const simulation::SimulatedRig& rig) {
     auto lines = std::make_shared<std::vector<LightLine>>();
     if (!overlay.lit) return lines;
     for (const auto& stroke : drawing.strokes) {
@@ -44,7 +46,8 @@ GrayImage brightened(const GrayImage& picture) {
         if (above > picture.pixels.size() / 200) break;
     }
     GrayImage bright = picture;
-    for (auto& value : bright.pixels) value = static_cast<std::uint8_t>(std::min<std::size_t>(255, value * 255 / white));
+    for (auto& value : bright.pixels)
+        value = static_cast<std::uint8_t>(std::min<std::size_t>(255, value * 255 / white));
     return bright;
 }
 

@@ -14,10 +14,12 @@ namespace planlight {
 std::shared_ptr<const std::vector<SceneMarker>> markers_in_ct(const PatientTracker& tracker,
                                                               const RigidTransform& ct_from_patient);
 
-/// The light of a simulated room as it truly falls: every stroke through the product's projector model to its pixel, and
-/// from there by the room's own optics to the true skin.
-std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing& drawing, const RigCalibration& calibration,
-                                                               const OverlayStep& overlay, const simulation::SimulatedRig& rig);
+/// The light of a simulated room as it truly falls: every stroke through the product's projector model to its pixel,
+/// and from there by the room's own optics to the true skin.
+std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing& drawing,
+                                                               const RigCalibration& calibration,
+                                                               const OverlayStep& overlay,
+                                                               const simulation::SimulatedRig& rig);
 
 /// The picture as a person wants to see it: what is brighter than all but the brightest half per cent becomes white.
 GrayImage brightened(const GrayImage& picture);

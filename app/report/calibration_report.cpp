@@ -26,7 +26,8 @@ std::vector<double> lens_sigmas(const BundleResult& bundle, DeviceName wanted) {
         if (!bundle.rig.device(name)) continue;
         if (name == wanted) {
             std::vector<double> sigmas;
-            for (Eigen::Index i = 0; i < 9; ++i) sigmas.push_back(std::sqrt(std::max(0.0, bundle.covariance(at + i, at + i))));
+            for (Eigen::Index i = 0; i < 9; ++i)
+                sigmas.push_back(std::sqrt(std::max(0.0, bundle.covariance(at + i, at + i))));
             return sigmas;
         }
         at += name == DeviceName::left_camera ? 9 : 15;
@@ -37,7 +38,9 @@ std::vector<double> lens_sigmas(const BundleResult& bundle, DeviceName wanted) {
 /// Dark blue, green, red.
 Rgb heat(double share) {
     const double s = std::clamp(share, 0.0, 1.0);
-    const auto mix = [](double a, double b, double t) { return static_cast<std::uint8_t>(std::lround(a + (b - a) * t)); };
+    const auto mix = [](double a, double b, double t) {
+        return static_cast<std::uint8_t>(std::lround(a + (b - a) * t));
+    };
     if (s < 0.5) return {mix(20, 54, 2 * s), mix(60, 214, 2 * s), mix(160, 138, 2 * s)};
     return {mix(54, 255, 2 * s - 1), mix(214, 80, 2 * s - 1), mix(138, 70, 2 * s - 1)};
 }
@@ -101,15 +104,17 @@ std::string device_rows(const CalibrationReport& report) {
 
 /// How far a layer of the volume's grid is from the projector (or the left camera).
 double depth_mm(const Calibration& c, int layer) {
-    const auto& from = c.device(DeviceName::projector) ? *c.device(DeviceName::projector) : *c.device(DeviceName::left_camera);
-    return (from.device_from_rig * c.volume->points[static_cast<std::size_t>(layer * c.volume->grid[0] * c.volume->grid[1])])
+    const auto& from =
+        c.device(DeviceName::projector) ? *c.device(DeviceName::projector) : *c.device(DeviceName::left_camera);
+    return (from.device_from_rig *
+            c.volume->points[static_cast<std::size_t>(layer * c.volume->grid[0] * c.volume->grid[1])])
         .z();
 }
 
 std::string verdict(const Calibration& c) {
     if (c.warnings.empty()) return "<div class=\"verdict yes\">&#10003; Calibrated without a warning.</div>";
-    std::string html = fmt::format("<div class=\"verdict no\">&#9888; Calibrated with {} warning{}.</div>", c.warnings.size(),
-                                   c.warnings.size() == 1 ? "" : "s");
+    std::string html = fmt::format("<div class=\"verdict no\">&#9888; Calibrated with {} warning{}.</div>",
+                                   c.warnings.size(), c.warnings.size() == 1 ? "" : "s");
     for (const std::string& warning : c.warnings) html += fmt::format("<p class=\"no\">{}</p>", html_escaped(warning));
     return html;
 }
@@ -165,7 +170,8 @@ std::string calibration_summary(const CalibrationReport& report) {
                                 c.held_out.rms_px[static_cast<std::size_t>(name)]);
     if (c.held_out.lengths > 0)
         text += fmt::format(
-            "  lengths      {:.3f} mm a 200 mm, {:+.3f} common to all, if the square is {:g} mm: nothing else can tell\n",
+            "  lengths      {:.3f} mm a 200 mm, {:+.3f} common to all, if the square is {:g} mm: nothing else can "
+            "tell\n",
             c.held_out.length_rms_mm, c.held_out.length_mean_mm, report.board.square_mm);
     if (c.volume)
         text += fmt::format("  points       {:.3f} mm (95 % of the working volume, one sigma, from the rig alone)\n",
@@ -173,7 +179,8 @@ std::string calibration_summary(const CalibrationReport& report) {
     for (const std::string& change : report.changes) text += "  " + change + "\n";
     return text +
            (report.rig_file.empty()
-                ? std::string("No rig file: that needs a second camera or a projector. The camera found is in the report: ")
+                ? std::string(
+                      "No rig file: that needs a second camera or a projector. The camera found is in the report: ")
                 : report.rig_file.string() + "; the report: ");
 }
 
@@ -219,18 +226,22 @@ std::string calibration_json(const CalibrationReport& report) {
 
 void write_calibration_html(const CalibrationReport& report, const std::filesystem::path& file) {
     const Calibration& c = report.calibration;
-    std::string body = fmt::format("<p class=\"muted\">{}, {} of {} poses, board {}. For research; not a medical device.</p>",
-                                   html_escaped(report.made_on), c.bundle.rig.poses(), report.poses.size(),
-                                   html_escaped(text_of(report.board))) +
-                       verdict(c) + "<h2>Devices</h2>" + device_rows(report);
+    std::string body =
+        fmt::format("<p class=\"muted\">{}, {} of {} poses, board {}. For research; not a medical device.</p>",
+                    html_escaped(report.made_on), c.bundle.rig.poses(), report.poses.size(),
+                    html_escaped(text_of(report.board))) +
+        verdict(c) + "<h2>Devices</h2>" + device_rows(report);
     body +=
-        "<p class=\"muted\">Difference between where a corner (for the projector: the light on the board) is and where the rig "
+        "<p class=\"muted\">Difference between where a corner (for the projector: the light on the board) is and where "
+        "the rig "
         "says, root mean square, "
         "on poses that the calibration had not seen. Behind &plusmn;: one standard deviation.</p>";
     if (c.held_out.lengths > 0)
         body += fmt::format(
-            "<p>{} lengths on held-out boards: {:.3f} mm a 200 mm root mean square, {:+.3f} mm of it common to all. All lengths "
-            "are by the board's square of {:g} mm, as it was said: were it another, every scan would be too large or too small "
+            "<p>{} lengths on held-out boards: {:.3f} mm a 200 mm root mean square, {:+.3f} mm of it common to all. "
+            "All lengths "
+            "are by the board's square of {:g} mm, as it was said: were it another, every scan would be too large or "
+            "too small "
             "by as much, and nothing here would show it. Measure ten squares with a calliper.</p>",
             c.held_out.lengths, c.held_out.length_rms_mm, c.held_out.length_mean_mm, report.board.square_mm);
     for (const std::string& change : report.changes) body += fmt::format("<p>{}</p>", html_escaped(change));
@@ -240,14 +251,16 @@ void write_calibration_html(const CalibrationReport& report, const std::filesyst
         int depth = 0;
         for (RgbImage& picture : volume_pictures(*c.volume, full))
             pictures.push_back({fmt::format("{:.0f} mm away", depth_mm(c, depth++)), "", std::move(picture)});
-        body += fmt::format(
-                    "<h2>Predicted error over the working volume</h2><p>What the rig's own uncertainty does to a scanned "
-                    "point, one standard deviation: median "
-                    "{:.3f}, 95 % {:.3f}, worst {:.3f} mm. Where light lands that is sent to a point: 95 % {:.3f} mm. Colours: "
-                    "dark blue 0, green {:.3f}, red {:.3f} mm; "
-                    "seen from the projector, nearest first.</p>",
-                    c.volume->median_mm, c.volume->p95_mm, c.volume->worst_mm, c.volume->light_p95_mm, full / 2, full) +
-                html_figures(pictures, file, 5);
+        body +=
+            fmt::format(
+                "<h2>Predicted error over the working volume</h2><p>What the rig's own uncertainty does to a scanned "
+                "point, one standard deviation: median "
+                "{:.3f}, 95 % {:.3f}, worst {:.3f} mm. Where light lands that is sent to a point: 95 % {:.3f} mm. "
+                "Colours: "
+                "dark blue 0, green {:.3f}, red {:.3f} mm; "
+                "seen from the projector, nearest first.</p>",
+                c.volume->median_mm, c.volume->p95_mm, c.volume->worst_mm, c.volume->light_p95_mm, full / 2, full) +
+            html_figures(pictures, file, 5);
     }
     std::vector<ReportPicture> where;
     for (const DeviceName name : kDevices)

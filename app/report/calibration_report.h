@@ -31,8 +31,8 @@ std::string calibration_json(const CalibrationReport& report);
 /// One page: verdict, figures, the predicted error over the working volume, where the board was in each picture.
 void write_calibration_html(const CalibrationReport& report, const std::filesystem::path& file);
 
-/// The predicted error as pictures, one a depth, nearest first: dark blue 0, green half of `full_scale_mm`, red all of it or
-/// more; grey not seen.
+/// The predicted error as pictures, one a depth, nearest first: dark blue 0, green half of `full_scale_mm`, red all of
+/// it or more; grey not seen.
 std::vector<RgbImage> volume_pictures(const VolumeError& volume, double full_scale_mm);
 
 }  // namespace planlight

@@ -49,18 +49,25 @@ std::string embedded(const RgbImage& picture, const std::filesystem::path& besid
 std::string html_escaped(const std::string& text) {
     std::string out;
     for (const char c : text) {
-        if (c == '&') out += "&amp;";
-        else if (c == '<') out += "&lt;";
-        else if (c == '>') out += "&gt;";
-        else if (c == '"') out += "&quot;";
-        else out += c;
+        if (c == '&')
+            out += "&amp;";
+        else if (c == '<')
+            out += "&lt;";
+        else if (c == '>')
+            out += "&gt;";
+        else if (c == '"')
+            out += "&quot;";
+        else
+            out += c;
     }
     return out;
 }
 
-std::string html_figures(const std::vector<ReportPicture>& pictures, const std::filesystem::path& scratch, int columns) {
-    std::string html = columns == 0 ? "<div class=\"grid\">"
-                                    : fmt::format("<div class=\"grid\" style=\"grid-template-columns:repeat({},1fr)\">", columns);
+std::string html_figures(const std::vector<ReportPicture>& pictures, const std::filesystem::path& scratch,
+                         int columns) {
+    std::string html =
+        columns == 0 ? "<div class=\"grid\">"
+                     : fmt::format("<div class=\"grid\" style=\"grid-template-columns:repeat({},1fr)\">", columns);
     for (const auto& p : pictures)
         html += fmt::format("<figure><img alt=\"{}\" src=\"{}\"><figcaption><b>{}</b>{}</figcaption></figure>",
                             html_escaped(p.title), embedded(p.picture, scratch), html_escaped(p.title),

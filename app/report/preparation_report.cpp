@@ -8,8 +8,8 @@
 
 #include "app/report/slice_picture.h"
 #include "app/windows/scene_view.h"
-#include "planning_io/plan/plan_file.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {

@@ -23,7 +23,7 @@ std::vector<ReportPicture> preparation_pictures(const Volume& volume, const Case
 std::string preparation_json(const Preparation& prepared, const PlanDrawing& drawing);
 
 /// Writes report.html (one page with the pictures of `preparation_pictures` inside) and report.json into `folder`.
-void write_preparation_report(const std::filesystem::path& folder, const Preparation& prepared, const PlanDrawing& drawing,
-                              const std::vector<ReportPicture>& pictures);
+void write_preparation_report(const std::filesystem::path& folder, const Preparation& prepared,
+                              const PlanDrawing& drawing, const std::vector<ReportPicture>& pictures);
 
 }  // namespace planlight

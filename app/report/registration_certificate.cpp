@@ -7,10 +7,10 @@
 #include "app/live/case_model.h"
 #include "app/report/html_page.h"
 #include "app/windows/scene_view.h"
-#include "planning_io/surface/mesh_file.h"
-#include "planning_io/plan/point_pairs_file.h"
 #include "planning_io/case/registration_file.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/plan/point_pairs_file.h"
+#include "planning_io/surface/mesh_file.h"
 
 namespace planlight {
 namespace {
@@ -52,9 +52,12 @@ void write_certificate_html(const Case& the_case, const CaseDrawing& drawing, co
     for (const std::string& line : evidence_of(found)) body += fmt::format("<p>{}</p>", html_escaped(line));
     if (found.verdict != Verdict::no) {
         body += items_html(model);
-        body += "<p>These bounds hold for skin that moved here and there. They cannot know of skin that was pulled along as a whole "
-                "since the CT (by gravity, tape, a retractor): it looks like a head that moved. Look at the light on a place "
-                "where skin lies close on bone, such as the bridge of the nose.</p>";
+        body +=
+            "<p>These bounds hold for skin that moved here and there. They cannot know of skin that was pulled along "
+            "as a whole "
+            "since the CT (by gravity, tape, a retractor): it looks like a head that moved. Look at the light on a "
+            "place "
+            "where skin lies close on bone, such as the bridge of the nose.</p>";
         const SceneView view = view_of_plan(drawing.drawing);
         const auto picture = [&](FitView shown) {
             return render_scene(scene_of_fit(model, shown), view, kWidth, kHeight);

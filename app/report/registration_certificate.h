@@ -8,15 +8,16 @@
 
 namespace planlight {
 
-/// What a match is worth, in words and pictures, as one page: verdict and reasons, what it was judged by, how far off each
-/// item of the plan may be (95 %), the scan on the skin before and after the fine match, and how far off the match may be over
-/// the skin. `cloud` may be null (landmarks): then without the scan.
+/// What a match is worth, in words and pictures, as one page: verdict and reasons, what it was judged by, how far off
+/// each item of the plan may be (95 %), the scan on the skin before and after the fine match, and how far off the match
+/// may be over the skin. `cloud` may be null (landmarks): then without the scan.
 void write_certificate_html(const Case& the_case, const CaseDrawing& drawing, const RegistrationResult& found,
                             const std::shared_ptr<const PointCloud>& cloud, const std::filesystem::path& file);
 
-/// Keeps a match as a new folder 0001, 0002, ... in `folder`: registration.json, cloud.ply where there was a scan, landmarks.csv
-/// where there were any. What is there is not touched. Gives the new folder. Throws DiskError like every writer.
-std::filesystem::path keep_match(const RegistrationResult& found, const PointCloud* cloud, const std::vector<PointPair>& landmarks,
-                                 const std::filesystem::path& folder);
+/// Keeps a match as a new folder 0001, 0002, ... in `folder`: registration.json, cloud.ply where there was a scan,
+/// landmarks.csv where there were any. What is there is not touched. Gives the new folder. Throws DiskError like every
+/// writer.
+std::filesystem::path keep_match(const RegistrationResult& found, const PointCloud* cloud,
+                                 const std::vector<PointPair>& landmarks, const std::filesystem::path& folder);
 
 }  // namespace planlight

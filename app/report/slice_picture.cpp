@@ -49,7 +49,8 @@ struct Sheet {
         const Vector3d box = high - low, middle = (low + high) / 2, n = frame.normal();
         middle_in_ct = middle + n * n.dot(p_in_ct - middle);
         constexpr double kMargin = 1.06;
-        mm_per_px = kMargin * std::max(std::abs(box.dot(frame.right)) / s.width, std::abs(box.dot(frame.down)) / s.height);
+        mm_per_px =
+            kMargin * std::max(std::abs(box.dot(frame.right)) / s.width, std::abs(box.dot(frame.down)) / s.height);
     }
     Vector3d p_in_ct(int x, int y) const {
         return middle_in_ct + mm_per_px * ((x - 0.5 * (settings.width - 1)) * frame.right +
@@ -84,7 +85,8 @@ std::pair<double, double> window_of(const Volume& volume, const SliceSettings& s
     if (settings.low != 0 || settings.high != 0) return {settings.low, settings.high};
     if (volume.is_hu) return {-800, 800};
     std::vector<float> some;
-    for (std::size_t i = 0; i < volume.values.size(); i += 1 + volume.values.size() / 200'000) some.push_back(volume.values[i]);
+    for (std::size_t i = 0; i < volume.values.size(); i += 1 + volume.values.size() / 200'000)
+        some.push_back(volume.values[i]);
     if (some.empty()) return {0, 1};
     const auto rank = [&](double share) {
         const auto at = some.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(some.size() - 1));
@@ -102,7 +104,8 @@ void paint_values(const Volume& volume, const Sheet& sheet, RgbImage& picture) {
         for (int x = 0; x < picture.width; ++x) {
             const auto value = value_at(volume, voxel_from_ct * sheet.p_in_ct(x, y));
             if (!value) continue;
-            const auto gray = static_cast<std::uint8_t>(std::lround(255 * std::clamp((*value - low) / (high - low), 0.0, 1.0)));
+            const auto gray =
+                static_cast<std::uint8_t>(std::lround(255 * std::clamp((*value - low) / (high - low), 0.0, 1.0)));
             picture.at(x, y) = {gray, gray, gray};
         }
 }
@@ -131,7 +134,8 @@ void draw_skin(const TriangleMesh& skin, const Sheet& sheet, cv::Mat& canvas) {
             ends[found++] = sheet.pixel((1 - t) * skin.vertices_in_ct[i] + t * skin.vertices_in_ct[j]);
             if (!skin.flags.empty()) flag = std::max(flag, std::max(skin.flags[i], skin.flags[j]));
         }
-        if (found == 2) draw_line(canvas, ends[0], ends[1], flag == kSkin ? kSkinLine : flag == kSeal ? kSealLine : kEndLine, 2);
+        if (found == 2)
+            draw_line(canvas, ends[0], ends[1], flag == kSkin ? kSkinLine : flag == kSeal ? kSealLine : kEndLine, 2);
     }
 }
 

@@ -12,15 +12,16 @@ namespace planlight {
 enum class SliceKind { axial, coronal, sagittal };
 
 struct SliceSettings {
-    int width = 640, height = 640;       ///< pixels
-    double plan_within_mm = 3;           ///< plan lines this near to the slice are drawn on it
+    int width = 640, height = 640;  ///< pixels
+    double plan_within_mm = 3;      ///< plan lines this near to the slice are drawn on it
     double low = 0,
            high = 0;  ///< values shown black and white; both 0 = -800 to 800 HU, else the 1st to 99.5th percentile
 };
 
 /// A slice of the volume (resampled trilinearly through its whole affine, so that a tilt or an oblique MR stands as the
-/// patient does) through `p_in_ct`, with the line in which it cuts the skin mesh (seals amber, ends of the volume grey), the
-/// plan near it, and R L A P S I at the sides. What is outside the volume is dark blue. Skin and plan may be empty.
+/// patient does) through `p_in_ct`, with the line in which it cuts the skin mesh (seals amber, ends of the volume
+/// grey), the plan near it, and R L A P S I at the sides. What is outside the volume is dark blue. Skin and plan may be
+/// empty.
 RgbImage slice_picture(const Volume& volume, const TriangleMesh& skin, const Plan& plan, SliceKind kind,
                        const Eigen::Vector3d& p_in_ct, const SliceSettings& settings = {});
 

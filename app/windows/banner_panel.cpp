@@ -63,7 +63,9 @@ void draw_shape(const Pen& pen, StatusKind kind, ImVec2 middle, float radius, co
             pen.polygon(middle, 1.1F * radius, 4, 0, look.shape);
             pen.polygon(middle, 0.5F * radius, 4, 0, look.fill);
             break;
-        case StatusKind::ready: list.AddCircle(middle, 0.88F * radius, look.shape, 64, 0.2F * radius); break;
+        case StatusKind::ready:
+            list.AddCircle(middle, 0.88F * radius, look.shape, 64, 0.2F * radius);
+            break;
     }
 }
 
@@ -84,13 +86,16 @@ void draw_figures(const Pen& pen, const Box& box, const Figures& figures, const 
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const float y = box.y + step * (static_cast<float>(i) + 0.5F);
         pen.line(pen.fonts.number, rows[i].second, box.right() - widest, y, widest + 1, IM_COL32_WHITE);
-        pen.line(pen.fonts.body, rows[i].first, box.x, y, box.width - widest - 16 * pen.scale, look.text, Pen::Side::right);
+        pen.line(pen.fonts.body, rows[i].first, box.x, y, box.width - widest - 16 * pen.scale, look.text,
+                 Pen::Side::right);
     }
 }
 
 }  // namespace
 
-const char* status_word(StatusKind kind) { return look_of(kind).word; }
+const char* status_word(StatusKind kind) {
+    return look_of(kind).word;
+}
 
 void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model) {
     const Look& look = look_of(model.status.kind);
@@ -104,7 +109,8 @@ void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model) {
     pen.line(pen.fonts.word, look.word, word_x, middle_y, 0, look.text);
 
     const float figures_width = 570 * s;
-    const Box figures{box.right() - 1.6F * pad - figures_width, box.y + 0.6F * pad, figures_width, box.height - 1.2F * pad};
+    const Box figures{box.right() - 1.6F * pad - figures_width, box.y + 0.6F * pad, figures_width,
+                      box.height - 1.2F * pad};
     draw_figures(pen, figures, model.figures, look);
 
     const float text_x = word_x + word + 2 * pad;

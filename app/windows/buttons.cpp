@@ -5,7 +5,8 @@
 namespace planlight {
 namespace {
 
-void draw_button(const Pen& pen, const Box& box, const std::string& label, const ButtonState& state, bool hovered, bool held) {
+void draw_button(const Pen& pen, const Box& box, const std::string& label, const ButtonState& state, bool hovered,
+                 bool held) {
     const ImU32 fill = !state.enabled ? IM_COL32(22, 25, 32, 255)
                        : held         ? theme::kActive
                        : hovered      ? theme::kHovered
@@ -24,8 +25,8 @@ void draw_button(const Pen& pen, const Box& box, const std::string& label, const
     pen.line(pen.fonts.strong, label, box.x + pad, top + line_height(pen.fonts.strong) / 2, box.width - 2 * pad,
              IM_COL32(120, 128, 142, 255), Pen::Side::centre);
     pen.paragraph(pen.fonts.small, state.why_not,
-                  {box.x + pad, top + line_height(pen.fonts.strong), box.width - 2 * pad, 2 * height + 1}, theme::kQuiet,
-                  Pen::Side::centre);
+                  {box.x + pad, top + line_height(pen.fonts.strong), box.width - 2 * pad, 2 * height + 1},
+                  theme::kQuiet, Pen::Side::centre);
 }
 
 }  // namespace
@@ -45,8 +46,8 @@ void draw_dark_button(const Pen& pen, const Box& box, bool hovered, bool held) {
               IM_COL32_WHITE, 2);
     const float top = box.y + 0.38F * box.height;
     pen.line(pen.fonts.number, "DARK", box.x, top, box.width, IM_COL32(12, 14, 18, 255), Pen::Side::centre);
-    pen.line(pen.fonts.small, "Space · B · Esc", box.x, box.y + 0.78F * box.height, box.width, IM_COL32(52, 58, 70, 255),
-             Pen::Side::centre);
+    pen.line(pen.fonts.small, "Space · B · Esc", box.x, box.y + 0.78F * box.height, box.width,
+             IM_COL32(52, 58, 70, 255), Pen::Side::centre);
 }
 
 }  // namespace planlight

@@ -9,7 +9,8 @@ void draw_camera(const Pen& pen, const Box& box, const CameraPicture& camera, Im
     const float s = pen.scale;
     pen.panel(box, IM_COL32(8, 9, 12, 255));
     if (camera.picture && !camera.picture->empty() && texture != nullptr) {
-        const auto width = static_cast<float>(camera.picture->width), height = static_cast<float>(camera.picture->height);
+        const auto width = static_cast<float>(camera.picture->width),
+                   height = static_cast<float>(camera.picture->height);
         const float zoom = std::min((box.width - 4) / width, (box.height - 4) / height);
         const ImVec2 low(box.x + (box.width - zoom * width) / 2, box.y + (box.height - zoom * height) / 2);
         const ImVec2 high(low.x + zoom * width, low.y + zoom * height);
@@ -23,8 +24,9 @@ void draw_camera(const Pen& pen, const Box& box, const CameraPicture& camera, Im
             pen.list->AddCircle(at, radius, theme::kGreen, 32, 2);
         }
     } else {
-        pen.paragraph(pen.fonts.small, camera.note, {box.x + 16 * s, box.y + box.height / 2, box.width - 32 * s, box.height / 2},
-                      theme::kQuiet, Pen::Side::centre);
+        pen.paragraph(pen.fonts.small, camera.note,
+                      {box.x + 16 * s, box.y + box.height / 2, box.width - 32 * s, box.height / 2}, theme::kQuiet,
+                      Pen::Side::centre);
     }
     const std::string markers =
         " · " + std::to_string(camera.found.size()) + (camera.found.size() == 1 ? " marker" : " markers");

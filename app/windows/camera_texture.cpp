@@ -24,7 +24,8 @@ unsigned CameraTexture::take(const std::shared_ptr<const GrayImage>& picture) {
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, picture->width, picture->height, 0, GL_RED, GL_UNSIGNED_BYTE, picture->pixels.data());
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, picture->width, picture->height, 0, GL_RED, GL_UNSIGNED_BYTE,
+                 picture->pixels.data());
     glGenerateMipmap(GL_TEXTURE_2D);
     return texture_;
 }

@@ -11,9 +11,10 @@ namespace {
 const std::filesystem::path kInter = "/usr/share/fonts/opentype/inter";
 const std::filesystem::path kDejaVu = "/usr/share/fonts/truetype/dejavu";
 
-// Latin with accents, Greek, Cyrillic (names), punctuation, super- and subscripts, arrows, mathematics, the diameter sign.
-const ImWchar kText[] = {0x20,   0x17F,  0x370,  0x3FF,  0x400,  0x45F,  0x2010, 0x2027, 0x2030, 0x203A, 0x2070, 0x209C, 0x20AC,
-                         0x20AC, 0x2122, 0x2122, 0x2190, 0x2199, 0x2202, 0x2265, 0x2300, 0x2300, 0};
+// Latin with accents, Greek, Cyrillic (names), punctuation, super- and subscripts, arrows, mathematics, the diameter
+// sign.
+const ImWchar kText[] = {0x20,   0x17F,  0x370,  0x3FF,  0x400,  0x45F,  0x2010, 0x2027, 0x2030, 0x203A, 0x2070, 0x209C,
+                         0x20AC, 0x20AC, 0x2122, 0x2122, 0x2190, 0x2199, 0x2202, 0x2265, 0x2300, 0x2300, 0};
 const ImWchar kWordOnly[] = {0x20, 0x7E, 0};
 
 /// Adds one size, completed from the symbol font.
@@ -33,7 +34,9 @@ ImFont* add(ImFontAtlas& atlas, const std::filesystem::path& file, const std::fi
     return font;
 }
 
-bool blank_is_right(unsigned code) { return code == ' ' || code == '\n' || code == 0xA0; }
+bool blank_is_right(unsigned code) {
+    return code == ' ' || code == '\n' || code == 0xA0;
+}
 
 }  // namespace
 

@@ -25,8 +25,8 @@ void draw_step(const Pen& pen, const Box& chip, std::size_t index, StepState sta
                  Pen::Side::centre);
     } else {
         pen.list->AddCircleFilled(middle, radius, active ? theme::kBackground : theme::kControl, 32);
-        pen.line(active ? pen.fonts.strong : pen.fonts.small, std::to_string(index + 1), middle.x - radius, middle_y, 2 * radius,
-                 active ? theme::kText : theme::kQuiet, Pen::Side::centre);
+        pen.line(active ? pen.fonts.strong : pen.fonts.small, std::to_string(index + 1), middle.x - radius, middle_y,
+                 2 * radius, active ? theme::kText : theme::kQuiet, Pen::Side::centre);
     }
     const bool waiting = state == StepState::waiting;
     pen.line(active ? pen.fonts.strong : pen.fonts.body, kSteps[index], text_x, middle_y, text_room,
@@ -39,11 +39,12 @@ void draw_header(const Pen& pen, const WindowLayout& place, const OperatorModel&
     const Box& title = place.title;
     const bool two_lines = broken(pen.fonts.small, model.case_subtitle, title.width, 2).size() > 1;
     const float title_height = line_height(pen.fonts.title);
-    const float first = two_lines ? title.y + title_height / 2 - 2 * pen.scale : title.y + (title.height - title_height) / 2;
+    const float first =
+        two_lines ? title.y + title_height / 2 - 2 * pen.scale : title.y + (title.height - title_height) / 2;
     pen.line(pen.fonts.title, model.case_title, title.x, first, title.width, theme::kText);
     const float top = first + title_height / 2;
-    pen.paragraph(pen.fonts.small, model.case_subtitle, {title.x, top, title.width, title.bottom() + 4 * pen.scale - top},
-                  theme::kQuiet);
+    pen.paragraph(pen.fonts.small, model.case_subtitle,
+                  {title.x, top, title.width, title.bottom() + 4 * pen.scale - top}, theme::kQuiet);
 
     const Box& steps = place.steps;
     const float gap = 8 * pen.scale, chip_height = std::min(steps.height, std::round(60 * pen.scale));

@@ -28,15 +28,25 @@ struct Context {
         display = get_display(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
         check(display != EGL_NO_DISPLAY && eglInitialize(display, nullptr, nullptr) == EGL_TRUE, "eglInitialize");
         eglBindAPI(EGL_OPENGL_API);
-        const EGLint wanted[] = {EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RED_SIZE, 8,
-                                 EGL_GREEN_SIZE, 8, EGL_BLUE_SIZE, 8, EGL_NONE};
+        const EGLint wanted[] = {EGL_RENDERABLE_TYPE,
+                                 EGL_OPENGL_BIT,
+                                 EGL_SURFACE_TYPE,
+                                 EGL_PBUFFER_BIT,
+                                 EGL_RED_SIZE,
+                                 8,
+                                 EGL_GREEN_SIZE,
+                                 8,
+                                 EGL_BLUE_SIZE,
+                                 8,
+                                 EGL_NONE};
         EGLConfig config = nullptr;
         EGLint count = 0;
         check(eglChooseConfig(display, wanted, &config, 1, &count) == EGL_TRUE && count > 0, "eglChooseConfig");
         const EGLint size[] = {EGL_WIDTH, width, EGL_HEIGHT, height, EGL_NONE};
         surface = eglCreatePbufferSurface(display, config, size);
-        const EGLint version[] = {EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3,
-                                  EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+        const EGLint version[] = {
+            EGL_CONTEXT_MAJOR_VERSION,           3,       EGL_CONTEXT_MINOR_VERSION, 3, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
         context = eglCreateContext(display, config, EGL_NO_CONTEXT, version);
         check(context != EGL_NO_CONTEXT, "eglCreateContext");
         check(eglMakeCurrent(display, surface, surface, context) == EGL_TRUE, "eglMakeCurrent");
@@ -52,6 +62,8 @@ struct Context {
 
 }  // namespace
 
-std::shared_ptr<void> headless_gl(int width, int height) { return std::make_shared<Context>(width, height); }
+std::shared_ptr<void> headless_gl(int width, int height) {
+    return std::make_shared<Context>(width, height);
+}
 
 }  // namespace planlight

@@ -4,8 +4,8 @@
 
 namespace planlight {
 
-/// An OpenGL 3.3 context without display or window (EGL, surfaceless), current on the thread that made it until it ends.
-/// A thread that already has a context of another kind cannot have one. Throws DeviceError when there is no EGL.
+/// An OpenGL 3.3 context without display or window (EGL, surfaceless), current on the thread that made it until it
+/// ends. A thread that already has a context of another kind cannot have one. Throws DeviceError when there is no EGL.
 std::shared_ptr<void> headless_gl(int width, int height);
 
 }  // namespace planlight

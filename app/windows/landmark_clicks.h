@@ -7,8 +7,8 @@
 
 namespace planlight {
 
-/// Landmarks as they are clicked: on the skin from CT and on the scan, in turn or in any order that keeps one side at most
-/// one ahead. What was clicked last on the side that is ahead is moved by another click there.
+/// Landmarks as they are clicked: on the skin from CT and on the scan, in turn or in any order that keeps one side at
+/// most one ahead. What was clicked last on the side that is ahead is moved by another click there.
 class LandmarkClicks {
 public:
     void click_skin(const Eigen::Vector3d& p_in_ct) { click(in_ct_, in_rig_, p_in_ct, true); }
@@ -24,7 +24,8 @@ public:
     std::vector<PointPair> pairs() const;
     void set_pairs(const std::vector<PointPair>& pairs);
 
-    /// How far the pairs lie from each other under the rigid transform that fits them best, rms, mm; 0 for fewer than three.
+    /// How far the pairs lie from each other under the rigid transform that fits them best, rms, mm; 0 for fewer than
+    /// three.
     double misfit_mm() const;
 
 private:

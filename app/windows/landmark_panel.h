@@ -25,7 +25,8 @@ public:
     void follow(const LandmarkViews& views);
 
     /// What was pressed.
-    std::optional<LandmarkButton> draw(const Pen& pen, const Box& box, const LandmarkViews& views, const std::string& use_label);
+    std::optional<LandmarkButton> draw(const Pen& pen, const Box& box, const LandmarkViews& views,
+                                       const std::string& use_label);
 
     LandmarkClicks& clicks() { return clicks_; }
     const LandmarkClicks& clicks() const { return clicks_; }
@@ -45,7 +46,7 @@ private:
     ScenePane skin_pane_, scan_pane_;
     SceneModel skin_scene_, scan_scene_;
     std::shared_ptr<const ClickableScan> scan_;
-    std::string notice_;  ///< why the last click did not count
+    std::string notice_;     ///< why the last click did not count
     int quarter_turns_ = 0;  ///< of the scan, about the way it is looked at: the devices may hang upside down
     std::array<Box, 2> boxes_{};
     std::array<Box, 4> buttons_{};  ///< by LandmarkButton

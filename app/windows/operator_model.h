@@ -31,8 +31,8 @@ struct LightLine {
 
 /// What the 3-D view shows, all of it in ct (LPS, mm). Every part may be null.
 ///
-/// The shared parts are taken as unchanging: to show another one, hand over another pointer. What has the same pointer as
-/// in the last frame is not built again.
+/// The shared parts are taken as unchanging: to show another one, hand over another pointer. What has the same pointer
+/// as in the last frame is not built again.
 struct SceneModel {
     std::shared_ptr<const TriangleMesh> skin;
     bool of_scan = false;  ///< `skin` is a scan's surface in a frame of its own: cool colour, no letters at the edges
@@ -41,12 +41,12 @@ struct SceneModel {
     RigidTransform ct_from_rig = RigidTransform::Identity();      ///< where the cloud is shown
     std::shared_ptr<const std::vector<SceneMarker>> markers;
     std::shared_ptr<const PlanDrawing> plan;
-    std::shared_ptr<const std::vector<LightLine>> light;          ///< drawn white, above the plan
-    double skin_offset_mm = 0;               ///< the distances are counted from this far outside of the CT's skin
-    double largest_distance_mm = 1.5;                             ///< the red end of the colour scale
+    std::shared_ptr<const std::vector<LightLine>> light;  ///< drawn white, above the plan
+    double skin_offset_mm = 0;         ///< the distances are counted from this far outside of the CT's skin
+    double largest_distance_mm = 1.5;  ///< the red end of the colour scale
     /// Per vertex of the skin, how far off it may be (95 %), mm; null: the skin has its own colour.
     std::shared_ptr<const std::vector<float>> skin_error_mm;
-    double warn_above_mm = 1, stop_above_mm = 2;                  ///< its colours: green, amber above, red above
+    double warn_above_mm = 1, stop_above_mm = 2;  ///< its colours: green, amber above, red above
 };
 
 /// What the 3-D view shows of a match.
@@ -54,13 +54,13 @@ enum class FitView { after, before, predicted_error };
 
 /// What the 3-D view needs of a match beyond the scan as it lies after the fine match (which the scene has).
 struct FitViews {
-    RigidTransform before_ct_from_rig = RigidTransform::Identity();    ///< of the initial match
-    std::shared_ptr<const std::vector<float>> before_distance_mm;      ///< per point of the cloud
-    std::shared_ptr<const std::vector<float>> predicted_mm;            ///< per vertex of the skin, 95 %
+    RigidTransform before_ct_from_rig = RigidTransform::Identity();  ///< of the initial match
+    std::shared_ptr<const std::vector<float>> before_distance_mm;    ///< per point of the cloud
+    std::shared_ptr<const std::vector<float>> predicted_mm;          ///< per vertex of the skin, 95 %
 };
 
-/// A scan as a surface to be clicked on, in a frame `shown` in which it is looked at as a face is in ct: x to the devices'
-/// right, y away from them, z up.
+/// A scan as a surface to be clicked on, in a frame `shown` in which it is looked at as a face is in ct: x to the
+/// devices' right, y away from them, z up.
 struct ClickableScan {
     SkinSurface surface;  ///< in `shown`
     RigidTransform shown_from_rig = RigidTransform::Identity();
@@ -92,13 +92,13 @@ struct CameraPicture {
     std::string title;                         ///< "Left camera"
     std::shared_ptr<const GrayImage> picture;  ///< another pointer = another picture; null = none yet
     std::vector<FoundMarker> found;
-    std::string note;                          ///< in place of a picture that is not there: why
+    std::string note;  ///< in place of a picture that is not there: why
 };
 
 /// A plan item in the table. Values in mm; empty is shown as a dash.
 struct PlanRow {
     Rgb colour{255, 255, 255};
-    std::string name;                               ///< "Borehole 1, ⌀7.0 mm"
+    std::string name;  ///< "Borehole 1, ⌀7.0 mm"
     std::optional<double> depth_mm, predicted_error_mm, light_off_mm;
 };
 
@@ -106,8 +106,8 @@ enum class StatusKind { ready, scanning, matching, aligned, check, refused, dark
 
 struct Status {
     StatusKind kind = StatusKind::dark;
-    std::string headline;             ///< one sentence: may the light be trusted, or why not
-    std::vector<std::string> details; ///< further sentences
+    std::string headline;              ///< one sentence: may the light be trusted, or why not
+    std::vector<std::string> details;  ///< further sentences
 };
 
 /// Shown beside the status; empty is shown as a dash.
@@ -122,21 +122,21 @@ struct ButtonState {
 
 struct OperatorModel {
     std::string case_title, case_subtitle;
-    std::array<StepState, 6> steps{};       ///< Case, Rig, Scan, Match, Verify, Project
+    std::array<StepState, 6> steps{};  ///< Case, Rig, Scan, Match, Verify, Project
     SceneModel scene;
-    std::optional<LandmarkViews> landmarks; ///< there is a scan: landmarks can be clicked on it
-    std::optional<FitViews> fit;            ///< there is a match to be looked at: the 3-D view gets buttons for it
+    std::optional<LandmarkViews> landmarks;  ///< there is a scan: landmarks can be clicked on it
+    std::optional<FitViews> fit;             ///< there is a match to be looked at: the 3-D view gets buttons for it
     CameraPicture left{"Left camera", nullptr, {}, "no picture yet"};
     CameraPicture right{"Right camera", nullptr, {}, "no picture yet"};
     std::vector<PlanRow> rows;
-    double warn_above_mm = 1;               ///< a larger error in the table is amber and marked
-    double stop_above_mm = 2;               ///< a larger one red and marked
-    std::vector<std::string> evidence;      ///< what the registration was judged by, in words
+    double warn_above_mm = 1;           ///< a larger error in the table is amber and marked
+    double stop_above_mm = 2;           ///< a larger one red and marked
+    std::vector<std::string> evidence;  ///< what the registration was judged by, in words
     Status status;
     Figures figures;
-    ButtonState scan, do_register, track, stop;  ///< DARK is always enabled
+    ButtonState scan, do_register, track, stop;   ///< DARK is always enabled
     std::string use_landmarks = "Use landmarks";  ///< on the button that hands over the landmarks that were clicked
-    bool confirm = false;  ///< the match needs a person's look: a button says that it fits
+    bool confirm = false;                         ///< the match needs a person's look: a button says that it fits
 };
 
 /// The scene as that view shows it. Without a match it is the scene as it is.

@@ -46,8 +46,10 @@ GLFWwindow* open_window(const OperatorWindowSettings& settings) {
     glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
     glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
     glfwWindowHint(GLFW_DECORATED, settings.fill_monitor ? GLFW_FALSE : GLFW_TRUE);
-    const int width = settings.fill_monitor ? monitor.width : std::max(std::min(settings.width, monitor.width), kLeastWidth);
-    const int height = settings.fill_monitor ? monitor.height : std::max(std::min(settings.height, monitor.height), kLeastHeight);
+    const int width =
+        settings.fill_monitor ? monitor.width : std::max(std::min(settings.width, monitor.width), kLeastWidth);
+    const int height =
+        settings.fill_monitor ? monitor.height : std::max(std::min(settings.height, monitor.height), kLeastHeight);
     GLFWwindow* const window = glfwCreateWindow(width, height, settings.title.c_str(), nullptr, nullptr);
     if (window == nullptr)
         throw DeviceError("operator window", "it could not be opened (" + last_window_error() + ")",
@@ -59,7 +61,8 @@ GLFWwindow* open_window(const OperatorWindowSettings& settings) {
 }
 
 std::array<int, 4> whole_pixels(const Box& box) {
-    return {static_cast<int>(box.x), static_cast<int>(box.y), static_cast<int>(box.width), static_cast<int>(box.height)};
+    return {static_cast<int>(box.x), static_cast<int>(box.y), static_cast<int>(box.width),
+            static_cast<int>(box.height)};
 }
 
 bool inside(const Box& box, double x, double y) {
@@ -177,10 +180,13 @@ struct OperatorWindow::Parts {
         ImGui::SetNextWindowSize(io.DisplaySize);
         ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
         ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);
-        ImGui::Begin("all", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                                         ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus);
+        ImGui::Begin("all", nullptr,
+                     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                         ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus);
         pen.list = ImGui::GetWindowDrawList();
-        const auto texture = [](unsigned name) { return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(name)); };
+        const auto texture = [](unsigned name) {
+            return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(name));
+        };
         draw_header(pen, place, model);
         const OperatorAction over_scene = middle->draw(pen, place.scene, model);
         draw_camera(pen, place.left_camera, model.left, texture(left.take(model.left.picture)));
@@ -249,9 +255,13 @@ RgbImage OperatorWindow::screenshot() {
     return picture;
 }
 
-SceneView OperatorWindow::view() const { return parts_->middle->scene().view(); }
+SceneView OperatorWindow::view() const {
+    return parts_->middle->scene().view();
+}
 
-void OperatorWindow::set_view(const SceneView& view) { parts_->middle->scene().set_view(view); }
+void OperatorWindow::set_view(const SceneView& view) {
+    parts_->middle->scene().set_view(view);
+}
 
 void OperatorWindow::open_landmarks(const std::vector<PointPair>& pairs) {
     glfwMakeContextCurrent(parts_->window);
@@ -263,12 +273,17 @@ std::vector<PointPair> OperatorWindow::landmarks() const {
     return panel ? panel->clicks().pairs() : std::vector<PointPair>{};
 }
 
-FitView OperatorWindow::fit_view() const { return parts_->middle->fit_view; }
+FitView OperatorWindow::fit_view() const {
+    return parts_->middle->fit_view;
+}
 
-void OperatorWindow::set_fit_view(FitView view) { parts_->middle->fit_view = view; }
+void OperatorWindow::set_fit_view(FitView view) {
+    parts_->middle->fit_view = view;
+}
 
 std::array<int, 4> OperatorWindow::place_of(OperatorAction control) const {
-    return whole_pixels(control == OperatorAction::confirm ? parts_->middle->place_of("confirm") : parts_->controls[control]);
+    return whole_pixels(control == OperatorAction::confirm ? parts_->middle->place_of("confirm")
+                                                           : parts_->controls[control]);
 }
 
 std::array<int, 4> OperatorWindow::place_of(const std::string& button) const {

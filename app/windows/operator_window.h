@@ -12,7 +12,6 @@ namespace planlight {
 
 enum class OperatorAction { none, scan, do_register, track, stop, dark, quit, confirm, use_landmarks };
 
-
 struct OperatorWindowSettings {
     std::string title = "Planlight";
     int width = 1920, height = 1080;     ///< pixels; at most the monitor's, at least 1280 x 800
@@ -29,7 +28,8 @@ public:
 
     /// Takes in what was pressed, draws the model, and says what the person wants; `dark` comes before all else.
     ///
-    /// DARK acts when it is pressed, not when released, and by the keys Space, B and Escape. Closing the window is `quit`.
+    /// DARK acts when it is pressed, not when released, and by the keys Space, B and Escape. Closing the window is
+    /// `quit`.
     OperatorAction frame(const OperatorModel& model);
 
     /// What the last frame showed.
@@ -43,16 +43,16 @@ public:
     SceneView view() const;
     void set_view(const SceneView& view);
 
-    /// Shows the skin from CT and the scan side by side, to click landmarks on both, with `pairs` already there; in the next
-    /// frames whose model has landmarks. The person opens it by the button "Landmarks".
+    /// Shows the skin from CT and the scan side by side, to click landmarks on both, with `pairs` already there; in the
+    /// next frames whose model has landmarks. The person opens it by the button "Landmarks".
     void open_landmarks(const std::vector<PointPair>& pairs = {});
     /// What has been clicked on both sides, of the scan that the last frame's model had; empty before.
     std::vector<PointPair> landmarks() const;
 
     /// Where a control is, in window pixels (x, y, width, height), as the last frame drew it; for tests by mouse.
     std::array<int, 4> place_of(OperatorAction control) const;
-    /// The same for a control over the 3-D view by its word: before, after, error, landmarks; while these are clicked: undo,
-    /// turn, use, close, skin-view, scan-view. Zeros for what was not drawn.
+    /// The same for a control over the 3-D view by its word: before, after, error, landmarks; while these are clicked:
+    /// undo, turn, use, close, skin-view, scan-view. Zeros for what was not drawn.
     std::array<int, 4> place_of(const std::string& button) const;
 
 private:

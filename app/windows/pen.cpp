@@ -28,9 +28,13 @@ float text_width(const ImFont* font, const std::string& text) {
     return font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str(), text.c_str() + text.size()).x;
 }
 
-float line_height(const ImFont* font) { return std::round(font->FontSize * 1.12F); }
+float line_height(const ImFont* font) {
+    return std::round(font->FontSize * 1.12F);
+}
 
-ImU32 colour_of(const Rgb& colour) { return IM_COL32(colour[0], colour[1], colour[2], 255); }
+ImU32 colour_of(const Rgb& colour) {
+    return IM_COL32(colour[0], colour[1], colour[2], 255);
+}
 
 std::vector<std::string> broken(const ImFont* font, const std::string& text, float width, std::size_t most) {
     std::vector<std::string> lines;
@@ -61,12 +65,14 @@ void Pen::panel(const Box& box, ImU32 fill, ImU32 edge, float edge_width) const 
     if (edge_width > 0) list->AddRect(low, high, edge, 12 * scale, 0, edge_width);
 }
 
-void Pen::line(const ImFont* font, const std::string& text, float x, float middle_y, float width, ImU32 colour, Side side) const {
+void Pen::line(const ImFont* font, const std::string& text, float x, float middle_y, float width, ImU32 colour,
+               Side side) const {
     const std::string shown = width > 0 ? shortened(font, text, width) : text;
     const float spare = (width > 0 ? width : 0) - text_width(font, shown);
     if (side == Side::right) x += spare;
     if (side == Side::centre) x += spare / 2;
-    list->AddText(font, font->FontSize, ImVec2(std::round(x), std::round(middle_y - font->FontSize / 2)), colour, shown.c_str());
+    list->AddText(font, font->FontSize, ImVec2(std::round(x), std::round(middle_y - font->FontSize / 2)), colour,
+                  shown.c_str());
 }
 
 float Pen::paragraph(const ImFont* font, const std::string& text, const Box& box, ImU32 colour, Side side) const {

@@ -13,10 +13,12 @@ namespace planlight {
 
 /// The colours of the dark theme.
 namespace theme {
-constexpr ImU32 kBackground = IM_COL32(11, 13, 17, 255), kPanel = IM_COL32(18, 21, 28, 255), kEdge = IM_COL32(38, 44, 56, 255),
-                kText = IM_COL32(232, 236, 242, 255), kQuiet = IM_COL32(150, 160, 176, 255), kGreen = IM_COL32(56, 214, 132, 255),
-                kAmber = IM_COL32(250, 184, 40, 255), kRed = IM_COL32(255, 92, 92, 255), kBlue = IM_COL32(72, 150, 240, 255),
-                kActive = IM_COL32(32, 82, 132, 255), kControl = IM_COL32(38, 46, 60, 255), kHovered = IM_COL32(52, 64, 84, 255);
+constexpr ImU32 kBackground = IM_COL32(11, 13, 17, 255), kPanel = IM_COL32(18, 21, 28, 255),
+                kEdge = IM_COL32(38, 44, 56, 255), kText = IM_COL32(232, 236, 242, 255),
+                kQuiet = IM_COL32(150, 160, 176, 255), kGreen = IM_COL32(56, 214, 132, 255),
+                kAmber = IM_COL32(250, 184, 40, 255), kRed = IM_COL32(255, 92, 92, 255),
+                kBlue = IM_COL32(72, 150, 240, 255), kActive = IM_COL32(32, 82, 132, 255),
+                kControl = IM_COL32(38, 46, 60, 255), kHovered = IM_COL32(52, 64, 84, 255);
 }  // namespace theme
 
 /// Draws text and shapes so that nothing leaves its place: text that is too long is broken, then ended with "…".
@@ -32,7 +34,8 @@ struct Pen {
     void line(const ImFont* font, const std::string& text, float x, float middle_y, float width, ImU32 colour,
               Side side = Side::left) const;
     /// Broken lines from the top of the box, as many as fit; returns the height used.
-    float paragraph(const ImFont* font, const std::string& text, const Box& box, ImU32 colour, Side side = Side::left) const;
+    float paragraph(const ImFont* font, const std::string& text, const Box& box, ImU32 colour,
+                    Side side = Side::left) const;
 
     void tick(ImVec2 middle, float size, ImU32 colour) const;
     void triangle(ImVec2 middle, float radius, ImU32 colour) const;

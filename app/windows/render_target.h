@@ -1,8 +1,8 @@
 #pragma once
 
-#include <functional>
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkSmartPointer.h>
+#include <functional>
 
 #include "planning_io/types/image.h"
 

@@ -23,7 +23,8 @@ namespace {
 
 constexpr double kHalfAngle = 0.15;  ///< radians, of the camera's field
 
-/// A thing in the view. It stands `lift_mm` nearer to the viewer than it is, so that the skin under it does not hide it.
+/// A thing in the view. It stands `lift_mm` nearer to the viewer than it is, so that the skin under it does not hide
+/// it.
 struct Thing {
     vtkNew<vtkPolyDataMapper> mapper;
     vtkNew<vtkActor> actor;
@@ -66,8 +67,8 @@ struct Scene::Parts {
     vtkRenderWindow& window;
     vtkNew<vtkRenderer> renderer;
     vtkNew<vtkLightKit> lights;
-    Thing skin{*renderer, 0, true}, cloud{*renderer, 0.9, false}, markers{*renderer, 1.0, false}, plan{*renderer, 1.4, false},
-        light{*renderer, 2.0, false};
+    Thing skin{*renderer, 0, true}, cloud{*renderer, 0.9, false}, markers{*renderer, 1.0, false},
+        plan{*renderer, 1.4, false}, light{*renderer, 2.0, false};
     SceneOverlay overlay;
     SceneModel shown;
     SceneView shown_view;
@@ -122,7 +123,8 @@ struct Scene::Parts {
     }
 
     bool take_cloud(const SceneModel& scene) {
-        const bool other = replace(shown.cloud, scene.cloud) | replace(shown.cloud_distance_mm, scene.cloud_distance_mm) |
+        const bool other = replace(shown.cloud, scene.cloud) |
+                           replace(shown.cloud_distance_mm, scene.cloud_distance_mm) |
                            replace(shown.largest_distance_mm, scene.largest_distance_mm);
         if (other)
             cloud.show(shown.cloud ? cloud_shape(*shown.cloud, shown.cloud_distance_mm.get(), shown.largest_distance_mm)
@@ -169,8 +171,8 @@ Scene::~Scene() = default;
 
 bool Scene::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale) {
     Parts& parts = *parts_;
-    const bool changed = static_cast<int>(parts.take_skin_and_markers(scene)) | static_cast<int>(parts.take_cloud(scene)) |
-                         static_cast<int>(parts.take_lines(scene));
+    const bool changed = static_cast<int>(parts.take_skin_and_markers(scene)) |
+                         static_cast<int>(parts.take_cloud(scene)) | static_cast<int>(parts.take_lines(scene));
     if (!changed && same_view(view, parts.shown_view) && width == parts.width && height == parts.height) return false;
     parts.shown_view = view;
     parts.width = width;
@@ -184,14 +186,16 @@ bool Scene::update(const SceneModel& scene, const SceneView& view, int width, in
 Ray Scene::sight(const Eigen::Vector2d& pixel) const {
     const ViewAxes axes = axes_of(parts_->shown_view);
     const double per_pixel = 2 * std::tan(kHalfAngle) / std::max(1, parts_->height);
-    const double x = (pixel.x() + 0.5 - parts_->width / 2.0) * per_pixel, y = (parts_->height / 2.0 - pixel.y() - 0.5) * per_pixel;
+    const double x = (pixel.x() + 0.5 - parts_->width / 2.0) * per_pixel,
+                 y = (parts_->height / 2.0 - pixel.y() - 0.5) * per_pixel;
     return {parts_->eye(axes), (x * axes.right_in_ct + y * axes.up_in_ct - axes.backward_in_ct).normalized()};
 }
 
 Eigen::Vector2d Scene::pixel_of(const Eigen::Vector3d& p) const {
     const ViewAxes axes = axes_of(parts_->shown_view);
     const Eigen::Vector3d from_eye = p - parts_->eye(axes);
-    const double depth = -axes.backward_in_ct.dot(from_eye), per_pixel = 2 * std::tan(kHalfAngle) / std::max(1, parts_->height);
+    const double depth = -axes.backward_in_ct.dot(from_eye),
+                 per_pixel = 2 * std::tan(kHalfAngle) / std::max(1, parts_->height);
     return {parts_->width / 2.0 - 0.5 + axes.right_in_ct.dot(from_eye) / depth / per_pixel,
             parts_->height / 2.0 - 0.5 - axes.up_in_ct.dot(from_eye) / depth / per_pixel};
 }

@@ -19,7 +19,8 @@ public:
     /// Takes over what has changed; true when the picture must be rendered again.
     bool update(const SceneModel& scene, const SceneView& view, int width, int height, double scale);
 
-    /// The line of sight through a pixel of the last picture (from its top left), and the pixel of a point; in the scene's frame.
+    /// The line of sight through a pixel of the last picture (from its top left), and the pixel of a point; in the
+    /// scene's frame.
     Ray sight(const Eigen::Vector2d& pixel) const;
     Eigen::Vector2d pixel_of(const Eigen::Vector3d& p) const;
 

@@ -72,7 +72,8 @@ struct Boxes {
     }
     void add(double x, double y, double width, double height, const Rgb& colour, std::uint8_t alpha) {
         const vtkIdType ids[4] = {points->InsertNextPoint(x, y, 0), points->InsertNextPoint(x + width, y, 0),
-                                  points->InsertNextPoint(x + width, y + height, 0), points->InsertNextPoint(x, y + height, 0)};
+                                  points->InsertNextPoint(x + width, y + height, 0),
+                                  points->InsertNextPoint(x, y + height, 0)};
         cells->InsertNextCell(4, ids);
         const std::uint8_t rgba[4] = {colour[0], colour[1], colour[2], alpha};
         colours->InsertNextTypedTuple(rgba);
@@ -109,7 +110,8 @@ struct SceneOverlay::Parts {
         const std::array<double, 3> examples{0, scene.stop_above_mm, 2 * scene.stop_above_mm};
         for (int i = 0; i < 3; ++i)
             boxes.add(x + 24 * scale + i * third, y + 36 * scale, third - 2, 14 * scale,
-                      error_colour(examples[static_cast<std::size_t>(i)], scene.warn_above_mm, scene.stop_above_mm), 255);
+                      error_colour(examples[static_cast<std::size_t>(i)], scene.warn_above_mm, scene.stop_above_mm),
+                      255);
         title.place("The match may be off by, mm (95 %)", x + w / 2, y + 72 * scale, static_cast<int>(16 * scale));
         const std::array<std::string, 3> words{fmt::format("≤ {:.1f}", scene.warn_above_mm),
                                                fmt::format("≤ {:.1f}", scene.stop_above_mm),
@@ -141,8 +143,8 @@ struct SceneOverlay::Parts {
                     x + w / 2, y + 72 * scale, static_cast<int>(16 * scale));
         for (int i = 0; i < 4; ++i)
             values[static_cast<std::size_t>(i)].place(
-                fmt::format("{}{:.1f}", i == 3 ? "≥ " : "", scene.largest_distance_mm * i / 3), x + 24 * scale + bar * i / 3,
-                y + 18 * scale, static_cast<int>(16 * scale));
+                fmt::format("{}{:.1f}", i == 3 ? "≥ " : "", scene.largest_distance_mm * i / 3),
+                x + 24 * scale + bar * i / 3, y + 18 * scale, static_cast<int>(16 * scale));
     }
 };
 

@@ -14,8 +14,8 @@
 
 namespace planlight {
 
-/// A 3-D view in its place in the operator window: its picture, and the mouse that turns it. Made, used and destroyed with
-/// the window's context current.
+/// A 3-D view in its place in the operator window: its picture, and the mouse that turns it. Made, used and destroyed
+/// with the window's context current.
 class ScenePane {
 public:
     ScenePane(const FontFiles& fonts, std::function<void()> make_current);
@@ -23,8 +23,8 @@ public:
     ScenePane(const ScenePane&) = delete;
     ScenePane& operator=(const ScenePane&) = delete;
 
-    /// Left turns, right or middle shifts, wheel zooms, a double click goes back to the first view. Returns where the left
-    /// button was pressed and released without moving, in window pixels.
+    /// Left turns, right or middle shifts, wheel zooms, a double click goes back to the first view. Returns where the
+    /// left button was pressed and released without moving, in window pixels.
     std::optional<ImVec2> take_mouse(const char* name, const Box& sensitive);
 
     /// Renders what has changed and draws the picture into the box.

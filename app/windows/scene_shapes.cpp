@@ -84,7 +84,8 @@ void add_line(Shape& shape, const std::vector<Eigen::Vector3d>& points, bool clo
     if (closed) shape.add_to_cell(first);
 }
 
-void add_disc(Shape& shape, const Eigen::Vector3d& centre, const Eigen::Vector3d& normal, double radius_mm, const Rgb& colour) {
+void add_disc(Shape& shape, const Eigen::Vector3d& centre, const Eigen::Vector3d& normal, double radius_mm,
+              const Rgb& colour) {
     const Eigen::Vector3d u = normal.unitOrthogonal(), v = normal.cross(u);
     shape.begin_cell(colour);
     constexpr int kCorners = 32;
@@ -104,10 +105,11 @@ void add_vertex_colours(const SceneModel& scene, vtkPolyData& data) {
     for (std::size_t i = 0; i < skin.vertices_in_ct.size(); ++i) {
         const bool lid = i < skin.flags.size() && skin.flags[i] != kSkin;
         const bool known = errors != nullptr && i < errors->size();
-        const Rgb colour = lid     ? kLidColour
-                           : known ? error_colour(static_cast<double>((*errors)[i]), scene.warn_above_mm, scene.stop_above_mm)
-                                   : scene.of_scan ? kScanColour
-                                   : kSkinColour;
+        const Rgb colour =
+            lid             ? kLidColour
+            : known         ? error_colour(static_cast<double>((*errors)[i]), scene.warn_above_mm, scene.stop_above_mm)
+            : scene.of_scan ? kScanColour
+                            : kSkinColour;
         colours->SetTypedTuple(static_cast<vtkIdType>(i), colour.data());
     }
     data.GetPointData()->SetScalars(colours);
@@ -143,7 +145,8 @@ vtkSmartPointer<vtkPolyData> skin_shape(const SceneModel& scene) {
     return normals->GetOutput();
 }
 
-vtkSmartPointer<vtkPolyData> cloud_shape(const PointCloud& cloud, const std::vector<float>* distance_mm, double largest_mm) {
+vtkSmartPointer<vtkPolyData> cloud_shape(const PointCloud& cloud, const std::vector<float>* distance_mm,
+                                         double largest_mm) {
     Shape shape;
     const std::size_t step = cloud.size() / kMostPoints + 1;
     for (std::size_t i = 0; i < cloud.size(); i += step) {
@@ -180,15 +183,18 @@ vtkSmartPointer<vtkPolyData> light_shape(const std::vector<LightLine>& light) {
     return tubes(lines, kLightRadiusMm);
 }
 
-vtkSmartPointer<vtkPolyData> marker_shape(const std::vector<SceneMarker>& markers, const Eigen::Vector3d& middle_in_ct) {
+vtkSmartPointer<vtkPolyData> marker_shape(const std::vector<SceneMarker>& markers,
+                                          const Eigen::Vector3d& middle_in_ct) {
     constexpr double kDiscMm = 4, kStickerMm = 8;
     Shape shape;
     for (const SceneMarker& marker : markers) {
         Eigen::Vector3d normal = marker.normal_in_ct;
         if (normal.norm() < 0.5) normal = marker.p_in_ct - middle_in_ct;
         normal.normalize();
-        add_disc(shape, marker.p_in_ct + 0.6 * normal, normal, kStickerMm, marker.seen ? Rgb{245, 245, 245} : Rgb{140, 140, 140});
-        add_disc(shape, marker.p_in_ct + 1.0 * normal, normal, kDiscMm, marker.seen ? Rgb{15, 15, 15} : Rgb{80, 80, 80});
+        add_disc(shape, marker.p_in_ct + 0.6 * normal, normal, kStickerMm,
+                 marker.seen ? Rgb{245, 245, 245} : Rgb{140, 140, 140});
+        add_disc(shape, marker.p_in_ct + 1.0 * normal, normal, kDiscMm,
+                 marker.seen ? Rgb{15, 15, 15} : Rgb{80, 80, 80});
     }
     vtkNew<vtkPolyData> data;
     data->SetPoints(shape.points);

@@ -12,7 +12,8 @@ namespace planlight {
 vtkSmartPointer<vtkPolyData> skin_shape(const SceneModel& scene);
 
 /// The scanned points (in rig) with colours; of a large cloud every n-th.
-vtkSmartPointer<vtkPolyData> cloud_shape(const PointCloud& cloud, const std::vector<float>* distance_mm, double largest_mm);
+vtkSmartPointer<vtkPolyData> cloud_shape(const PointCloud& cloud, const std::vector<float>* distance_mm,
+                                         double largest_mm);
 
 /// The plan's strokes as coloured tubes, thick enough to be seen.
 vtkSmartPointer<vtkPolyData> plan_shape(const PlanDrawing& plan);

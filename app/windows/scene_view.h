@@ -4,7 +4,8 @@
 
 namespace planlight {
 
-/// A picture of the 3-D view with its letters and legend, made without any display (EGL), for reports and headless runs.
+/// A picture of the 3-D view with its letters and legend, made without any display (EGL), for reports and headless
+/// runs.
 ///
 /// Throws DeviceError when there is no EGL, or no font.
 RgbImage render_scene(const SceneModel& scene, const SceneView& view, int width = 1280, int height = 960);

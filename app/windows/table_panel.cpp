@@ -13,7 +13,8 @@ struct Columns {
 
 Columns columns_of(const Pen& pen, const Box& box) {
     const float pad = 18 * pen.scale, width = std::round(0.20F * box.width), name_x = box.x + pad;
-    const float light_x = box.right() - pad - width, predicted_x = light_x - width, depth_x = predicted_x - 0.75F * width;
+    const float light_x = box.right() - pad - width, predicted_x = light_x - width,
+                depth_x = predicted_x - 0.75F * width;
     return {name_x, depth_x - name_x - 4 * pen.scale, depth_x, predicted_x, light_x, width};
 }
 
@@ -32,10 +33,12 @@ void draw_heading(const Pen& pen, const Columns& c, float top) {
 }
 
 /// An error value; beyond its limits it has a shape beside it, not only a colour.
-void draw_error(const Pen& pen, const OperatorModel& model, const std::optional<double>& value, float x, float width, float y) {
+void draw_error(const Pen& pen, const OperatorModel& model, const std::optional<double>& value, float x, float width,
+                float y) {
     const std::string text = number_text(value, "");
     const bool known = value && std::isfinite(*value);
-    const bool stop = known && std::abs(*value) > model.stop_above_mm, warn = known && std::abs(*value) > model.warn_above_mm;
+    const bool stop = known && std::abs(*value) > model.stop_above_mm,
+               warn = known && std::abs(*value) > model.warn_above_mm;
     const ImU32 colour = !known ? theme::kQuiet : stop ? theme::kRed : warn ? theme::kAmber : theme::kGreen;
     pen.line(pen.fonts.body, text, x, y, width, colour, Pen::Side::right);
     const float radius = 8 * pen.scale;
@@ -48,9 +51,11 @@ void draw_error(const Pen& pen, const OperatorModel& model, const std::optional<
 
 void draw_row(const Pen& pen, const OperatorModel& model, const PlanRow& row, const Columns& c, float y) {
     const float size = 7 * pen.scale, swatch = 22 * pen.scale;
-    pen.list->AddRectFilled({c.name_x, y - size}, {c.name_x + 2 * size, y + size}, colour_of(row.colour), 3 * pen.scale);
+    pen.list->AddRectFilled({c.name_x, y - size}, {c.name_x + 2 * size, y + size}, colour_of(row.colour),
+                            3 * pen.scale);
     pen.line(pen.fonts.body, row.name, c.name_x + swatch, y, c.name_width - swatch, theme::kText);
-    pen.line(pen.fonts.body, number_text(row.depth_mm, ""), c.depth_x, y, 0.75F * c.width, theme::kText, Pen::Side::right);
+    pen.line(pen.fonts.body, number_text(row.depth_mm, ""), c.depth_x, y, 0.75F * c.width, theme::kText,
+             Pen::Side::right);
     draw_error(pen, model, row.predicted_error_mm, c.predicted_x, c.width, y);
     draw_error(pen, model, row.light_off_mm, c.light_x, c.width, y);
 }
@@ -95,14 +100,16 @@ TableShown draw_table(const Pen& pen, const Box& box, const OperatorModel& model
     const int shown = std::min(rows, count - first_row);
     float y = rule + 4 * pen.scale;
     for (int i = 0; i < shown; ++i, y += row_height)
-        draw_row(pen, model, model.rows[static_cast<std::size_t>(first_row + i)], columns, std::round(y + row_height / 2));
+        draw_row(pen, model, model.rows[static_cast<std::size_t>(first_row + i)], columns,
+                 std::round(y + row_height / 2));
     if (rows < count)
         pen.line(pen.fonts.small,
                  "rows " + std::to_string(first_row + 1) + "–" + std::to_string(first_row + shown) + " of " +
                      std::to_string(count) + " · turn the mouse wheel for the others",
                  columns.name_x, y + line / 2, text_width_px, theme::kAmber);
 
-    draw_evidence(pen, model, {columns.name_x, box.bottom() - pad - evidence, text_width_px, evidence}, evidence < wanted);
+    draw_evidence(pen, model, {columns.name_x, box.bottom() - pad - evidence, text_width_px, evidence},
+                  evidence < wanted);
     return {rows, evidence >= wanted};
 }
 

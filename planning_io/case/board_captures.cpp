@@ -40,10 +40,11 @@ std::vector<GrayImage> read_camera(const fs::path& pose, const char* camera, con
     for (const std::string& name : names) {
         pictures.push_back(read_needed(pose / camera / name));
         if (pictures.back().width != pictures.front().width || pictures.back().height != pictures.front().height)
-            throw InputError(pose / camera / name,
-                             fmt::format("is {} x {} pixels, the first picture of this pose is {} x {}", pictures.back().width,
-                                         pictures.back().height, pictures.front().width, pictures.front().height),
-                             "Capture all pictures with the same settings.");
+            throw InputError(
+                pose / camera / name,
+                fmt::format("is {} x {} pixels, the first picture of this pose is {} x {}", pictures.back().width,
+                            pictures.back().height, pictures.front().width, pictures.front().height),
+                "Capture all pictures with the same settings.");
     }
     check_depth(pictures, *find_picture(pose / camera / names.front()));
     return pictures;

@@ -14,7 +14,8 @@ using namespace recording;
 /// NAME.png, or NAME.tif, NAME.tiff where that is there instead.
 fs::path picture_file(const fs::path& folder, const std::string& name) {
     for (const char* ending : {".tif", ".tiff"})
-        if (!fs::exists(folder / (name + ".png")) && fs::exists(folder / (name + ending))) return folder / (name + ending);
+        if (!fs::exists(folder / (name + ".png")) && fs::exists(folder / (name + ending)))
+            return folder / (name + ending);
     return folder / (name + ".png");
 }
 
@@ -25,9 +26,10 @@ void read_picture(std::vector<GrayImage>& pictures, const fs::path& file) {
 }
 
 /// The devices' serials in capture.json.
-constexpr std::pair<const char*, std::string DeviceSerials::*> kSerials[] = {{"left_serial", &DeviceSerials::left_camera},
-                                                                             {"right_serial", &DeviceSerials::right_camera},
-                                                                             {"projector_serial", &DeviceSerials::projector}};
+constexpr std::pair<const char*, std::string DeviceSerials::*> kSerials[] = {
+    {"left_serial", &DeviceSerials::left_camera},
+    {"right_serial", &DeviceSerials::right_camera},
+    {"projector_serial", &DeviceSerials::projector}};
 
 }  // namespace
 
@@ -73,9 +75,9 @@ void write_capture_settings(const CaptureFolder& capture, const fs::path& file) 
 CaptureFolder read_capture_settings(const fs::path& file) {
     const Json json = parse_file(file, "planlight capture");
     const JsonValue root(json, file);
-    root.has_only({"format", "version", "projector_width", "projector_height", "phase_steps", "phase_period_px", "rows", "inverse",
-                   "began_ns", "ended_ns", "names", "order_periods_px", "order_steps", "check_sequence", "left_serial",
-                   "right_serial", "projector_serial"});
+    root.has_only({"format", "version", "projector_width", "projector_height", "phase_steps", "phase_period_px", "rows",
+                   "inverse", "began_ns", "ended_ns", "names", "order_periods_px", "order_steps", "check_sequence",
+                   "left_serial", "right_serial", "projector_serial"});
     CaptureFolder capture;
     capture.projector_width = static_cast<int>(root.at("projector_width").integer(1, 65535));
     capture.projector_height = static_cast<int>(root.at("projector_height").integer(1, 65535));
@@ -84,7 +86,8 @@ CaptureFolder read_capture_settings(const fs::path& file) {
         capture.phase_period_px = root.at("phase_period_px").number(0, 1e5);
     if (const auto periods = root.find("order_periods_px")) {
         if (periods->size() > 8) periods->refuse("must be a list of at most 8 periods");
-        for (std::size_t i = 0; i < periods->size(); ++i) capture.order_periods_px.push_back((*periods)[i].number(0, 1e5));
+        for (std::size_t i = 0; i < periods->size(); ++i)
+            capture.order_periods_px.push_back((*periods)[i].number(0, 1e5));
         capture.order_steps = static_cast<int>(root.at("order_steps").integer(3, 1000));
     }
     capture.rows = root.at("rows").flag();

@@ -3,12 +3,12 @@
 #include <map>
 #include <sstream>
 
+#include "planning_io/case/skin_lut_file.h"
 #include "planning_io/files/content_hash.h"
 #include "planning_io/files/json_value.h"
-#include "planning_io/surface/mesh_file.h"
-#include "planning_io/plan/plan_file.h"
 #include "planning_io/files/safe_write.h"
-#include "planning_io/case/skin_lut_file.h"
+#include "planning_io/plan/plan_file.h"
+#include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -87,11 +87,14 @@ void check_same_patient(const Case& prepared, const std::string& mesh_hash, cons
 
 void write_case(const Case& prepared, const fs::path& folder, bool replace) {
     if (prepared.lut.volume_hash != prepared.volume_hash || prepared.lut.mesh_hash != hash_of(prepared.skin))
-        throw InputError(folder, "would hold the LUT of another case", "Build the LUT from this case's volume and skin.");
-    if (replace && fs::exists(folder) && !fs::exists(folder / kManifest)) replace = false;  // only a case is ever replaced
+        throw InputError(folder, "would hold the LUT of another case",
+                         "Build the LUT from this case's volume and skin.");
+    if (replace && fs::exists(folder) && !fs::exists(folder / kManifest))
+        replace = false;  // only a case is ever replaced
     if (replace && fs::exists(folder / kRegistrationsFolder))
-        throw InputError(folder, std::string("holds matches that sessions kept (") + kRegistrationsFolder +
-                                     "), which would be lost with the case that is replaced",
+        throw InputError(folder,
+                         std::string("holds matches that sessions kept (") + kRegistrationsFolder +
+                             "), which would be lost with the case that is replaced",
                          "Move that folder away, or name another folder for the new case.");
     write_folder_safely(folder, replace, [&](const fs::path& into) {
         write_safely(into / kManifest, dump(manifest_of(prepared)));

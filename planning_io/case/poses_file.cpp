@@ -10,13 +10,14 @@ using namespace recording;
 void write_poses(const std::vector<TrackedPose>& poses, const fs::path& file) {
     Json list = Json::array();
     for (const TrackedPose& pose : poses)
-        list.push_back(Json{{"at_ns", pose.at.count()},
-                            {"rig_from_patient", pose.rig_from_patient ? to_json(*pose.rig_from_patient) : Json(nullptr)},
-                            {"markers_left", pose.markers_left},
-                            {"markers_right", pose.markers_right},
-                            {"residual_px", pose.residual_px},
-                            {"predicted_error_mm", pose.predicted_error_mm},
-                            {"reason", pose.reason}});
+        list.push_back(
+            Json{{"at_ns", pose.at.count()},
+                 {"rig_from_patient", pose.rig_from_patient ? to_json(*pose.rig_from_patient) : Json(nullptr)},
+                 {"markers_left", pose.markers_left},
+                 {"markers_right", pose.markers_right},
+                 {"residual_px", pose.residual_px},
+                 {"predicted_error_mm", pose.predicted_error_mm},
+                 {"reason", pose.reason}});
     write_safely(file, dump(Json{{"format", "planlight poses"}, {"version", kVersion}, {"poses", std::move(list)}}));
 }
 
@@ -28,7 +29,8 @@ std::vector<TrackedPose> read_poses(const fs::path& file) {
     std::vector<TrackedPose> poses(list.size());
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const JsonValue entry = list[i];
-        entry.has_only({"at_ns", "rig_from_patient", "markers_left", "markers_right", "residual_px", "predicted_error_mm", "reason"});
+        entry.has_only({"at_ns", "rig_from_patient", "markers_left", "markers_right", "residual_px",
+                        "predicted_error_mm", "reason"});
         TrackedPose& pose = poses[i];
         pose.at = instant_of(entry.at("at_ns"));
         if (const auto transform = entry.find("rig_from_patient")) pose.rig_from_patient = transform->transform();
@@ -37,7 +39,8 @@ std::vector<TrackedPose> read_poses(const fs::path& file) {
         if (const auto residual = entry.find("residual_px")) pose.residual_px = residual->number();
         if (const auto error = entry.find("predicted_error_mm")) pose.predicted_error_mm = error->number();
         if (const auto reason = entry.find("reason")) pose.reason = reason->text();
-        if (!pose.rig_from_patient && pose.reason.empty()) entry.refuse("has neither a pose nor a reason why there is none");
+        if (!pose.rig_from_patient && pose.reason.empty())
+            entry.refuse("has neither a pose nor a reason why there is none");
     }
     return poses;
 }

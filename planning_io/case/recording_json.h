@@ -19,9 +19,9 @@ inline constexpr std::int64_t kAny = std::numeric_limits<std::int64_t>::max();
 
 /// A name that is a file name and nothing more.
 inline void check_name(const std::string& name, const std::filesystem::path& file) {
-    const bool plain = !name.empty() && name.size() <= 100 && std::all_of(name.begin(), name.end(), [](unsigned char c) {
-        return std::isalnum(c) || c == '_' || c == '-';
-    });
+    const bool plain =
+        !name.empty() && name.size() <= 100 &&
+        std::all_of(name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
     if (!plain)
         throw InputError(file, "names a pattern \"" + name + "\"",
                          "Use letters, digits, _ and - in names of patterns only.");
@@ -34,6 +34,8 @@ inline Json parse_file(const std::filesystem::path& file, const char* format) {
     return json;
 }
 
-inline Instant instant_of(const JsonValue& value) { return Instant(value.integer(-kAny, kAny)); }
+inline Instant instant_of(const JsonValue& value) {
+    return Instant(value.integer(-kAny, kAny));
+}
 
 }  // namespace planlight::recording

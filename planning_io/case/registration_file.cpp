@@ -32,8 +32,10 @@ Json json_of(const PoseCovariance& covariance) {
 PoseCovariance covariance_of(const JsonValue& json) {
     PoseCovariance covariance;
     const JsonValue rows = json.at("of_turn_and_shift");
-    if (rows.size() != 36) rows.refuse(fmt::format("holds {} numbers", rows.size()), "A covariance has 36, row by row.");
-    for (Eigen::Index i = 0; i < 36; ++i) covariance.of_turn_and_shift(i / 6, i % 6) = rows[static_cast<std::size_t>(i)].number();
+    if (rows.size() != 36)
+        rows.refuse(fmt::format("holds {} numbers", rows.size()), "A covariance has 36, row by row.");
+    for (Eigen::Index i = 0; i < 36; ++i)
+        covariance.of_turn_and_shift(i / 6, i % 6) = rows[static_cast<std::size_t>(i)].number();
     covariance.centre_in_ct = json.at("centre_in_ct").vector3();
     return covariance;
 }
@@ -41,31 +43,32 @@ PoseCovariance covariance_of(const JsonValue& json) {
 }  // namespace
 
 void write_registration(const RegistrationResult& result, const fs::path& file) {
-    write_safely(file, dump(Json{{"format", "planlight registration"},
-                                 {"version", kVersion},
-                                 {"verdict", kVerdicts[static_cast<std::size_t>(result.verdict)]},
-                                 {"reasons", result.reasons},
-                                 {"patient_from_ct", to_json(result.patient_from_ct)},
-                                 {"residual_rms_mm", result.residual_rms_mm},
-                                 {"residual_median_mm", result.residual_median_mm},
-                                 {"inlier_fraction", result.inlier_fraction},
-                                 {"inlier_distance_mm", result.inlier_distance_mm},
-                                 {"points", result.points},
-                                 {"runner_up_ratio", std::min(result.runner_up_ratio, std::numeric_limits<double>::max())},
-                                 {"agreeing_bases", result.agreeing_bases},
-                                 {"weakest_sigma_mm", result.weakest_sigma_mm},
-                                 {"mirror_ratio", std::min(result.mirror_ratio, std::numeric_limits<double>::max())},
-                                 {"blocked_fraction", result.blocked_fraction ? Json(*result.blocked_fraction) : Json(nullptr)},
-                                 {"landmarks_off_mm", result.landmarks_off_mm ? Json(*result.landmarks_off_mm) : Json(nullptr)},
-                                 {"moved_in_scan_mm", result.moved_in_scan_mm ? Json(*result.moved_in_scan_mm) : Json(nullptr)},
-                                 {"scale", result.scale},
-                                 {"scale_sigma", result.scale_sigma},
-                                 {"skin_movement_mm", result.skin_movement_mm},
-                                 {"skin_offset_mm", result.skin_offset_mm},
-                                 {"covariance", json_of(result.covariance)},
-                                 {"initial_match_s", result.initial_match_s},
-                                 {"refine_s", result.refine_s},
-                                 {"initial_patient_from_ct", to_json(result.initial_patient_from_ct)}}));
+    write_safely(
+        file, dump(Json{{"format", "planlight registration"},
+                        {"version", kVersion},
+                        {"verdict", kVerdicts[static_cast<std::size_t>(result.verdict)]},
+                        {"reasons", result.reasons},
+                        {"patient_from_ct", to_json(result.patient_from_ct)},
+                        {"residual_rms_mm", result.residual_rms_mm},
+                        {"residual_median_mm", result.residual_median_mm},
+                        {"inlier_fraction", result.inlier_fraction},
+                        {"inlier_distance_mm", result.inlier_distance_mm},
+                        {"points", result.points},
+                        {"runner_up_ratio", std::min(result.runner_up_ratio, std::numeric_limits<double>::max())},
+                        {"agreeing_bases", result.agreeing_bases},
+                        {"weakest_sigma_mm", result.weakest_sigma_mm},
+                        {"mirror_ratio", std::min(result.mirror_ratio, std::numeric_limits<double>::max())},
+                        {"blocked_fraction", result.blocked_fraction ? Json(*result.blocked_fraction) : Json(nullptr)},
+                        {"landmarks_off_mm", result.landmarks_off_mm ? Json(*result.landmarks_off_mm) : Json(nullptr)},
+                        {"moved_in_scan_mm", result.moved_in_scan_mm ? Json(*result.moved_in_scan_mm) : Json(nullptr)},
+                        {"scale", result.scale},
+                        {"scale_sigma", result.scale_sigma},
+                        {"skin_movement_mm", result.skin_movement_mm},
+                        {"skin_offset_mm", result.skin_offset_mm},
+                        {"covariance", json_of(result.covariance)},
+                        {"initial_match_s", result.initial_match_s},
+                        {"refine_s", result.refine_s},
+                        {"initial_patient_from_ct", to_json(result.initial_patient_from_ct)}}));
 }
 
 RegistrationResult read_registration(const fs::path& file) {
@@ -80,7 +83,8 @@ RegistrationResult read_registration(const fs::path& file) {
     const JsonValue reasons = root.at("reasons");
     for (std::size_t i = 0; i < reasons.size(); ++i) result.reasons.push_back(reasons[i].text());
     result.patient_from_ct = root.at("patient_from_ct").transform();
-    if (const auto initial = root.find("initial_patient_from_ct")) result.initial_patient_from_ct = initial->transform();
+    if (const auto initial = root.find("initial_patient_from_ct"))
+        result.initial_patient_from_ct = initial->transform();
     result.residual_rms_mm = number("residual_rms_mm");
     result.residual_median_mm = number("residual_median_mm");
     result.inlier_fraction = number("inlier_fraction");
@@ -99,7 +103,8 @@ RegistrationResult read_registration(const fs::path& file) {
     result.initial_match_s = number("initial_match_s");
     result.refine_s = number("refine_s");
     if (const auto points = root.find("points")) result.points = static_cast<std::size_t>(points->integer(0, kAny));
-    if (const auto bases = root.find("agreeing_bases")) result.agreeing_bases = static_cast<int>(bases->integer(0, 1000000000));
+    if (const auto bases = root.find("agreeing_bases"))
+        result.agreeing_bases = static_cast<int>(bases->integer(0, 1000000000));
     return result;
 }
 

@@ -88,7 +88,8 @@ void check_rig(const RigCalibration& rig, const fs::path& file) {
     check_device(rig.left_camera, "left_camera", file);
     const bool right = present(rig.right_camera), light = present(rig.projector);
     if (!right && !light)
-        throw InputError(file, "has a camera and nothing else", "A rig needs a second camera or a projector: calibrate with it.");
+        throw InputError(file, "has a camera and nothing else",
+                         "A rig needs a second camera or a projector: calibrate with it.");
     if (right) {
         check_device(rig.right_camera, "right_camera", file);
         check_pair(rig.left_camera, rig.right_camera, "left_camera and right_camera", file);
@@ -119,8 +120,9 @@ void write_rig(const RigCalibration& rig, const fs::path& file) {
 RigCalibration read_rig(const fs::path& file) {
     const RigCalibration rig = read_partial_rig(file);
     if (!rig.whole())
-        throw InputError(file, fmt::format("has no {}; this needs both cameras and the projector",
-                                           present(rig.projector) ? "right_camera" : "projector"),
+        throw InputError(file,
+                         fmt::format("has no {}; this needs both cameras and the projector",
+                                     present(rig.projector) ? "right_camera" : "projector"),
                          "Calibrate the whole rig; a rig of two devices is for `scan`.");
     return rig;
 }
@@ -147,6 +149,8 @@ RigCalibration read_partial_rig(const fs::path& file) {
     return rig;
 }
 
-std::string as_json(const CameraModel& device) { return json_of(device).dump(); }
+std::string as_json(const CameraModel& device) {
+    return json_of(device).dump();
+}
 
 }  // namespace planlight

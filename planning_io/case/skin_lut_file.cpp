@@ -3,6 +3,7 @@
 #include "planning_io/files/checked_chunks.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/processor_clones.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
@@ -68,8 +69,9 @@ std::vector<SkinPoint> points_of(const SkinColumns& columns) {
 }
 
 std::vector<ChunkedArray> arrays_of(SkinLut& lut, SkinColumns& columns) {
-    return {array_of(lut.nearest),        array_of(columns.positions), array_of(columns.normals), array_of(columns.voxels),
-            array_of(columns.thickness), array_of(columns.flags),     array_of(lut.distance_mm)};
+    return {array_of(lut.nearest),    array_of(columns.positions), array_of(columns.normals),
+            array_of(columns.voxels), array_of(columns.thickness), array_of(columns.flags),
+            array_of(lut.distance_mm)};
 }
 
 std::string fields_of(const SkinLut& lut) {
@@ -116,7 +118,7 @@ SkinLut lut_of(const std::string& fields, SkinColumns& columns, const fs::path& 
     return lut;
 }
 
-__attribute__((target_clones("avx2", "default"))) std::uint32_t highest_of(const std::uint32_t* values, std::size_t count) {
+PLANLIGHT_CLONES std::uint32_t highest_of(const std::uint32_t* values, std::size_t count) {
     std::uint32_t highest = 0;
     for (std::size_t i = 0; i < count; ++i) highest = values[i] > highest ? values[i] : highest;
     return highest;
@@ -135,7 +137,8 @@ std::uint32_t highest_of(const LargeArray<std::uint32_t>& values) {
 std::string fault_of(const SkinLut& lut) {
     if (product(lut.size) == 0 || product(lut.size) != lut.nearest.size())
         return "the table's size and its pointers do not agree";
-    if (product(lut.distance_size) != lut.distance_mm.size()) return "the distance field's size and its values do not agree";
+    if (product(lut.distance_size) != lut.distance_mm.size())
+        return "the distance field's size and its values do not agree";
     if (!(lut.voxel_mm > 0) || !std::isfinite(lut.voxel_mm) || !lut.origin_in_ct.allFinite())
         return "the table's geometry makes no sense";
     if (!lut.distance_mm.empty() && (!(lut.distance_voxel_mm > 0) || !std::isfinite(lut.distance_voxel_mm)))
@@ -155,10 +158,12 @@ constexpr ChunkedKind kKind{"PLANLUT\n", 2};
 }  // namespace
 
 void write_skin_lut(const SkinLut& lut, const fs::path& file) {
-    if (const std::string fault = fault_of(lut); !fault.empty()) throw InputError(file, fault, "Prepare the case again.");
+    if (const std::string fault = fault_of(lut); !fault.empty())
+        throw InputError(file, fault, "Prepare the case again.");
     SkinColumns columns = columns_of(lut.skin);
     auto& arrays_only = const_cast<SkinLut&>(lut);  // ChunkedArray serves reading too; writing does not touch it
-    write_safely(file, [&](std::ostream& out) { write_chunked(out, kKind, fields_of(lut), arrays_of(arrays_only, columns)); });
+    write_safely(
+        file, [&](std::ostream& out) { write_chunked(out, kKind, fields_of(lut), arrays_of(arrays_only, columns)); });
 }
 
 SkinLut read_skin_lut(const fs::path& file) {

@@ -12,8 +12,8 @@
 #include <fstream>
 #include <set>
 
-#include "planning_io/files/header_text.h"
 #include "planning_io/dicom/inflated_dicom.h"
+#include "planning_io/files/header_text.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/volume_checks.h"
 
@@ -27,8 +27,7 @@ constexpr std::size_t kMostFiles = 200000;
 const std::set<std::string> kVolumeClasses = {
     "1.2.840.10008.5.1.4.1.1.2",   "1.2.840.10008.5.1.4.1.1.2.1",
     "1.2.840.10008.5.1.4.1.1.2.2",  // CT, Enhanced CT, Legacy Converted Enhanced CT
-    "1.2.840.10008.5.1.4.1.1.4",   "1.2.840.10008.5.1.4.1.1.4.1",
-    "1.2.840.10008.5.1.4.1.1.4.4"};  // MR likewise
+    "1.2.840.10008.5.1.4.1.1.4",   "1.2.840.10008.5.1.4.1.1.4.1", "1.2.840.10008.5.1.4.1.1.4.4"};  // MR likewise
 
 /// Printable ASCII; what is not becomes "?", for a damaged file may say anything.
 std::string plain(std::string text) {
@@ -157,7 +156,8 @@ std::vector<fs::path> files_in(const fs::path& folder, int depth) {
     for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
         if (entry.depth() >= depth - 1) entry.disable_recursion_pending();
         std::error_code ignored;
-        if (entry->is_regular_file(ignored)) files.push_back(entry->path());
+        if (entry->is_regular_file(ignored))
+            files.push_back(entry->path());
         else if (entry->is_symlink(ignored) && !entry->exists(ignored))
             throw InputError(entry->path(), "is a link to a file that is not there, and may be a slice",
                              "Copy the whole series again.");
@@ -172,8 +172,8 @@ std::vector<fs::path> files_in(const fs::path& folder, int depth) {
     return files;
 }
 
-/// Whether it has DICOM's mark; without it a file may merely look like a data set. A file that cannot be opened may be a
-/// slice: InputError.
+/// Whether it has DICOM's mark; without it a file may merely look like a data set. A file that cannot be opened may be
+/// a slice: InputError.
 bool says_dicom(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
     if (!in)
@@ -196,7 +196,7 @@ std::string spacing_text(const DicomSeries& series) {
         return normal.dot(a.position_in_ct) < normal.dot(b.position_in_ct);
     });
     return text + fmt::format(" x {:.3g} mm", (last->position_in_ct - first->position_in_ct).norm() /
-                                                   static_cast<double>(slices.size() - 1));
+                                                  static_cast<double>(slices.size() - 1));
 }
 
 std::string table_of(const std::vector<DicomSeries>& list) {
@@ -204,7 +204,9 @@ std::string table_of(const std::vector<DicomSeries>& list) {
     for (const auto& s : list)
         table += fmt::format("\n  {}  {}  {}  {}  {}  \"{}\"{}", s.number.empty() ? "-" : s.number, s.modality,
                              s.slices(), spacing_text(s), s.uid, s.description,
-                             s.slices() == 0 ? " (no pictures)" : s.is_volume() ? "" : " (no CT or MR volume)");
+                             s.slices() == 0 ? " (no pictures)"
+                             : s.is_volume() ? ""
+                                             : " (no CT or MR volume)");
     return table;
 }
 
@@ -273,9 +275,9 @@ DicomSeries choose_series(const DicomFolder& folder, const fs::path& path, const
                       [](const DicomSeries& s) { return s.slices() < kFewestSlices; });  // a few slices are no rival
     for (const auto& file : folder.unreadable)
         if (says_folder || !chosen.empty() || fs::equivalent(file, path))
-            throw DamagedFileError(file,
-                                   "is a DICOM file that is damaged or does not say of which series it is",
-                                   "Copy or export the series again; if the file is not of the series, move it elsewhere.");
+            throw DamagedFileError(
+                file, "is a DICOM file that is damaged or does not say of which series it is",
+                "Copy or export the series again; if the file is not of the series, move it elsewhere.");
     if (!says_folder && wanted.empty() && chosen.empty())
         throw InputError(
             path, "is no DICOM file, nor any other kind of volume that is read",

@@ -36,8 +36,8 @@ struct DicomFolder {
 };
 
 /// Finds every DICOM object in a folder (ten levels deep, whatever the files are called; DICOMDIR is not needed and not
-/// believed). Throws InputError for more than 200,000 files, and for what cannot be opened: it may be a slice. Crashes on
-/// some damaged files: to be called in a child process.
+/// believed). Throws InputError for more than 200,000 files, and for what cannot be opened: it may be a slice. Crashes
+/// on some damaged files: to be called in a child process.
 DicomFolder find_dicom(const std::filesystem::path& folder, int depth);
 
 /// Whether a file is a DICOMDIR by its name: it stands for its folder.

@@ -13,7 +13,8 @@ constexpr int kDeepest = 32;
 /// Walks over elements (DICOM part 5, chapter 7). Every function gives false where the bytes do not fit.
 class Walker {
 public:
-    Walker(std::string_view data, bool explicit_vr, bool big_endian) : data_(data), explicit_(explicit_vr), big_(big_endian) {}
+    Walker(std::string_view data, bool explicit_vr, bool big_endian)
+        : data_(data), explicit_(explicit_vr), big_(big_endian) {}
 
     bool to_the_end() {
         while (at_ < data_.size())
@@ -36,7 +37,8 @@ private:
     std::uint32_t number(std::size_t at, std::size_t bytes) const {
         std::uint32_t value = 0;
         for (std::size_t i = 0; i < bytes; ++i)
-            value |= static_cast<std::uint32_t>(static_cast<unsigned char>(data_[at + i])) << (8 * (big_ ? bytes - 1 - i : i));
+            value |= static_cast<std::uint32_t>(static_cast<unsigned char>(data_[at + i]))
+                     << (8 * (big_ ? bytes - 1 - i : i));
         return value;
     }
     bool has(std::size_t bytes) const { return bytes <= data_.size() - at_; }
@@ -94,7 +96,8 @@ private:
         if (length != kUndefined && !has(length)) return false;
         const std::size_t end = at_ + (length == kUndefined ? 0 : length);
         while (length == kUndefined || at_ < end) {
-            if (length == kUndefined && has(8) && (number(at_, 2) << 16 | number(at_ + 2, 2)) == kItemEnd) return skip(8);
+            if (length == kUndefined && has(8) && (number(at_, 2) << 16 | number(at_ + 2, 2)) == kItemEnd)
+                return skip(8);
             if (!element(depth + 1)) return false;
         }
         return at_ == end;

@@ -76,7 +76,8 @@ void check_against_reader(vtkDICOMReader* reader, const Volume& volume, const fs
 template <class T>
 void copy_as(vtkDataArray* scalars, Volume& volume) {
     const T* stored = static_cast<const T*>(scalars->GetVoidPointer(0));
-    std::transform(stored, stored + volume.values.size(), volume.values.begin(), [](T v) { return static_cast<float>(v); });
+    std::transform(stored, stored + volume.values.size(), volume.values.begin(),
+                   [](T v) { return static_cast<float>(v); });
 }
 
 void copy_stored_values(vtkImageData* image, Volume& volume, const fs::path& path) {
@@ -89,10 +90,14 @@ void copy_stored_values(vtkImageData* image, Volume& volume, const fs::path& pat
         throw DamagedFileError(path, "its pictures could not be unpacked", kCopyAgain);
     volume.values.resize(count);
     switch (scalars->GetDataType()) {
-        case VTK_UNSIGNED_SHORT: return copy_as<unsigned short>(scalars, volume);
-        case VTK_SHORT: return copy_as<short>(scalars, volume);
-        case VTK_UNSIGNED_CHAR: return copy_as<unsigned char>(scalars, volume);
-        default: break;
+        case VTK_UNSIGNED_SHORT:
+            return copy_as<unsigned short>(scalars, volume);
+        case VTK_SHORT:
+            return copy_as<short>(scalars, volume);
+        case VTK_UNSIGNED_CHAR:
+            return copy_as<unsigned char>(scalars, volume);
+        default:
+            break;
     }
     for (std::size_t i = 0; i < count; ++i)
         volume.values[i] = static_cast<float>(scalars->GetComponent(static_cast<vtkIdType>(i), 0));
@@ -112,16 +117,27 @@ void note_geometry(const DicomSeries& series, Volume& volume) {
 
 /// What a file is, for people: by its storage class (DICOM PS3.6 A), else by its modality.
 std::string words_of_class(const DicomFile& file) {
-    static const std::map<std::string, std::string> kWords = {
-        {"1.1", "a computed radiograph"},        {"3.1", "an ultrasound sequence"}, {"6.1", "an ultrasound picture"},
-        {"7", "a secondary capture"},            {"7.4", "a secondary capture"},    {"9.1.1", "an electrocardiogram"},
-        {"20", "a nuclear medicine image"},      {"66.4", "a segmentation"},        {"88.11", "a report"},
-        {"88.22", "a report"},                   {"88.33", "a report"},             {"88.59", "a list of key pictures"},
-        {"104.1", "a PDF"},                      {"128", "a PET image"},            {"481.2", "a radiotherapy dose"},
-        {"481.3", "a plan (RTSTRUCT)"},          {"481.5", "a radiotherapy plan"}};
+    static const std::map<std::string, std::string> kWords = {{"1.1", "a computed radiograph"},
+                                                              {"3.1", "an ultrasound sequence"},
+                                                              {"6.1", "an ultrasound picture"},
+                                                              {"7", "a secondary capture"},
+                                                              {"7.4", "a secondary capture"},
+                                                              {"9.1.1", "an electrocardiogram"},
+                                                              {"20", "a nuclear medicine image"},
+                                                              {"66.4", "a segmentation"},
+                                                              {"88.11", "a report"},
+                                                              {"88.22", "a report"},
+                                                              {"88.33", "a report"},
+                                                              {"88.59", "a list of key pictures"},
+                                                              {"104.1", "a PDF"},
+                                                              {"128", "a PET image"},
+                                                              {"481.2", "a radiotherapy dose"},
+                                                              {"481.3", "a plan (RTSTRUCT)"},
+                                                              {"481.5", "a radiotherapy plan"}};
     const std::string before = "1.2.840.10008.5.1.4.1.1.";
     if (file.storage_class.starts_with(before))
-        if (const auto words = kWords.find(file.storage_class.substr(before.size())); words != kWords.end()) return words->second;
+        if (const auto words = kWords.find(file.storage_class.substr(before.size())); words != kWords.end())
+            return words->second;
     return fmt::format("of modality \"{}\", storage class {}", file.modality, file.storage_class);
 }
 
@@ -144,8 +160,7 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
     for (const auto& file : series.files)
         if (file.damaged) throw DamagedFileError(file.path, "is damaged or cut short in its header", kCopyAgain);
     if (!series.is_volume())
-        throw InputError(path,
-                         "is no CT or MR volume but " + words_of_class(series.files.front()),
+        throw InputError(path, "is no CT or MR volume but " + words_of_class(series.files.front()),
                          "Give a series of CT or MR image objects.");
     if (const auto fault = fault_of(series.all_slices())) throw InputError(path, fault->problem, fault->remedy);
 
@@ -157,7 +172,8 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
     reader->AutoRescaleOff();
     reader->UpdateInformation();
     if (!reader->GetErrorCode()) reader->Update();
-    if (reader->GetErrorCode()) throw DamagedFileError(damaged_file_of(series, path), "is damaged or cut short", kCopyAgain);
+    if (reader->GetErrorCode())
+        throw DamagedFileError(damaged_file_of(series, path), "is damaged or cut short", kCopyAgain);
 
     std::vector<DicomSlice> slices;
     std::vector<SliceValues> meaning;

@@ -13,8 +13,8 @@
 #include <map>
 
 #include "planning_io/dicom/dicom_nesting.h"
-#include "planning_io/files/sandboxed_process.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/files/sandboxed_process.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -40,17 +40,18 @@ std::vector<double> numbers(const vtkDICOMValue& value) {
 std::vector<RtRoi> rois_of(vtkDICOMMetaData* meta, const fs::path& file) {
     const std::string kind = text(meta->Get(DC::SOPClassUID)), modality = text(meta->Get(DC::Modality));
     if (kind != kRtStructClass)
-        throw InputError(file, "is DICOM of modality " + (modality.empty() ? "unknown" : modality) + ", not an RT Structure Set",
-                         modality == "SEG"
-                             ? "Give it to `planlight prepare --surface`, or export the plan's contours as RTSTRUCT."
-                             : "Export the plan as RT Structure Set.");
+        throw InputError(
+            file, "is DICOM of modality " + (modality.empty() ? "unknown" : modality) + ", not an RT Structure Set",
+            modality == "SEG" ? "Give it to `planlight prepare --surface`, or export the plan's contours as RTSTRUCT."
+                              : "Export the plan as RT Structure Set.");
     std::vector<RtRoi> rois;
     std::map<int, std::size_t> by_number;
     const vtkDICOMSequence sets = meta->Get(DC::StructureSetROISequence);
     for (std::size_t i = 0; i < sets.GetNumberOfItems(); ++i) {
         const vtkDICOMItem& item = sets.GetItem(i);
         if (!by_number.emplace(item.Get(DC::ROINumber).AsInt(), i).second)
-            throw InputError(file, fmt::format("has two ROIs of the number {}", item.Get(DC::ROINumber).AsInt()), kCopyAgain);
+            throw InputError(file, fmt::format("has two ROIs of the number {}", item.Get(DC::ROINumber).AsInt()),
+                             kCopyAgain);
         rois.push_back({text(item.Get(DC::ROIName)),
                         text(item.Get(DC::ROIDescription)),
                         text(item.Get(DC::ReferencedFrameOfReferenceUID)),
@@ -62,9 +63,10 @@ std::vector<RtRoi> rois_of(vtkDICOMMetaData* meta, const fs::path& file) {
         const vtkDICOMItem& item = drawn.GetItem(i);
         const auto at = by_number.find(item.Get(DC::ReferencedROINumber).AsInt());
         if (at == by_number.end())
-            throw DamagedFileError(
-                file, fmt::format("has contours of an ROI {} that it does not name", item.Get(DC::ReferencedROINumber).AsInt()),
-                kCopyAgain);
+            throw DamagedFileError(file,
+                                   fmt::format("has contours of an ROI {} that it does not name",
+                                               item.Get(DC::ReferencedROINumber).AsInt()),
+                                   kCopyAgain);
         RtRoi& roi = rois[at->second];
         if (item.Get(DC::ROIDisplayColor).IsValid()) roi.colour = numbers(item.Get(DC::ROIDisplayColor));
         const vtkDICOMSequence contours = item.Get(DC::ContourSequence);
@@ -74,8 +76,8 @@ std::vector<RtRoi> rois_of(vtkDICOMMetaData* meta, const fs::path& file) {
             const int points = contour.Get(DC::NumberOfContourPoints).AsInt();
             if (static_cast<std::size_t>(3 * std::max(points, 0)) != read.numbers.size())
                 throw DamagedFileError(file,
-                                       fmt::format("ROI \"{}\", contour {}: announces {} points and holds {} numbers", roi.name,
-                                                   c + 1, points, read.numbers.size()),
+                                       fmt::format("ROI \"{}\", contour {}: announces {} points and holds {} numbers",
+                                                   roi.name, c + 1, points, read.numbers.size()),
                                        kCopyAgain);
             roi.contours.push_back(std::move(read));
         }
@@ -113,7 +115,8 @@ std::vector<RtRoi> unpack(Parcel& parcel) {
         roi.frame_of_reference_uid = parcel.get_text();
         roi.colour = parcel.get_list<double>();
         roi.contours.resize(parcel.get<std::uint64_t>());
-        for (RtContour& contour : roi.contours) contour.type = parcel.get_text(), contour.numbers = parcel.get_list<double>();
+        for (RtContour& contour : roi.contours)
+            contour.type = parcel.get_text(), contour.numbers = parcel.get_list<double>();
     }
     return rois;
 }
@@ -137,7 +140,8 @@ RtStruct read_rt_struct(const fs::path& file) {
     if (set.frame_of_reference_uid.empty()) set.frame_of_reference_uid = set.rois.front().frame_of_reference_uid;
     for (const RtRoi& roi : set.rois)
         if (!roi.frame_of_reference_uid.empty() && roi.frame_of_reference_uid != set.frame_of_reference_uid)
-            throw InputError(file, "ROI \"" + roi.name + "\" is in another frame of reference, " + roi.frame_of_reference_uid,
+            throw InputError(file,
+                             "ROI \"" + roi.name + "\" is in another frame of reference, " + roi.frame_of_reference_uid,
                              "Export the ROIs of one CT.");
     return set;
 }

@@ -27,8 +27,8 @@ struct RtStruct {
 /// True when the first 4 KiB of the file name the class of RT Structure Sets.
 bool is_rt_struct(const std::filesystem::path& file);
 
-/// Reads a DICOM RT Structure Set in a child process. Throws InputError for another kind of DICOM, none or doubled ROIs or two
-/// frames of reference, DamagedFileError for a cut file or one whose numbers do not fit each other.
+/// Reads a DICOM RT Structure Set in a child process. Throws InputError for another kind of DICOM, none or doubled ROIs
+/// or two frames of reference, DamagedFileError for a cut file or one whose numbers do not fit each other.
 RtStruct read_rt_struct(const std::filesystem::path& file);
 
 }  // namespace planlight

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "planning_io/types/error.h"
+#include "planning_io/types/processor_clones.h"
 
 namespace planlight {
 namespace {
@@ -40,16 +41,15 @@ std::vector<Slice> slices_of(const std::vector<ChunkedArray>& arrays) {
 }
 
 /// Differences of 4-byte elements, first bytes first: neighbours in a table are alike, so most bytes become zero.
-__attribute__((target_clones("avx2", "default"))) void split_bytes(const std::uint32_t* values, std::size_t count,
-                                                                   std::uint8_t* out) {
+PLANLIGHT_CLONES void split_bytes(const std::uint32_t* values, std::size_t count, std::uint8_t* out) {
     for (std::size_t i = 0; i < count; ++i) {
         const std::uint32_t difference = values[i] - (i > 0 ? values[i - 1] : 0);
-        for (std::size_t byte = 0; byte < 4; ++byte) out[byte * count + i] = static_cast<std::uint8_t>(difference >> (8 * byte));
+        for (std::size_t byte = 0; byte < 4; ++byte)
+            out[byte * count + i] = static_cast<std::uint8_t>(difference >> (8 * byte));
     }
 }
 
-__attribute__((target_clones("avx2", "default"))) void join_bytes(const std::uint8_t* in, std::size_t count,
-                                                                  std::uint32_t* values) {
+PLANLIGHT_CLONES void join_bytes(const std::uint8_t* in, std::size_t count, std::uint32_t* values) {
     const std::uint8_t *b0 = in, *b1 = in + count, *b2 = b1 + count, *b3 = b2 + count;
     for (std::size_t i = 0; i < count; ++i)
         values[i] = static_cast<std::uint32_t>(b0[i]) | static_cast<std::uint32_t>(b1[i]) << 8 |
@@ -75,15 +75,18 @@ std::string compress(const Slice& slice) {
 
 /// False when the chunk does not unpack to exactly the slice.
 bool decompress(std::string_view packed, const Slice& slice) {
-    thread_local const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(), ZSTD_freeDCtx);
+    thread_local const std::unique_ptr<ZSTD_DCtx, std::size_t (*)(ZSTD_DCtx*)> context(ZSTD_createDCtx(),
+                                                                                       ZSTD_freeDCtx);
     thread_local std::vector<std::uint8_t> split;
     void* target = slice.data;
     if (slice.element_bytes == 4) {
         split.resize(kChunkBytes);
         target = split.data();
     }
-    if (ZSTD_decompressDCtx(context.get(), target, slice.bytes, packed.data(), packed.size()) != slice.bytes) return false;
-    if (slice.element_bytes == 4) join_bytes(split.data(), slice.bytes / 4, reinterpret_cast<std::uint32_t*>(slice.data));
+    if (ZSTD_decompressDCtx(context.get(), target, slice.bytes, packed.data(), packed.size()) != slice.bytes)
+        return false;
+    if (slice.element_bytes == 4)
+        join_bytes(split.data(), slice.bytes / 4, reinterpret_cast<std::uint32_t*>(slice.data));
     return true;
 }
 
@@ -101,7 +104,9 @@ std::string_view FieldReader::take(std::size_t count) {
     return taken;
 }
 
-std::string FieldReader::next_text() { return std::string(take(next<std::uint32_t>())); }
+std::string FieldReader::next_text() {
+    return std::string(take(next<std::uint32_t>()));
+}
 
 void FieldReader::expect_end() const {
     if (!bytes_.empty()) damaged(file_, "goes on after its end");
@@ -133,7 +138,8 @@ void write_chunked(std::ostream& out, const ChunkedKind& kind, const std::string
 
 ChunkedFile::ChunkedFile(std::string_view content, const ChunkedKind& kind, const fs::path& file) : file_(file) {
     FieldReader in(content, file);
-    if (in.take(8) != std::string_view(kind.magic, 8)) damaged(file, "is not a file of this kind, or its beginning is damaged");
+    if (in.take(8) != std::string_view(kind.magic, 8))
+        damaged(file, "is not a file of this kind, or its beginning is damaged");
     const auto version = in.next<std::uint32_t>(), mark = in.next<std::uint32_t>();
     if (mark != kEndianMark) damaged(file, "was written on a machine of the other byte order, or is damaged");
     if (version != kind.version)

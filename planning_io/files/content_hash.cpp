@@ -13,10 +13,14 @@ struct ContentHash::State {
     std::unique_ptr<XXH3_state_t, XXH_errorcode (*)(XXH3_state_t*)> xxh{XXH3_createState(), XXH3_freeState};
 };
 
-ContentHash::ContentHash() : state_(std::make_unique<State>()) { XXH3_128bits_reset(state_->xxh.get()); }
+ContentHash::ContentHash() : state_(std::make_unique<State>()) {
+    XXH3_128bits_reset(state_->xxh.get());
+}
 ContentHash::~ContentHash() = default;
 
-void ContentHash::add_bytes(const void* data, std::size_t bytes) { XXH3_128bits_update(state_->xxh.get(), data, bytes); }
+void ContentHash::add_bytes(const void* data, std::size_t bytes) {
+    XXH3_128bits_update(state_->xxh.get(), data, bytes);
+}
 
 void ContentHash::add(std::string_view text) {
     add_bytes(text.data(), text.size());

@@ -48,14 +48,16 @@ cv::Mat decode(const fs::path& file) {
         picture = eight;
     }
     if (picture.depth() != CV_8U || (picture.channels() != 1 && picture.channels() != 3))
-        throw InputError(file, "is neither an 8-bit nor a 16-bit grey or colour picture", "Convert the picture to an 8-bit PNG.");
+        throw InputError(file, "is neither an 8-bit nor a 16-bit grey or colour picture",
+                         "Convert the picture to an 8-bit PNG.");
     return picture;
 }
 
 }  // namespace
 
 void write_png(const GrayImage& picture, const fs::path& file) {
-    write_encoded(cv::Mat(picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.pixels.data())), file);
+    write_encoded(cv::Mat(picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.pixels.data())),
+                  file);
 }
 
 void write_png(const RgbImage& picture, const fs::path& file) {
@@ -105,12 +107,14 @@ void check_depth(const std::vector<GrayImage>& pictures, const fs::path& file) {
         for (const std::uint8_t value : picture.pixels)
             if (value > kTwelveBits) return;
     const std::string bytes = read_whole(file);
-    const cv::Mat picture = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data())),
-                                         cv::IMREAD_ANYDEPTH | cv::IMREAD_ANYCOLOR);
+    const cv::Mat picture =
+        cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8U, const_cast<char*>(bytes.data())),
+                     cv::IMREAD_ANYDEPTH | cv::IMREAD_ANYCOLOR);
     if (picture.depth() == CV_16U)
-        throw InputError(file, "has 16 bits, and no picture of this camera is brighter than 4095 of 65535",
-                         "If the camera has 10 or 12 bits, store them at the upper end (times 64, or 16), or as 8 bits; else "
-                         "expose longer.");
+        throw InputError(
+            file, "has 16 bits, and no picture of this camera is brighter than 4095 of 65535",
+            "If the camera has 10 or 12 bits, store them at the upper end (times 64, or 16), or as 8 bits; else "
+            "expose longer.");
 }
 
 void check_same_size(const GrayImage& picture, const GrayImage& first, const std::filesystem::path& file) {

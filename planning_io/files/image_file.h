@@ -11,12 +11,14 @@ namespace planlight {
 void write_png(const GrayImage& picture, const std::filesystem::path& file);
 void write_png(const RgbImage& picture, const std::filesystem::path& file);
 
-/// PNG or TIFF, 8 or 16 bit (of which the upper 8 are kept), grey or colour (converted to grey by luma). Throws DamagedFileError.
+/// PNG or TIFF, 8 or 16 bit (of which the upper 8 are kept), grey or colour (converted to grey by luma). Throws
+/// DamagedFileError.
 GrayImage read_gray(const std::filesystem::path& file);
 RgbImage read_rgb(const std::filesystem::path& file);
 
-/// A camera of 10 or 12 bits whose program stored them at the lower end of 16 leaves pictures that read as nearly black.
-/// Throws InputError when `file`, one of a camera's pictures, has 16 bits and none of them all reaches 4096 of 65535.
+/// A camera of 10 or 12 bits whose program stored them at the lower end of 16 leaves pictures that read as nearly
+/// black. Throws InputError when `file`, one of a camera's pictures, has 16 bits and none of them all reaches 4096 of
+/// 65535.
 void check_depth(const std::vector<GrayImage>& pictures, const std::filesystem::path& file);
 
 /// All pictures of a camera have one size: throws InputError when this one is not as large as the first.

@@ -94,11 +94,13 @@ void JsonValue::has_only(std::initializer_list<const char*> known) const {
         const auto is_name = [&](const char* other) { return name == other; };
         if (is_name("notes") || name.starts_with("x_") || std::any_of(known.begin(), known.end(), is_name)) continue;
         const auto apart = [&](const char* other) { return letters_apart(plain(name), plain(other)); };
-        const char* nearest = *std::min_element(known.begin(), known.end(), [&](auto* a, auto* b) { return apart(a) < apart(b); });
+        const char* nearest =
+            *std::min_element(known.begin(), known.end(), [&](auto* a, auto* b) { return apart(a) < apart(b); });
         const bool alike = 3 * apart(nearest) <= std::max<std::size_t>(3, std::string_view(nearest).size());
         refuse("has a name that means nothing here, \"" + name + "\"" +
                    (alike ? std::string("; is \"") + nearest + "\" meant?" : std::string()),
-               "Correct the name (planning_io/README.md lists them); notes of your own may stand under \"notes\" or under names "
+               "Correct the name (planning_io/README.md lists them); notes of your own may stand under \"notes\" or "
+               "under names "
                "that begin with x_.");
     }
 }
@@ -114,7 +116,9 @@ std::size_t JsonValue::size() const {
     return value_->size();
 }
 
-JsonValue JsonValue::operator[](std::size_t i) const { return {(*value_)[i], *file_, place_ + "[" + std::to_string(i) + "]"}; }
+JsonValue JsonValue::operator[](std::size_t i) const {
+    return {(*value_)[i], *file_, place_ + "[" + std::to_string(i) + "]"};
+}
 
 double JsonValue::number() const {
     if (!value_->is_number()) refuse("must be a number");
@@ -132,7 +136,8 @@ double JsonValue::number(double least, double most) const {
 
 std::int64_t JsonValue::integer(std::int64_t least, std::int64_t most) const {
     if (!value_->is_number_integer()) refuse("must be a whole number");
-    const bool too_large = value_->is_number_unsigned() && value_->get<std::uint64_t>() > static_cast<std::uint64_t>(INT64_MAX);
+    const bool too_large =
+        value_->is_number_unsigned() && value_->get<std::uint64_t>() > static_cast<std::uint64_t>(INT64_MAX);
     const auto result = value_->get<std::int64_t>();
     if (too_large || result < least || result > most)
         refuse("is " + value_->dump() + ", not between " + std::to_string(least) + " and " + std::to_string(most));
@@ -149,7 +154,9 @@ bool JsonValue::flag() const {
     return value_->get<bool>();
 }
 
-Eigen::Vector3d JsonValue::vector3() const { return Eigen::Map<const Eigen::Vector3d>(numbers<3>(*this).data()); }
+Eigen::Vector3d JsonValue::vector3() const {
+    return Eigen::Map<const Eigen::Vector3d>(numbers<3>(*this).data());
+}
 
 Eigen::Matrix3d JsonValue::matrix3() const {
     return Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(numbers<9>(*this).data());
@@ -174,7 +181,9 @@ void check_format(const JsonValue& root, const char* format, int version, const 
             "Write it again with this version of Planlight.");
 }
 
-Json to_json(const Eigen::Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
+Json to_json(const Eigen::Vector3d& v) {
+    return Json::array({v.x(), v.y(), v.z()});
+}
 
 Json to_json(const Eigen::Matrix3d& m) {
     Json list = Json::array();
@@ -190,6 +199,8 @@ Json to_json(const RigidTransform& t) {
     return list;
 }
 
-std::string dump(const Json& value) { return value.dump(1, ' ', false, Json::error_handler_t::replace) + "\n"; }
+std::string dump(const Json& value) {
+    return value.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
 
 }  // namespace planlight

@@ -20,7 +20,8 @@ using Json = nlohmann::ordered_json;
 /// Parses with limits (64 MiB, 32 levels, no name twice in an object). Throws DamagedFileError where it is not JSON.
 Json parse_json(std::string_view text, const std::filesystem::path& file);
 
-/// A place in a JSON file that knows its name: what is missing or of the wrong kind is an InputError with file and place.
+/// A place in a JSON file that knows its name: what is missing or of the wrong kind is an InputError with file and
+/// place.
 class JsonValue {
 public:
     JsonValue(const Json& value, const std::filesystem::path& file, std::string place = {})
@@ -28,10 +29,10 @@ public:
 
     JsonValue at(const char* key) const;
     std::optional<JsonValue> find(const char* key) const;  ///< empty when missing or null
-    /// Refuses an object that has a name besides these, "notes" and those that begin with "x_" (a person's own): a misspelt
-    /// name that may be missing would be passed over in silence.
+    /// Refuses an object that has a name besides these, "notes" and those that begin with "x_" (a person's own): a
+    /// misspelt name that may be missing would be passed over in silence.
     void has_only(std::initializer_list<const char*> known) const;
-    std::size_t size() const;                              ///< of an array
+    std::size_t size() const;  ///< of an array
     JsonValue operator[](std::size_t i) const;
 
     double number() const;  ///< finite
@@ -57,8 +58,8 @@ private:
 void check_format(const JsonValue& root, const char* format, int version, const std::filesystem::path& file);
 
 Json to_json(const Eigen::Vector3d& v);
-Json to_json(const Eigen::Matrix3d& m);   ///< row by row
-Json to_json(const RigidTransform& t);    ///< 4x4, row by row
-std::string dump(const Json& value);      ///< indented, numbers so that they read back bit for bit
+Json to_json(const Eigen::Matrix3d& m);  ///< row by row
+Json to_json(const RigidTransform& t);   ///< 4x4, row by row
+std::string dump(const Json& value);     ///< indented, numbers so that they read back bit for bit
 
 }  // namespace planlight

@@ -84,7 +84,8 @@ struct RemoveFolder {
 
 void write_safely(const fs::path& file_or_link, const std::function<void(std::ostream&)>& write) {
     std::error_code ignored;
-    const fs::path file = fs::is_symlink(file_or_link, ignored) ? fs::weakly_canonical(file_or_link, ignored) : file_or_link;
+    const fs::path file =
+        fs::is_symlink(file_or_link, ignored) ? fs::weakly_canonical(file_or_link, ignored) : file_or_link;
     if (fs::exists(file, ignored) && !fs::is_regular_file(file, ignored)) {
         if (fs::is_directory(file, ignored)) throw DiskError(file, "is a folder, not a file", "Name a file.");
         return write_into(file, file, write);  // a pipe or a device is written to, never replaced
@@ -98,7 +99,8 @@ void write_safely(const fs::path& file_or_link, const std::function<void(std::os
 }
 
 void write_safely(const fs::path& file, const std::string& content) {
-    write_safely(file, [&](std::ostream& out) { out.write(content.data(), static_cast<std::streamsize>(content.size())); });
+    write_safely(file,
+                 [&](std::ostream& out) { out.write(content.data(), static_cast<std::streamsize>(content.size())); });
 }
 
 void check_can_write(const fs::path& file) {
@@ -137,7 +139,8 @@ std::string read_whole(const fs::path& file) {
     const auto status = fs::status(file, ignored);
     if (!fs::exists(status)) throw InputError(file, "does not exist", "Check the name of the file.");
     if (fs::is_directory(status)) throw InputError(file, "is a folder, not a file", "Name the file itself.");
-    if (!fs::is_regular_file(status)) throw InputError(file, "is a pipe or a device, not a file", "Copy its content to a file.");
+    if (!fs::is_regular_file(status))
+        throw InputError(file, "is a pipe or a device, not a file", "Copy its content to a file.");
     std::ifstream in(file, std::ios::binary);
     std::string content;
     const auto size = fs::file_size(file, ignored);

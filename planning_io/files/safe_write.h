@@ -7,16 +7,18 @@
 
 namespace planlight {
 
-/// Writes a file whole or not at all: temporary file beside it, sync, rename. Throws DiskError; the old file stays then.
+/// Writes a file whole or not at all: temporary file beside it, sync, rename. Throws DiskError; the old file stays
+/// then.
 void write_safely(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write);
 void write_safely(const std::filesystem::path& file, const std::string& content);
 
-/// Throws what `write_safely` would where the file cannot be written there (no such folder, no permission, a folder of that
-/// name): to be asked before long work.
+/// Throws what `write_safely` would where the file cannot be written there (no such folder, no permission, a folder of
+/// that name): to be asked before long work.
 void check_can_write(const std::filesystem::path& file);
 
-/// Makes a folder whole or not at all: `fill` writes into a temporary folder beside it, which is then renamed. An existing
-/// empty folder is taken; another existing one is exchanged for the new one in one step if `replace`, else InputError.
+/// Makes a folder whole or not at all: `fill` writes into a temporary folder beside it, which is then renamed. An
+/// existing empty folder is taken; another existing one is exchanged for the new one in one step if `replace`, else
+/// InputError.
 void write_folder_safely(const std::filesystem::path& folder, bool replace,
                          const std::function<void(const std::filesystem::path&)>& fill);
 

@@ -78,10 +78,11 @@ void check_end(int status, const fs::path& file, const ChildLimits& limits) {
     if (WIFSIGNALED(status)) {
         const int signal = WTERMSIG(status);
         const bool slow = signal == SIGXCPU || signal == SIGKILL || signal == SIGALRM;
-        throw DamagedFileError(file,
-                               slow ? "took longer to read than a sound " + limits.what + " does"
-                                    : "made the reader of a " + limits.what + " crash (signal " + std::to_string(signal) + ")",
-                               kCopyAgain);
+        throw DamagedFileError(
+            file,
+            slow ? "took longer to read than a sound " + limits.what + " does"
+                 : "made the reader of a " + limits.what + " crash (signal " + std::to_string(signal) + ")",
+            kCopyAgain);
     }
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         throw DamagedFileError(file, "could not be read to its end", kCopyAgain);
@@ -96,7 +97,8 @@ Parcel::~Parcel() {
 Parcel::Parcel(Parcel&& other) noexcept : fd_(std::exchange(other.fd_, -1)), left_(other.left_) {}
 
 void Parcel::empty() {
-    if (ftruncate(fd_, 0) != 0 || lseek(fd_, 0, SEEK_SET) != 0) throw std::runtime_error("the parcel cannot be emptied");
+    if (ftruncate(fd_, 0) != 0 || lseek(fd_, 0, SEEK_SET) != 0)
+        throw std::runtime_error("the parcel cannot be emptied");
 }
 
 void Parcel::begin_reading() {
@@ -128,7 +130,8 @@ void Parcel::read_all(void* to, std::size_t bytes) {
 Parcel parse_in_child(const fs::path& file, const ChildLimits& limits, const std::function<void(Parcel&)>& parse) {
     Parcel parcel;
     const pid_t child = parcel.is_open() ? fork() : -1;
-    if (child < 0) throw DiskError(file, "no child process could be started to read it", "Close other programs and try again.");
+    if (child < 0)
+        throw DiskError(file, "no child process could be started to read it", "Close other programs and try again.");
     if (child == 0) be_the_child(parcel, file, limits, parse);
     int status = 0;
     while (waitpid(child, &status, 0) < 0 && errno == EINTR) {

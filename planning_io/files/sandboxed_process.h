@@ -10,8 +10,8 @@
 
 namespace planlight {
 
-/// Values that a child process hands to its parent, as they lie in memory, one after the other: an unnamed file in memory
-/// that both have open. What is put or taken is not kept a second time here.
+/// Values that a child process hands to its parent, as they lie in memory, one after the other: an unnamed file in
+/// memory that both have open. What is put or taken is not kept a second time here.
 class Parcel {
 public:
     Parcel();
@@ -43,8 +43,8 @@ public:
     }
 
     bool is_open() const { return fd_ >= 0; }
-    void empty();                  ///< what was put is gone
-    void begin_reading();          ///< from its first value
+    void empty();                                 ///< what was put is gone
+    void begin_reading();                         ///< from its first value
     std::uint64_t left() const { return left_; }  ///< bytes to read
 
 private:
@@ -73,13 +73,14 @@ private:
 struct ChildLimits {
     std::string what = "file";  ///< the kind of file, for the sentences
     unsigned processor_s = 30;
-    unsigned wait_s = 120;      ///< on the wall
+    unsigned wait_s = 120;  ///< on the wall
     std::string when_too_large = "Give a smaller file.";
 };
 
-/// Runs `parse` in a child process within `limits` and gives what it put into its parcel. An Error thrown there is thrown here
-/// again; more memory than allowed is an InputError of `file`; a crash, an endless loop or any other exception a
-/// DamagedFileError: the child is lost, never the program.
-Parcel parse_in_child(const std::filesystem::path& file, const ChildLimits& limits, const std::function<void(Parcel&)>& parse);
+/// Runs `parse` in a child process within `limits` and gives what it put into its parcel. An Error thrown there is
+/// thrown here again; more memory than allowed is an InputError of `file`; a crash, an endless loop or any other
+/// exception a DamagedFileError: the child is lost, never the program.
+Parcel parse_in_child(const std::filesystem::path& file, const ChildLimits& limits,
+                      const std::function<void(Parcel&)>& parse);
 
 }  // namespace planlight

@@ -38,9 +38,10 @@ Space settled_space(std::optional<Space> file_says, std::optional<Space> person_
         throw InputError(file, "does not say its coordinate system",
                          std::string(how_to_say) + ", or say it with --frame LPS or --frame RAS.");
     if (file_says && person_says && *file_says != *person_says)
-        throw InputError(
-            file, std::string("says that it is in ") + (*file_says == Space::lps ? "LPS" : "RAS") + ", --frame says otherwise",
-            "Leave --frame out, or export the file again.");
+        throw InputError(file,
+                         std::string("says that it is in ") + (*file_says == Space::lps ? "LPS" : "RAS") +
+                             ", --frame says otherwise",
+                         "Leave --frame out, or export the file again.");
     return file_says ? *file_says : *person_says;
 }
 

@@ -70,7 +70,8 @@ public:
     std::string text(const char* column) const {
         const auto at = header_.column.find(column);
         if (at == header_.column.end()) return {};
-        if (at->second >= fields_.size()) refuse(fmt::format("has {} fields; \"{}\" is missing", fields_.size(), column));
+        if (at->second >= fields_.size())
+            refuse(fmt::format("has {} fields; \"{}\" is missing", fields_.size(), column));
         return trimmed(fields_[at->second]);
     }
     double number(const char* column) const {
@@ -114,10 +115,14 @@ std::vector<std::string> split_fields(std::string_view line, char separator) {
     bool quoted = false;
     for (std::size_t i = 0; i < line.size(); ++i) {
         const char c = line[i];
-        if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"') fields.back() += line[++i];
-        else if (c == '"') quoted = !quoted;
-        else if (c == separator && !quoted) fields.emplace_back();
-        else fields.back() += c;
+        if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
+            fields.back() += line[++i];
+        else if (c == '"')
+            quoted = !quoted;
+        else if (c == separator && !quoted)
+            fields.emplace_back();
+        else
+            fields.back() += c;
     }
     return fields;
 }

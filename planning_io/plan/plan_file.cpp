@@ -2,9 +2,9 @@
 
 #include <cmath>
 
+#include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_import.h"
 #include "planning_io/plan/plan_markup.h"
-#include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -41,7 +41,9 @@ void check_plan_numbers(const Plan& plan, const fs::path& file) {
               c.name);
 }
 
-Plan read_plan(const fs::path& file_or_folder) { return import_plan(file_or_folder).plan; }
+Plan read_plan(const fs::path& file_or_folder) {
+    return import_plan(file_or_folder).plan;
+}
 
 void write_plan(const Plan& plan, const fs::path& file) {
     check_plan_numbers(plan, file);
@@ -57,7 +59,8 @@ std::vector<Eigen::Vector3d> points_of(const Plan& plan) {
     std::vector<Eigen::Vector3d> points;
     for (const auto& t : plan.trajectories) points.insert(points.end(), {t.entry_in_ct, t.target_in_ct});
     for (const auto& b : plan.boreholes) points.push_back(b.position_in_ct);
-    for (const auto& line : plan.osteotomy_lines) points.insert(points.end(), line.points_in_ct.begin(), line.points_in_ct.end());
+    for (const auto& line : plan.osteotomy_lines)
+        points.insert(points.end(), line.points_in_ct.begin(), line.points_in_ct.end());
     for (const auto& c : plan.cut_planes) points.push_back(c.origin_in_ct);
     return points;
 }

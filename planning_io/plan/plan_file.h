@@ -8,7 +8,8 @@
 
 namespace planlight {
 
-/// Reads a plan from a file that says its own frame and units, or from a folder of such files: `import_plan` without any help.
+/// Reads a plan from a file that says its own frame and units, or from a folder of such files: `import_plan` without
+/// any help.
 Plan read_plan(const std::filesystem::path& file_or_folder);
 
 /// Throws InputError, by name, when a coordinate is not finite or a size is negative.

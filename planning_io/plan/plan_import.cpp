@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cctype>
 
+#include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_fcsv.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/plan/plan_markup.h"
 #include "planning_io/plan/plan_rtstruct.h"
 #include "planning_io/plan/plan_shapes.h"
 #include "planning_io/plan/plan_table.h"
-#include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLeastAcross_mm = 2;     // a plan for a head; one in metres is 0.2 "mm" across
+constexpr double kLeastAcross_mm = 2;  // a plan for a head; one in metres is 0.2 "mm" across
 constexpr double kMostAcross_mm = 1000;
 
 std::string lower(std::string text) {
@@ -27,7 +27,9 @@ std::string lower(std::string text) {
     return text;
 }
 
-bool ends(const fs::path& file, const char* ending) { return lower(file.filename().string()).ends_with(ending); }
+bool ends(const fs::path& file, const char* ending) {
+    return lower(file.filename().string()).ends_with(ending);
+}
 
 /// The minor version of the schema 1.0.x that the file names.
 int schema_minor(const JsonValue& root) {
@@ -57,16 +59,20 @@ PlanImport read_markups(const std::string& content, const fs::path& file, const 
     return read;
 }
 
-bool is_dicom(const std::string& content) { return content.size() >= 132 && content.compare(128, 4, "DICM") == 0; }
+bool is_dicom(const std::string& content) {
+    return content.size() >= 132 && content.compare(128, 4, "DICM") == 0;
+}
 
 /// Files that planning programs write beside their plans, and what to do with them.
 void refuse_known_others(const std::string& content, const fs::path& file) {
     const auto refuse = [&](const std::string& what, const std::string& remedy) {
         throw InputError(file, "is " + what + ", not a plan", remedy);
     };
-    if (content.starts_with("PK\x03\x04")) refuse("a spreadsheet or another zip archive", "Save its table as CSV, or unpack it.");
+    if (content.starts_with("PK\x03\x04"))
+        refuse("a spreadsheet or another zip archive", "Save its table as CSV, or unpack it.");
     if (content.starts_with("# Annotation file") || ends(file, ".acsv"))
-        refuse("an annotation of 3D Slicer 4, which says no frame", "Open it in 3D Slicer and save it as markups (.mrk.json).");
+        refuse("an annotation of 3D Slicer 4, which says no frame",
+               "Open it in 3D Slicer and save it as markups (.mrk.json).");
     if (content.starts_with("<MRML") || ends(file, ".mrml") || ends(file, ".mrb"))
         refuse("a scene of 3D Slicer", "Save the plan's markups from 3D Slicer as .mrk.json.");
     if (ends(file, ".vtm")) refuse("a list of surfaces", "Name the .vtp files one by one.");
@@ -76,16 +82,20 @@ PlanImport read_one(const fs::path& file, const PlanImportSettings& settings) {
     const std::string content = read_whole(file);
     if (content.empty()) throw DamagedFileError(file, "is empty", "Export the plan again.");
     refuse_known_others(content, file);
-    if (is_dicom(content) || ends(file, ".dcm")) return read_rtstruct(file, settings);  // old ones have no "DICM" at byte 128
+    if (is_dicom(content) || ends(file, ".dcm"))
+        return read_rtstruct(file, settings);  // old ones have no "DICM" at byte 128
     if (ends(file, ".json")) return read_markups(content, file, settings);
-    if (ends(file, ".fcsv") || content.starts_with("# Markups fiducial file") || content.starts_with("# Fiducial List file"))
+    if (ends(file, ".fcsv") || content.starts_with("# Markups fiducial file") ||
+        content.starts_with("# Fiducial List file"))
         return read_fcsv(content, file, settings);
-    if (ends(file, ".csv") || ends(file, ".tsv") || ends(file, ".txt")) return read_trajectory_table(content, file, settings);
+    if (ends(file, ".csv") || ends(file, ".tsv") || ends(file, ".txt"))
+        return read_trajectory_table(content, file, settings);
     for (const char* ending : {".vtp", ".vtk", ".ply", ".obj", ".stl"})
         if (ends(file, ending)) return read_shape_plan(file, settings);
-    throw InputError(file, "is of no kind that a plan is read from",
-                     "Give 3D Slicer markups (.mrk.json, .fcsv), DICOM RTSTRUCT (.dcm), a table of trajectories (.csv, .tsv), or "
-                     "lines (.vtp, .vtk, .ply, .obj).");
+    throw InputError(
+        file, "is of no kind that a plan is read from",
+        "Give 3D Slicer markups (.mrk.json, .fcsv), DICOM RTSTRUCT (.dcm), a table of trajectories (.csv, .tsv), or "
+        "lines (.vtp, .vtk, .ply, .obj).");
 }
 
 bool is_plan_name(const fs::path& file) {
@@ -105,10 +115,12 @@ void check_extent(const Plan& plan, const fs::path& file) {
     }
     const double across_mm = (high - low).norm();
     if (across_mm == 0)
-        throw InputError(file, fmt::format("has all its {} points at one place", points.size()), "Export the plan again.");
+        throw InputError(file, fmt::format("has all its {} points at one place", points.size()),
+                         "Export the plan again.");
     if (!(across_mm >= kLeastAcross_mm) || across_mm > kMostAcross_mm)
-        throw InputError(file, fmt::format("the whole plan is {:.3g} mm across: its numbers cannot be millimetres", across_mm),
-                         "Export the plan in mm.");
+        throw InputError(
+            file, fmt::format("the whole plan is {:.3g} mm across: its numbers cannot be millimetres", across_mm),
+            "Export the plan in mm.");
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace planlight {
 /// What a person, or the CT, says about a plan file.
 struct PlanImportSettings {
     std::optional<Space> space;  ///< of files that do not say theirs; one that says another is refused
-    /// FrameOfReferenceUID of the CT, to which that of a DICOM plan must be equal; "" = the CT has none, so that no DICOM plan
-    /// fits it; not given = not checked (and noted).
+    /// FrameOfReferenceUID of the CT, to which that of a DICOM plan must be equal; "" = the CT has none, so that no
+    /// DICOM plan fits it; not given = not checked (and noted).
     std::optional<std::string> frame_of_reference_uid;
 };
 
@@ -27,7 +27,8 @@ struct PlanImport {
 /// Reads a plan file of any known kind, told by content and name (the room's README lists them), or a folder of them.
 ///
 /// Frame and units must be said by the file or by `settings`: what is missing, wrong or means nothing in a plan is an
-/// InputError with its name; a cut or garbled file a DamagedFileError. DICOM, VTK and VTP are parsed in a child process.
+/// InputError with its name; a cut or garbled file a DamagedFileError. DICOM, VTK and VTP are parsed in a child
+/// process.
 PlanImport import_plan(const std::filesystem::path& file_or_folder, const PlanImportSettings& settings = {});
 
 /// Adds the items of `more`; frames of reference must agree (InputError).

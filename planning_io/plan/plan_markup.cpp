@@ -80,7 +80,8 @@ std::optional<Colour> colour_of(const JsonValue& markup) {
 
 PlanSettings settings_of(const JsonValue& point) {
     const auto description = point.find("description");
-    return {description ? description->text() : std::string(), [point](const std::string& problem) { point.refuse(problem); }};
+    return {description ? description->text() : std::string(),
+            [point](const std::string& problem) { point.refuse(problem); }};
 }
 
 std::size_t count_points(const JsonValue& points, std::size_t least) {
@@ -129,7 +130,8 @@ void append_boreholes(Plan& plan, const JsonValue& markup, const MarkupSpace& sp
         b.depth_mm = settings.length_mm("depth_mm", kMaxDepth_mm);
         if (const auto axis = settings.text("axis")) {
             if (*axis != "z")
-                points[i].refuse("describes axis=" + *axis + "; only axis=z (the third column of its orientation) is known");
+                points[i].refuse("describes axis=" + *axis +
+                                 "; only axis=z (the third column of its orientation) is known");
             b.axis_in_ct = axes_in_ct(points[i].at("orientation"), space).col(2);
         }
         b.colour = colour_of(markup);
@@ -185,7 +187,8 @@ void append_cut_plane(Plan& plan, const JsonValue& markup, const MarkupSpace& sp
 }
 
 Json base(const char* type, const std::string& name, const std::optional<Colour>& colour) {
-    Json markup{{"type", type}, {"name", name}, {"coordinateSystem", "LPS"}, {"coordinateUnits", "mm"}, {"locked", true}};
+    Json markup{
+        {"type", type}, {"name", name}, {"coordinateSystem", "LPS"}, {"coordinateUnits", "mm"}, {"locked", true}};
     if (colour) {
         const Json list = Json::array({(*colour)[0], (*colour)[1], (*colour)[2]});
         markup["display"] = Json{{"visibility", true}, {"color", list}, {"selectedColor", list}};
@@ -226,13 +229,19 @@ void append_markup(Plan& plan, const JsonValue& markup, bool units_required, con
     const bool line = type == "Line", points = type == "Fiducial", angle = type == "Angle", plane = type == "Plane";
     const bool closed = type == "ClosedCurve";
     if (!line && !points && !angle && !plane && !closed && type != "Curve")
-        refuse("which means nothing in a plan", "Keep only lines, angles, points, curves and planes in the plan's file.");
+        refuse("which means nothing in a plan",
+               "Keep only lines, angles, points, curves and planes in the plan's file.");
     const MarkupSpace space = space_of(markup, units_required);
-    if (line) append_trajectory(plan, markup, space, otherwise);
-    else if (points) append_boreholes(plan, markup, space, otherwise);
-    else if (angle) append_angle(plan, markup, space, otherwise);
-    else if (plane) append_cut_plane(plan, markup, space, otherwise);
-    else append_osteotomy_line(plan, markup, space, otherwise, closed);
+    if (line)
+        append_trajectory(plan, markup, space, otherwise);
+    else if (points)
+        append_boreholes(plan, markup, space, otherwise);
+    else if (angle)
+        append_angle(plan, markup, space, otherwise);
+    else if (plane)
+        append_cut_plane(plan, markup, space, otherwise);
+    else
+        append_osteotomy_line(plan, markup, space, otherwise, closed);
 }
 
 Json markup_of(const Trajectory& t) {

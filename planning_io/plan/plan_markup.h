@@ -5,8 +5,8 @@
 
 namespace planlight {
 
-/// One markup of a 3D Slicer markups file, into the plan, named `otherwise` where it has no name. Refused by name and reason
-/// where it is not a plan item.
+/// One markup of a 3D Slicer markups file, into the plan, named `otherwise` where it has no name. Refused by name and
+/// reason where it is not a plan item.
 void append_markup(Plan& plan, const JsonValue& markup, bool units_required, const std::string& otherwise);
 
 Json markup_of(const Trajectory& trajectory);

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "planning_io/dicom/rt_struct.h"
 #include "planning_io/plan/contour_stack.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/plan/plan_settings.h"
-#include "planning_io/dicom/rt_struct.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -36,7 +36,8 @@ public:
         if (roi_.contours.empty()) return "has no contours";
         if (said_.text("kind")) return {};
         const std::size_t heights = count_heights();
-        return heights >= kSolidHeights ? fmt::format("has contours at {} heights: a solid, not a line", heights) : std::string();
+        return heights >= kSolidHeights ? fmt::format("has contours at {} heights: a solid, not a line", heights)
+                                        : std::string();
     }
 
     void append_to(Plan& plan) const {
@@ -65,7 +66,8 @@ public:
 
 private:
     [[noreturn]] void refuse(const std::string& problem) const {
-        throw InputError(file_, "ROI \"" + roi_.name + "\" " + problem, "Correct this ROI, or export the plan without it.");
+        throw InputError(file_, "ROI \"" + roi_.name + "\" " + problem,
+                         "Correct this ROI, or export the plan without it.");
     }
 
     std::optional<Vector3d> axis() const {
@@ -128,15 +130,15 @@ void check_frame_of_reference(const std::string& uid_of_plan, const PlanImportSe
     if (uid_of_plan.empty())
         throw InputError(file, "does not name its frame of reference", "Export it again, on the CT of the case.");
     if (!settings.frame_of_reference_uid) {
-        notes.push_back(
-            fmt::format("{}: its frame of reference {} was not checked against a CT", file.filename().string(), uid_of_plan));
+        notes.push_back(fmt::format("{}: its frame of reference {} was not checked against a CT",
+                                    file.filename().string(), uid_of_plan));
         return;
     }
     const std::string& of_ct = *settings.frame_of_reference_uid;
     if (of_ct.empty())
-        throw InputError(
-            file, "is in the frame of reference " + uid_of_plan + ", and the volume names none",
-            "Prepare the case from the DICOM series that it was drawn on, or say --accept-frame " + uid_of_plan + " if it was.");
+        throw InputError(file, "is in the frame of reference " + uid_of_plan + ", and the volume names none",
+                         "Prepare the case from the DICOM series that it was drawn on, or say --accept-frame " +
+                             uid_of_plan + " if it was.");
     if (of_ct != uid_of_plan)
         throw InputError(file, "is in the frame of reference " + uid_of_plan + ", the volume in " + of_ct,
                          "Give the structure set that was drawn on this series.");
@@ -153,8 +155,11 @@ PlanImport read_rtstruct(const fs::path& file, const PlanImportSettings& setting
     for (const RtRoi& roi : rois) {
         const RoiReader reader(roi, file);
         const std::string why_not = reader.nothing_to_draw();
-        if (why_not.empty()) reader.append_to(read.plan);
-        else read.notes.push_back(fmt::format("{}: ROI \"{}\" {}; it is left out", file.filename().string(), roi.name, why_not));
+        if (why_not.empty())
+            reader.append_to(read.plan);
+        else
+            read.notes.push_back(
+                fmt::format("{}: ROI \"{}\" {}; it is left out", file.filename().string(), roi.name, why_not));
     }
     if (read.plan.empty()) {
         std::string all;

@@ -13,10 +13,10 @@
 #include <cstdlib>
 
 #include "planning_io/files/content_hash.h"
+#include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/plan/plan_rtstruct.h"
 #include "planning_io/plan/plan_settings.h"
-#include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -27,9 +27,10 @@ using Eigen::Vector3d;
 
 constexpr const char* kRtStructClass = "1.2.840.10008.5.1.4.1.1.481.3";
 constexpr const char* kImplicitLittleEndian = "1.2.840.10008.1.2";  // contours may be longer than explicit VRs can say
-constexpr std::size_t kDecimalStringChars = 16;  // of the value representation DS
+constexpr std::size_t kDecimalStringChars = 16;                     // of the value representation DS
 
-/// As one value of at most 64 characters (VR LO): no backslash, no control characters, cut between two UTF-8 characters.
+/// As one value of at most 64 characters (VR LO): no backslash, no control characters, cut between two UTF-8
+/// characters.
 vtkDICOMValue name_value(std::string text) {
     for (char& c : text)
         if (c == '\\' || (c >= 0 && c < ' ')) c = c == '\\' ? '/' : ' ';
@@ -57,7 +58,8 @@ std::string uid_of(const std::string& content) {
     unsigned __int128 number = 0;
     for (const char c : hex) number = number * 16 + static_cast<unsigned>(c <= '9' ? c - '0' : c - 'a' + 10);
     std::string digits;
-    for (; number > 0; number /= 10) digits.insert(digits.begin(), static_cast<char>('0' + static_cast<int>(number % 10)));
+    for (; number > 0; number /= 10)
+        digits.insert(digits.begin(), static_cast<char>('0' + static_cast<int>(number % 10)));
     return "2.25." + (digits.empty() ? "0" : digits);
 }
 
@@ -69,8 +71,8 @@ class RoiWriter {
 public:
     explicit RoiWriter(const RtStructIdentity& identity) : identity_(identity) {}
 
-    void add(const std::string& name, const std::string& description, const char* type, const std::vector<Vector3d>& points,
-             const std::optional<Colour>& colour) {
+    void add(const std::string& name, const std::string& description, const char* type,
+             const std::vector<Vector3d>& points, const std::optional<Colour>& colour) {
         const std::string number = std::to_string(++count_);
         vtkDICOMItem named;
         named.Set(DC::ROINumber, vtkDICOMValue(vtkDICOMVR::IS, number));
@@ -124,16 +126,19 @@ void add_items(RoiWriter& writer, const Plan& plan) {
     for (const auto& b : plan.boreholes) {
         std::string description = description_of(b);
         if (b.axis_in_ct)
-            description +=
-                fmt::format(" axis={},{},{}", exact(b.axis_in_ct->x()), exact(b.axis_in_ct->y()), exact(b.axis_in_ct->z()));
+            description += fmt::format(" axis={},{},{}", exact(b.axis_in_ct->x()), exact(b.axis_in_ct->y()),
+                                       exact(b.axis_in_ct->z()));
         writer.add(b.name, description, "POINT", {b.position_in_ct}, b.colour);
     }
     for (const auto& t : plan.trajectories)
-        writer.add(t.name, "kind=trajectory " + description_of(t), "OPEN_PLANAR", {t.entry_in_ct, t.target_in_ct}, t.colour);
+        writer.add(t.name, "kind=trajectory " + description_of(t), "OPEN_PLANAR", {t.entry_in_ct, t.target_in_ct},
+                   t.colour);
     for (const auto& c : plan.cut_planes) {
-        const Vector3d u = c.first_axis_in_ct * c.width_mm / 2, v = c.normal_in_ct.cross(c.first_axis_in_ct) * c.height_mm / 2;
+        const Vector3d u = c.first_axis_in_ct * c.width_mm / 2,
+                       v = c.normal_in_ct.cross(c.first_axis_in_ct) * c.height_mm / 2;
         writer.add(c.name, "kind=cut_plane", "CLOSED_PLANAR",
-                   {c.origin_in_ct - u - v, c.origin_in_ct + u - v, c.origin_in_ct + u + v, c.origin_in_ct - u + v}, c.colour);
+                   {c.origin_in_ct - u - v, c.origin_in_ct + u - v, c.origin_in_ct + u + v, c.origin_in_ct - u + v},
+                   c.colour);
     }
 }
 
@@ -145,7 +150,9 @@ std::string digits_of(const std::string& iso, std::size_t from, std::size_t coun
 }
 
 void set_head(vtkDICOMMetaData* meta, const RtStructIdentity& identity, const std::string& content) {
-    const auto set = [&](vtkDICOMTag tag, vtkDICOMVR vr, const std::string& value) { meta->Set(tag, vtkDICOMValue(vr, value)); };
+    const auto set = [&](vtkDICOMTag tag, vtkDICOMVR vr, const std::string& value) {
+        meta->Set(tag, vtkDICOMValue(vr, value));
+    };
     const std::string date = digits_of(identity.created, 0, 8), time = digits_of(identity.created, 8, 6);
     set(DC::SpecificCharacterSet, vtkDICOMVR::CS, "ISO_IR 192");
     set(DC::SOPClassUID, vtkDICOMVR::UI, kRtStructClass);
@@ -179,7 +186,9 @@ void set_head(vtkDICOMMetaData* meta, const RtStructIdentity& identity, const st
 std::string compile(vtkDICOMMetaData* meta, const fs::path& file) {
     std::string name = (fs::temp_directory_path() / "planlight-rtstruct-XXXXXX").string();
     const int fd = mkstemp(name.data());
-    if (fd < 0) throw DiskError(file, "could not be written (no temporary file)", "Make room in the folder for temporary files.");
+    if (fd < 0)
+        throw DiskError(file, "could not be written (no temporary file)",
+                        "Make room in the folder for temporary files.");
     close(fd);
     vtkNew<vtkDICOMCompiler> compiler;
     compiler->SetFileName(name.c_str());
@@ -208,7 +217,8 @@ void write_plan_rtstruct(const Plan& plan, const RtStructIdentity& identity, con
     RoiWriter writer(identity);
     add_items(writer, plan);
     std::string content = identity.code + identity.frame_of_reference_uid + identity.created;
-    for (const auto& p : points_of(plan)) content += decimal_string(p.x()) + decimal_string(p.y()) + decimal_string(p.z());
+    for (const auto& p : points_of(plan))
+        content += decimal_string(p.x()) + decimal_string(p.y()) + decimal_string(p.z());
     vtkNew<vtkDICOMMetaData> meta;
     meta->Initialize();
     set_head(meta, identity, content);

@@ -37,8 +37,12 @@ std::string exact(double value) {
     return {text, end};
 }
 
-std::string description_of(const Trajectory& t) { return t.diameter_mm > 0 ? "diameter_mm=" + exact(t.diameter_mm) : ""; }
+std::string description_of(const Trajectory& t) {
+    return t.diameter_mm > 0 ? "diameter_mm=" + exact(t.diameter_mm) : "";
+}
 
-std::string description_of(const Borehole& b) { return "diameter_mm=" + exact(b.diameter_mm) + " depth_mm=" + exact(b.depth_mm); }
+std::string description_of(const Borehole& b) {
+    return "diameter_mm=" + exact(b.diameter_mm) + " depth_mm=" + exact(b.depth_mm);
+}
 
 }  // namespace planlight

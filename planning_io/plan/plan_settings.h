@@ -9,8 +9,8 @@
 
 namespace planlight {
 
-/// The "key=value" words in the description of a plan item, in whatever file: diameter_mm, depth_mm, axis ...; other words
-/// are the surgeon's own.
+/// The "key=value" words in the description of a plan item, in whatever file: diameter_mm, depth_mm, axis ...; other
+/// words are the surgeon's own.
 class PlanSettings {
 public:
     using Refuse = std::function<void(const std::string& problem)>;  ///< must throw

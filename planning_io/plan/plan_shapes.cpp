@@ -65,7 +65,8 @@ public:
             if (points.size() != 1) refuse("is not a borehole of one point");
             std::optional<Vector3d> axis;
             if (line.axis) axis = to_ct(*line.axis, space_);
-            plan.boreholes.push_back({name, points[0], axis, diameter_mm, said.length_mm("depth_mm", kMaxDepth_mm), line.colour});
+            plan.boreholes.push_back(
+                {name, points[0], axis, diameter_mm, said.length_mm("depth_mm", kMaxDepth_mm), line.colour});
         } else if (line.kind == "cut_plane") {
             add_plane(plan, name, points, line.colour, refuse);
         } else {
@@ -75,8 +76,8 @@ public:
 
 private:
     template <class Refuse>
-    void add_line(Plan& plan, const std::string& name, std::vector<Vector3d> points, const std::optional<Colour>& colour,
-                  const Refuse& refuse) const {
+    void add_line(Plan& plan, const std::string& name, std::vector<Vector3d> points,
+                  const std::optional<Colour>& colour, const Refuse& refuse) const {
         OsteotomyLine o{name, std::move(points), false, colour};
         if (o.points_in_ct.size() < 2) refuse("is a single point, which is nothing to cut along");
         o.closed = o.points_in_ct.size() > 3 && o.points_in_ct.front() == o.points_in_ct.back();
@@ -88,15 +89,15 @@ private:
 
     /// Its four corners, the first side along the first axis.
     template <class Refuse>
-    void add_plane(Plan& plan, const std::string& name, const std::vector<Vector3d>& p, const std::optional<Colour>& colour,
-                   const Refuse& refuse) const {
+    void add_plane(Plan& plan, const std::string& name, const std::vector<Vector3d>& p,
+                   const std::optional<Colour>& colour, const Refuse& refuse) const {
         if (p.size() != 5 || p[0] != p[4]) refuse("is not a plane of four corners");
         const Vector3d u = p[1] - p[0], v = p[2] - p[1];
         if (!(u.norm() > 1e-6) || !(v.norm() > 1e-6) || std::abs(u.normalized().dot(v.normalized())) > 1e-6 ||
             (p[0] + p[2] - p[1] - p[3]).norm() > 1e-6)
             refuse("is not a rectangle");
-        plan.cut_planes.push_back(
-            {name, (p[0] + p[2]) / 2, u.normalized().cross(v.normalized()), u.normalized(), u.norm(), v.norm(), colour});
+        plan.cut_planes.push_back({name, (p[0] + p[2]) / 2, u.normalized().cross(v.normalized()), u.normalized(),
+                                   u.norm(), v.norm(), colour});
     }
 
     const Shape& shape_;
@@ -136,7 +137,8 @@ void join_segments(Shape& shape) {
 
 PlanImport read_shape_plan(const fs::path& file, const PlanImportSettings& settings) {
     Shape shape = welded(read_shape(file)).shape;
-    const Space space = settled_space(shape.space, settings.space, file, "Export it with its space (3D Slicer does: SPACE=LPS)");
+    const Space space =
+        settled_space(shape.space, settings.space, file, "Export it with its space (3D Slicer does: SPACE=LPS)");
     join_segments(shape);
     refuse_contour_stack(shape, file);
     PlanImport read;
@@ -145,9 +147,10 @@ PlanImport read_shape_plan(const fs::path& file, const PlanImportSettings& setti
     };
     for (const auto& loop : border_loops(shape, file)) shape.lines.push_back({loop, {}, {}, {}, {}, {}});
     if (shape.lines.empty() && !shape.triangles.empty())
-        throw InputError(file,
-                         fmt::format("is a closed surface of {} triangles, without an edge to cut along", shape.triangles.size()),
-                         "Draw the cut as a curve; to project on this surface, give it to `planlight prepare --surface`.");
+        throw InputError(
+            file,
+            fmt::format("is a closed surface of {} triangles, without an edge to cut along", shape.triangles.size()),
+            "Draw the cut as a curve; to project on this surface, give it to `planlight prepare --surface`.");
     if (shape.lines.empty()) throw InputError(file, "holds no lines", "Export the plan's curves as lines.");
     for (std::size_t i = 0; i < shape.lines.size(); ++i)
         ShapePlan(shape, space, file).add(read.plan, shape.lines[i], numbered(i, shape.lines.size()));

@@ -50,7 +50,8 @@ Columns columns_of(const std::vector<std::string>& names, const fs::path& file, 
     if (!entry || !target)
         throw InputError(
             file,
-            fmt::format("does not name an entry and a target of each trajectory; its columns are {}", fmt::join(names, ", ")),
+            fmt::format("does not name an entry and a target of each trajectory; its columns are {}",
+                        fmt::join(names, ", ")),
             std::string(kHowTo) + "; lists of contacts, and of a start and an end, do not say which is which.");
     if (!at.contains("name")) throw InputError(file, "names no column \"name\"", std::string(kHowTo) + ".");
     Columns columns{at["name"], *entry, *target, std::nullopt, names.size()};
@@ -62,7 +63,8 @@ Columns columns_of(const std::vector<std::string>& names, const fs::path& file, 
         if (!used) left_out.push_back(names[i]);
     }
     if (!left_out.empty())
-        notes.push_back(fmt::format("{}: the columns {} are left out", file.filename().string(), fmt::join(left_out, ", ")));
+        notes.push_back(
+            fmt::format("{}: the columns {} are left out", file.filename().string(), fmt::join(left_out, ", ")));
     return columns;
 }
 
@@ -79,7 +81,8 @@ double unit_in(const std::string& comments, const fs::path& file) {
 
 class Row {
 public:
-    Row(std::vector<std::string> fields, int line, const fs::path& file) : fields_(std::move(fields)), line_(line), file_(file) {}
+    Row(std::vector<std::string> fields, int line, const fs::path& file)
+        : fields_(std::move(fields)), line_(line), file_(file) {}
     [[noreturn]] void refuse(const std::string& problem) const {
         throw InputError(file_, fmt::format("line {} {}", line_, problem), "Correct this line.");
     }
@@ -112,7 +115,8 @@ Trajectory trajectory_of(const Row& row, const Columns& columns, Space space, do
     t.name = row.text(columns.name);
     t.entry_in_ct = to_ct(row.point(columns.entry, mm_per_unit), space);
     t.target_in_ct = to_ct(row.point(columns.target, mm_per_unit), space);
-    if (columns.diameter && !row.text(*columns.diameter).empty()) t.diameter_mm = row.number(*columns.diameter, kMaxDiameter_mm);
+    if (columns.diameter && !row.text(*columns.diameter).empty())
+        t.diameter_mm = row.number(*columns.diameter, kMaxDiameter_mm);
     if (t.diameter_mm < 0) row.refuse("has a negative diameter");
     if (!(t.length_mm() > 1e-3)) row.refuse("(\"" + t.name + "\") is a trajectory of no length");
     return t;
@@ -140,7 +144,8 @@ PlanImport read_trajectory_table(const std::string& content, const fs::path& fil
         if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
         if (line.starts_with("#")) {
             constexpr std::string_view kNames = "# columns:";  // some programs name the columns in a comment
-            if (!columns && line.starts_with(kNames)) line = line.substr(line.find_first_not_of(' ', kNames.size()));
+            if (!columns && line.starts_with(kNames))
+                line = line.substr(line.find_first_not_of(' ', kNames.size()));
             else {
                 comments += line + '\n';
                 continue;

@@ -10,10 +10,10 @@
 
 #include <Eigen/Geometry>
 
+#include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/plan/plan_settings.h"
 #include "planning_io/plan/plan_shapes.h"
-#include "planning_io/files/safe_write.h"
 
 namespace planlight {
 namespace {
@@ -32,8 +32,9 @@ public:
         axes_->SetName("axis");
         colours_->SetName("colour");
     }
-    void add(const char* kind, const std::string& name, const std::string& description, const std::vector<Vector3d>& points,
-             bool closed, const std::optional<Colour>& colour, const std::optional<Vector3d>& axis = std::nullopt) {
+    void add(const char* kind, const std::string& name, const std::string& description,
+             const std::vector<Vector3d>& points, bool closed, const std::optional<Colour>& colour,
+             const std::optional<Vector3d>& axis = std::nullopt) {
         const vtkIdType first = points_->GetNumberOfPoints();
         for (const auto& p : points) points_->InsertNextPoint(p.data());
         vtkCellArray* cells = points.size() == 1 ? verts_.Get() : lines_.Get();
@@ -53,8 +54,8 @@ public:
         data->SetPoints(points_);
         data->SetVerts(verts_);
         data->SetLines(lines_);
-        for (vtkAbstractArray* array : std::initializer_list<vtkAbstractArray*>{kinds_.Get(), names_.Get(), descriptions_.Get(),
-                                                                                axes_.Get(), colours_.Get()})
+        for (vtkAbstractArray* array : std::initializer_list<vtkAbstractArray*>{
+                 kinds_.Get(), names_.Get(), descriptions_.Get(), axes_.Get(), colours_.Get()})
             data->GetCellData()->AddArray(array);
         vtkNew<vtkStringArray> space;
         space->SetName("SPACE");
@@ -77,7 +78,8 @@ private:
 };
 
 std::vector<Vector3d> corners_of(const CutPlane& c) {
-    const Vector3d u = c.first_axis_in_ct * c.width_mm / 2, v = c.normal_in_ct.cross(c.first_axis_in_ct) * c.height_mm / 2;
+    const Vector3d u = c.first_axis_in_ct * c.width_mm / 2,
+                   v = c.normal_in_ct.cross(c.first_axis_in_ct) * c.height_mm / 2;
     return {c.origin_in_ct - u - v, c.origin_in_ct + u - v, c.origin_in_ct + u + v, c.origin_in_ct - u + v};
 }
 
@@ -90,7 +92,8 @@ void write_plan_vtp(const Plan& plan, const std::filesystem::path& file) {
         cells.add("borehole", b.name, description_of(b), {b.position_in_ct}, false, b.colour, b.axis_in_ct);
     for (const auto& t : plan.trajectories)
         cells.add("trajectory", t.name, description_of(t), {t.entry_in_ct, t.target_in_ct}, false, t.colour);
-    for (const auto& o : plan.osteotomy_lines) cells.add("osteotomy_line", o.name, "", o.points_in_ct, o.closed, o.colour);
+    for (const auto& o : plan.osteotomy_lines)
+        cells.add("osteotomy_line", o.name, "", o.points_in_ct, o.closed, o.colour);
     for (const auto& c : plan.cut_planes) cells.add("cut_plane", c.name, "", corners_of(c), true, c.colour);
     write_safely(file, cells.as_vtp());
 }

@@ -8,8 +8,8 @@
 #include <set>
 #include <sstream>
 
-#include "planning_io/plan/coordinate_space.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/plan/coordinate_space.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -84,9 +84,10 @@ void write_point_pairs(const std::vector<PointPair>& pairs, const std::filesyste
     std::string table = fmt::format("# SPACE=LPS\n{}\n", kColumns);
     for (const PointPair& pair : pairs) {
         if (pair.name.empty() || pair.name.find_first_of(",\n\r") != std::string::npos || pair.name.front() == '#')
-            throw InputError(file, "cannot hold the landmark name \"" + pair.name + "\"", "Name it without commas and '#'.");
-        table += fmt::format("{},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f}\n", pair.name, pair.in_ct.x(), pair.in_ct.y(),
-                             pair.in_ct.z(), pair.in_rig.x(), pair.in_rig.y(), pair.in_rig.z());
+            throw InputError(file, "cannot hold the landmark name \"" + pair.name + "\"",
+                             "Name it without commas and '#'.");
+        table += fmt::format("{},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f},{:.2f}\n", pair.name, pair.in_ct.x(),
+                             pair.in_ct.y(), pair.in_ct.z(), pair.in_rig.x(), pair.in_rig.y(), pair.in_rig.z());
     }
     write_safely(file, table);
 }

@@ -16,10 +16,10 @@
 
 #include "planning_io/dicom/dicom_nesting.h"
 #include "planning_io/files/header_text.h"
-#include "planning_io/files/sandboxed_process.h"
-#include "planning_io/surface/mask_surface.h"
-#include "planning_io/plan/plan_rtstruct.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/files/sandboxed_process.h"
+#include "planning_io/plan/plan_rtstruct.h"
+#include "planning_io/surface/mask_surface.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -29,8 +29,9 @@ namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
 constexpr const char* kSegClass = "1.2.840.10008.5.1.4.1.1.66.4";
-constexpr const char* kExportAgain = "Export the segmentation as a binary, uncompressed DICOM SEG, or as STL with its space.";
-constexpr int kMostEmpty = 20;   // slices a frame: the others would be gaps
+constexpr const char* kExportAgain =
+    "Export the segmentation as a binary, uncompressed DICOM SEG, or as STL with its space.";
+constexpr int kMostEmpty = 20;  // slices a frame: the others would be gaps
 constexpr double kEven = 0.05;  // of a slice's distance
 
 std::string text(const vtkDICOMValue& value) {
@@ -40,7 +41,8 @@ std::string text(const vtkDICOMValue& value) {
 }
 
 Vector3d vector(const vtkDICOMValue& value, unsigned from, const fs::path& file, const char* what) {
-    if (value.GetNumberOfValues() < from + 3) throw InputError(file, fmt::format("has a frame without {}", what), kExportAgain);
+    if (value.GetNumberOfValues() < from + 3)
+        throw InputError(file, fmt::format("has a frame without {}", what), kExportAgain);
     const Vector3d v(value.GetDouble(from), value.GetDouble(from + 1), value.GetDouble(from + 2));
     if (!v.allFinite() || v.cwiseAbs().maxCoeff() > 1e5)
         throw InputError(file, fmt::format("has a frame whose {} makes no sense", what), kExportAgain);
@@ -54,11 +56,13 @@ int chosen_segment(vtkDICOMMetaData* meta, const std::string& wanted, const fs::
     for (std::size_t i = 0; i < segments.GetNumberOfItems(); ++i)
         labels.push_back(text(segments.GetItem(i).Get(DC::SegmentLabel)));
     if (labels.empty()) throw InputError(file, "names no segment", kExportAgain);
-    const auto found = wanted.empty() && labels.size() == 1 ? labels.begin() : std::find(labels.begin(), labels.end(), wanted);
+    const auto found =
+        wanted.empty() && labels.size() == 1 ? labels.begin() : std::find(labels.begin(), labels.end(), wanted);
     if (found == labels.end())
         throw InputError(file,
-                         wanted.empty() ? fmt::format("holds {} segments: {}", labels.size(), fmt::join(labels, ", "))
-                                        : fmt::format("holds no segment \"{}\"; there is: {}", wanted, fmt::join(labels, ", ")),
+                         wanted.empty()
+                             ? fmt::format("holds {} segments: {}", labels.size(), fmt::join(labels, ", "))
+                             : fmt::format("holds no segment \"{}\"; there is: {}", wanted, fmt::join(labels, ", ")),
                          "Choose one by its label (--segment LABEL).");
     if (std::count(labels.begin(), labels.end(), *found) > 1)
         throw InputError(file, "holds two segments of the label \"" + *found + "\"", kExportAgain);
@@ -105,8 +109,8 @@ Stack stack_of(vtkDICOMMetaData* meta, int segment, const fs::path& file) {
     if (frames.size() < 2)
         throw InputError(file, "holds " + counted(static_cast<long long>(frames.size()), "frame") + " of this segment",
                          kExportAgain);
-    if (!(row_mm > 0.01) || !(column_mm > 0.01) || row_mm > 20 || column_mm > 20 || std::abs(along_row->norm() - 1) > 1e-3 ||
-        std::abs(along_column->norm() - 1) > 1e-3)
+    if (!(row_mm > 0.01) || !(column_mm > 0.01) || row_mm > 20 || column_mm > 20 ||
+        std::abs(along_row->norm() - 1) > 1e-3 || std::abs(along_column->norm() - 1) > 1e-3)
         throw InputError(file, "has a pixel spacing or an orientation that makes no sense", kExportAgain);
     const Vector3d normal = along_row->cross(*along_column).normalized();
     const auto height = [&](const Frame& f) { return normal.dot(f.position_in_ct); };
@@ -141,7 +145,8 @@ MaskStack mask_of(const Stack& stack, std::string_view bits, const fs::path& fil
     for (const auto& [frame, slice] : stack.frame_and_slice)
         for (std::size_t i = 0; i < pixels; ++i) {
             const std::size_t bit = static_cast<std::size_t>(frame) * pixels + i;
-            if (bit / 8 >= bits.size()) throw DamagedFileError(file, "holds fewer pixels than it announces", kExportAgain);
+            if (bit / 8 >= bits.size())
+                throw DamagedFileError(file, "holds fewer pixels than it announces", kExportAgain);
             mask.inside[static_cast<std::size_t>(slice) * pixels + i] =
                 (static_cast<unsigned char>(bits[bit / 8]) >> (bit % 8)) & 1;
         }
@@ -160,10 +165,12 @@ void parse(Parcel& parcel, const fs::path& file, const std::string& segment) {
     const std::string kind = text(meta->Get(DC::SOPClassUID)), modality = text(meta->Get(DC::Modality)),
                       syntax = text(meta->Get(DC::TransferSyntaxUID));
     if (kind != kSegClass)
-        throw InputError(file, "is DICOM of modality " + (modality.empty() ? "unknown" : modality) + ", not a segmentation (SEG)",
-                         kExportAgain);
+        throw InputError(
+            file, "is DICOM of modality " + (modality.empty() ? "unknown" : modality) + ", not a segmentation (SEG)",
+            kExportAgain);
     if (text(meta->Get(DC::SegmentationType)) != "BINARY" || meta->Get(DC::BitsAllocated).AsInt() != 1)
-        throw InputError(file, "is a segmentation of the type " + text(meta->Get(DC::SegmentationType)) + ", not BINARY",
+        throw InputError(file,
+                         "is a segmentation of the type " + text(meta->Get(DC::SegmentationType)) + ", not BINARY",
                          kExportAgain);
     if (syntax != "1.2.840.10008.1.2" && syntax != "1.2.840.10008.1.2.1")
         throw InputError(file, "is compressed or big endian (" + syntax + ")", kExportAgain);
@@ -172,7 +179,8 @@ void parse(Parcel& parcel, const fs::path& file, const std::string& segment) {
     if (static_cast<double>(stack.columns) * stack.rows * stack.slices > 7e8)
         throw InputError(file, "is larger than 700 million voxels", "Resample the segmentation to larger voxels.");
     const auto offset = static_cast<std::size_t>(std::max<vtkTypeInt64>(0, parser->GetFileOffset()));
-    if (!parser->GetPixelDataFound() || offset >= content.size()) throw DamagedFileError(file, "holds no pixels", kExportAgain);
+    if (!parser->GetPixelDataFound() || offset >= content.size())
+        throw DamagedFileError(file, "holds no pixels", kExportAgain);
     const double pixels = static_cast<double>(meta->Get(DC::NumberOfFrames).AsInt()) * stack.columns * stack.rows;
     if (pixels > 8 * static_cast<double>(content.size() - offset))
         throw DamagedFileError(file, "holds fewer pixels than it announces", kExportAgain);

@@ -4,8 +4,8 @@
 #include <cstring>
 
 #include "planning_io/files/content_hash.h"
-#include "planning_io/surface/ply.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/surface/ply.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -69,7 +69,8 @@ const std::vector<double>& column(const Ply& ply, const char* name, const fs::pa
     return *values;
 }
 
-std::vector<Eigen::Vector3d> vectors(const Ply& ply, std::array<const char*, 3> names, double sign_xy, const fs::path& file) {
+std::vector<Eigen::Vector3d> vectors(const Ply& ply, std::array<const char*, 3> names, double sign_xy,
+                                     const fs::path& file) {
     const auto &x = column(ply, names[0], file), &y = column(ply, names[1], file), &z = column(ply, names[2], file);
     std::vector<Eigen::Vector3d> result(ply.vertices);
     for (std::size_t i = 0; i < result.size(); ++i) result[i] = {sign_xy * x[i], sign_xy * y[i], z[i]};
@@ -129,7 +130,8 @@ TriangleMesh read_mesh(const fs::path& file) {
     return mesh;
 }
 
-void write_cloud(const PointCloud& cloud, const fs::path& file, const std::vector<std::array<std::int32_t, 3>>& triangles) {
+void write_cloud(const PointCloud& cloud, const fs::path& file,
+                 const std::vector<std::array<std::int32_t, 3>>& triangles) {
     const std::size_t count = cloud.size();
     check_length(cloud.normals_in_rig, count, file, "normals");
     check_length(cloud.sigma_mm, count, file, "sigma");

@@ -11,7 +11,8 @@ namespace planlight {
 /// Binary PLY with "comment SPACE=LPS"; vertex normals, flags and thickness included.
 void write_mesh(const TriangleMesh& mesh, const std::filesystem::path& file);
 
-/// PLY as written above, or another program's PLY with SPACE=LPS or SPACE=RAS (converted); without a SPACE it is refused.
+/// PLY as written above, or another program's PLY with SPACE=LPS or SPACE=RAS (converted); without a SPACE it is
+/// refused.
 TriangleMesh read_mesh(const std::filesystem::path& file);
 
 /// Binary PLY of a scan in rig, with "comment FRAME=rig"; columns x y z nx ny nz sigma projector_x projector_y. With
@@ -21,11 +22,11 @@ void write_cloud(const PointCloud& cloud, const std::filesystem::path& file,
 
 /// What a person says of a cloud that another program wrote.
 struct CloudOrigin {
-    double unit_mm = 1;         ///< of its numbers, in mm: 1000 for metres
-    bool in_rig = false;        ///< its points are in the rig's frame though it does not say so
+    double unit_mm = 1;   ///< of its numbers, in mm: 1000 for metres
+    bool in_rig = false;  ///< its points are in the rig's frame though it does not say so
 };
-/// Throws InputError for a cloud that is not said to be in the rig's frame, DamagedFileError for a damaged one. Normals are
-/// read where they are (`nx ny nz`); sigma and projector pixels as well.
+/// Throws InputError for a cloud that is not said to be in the rig's frame, DamagedFileError for a damaged one. Normals
+/// are read where they are (`nx ny nz`); sigma and projector pixels as well.
 PointCloud read_cloud(const std::filesystem::path& file, const CloudOrigin& origin = {});
 
 /// XXH3-128 of vertices and triangles, hex.

@@ -12,7 +12,8 @@ namespace fs = std::filesystem;
 std::int32_t obj_index(const std::string& word, std::size_t points, const fs::path& file) {
     const double given = parse_number(std::string_view(word).substr(0, word.find('/')), file);
     const double index = given < 0 ? static_cast<double>(points) + given : given - 1;
-    if (!(index >= 0) || index >= static_cast<double>(points) || index != static_cast<double>(static_cast<std::int32_t>(index)))
+    if (!(index >= 0) || index >= static_cast<double>(points) ||
+        index != static_cast<double>(static_cast<std::int32_t>(index)))
         refuse_damaged(file, "names the point " + word.substr(0, 20) + ", which does not exist");
     return static_cast<std::int32_t>(index);
 }
@@ -34,9 +35,11 @@ Shape parse_obj(const std::string& content, const fs::path& file) {
         if (kind != "l" && kind != "f") continue;
         std::vector<std::int32_t> points;
         for (std::string word; words >> word;) points.push_back(obj_index(word, shape.points.size(), file));
-        if (kind == "l") shape.lines.push_back({std::move(points), {}, name, {}, {}, {}});
+        if (kind == "l")
+            shape.lines.push_back({std::move(points), {}, name, {}, {}, {}});
         else
-            for (std::size_t c = 2; c < points.size(); ++c) shape.triangles.push_back({points[0], points[c - 1], points[c]});
+            for (std::size_t c = 2; c < points.size(); ++c)
+                shape.triangles.push_back({points[0], points[c - 1], points[c]});
     }
     shape.space = space_marked(comments, file);
     return shape;

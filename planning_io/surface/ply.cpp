@@ -45,7 +45,8 @@ Type type_of(const std::string& word, const fs::path& file) {
 
 class Reader {
 public:
-    Reader(std::string_view rest, Encoding encoding, const fs::path& file) : rest_(rest), encoding_(encoding), file_(file) {}
+    Reader(std::string_view rest, Encoding encoding, const fs::path& file)
+        : rest_(rest), encoding_(encoding), file_(file) {}
 
     double next(Type type) { return encoding_ == Encoding::ascii ? next_word() : next_bytes(type); }
     bool only_space_left() const { return rest_.find_first_not_of(" \t\r\n") == std::string_view::npos; }
@@ -79,14 +80,22 @@ private:
         static_assert(std::endian::native == std::endian::little);
         if (encoding_ == Encoding::big) std::reverse(bytes, bytes + size);
         switch (type) {
-            case Type::i8: return as<std::int8_t>(bytes);
-            case Type::u8: return as<std::uint8_t>(bytes);
-            case Type::i16: return as<std::int16_t>(bytes);
-            case Type::u16: return as<std::uint16_t>(bytes);
-            case Type::i32: return as<std::int32_t>(bytes);
-            case Type::u32: return as<std::uint32_t>(bytes);
-            case Type::f32: return as<float>(bytes);
-            case Type::f64: return as<double>(bytes);
+            case Type::i8:
+                return as<std::int8_t>(bytes);
+            case Type::u8:
+                return as<std::uint8_t>(bytes);
+            case Type::i16:
+                return as<std::int16_t>(bytes);
+            case Type::u16:
+                return as<std::uint16_t>(bytes);
+            case Type::i32:
+                return as<std::int32_t>(bytes);
+            case Type::u32:
+                return as<std::uint32_t>(bytes);
+            case Type::f32:
+                return as<float>(bytes);
+            case Type::f64:
+                return as<double>(bytes);
         }
         return 0;
     }
@@ -174,7 +183,8 @@ void read_row(Reader& reader, const Element& element, Ply& ply, const fs::path& 
             continue;
         }
         std::vector<std::int64_t> list(read_count(reader, *property.count_type, file));
-        const bool corners = element.name == "face" && (property.name == "vertex_indices" || property.name == "vertex_index");
+        const bool corners =
+            element.name == "face" && (property.name == "vertex_indices" || property.name == "vertex_index");
         for (auto& item : list) {
             const double value = reader.next(property.type);
             if (corners && (!(value >= 0) || value >= static_cast<double>(ply.vertices)))

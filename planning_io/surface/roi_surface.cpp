@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "planning_io/plan/contour_stack.h"
-#include "planning_io/surface/mask_surface.h"
-#include "planning_io/plan/plan_rtstruct.h"
 #include "planning_io/dicom/rt_struct.h"
+#include "planning_io/plan/contour_stack.h"
+#include "planning_io/plan/plan_rtstruct.h"
+#include "planning_io/surface/mask_surface.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -34,7 +34,8 @@ std::vector<Loop> loops_of(const RtRoi& roi, const fs::path& file) {
         for (std::size_t i = 0; i + 2 < contour.numbers.size(); i += 3) {
             loop.emplace_back(contour.numbers[i], contour.numbers[i + 1], contour.numbers[i + 2]);
             if (!loop.back().allFinite() || loop.back().cwiseAbs().maxCoeff() > 5000)
-                throw InputError(file, "ROI \"" + roi.name + "\" has a coordinate that is not a number of mm within 5 m",
+                throw InputError(file,
+                                 "ROI \"" + roi.name + "\" has a coordinate that is not a number of mm within 5 m",
                                  kExportAgain);
         }
         loops.push_back(std::move(loop));
@@ -92,7 +93,8 @@ MaskStack mask_of(std::vector<Loop> loops, const std::string& name, const fs::pa
         if (!(most - least < kOneHeight_mm)) refuse("has contours that are not parallel");
         heights.push_back((least + most) / 2);
     }
-    if (!((high - low).maxCoeff() < kMostAcross_mm)) refuse(fmt::format("is {:.0f} mm across", (high - low).maxCoeff()));
+    if (!((high - low).maxCoeff() < kMostAcross_mm))
+        refuse(fmt::format("is {:.0f} mm across", (high - low).maxCoeff()));
     std::vector<double> sorted = heights;
     std::sort(sorted.begin(), sorted.end());
     double step = INFINITY;
@@ -104,13 +106,13 @@ MaskStack mask_of(std::vector<Loop> loops, const std::string& name, const fs::pa
     if (!(slices < kMostEmpty * static_cast<double>(loops.size()))) refuse("has contours that are not evenly spaced");
     const Vector3d first(low.x(), low.y(), sorted.front());
     MaskStack mask;
-    mask.size = {static_cast<int>((high.x() - low.x()) / kPixel_mm) + 2, static_cast<int>((high.y() - low.y()) / kPixel_mm) + 2,
-                 static_cast<int>(slices)};
+    mask.size = {static_cast<int>((high.x() - low.x()) / kPixel_mm) + 2,
+                 static_cast<int>((high.y() - low.y()) / kPixel_mm) + 2, static_cast<int>(slices)};
     mask.ct_from_voxel.linear() = axes * Vector3d(kPixel_mm, kPixel_mm, step).asDiagonal();
     mask.ct_from_voxel.translation() = axes * first;
-    mask.inside.assign(
-        static_cast<std::size_t>(mask.size[0]) * static_cast<std::size_t>(mask.size[1]) * static_cast<std::size_t>(mask.size[2]),
-        0);
+    mask.inside.assign(static_cast<std::size_t>(mask.size[0]) * static_cast<std::size_t>(mask.size[1]) *
+                           static_cast<std::size_t>(mask.size[2]),
+                       0);
     for (std::size_t i = 0; i < loops.size(); ++i) {
         const double slice = (heights[i] - sorted.front()) / step;
         if (std::abs(slice - std::round(slice)) > 0.1) refuse("has contours that are not evenly spaced");
@@ -132,7 +134,8 @@ TriangleMesh read_roi_surface(const fs::path& file, const std::string& roi, cons
         names.push_back(candidate.name);
         if (roi.empty() || candidate.name == roi) chosen = &candidate;
     }
-    if (names.empty()) throw InputError(file, "holds no solid: no ROI has closed contours at three heights", kExportAgain);
+    if (names.empty())
+        throw InputError(file, "holds no solid: no ROI has closed contours at three heights", kExportAgain);
     if (!chosen || (roi.empty() && names.size() > 1))
         throw InputError(file,
                          roi.empty() ? fmt::format("holds {} solids: {}", names.size(), fmt::join(names, ", "))

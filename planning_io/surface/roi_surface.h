@@ -9,10 +9,10 @@
 
 namespace planlight {
 
-/// The surface of one solid of an RT Structure Set: its closed contours on even, parallel slices, drawn into voxels of 1 mm
-/// (contours within contours are holes), as `surface_of_mask` gives it. `roi` is its name, and needed when several are solids.
-/// Slices without a contour are empty. Throws InputError, by name.
-TriangleMesh read_roi_surface(const std::filesystem::path& file, const std::string& roi, const PlanImportSettings& settings,
-                              std::vector<std::string>& notes);
+/// The surface of one solid of an RT Structure Set: its closed contours on even, parallel slices, drawn into voxels of
+/// 1 mm (contours within contours are holes), as `surface_of_mask` gives it. `roi` is its name, and needed when several
+/// are solids. Slices without a contour are empty. Throws InputError, by name.
+TriangleMesh read_roi_surface(const std::filesystem::path& file, const std::string& roi,
+                              const PlanImportSettings& settings, std::vector<std::string>& notes);
 
 }  // namespace planlight

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
-#include "planning_io/surface/ply.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/surface/ply.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -27,8 +27,8 @@ Shape parse_ply_shape(const std::string& content, const fs::path& file) {
     for (std::size_t i = 0; i < ply.vertices; ++i) shape.points.emplace_back((*x)[i], (*y)[i], (*z)[i]);
     for (const auto& face : ply.faces)
         for (std::size_t c = 2; c < face.size(); ++c)
-            shape.triangles.push_back(
-                {static_cast<std::int32_t>(face[0]), static_cast<std::int32_t>(face[c - 1]), static_cast<std::int32_t>(face[c])});
+            shape.triangles.push_back({static_cast<std::int32_t>(face[0]), static_cast<std::int32_t>(face[c - 1]),
+                                       static_cast<std::int32_t>(face[c])});
     return shape;
 }
 
@@ -51,11 +51,16 @@ Shape read_shape(const fs::path& file) {
     for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     const std::string content = read_whole(file);
     Shape shape;
-    if (ending == ".stl") shape = parse_stl(content, file);
-    else if (ending == ".obj") shape = parse_obj(content, file);
-    else if (ending == ".ply") shape = parse_ply_shape(content, file);
-    else if (ending == ".vtk" || ending == ".vtp") shape = parse_vtk_in_child(file, ending == ".vtp");
-    else throw InputError(file, "is of no kind that meshes and lines are read from", "Give STL, PLY, OBJ, VTP or VTK.");
+    if (ending == ".stl")
+        shape = parse_stl(content, file);
+    else if (ending == ".obj")
+        shape = parse_obj(content, file);
+    else if (ending == ".ply")
+        shape = parse_ply_shape(content, file);
+    else if (ending == ".vtk" || ending == ".vtp")
+        shape = parse_vtk_in_child(file, ending == ".vtp");
+    else
+        throw InputError(file, "is of no kind that meshes and lines are read from", "Give STL, PLY, OBJ, VTP or VTK.");
     check(shape, file);
     return shape;
 }
@@ -80,15 +85,19 @@ WeldedShape welded(const Shape& shape) {
             if (!shape.flags.empty()) result.shape.flags.push_back(shape.flags[i]);
         }
     }
-    const auto moved = [&](std::int32_t i) { return now[static_cast<std::size_t>(first[static_cast<std::size_t>(i)])]; };
+    const auto moved = [&](std::int32_t i) {
+        return now[static_cast<std::size_t>(first[static_cast<std::size_t>(i)])];
+    };
     for (auto line : shape.lines) {
         for (auto& p : line.points) p = moved(p);
         result.shape.lines.push_back(std::move(line));
     }
     for (const auto& t : shape.triangles) {
         const std::array<std::int32_t, 3> corners{moved(t[0]), moved(t[1]), moved(t[2])};
-        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) ++result.degenerate;
-        else result.shape.triangles.push_back(corners);
+        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
+            ++result.degenerate;
+        else
+            result.shape.triangles.push_back(corners);
     }
     return result;
 }

@@ -16,8 +16,8 @@ namespace planlight {
 /// A polyline (or a single point) of a mesh file, with what the file says of it.
 struct ShapeLine {
     std::vector<std::int32_t> points;  ///< indices; the first again at the end when it is closed
-    std::string kind;                  ///< "trajectory", "borehole", "osteotomy_line", "cut_plane" in our own files; else empty
-    std::string name, description;     ///< empty when the file has none
+    std::string kind;  ///< "trajectory", "borehole", "osteotomy_line", "cut_plane" in our own files; else empty
+    std::string name, description;  ///< empty when the file has none
     std::optional<Eigen::Vector3d> axis;
     std::optional<Colour> colour;
 };
@@ -28,14 +28,16 @@ struct Shape {
     std::vector<ShapeLine> lines;
     std::vector<std::array<std::int32_t, 3>> triangles;
     std::vector<std::uint8_t> flags;  ///< SkinFlag per point, of our own PLY files; else empty
-    std::optional<Space> space;  ///< from its "SPACE=LPS" or "SPACE=RAS" mark, where 3D Slicer puts it
+    std::optional<Space> space;       ///< from its "SPACE=LPS" or "SPACE=RAS" mark, where 3D Slicer puts it
 };
 
-/// Reads STL (binary, ascii), OBJ, PLY, legacy VTK and VTP; polygons and strips become triangles. VTK and VTP are parsed in a
-/// child process. Coordinates are finite and corners exist; else, and where the file is cut or garbled, DamagedFileError.
+/// Reads STL (binary, ascii), OBJ, PLY, legacy VTK and VTP; polygons and strips become triangles. VTK and VTP are
+/// parsed in a child process. Coordinates are finite and corners exist; else, and where the file is cut or garbled,
+/// DamagedFileError.
 Shape read_shape(const std::filesystem::path& file);
 
-/// One point for all corners at the same place (STL repeats each), without the triangles that have become lines or points.
+/// One point for all corners at the same place (STL repeats each), without the triangles that have become lines or
+/// points.
 struct WeldedShape {
     Shape shape;
     std::size_t degenerate = 0;  ///< triangles left out

@@ -27,8 +27,8 @@ std::size_t binary_triangles(const std::string& content) {
 Shape parse_binary_stl(const std::string& content, const fs::path& file) {
     const std::size_t count = binary_triangles(content);
     if (content.size() != kHeaderBytes + 4 + kTriangleBytes * count)
-        refuse_damaged(file,
-                "announces " + std::to_string(count) + " triangles and is " + std::to_string(content.size()) + " bytes long");
+        refuse_damaged(file, "announces " + std::to_string(count) + " triangles and is " +
+                                 std::to_string(content.size()) + " bytes long");
     Shape shape;
     shape.space = space_marked(std::string_view(content).substr(0, kHeaderBytes), file);
     for (std::size_t t = 0; t < count; ++t) {
@@ -57,7 +57,8 @@ Shape parse_ascii_stl(const std::string& content, const fs::path& file) {
         } else if (word == "vertex") {
             corners.push_back(parse_point(words, file));
         } else if (word == "endloop") {
-            if (corners.size() != 3) refuse_damaged(file, "has a facet of " + std::to_string(corners.size()) + " corners");
+            if (corners.size() != 3)
+                refuse_damaged(file, "has a facet of " + std::to_string(corners.size()) + " corners");
             add_triangle(shape, {corners[0], corners[1], corners[2]});
             corners.clear();
         } else if (word == "endsolid") {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "planning_io/dicom/rt_struct.h"
 #include "planning_io/surface/dicom_seg.h"
 #include "planning_io/surface/roi_surface.h"
-#include "planning_io/dicom/rt_struct.h"
 #include "planning_io/surface/shape_file.h"
 #include "planning_io/types/error.h"
 
@@ -89,10 +89,10 @@ private:
         }
         surface_.closed = surface_.border_edges == 0;
         if (static_cast<double>(surface_.odd_edges) > kMostOddEdges * static_cast<double>(count))
-            throw InputError(
-                file_,
-                fmt::format("has {} edges of {} where three triangles or more meet: it is no surface", surface_.odd_edges, count),
-                "Repair the mesh and export it again.");
+            throw InputError(file_,
+                             fmt::format("has {} edges of {} where three triangles or more meet: it is no surface",
+                                         surface_.odd_edges, count),
+                             "Repair the mesh and export it again.");
     }
 
     std::vector<std::size_t> collect(std::size_t first, std::vector<std::int8_t>& turned) const {
@@ -113,7 +113,8 @@ private:
         return piece;
     }
 
-    /// By the sum of the volumes of the triangles over the piece's middle: positive when the piece encloses it, or bulges away.
+    /// By the sum of the volumes of the triangles over the piece's middle: positive when the piece encloses it, or
+    /// bulges away.
     void face_outwards(const std::vector<std::size_t>& piece) {
         const auto p = [&](std::size_t t, std::size_t c) {
             return mesh_.vertices_in_ct[static_cast<std::size_t>(mesh_.triangles[t][c])];
@@ -170,8 +171,9 @@ TriangleMesh used_part(const Shape& shape, Space space, std::size_t& degenerate)
 
 void check_size(const TriangleMesh& mesh, const fs::path& file) {
     if (mesh.triangles.size() < kFewestTriangles)
-        throw InputError(file, fmt::format("holds {} triangles: too few to be a surface to project on", mesh.triangles.size()),
-                         "Export the whole surface as triangles.");
+        throw InputError(
+            file, fmt::format("holds {} triangles: too few to be a surface to project on", mesh.triangles.size()),
+            "Export the whole surface as triangles.");
     Vector3d low = mesh.vertices_in_ct.front(), high = low;
     for (const auto& p : mesh.vertices_in_ct) {
         low = low.cwiseMin(p);
@@ -179,14 +181,16 @@ void check_size(const TriangleMesh& mesh, const fs::path& file) {
     }
     const double across = (high - low).maxCoeff();
     if (!(across >= kLeastAcross_mm) || across > kMostAcross_mm)
-        throw InputError(
-            file, fmt::format("is {:.3g} mm across, not between {:.0f} and {:.0f} mm", across, kLeastAcross_mm, kMostAcross_mm),
-            across < 1 ? "Export it in mm (it seems to be in metres)." : "Export it in mm.");
+        throw InputError(file,
+                         fmt::format("is {:.3g} mm across, not between {:.0f} and {:.0f} mm", across, kLeastAcross_mm,
+                                     kMostAcross_mm),
+                         across < 1 ? "Export it in mm (it seems to be in metres)." : "Export it in mm.");
 }
 
 void describe(SurfaceFile& surface, const fs::path& file) {
     const std::string name = file.filename().string();
-    if (!surface.closed) surface.notes.push_back(fmt::format("{} is open: {} edges at its border", name, surface.border_edges));
+    if (!surface.closed)
+        surface.notes.push_back(fmt::format("{} is open: {} edges at its border", name, surface.border_edges));
     if (surface.odd_edges > 0)
         surface.notes.push_back(fmt::format("{}: at {} edges three triangles or more meet", name, surface.odd_edges));
     if (surface.degenerate > 0)
@@ -211,7 +215,8 @@ SurfaceFile read_surface(const fs::path& file, const SurfaceSettings& settings) 
     if (!fs::is_regular_file(file)) throw InputError(file, "is no file", "Name the surface's file itself.");
     if (is_dicom_file(file)) {
         if (settings.said.space == Space::ras)
-            throw InputError(file, "is DICOM, which is always LPS; --surface-frame says RAS", "Leave --surface-frame out.");
+            throw InputError(file, "is DICOM, which is always LPS; --surface-frame says RAS",
+                             "Leave --surface-frame out.");
         surface.mesh = is_rt_struct(file) ? read_roi_surface(file, settings.segment, settings.said, surface.notes)
                                           : read_dicom_seg(file, settings.segment, settings.said, surface.notes);
     } else {
@@ -243,16 +248,18 @@ double check_surface_fits(const TriangleMesh& surface, const Volume& volume, con
     }
     const double share_inside = static_cast<double>(inside) / static_cast<double>(surface.vertices_in_ct.size());
     if (share_inside < kLeastInside)
-        throw InputError(file, fmt::format("lies outside the volume with {:.0f} % of its points", 100 * (1 - share_inside)),
+        throw InputError(file,
+                         fmt::format("lies outside the volume with {:.0f} % of its points", 100 * (1 - share_inside)),
                          "Check that it was made on this CT, and its coordinate system.");
     const double share_edge = compared > 0 ? static_cast<double>(edge) / static_cast<double>(compared) : 0;
     if (volume.modality != "CT") return NAN;
     if (share_edge < kLeastEdge)
-        throw InputError(file,
-                         fmt::format("does not lie on an edge of this CT: only at {:.0f} % of its points it is brighter under "
-                                     "the surface than over it",
-                                     100 * share_edge),
-                         "Check that it was made on this CT, and its coordinate system.");
+        throw InputError(
+            file,
+            fmt::format("does not lie on an edge of this CT: only at {:.0f} % of its points it is brighter under "
+                        "the surface than over it",
+                        100 * share_edge),
+            "Check that it was made on this CT, and its coordinate system.");
     return share_edge;
 }
 

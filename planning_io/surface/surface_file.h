@@ -18,26 +18,26 @@ struct SurfaceSettings {
 
 /// A surface to project on, and what it was judged by.
 struct SurfaceFile {
-    TriangleMesh mesh;              ///< welded, without triangles of no area, turned outwards; normals per vertex
+    TriangleMesh mesh;  ///< welded, without triangles of no area, turned outwards; normals per vertex
     bool closed = true;
-    std::size_t border_edges = 0;   ///< of one triangle only
-    std::size_t odd_edges = 0;      ///< of three triangles or more
-    std::size_t degenerate = 0;     ///< triangles left out
-    std::size_t pieces = 1;         ///< connected
-    std::vector<std::string> notes; ///< in words, with the file's name
+    std::size_t border_edges = 0;    ///< of one triangle only
+    std::size_t odd_edges = 0;       ///< of three triangles or more
+    std::size_t degenerate = 0;      ///< triangles left out
+    std::size_t pieces = 1;          ///< connected
+    std::vector<std::string> notes;  ///< in words, with the file's name
 };
 
 /// Reads STL, PLY, OBJ, VTP, VTK, a segment of a DICOM SEG or a solid of an RTSTRUCT as a surface in ct.
 ///
-/// Refused (InputError, with numbers): no SPACE mark and no `said.space`; fewer than 100 triangles; smaller than 50 mm or larger
-/// than 600 mm; more than 0.1 % of the edges with three triangles or more, or sides that cannot be turned alike. A closed piece
-/// is turned so that its volume is positive, an open one so that it faces away from its middle.
+/// Refused (InputError, with numbers): no SPACE mark and no `said.space`; fewer than 100 triangles; smaller than 50 mm
+/// or larger than 600 mm; more than 0.1 % of the edges with three triangles or more, or sides that cannot be turned
+/// alike. A closed piece is turned so that its volume is positive, an open one so that it faces away from its middle.
 SurfaceFile read_surface(const std::filesystem::path& file, const SurfaceSettings& settings = {});
 
-/// Checks that the surface belongs to the volume: at least 95 % of its vertices lie inside the box of the volume, and a CT has an
-/// edge there: at 75 % of the vertices at least it is brighter 1.5 mm under the surface than 1.5 mm over it. (Half of them are
-/// where a surface lies across everything, in another frame.) Gives that share; NaN where the volume is no CT and it says
-/// nothing. Throws InputError with the numbers.
+/// Checks that the surface belongs to the volume: at least 95 % of its vertices lie inside the box of the volume, and a
+/// CT has an edge there: at 75 % of the vertices at least it is brighter 1.5 mm under the surface than 1.5 mm over it.
+/// (Half of them are where a surface lies across everything, in another frame.) Gives that share; NaN where the volume
+/// is no CT and it says nothing. Throws InputError with the numbers.
 double check_surface_fits(const TriangleMesh& surface, const Volume& volume, const std::filesystem::path& file);
 
 }  // namespace planlight

@@ -11,8 +11,8 @@
 #include <vtkTriangleFilter.h>
 #include <vtkXMLPolyDataReader.h>
 
-#include "planning_io/files/sandboxed_process.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/files/sandboxed_process.h"
 #include "planning_io/surface/shape_file.h"
 #include "planning_io/types/error.h"
 
@@ -37,7 +37,8 @@ std::optional<std::array<double, 3>> three_of(vtkFieldData* data, const char* na
     return values;
 }
 
-/// The cells of one array, with what the cell data say of them; `first` is the number of its first cell in the cell data.
+/// The cells of one array, with what the cell data say of them; `first` is the number of its first cell in the cell
+/// data.
 void put_lines(Parcel& parcel, vtkCellArray* cells, vtkFieldData* data, vtkIdType first) {
     for (vtkIdType c = 0; c < cells->GetNumberOfCells(); ++c) {
         vtkIdType count = 0;
@@ -106,8 +107,9 @@ std::string title_of(const fs::path& file) {
 
 Shape parse_vtk_in_child(const fs::path& file, bool xml) {
     const std::string title = xml ? std::string() : title_of(file);
-    Parcel parcel = parse_in_child(
-        file, {"VTK file"}, [&](Parcel& p) { xml ? parse<vtkXMLPolyDataReader>(p, file) : parse<vtkPolyDataReader>(p, file); });
+    Parcel parcel = parse_in_child(file, {"VTK file"}, [&](Parcel& p) {
+        xml ? parse<vtkXMLPolyDataReader>(p, file) : parse<vtkPolyDataReader>(p, file);
+    });
     Shape shape;
     const std::string field = parcel.get_text();
     shape.space = space_marked(field.empty() ? title : "SPACE=" + field, file);
@@ -125,9 +127,11 @@ Shape parse_vtk_in_child(const fs::path& file, bool xml) {
         const auto axis = parcel.get<std::array<double, 3>>();
         const bool has_colour = parcel.get<bool>();
         const auto colour = parcel.get<std::array<double, 3>>();
-        if (has_axis && Vector3d(axis[0], axis[1], axis[2]).norm() > 0.5) line.axis = Vector3d(axis[0], axis[1], axis[2]);
+        if (has_axis && Vector3d(axis[0], axis[1], axis[2]).norm() > 0.5)
+            line.axis = Vector3d(axis[0], axis[1], axis[2]);
         if (has_colour && colour[0] >= 0)
-            line.colour = Colour{static_cast<float>(colour[0]), static_cast<float>(colour[1]), static_cast<float>(colour[2])};
+            line.colour =
+                Colour{static_cast<float>(colour[0]), static_cast<float>(colour[1]), static_cast<float>(colour[2])};
         shape.lines.push_back(std::move(line));
     }
     shape.triangles = parcel.get_list<std::array<std::int32_t, 3>>();

@@ -18,10 +18,10 @@ struct Ray {
 /// Device frame: x right, y down, z forward. Pixel (0,0) is the centre of the top-left pixel.
 /// Distortion on normalised coordinates as in OpenCV (Brown 1971): radial k1 k2 k3, tangential p1 p2.
 struct CameraModel {
-    int width = 0, height = 0;                               ///< pixels
-    double focal_x = 0, focal_y = 0;                         ///< pixels
-    double centre_x = 0, centre_y = 0;                       ///< principal point, pixels; may lie outside the picture
-    double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;           ///< distortion, dimensionless
+    int width = 0, height = 0;                      ///< pixels
+    double focal_x = 0, focal_y = 0;                ///< pixels
+    double centre_x = 0, centre_y = 0;              ///< principal point, pixels; may lie outside the picture
+    double k1 = 0, k2 = 0, p1 = 0, p2 = 0, k3 = 0;  ///< distortion, dimensionless
     RigidTransform device_from_rig = RigidTransform::Identity();
 
     /// Where the device stands, in rig, mm.

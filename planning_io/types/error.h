@@ -31,7 +31,8 @@ public:
 class InputError : public Error {
 public:
     InputError(const std::filesystem::path& file, const std::string& problem, std::string what_to_do)
-        : Error(ExitCode::input_refused, file.empty() ? problem : file.string() + ": " + problem, std::move(what_to_do)) {}
+        : Error(ExitCode::input_refused, file.empty() ? problem : file.string() + ": " + problem,
+                std::move(what_to_do)) {}
 };
 
 /// A file that is damaged, truncated, or of another version (exit 4).
@@ -48,7 +49,8 @@ public:
         : Error(ExitCode::device, device + ": " + problem, std::move(what_to_do)) {}
 };
 
-/// A result that exists and is not good enough to be used (exit 6): a registration that is refused, a check that failed.
+/// A result that exists and is not good enough to be used (exit 6): a registration that is refused, a check that
+/// failed.
 class CheckFailedError : public Error {
 public:
     CheckFailedError(const std::string& problem, std::string what_to_do)

@@ -14,15 +14,18 @@ namespace {
 constexpr std::size_t kHugePage = std::size_t{2} << 20;
 constexpr std::size_t kPage = 4096, kCacheLine = 64;
 
-std::size_t rounded_up(std::size_t bytes, std::size_t unit) { return (bytes + unit - 1) / unit * unit; }
+std::size_t rounded_up(std::size_t bytes, std::size_t unit) {
+    return (bytes + unit - 1) / unit * unit;
+}
 
-/// Large blocks that were given back, for the next ones of their size: a scan wants the same arrays again and again, and to
-/// have 50 MB cleared by the system takes it as long as to decode them.
+/// Large blocks that were given back, for the next ones of their size: a scan wants the same arrays again and again,
+/// and to have 50 MB cleared by the system takes it as long as to decode them.
 class Spares {
 public:
     void* take(std::size_t bytes) {
         const std::scoped_lock lock(mutex_);
-        const auto found = std::find_if(blocks_.begin(), blocks_.end(), [&](const Block& b) { return b.bytes == bytes; });
+        const auto found =
+            std::find_if(blocks_.begin(), blocks_.end(), [&](const Block& b) { return b.bytes == bytes; });
         if (found == blocks_.end()) return nullptr;
         void* memory = found->memory;
         blocks_.erase(found);
@@ -58,7 +61,9 @@ private:
 };
 
 /// A picture of 1920 x 1080 bytes is: it fills almost one huge page.
-bool is_large(std::size_t bytes) { return bytes >= kHugePage / 16 * 15; }
+bool is_large(std::size_t bytes) {
+    return bytes >= kHugePage / 16 * 15;
+}
 
 /// What does not fill a huge page at the end lies on small ones.
 std::size_t size_of(std::size_t bytes) {

@@ -7,8 +7,8 @@
 
 namespace planlight {
 
-/// Memory on huge pages where it is large and the system has them: the first touch of 64 MiB takes 4 ms instead of 30 ms.
-/// Up to 192 MiB that were freed are kept for the next of the same sizes. Throws std::bad_alloc.
+/// Memory on huge pages where it is large and the system has them: the first touch of 64 MiB takes 4 ms instead of 30
+/// ms. Up to 192 MiB that were freed are kept for the next of the same sizes. Throws std::bad_alloc.
 void* allocate_large(std::size_t bytes);
 void free_large(void* memory, std::size_t bytes) noexcept;
 
@@ -31,8 +31,8 @@ struct LargeAllocator {
     bool operator==(const LargeAllocator&) const { return true; }
 };
 
-/// A std::vector for large tables of numbers. `resize(n)` leaves new elements without a value, for who fills all of them;
-/// `resize(n, value)` and `assign` work as ever.
+/// A std::vector for large tables of numbers. `resize(n)` leaves new elements without a value, for who fills all of
+/// them; `resize(n, value)` and `assign` work as ever.
 template <class T>
 using LargeArray = std::vector<T, LargeAllocator<T>>;
 

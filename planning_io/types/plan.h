@@ -41,9 +41,9 @@ struct OsteotomyLine {
 struct CutPlane {
     std::string name;
     Eigen::Vector3d origin_in_ct;
-    Eigen::Vector3d normal_in_ct;       ///< unit
-    Eigen::Vector3d first_axis_in_ct;   ///< unit, in the plane
-    double width_mm = 0, height_mm = 0; ///< extent along the first axis and across it, centred on the origin
+    Eigen::Vector3d normal_in_ct;        ///< unit
+    Eigen::Vector3d first_axis_in_ct;    ///< unit, in the plane
+    double width_mm = 0, height_mm = 0;  ///< extent along the first axis and across it, centred on the origin
     std::optional<Colour> colour;
 };
 

@@ -4,8 +4,8 @@
 
 namespace planlight {
 
-/// How uncertain a pose of the patient is: the covariance of a small turn (rotation vector, radians) about `centre_in_ct`
-/// and of a shift (mm), both in ct. Zero: not known.
+/// How uncertain a pose of the patient is: the covariance of a small turn (rotation vector, radians) about
+/// `centre_in_ct` and of a shift (mm), both in ct. Zero: not known.
 struct PoseCovariance {
     Eigen::Matrix<double, 6, 6> of_turn_and_shift = Eigen::Matrix<double, 6, 6>::Zero();
     Eigen::Vector3d centre_in_ct = Eigen::Vector3d::Zero();

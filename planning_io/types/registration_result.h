@@ -21,23 +21,24 @@ struct RegistrationResult {
     std::vector<std::string> reasons;  ///< in words, one sentence each, why it is not `yes`; empty when it is
     RigidTransform patient_from_ct = RigidTransform::Identity();  ///< T_ini; meaningless when the verdict is `no`
 
-    double residual_rms_mm = 0;        ///< of the inliers, point to surface
-    double residual_median_mm = 0;     ///< of all points, absolute
-    double inlier_fraction = 0;        ///< of all points, nearer than `inlier_distance_mm` to the skin
+    double residual_rms_mm = 0;     ///< of the inliers, point to surface
+    double residual_median_mm = 0;  ///< of all points, absolute
+    double inlier_fraction = 0;     ///< of all points, nearer than `inlier_distance_mm` to the skin
     double inlier_distance_mm = 0;
     std::size_t points = 0;
-    double runner_up_ratio = 0;        ///< cost of the best distinct other pose / cost of this one; > 1 is good
-    int agreeing_bases = 0;            ///< independent contact triplets that led to this pose
-    double weakest_sigma_mm = 0;       ///< how far the patient could slide along the least determined way
-    double mirror_ratio = 0;           ///< cost of the mirrored scan's best pose / cost of this one; > 1 is good; 0: not tried
-    std::optional<double> blocked_fraction;  ///< of the ways back to the viewpoint, through the body; empty: none was said
+    double runner_up_ratio = 0;   ///< cost of the best distinct other pose / cost of this one; > 1 is good
+    int agreeing_bases = 0;       ///< independent contact triplets that led to this pose
+    double weakest_sigma_mm = 0;  ///< how far the patient could slide along the least determined way
+    double mirror_ratio = 0;  ///< cost of the mirrored scan's best pose / cost of this one; > 1 is good; 0: not tried
+    std::optional<double>
+        blocked_fraction;  ///< of the ways back to the viewpoint, through the body; empty: none was said
     std::optional<double> moved_in_scan_mm;  ///< the most that a marker moved during the scan; empty: not looked at
     std::optional<double> landmarks_off_mm;  ///< the farthest landmark from where T_ini puts it; empty: there were none
-    double scale = 1;                  ///< by which the scan would have to grow to fit best; 1 is good
-    double scale_sigma = 0;            ///< one standard deviation of that
-    PoseCovariance covariance;         ///< how uncertain T_ini is, for `predicted_error` at any point
-    double skin_movement_mm = 0;       ///< of the skin since the CT, rms, as the residuals tell it
-    double skin_offset_mm = 0;         ///< of the whole skin; positive outside of the CT's
+    double scale = 1;                        ///< by which the scan would have to grow to fit best; 1 is good
+    double scale_sigma = 0;                  ///< one standard deviation of that
+    PoseCovariance covariance;               ///< how uncertain T_ini is, for `predicted_error` at any point
+    double skin_movement_mm = 0;             ///< of the skin since the CT, rms, as the residuals tell it
+    double skin_offset_mm = 0;               ///< of the whole skin; positive outside of the CT's
     double initial_match_s = 0, refine_s = 0;
     RigidTransform initial_patient_from_ct = RigidTransform::Identity();  ///< before the ICP (Fig. 3 left)
 };

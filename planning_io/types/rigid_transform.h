@@ -11,8 +11,8 @@ using RigidTransform = Eigen::Isometry3d;
 /// the translation is added after it. Zero gives identity.
 RigidTransform transform_from_twist(const Eigen::Matrix<double, 6, 1>& twist);
 
-/// How a point moves with a small twist about a centre: d(p) / d(rotation vector, translation) = (-[r]x, I), where `r` goes
-/// from the centre to the point.
+/// How a point moves with a small twist about a centre: d(p) / d(rotation vector, translation) = (-[r]x, I), where `r`
+/// goes from the centre to the point.
 Eigen::Matrix<double, 3, 6> movement_by_twist(const Eigen::Vector3d& r);
 
 /// The rotation vector of `R` (radians, angle in [0, pi]).

@@ -11,7 +11,8 @@ const SkinPoint* SkinLut::nearest_skin(const Eigen::Vector3d& p_in_ct) const {
     for (int axis = 2; axis >= 0; --axis) {
         const double rounded = std::floor(voxel[axis] + 0.5);
         if (rounded < 0 || rounded >= size[static_cast<std::size_t>(axis)]) return nullptr;
-        index = index * static_cast<std::size_t>(size[static_cast<std::size_t>(axis)]) + static_cast<std::size_t>(rounded);
+        index =
+            index * static_cast<std::size_t>(size[static_cast<std::size_t>(axis)]) + static_cast<std::size_t>(rounded);
     }
     return &skin[nearest[index]];
 }

@@ -17,12 +17,12 @@ struct SkinPoint {
     Eigen::Vector3f position_in_ct;  ///< the sub-voxel skin point, mm
     Eigen::Vector3f normal_in_ct;    ///< unit, outwards
     std::array<std::uint16_t, 3> voxel{0, 0, 0};
-    std::uint8_t flags = 0;  ///< SkinFlag
+    std::uint8_t flags = 0;                                        ///< SkinFlag
     float thickness_mm = std::numeric_limits<float>::quiet_NaN();  ///< from skin to bone; not a number where unknown
 };
 
-/// The paper's voxel file (Hoppe 2001, 2.1): cubic voxels over the body and a margin, each with a pointer to its nearest
-/// skin voxel; beside it a signed distance field for the matching.
+/// The paper's voxel file (Hoppe 2001, 2.1): cubic voxels over the body and a margin, each with a pointer to its
+/// nearest skin voxel; beside it a signed distance field for the matching.
 ///
 /// Voxel (i,j,k) has its centre at `origin_in_ct + voxel_mm * (i,j,k)`; axes are those of ct; i runs fastest.
 /// The distance field has its own, coarser grid from the same origin; negative inside the body.

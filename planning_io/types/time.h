@@ -7,7 +7,9 @@ namespace planlight {
 /// A moment on the one monotonic clock of a session (its epoch is arbitrary). Never wall-clock time.
 using Instant = std::chrono::nanoseconds;
 
-inline double seconds(Instant t) { return std::chrono::duration<double>(t).count(); }
+inline double seconds(Instant t) {
+    return std::chrono::duration<double>(t).count();
+}
 inline Instant from_seconds(double s) {
     return std::chrono::duration_cast<Instant>(std::chrono::duration<double>(s));
 }

@@ -10,8 +10,8 @@ namespace planlight {
 /// What a vertex of the skin is not: real skin that light and registration may rely on.
 enum SkinFlag : std::uint8_t {
     kSkin = 0,
-    kSeal = 1,     ///< a lid over a nostril, ear canal or the mouth: made by closing, not seen in the CT
-    kCutPlane = 2, ///< the end of the volume
+    kSeal = 1,      ///< a lid over a nostril, ear canal or the mouth: made by closing, not seen in the CT
+    kCutPlane = 2,  ///< the end of the volume
 };
 
 /// Triangles in the ct frame (LPS), mm, counter-clockwise seen from outside.

@@ -16,8 +16,8 @@
 #include <memory>
 #include <string_view>
 
-#include "planning_io/volume/project_archive.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/project_archive.h"
 
 namespace planlight {
 namespace {
@@ -28,7 +28,9 @@ using PlistOwner = std::unique_ptr<void, void (*)(plist_t)>;
 
 constexpr const char* kSaveAgain = "Open the project in InVesalius 3 and save it again.";
 
-[[noreturn]] void damaged(const fs::path& file, const std::string& problem) { throw DamagedFileError(file, problem, kSaveAgain); }
+[[noreturn]] void damaged(const fs::path& file, const std::string& problem) {
+    throw DamagedFileError(file, problem, kSaveAgain);
+}
 
 PlistOwner parse_plist(const Entries& entries, const std::string& name, const fs::path& file) {
     const auto entry = entries.find(name);
@@ -49,7 +51,8 @@ PlistOwner parse_plist(const Entries& entries, const std::string& name, const fs
 
 /// The value at `key`, which must be there.
 plist_t value_of(plist_t dictionary, const char* key, const fs::path& file) {
-    plist_t value = dictionary && plist_get_node_type(dictionary) == PLIST_DICT ? plist_dict_get_item(dictionary, key) : nullptr;
+    plist_t value =
+        dictionary && plist_get_node_type(dictionary) == PLIST_DICT ? plist_dict_get_item(dictionary, key) : nullptr;
     if (!value) damaged(file, std::string("its property list has no \"") + key + "\"");
     return value;
 }
@@ -108,12 +111,15 @@ MatrixHeader read_header(const Entries& entries, const fs::path& file) {
         header.size[axis] = static_cast<int>(count);
     }
     plist_t modality = plist_dict_get_item(main.get(), "modality");
-    header.modality = modality && plist_get_node_type(modality) == PLIST_STRING ? text_of(modality, "modality", file) : "CT";
+    header.modality =
+        modality && plist_get_node_type(modality) == PLIST_STRING ? text_of(modality, "modality", file) : "CT";
     if (header.modality.starts_with("MR")) header.modality = "MR";
     return header;
 }
 
-bool is_plist(const std::string& name) { return name.ends_with(".plist"); }
+bool is_plist(const std::string& name) {
+    return name.ends_with(".plist");
+}
 
 /// Triangles of polygons (of three corners) or of triangle strips. False when a corner is none of the `points`.
 bool add_triangles(vtkCellArray& cells, bool strips, vtkIdType points, TriangleMesh& mesh) {
@@ -138,14 +144,16 @@ bool add_triangles(vtkCellArray& cells, bool strips, vtkIdType points, TriangleM
 
 Volume read_invesalius_volume(const fs::path& file) {
     static const std::string kUsualName = "matrix.dat";
-    Entries entries = read_tar_entries(file, [](const std::string& name) { return is_plist(name) || name == kUsualName; });
+    Entries entries =
+        read_tar_entries(file, [](const std::string& name) { return is_plist(name) || name == kUsualName; });
     const MatrixHeader header = read_header(entries, file);
     if (header.file_name != kUsualName)
         entries.merge(read_tar_entries(file, [&](const std::string& name) { return name == header.file_name; }));
     const auto matrix = entries.find(header.file_name);
     if (matrix == entries.end()) damaged(file, "holds no matrix");
     const auto [nx, ny, nz] = header.size;
-    const auto row = static_cast<std::size_t>(nx), rows = static_cast<std::size_t>(ny), slices = static_cast<std::size_t>(nz);
+    const auto row = static_cast<std::size_t>(nx), rows = static_cast<std::size_t>(ny),
+               slices = static_cast<std::size_t>(nz);
     if (matrix->second.size() != row * rows * slices * sizeof(std::int16_t))
         damaged(file, "its matrix does not have the size its shape says");
 
@@ -160,7 +168,8 @@ Volume read_invesalius_volume(const fs::path& file) {
             const char* from = matrix->second.data() + ((k * rows + (rows - 1 - j)) * row) * sizeof(std::int16_t);
             float* to = volume.values.data() + (k * rows + j) * row;
             for (std::size_t i = 0; i < row; ++i) {
-                const auto low = static_cast<unsigned char>(from[2 * i]), high = static_cast<unsigned char>(from[2 * i + 1]);
+                const auto low = static_cast<unsigned char>(from[2 * i]),
+                           high = static_cast<unsigned char>(from[2 * i + 1]);
                 to[i] = static_cast<std::int16_t>(static_cast<std::uint16_t>(low | (high << 8)));
             }
         }
@@ -196,9 +205,11 @@ std::vector<TriangleMesh> read_invesalius_surfaces(const fs::path& file) {
         if (failed || !data || !data->GetPoints()) damaged(file, mesh_name + " is damaged");
         TriangleMesh mesh;  // (x, -y, z) of the matrix is ct as read_invesalius_volume has it
         const vtkIdType points = data->GetNumberOfPoints();
-        for (vtkIdType i = 0; i < points; ++i) mesh.vertices_in_ct.emplace_back(Eigen::Map<Eigen::Vector3d>(data->GetPoint(i)));
+        for (vtkIdType i = 0; i < points; ++i)
+            mesh.vertices_in_ct.emplace_back(Eigen::Map<Eigen::Vector3d>(data->GetPoint(i)));
         for (vtkCellArray* const cells : {data->GetPolys(), data->GetStrips()})
-            if (!add_triangles(*cells, cells == data->GetStrips(), points, mesh)) damaged(file, mesh_name + " is damaged");
+            if (!add_triangles(*cells, cells == data->GetStrips(), points, mesh))
+                damaged(file, mesh_name + " is damaged");
         surfaces.push_back(std::move(mesh));
     }
     return surfaces;

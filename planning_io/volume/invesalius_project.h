@@ -15,7 +15,8 @@ namespace planlight {
 /// that the surfaces of the project coincide with the volume.
 Volume read_invesalius_volume(const std::filesystem::path& file);
 
-/// The surfaces stored in the project, in the same ct frame as `read_invesalius_volume` gives. Empty when there are none.
+/// The surfaces stored in the project, in the same ct frame as `read_invesalius_volume` gives. Empty when there are
+/// none.
 std::vector<TriangleMesh> read_invesalius_surfaces(const std::filesystem::path& file);
 
 }  // namespace planlight

@@ -69,10 +69,12 @@ std::string read_entry(archive* tar, archive_entry* entry, const fs::path& file,
 
 }  // namespace
 
-std::map<std::string, std::string> read_tar_entries(const fs::path& file, const std::function<bool(const std::string&)>& wanted,
+std::map<std::string, std::string> read_tar_entries(const fs::path& file,
+                                                    const std::function<bool(const std::string&)>& wanted,
                                                     std::uint64_t max_entry_bytes) {
     std::error_code ignored;
-    if (!fs::is_regular_file(file, ignored)) throw InputError(file, "is not a readable file", "Check the name of the file.");
+    if (!fs::is_regular_file(file, ignored))
+        throw InputError(file, "is not a readable file", "Check the name of the file.");
     GzipStream stream(file);
     if (!stream.file) throw InputError(file, "cannot be opened", "Check the permissions of the file.");
     const bool gzip = gzdirect(stream.file) == 0;

@@ -10,8 +10,8 @@ namespace planlight {
 
 /// The contents of the wanted regular files of a tar archive (gzip or plain), by their names without folders.
 ///
-/// Nothing is written to the disk. The whole stream is read, so that gzip's checksum is verified. Throws InputError when
-/// the file is no such archive, DamagedFileError when it is cut or damaged, or grows beyond all sense.
+/// Nothing is written to the disk. The whole stream is read, so that gzip's checksum is verified. Throws InputError
+/// when the file is no such archive, DamagedFileError when it is cut or damaged, or grows beyond all sense.
 std::map<std::string, std::string> read_tar_entries(const std::filesystem::path& file,
                                                     const std::function<bool(const std::string& name)>& wanted,
                                                     std::uint64_t max_entry_bytes = std::uint64_t{4} << 30);

@@ -2,14 +2,14 @@
 
 #include <functional>
 
-#include "planning_io/files/content_hash.h"
 #include "planning_io/dicom/dicom_series.h"
+#include "planning_io/files/content_hash.h"
 #include "planning_io/files/header_text.h"
+#include "planning_io/types/error.h"
 #include "planning_io/volume/invesalius_project.h"
 #include "planning_io/volume/metaimage_file.h"
 #include "planning_io/volume/nifti_file.h"
 #include "planning_io/volume/nrrd_file.h"
-#include "planning_io/types/error.h"
 #include "planning_io/volume/volume_checks.h"
 #include "planning_io/volume/volume_in_child.h"
 

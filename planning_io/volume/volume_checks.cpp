@@ -78,9 +78,9 @@ void check_grid(const Volume& volume, const fs::path& file, double tolerance) {
             throw InputError(file, fmt::format("has a spacing of {:.4g} mm along axis {}", spacing, a + 1),
                              "Check its units, or export it again.");
         if (count < kFewestSlices)
-            throw InputError(file,
-                             fmt::format("has {} along axis {}, fewer than {}", counted(count, "slice"), a + 1, kFewestSlices),
-                             "Give the whole series of thin slices.");
+            throw InputError(
+                file, fmt::format("has {} along axis {}, fewer than {}", counted(count, "slice"), a + 1, kFewestSlices),
+                "Give the whole series of thin slices.");
         if (spacing * count < kShortest_mm || spacing * count > kLongest_mm)
             throw InputError(file,
                              fmt::format("is {:.4g} mm long along axis {}, which is no head", spacing * count, a + 1),

@@ -71,7 +71,8 @@ Volume volume_in_child(const fs::path& path, const std::function<Volume()>& pars
     try {
         return get_volume(parcel);
     } catch (const std::out_of_range&) {
-        throw DamagedFileError(path, "could not be read to its end", "Copy or export it again from where it came from.");
+        throw DamagedFileError(path, "could not be read to its end",
+                               "Copy or export it again from where it came from.");
     }
 }
 

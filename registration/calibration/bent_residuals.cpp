@@ -1,4 +1,5 @@
 #include "registration/calibration/bent_residuals.h"
+#include "planning_io/types/statistics.h"
 
 #include <Eigen/QR>
 #include <algorithm>
@@ -45,9 +46,8 @@ Rows<N> medians(const Rows<N>& rows) {
         for (std::size_t k = 0; k < N; ++k) {
             values.clear();
             for (const auto& row : place) values.push_back(row[k]);
-            const auto half = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-            std::nth_element(values.begin(), half, values.end());
-            middle[k] = *half;
+            const auto half = median(values);
+            middle[k] = half;
         }
         found.push_back(middle);
     }
@@ -65,7 +65,8 @@ void judge_cameras(const Triangulation& raw, const RigCalibration& rig, BentResi
     double depth = 0;
     for (const auto& point : raw.by_cameras) {
         if (!(std::abs(point.epipolar_px) < kWild_px)) continue;
-        const Eigen::Vector3d l = normalised(rig.left_camera, point.p_in_rig), r = normalised(rig.right_camera, point.p_in_rig);
+        const Eigen::Vector3d l = normalised(rig.left_camera, point.p_in_rig),
+                              r = normalised(rig.right_camera, point.p_in_rig);
         rows.push_back({l.x(), l.y(), r.x(), r.y(), l.z(), point.epipolar_px});
         depth += l.z();
     }
@@ -81,7 +82,8 @@ void judge_cameras(const Triangulation& raw, const RigCalibration& rig, BentResi
         const auto [x, y, right_x, right_y, z, difference] = places[static_cast<std::size_t>(i)];
         const double far = z / depth - 1;
         other.row(i) << 1, x, y, x * y, y * y, far, far * y;
-        by_k1[i] = rig.left_camera.focal_y * 0.5 * (y * (x * x + y * y) + right_y * (right_x * right_x + right_y * right_y));
+        by_k1[i] =
+            rig.left_camera.focal_y * 0.5 * (y * (x * x + y * y) + right_y * (right_x * right_x + right_y * right_y));
         off[i] = difference;
     }
     const Eigen::ColPivHouseholderQR<Eigen::MatrixXd> solver(other);

@@ -11,11 +11,12 @@ namespace planlight {
 namespace {
 
 constexpr int kMostSquares = 200;  ///< as many as there are markers for (100)
-constexpr double kMost_mm = 5000;   ///< a PDF page ends at 5080 mm
+constexpr double kMost_mm = 5000;  ///< a PDF page ends at 5080 mm
 
 [[noreturn]] void refuse(const std::string& text, const std::string& why) {
-    throw InputError({}, fmt::format("the board \"{}\" {}", text, why),
-                     "Give a board as in \"charuco 10x7 25 mm\" (squares) or \"chessboard 9x6 25 mm\" (inner corners).");
+    throw InputError(
+        {}, fmt::format("the board \"{}\" {}", text, why),
+        "Give a board as in \"charuco 10x7 25 mm\" (squares) or \"chessboard 9x6 25 mm\" (inner corners).");
 }
 
 }  // namespace
@@ -44,18 +45,20 @@ BoardSpec parse_board(const std::string& text) {
     board.columns = std::stoi(found[2]);
     board.rows = std::stoi(found[3]);
     board.square_mm = std::stod(found[4]);
-    if (board.corners_across() < 3 || board.corners_down() < 3) refuse(text, "is too small: it needs 3 inner corners each way");
+    if (board.corners_across() < 3 || board.corners_down() < 3)
+        refuse(text, "is too small: it needs 3 inner corners each way");
     if (board.kind == BoardSpec::Kind::charuco && board.columns * board.rows > kMostSquares)
         refuse(text, fmt::format("has more than {} squares", kMostSquares));
     if (!(board.square_mm >= 1 && board.square_mm <= 1000)) refuse(text, "has squares under 1 mm or over 1 m");
     if (const double most_mm = std::max(board.width_mm(), board.height_mm()); most_mm > kMost_mm)
-        refuse(text, fmt::format("is {:.1f} m long; {:g} m is the most that a page can be", most_mm / 1000, kMost_mm / 1000));
+        refuse(text,
+               fmt::format("is {:.1f} m long; {:g} m is the most that a page can be", most_mm / 1000, kMost_mm / 1000));
     return board;
 }
 
 std::string text_of(const BoardSpec& board) {
-    return fmt::format("{} {}x{} {:.6g} mm", board.kind == BoardSpec::Kind::charuco ? "charuco" : "chessboard", board.columns,
-                       board.rows, board.square_mm);
+    return fmt::format("{} {}x{} {:.6g} mm", board.kind == BoardSpec::Kind::charuco ? "charuco" : "chessboard",
+                       board.columns, board.rows, board.square_mm);
 }
 
 }  // namespace planlight

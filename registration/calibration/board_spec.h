@@ -6,8 +6,8 @@
 
 namespace planlight {
 
-/// A flat calibration board. Frame `board`, mm: origin at the outer corner of the first (top left) square, x right, y down
-/// along the sheet, z into the sheet, away from who looks at it.
+/// A flat calibration board. Frame `board`, mm: origin at the outer corner of the first (top left) square, x right, y
+/// down along the sheet, z into the sheet, away from who looks at it.
 struct BoardSpec {
     enum class Kind { charuco, chessboard } kind = Kind::charuco;
     int columns = 10, rows = 7;  ///< squares of a ChArUco board; inner corners of a chessboard (each as OpenCV counts)

@@ -24,7 +24,8 @@ std::vector<BoardTurn> turns_of(const BoardSpec& board) {
             turn.names.push_back(y * across + x);
         }
         const Vector3d middle(board.width_mm() / 2, board.height_mm() / 2, 0);
-        turn.to_from.linear() = Eigen::AngleAxisd(quarters * std::numbers::pi / 2, Vector3d::UnitZ()).toRotationMatrix();
+        turn.to_from.linear() =
+            Eigen::AngleAxisd(quarters * std::numbers::pi / 2, Vector3d::UnitZ()).toRotationMatrix();
         turn.to_from.translation() = middle - turn.to_from.linear() * middle;
         turns.push_back(std::move(turn));
     }

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <memory>
 
+#include "planning_io/types/statistics.h"
 #include "registration/calibration/bundle_costs.h"
 #include "registration/calibration/covariance_over_poses.h"
 
@@ -97,7 +98,8 @@ Bundle::Bundle(const std::vector<PoseObservation>& poses, const BoardSpec& board
             const CameraObservation& seen = view_of(poses_[i], camera);
             for (std::size_t c = 0; c < seen.corners.size(); ++c) measurements_.push_back({i, camera, camera, c});
             if (!rig_.device(DeviceName::projector) || !settings_.light) continue;
-            for (std::size_t c = 0; c < seen.light.size(); ++c) measurements_.push_back({i, camera, DeviceName::projector, c});
+            for (std::size_t c = 0; c < seen.light.size(); ++c)
+                measurements_.push_back({i, camera, DeviceName::projector, c});
         }
     }
 }
@@ -106,8 +108,8 @@ ceres::CostFunction* Bundle::cost_of(const Measurement& m) const {
     const CameraObservation& seen = view_of(poses_[m.pose], m.camera);
     if (m.judged_by == m.camera)
         return new ceres::AutoDiffCostFunction<CornerCost, 2, 9, 6, 6, 3>(
-            new CornerCost{seen.corners.pixels[m.index], board_.corner_in_board(seen.corners.ids[m.index]), BoardShape(board_),
-                           sigma(m.camera)});
+            new CornerCost{seen.corners.pixels[m.index], board_.corner_in_board(seen.corners.ids[m.index]),
+                           BoardShape(board_), sigma(m.camera)});
     return new ceres::AutoDiffCostFunction<LightCost, 2, 9, 6, 9, 6, 6, 3>(
         new LightCost{seen.light[m.index], BoardShape(board_), sigma(DeviceName::projector)});
 }
@@ -143,7 +145,8 @@ void Bundle::build(double huber) {
     }
     if (!problem_->HasParameterBlock(bend_.data())) return;
     priors_.push_back(problem_->AddResidualBlock(
-        new ceres::AutoDiffCostFunction<BendPrior, 3, 3>(new BendPrior{settings_.bend_sigma_mm}), nullptr, bend_.data()));
+        new ceres::AutoDiffCostFunction<BendPrior, 3, 3>(new BendPrior{settings_.bend_sigma_mm}), nullptr,
+        bend_.data()));
     if (settings_.rig_fixed || !settings_.bend) problem_->SetParameterBlockConstant(bend_.data());
 }
 
@@ -178,9 +181,7 @@ void Bundle::update_sigmas() {
         for (const Measurement& m : measurements_)
             if (m.judged_by == name) lengths.push_back(m.residual_px.norm());
         if (lengths.size() < 20) continue;
-        const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-        std::nth_element(lengths.begin(), middle, lengths.end());
-        sigma(name) = std::max(0.005, *middle / 1.1774);
+        sigma(name) = std::max(0.005, median(std::move(lengths)) / 1.1774);
     }
 }
 
@@ -251,7 +252,8 @@ CovarianceOverPoses Bundle::covariance() {
     Eigen::MatrixXd of_numbers = Eigen::MatrixXd::Zero(all, all);
     for (std::size_t r = 0; r < where.size(); ++r)
         for (std::size_t c = 0; c < where.size(); ++c)
-            of_numbers(where[r], where[c]) = found.covariance(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c));
+            of_numbers(where[r], where[c]) =
+                found.covariance(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c));
     found.covariance = of_numbers;
     return found;
 }

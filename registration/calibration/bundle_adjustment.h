@@ -36,11 +36,11 @@ struct BundleResult {
     double uncertainty_factor = 1;  ///< how much more the poses contradict each other than the residuals say
 };
 
-/// One least-squares adjustment over cameras, projector, lens distortion, board poses and the board's bend. A corner gives
-/// the difference in the camera's picture; a lit camera pixel is followed to the board, and from there into the projector,
-/// and gives the difference to the decoded pixel. Robust (Huber; what is beyond `outlier` sigmas is left out); the sigmas are
-/// estimated from the residuals of each device. Lens terms are held back by weak priors in pixels at the picture's corner.
-/// Ceres 2.1; covariance by `covariance_over_poses`.
+/// One least-squares adjustment over cameras, projector, lens distortion, board poses and the board's bend. A corner
+/// gives the difference in the camera's picture; a lit camera pixel is followed to the board, and from there into the
+/// projector, and gives the difference to the decoded pixel. Robust (Huber; what is beyond `outlier` sigmas is left
+/// out); the sigmas are estimated from the residuals of each device. Lens terms are held back by weak priors in pixels
+/// at the picture's corner. Ceres 2.1; covariance by `covariance_over_poses`.
 BundleResult adjust_bundle(const std::vector<PoseObservation>& poses, const BoardSpec& board, const RigEstimate& start,
                            const BundleSettings& settings = {});
 

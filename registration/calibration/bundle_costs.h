@@ -9,8 +9,8 @@
 #include "registration/calibration/board_spec.h"
 #include "registration/calibration/observe_pose.h"
 
-// Heavy: for bundle_adjustment.cpp only. The geometry and the residuals, for numbers and for Ceres' derivatives alike. Lens
-// numbers: fx fy cx cy k1 k2 p1 p2 k3; places: rotation vector, then shift in mm.
+// Heavy: for bundle_adjustment.cpp only. The geometry and the residuals, for numbers and for Ceres' derivatives alike.
+// Lens numbers: fx fy cx cy k1 k2 p1 p2 k3; places: rotation vector, then shift in mm.
 namespace planlight {
 
 template <typename T>
@@ -108,7 +108,8 @@ struct CornerCost {
     BoardShape shape;
     double sigma;
     template <typename T>
-    bool operator()(const T* camera, const T* camera_from_rig, const T* rig_from_board, const T* bend, T* residual) const {
+    bool operator()(const T* camera, const T* camera_from_rig, const T* rig_from_board, const T* bend,
+                    T* residual) const {
         const T x(flat.x()), y(flat.y());
         const V3<T> p = moved(camera_from_rig, moved(rig_from_board, V3<T>{x, y, shape.z(bend, x, y)}));
         T pixel[2];
@@ -130,9 +131,10 @@ struct LightCost {
         T xy[2];
         undistorted(camera, sample.pixel_in_camera, xy);
         const V3<T> minus{-camera_from_rig[3], -camera_from_rig[4], -camera_from_rig[5]};
-        const V3<T> eye = turned_back(camera_from_rig, minus), way = turned_back(camera_from_rig, V3<T>{xy[0], xy[1], T(1.0)});
-        const V3<T> origin =
-            turned_back(rig_from_board, V3<T>{eye.x - rig_from_board[3], eye.y - rig_from_board[4], eye.z - rig_from_board[5]});
+        const V3<T> eye = turned_back(camera_from_rig, minus),
+                    way = turned_back(camera_from_rig, V3<T>{xy[0], xy[1], T(1.0)});
+        const V3<T> origin = turned_back(
+            rig_from_board, V3<T>{eye.x - rig_from_board[3], eye.y - rig_from_board[4], eye.z - rig_from_board[5]});
         const V3<T> d = turned_back(rig_from_board, way);
         T s = -origin.z / d.z;
         for (int i = 0; i < 2; ++i) s = (shape.z(bend, T(origin.x + s * d.x), T(origin.y + s * d.y)) - origin.z) / d.z;

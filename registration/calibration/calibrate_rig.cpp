@@ -5,9 +5,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "registration/calibration/initial_calibration.h"
 #include "registration/calibration/judge_calibration.h"
 #include "registration/calibration/judge_pictures.h"
-#include "registration/calibration/initial_calibration.h"
 
 namespace planlight {
 namespace {
@@ -21,8 +21,8 @@ struct Placed {
 };
 
 /// Corners that both cameras see; with one camera and a projector the lit pixels.
-std::vector<Placed> placed_on_board(const PoseObservation& pose, const RigEstimate& rig, const RigidTransform& rig_from_board,
-                                    const BoardSpec& board) {
+std::vector<Placed> placed_on_board(const PoseObservation& pose, const RigEstimate& rig,
+                                    const RigidTransform& rig_from_board, const BoardSpec& board) {
     std::vector<Placed> placed;
     const auto add = [&](const PixelsOfPoint& pixels, const Vector3d& in_board) {
         if (const auto p = triangulate_pixels(rig, pixels, kScanSigma_px, rig_from_board * in_board))
@@ -54,8 +54,8 @@ struct LengthSum {
     double sum = 0, square = 0;
 };
 
-/// Distances of 150 to 250 mm on the board (or 60 to 100 % of a small board's width), their errors taken to 200 mm. What is
-/// off by more than 2 % is a wrong corner, not a length.
+/// Distances of 150 to 250 mm on the board (or 60 to 100 % of a small board's width), their errors taken to 200 mm.
+/// What is off by more than 2 % is a wrong corner, not a length.
 void add_lengths(const std::vector<Placed>& placed, const BoardSpec& board, LengthSum& lengths) {
     const double high = std::min(250.0, board.width_mm()), low = 0.6 * high;
     for (std::size_t i = 0; i < placed.size(); ++i)
@@ -81,7 +81,8 @@ HeldOut hold_out(const std::vector<PoseObservation>& poses, const BoardSpec& boa
     std::array<double, 3> square{};
     for (std::size_t fold = 0; fold < folds; ++fold) {
         RigEstimate training = full.rig, test = full.rig;
-        for (std::size_t k = 0; k < seen.size(); ++k) (k % folds == fold ? training : test).rig_from_board[seen[k]].reset();
+        for (std::size_t k = 0; k < seen.size(); ++k)
+            (k % folds == fold ? training : test).rig_from_board[seen[k]].reset();
         const BundleResult learnt = adjust_bundle(poses, board, training, settings.bundle);
         test.devices = learnt.rig.devices;
         test.bend_mm = learnt.rig.bend_mm;
@@ -95,7 +96,8 @@ HeldOut hold_out(const std::vector<PoseObservation>& poses, const BoardSpec& boa
         }
         for (std::size_t i = 0; i < poses.size(); ++i)
             if (judged.rig.rig_from_board[i])
-                add_lengths(placed_on_board(poses[i], judged.rig, *judged.rig.rig_from_board[i], board), board, lengths);
+                add_lengths(placed_on_board(poses[i], judged.rig, *judged.rig.rig_from_board[i], board), board,
+                            lengths);
     }
     for (std::size_t d = 0; d < 3; ++d)
         out.rms_px[d] = out.used[d] ? std::sqrt(square[d] / static_cast<double>(out.used[d])) : 0;
@@ -158,7 +160,8 @@ RigCalibration rig_calibration_of(const Calibration& calibration, const std::str
     double square = 0;
     std::size_t count = 0;
     for (std::size_t d = 0; d < 3; ++d) {
-        square += calibration.bundle.rms_px[d] * calibration.bundle.rms_px[d] * static_cast<double>(calibration.bundle.used[d]);
+        square += calibration.bundle.rms_px[d] * calibration.bundle.rms_px[d] *
+                  static_cast<double>(calibration.bundle.used[d]);
         count += calibration.bundle.used[d];
     }
     rig.reprojection_rms_px = count ? std::sqrt(square / static_cast<double>(count)) : 0;

@@ -13,15 +13,17 @@ struct CalibrationSettings {
     BundleSettings bundle;
     int folds = 4;  ///< the poses are held out in so many groups, one after the other
     std::size_t least_poses = 3;
-    double least_tilt_range = 0.26;            ///< radians (15 degrees): the largest angle between two poses of the board
+    double least_tilt_range = 0.26;  ///< radians (15 degrees): the largest angle between two poses of the board
     double alike_angle = 0.05, alike_mm = 10;  ///< poses nearer than this to an earlier one count as the same
     double max_saturated = 0.05;               ///< share of the board's pixels
-    double min_contrast_grey = 12;  ///< white less black light on the board; of the white picture itself without coded light
-    double max_moved_px = 0.25;     ///< of the board while a pose was captured
-    double min_decoded = 0.2;       ///< of the board's lit pixels (a board printed black decodes on its white squares only)
-    double max_rms_px = 1.0;        ///< of a camera, of the light
-    /// Together against each by itself: a camera's corners in the pair against alone, the light of all poses against that of a
-    /// pose whose projector may stand anywhere. More is a device that was moved between poses, by however little.
+    double min_contrast_grey =
+        12;  ///< white less black light on the board; of the white picture itself without coded light
+    double max_moved_px = 0.25;  ///< of the board while a pose was captured
+    double min_decoded = 0.2;  ///< of the board's lit pixels (a board printed black decodes on its white squares only)
+    double max_rms_px = 1.0;   ///< of a camera, of the light
+    /// Together against each by itself: a camera's corners in the pair against alone, the light of all poses against
+    /// that of a pose whose projector may stand anywhere. More is a device that was moved between poses, by however
+    /// little.
     double max_worse_together = 1.6;
     double max_left_out = 0.2;      ///< share of corners or lit pixels that may disagree with the rest
     double max_predicted_mm = 1.0;  ///< 95 % of the working volume

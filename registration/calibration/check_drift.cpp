@@ -35,9 +35,10 @@ bool cameras_bent(const BentResiduals& bent, const DriftLimits& limits) {
 /// Empty where the light was read well enough to judge a rig by it.
 std::string unfit(const ScanResult& scan, const DriftLimits& limits) {
     if (scan.code_step_px > limits.code_step_px)
-        return fmt::format("the light was read to {:.0f} projector pixels; to judge the rig it takes {:.0f}", scan.code_step_px,
-                           limits.code_step_px);
-    if (scan.left.row.empty() || scan.right.row.empty()) return "the light codes columns only; to judge the rig it takes rows too";
+        return fmt::format("the light was read to {:.0f} projector pixels; to judge the rig it takes {:.0f}",
+                           scan.code_step_px, limits.code_step_px);
+    if (scan.left.row.empty() || scan.right.row.empty())
+        return "the light codes columns only; to judge the rig it takes rows too";
     return {};
 }
 
@@ -157,8 +158,10 @@ DriftCheck check_drift(const ScanResult& scan, const RigCalibration& rig, const 
         check.light_off_mm = check.projector_rms_px * mm_per_px(scan.raw, rig.projector);
     }
     check.reason = unfit(scan, limits);
-    if (check.reason.empty()) decide(check, scan.resection.has_value(), limits);
-    else check.remedy = "Show the full sequence of `planlight patterns`.";
+    if (check.reason.empty())
+        decide(check, scan.resection.has_value(), limits);
+    else
+        check.remedy = "Show the full sequence of `planlight patterns`.";
     return check;
 }
 

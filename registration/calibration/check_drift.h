@@ -17,8 +17,9 @@ struct DriftLimits {
         0.8;  ///< rms length between the decoded projector pixel and the rig's: a third of a mm on the patient
     double projector_after_px = 0.5;  ///< the same once the projector is placed anew: more is another lens setting
     std::size_t min_points = 500;     ///< seen by both cameras under the light
-    double code_step_px = 2;  ///< projector pixels to which the light must be read (ScanResult::code_step_px)
-    /// A bend (see BentResiduals) beyond what good rigs show: in 40 simulated rooms at most 0.09, 3.1 sigma and 0.053 px.
+    double code_step_px = 2;          ///< projector pixels to which the light must be read (ScanResult::code_step_px)
+    /// A bend (see BentResiduals) beyond what good rigs show: in 40 simulated rooms at most 0.09, 3.1 sigma and 0.053
+    /// px.
     double camera_k1 = 0.1, camera_k1_sigmas = 4.5;
     double camera_k1_known = 0.04;  ///< sigma above which the surface is too small to tell
     double projector_bent_px = 0.07;
@@ -39,17 +40,18 @@ struct DriftCheck {
 };
 const char* text_of(DriftCheck::Verdict verdict);
 
-/// What 68.3 % of the points that both cameras placed stay within of their epipolar line, left camera pixels: of normal noise
-/// its rms. A handful of wrong partners, 50 px off, makes a rms (`Triangulation::epipolar_rms_px`) of 0.44 px in a room where
-/// 68.3 % have 0.08, and this none. 0: not known, for no point was placed across these lines (columns only, one camera).
+/// What 68.3 % of the points that both cameras placed stay within of their epipolar line, left camera pixels: of normal
+/// noise its rms. A handful of wrong partners, 50 px off, makes a rms (`Triangulation::epipolar_rms_px`) of 0.44 px in
+/// a room where 68.3 % have 0.08, and this none. 0: not known, for no point was placed across these lines (columns
+/// only, one camera).
 double usual_epipolar_px(const Triangulation& raw);
 
 DriftCheck check_drift(const ScanResult& scan, const RigCalibration& rig, const DriftLimits& limits = {});
 
 /// A check of an earlier day.
 struct EarlierCheck {
-    double day = 0;                                    ///< any origin
-    double epipolar_px = 0, projector_rms_px = 0;      ///< 0: not known
+    double day = 0;                                ///< any origin
+    double epipolar_px = 0, projector_rms_px = 0;  ///< 0: not known
 };
 
 /// Where the checks are heading: a straight line through them, where there are at least four over at least two days and

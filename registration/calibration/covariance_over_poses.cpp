@@ -50,9 +50,8 @@ CovarianceOverPoses covariance_over_poses(const std::vector<PoseInformation>& po
     const MatrixXd unit = MatrixXd::Identity(n, n);
     const VectorXd scale = normal.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
     const Eigen::SelfAdjointEigenSolver<MatrixXd> axes(scale.asDiagonal() * normal * scale.asDiagonal());
-    const MatrixXd whitener =
-        axes.eigenvalues().cwiseMax(1e-15).cwiseSqrt().cwiseInverse().asDiagonal() * axes.eigenvectors().transpose() *
-        scale.asDiagonal();
+    const MatrixXd whitener = axes.eigenvalues().cwiseMax(1e-15).cwiseSqrt().cwiseInverse().asDiagonal() *
+                              axes.eigenvectors().transpose() * scale.asDiagonal();
     CovarianceOverPoses result;
     MatrixXd scatter = unit;
     if (poses.size() >= 3) {

@@ -22,12 +22,13 @@ std::string chunk(const std::string& type_and_data) {
     return big_endian(static_cast<std::uint32_t>(type_and_data.size() - 4)) + type_and_data + big_endian(crc);
 }
 
-/// Whole pixels a module, about 10 a mm (fewer on a board that would fill the memory). The file says how many there are in a
-/// metre, so that the print has the square's true size.
+/// Whole pixels a module, about 10 a mm (fewer on a board that would fill the memory). The file says how many there are
+/// in a metre, so that the print has the square's true size.
 int png_px_per_square(const BoardSpec& board) {
     constexpr double kPxPerMm = 10, kMostPx = 12000;
     const double px_per_mm = std::min(kPxPerMm, kMostPx / std::max(board.width_mm(), board.height_mm()));
-    return kModulesPerSquare * std::max(1, static_cast<int>(std::lround(board.square_mm * px_per_mm / kModulesPerSquare)));
+    return kModulesPerSquare *
+           std::max(1, static_cast<int>(std::lround(board.square_mm * px_per_mm / kModulesPerSquare)));
 }
 
 }  // namespace

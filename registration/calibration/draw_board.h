@@ -19,7 +19,8 @@ GrayImage board_modules(const BoardSpec& board);
 /// The board without margin, `px_per_square` pixels a square (rounded module edges; exact where it is a multiple of 8).
 GrayImage draw_board(const BoardSpec& board, int px_per_square, int dark = kBoardDark);
 
-/// The sheet to print as PNG: board, white margin of a square, the board's text under it; 10 pixels a mm, said in the file.
+/// The sheet to print as PNG: board, white margin of a square, the board's text under it; 10 pixels a mm, said in the
+/// file.
 std::string board_png(const BoardSpec& board);
 
 /// The sheet to print as PDF, one page, vector, true mm: A4 or A3 where it fits, else a page of its own size.

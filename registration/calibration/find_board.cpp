@@ -78,7 +78,8 @@ BoardCorners find_board(const GrayImage& picture, const BoardSpec& board) {
     if (picture.empty()) return {};
     const cv::Mat view(picture.height, picture.width, CV_8UC1, const_cast<std::uint8_t*>(picture.pixels.data()));
     try {
-        BoardCorners found = board.kind == BoardSpec::Kind::charuco ? find_charuco(view, board) : find_chessboard(view, board);
+        BoardCorners found =
+            board.kind == BoardSpec::Kind::charuco ? find_charuco(view, board) : find_chessboard(view, board);
         refine_corners(picture, board, found);
         return found;
     } catch (const cv::Exception&) {  // pictures of a few pixels

@@ -15,8 +15,9 @@ struct BoardCorners {
     std::size_t size() const { return ids.size(); }
 };
 
-/// The board's corners; empty where it is not seen. A ChArUco board may be seen in part, a chessboard only whole. A chessboard
-/// without a top (`BoardSpec::has_a_top`) is named so that its first corner is the one nearer to the picture's top left.
+/// The board's corners; empty where it is not seen. A ChArUco board may be seen in part, a chessboard only whole. A
+/// chessboard without a top (`BoardSpec::has_a_top`) is named so that its first corner is the one nearer to the
+/// picture's top left.
 BoardCorners find_board(const GrayImage& picture, const BoardSpec& board);
 
 /// Six corners or more, not all in one row or column of the board: enough to place it.

@@ -8,6 +8,7 @@
 #include <limits>
 #include <opencv2/calib3d.hpp>
 
+#include "planning_io/types/statistics.h"
 #include "registration/calibration/board_turns.h"
 
 namespace planlight {
@@ -34,7 +35,8 @@ struct Zhang {
     std::vector<std::optional<RigidTransform>> camera_from_board;
 };
 
-std::optional<Zhang> calibrate_camera(const std::vector<PoseObservation>& poses, DeviceName name, const BoardSpec& board) {
+std::optional<Zhang> calibrate_camera(const std::vector<PoseObservation>& poses, DeviceName name,
+                                      const BoardSpec& board) {
     std::vector<std::vector<cv::Point3f>> objects;
     std::vector<std::vector<cv::Point2f>> pictures;
     std::vector<std::size_t> which;
@@ -59,9 +61,10 @@ std::optional<Zhang> calibrate_camera(const std::vector<PoseObservation>& poses,
     cv::Mat matrix = cv::Mat::eye(3, 3, CV_64F), distortion = cv::Mat::zeros(5, 1, CV_64F);
     std::vector<cv::Mat> turns, shifts;
     try {
-        cv::calibrateCamera(objects, pictures, {found.camera.width, found.camera.height}, matrix, distortion, turns, shifts,
-                            cv::CALIB_FIX_ASPECT_RATIO | cv::CALIB_ZERO_TANGENT_DIST | cv::CALIB_FIX_K2 | cv::CALIB_FIX_K3 |
-                                cv::CALIB_FIX_PRINCIPAL_POINT);
+        cv::calibrateCamera(objects, pictures, {found.camera.width, found.camera.height}, matrix, distortion, turns,
+                            shifts,
+                            cv::CALIB_FIX_ASPECT_RATIO | cv::CALIB_ZERO_TANGENT_DIST | cv::CALIB_FIX_K2 |
+                                cv::CALIB_FIX_K3 | cv::CALIB_FIX_PRINCIPAL_POINT);
     } catch (const cv::Exception&) {
         return std::nullopt;
     }
@@ -71,7 +74,8 @@ std::optional<Zhang> calibrate_camera(const std::vector<PoseObservation>& poses,
     found.camera.centre_y = matrix.at<double>(1, 2);
     found.camera.k1 = distortion.at<double>(0);
     if (!std::isfinite(found.camera.focal_x) || !(found.camera.focal_x > 0)) return std::nullopt;
-    for (std::size_t i = 0; i < which.size(); ++i) found.camera_from_board[which[i]] = transform_of(turns[i], shifts[i]);
+    for (std::size_t i = 0; i < which.size(); ++i)
+        found.camera_from_board[which[i]] = transform_of(turns[i], shifts[i]);
     return found;
 }
 
@@ -82,7 +86,8 @@ std::optional<RigidTransform> middle_of(const std::vector<RigidTransform>& sugge
     for (const RigidTransform& a : suggested) {
         double sum = 0;
         for (const RigidTransform& b : suggested)
-            sum += std::min(0.2, angle_between(a, b)) + std::min(0.2, (a.translation() - b.translation()).norm() / 1000);
+            sum +=
+                std::min(0.2, angle_between(a, b)) + std::min(0.2, (a.translation() - b.translation()).norm() / 1000);
         if (sum < least) {
             least = sum;
             best = a;
@@ -162,7 +167,8 @@ std::optional<Matrix34> linear_projection(const std::vector<Vector3d>& points, c
     return P;
 }
 
-std::optional<RigidTransform> board_pose(const CameraModel& camera, const BoardCorners& corners, const BoardSpec& board) {
+std::optional<RigidTransform> board_pose(const CameraModel& camera, const BoardCorners& corners,
+                                         const BoardSpec& board) {
     if (corners.size() < 6) return std::nullopt;
     std::vector<cv::Point3d> object;
     std::vector<cv::Point2d> picture;
@@ -173,8 +179,8 @@ std::optional<RigidTransform> board_pose(const CameraModel& camera, const BoardC
     }
     cv::Mat turn, shift;
     const cv::Matx33d matrix(camera.focal_x, 0, camera.centre_x, 0, camera.focal_y, camera.centre_y, 0, 0, 1);
-    if (!cv::solvePnP(object, picture, matrix, std::vector<double>{camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}, turn,
-                      shift))
+    if (!cv::solvePnP(object, picture, matrix,
+                      std::vector<double>{camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}, turn, shift))
         return std::nullopt;
     return camera.device_from_rig.inverse() * transform_of(turn, shift);
 }
@@ -200,9 +206,7 @@ std::optional<double> misfit_anywhere(const CameraModel& device, const std::vect
         lengths.clear();
         for (std::size_t i = 0; i < expected.size(); ++i)
             lengths.push_back(std::hypot(expected[i].x - picture[i].x, expected[i].y - picture[i].y));
-        std::vector<double> sorted = lengths;
-        std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-        const double limit = 4 * sorted[sorted.size() / 2];
+        const double limit = 4 * median(lengths);
         std::size_t kept = 0;
         for (std::size_t i = 0; i < lengths.size(); ++i)
             if (lengths[i] <= limit) object[kept] = object[i], picture[kept] = picture[i], lengths[kept++] = lengths[i];
@@ -227,7 +231,8 @@ std::vector<PoseObservation> named_as_left(std::vector<PoseObservation> poses, c
         if (!left->camera_from_board[i] || !right->camera_from_board[i]) continue;
         which.push_back(i);
         for (const BoardTurn& turn : turns)
-            suggested.push_back(*right->camera_from_board[i] * turn.to_from.inverse() * left->camera_from_board[i]->inverse());
+            suggested.push_back(*right->camera_from_board[i] * turn.to_from.inverse() *
+                                left->camera_from_board[i]->inverse());
     }
     const auto right_from_left = middle_of(suggested);
     for (std::size_t k = 0; k < which.size(); ++k) {
@@ -250,7 +255,8 @@ InitialCalibration calibrate_cameras_initially(const std::vector<PoseObservation
     }
     start.rig.device(DeviceName::left_camera) = left->camera;
     start.rig.rig_from_board = left->camera_from_board;
-    const bool has_right = std::any_of(poses.begin(), poses.end(), [](const PoseObservation& p) { return p.right.width > 0; });
+    const bool has_right =
+        std::any_of(poses.begin(), poses.end(), [](const PoseObservation& p) { return p.right.width > 0; });
     if (has_right) {
         auto right = calibrate_camera(poses, DeviceName::right_camera, board);
         std::vector<RigidTransform> suggested;
@@ -274,7 +280,7 @@ InitialCalibration calibrate_cameras_initially(const std::vector<PoseObservation
 }
 
 void add_initial_projector(const std::vector<PoseObservation>& poses, const BoardSpec& board, int width, int height,
-                         InitialCalibration& start) {
+                           InitialCalibration& start) {
     std::vector<Vector3d> points;
     std::vector<Vector2d> pixels;
     for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -282,8 +288,8 @@ void add_initial_projector(const std::vector<PoseObservation>& poses, const Boar
         for (const DeviceName name : {DeviceName::left_camera, DeviceName::right_camera}) {
             if (!start.rig.device(name)) continue;
             for (const LightSample& sample : view_of(poses[i], name).light)
-                if (const auto p = board_point(*start.rig.device(name), sample.pixel_in_camera, *start.rig.rig_from_board[i],
-                                               Vector3d::Zero(), board)) {
+                if (const auto p = board_point(*start.rig.device(name), sample.pixel_in_camera,
+                                               *start.rig.rig_from_board[i], Vector3d::Zero(), board)) {
                     points.push_back(*start.rig.rig_from_board[i] * *p);
                     pixels.push_back(sample.pixel_in_projector);
                 }
@@ -291,8 +297,9 @@ void add_initial_projector(const std::vector<PoseObservation>& poses, const Boar
     }
     const auto P = linear_projection(points, pixels);
     if (!P) {
-        start.failure = fmt::format(
-            "the projector's light was decoded at {} places on the board, too few to find the projector", points.size());
+        start.failure =
+            fmt::format("the projector's light was decoded at {} places on the board, too few to find the projector",
+                        points.size());
         return;
     }
     const Matrix34 positive = P->leftCols<3>().determinant() > 0 ? *P : Matrix34(-*P);

@@ -1,4 +1,5 @@
 #include "registration/calibration/judge_calibration.h"
+#include "planning_io/types/statistics.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -20,12 +21,11 @@ std::string worst_poses(const std::vector<PoseObservation>& poses, const BundleR
     std::vector<double> all;
     for (const PoseResidual& r : bundle.residuals)
         if (r.device == device)
-            all.push_back(r.used ? r.rms_px + 3.0 * static_cast<double>(r.left_out) / static_cast<double>(r.used + r.left_out)
+            all.push_back(r.used ? r.rms_px +
+                                       3.0 * static_cast<double>(r.left_out) / static_cast<double>(r.used + r.left_out)
                                  : 99);
     if (all.empty()) return "";
-    std::vector<double> sorted = all;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-    const double limit = 1.5 * sorted[sorted.size() / 2];
+    const double limit = 1.5 * median(all);
     std::vector<std::string> names;
     std::size_t i = 0;
     for (const PoseResidual& r : bundle.residuals)
@@ -58,8 +58,9 @@ BundleResult camera_alone(const std::vector<PoseObservation>& poses, const Board
     return start.failure.empty() ? adjust_bundle(own, board, start.rig, corners) : BundleResult{};
 }
 
-/// What the right camera would have seen without its mirror. In a mirrored chessboard the corners are named from the other
-/// side (one with a top: from below), so their names are turned back as well; the markers of a ChArUco board keep theirs.
+/// What the right camera would have seen without its mirror. In a mirrored chessboard the corners are named from the
+/// other side (one with a top: from below), so their names are turned back as well; the markers of a ChArUco board keep
+/// theirs.
 BundleResult with_right_mirrored(const std::vector<PoseObservation>& poses, const BoardSpec& board,
                                  const CalibrationSettings& settings) {
     std::vector<PoseObservation> mirrored = poses;
@@ -95,11 +96,12 @@ std::optional<Refusal> judge_pair(const std::vector<PoseObservation>& poses, con
         const BundleResult alone = camera_alone(poses, board, camera, s);
         const double by_itself = alone.sigma_px[0], together = cameras.sigma_px[static_cast<std::size_t>(camera)];
         if (alone.converged && together > s.max_worse_together * by_itself + kFloor_px)
-            return Refusal{fmt::format("the {}'s corners fit to {:.2f} px by themselves, but to {:.2f} px together with the "
-                                       "other camera's{}: a camera was moved between "
-                                       "poses, or left and right pictures are not of the same moment",
-                                       text_of(camera), by_itself, together, worst_poses(poses, cameras, camera)),
-                           "Fix the cameras to the rig, then capture all poses again."};
+            return Refusal{
+                fmt::format("the {}'s corners fit to {:.2f} px by themselves, but to {:.2f} px together with the "
+                            "other camera's{}: a camera was moved between "
+                            "poses, or left and right pictures are not of the same moment",
+                            text_of(camera), by_itself, together, worst_poses(poses, cameras, camera)),
+                "Fix the cameras to the rig, then capture all poses again."};
     }
     return std::nullopt;
 }
@@ -114,17 +116,17 @@ double light_by_itself_px(const std::vector<PoseObservation>& poses, const Board
         for (const DeviceName camera : kCameras) {
             if (!rig.device(camera)) continue;
             for (const LightSample& sample : view_of(poses[i], camera).light)
-                if (const auto p =
-                        board_point(*rig.device(camera), sample.pixel_in_camera, *rig.rig_from_board[i], rig.bend_mm, board)) {
+                if (const auto p = board_point(*rig.device(camera), sample.pixel_in_camera, *rig.rig_from_board[i],
+                                               rig.bend_mm, board)) {
                     points.push_back(*rig.rig_from_board[i] * *p);
                     pixels.push_back(sample.pixel_in_projector);
                 }
         }
-        if (const auto misfit = misfit_anywhere(*rig.device(DeviceName::projector), points, pixels)) misfits.push_back(*misfit);
+        if (const auto misfit = misfit_anywhere(*rig.device(DeviceName::projector), points, pixels))
+            misfits.push_back(*misfit);
     }
     if (misfits.empty()) return 1e9;
-    std::nth_element(misfits.begin(), misfits.begin() + static_cast<std::ptrdiff_t>(misfits.size() / 2), misfits.end());
-    return misfits[misfits.size() / 2];
+    return median(std::move(misfits));
 }
 
 std::optional<Refusal> judge_lens(const CameraModel& d, DeviceName name) {
@@ -135,14 +137,17 @@ std::optional<Refusal> judge_lens(const CameraModel& d, DeviceName name) {
     if (!(by_width > 0.3 && by_width < 12))
         return Refusal{fmt::format("the {}'s focal length comes out as {:.2f} picture widths", what, by_width), remedy};
     if (!(std::abs(aspect - 1) < 0.03))
-        return Refusal{fmt::format("the {}'s pixels come out {:.1f} % wider than high", what, 100 * (1 / aspect - 1)), remedy};
+        return Refusal{fmt::format("the {}'s pixels come out {:.1f} % wider than high", what, 100 * (1 / aspect - 1)),
+                       remedy};
     const double off_x = std::abs(d.centre_x / d.width - 0.5), off_y = std::abs(d.centre_y / d.height - 0.5);
     if (name != DeviceName::projector && (off_x > 0.3 || off_y > 0.3))
-        return Refusal{fmt::format("the {}'s optical axis comes out at pixel {:.0f}, {:.0f}", what, d.centre_x, d.centre_y),
-                       remedy};
+        return Refusal{
+            fmt::format("the {}'s optical axis comes out at pixel {:.0f}, {:.0f}", what, d.centre_x, d.centre_y),
+            remedy};
     if (off_x > 3 || off_y > 3)
-        return Refusal{fmt::format("the {}'s optical axis comes out at pixel {:.0f}, {:.0f}", what, d.centre_x, d.centre_y),
-                       remedy};
+        return Refusal{
+            fmt::format("the {}'s optical axis comes out at pixel {:.0f}, {:.0f}", what, d.centre_x, d.centre_y),
+            remedy};
     return std::nullopt;
 }
 
@@ -154,7 +159,8 @@ std::optional<Refusal> judge_cameras(const std::vector<PoseObservation>& poses, 
         for (const DeviceName camera : kCameras) {
             if (!cameras.rig.device(camera)) continue;
             const BundleResult alone = camera_alone(poses, board, camera, s);
-            const double rms = rms_of(alone, DeviceName::left_camera), out = share_left_out(alone, DeviceName::left_camera);
+            const double rms = rms_of(alone, DeviceName::left_camera),
+                         out = share_left_out(alone, DeviceName::left_camera);
             if (!alone.converged || rms > s.max_rms_px || out > s.max_left_out)
                 return Refusal{
                     fmt::format("the {}'s corners do not fit one lens and a {} (off by {:.2f} px, {:.0f} % left out{})",
@@ -163,21 +169,24 @@ std::optional<Refusal> judge_cameras(const std::vector<PoseObservation>& poses, 
                     "Keep zoom, focus and resolution fixed, use a flat board, and check its count of squares."};
         }
         if (fits(with_right_mirrored(poses, board, s), s))
-            return Refusal{"one camera's pictures are mirrored: the cameras fit each other only when one is turned round",
-                           "Switch off the flip in that camera's settings and capture again."};
-        return Refusal{fmt::format("each camera fits its own pictures, but together they are off by {:.2f} and {:.2f} px{}: a "
-                                   "camera was moved between poses, or "
-                                   "left and right pictures are of different poses",
-                                   rms_of(cameras, DeviceName::left_camera), rms_of(cameras, DeviceName::right_camera),
-                                   worst_poses(poses, cameras, DeviceName::right_camera)),
-                       "Fix the cameras to the rig, then capture all poses again."};
+            return Refusal{
+                "one camera's pictures are mirrored: the cameras fit each other only when one is turned round",
+                "Switch off the flip in that camera's settings and capture again."};
+        return Refusal{
+            fmt::format("each camera fits its own pictures, but together they are off by {:.2f} and {:.2f} px{}: a "
+                        "camera was moved between poses, or "
+                        "left and right pictures are of different poses",
+                        rms_of(cameras, DeviceName::left_camera), rms_of(cameras, DeviceName::right_camera),
+                        worst_poses(poses, cameras, DeviceName::right_camera)),
+            "Fix the cameras to the rig, then capture all poses again."};
     }
     if (auto refusal = judge_pair(poses, board, cameras, s)) return refusal;
     const auto& right = cameras.rig.device(DeviceName::right_camera);
     if (right && right->centre_in_rig().x() < 0)
-        return Refusal{fmt::format("the right camera stands {:.0f} mm to the left of the left one: left and right are swapped",
-                                   -right->centre_in_rig().x()),
-                       "Exchange the left and right pictures (or the cameras' cables)."};
+        return Refusal{
+            fmt::format("the right camera stands {:.0f} mm to the left of the left one: left and right are swapped",
+                        -right->centre_in_rig().x()),
+            "Exchange the left and right pictures (or the cameras' cables)."};
     for (const DeviceName camera : kCameras)
         if (const auto& d = cameras.rig.device(camera))
             if (auto refusal = judge_lens(*d, camera)) return refusal;
@@ -192,18 +201,21 @@ std::optional<Refusal> judge_rig(const std::vector<PoseObservation>& poses, cons
         const double rms = rms_of(bundle, DeviceName::projector), out = share_left_out(bundle, DeviceName::projector);
         if (rms > s.max_rms_px || out > s.max_left_out)
             return Refusal{
-                fmt::format("the light does not fit the board (off by {:.2f} px, {:.0f} % left out{}): projector or cameras "
-                            "were moved between poses, "
-                            "pictures of the sequence are late, or the projector's keystone correction is on",
-                            rms, 100 * out, worst_poses(poses, bundle, DeviceName::projector)),
-                "Fix all devices to the rig, switch keystone correction and digital zoom off, then capture all poses again."};
+                fmt::format(
+                    "the light does not fit the board (off by {:.2f} px, {:.0f} % left out{}): projector or cameras "
+                    "were moved between poses, "
+                    "pictures of the sequence are late, or the projector's keystone correction is on",
+                    rms, 100 * out, worst_poses(poses, bundle, DeviceName::projector)),
+                "Fix all devices to the rig, switch keystone correction and digital zoom off, then capture all poses "
+                "again."};
         if (const double by_itself = light_by_itself_px(poses, board, bundle.rig);
             rms > s.max_worse_together * by_itself + kFloor_px)
-            return Refusal{fmt::format("the light of each pose fits to {:.2f} px by itself, that of all poses only to {:.2f} "
-                                       "px{}: the projector, or a camera, was moved "
-                                       "between poses",
-                                       by_itself, rms, worst_poses(poses, bundle, DeviceName::projector)),
-                           "Fix all devices to the rig, then capture all poses again."};
+            return Refusal{
+                fmt::format("the light of each pose fits to {:.2f} px by itself, that of all poses only to {:.2f} "
+                            "px{}: the projector, or a camera, was moved "
+                            "between poses",
+                            by_itself, rms, worst_poses(poses, bundle, DeviceName::projector)),
+                "Fix all devices to the rig, then capture all poses again."};
         if (!fits(bundle, s))
             return Refusal{"the cameras fit the board, but not together with the light",
                            "Fix all devices to the rig, then capture all poses again."};

@@ -5,8 +5,8 @@
 
 namespace planlight {
 
-/// Cameras adjusted on their corners: each alone, and both together. Says which one does not fit, or that they do not fit
-/// each other (mirrored, swapped, moved), and which poses.
+/// Cameras adjusted on their corners: each alone, and both together. Says which one does not fit, or that they do not
+/// fit each other (mirrored, swapped, moved), and which poses.
 std::optional<Refusal> judge_cameras(const std::vector<PoseObservation>& poses, const BoardSpec& board,
                                      const BundleResult& cameras, const CalibrationSettings& settings);
 

@@ -17,10 +17,12 @@ constexpr double kDegrees = 180 / std::numbers::pi;
 constexpr std::array kCameras{DeviceName::left_camera, DeviceName::right_camera};
 
 bool has(const std::vector<PoseObservation>& poses, DeviceName camera) {
-    return std::any_of(poses.begin(), poses.end(), [&](const PoseObservation& p) { return view_of(p, camera).width > 0; });
+    return std::any_of(poses.begin(), poses.end(),
+                       [&](const PoseObservation& p) { return view_of(p, camera).width > 0; });
 }
 
-/// Off the plane: the corners' root mean square from the best homography, in squares. Lens distortion leaves a few hundredths.
+/// Off the plane: the corners' root mean square from the best homography, in squares. Lens distortion leaves a few
+/// hundredths.
 double off_plane(const BoardCorners& corners, const BoardSpec& board) {
     const auto count = static_cast<Eigen::Index>(corners.size());
     Vector2d middle = Vector2d::Zero();
@@ -58,8 +60,9 @@ std::optional<Refusal> judge_picture(const PoseObservation& pose, DeviceName cam
     const std::string where = fmt::format("{}, {}", pose.name, text_of(camera));
     constexpr double kOffPlane = 0.15;
     if (const double off = off_plane(seen.corners, board); off > kOffPlane)
-        return Refusal{fmt::format("{}: the corners do not lie as on a {} (off by {:.2f} squares)", where, text_of(board), off),
-                       "Count the board's squares again (a chessboard by its inner corners), or flatten the board."};
+        return Refusal{
+            fmt::format("{}: the corners do not lie as on a {} (off by {:.2f} squares)", where, text_of(board), off),
+            "Count the board's squares again (a chessboard by its inner corners), or flatten the board."};
     if (seen.saturated_share > s.max_saturated)
         return Refusal{
             fmt::format("{}: {:.0f} % of the board is saturated under white light", where, 100 * seen.saturated_share),
@@ -69,17 +72,19 @@ std::optional<Refusal> judge_picture(const PoseObservation& pose, DeviceName cam
         return Refusal{fmt::format("{}: the board is too dark ({:.0f} grey of light on it)", where, contrast),
                        "Expose longer, or dim the room, and capture again."};
     if (seen.moved_px > s.max_moved_px)
-        return Refusal{
-            fmt::format("{}: the board or the rig moved by {:.2f} px while the pose was captured", where, seen.moved_px),
-            "Let the board stand by itself and capture this pose again."};
+        return Refusal{fmt::format("{}: the board or the rig moved by {:.2f} px while the pose was captured", where,
+                                   seen.moved_px),
+                       "Let the board stand by itself and capture this pose again."};
     if (!seen.wrong_sequence.empty())
-        return Refusal{fmt::format("{}: the frames do not show the sequence: {}", where, seen.wrong_sequence),
-                       "Capture this pose again; if it comes back, check the delay between projector and cameras and the "
-                       "names of the pictures. \"check_sequence\": false in capture.json takes them as they are."};
+        return Refusal{
+            fmt::format("{}: the frames do not show the sequence: {}", where, seen.wrong_sequence),
+            "Capture this pose again; if it comes back, check the delay between projector and cameras and the "
+            "names of the pictures. \"check_sequence\": false in capture.json takes them as they are."};
     if (seen.coded_light && seen.decoded_share < s.min_decoded)
         return Refusal{
             fmt::format("{}: only {:.0f} % of the lit board could be decoded", where, 100 * seen.decoded_share),
-            "Check that every picture of the sequence was captured once and in its order, then capture this pose again."};
+            "Check that every picture of the sequence was captured once and in its order, then capture this pose "
+            "again."};
     return std::nullopt;
 }
 
@@ -98,10 +103,11 @@ std::optional<Refusal> judge_pictures(const std::vector<PoseObservation>& poses,
             return Refusal{fmt::format("the {}'s pictures are mirrored", text_of(camera)),
                            "Switch off the flip in the camera's settings and capture again."};
         if (found < s.least_poses)
-            return Refusal{fmt::format("the {} sees a {} in {} of {} poses; {} are the least", text_of(camera), text_of(board),
-                                       found, poses.size(), s.least_poses),
-                           found == 0 ? "Check the board's kind and its count of squares (a chessboard by its inner corners)."
-                                      : "Capture 10 to 15 poses that both cameras see."};
+            return Refusal{fmt::format("the {} sees a {} in {} of {} poses; {} are the least", text_of(camera),
+                                       text_of(board), found, poses.size(), s.least_poses),
+                           found == 0
+                               ? "Check the board's kind and its count of squares (a chessboard by its inner corners)."
+                               : "Capture 10 to 15 poses that both cameras see."};
     }
     int width[2] = {}, height[2] = {};
     for (const PoseObservation& pose : poses)
@@ -125,9 +131,11 @@ std::optional<Refusal> judge_poses(const RigEstimate& rig, const BoardSpec& boar
     for (const auto& pose : rig.rig_from_board) {
         if (!pose) continue;
         const Vector3d normal = pose->linear().col(2);
-        most_tilted = std::max(most_tilted, std::acos(std::min(1.0, std::abs(normal.dot((*pose * middle).normalized())))));
+        most_tilted =
+            std::max(most_tilted, std::acos(std::min(1.0, std::abs(normal.dot((*pose * middle).normalized())))));
         for (const auto& other : rig.rig_from_board)
-            if (other) widest = std::max(widest, std::acos(std::min(1.0, std::abs(normal.dot(other->linear().col(2))))));
+            if (other)
+                widest = std::max(widest, std::acos(std::min(1.0, std::abs(normal.dot(other->linear().col(2))))));
         const bool alike = std::any_of(distinct.begin(), distinct.end(), [&](const RigidTransform& d) {
             return angle_between(*pose, d) < s.alike_angle && (*pose * middle - d * middle).norm() < s.alike_mm;
         });
@@ -142,7 +150,8 @@ std::optional<Refusal> judge_poses(const RigEstimate& rig, const BoardSpec& boar
                                        most_tilted * kDegrees),
                            remedy};
         return Refusal{
-            fmt::format("the poses are too similar: their tilts differ by {:.0f} degrees at most", widest * kDegrees), remedy};
+            fmt::format("the poses are too similar: their tilts differ by {:.0f} degrees at most", widest * kDegrees),
+            remedy};
     }
     return std::nullopt;
 }

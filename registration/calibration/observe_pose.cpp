@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planning_io/types/statistics.h"
 #include "registration/scan/check/check_sequence.h"
 #include "registration/scan/decode/gray_code.h"
 
@@ -16,7 +17,8 @@ using Eigen::Matrix3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// The picture plane as seen on the board, roughly (no lens distortion): says which pixels lie on the board, nothing else.
+/// The picture plane as seen on the board, roughly (no lens distortion): says which pixels lie on the board, nothing
+/// else.
 Matrix3d board_from_pixel(const BoardCorners& corners, const BoardSpec& board) {
     Eigen::MatrixXd rows(2 * static_cast<Eigen::Index>(corners.size()), 9);
     for (std::size_t i = 0; i < corners.size(); ++i) {
@@ -45,13 +47,6 @@ bool even_around(const GrayImage& picture, int x, int y, double contrast) {
     return high - low < 6 + contrast * sum / 25;  // 6: noise of 25 pixels
 }
 
-double median(std::vector<double>& values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 struct BoardPixel {
     int x, y;
 };
@@ -64,7 +59,8 @@ std::vector<BoardPixel> pixels_on_board(const CameraObservation& seen, const Boa
         least = least.cwiseMin(p);
         most = most.cwiseMax(p);
     }
-    const Vector2d size = most - least, square = size / std::max(2.0, std::sqrt(static_cast<double>(seen.corners.size())) - 1);
+    const Vector2d size = most - least,
+                   square = size / std::max(2.0, std::sqrt(static_cast<double>(seen.corners.size())) - 1);
     const int stride = std::max(1, static_cast<int>(std::sqrt(size.prod() / wanted)));
     const int x0 = std::max(0, static_cast<int>(least.x() - square.x())),
               x1 = std::min(seen.width - 1, static_cast<int>(most.x() + square.x()));
@@ -81,15 +77,16 @@ std::vector<BoardPixel> pixels_on_board(const CameraObservation& seen, const Boa
     return pixels;
 }
 
-/// The sum of pictures that together are even light (a bit and its inverse, all fringes of a direction), as bright as can
-/// be shown: far less noise than one white picture.
+/// The sum of pictures that together are even light (a bit and its inverse, all fringes of a direction), as bright as
+/// can be shown: far less noise than one white picture.
 GrayImage even_light(std::span<const GrayImage> frames) {
     std::vector<int> sum(frames[0].pixels.size(), 0);
     for (const GrayImage& frame : frames)
         for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += frame.pixels[i];
     const int top = std::max(1, *std::max_element(sum.begin(), sum.end()));
     GrayImage even(frames[0].width, frames[0].height);
-    for (std::size_t i = 0; i < sum.size(); ++i) even.pixels[i] = static_cast<std::uint8_t>((sum[i] * 255 + top / 2) / top);
+    for (std::size_t i = 0; i < sum.size(); ++i)
+        even.pixels[i] = static_cast<std::uint8_t>((sum[i] * 255 + top / 2) / top);
     return even;
 }
 
@@ -138,7 +135,8 @@ void keep_light(std::span<const GrayImage> frames, const StripeSettings& stripes
         ++lit;
         if (std::isnan(code.column[i]) || std::isnan(code.row[i])) continue;
         ++decoded;
-        if (even_around(frames[0], x, y, settings.edge_contrast)) all.push_back({{x, y}, {code.column[i], code.row[i]}});
+        if (even_around(frames[0], x, y, settings.edge_contrast))
+            all.push_back({{x, y}, {code.column[i], code.row[i]}});
     }
     std::erase_if(contrast, [](double c) { return c < 8; });
     seen.contrast_grey = median(contrast);
@@ -155,8 +153,7 @@ BoardCorners mirrored_corners(const GrayImage& picture, const BoardSpec& board) 
 }
 
 std::string wrong_in_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes) {
-    const auto patterns =
-        stripes.phase_steps == 0 ? gray_code_patterns(stripes) : stripe_sequence(stripes);
+    const auto patterns = stripes.phase_steps == 0 ? gray_code_patterns(stripes) : stripe_sequence(stripes);
     const SequenceCheck check = check_sequence(frames, stripes, patterns, true);
     if (check.problems.empty()) return {};
     return fmt::format("{} ({:.0f} % of the lit pixels)", check.problems[0].what, 100 * check.problems[0].share);
@@ -165,7 +162,8 @@ std::string wrong_in_sequence(std::span<const GrayImage> frames, const StripeSet
 }  // namespace
 
 DecodedView decode_calibration_light(std::span<const GrayImage> frames, const StripeSettings& stripes) {
-    return stripes.phase_steps == 0 ? decode_gray_code(frames, stripes.width, stripes.height) : decode_stripes(frames, stripes);
+    return stripes.phase_steps == 0 ? decode_gray_code(frames, stripes.width, stripes.height)
+                                    : decode_stripes(frames, stripes);
 }
 
 CameraObservation observe_board(std::span<const GrayImage> frames, const std::optional<StripeSettings>& stripes,
@@ -187,7 +185,8 @@ CameraObservation observe_board(std::span<const GrayImage> frames, const std::op
     if (!seen.coded_light) return seen;
     if (settings.check_sequence) seen.wrong_sequence = wrong_in_sequence(frames, *stripes);
     keep_light(frames, *stripes, pixels, settings, seen);
-    seen.moved_px = moved_between(seen.corners, follow_board(even_light(last_even(frames, *stripes)), seen.corners, board));
+    seen.moved_px =
+        moved_between(seen.corners, follow_board(even_light(last_even(frames, *stripes)), seen.corners, board));
     if (seen.moved_px < settings.moved_px)
         seen.corners = follow_board(even_light(all_even(frames, *stripes)), seen.corners, board);
     return seen;

@@ -40,7 +40,8 @@ struct PoseObservation {
 struct ObserveSettings {
     int light_samples = 400;      ///< a camera and pose: enough for their noise to vanish, few enough to be quick
     double edge_contrast = 0.10;  ///< light samples lie where the white picture varies less than this within 5x5 pixels
-    double moved_px = 0.2;  ///< a board that moved less is looked up again in the sum of all pictures, which has less noise
+    double moved_px =
+        0.2;  ///< a board that moved less is looked up again in the sum of all pictures, which has less noise
     bool check_sequence = true;  ///< look for late, doubled, missing and swapped frames
 };
 

@@ -15,8 +15,8 @@ using Eigen::Vector2d;
 using Vector9d = Eigen::Matrix<double, 9, 1>;
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
 
-constexpr double kAlong = 0.4;       ///< squares of an edge to either side of its corner
-constexpr double kAlongMost_px = 24;  ///< farther off, distortion bends an edge
+constexpr double kAlong = 0.4;                               ///< squares of an edge to either side of its corner
+constexpr double kAlongMost_px = 24;                         ///< farther off, distortion bends an edge
 constexpr double kRingOfMarked = 0.125, kRingOfPlain = 0.3;  ///< squares beside an edge that show nothing but the edge
 constexpr double kMargin_px = 1.5;                           ///< within which what lies beyond them shines in
 constexpr int kLeastPixels = 30, kRounds = 30, kPasses = 2;
@@ -26,8 +26,8 @@ struct Sample {
     double grey;
 };
 
-/// Two blurred edges that cross: grey = (middle + half S(d0) S(d1)) (1 + fall . off), S(d) = erf(d / (sqrt 2 blur)), d the
-/// distance from an edge. Numbers: x, y, angle of either edge, blur, middle, half, fall.
+/// Two blurred edges that cross: grey = (middle + half S(d0) S(d1)) (1 + fall . off), S(d) = erf(d / (sqrt 2 blur)), d
+/// the distance from an edge. Numbers: x, y, angle of either edge, blur, middle, half, fall.
 struct Crossing {
     Vector9d numbers;
 
@@ -66,15 +66,18 @@ struct Crossing {
 };
 
 /// Pixels along the four sides that meet in a corner. `px_of_square`: the board's two directions, a square each.
-std::vector<Sample> samples_round(const GrayImage& picture, const Vector2d& corner, const Matrix2d& px_of_square, double ring) {
+std::vector<Sample> samples_round(const GrayImage& picture, const Vector2d& corner, const Matrix2d& px_of_square,
+                                  double ring) {
     const Matrix2d square_of_px = px_of_square.inverse();
     const Vector2d along = (kAlongMost_px * px_of_square.colwise().norm().cwiseInverse().transpose()).cwiseMin(kAlong);
-    const double reach_x = px_of_square.row(0).cwiseAbs().dot(along), reach_y = px_of_square.row(1).cwiseAbs().dot(along);
+    const double reach_x = px_of_square.row(0).cwiseAbs().dot(along),
+                 reach_y = px_of_square.row(1).cwiseAbs().dot(along);
     // Of both directions: squares a pixel, straight off the edge.
     const Vector2d per_px = square_of_px.rowwise().norm();
     const Vector2d widths = (Vector2d::Constant(ring) - kMargin_px * per_px).cwiseMax(kMargin_px * per_px);
     std::vector<Sample> samples;
-    const int x0 = std::max(0, static_cast<int>(corner.x() - reach_x)), y0 = std::max(0, static_cast<int>(corner.y() - reach_y));
+    const int x0 = std::max(0, static_cast<int>(corner.x() - reach_x)),
+              y0 = std::max(0, static_cast<int>(corner.y() - reach_y));
     const int x1 = std::min(picture.width - 1, static_cast<int>(corner.x() + reach_x) + 1),
               y1 = std::min(picture.height - 1, static_cast<int>(corner.y() + reach_y) + 1);
     for (int y = y0; y <= y1; ++y)
@@ -98,7 +101,8 @@ Crossing first_guess(const std::vector<Sample>& samples, const Matrix2d& px_of_s
     const double same = sum[1] / std::max(1.0, count[1]), other = sum[0] / std::max(1.0, count[0]);
     Crossing guess;
     const Vector2d x = px_of_square.col(0), y = px_of_square.col(1);
-    const double side = x.x() * y.y() - x.y() * y.x() > 0 ? -1 : 1;  // of S(d0) S(d1) where both board directions are positive
+    const double side =
+        x.x() * y.y() - x.y() * y.x() > 0 ? -1 : 1;  // of S(d0) S(d1) where both board directions are positive
     guess.numbers << 0, 0, std::atan2(x.y(), x.x()), std::atan2(y.y(), y.x()), 1, (same + other) / 2,
         side * (same - other) / 2, 0, 0;
     return guess;
@@ -153,12 +157,14 @@ void refine_corners(const GrayImage& picture, const BoardSpec& board, BoardCorne
     const double ring = board.kind == BoardSpec::Kind::charuco ? kRingOfMarked : kRingOfPlain;
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const Eigen::Vector3d at = h * Eigen::Vector3d(squares[i].x, squares[i].y, 1);
-        const Matrix2d px_of_square = (h.topLeftCorner<2, 2>() - at.hnormalized() * h.bottomLeftCorner<1, 2>()) / at.z();
+        const Matrix2d px_of_square =
+            (h.topLeftCorner<2, 2>() - at.hnormalized() * h.bottomLeftCorner<1, 2>()) / at.z();
         Vector2d corner = corners.pixels[i];
         for (int pass = 0; pass < kPasses; ++pass) {
             const auto samples = samples_round(picture, corner, px_of_square, ring);
-            const auto moved =
-                samples.size() < kLeastPixels ? std::nullopt : fit_crossing(samples, first_guess(samples, px_of_square));
+            const auto moved = samples.size() < kLeastPixels
+                                   ? std::nullopt
+                                   : fit_crossing(samples, first_guess(samples, px_of_square));
             corner += moved.value_or(Vector2d::Constant(1e9));
         }
         if ((px_of_square.inverse() * (corner - corners.pixels[i])).norm() < 0.25) corners.pixels[i] = corner;

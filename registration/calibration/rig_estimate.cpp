@@ -32,8 +32,9 @@ Vector3d bent(const Vector3d& flat, const Vector3d& bend_mm, const BoardSpec& bo
     return {flat.x(), flat.y(), bend_mm.dot(Vector3d(x * x, x * y, y * y))};
 }
 
-std::optional<Vector3d> board_point(const CameraModel& camera, const Vector2d& pixel, const RigidTransform& rig_from_board,
-                                    const Vector3d& bend_mm, const BoardSpec& board) {
+std::optional<Vector3d> board_point(const CameraModel& camera, const Vector2d& pixel,
+                                    const RigidTransform& rig_from_board, const Vector3d& bend_mm,
+                                    const BoardSpec& board) {
     const auto ray = ray_through(camera, pixel);
     if (!ray) return std::nullopt;
     const RigidTransform board_from_rig = rig_from_board.inverse();

@@ -35,8 +35,8 @@ std::optional<Eigen::Vector3d> board_point(const CameraModel& camera, const Eige
                                            const RigidTransform& rig_from_board, const Eigen::Vector3d& bend_mm,
                                            const BoardSpec& board);
 
-/// The numbers of a rig that a calibration determines, and back: per device fx, fy, cx, cy, k1, k2, p1, p2, k3, then (but
-/// not for the left camera, whose frame it is) the rotation vector and the shift of device_from_rig.
+/// The numbers of a rig that a calibration determines, and back: per device fx, fy, cx, cy, k1, k2, p1, p2, k3, then
+/// (but not for the left camera, whose frame it is) the rotation vector and the shift of device_from_rig.
 Eigen::VectorXd numbers_of(const RigEstimate& rig);
 RigEstimate with_numbers(const RigEstimate& rig, const Eigen::VectorXd& numbers);
 

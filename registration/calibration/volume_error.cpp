@@ -70,8 +70,9 @@ bool sees(const std::optional<CameraModel>& device, const Vector3d& p) {
 }
 
 /// How a triangulated point moves with the numbers of the rig (3 x numbers), the pixels held; `used`: by which devices.
-MatrixXd point_by_numbers(const RigEstimate& rig, const std::vector<RigEstimate>& plus, const std::vector<RigEstimate>& minus,
-                          const VectorXd& steps, const Vector3d& p, const std::array<bool, 3>& used) {
+MatrixXd point_by_numbers(const RigEstimate& rig, const std::vector<RigEstimate>& plus,
+                          const std::vector<RigEstimate>& minus, const VectorXd& steps, const Vector3d& p,
+                          const std::array<bool, 3>& used) {
     Matrix3d normal = Matrix3d::Zero();
     MatrixXd right = MatrixXd::Zero(3, steps.size());
     for (std::size_t d = 0; d < 3; ++d) {

@@ -80,7 +80,8 @@ PointCloud with_normals(const PointCloud& cloud, const Vector3d& viewpoint_in_ri
             ++count;
         });
         if (count < kFew) continue;
-        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares / count - sum * sum.transpose() / (count * count));
+        const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(squares / count -
+                                                                    sum * sum.transpose() / (count * count));
         const Vector3d normal = solver.eigenvectors().col(0);
         result.points_in_rig.push_back(p);
         result.normals_in_rig.push_back(normal.dot(viewpoint_in_rig - p) < 0 ? Vector3d(-normal) : normal);

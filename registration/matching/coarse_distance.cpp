@@ -14,8 +14,7 @@ constexpr double kCell_mm = 4;
 }  // namespace
 
 CoarseDistance::CoarseDistance(const SkinLut& lut, double truncation_mm, double truncation_outside_mm)
-    : origin_in_ct_(lut.origin_in_ct.cast<float>()),
-      mm_per_step_(static_cast<float>(truncation_mm / 255)) {
+    : origin_in_ct_(lut.origin_in_ct.cast<float>()), mm_per_step_(static_cast<float>(truncation_mm / 255)) {
     for (int axis = 0; axis < 3; ++axis) {
         const auto a = static_cast<std::size_t>(axis);
         size_[axis] = std::max(1, static_cast<int>((lut.distance_size[a] - 1) * lut.distance_voxel_mm / kCell_mm));
@@ -28,7 +27,8 @@ CoarseDistance::CoarseDistance(const SkinLut& lut, double truncation_mm, double 
                 const Eigen::Vector3d centre = lut.origin_in_ct + kCell_mm * Eigen::Vector3d(i + 0.5, j + 0.5, k + 0.5);
                 double d = truncation_mm;
                 Eigen::Vector3d unused;
-                if (field.sample(centre, d, unused)) d = d > 0 ? std::min(d, truncation_outside_mm) : std::min(-d, truncation_mm);
+                if (field.sample(centre, d, unused))
+                    d = d > 0 ? std::min(d, truncation_outside_mm) : std::min(-d, truncation_mm);
                 if (d < truncation_mm / 3) {
                     const SkinPoint* s = lut.nearest_skin(centre);
                     if (s && s->flags & kCutPlane) d = truncation_mm / 3;
@@ -37,8 +37,8 @@ CoarseDistance::CoarseDistance(const SkinLut& lut, double truncation_mm, double 
             }
 }
 
-float CoarseDistance::sum(std::span<const Eigen::Vector3f> points_in_rig, const Eigen::Matrix3f& R, const Eigen::Vector3f& t,
-                          float limit_mm) const {
+float CoarseDistance::sum(std::span<const Eigen::Vector3f> points_in_rig, const Eigen::Matrix3f& R,
+                          const Eigen::Vector3f& t, float limit_mm) const {
     constexpr float kPerMm = static_cast<float>(1 / kCell_mm);
     constexpr std::size_t kBlock = 8;
     const Eigen::Matrix3f A = kPerMm * R;
@@ -54,9 +54,11 @@ float CoarseDistance::sum(std::span<const Eigen::Vector3f> points_in_rig, const 
             const float z = A(2, 0) * p.x() + A(2, 1) * p.y() + A(2, 2) * p.z() + b.z();
             const bool inside = x >= 0 && y >= 0 && z >= 0 && x < static_cast<float>(size_.x()) &&
                                 y < static_cast<float>(size_.y()) && z < static_cast<float>(size_.z());
-            total += inside ? static_cast<float>(steps_[static_cast<std::size_t>(
-                                  (static_cast<int>(z) * size_.y() + static_cast<int>(y)) * size_.x() + static_cast<int>(x))])
-                            : 255.f;
+            total +=
+                inside
+                    ? static_cast<float>(steps_[static_cast<std::size_t>(
+                          (static_cast<int>(z) * size_.y() + static_cast<int>(y)) * size_.x() + static_cast<int>(x))])
+                    : 255.f;
         }
     }
     return total * mm_per_step_;

@@ -9,6 +9,7 @@
 #include <random>
 #include <utility>
 
+#include "planning_io/types/statistics.h"
 #include "registration/matching/match_kernels.h"
 
 namespace planlight {
@@ -38,7 +39,8 @@ float base_quality(const Base& base, float half_width_mm) {
     }
     const auto [shortest, longest] = std::minmax_element(sides.begin(), sides.end());
     if (*shortest < 0.45f || *longest > 1.5f) return -1;
-    const float unequal = std::min({std::abs(sides[0] - sides[1]), std::abs(sides[1] - sides[2]), std::abs(sides[2] - sides[0])});
+    const float unequal =
+        std::min({std::abs(sides[0] - sides[1]), std::abs(sides[1] - sides[2]), std::abs(sides[2] - sides[0])});
     return *shortest + 0.5f * *std::min_element(turns.begin(), turns.end()) + std::min(unequal, 0.3f);
 }
 
@@ -80,11 +82,10 @@ std::vector<SurfaceSite> random_half(const std::vector<SurfaceSite>& sites, std:
     std::vector<float> along;
     for (const SurfaceSite& s : sites) along.push_back(s.position.dot(way));
     std::vector<float> sorted = along;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
+    const auto middle = median(sorted);
     std::vector<SurfaceSite> half;
     for (std::size_t i = 0; i < sites.size(); ++i)
-        if (along[i] >= *middle) half.push_back(sites[i]);
+        if (along[i] >= middle) half.push_back(sites[i]);
     return half;
 }
 
@@ -94,11 +95,13 @@ std::vector<Base> choose_bases(const std::vector<SurfaceSite>& sites, int count,
     constexpr int kWide = 4, kManyTries = 400, kFewTries = 30;
     std::vector<Base> bases;
     std::vector<SurfaceSite> usable;
-    std::copy_if(sites.begin(), sites.end(), std::back_inserter(usable), [](const SurfaceSite& s) { return s.contact; });
+    std::copy_if(sites.begin(), sites.end(), std::back_inserter(usable),
+                 [](const SurfaceSite& s) { return s.contact; });
     std::mt19937 random(seed);
     for (int i = 0; i < count; ++i) {
         const bool of_all = i < kWide || i % 2 == 0;
-        const auto base = best_of(of_all ? usable : random_half(usable, random), i < kWide ? kManyTries : kFewTries, random);
+        const auto base =
+            best_of(of_all ? usable : random_half(usable, random), i < kWide ? kManyTries : kFewTries, random);
         if (base) bases.push_back(*base);
     }
     return bases;
@@ -143,9 +146,9 @@ void SkinPairs::find_alike(const Shape& wanted, std::size_t a, float tolerance_m
     std::uint8_t marks[kBlock];
     for (std::size_t from = 0; from < n; from += kBlock) {
         const std::size_t m = std::min(kBlock, n - from), at = a * n + from;
-        match_kernels::mark_alike(&length_[at], &first_[at], &second_[at], &between_[at], m,
-                                  {wanted.length_mm, wanted.first, wanted.second, wanted.between, tolerance_mm, kNormalTolerance},
-                                  marks);
+        match_kernels::mark_alike(
+            &length_[at], &first_[at], &second_[at], &between_[at], m,
+            {wanted.length_mm, wanted.first, wanted.second, wanted.between, tolerance_mm, kNormalTolerance}, marks);
         for (std::size_t i = 0; i < m; ++i)
             if (marks[i]) found.push_back(static_cast<int>(from + i));
     }

@@ -22,7 +22,8 @@ public:
     /// Distance (mm, negative inside) and gradient (unit on average), trilinear. False outside the field.
     bool sample(const Eigen::Vector3d& p_in_ct, double& distance_mm, Eigen::Vector3d& gradient) const {
         const Eigen::Vector3d v = (p_in_ct - origin_in_ct_) * per_mm_;
-        if (!(v.minCoeff() >= 0) || v.x() >= size_.x() - 1 || v.y() >= size_.y() - 1 || v.z() >= size_.z() - 1) return false;
+        if (!(v.minCoeff() >= 0) || v.x() >= size_.x() - 1 || v.y() >= size_.y() - 1 || v.z() >= size_.z() - 1)
+            return false;
         const Eigen::Vector3i c = v.cast<int>();
         const double fx = v.x() - c.x(), fy = v.y() - c.y(), fz = v.z() - c.z();
         const float* at = values_ + c.x() + c.y() * stride_y_ + c.z() * stride_z_;
@@ -41,8 +42,13 @@ public:
 
     /// The same field for the kernels; its first node lies at `origin_in_ct()`.
     match_kernels::Field plain() const {
-        return {values_, static_cast<int>(stride_y_), static_cast<int>(stride_z_), static_cast<float>(size_.x() - 1),
-                static_cast<float>(size_.y() - 1), static_cast<float>(size_.z() - 1), static_cast<float>(per_mm_)};
+        return {values_,
+                static_cast<int>(stride_y_),
+                static_cast<int>(stride_z_),
+                static_cast<float>(size_.x() - 1),
+                static_cast<float>(size_.y() - 1),
+                static_cast<float>(size_.z() - 1),
+                static_cast<float>(per_mm_)};
     }
     const Eigen::Vector3d& origin_in_ct() const { return origin_in_ct_; }
 

@@ -20,9 +20,10 @@ match_kernels::Placing placing_of(const RigidTransform& ct_from_rig, const Vecto
     return placing;
 }
 
-NormalEquations point_to_plane_equations(const PointArrays& points, std::size_t count, std::span<const std::uint8_t> skip,
-                                         const DistanceField& field, const RigidTransform& ct_from_rig,
-                                         const Vector3d& centre_in_ct, double scale_mm, double outside_mm, double max_pair_mm) {
+NormalEquations point_to_plane_equations(const PointArrays& points, std::size_t count,
+                                         std::span<const std::uint8_t> skip, const DistanceField& field,
+                                         const RigidTransform& ct_from_rig, const Vector3d& centre_in_ct,
+                                         double scale_mm, double outside_mm, double max_pair_mm) {
     double sums[27] = {};  // upper triangle of H, then g
     NormalEquations result;
     result.used = match_kernels::add_point_to_plane(
@@ -36,8 +37,8 @@ NormalEquations point_to_plane_equations(const PointArrays& points, std::size_t 
     return result;
 }
 
-RigidTransform after_step(const NormalEquations& equations, const RigidTransform& ct_from_rig, const Vector3d& centre_in_ct,
-                          double largest_step_mm, double& moved_mm) {
+RigidTransform after_step(const NormalEquations& equations, const RigidTransform& ct_from_rig,
+                          const Vector3d& centre_in_ct, double largest_step_mm, double& moved_mm) {
     constexpr double kLever_mm = 100;
     Eigen::Matrix<double, 6, 6> H = equations.H;
     const double trace = H.diagonal().tail<3>().sum() + 1e-12;
@@ -54,16 +55,17 @@ RigidTransform after_step(const NormalEquations& equations, const RigidTransform
     return Eigen::Translation3d(centre_in_ct) * about_centre * Eigen::Translation3d(-centre_in_ct) * ct_from_rig;
 }
 
-RigidTransform refine_roughly(const PointArrays& points_in_rig, const DistanceField& field, const RigidTransform& ct_from_rig) {
+RigidTransform refine_roughly(const PointArrays& points_in_rig, const DistanceField& field,
+                              const RigidTransform& ct_from_rig) {
     constexpr int kSteps = 12;
     constexpr double kLeastScale_mm = 1, kOutside = 0.5;
     RigidTransform pose = ct_from_rig;
     for (int i = 0; i < kSteps; ++i) {
         const double scale_mm = std::max(kLeastScale_mm, 5.0 * std::pow(0.8, i));
         const Vector3d centre_in_ct = pose * points_in_rig.centre;
-        const NormalEquations equations = point_to_plane_equations(points_in_rig, points_in_rig.size(), {}, field, pose,
-                                                                   centre_in_ct, scale_mm,
-                                                                   std::max(kLeastScale_mm, kOutside * scale_mm), 20);
+        const NormalEquations equations =
+            point_to_plane_equations(points_in_rig, points_in_rig.size(), {}, field, pose, centre_in_ct, scale_mm,
+                                     std::max(kLeastScale_mm, kOutside * scale_mm), 20);
         if (equations.used < 12) return pose;
         double moved_mm;
         pose = after_step(equations, pose, centre_in_ct, 20, moved_mm);

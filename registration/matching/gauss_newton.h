@@ -28,8 +28,9 @@ inline double tukey_weight(double residual_mm, double scale_mm) {
 match_kernels::Placing placing_of(const RigidTransform& ct_from_rig, const Eigen::Vector3d& points_centre_in_rig,
                                   const DistanceField& field, const Eigen::Vector3d& centre_in_ct);
 
-/// Point to plane on the signed distance (the gradient is the normal) of the first `count` points; those marked in `skip` (if
-/// not empty) and farther than `max_pair_mm` take no part. `outside_mm`: the robust scale of points outside of the body.
+/// Point to plane on the signed distance (the gradient is the normal) of the first `count` points; those marked in
+/// `skip` (if not empty) and farther than `max_pair_mm` take no part. `outside_mm`: the robust scale of points outside
+/// of the body.
 NormalEquations point_to_plane_equations(const PointArrays& points_in_rig, std::size_t count,
                                          std::span<const std::uint8_t> skip, const DistanceField& field,
                                          const RigidTransform& ct_from_rig, const Eigen::Vector3d& centre_in_ct,
@@ -40,8 +41,9 @@ NormalEquations point_to_plane_equations(const PointArrays& points_in_rig, std::
 RigidTransform after_step(const NormalEquations& equations, const RigidTransform& ct_from_rig,
                           const Eigen::Vector3d& centre_in_ct, double largest_step_mm, double& moved_mm);
 
-/// A few such steps on few points with a falling robust scale, half as large outside of the body, where cloth lies: from a
-/// rough pose (some mm and degrees) to near the minimum.
-RigidTransform refine_roughly(const PointArrays& points_in_rig, const DistanceField& field, const RigidTransform& ct_from_rig);
+/// A few such steps on few points with a falling robust scale, half as large outside of the body, where cloth lies:
+/// from a rough pose (some mm and degrees) to near the minimum.
+RigidTransform refine_roughly(const PointArrays& points_in_rig, const DistanceField& field,
+                              const RigidTransform& ct_from_rig);
 
 }  // namespace planlight

@@ -1,17 +1,17 @@
 #include "registration/matching/initial_match.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <numbers>
 #include <random>
-#include <thread>
 
 #include "registration/matching/coarse_distance.h"
 #include "registration/matching/contact_triplets.h"
 #include "registration/matching/distance_field.h"
 #include "registration/matching/gauss_newton.h"
-#include "registration/matching/parallel_for.h"
 #include "registration/matching/surface_sites.h"
 
 namespace planlight {
@@ -55,7 +55,8 @@ struct Search {
 };
 
 bool same_pose(const Search& search, const RigidTransform& a, const RigidTransform& b) {
-    return (a * search.centre_in_rig - b * search.centre_in_rig).norm() < kDistinct_mm && angle_between(a, b) < kDistinct_rad;
+    return (a * search.centre_in_rig - b * search.centre_in_rig).norm() < kDistinct_mm &&
+           angle_between(a, b) < kDistinct_rad;
 }
 
 Search prepare_search(const PointCloud& cloud, const MatchingSkin& skin, const InitialMatchSettings& settings) {
@@ -92,23 +93,24 @@ std::vector<ScoredPose> best_contact_poses(const Search& search, const Base& bas
     const auto points = static_cast<float>(search.scoring.size());
     std::vector<ScoredPose> heap;
     float limit = 0.8f * static_cast<float>(search.settings.truncation_mm) * points;
-    for_each_contact_triplet(base, search.skin.pairs, 0.75 * search.settings.model_spacing_mm, [&](const ContactPose& pose) {
-        ++scored;
-        const float cost = search.skin.coarse.sum(search.scoring, pose.R, pose.t, limit);
-        if (cost >= limit) return;
-        heap.push_back({cost, pose});
-        std::push_heap(heap.begin(), heap.end(), better);
-        if (heap.size() <= keep) return;
-        std::pop_heap(heap.begin(), heap.end(), better);
-        heap.pop_back();
-        limit = heap.front().cost_mm;
-    });
+    for_each_contact_triplet(base, search.skin.pairs, 0.75 * search.settings.model_spacing_mm,
+                             [&](const ContactPose& pose) {
+                                 ++scored;
+                                 const float cost = search.skin.coarse.sum(search.scoring, pose.R, pose.t, limit);
+                                 if (cost >= limit) return;
+                                 heap.push_back({cost, pose});
+                                 std::push_heap(heap.begin(), heap.end(), better);
+                                 if (heap.size() <= keep) return;
+                                 std::pop_heap(heap.begin(), heap.end(), better);
+                                 heap.pop_back();
+                                 limit = heap.front().cost_mm;
+                             });
     std::sort_heap(heap.begin(), heap.end(), better);
     return heap;
 }
 
-/// Mean truncated distance of up to `kRankPoints` sites, trilinear; a site that faces the wrong way counts in full, one that
-/// lies outside of the body little, one beyond the table half: a stray, or the patient beyond the CT's end.
+/// Mean truncated distance of up to `kRankPoints` sites, trilinear; a site that faces the wrong way counts in full, one
+/// that lies outside of the body little, one beyond the table half: a stray, or the patient beyond the CT's end.
 double mean_failure(const Search& search, const RigidTransform& ct_from_rig) {
     constexpr double kBeyond = 0.5;
     const PointArrays &p = search.ranking, &n = search.ranking_normals;
@@ -123,7 +125,8 @@ double mean_failure(const Search& search, const RigidTransform& ct_from_rig) {
 /// Improves the best few further, on more points: the first steps may stop short where much of the scan is cloth.
 void polish(const Search& search, std::vector<MatchCandidate>& candidates) {
     constexpr std::size_t kBest = 5;
-    std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.cost_mm < b.cost_mm; });
+    std::stable_sort(candidates.begin(), candidates.end(),
+                     [](const auto& a, const auto& b) { return a.cost_mm < b.cost_mm; });
     for (std::size_t i = 0; i < std::min(candidates.size(), kBest); ++i) {
         const RigidTransform pose = refine_roughly(search.ranking, search.skin.field, candidates[i].ct_from_rig);
         const double cost_mm = mean_failure(search, pose);
@@ -186,8 +189,10 @@ void drop_twins(const Search& search, std::vector<MatchCandidate>& sorted) {
         const auto same = std::find_if(distinct.begin(), distinct.end(), [&](const MatchCandidate& other) {
             return same_pose(search, candidate.ct_from_rig, other.ct_from_rig);
         });
-        if (same == distinct.end()) distinct.push_back(candidate);
-        else same->agreeing_bases = std::max(same->agreeing_bases, candidate.agreeing_bases);
+        if (same == distinct.end())
+            distinct.push_back(candidate);
+        else
+            same->agreeing_bases = std::max(same->agreeing_bases, candidate.agreeing_bases);
     }
     sorted = std::move(distinct);
 }
@@ -204,20 +209,20 @@ InitialMatch find_initial_match(const PointCloud& cloud, const SkinLut& lut, con
     return find_initial_match(cloud, MatchingSkin(lut, settings), settings);
 }
 
-InitialMatch find_initial_match(const PointCloud& cloud, const MatchingSkin& skin, const InitialMatchSettings& settings) {
+InitialMatch find_initial_match(const PointCloud& cloud, const MatchingSkin& skin,
+                                const InitialMatchSettings& settings) {
     constexpr double kClearRatio = 1.15;
     constexpr int kAgreeing = 2, kBatch = 2, kPatientBases = 12;
     InitialMatch match;
     const Search search = prepare_search(cloud, skin, settings);
     const std::vector<Base> bases = choose_bases(search.scan, settings.max_bases, settings.seed);
     const auto count = static_cast<int>(bases.size());
-    const int threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 4);
     while (match.bases_tried < count) {
         const int first = match.bases_tried;
         const int batch = std::min(first == 0 ? std::max(settings.min_bases, 1) : kBatch, count - first);
         std::vector<std::vector<MatchCandidate>> found(static_cast<std::size_t>(batch));
         std::vector<std::size_t> scored(static_cast<std::size_t>(batch), 0);
-        parallel_for(batch, threads, [&](int i) {
+        tbb::parallel_for(0, batch, [&](int i) {
             const auto at = static_cast<std::size_t>(i);
             found[at] = candidates_of_base(search, bases[static_cast<std::size_t>(first + i)], scored[at]);
         });
@@ -228,8 +233,8 @@ InitialMatch find_initial_match(const PointCloud& cloud, const MatchingSkin& ski
         match.runner_up_ratio = runner_up_ratio(match.candidates);
         if (match.candidates.empty()) continue;
         const MatchCandidate& best = match.candidates[0];
-        // A poor fit may be clear and agreed on because the right pose has not been met yet: the poorer, the longer it is
-        // looked for.
+        // A poor fit may be clear and agreed on because the right pose has not been met yet: the poorer, the longer it
+        // is looked for.
         const bool fits = best.cost_mm < (match.bases_tried < kPatientBases ? 0.1 : 0.15) * settings.truncation_mm;
         if (fits && best.agreeing_bases >= kAgreeing && match.runner_up_ratio >= kClearRatio) break;
     }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "planning_io/types/statistics.h"
 #include "planning_io/types/triangle_mesh.h"
 #include "registration/matching/distance_field.h"
 
@@ -17,13 +18,6 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
 constexpr double kLever_mm = 80;  // a turn is told as the movement it makes this far away
-
-double median(std::vector<double>& values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 std::string in_words(const Vector6d& scaled) {
     static const char* const kAxes[] = {"left-right", "front-back", "head-foot"};
@@ -47,8 +41,8 @@ std::string advice_against(const Vector6d& scaled) {
 
 }  // namespace
 
-CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig, double inlier_distance_mm,
-                        double skin_offset_mm) {
+CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
+                        double inlier_distance_mm, double skin_offset_mm) {
     const DistanceField field(lut);
     const bool has_normals = cloud.normals_in_rig.size() == cloud.size();
     CloudOnSkin result;
@@ -83,7 +77,8 @@ WeakestWay weakest_way(const PoseCovariance& covariance) {
     way.advice = "more of the head";
     if (!covariance.known() || !covariance.of_turn_and_shift.allFinite()) return way;
     const Vector6d scale = (Vector6d() << Vector3d::Constant(kLever_mm), Vector3d::Ones()).finished();
-    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scale.asDiagonal() * covariance.of_turn_and_shift * scale.asDiagonal());
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(scale.asDiagonal() * covariance.of_turn_and_shift *
+                                                         scale.asDiagonal());
     way.sigma_mm = std::sqrt(std::max(solver.eigenvalues()(5), 0.0));
     way.in_words = in_words(solver.eigenvectors().col(5));
     way.advice = advice_against(solver.eigenvectors().col(5));

@@ -5,8 +5,8 @@
 
 #include "planning_io/types/point_cloud.h"
 #include "planning_io/types/pose_covariance.h"
-#include "planning_io/types/skin_lut.h"
 #include "planning_io/types/rigid_transform.h"
+#include "planning_io/types/skin_lut.h"
 
 namespace planlight {
 
@@ -17,14 +17,16 @@ struct CloudOnSkin {
     std::size_t inliers = 0;  ///< nearer than the inlier distance, facing the same way as the skin
     std::size_t inside = 0;   ///< deeper in the body than that, where no light comes from
     double inlier_rms_mm = 0;
-    double median_mm = 0;     ///< of the known ones, absolute
-    double inlier_fraction() const { return known == 0 ? 0 : static_cast<double>(inliers) / static_cast<double>(known); }
+    double median_mm = 0;  ///< of the known ones, absolute
+    double inlier_fraction() const {
+        return known == 0 ? 0 : static_cast<double>(inliers) / static_cast<double>(known);
+    }
     double inside_fraction() const { return known == 0 ? 0 : static_cast<double>(inside) / static_cast<double>(known); }
     double known_fraction() const { return points == 0 ? 0 : static_cast<double>(known) / static_cast<double>(points); }
 };
 /// Distances are counted from `skin_offset_mm` outside of the CT's skin.
-CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig, double inlier_distance_mm,
-                        double skin_offset_mm = 0);
+CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
+                        double inlier_distance_mm, double skin_offset_mm = 0);
 
 /// The way in which the patient could move with the least change of the residuals.
 struct WeakestWay {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "registration/processor_clones.h"
+#include "planning_io/types/processor_clones.h"
 
 // Compiled with -fassociative-math (see CMakeLists.txt), so that the sums may run in parallel lanes. The points are
 // finite.

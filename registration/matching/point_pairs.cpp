@@ -93,7 +93,8 @@ RegistrationResult register_point_pairs(const std::vector<PointPair>& pairs, con
     result.covariance = covariance_of(pairs, error_mm);
     result.inlier_fraction = 1;
     result.verdict = Verdict::ask;
-    result.reasons.push_back(fmt::format("registered by {} landmarks alone: look at the light on others", pairs.size()));
+    result.reasons.push_back(
+        fmt::format("registered by {} landmarks alone: look at the light on others", pairs.size()));
     const std::string odd = odd_one_out(pairs, result.residual_rms_mm);
     if (!odd.empty())
         result.reasons.push_back(fmt::format("the landmark \"{}\" does not fit the others: is it the right one?", odd));
@@ -105,14 +106,16 @@ RegistrationResult register_point_pairs(const std::vector<PointPair>& pairs, con
     return result;
 }
 
-void check_with_point_pairs(const std::vector<PointPair>& pairs, RegistrationResult& result, const PointPairSettings& settings) {
+void check_with_point_pairs(const std::vector<PointPair>& pairs, RegistrationResult& result,
+                            const PointPairSettings& settings) {
     if (result.verdict == Verdict::no || pairs.empty()) return;
     const std::vector<double> errors = landmark_errors_mm(pairs, result.patient_from_ct);
     result.landmarks_off_mm = *std::max_element(errors.begin(), errors.end());
     for (std::size_t i = 0; i < pairs.size(); ++i)
         if (errors[i] > settings.max_check_mm)
             lower(result, errors[i] > 2 * settings.max_check_mm ? Verdict::no : Verdict::ask,
-                  fmt::format("the landmark \"{}\" lies {:.1f} mm from where the match puts it", pairs[i].name, errors[i]));
+                  fmt::format("the landmark \"{}\" lies {:.1f} mm from where the match puts it", pairs[i].name,
+                              errors[i]));
 }
 
 }  // namespace planlight

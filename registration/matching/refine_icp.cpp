@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <cstdint>
+#include <limits>
 
+#include "planning_io/types/statistics.h"
 #include "planning_io/types/triangle_mesh.h"
 #include "registration/matching/gauss_newton.h"
 
@@ -40,9 +41,9 @@ Vector3d mean_of_unmarked(std::span<const Vector3d> points, std::span<const std:
 /// How many points take part in an iteration: few while the pose is far, all at the end.
 constexpr std::size_t kFew = 1500, kSome = 5000;
 
-/// Up to `max_points` of the finite points: a random, fixed sample of about `kFew` first, then more up to about `kSome`, then
-/// the rest. Within each the points stay in the order of the scan, where neighbours follow each other and lie close
-/// together in the table too.
+/// Up to `max_points` of the finite points: a random, fixed sample of about `kFew` first, then more up to about
+/// `kSome`, then the rest. Within each the points stay in the order of the scan, where neighbours follow each other and
+/// lie close together in the table too.
 struct Sample {
     std::vector<Vector3d> points;
     std::size_t few = 0, some = 0;
@@ -94,7 +95,8 @@ NormalEquations point_to_point_equations(std::span<const Vector3d> points_in_rig
     return result;
 }
 
-double distance_to_skin(const SkinLut& lut, const DistanceField& field, IcpSettings::Mode mode, const Vector3d& p_in_ct) {
+double distance_to_skin(const SkinLut& lut, const DistanceField& field, IcpSettings::Mode mode,
+                        const Vector3d& p_in_ct) {
     if (mode == IcpSettings::Mode::closest_point) {
         const SkinPoint* s = lut.nearest_skin(p_in_ct);
         return s ? (s->position_in_ct.cast<double>() - p_in_ct).norm() : std::numeric_limits<double>::infinity();
@@ -122,9 +124,7 @@ void measure_residuals(std::span<const Vector3d> points, std::span<const std::ui
     }
     if (result.inliers > 0) result.residual_rms_mm = std::sqrt(sum / static_cast<double>(result.inliers));
     if (all.empty()) return;
-    const auto middle = all.begin() + static_cast<std::ptrdiff_t>(all.size() / 2);
-    std::nth_element(all.begin(), middle, all.end());
-    result.residual_median_mm = *middle;
+    result.residual_median_mm = median(std::move(all));
 }
 
 struct Stage {
@@ -136,9 +136,9 @@ struct Stage {
 
 std::vector<Stage> stages_of(const IcpSettings& settings, const Sample& sample) {
     const double middle_mm = std::sqrt(settings.first_scale_mm * settings.last_scale_mm);
-    const int iterations = settings.max_iterations > 0                          ? settings.max_iterations
+    const int iterations = settings.max_iterations > 0                         ? settings.max_iterations
                            : settings.mode == IcpSettings::Mode::closest_point ? 300
-                                                                                : 60;
+                                                                               : 60;
     const int third = std::max(iterations / 3, 1);
     return {{sample.few, settings.first_scale_mm, middle_mm, third, 0.02},
             {sample.some, middle_mm, settings.last_scale_mm, third, 0.005},
@@ -168,9 +168,9 @@ IcpResult refine_icp(const PointCloud& cloud, const SkinLut& lut, const RigidTra
             result.centre_in_ct = result.ct_from_rig * centre_in_rig;
             const NormalEquations equations =
                 settings.mode == IcpSettings::Mode::signed_distance
-                    ? point_to_plane_equations(arrays, some.size(), skip, field, result.ct_from_rig, result.centre_in_ct,
-                                               scale_mm, std::max(settings.last_scale_mm, kOutside * scale_mm),
-                                               settings.max_pair_mm)
+                    ? point_to_plane_equations(
+                          arrays, some.size(), skip, field, result.ct_from_rig, result.centre_in_ct, scale_mm,
+                          std::max(settings.last_scale_mm, kOutside * scale_mm), settings.max_pair_mm)
                     : point_to_point_equations(some, lut, result.ct_from_rig, result.centre_in_ct, scale_mm,
                                                settings.max_pair_mm);
             if (equations.used < 6) return result;

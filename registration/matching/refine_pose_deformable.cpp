@@ -1,5 +1,7 @@
 #include "registration/matching/refine_pose_deformable.h"
 
+#include <tbb/parallel_for.h>
+
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -9,10 +11,10 @@
 #include <map>
 #include <vector>
 
+#include "planning_io/types/statistics.h"
 #include "planning_io/types/triangle_mesh.h"
 #include "registration/matching/distance_field.h"
 #include "registration/matching/gauss_newton.h"
-#include "registration/matching/parallel_for.h"
 
 namespace planlight {
 namespace {
@@ -33,7 +35,8 @@ struct Patch {
 };
 
 /// The scan in patches of about equal size, about `count` of them; those of fewer than a few points are left out.
-std::vector<Patch> patches_of(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig, int count) {
+std::vector<Patch> patches_of(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
+                              int count) {
     constexpr double kFar_mm = 6;
     const DistanceField field(lut);
     std::vector<Patch> points;
@@ -86,22 +89,22 @@ std::vector<Patch> patches_of(const PointCloud& cloud, const SkinLut& lut, const
 /// covariance, offset and scale are if it is so.
 struct Plausible {
     double log_likelihood = -std::numeric_limits<double>::infinity();
-    double variance = 0;  ///< of the field, mm^2
+    double variance = 0;               ///< of the field, mm^2
     Vector6d step = Vector6d::Zero();  ///< from the pose that was given to the best one under such a skin
     Matrix6d covariance = Matrix6d::Zero();
     double offset_mm = 0;
     double scale = 1, scale_variance = 0;
 };
 
-/// How much of a patch's own it has: 1 near the skin, more the farther it lies off, so that what moved as a piece (a jaw,
-/// a drape's edge) does not pull the pose. Scaled by the median, so that skin which moved as a whole is not left out.
+/// How much of a patch's own it has: 1 near the skin, more the farther it lies off, so that what moved as a piece (a
+/// jaw, a drape's edge) does not pull the pose. Scaled by the median, so that skin which moved as a whole is not left
+/// out.
 VectorXd own_parts(const VectorXd& residual_mm) {
     constexpr double kLeastScale_mm = 0.3, kMedians = 1.5, kLeastWeight = 0.02, kBeyond = 20;
     std::vector<double> sizes(residual_mm.data(), residual_mm.data() + residual_mm.size());
     for (double& size : sizes) size = std::abs(size);
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    const double scale_mm = std::max(kLeastScale_mm, kMedians * *middle);
+    const auto middle = median(sizes);
+    const double scale_mm = std::max(kLeastScale_mm, kMedians * middle);
     return residual_mm.unaryExpr([&](double r) {
         const double beyond = std::max(0., std::abs(r) / scale_mm - 2);
         return 1 / std::max(kLeastWeight, tukey_weight(r, scale_mm)) + kBeyond * beyond * beyond;
@@ -117,21 +120,21 @@ VectorXd softness(const std::vector<Patch>& patches, double given_mm) {
         if (p.known_thickness > 0) known.push_back(p.thickness_mm + given_mm);
     VectorXd soft = VectorXd::Ones(static_cast<Eigen::Index>(patches.size()));
     if (known.size() < patches.size() / 4 || !(given_mm >= 0) || !std::isfinite(given_mm)) return soft;
-    const auto middle = known.begin() + static_cast<std::ptrdiff_t>(known.size() / 2);
-    std::nth_element(known.begin(), middle, known.end());
+    const auto middle = median(known);
     for (std::size_t i = 0; i < patches.size(); ++i)
         if (patches[i].known_thickness > 0)
-            soft[static_cast<Eigen::Index>(i)] = std::clamp((patches[i].thickness_mm + given_mm) / *middle, kLeast, kMost);
+            soft[static_cast<Eigen::Index>(i)] =
+                std::clamp((patches[i].thickness_mm + given_mm) / middle, kLeast, kMost);
     return soft;
 }
 
 struct Problem {
-    MatrixXd J;                ///< patches x 6
+    MatrixXd J;  ///< patches x 6
     VectorXd residual_mm;
-    VectorXd own;              ///< of each patch: more where it lies far off
-    VectorXd growth_mm;        ///< of the distance, when the scan grows to twice its size
-    MatrixXd squared_mm2;      ///< distances of patches
-    VectorXd soft;             ///< how far each is likely to move, against the typical one
+    VectorXd own;          ///< of each patch: more where it lies far off
+    VectorXd growth_mm;    ///< of the distance, when the scan grows to twice its size
+    MatrixXd squared_mm2;  ///< distances of patches
+    VectorXd soft;         ///< how far each is likely to move, against the typical one
 
     Problem(const std::vector<Patch>& patches, const Vector3d& centre, const DeformableSettings& settings)
         : soft(softness(patches, settings.thickness_floor_mm)) {
@@ -156,8 +159,8 @@ struct Problem {
     }
 };
 
-/// Generalised least squares of the pose and of an offset of the whole skin (another threshold, swelling all over), which
-/// has a prior. A field smaller than the least movement is not believed.
+/// Generalised least squares of the pose and of an offset of the whole skin (another threshold, swelling all over),
+/// which has a prior. A field smaller than the least movement is not believed.
 Plausible judge(const Problem& problem, const MatrixXd& alike, double own, const DeformableSettings& settings) {
     using Matrix7d = Eigen::Matrix<double, 7, 7>;
     using Vector7d = Eigen::Matrix<double, 7, 1>;
@@ -207,22 +210,21 @@ Plausible judge(const Problem& problem, const MatrixXd& alike, double own, const
 double median_size(const VectorXd& values) {
     std::vector<double> sizes;
     for (const double v : values) sizes.push_back(std::abs(v));
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    return *middle;
+    return median(std::move(sizes));
 }
 
 /// Whether the patches would lie much farther from the skin after the step than before it.
 bool leaves_the_skin(const Problem& problem, const Vector6d& step, double offset_mm) {
     constexpr double kMuch = 2, kAlways_mm = 0.2;
-    const VectorXd after_mm = problem.residual_mm + problem.J * step - VectorXd::Constant(problem.residual_mm.size(), offset_mm);
+    const VectorXd after_mm =
+        problem.residual_mm + problem.J * step - VectorXd::Constant(problem.residual_mm.size(), offset_mm);
     return median_size(after_mm) > kMuch * median_size(problem.residual_mm) + kAlways_mm;
 }
 
 }  // namespace
 
 DeformablePose refine_pose_deformable(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
-                                 const DeformableSettings& settings) {
+                                      const DeformableSettings& settings) {
     DeformablePose result;
     result.ct_from_rig = ct_from_rig;
     result.covariance.of_turn_and_shift.diagonal().setConstant(std::numeric_limits<double>::infinity());
@@ -236,8 +238,7 @@ DeformablePose refine_pose_deformable(const PointCloud& cloud, const SkinLut& lu
     constexpr std::array kCorrelations_mm{10., 15., 22., 33., 50., 75.};
     constexpr std::array kOwns{0.01, 0.1, 1., 10.};
     std::array<std::array<Plausible, kOwns.size()>, kCorrelations_mm.size()> judged;
-    parallel_for(static_cast<int>(kCorrelations_mm.size()), 2, [&](int i) {
-        const auto at = static_cast<std::size_t>(i);
+    tbb::parallel_for(std::size_t{0}, kCorrelations_mm.size(), [&](std::size_t at) {
         const MatrixXd alike = problem.alike(kCorrelations_mm[at]);
         for (std::size_t j = 0; j < kOwns.size(); ++j) judged[at][j] = judge(problem, alike, kOwns[j], settings);
     });
@@ -271,15 +272,16 @@ DeformablePose refine_pose_deformable(const PointCloud& cloud, const SkinLut& lu
     result.covariance.centre_in_ct = centre;
     result.covariance.of_turn_and_shift = settings.caution * (covariance / sum - step * step.transpose());
     if (leaves_the_skin(problem, step, result.offset_mm)) {
-        // Long waves that the pose takes up nearly whole can be had of any height: then the residuals tell nothing of it.
+        // Long waves that the pose takes up nearly whole can be had of any height: then the residuals tell nothing of
+        // it.
         result.covariance.of_turn_and_shift += step * step.transpose();
         step.setZero();
         result.offset_mm = 0;
     }
     const double pulled_mm = settings.pulled_share * result.movement_mm,
                  from_offset_mm = settings.offset_share * result.offset_mm;
-    const double unseen_mm2 = pulled_mm * pulled_mm + from_offset_mm * from_offset_mm +
-                              settings.least_shift_mm * settings.least_shift_mm;
+    const double unseen_mm2 =
+        pulled_mm * pulled_mm + from_offset_mm * from_offset_mm + settings.least_shift_mm * settings.least_shift_mm;
     result.covariance.of_turn_and_shift.diagonal().tail<3>().array() += unseen_mm2 / 3;
     const Vector3d turn = step.head<3>();
     RigidTransform moved = RigidTransform::Identity();

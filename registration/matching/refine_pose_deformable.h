@@ -8,15 +8,15 @@
 namespace planlight {
 
 struct DeformableSettings {
-    int max_patches = 240;          ///< the scan is gathered into at most about this many patches of equal size
-    double offset_prior_mm = 1;     ///< how far the whole skin may lie outside or inside of the CT's, one sigma
-    double caution = 3;             ///< on the variance: no skin is quite a Gaussian field of one length
-    double pulled_share = 0.8;      ///< of the movement seen: how far skin may be pulled along unseen, one sigma
-    double offset_share = 0.3;      ///< the same, of the offset
+    int max_patches = 240;       ///< the scan is gathered into at most about this many patches of equal size
+    double offset_prior_mm = 1;  ///< how far the whole skin may lie outside or inside of the CT's, one sigma
+    double caution = 3;          ///< on the variance: no skin is quite a Gaussian field of one length
+    double pulled_share = 0.8;   ///< of the movement seen: how far skin may be pulled along unseen, one sigma
+    double offset_share = 0.3;   ///< the same, of the offset
     /// Skin is taken to move in proportion to its thickness over the bone and this much, where the table knows the
     /// thickness; infinite: alike everywhere.
     double thickness_floor_mm = 5;
-    double least_movement_mm = 0.1; ///< that no residual could show, one sigma
+    double least_movement_mm = 0.1;  ///< that no residual could show, one sigma
     /// A shift of the whole that no residual shows even where the skin is still: another threshold or light that enters
     /// the skin looks like a head that lies a little deeper. One sigma.
     double least_shift_mm = 0.25;
@@ -25,12 +25,13 @@ struct DeformableSettings {
 /// The pose of a scan of skin that has moved since the CT, and how sure it is.
 struct DeformablePose {
     RigidTransform ct_from_rig = RigidTransform::Identity();
-    PoseCovariance covariance;   ///< infinite when the scan holds too little skin to tell; the pose is then the one given
-    double movement_mm = 0;      ///< of the skin along its normal, rms
-    double correlation_mm = 0;   ///< over which the movement is alike
-    double offset_mm = 0;        ///< of the whole skin; positive outside of the CT's
-    double scale = 1;            ///< by which the scan would have to grow to fit best
-    double scale_sigma = 0;      ///< one standard deviation of that
+    PoseCovariance
+        covariance;          ///< infinite when the scan holds too little skin to tell; the pose is then the one given
+    double movement_mm = 0;  ///< of the skin along its normal, rms
+    double correlation_mm = 0;  ///< over which the movement is alike
+    double offset_mm = 0;       ///< of the whole skin; positive outside of the CT's
+    double scale = 1;           ///< by which the scan would have to grow to fit best
+    double scale_sigma = 0;     ///< one standard deviation of that
     int patches = 0;
 };
 
@@ -38,14 +39,15 @@ struct DeformablePose {
 ///
 /// Skin moves between CT and operation by a field along its normal that is alike over some length (a Gaussian process),
 /// by an offset of the whole (another threshold, swelling all over), and by a part of each patch's own. Pose and offset
-/// are found by generalised least squares under that field. How far the skin moved and over what length it is alike is not
-/// assumed: the residuals of the patches tell it by restricted maximum likelihood (Patterson & Thompson 1971), which does
-/// not count what the pose has taken up; all plausible fields are averaged by their likelihood. The usual sigma^2 (J^T J)^-1
-/// takes the residuals of neighbours for independent, and is over-confident by an order.
+/// are found by generalised least squares under that field. How far the skin moved and over what length it is alike is
+/// not assumed: the residuals of the patches tell it by restricted maximum likelihood (Patterson & Thompson 1971),
+/// which does not count what the pose has taken up; all plausible fields are averaged by their likelihood. The usual
+/// sigma^2 (J^T J)^-1 takes the residuals of neighbours for independent, and is over-confident by an order.
 ///
-/// What no residual can show is added: skin that is pulled along as a whole, in proportion to the movement and the offset that
-/// are seen. The shares were set on three models of movement; the bound is measured on others (matching/README.md).
+/// What no residual can show is added: skin that is pulled along as a whole, in proportion to the movement and the
+/// offset that are seen. The shares were set on three models of movement; the bound is measured on others
+/// (matching/README.md).
 DeformablePose refine_pose_deformable(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
-                                   const DeformableSettings& settings = {});
+                                      const DeformableSettings& settings = {});
 
 }  // namespace planlight

@@ -15,7 +15,9 @@ namespace {
 /// The verdict as it grows worse, with a sentence for each step.
 class Judgement {
 public:
-    explicit Judgement(RegistrationResult& result, Verdict at_best = Verdict::yes) : result_(result) { result_.verdict = at_best; }
+    explicit Judgement(RegistrationResult& result, Verdict at_best = Verdict::yes) : result_(result) {
+        result_.verdict = at_best;
+    }
     void ask_if(bool doubtful, const std::string& reason) { lower_if(doubtful, Verdict::ask, reason); }
     void no_if(bool wrong, const std::string& reason) { lower_if(wrong, Verdict::no, reason); }
 
@@ -50,7 +52,8 @@ std::string unfit(const PointCloud& cloud, const RegistrationSettings& settings,
     return {};
 }
 
-/// Cost of the best pose of the mirrored scan / cost of this pose, over the same points; below 1 the mirror image fits better.
+/// Cost of the best pose of the mirrored scan / cost of this pose, over the same points; below 1 the mirror image fits
+/// better.
 double mirror_ratio(const PointCloud& cloud, const MatchingSkin& skin, const InitialMatch& match,
                     const RegistrationSettings& settings) {
     constexpr double kNoise_mm = 0.05;
@@ -61,8 +64,8 @@ double mirror_ratio(const PointCloud& cloud, const MatchingSkin& skin, const Ini
     return (image.candidates[0].cost_mm + kNoise_mm) / (match.candidates[0].cost_mm + kNoise_mm);
 }
 
-/// Half of the scan on the skin, or a third when the rest is explained: it lies outside of the body, as cloth does, and the
-/// place is known otherwise (no other pose comes near, or a start was given).
+/// Half of the scan on the skin, or a third when the rest is explained: it lies outside of the body, as cloth does, and
+/// the place is known otherwise (no other pose comes near, or a start was given).
 bool enough_on_skin(const CloudOnSkin& fit, bool place_known) {
     const double on = fit.inlier_fraction(), inside = fit.inside_fraction();
     return on >= 0.5 || (on >= 0.3 && inside < 0.2 * on && place_known);
@@ -70,8 +73,8 @@ bool enough_on_skin(const CloudOnSkin& fit, bool place_known) {
 
 void judge_fit(const RegistrationSettings& settings, const CloudOnSkin& fit, bool place_known, Judgement& judgement) {
     const double share = fit.inlier_fraction();
-    const std::string on_skin = fmt::format("only {:.0f} % of the scan lies on the skin (within {:.1f} mm)", 100 * share,
-                                            settings.inlier_distance_mm);
+    const std::string on_skin = fmt::format("only {:.0f} % of the scan lies on the skin (within {:.1f} mm)",
+                                            100 * share, settings.inlier_distance_mm);
     const bool enough = enough_on_skin(fit, place_known);
     judgement.no_if(!enough, on_skin);
     judgement.ask_if(enough && share < settings.min_inlier_fraction, on_skin);
@@ -96,16 +99,18 @@ void judge_uniqueness(const RegistrationSettings& settings, const RegistrationRe
 void judge_free_space(const RegistrationSettings& settings, const RegistrationResult& result, Judgement& judgement) {
     if (!result.blocked_fraction) return;
     const double blocked = *result.blocked_fraction;
-    const std::string through =
-        fmt::format("{:.0f} % of the scan was seen through what is body in the CT, if the viewpoint is right", 100 * blocked);
+    const std::string through = fmt::format(
+        "{:.0f} % of the scan was seen through what is body in the CT, if the viewpoint is right", 100 * blocked);
     judgement.no_if(blocked > settings.far_too_many_blocked, through);
     judgement.ask_if(blocked > settings.max_blocked && blocked <= settings.far_too_many_blocked, through);
 }
 
-void judge_mirror_and_scale(const RegistrationSettings& settings, const RegistrationResult& result, Judgement& judgement) {
+void judge_mirror_and_scale(const RegistrationSettings& settings, const RegistrationResult& result,
+                            Judgement& judgement) {
     const double mirror = result.mirror_ratio;
-    judgement.no_if(mirror > 0 && mirror < settings.mirror_fits_better,
-                    fmt::format("the mirror image of the scan fits better (ratio {:.2f}): left and right are exchanged", mirror));
+    judgement.no_if(
+        mirror > 0 && mirror < settings.mirror_fits_better,
+        fmt::format("the mirror image of the scan fits better (ratio {:.2f}): left and right are exchanged", mirror));
     judgement.ask_if(mirror >= settings.mirror_fits_better && mirror < settings.min_mirror_ratio,
                      fmt::format("the mirror image of the scan fits nearly as well (ratio {:.2f})", mirror));
     judgement.ask_if(
@@ -143,7 +148,8 @@ FineMatch match_finely(const PointCloud& cloud, const SkinLut& lut, const RigidT
     result.scale = settled.scale;
     result.scale_sigma = settled.scale_sigma;
     if (settings.viewpoint_in_rig)
-        result.blocked_fraction = look_along_rays(cloud, lut, icp.ct_from_rig, *settings.viewpoint_in_rig).blocked_fraction();
+        result.blocked_fraction =
+            look_along_rays(cloud, lut, icp.ct_from_rig, *settings.viewpoint_in_rig).blocked_fraction();
     return fine;
 }
 
@@ -175,7 +181,8 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
     const InitialMatch match = find_initial_match(cloud, skin, settings.initial);
     result.initial_match_s = seconds_since(start);
     if (match.candidates.empty()) {
-        result.reasons.push_back("no three points of the scan fit the skin together: this is not the surface that the CT shows");
+        result.reasons.push_back(
+            "no three points of the scan fit the skin together: this is not the surface that the CT shows");
         return result;
     }
     result.runner_up_ratio = match.runner_up_ratio;
@@ -195,7 +202,8 @@ RegistrationResult register_patient(const PointCloud& cloud, const SkinLut& lut,
 }
 
 RegistrationResult register_patient_near(const PointCloud& cloud, const SkinLut& lut,
-                                         const RigidTransform& start_patient_from_ct, const RegistrationSettings& settings) {
+                                         const RigidTransform& start_patient_from_ct,
+                                         const RegistrationSettings& settings) {
     RegistrationResult result;
     result.reasons.push_back("the scan was not found by itself, but from a start that was given");
     result.points = finite_points(cloud);

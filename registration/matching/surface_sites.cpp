@@ -6,6 +6,7 @@
 #include <random>
 #include <unordered_map>
 
+#include "planning_io/types/statistics.h"
 #include "planning_io/types/triangle_mesh.h"
 
 namespace planlight {
@@ -42,7 +43,9 @@ public:
     }
 
     const std::vector<Cell>& cells() const { return cells_; }
-    Vector3f mean_position(const Cell& cell) const { return middle_ + cell.position_sum / static_cast<float>(cell.count); }
+    Vector3f mean_position(const Cell& cell) const {
+        return middle_ + cell.position_sum / static_cast<float>(cell.count);
+    }
 
     /// The sums over the 27 cells round `cell`.
     Cell neighbourhood(const Cell& cell) const {
@@ -89,18 +92,16 @@ bool on_surface(const Cell& cell, const Cell& around) {
 
 /// Coordinate-wise median: strays, however far, do not move it.
 Vector3f median_position(const std::vector<Vector3d>& points) {
-    Vector3f median = Vector3f::Zero();
+    Vector3f middle = Vector3f::Zero();
     std::vector<float> values;
     for (int axis = 0; axis < 3; ++axis) {
         values.clear();
         for (const Vector3d& p : points)
             if (p.allFinite()) values.push_back(static_cast<float>(p[axis]));
-        if (values.empty()) return median;
-        const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-        std::nth_element(values.begin(), middle, values.end());
-        median[axis] = *middle;
+        if (values.empty()) return middle;
+        middle[axis] = median(std::move(values));
     }
-    return median;
+    return middle;
 }
 
 }  // namespace
@@ -121,10 +122,9 @@ std::vector<SurfaceSite> sites_of_cloud(const PointCloud& cloud) {
         for (int i = 0; i < cell.count; ++i) counts.push_back(around.back().count);  // as the typical point sees it
     }
     if (counts.empty()) return sites;
-    const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
-    std::nth_element(counts.begin(), middle, counts.end());
+    const auto middle = median(counts);
     for (std::size_t i = 0; i < around.size(); ++i)
-        if (around[i].count >= 0.2 * *middle && on_surface(map.cells()[i], around[i]))
+        if (around[i].count >= 0.2 * middle && on_surface(map.cells()[i], around[i]))
             sites.push_back(site_of(map, map.cells()[i], around[i]));
     return sites;
 }

@@ -18,8 +18,8 @@ struct SurfaceSite {
 /// (few neighbours: stray points), are left out. Normals come from the cloud's.
 std::vector<SurfaceSite> sites_of_cloud(const PointCloud& cloud);
 
-/// Skin samples at least `spacing_mm` apart and covering the skin (Poisson disk); no seals, no cut planes, and only where
-/// the normal is defined. The order is random, fixed by the seed.
+/// Skin samples at least `spacing_mm` apart and covering the skin (Poisson disk); no seals, no cut planes, and only
+/// where the normal is defined. The order is random, fixed by the seed.
 std::vector<SurfaceSite> sites_of_skin(const SkinLut& lut, double spacing_mm, unsigned seed);
 
 }  // namespace planlight

@@ -1,4 +1,5 @@
 #include "registration/projector_measurement/fit_delays.h"
+#include "planning_io/types/statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -77,9 +78,8 @@ void fit_delays(double noise, Instant exposure, LatencyResult& result) {
     if (result.refresh_hz == 0 && 10 * result.exact < result.delays.size() && result.jitter_s > 0) {
         std::vector<double> widths;
         for (const LightDelay& d : result.delays) widths.push_back(d.at_most_s - d.at_least_s);
-        const auto half = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-        std::nth_element(widths.begin(), half, widths.end());
-        result.blind_s = *half;
+        const auto half = median(widths);
+        result.blind_s = half;
         result.median_sigma_s = std::hypot(result.median_sigma_s, result.blind_s / std::sqrt(12.0));
     }
     const double bend_of_spread = curvature(

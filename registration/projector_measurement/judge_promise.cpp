@@ -1,4 +1,5 @@
 #include "registration/projector_measurement/judge_promise.h"
+#include "planning_io/types/statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,9 +24,8 @@ void judge_promise(const LightRecording& recording, LatencyResult& result) {
     }
     if (!promised.empty()) {
         promise.orders = promised.size();
-        const auto middle = promised.begin() + static_cast<std::ptrdiff_t>(promised.size() / 2);
-        std::nth_element(promised.begin(), middle, promised.end());
-        promise.delay_s = *middle;
+        const auto middle = median(promised);
+        promise.delay_s = middle;
         result.promise = promise;
     }
     const double spread_s =

@@ -1,4 +1,5 @@
 #include "registration/projector_measurement/light_recording.h"
+#include "planning_io/types/statistics.h"
 
 #include <fmt/format.h>
 
@@ -206,9 +207,8 @@ LitTiles find_flashing_tiles(const LightRecording& recording) {
     }
     for (std::vector<double>& side : off) {
         if (side.empty()) continue;
-        const auto middle = side.begin() + static_cast<std::ptrdiff_t>(side.size() / 2);
-        std::nth_element(side.begin(), middle, side.end());
-        lit.noise = std::max(lit.noise, 1.4826 * *middle);
+        const auto middle = median(side);
+        lit.noise = std::max(lit.noise, 1.4826 * middle);
     }
     return lit;
 }
@@ -219,11 +219,9 @@ FrameTiming frame_timing(const LightRecording& recording) {
     for (std::size_t f = 1; f < recording.frames.size(); ++f)
         gaps.push_back(seconds(recording.frames[f].at - recording.frames[f - 1].at));
     if (gaps.size() < 2) return timing;
-    std::vector<double> sorted = gaps;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
     // Gaps of one interval, then all that are a few whole ones: jitter of the time stamps averages out.
     constexpr double kMostIntervals = 50;
-    timing.interval_s = sorted[sorted.size() / 2];
+    timing.interval_s = median(gaps);
     for (const double most : {1.0, kMostIntervals}) {
         double lasted_s = 0, intervals = 0;
         for (const double gap : gaps) {

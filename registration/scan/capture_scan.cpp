@@ -10,8 +10,8 @@ namespace planlight {
 namespace {
 
 using namespace std::chrono_literals;
-constexpr auto kPatience = 2000ms;            // for a frame once the picture is lit
-constexpr Instant kDisplayDelayAtMost = 1s;   // from show() to the light, for the picture's expiry
+constexpr auto kPatience = 2000ms;           // for a frame once the picture is lit
+constexpr Instant kDisplayDelayAtMost = 1s;  // from show() to the light, for the picture's expiry
 
 /// The frame must have seen this picture and nothing else, or a code would be wrong without a sign of it.
 void check_frame(const StereoFrame& frame, const StereoFrame& first, Instant lit_from, Instant valid_until,
@@ -24,11 +24,13 @@ void check_frame(const StereoFrame& frame, const StereoFrame& first, Instant lit
                                       1e3 * seconds(lit_from - opened)),
                           "Check the camera's time stamps against the session's clock.");
     if (closed > valid_until)
-        throw DeviceError("stereo camera", fmt::format("the frame for \"{}\" was exposed after the picture had expired", name),
+        throw DeviceError("stereo camera",
+                          fmt::format("the frame for \"{}\" was exposed after the picture had expired", name),
                           "Check the camera's frame rate and connection, then scan again.");
     const auto same = [](const GrayImage& a, const GrayImage& b) { return a.width == b.width && a.height == b.height; };
     if (frame.left.empty() || frame.right.empty() || !same(frame.left, first.left) || !same(frame.right, first.right))
-        throw DeviceError("stereo camera", fmt::format("the frame for \"{}\" is empty or has another size than the first", name),
+        throw DeviceError("stereo camera",
+                          fmt::format("the frame for \"{}\" is empty or has another size than the first", name),
                           "Check both cameras' connections and settings, then scan again.");
 }
 
@@ -38,8 +40,8 @@ ScanCapture capture_scan(Projector& projector, StereoCamera& cameras, const Cloc
                          const std::function<void(int, int)>& progress) {
     const DarkOnExit dark(projector);
     if (stripes.width != projector.width() || stripes.height != projector.height())
-        throw std::invalid_argument(fmt::format("capture_scan: stripes of {} x {} for a projector of {} x {}", stripes.width,
-                                                stripes.height, projector.width(), projector.height()));
+        throw std::invalid_argument(fmt::format("capture_scan: stripes of {} x {} for a projector of {} x {}",
+                                                stripes.width, stripes.height, projector.width(), projector.height()));
     const auto sequence = stripe_sequence(stripes);
     ScanCapture capture;
     capture.stripes = stripes;

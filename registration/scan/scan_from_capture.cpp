@@ -11,9 +11,9 @@
 #include "registration/scan/check/camera_gamma.h"
 #include "registration/scan/decode/decode_capture.h"
 #include "registration/scan/decode/merge_exposures.h"
-#include "registration/scan/triangulate/triangulate_matches.h"
 #include "registration/scan/scan_surface.h"
 #include "registration/scan/triangulate/triangulate_cameras.h"
+#include "registration/scan/triangulate/triangulate_matches.h"
 
 namespace planlight {
 namespace {
@@ -52,11 +52,12 @@ void refuse_wrong_sequence(const ScanCapture& capture, ScanResult& result) {
                          [&] { result.right_sequence = sequence_of(capture.right, capture); });
     const auto judge = [&](const SequenceCheck& check, const std::vector<GrayImage>& frames, const char* camera) {
         if (check.problems.empty()) return;
-        throw CheckFailedError(fmt::format("the {} camera's frames do not show the sequence: {} ({:.0f} % of the lit pixels){}",
-                                           camera, check.problems[0].what, 100 * check.problems[0].share,
-                                           said_of_gamma(camera_gamma(frames, uniform_light_frames(capture)))),
-                               "Scan again; if it comes back, check the delay between projector and cameras and the names of "
-                               "the pictures. \"check_sequence\": false in capture.json takes them as they are.");
+        throw CheckFailedError(
+            fmt::format("the {} camera's frames do not show the sequence: {} ({:.0f} % of the lit pixels){}", camera,
+                        check.problems[0].what, 100 * check.problems[0].share,
+                        said_of_gamma(camera_gamma(frames, uniform_light_frames(capture)))),
+            "Scan again; if it comes back, check the delay between projector and cameras and the names of "
+            "the pictures. \"check_sequence\": false in capture.json takes them as they are.");
     };
     judge(result.left_sequence, capture.left, "left");
     judge(result.right_sequence, capture.right, "right");
@@ -78,8 +79,8 @@ void triangulate_and_resect(const ScanSettings& settings, ScanResult& result, Ri
     const ViewMatches matches = match_views(result.left, result.right, rig, settings.triangulation);
     TriangulationSettings by_cameras = settings.triangulation;
     by_cameras.one_camera = false;
-    result.resection =
-        resect_projector(triangulate_matches(matches, rig, by_cameras, 1 + matches.both.size() / kEnough), rig, settings.resection);
+    result.resection = resect_projector(
+        triangulate_matches(matches, rig, by_cameras, 1 + matches.both.size() / kEnough), rig, settings.resection);
     result.resection_used = use_resection(settings, result, rig);
     result.raw = triangulate_matches(matches, rig, settings.triangulation);
 }
@@ -99,9 +100,9 @@ void check_devices(const ScanCapture& capture, const RigCalibration& rig) {
         throw std::invalid_argument("scan_from_capture: one camera and no projector");
     if (!present(rig.projector)) return;
     if (capture.stripes.width != rig.projector.width || capture.stripes.height != rig.projector.height)
-        throw std::invalid_argument(fmt::format("scan_from_capture: stripes of {} x {} for a projector calibrated at {} x {}",
-                                                capture.stripes.width, capture.stripes.height, rig.projector.width,
-                                                rig.projector.height));
+        throw std::invalid_argument(
+            fmt::format("scan_from_capture: stripes of {} x {} for a projector calibrated at {} x {}",
+                        capture.stripes.width, capture.stripes.height, rig.projector.width, rig.projector.height));
 }
 
 void decode(const ScanCapture& capture, const RigCalibration& rig, const DecodeSettings& settings, ScanResult& result) {
@@ -119,7 +120,7 @@ void decode(const ScanCapture& capture, const RigCalibration& rig, const DecodeS
 
 /// The points, and the rig they were made with: its projector may be one that the scan placed anew.
 RigCalibration triangulate_points(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings,
-                            ScanResult& result) {
+                                  ScanResult& result) {
     RigCalibration rig_now = rig;
     if (!present(rig.projector)) {
         result.raw = triangulate_cameras(result.left, result.right, rig, capture.stripes.width, capture.stripes.height,
@@ -133,7 +134,8 @@ RigCalibration triangulate_points(const ScanCapture& capture, const RigCalibrati
 
 }  // namespace
 
-ScanResult scan_from_exposures(std::span<const ScanCapture> captures, const RigCalibration& rig, const ScanSettings& settings) {
+ScanResult scan_from_exposures(std::span<const ScanCapture> captures, const RigCalibration& rig,
+                               const ScanSettings& settings) {
     if (captures.empty()) throw std::invalid_argument("scan_from_exposures: no capture");
     ScanResult result;
     Stopwatch watch;

@@ -9,8 +9,8 @@
 #include "registration/devices/projector.h"
 #include "registration/devices/stereo_camera.h"
 #include "registration/scan/check/check_sequence.h"
-#include "registration/scan/decode/decode_stripes.h"
 #include "registration/scan/clean/remove_outliers.h"
+#include "registration/scan/decode/decode_stripes.h"
 #include "registration/scan/triangulate/resect_projector.h"
 #include "registration/scan/triangulate/triangulate.h"
 
@@ -51,8 +51,8 @@ struct ScanResult {
     OutlierReport clean;
     std::optional<Resection> resection;  ///< empty: too few points, or columns only
     bool resection_used = false;         ///< then `raw` and `clean` are made with `resection->projector`
-    /// How finely the light could be read, projector pixels: 0 by the fringes, to fractions of one; else the finest cell
-    /// of the Gray code, because there were no fringes, or none that the optics resolved.
+    /// How finely the light could be read, projector pixels: 0 by the fringes, to fractions of one; else the finest
+    /// cell of the Gray code, because there were no fringes, or none that the optics resolved.
     double code_step_px = 0;
     double sequence_s = 0, decode_s = 0, triangulate_s = 0, outliers_s = 0;
 };
@@ -60,9 +60,10 @@ struct ScanResult {
 /// The cloud of a capture. An empty cloud is a value (nothing was lit); the counts say why.
 ///
 /// Of three devices any two do: a rig without a right camera, or a capture without its pictures, is scanned by the left
-/// camera and the projector; a rig without a projector by both cameras, which find partners by the code (normals then look
-/// towards the left camera). `resection` needs all three. Throws std::invalid_argument when less is there; CheckFailedError,
-/// naming the picture, when a frame is late, doubled, missing or swapped (`ScanSettings::check_sequence`).
+/// camera and the projector; a rig without a projector by both cameras, which find partners by the code (normals then
+/// look towards the left camera). `resection` needs all three. Throws std::invalid_argument when less is there;
+/// CheckFailedError, naming the picture, when a frame is late, doubled, missing or swapped
+/// (`ScanSettings::check_sequence`).
 ScanResult scan_from_capture(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings = {});
 
 }  // namespace planlight

@@ -63,7 +63,8 @@ struct SimulatedBoardRoom::Room final : Projector, StereoCamera, Clock {
     Instant now_{};
 };
 
-SimulatedBoardRoom::Room::Room(const BoardSheet& print, const BoardRoomSettings& given) : sheet(print), settings(given) {
+SimulatedBoardRoom::Room::Room(const BoardSheet& print, const BoardRoomSettings& given)
+    : sheet(print), settings(given) {
     std::mt19937 random(
         static_cast<unsigned>(mixed(static_cast<std::uint64_t>(settings.seed) * 64 + 1)));  // the rig of `SimulatedRig`
     rig = true_layout = build_rig(settings.preset, random);
@@ -73,8 +74,9 @@ SimulatedBoardRoom::Room::Room(const BoardSheet& print, const BoardRoomSettings&
     schedule = LightSchedule(rig.projector.columns, rig.projector.rows, settings.projector_delay, settings.light,
                              mixed(static_cast<std::uint64_t>(settings.seed) + 9000));
     const auto sensor = [&](const Optics& camera, double blur_px, std::uint64_t number) {
-        return Sensor{camera.columns, camera.rows,    blur_px,
-                      0.85,           settings.noise, mixed(2 * static_cast<std::uint64_t>(settings.seed) + 5000 + number)};
+        return Sensor{camera.columns, camera.rows,
+                      blur_px,        0.85,
+                      settings.noise, mixed(2 * static_cast<std::uint64_t>(settings.seed) + 5000 + number)};
     };
     left_sensor = sensor(rig.left_camera, rig.left_blur_px, 0);
     right_sensor = sensor(rig.right_camera, rig.right_blur_px, 1);
@@ -98,14 +100,18 @@ double SimulatedBoardRoom::Room::share_in_view(const RigidTransform& pose) const
 }
 
 RigidTransform SimulatedBoardRoom::Room::random_pose(std::mt19937& random) const {
-    const auto between = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+    const auto between = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
     for (int attempt = 0; attempt < 5000; ++attempt) {
-        const double way = between(0, 2 * M_PI), tilt = between(settings.min_tilt_deg, settings.max_tilt_deg) * kRadians;
+        const double way = between(0, 2 * M_PI),
+                     tilt = between(settings.min_tilt_deg, settings.max_tilt_deg) * kRadians;
         RigidTransform pose = RigidTransform::Identity();
         pose.linear() = (Eigen::AngleAxisd(tilt, Vector3d(std::cos(way), std::sin(way), 0)) *
                          Eigen::AngleAxisd(between(0, 2 * M_PI), Vector3d::UnitZ()))
                             .toRotationMatrix();
-        const Vector3d at(between(-settings.shift_mm, settings.shift_mm), between(-settings.shift_mm, settings.shift_mm),
+        const Vector3d at(between(-settings.shift_mm, settings.shift_mm),
+                          between(-settings.shift_mm, settings.shift_mm),
                           between(-settings.depth_mm, settings.depth_mm));
         pose.translation() = at - pose.linear() * Vector3d(sheet.width_mm() / 2, sheet.height_mm() / 2, 0);
         if (share_in_view(pose) >= (settings.whole ? 0.5 : 0.6)) return pose;

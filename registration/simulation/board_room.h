@@ -48,7 +48,7 @@ public:
     void knock_projector(double degrees);
 
     // ---- truth: nothing of the product reads what follows ----
-    RigCalibration true_rig() const;  ///< before any knock
+    RigCalibration true_rig() const;                    ///< before any knock
     const std::vector<TrueLight>& true_lights() const;  ///< when every order to the projector became light
     RigidTransform true_rig_from_board(int pose) const;
     std::string truth_json() const;

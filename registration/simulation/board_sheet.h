@@ -5,8 +5,8 @@
 
 namespace planlight::simulation {
 
-/// A printed sheet as it lies before the rig. Its frame: origin at the print's top left corner, x right, y down, z into the
-/// sheet, mm. It may be bent: a cylinder of any direction, `sag_mm` deep over the print's diagonal.
+/// A printed sheet as it lies before the rig. Its frame: origin at the print's top left corner, x right, y down, z into
+/// the sheet, mm. It may be bent: a cylinder of any direction, `sag_mm` deep over the print's diagonal.
 struct BoardSheet {
     GrayImage print;  ///< what the printer was given: 255 white paper, darker where there is ink
     double px_per_mm = 10;
@@ -28,7 +28,9 @@ class SheetSurface final : public Surface {
 public:
     explicit SheetSurface(const BoardSheet& sheet) : sheet_(sheet) {}
     std::optional<Hit> first_hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const override;
-    bool in_shadow(const Eigen::Vector3d&, const Eigen::Vector3d&, const Eigen::Vector3d&) const override { return false; }
+    bool in_shadow(const Eigen::Vector3d&, const Eigen::Vector3d&, const Eigen::Vector3d&) const override {
+        return false;
+    }
     Eigen::Vector3d low_in_ct() const override;
     Eigen::Vector3d high_in_ct() const override;
 

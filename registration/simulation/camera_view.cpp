@@ -14,9 +14,9 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 namespace {
-constexpr double kScatter_mm = 0.9;        ///< how far light wanders in the skin
-constexpr double kFocusDepth_mm = 90;      ///< from the focus to the full blur
-constexpr double kShine = 28;              ///< exponent of the highlight
+constexpr double kScatter_mm = 0.9;    ///< how far light wanders in the skin
+constexpr double kFocusDepth_mm = 90;  ///< from the focus to the full blur
+constexpr double kShine = 28;          ///< exponent of the highlight
 }  // namespace
 
 CameraView::Traced CameraView::trace(const Scene& scene, const Vector2d& pixel) const {
@@ -146,7 +146,8 @@ void CameraView::look(const Scene& scene) {
 }
 
 void CameraView::keep_translucency() {
-    wide_blur(translucency_, scratch_, width_, height_, std::max(1, static_cast<int>(std::lround(kScatter_mm / mm_per_px_))));
+    wide_blur(translucency_, scratch_, width_, height_,
+              std::max(1, static_cast<int>(std::lround(kScatter_mm / mm_per_px_))));
     for (float& t : translucency_) t = t > 0.02F ? 1 / t : 0;
 }
 

@@ -13,13 +13,13 @@ namespace planlight::simulation {
 struct Scene {
     const Surface& skin;
     const SurfaceLook& look;
-    Optics camera, projector;           ///< in ct
-    double working_distance_mm = 900;   ///< where the projector is in focus and white is 1
-    int finer = 4;                      ///< samples along each side of a pixel with an edge in it
+    Optics camera, projector;          ///< in ct
+    double working_distance_mm = 900;  ///< where the projector is in focus and white is 1
+    int finer = 4;                     ///< samples along each side of a pixel with an edge in it
 };
 
-/// What one camera sees of the head at one pose: for every pixel where its light comes from on the projector's panel, and
-/// how much of it comes back. Any number of pictures can be looked up in it while the head is at rest.
+/// What one camera sees of the head at one pose: for every pixel where its light comes from on the projector's panel,
+/// and how much of it comes back. Any number of pictures can be looked up in it while the head is at rest.
 class CameraView {
 public:
     void look(const Scene& scene);

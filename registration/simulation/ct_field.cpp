@@ -20,7 +20,8 @@ CtField::CtField(const Volume& volume, double threshold) {
     const auto near_head = grown(head, volume.size, {3, 3, 3});
     const double least = *std::min_element(volume.values.begin(), volume.values.end());
     air_ = std::clamp(least - threshold, -1000.0, -1.0);
-    for (int a = 0; a < 3; ++a) size_[static_cast<std::size_t>(a)] = volume.size[static_cast<std::size_t>(a)] + 2 * kPad;
+    for (int a = 0; a < 3; ++a)
+        size_[static_cast<std::size_t>(a)] = volume.size[static_cast<std::size_t>(a)] + 2 * kPad;
     ct_from_voxel_ = volume.ct_from_voxel * Eigen::Translation3d(-kPad, -kPad, -kPad);
     voxel_from_ct_ = ct_from_voxel_.inverse();
     values_.assign(index(0, 0, size_[2]), static_cast<float>(air_));

@@ -4,7 +4,8 @@
 
 namespace planlight::simulation {
 
-/// A well-mixed function of 64 bits (splitmix64, Steele 2014): noise that depends on where and when, not on the order of work.
+/// A well-mixed function of 64 bits (splitmix64, Steele 2014): noise that depends on where and when, not on the order
+/// of work.
 inline std::uint64_t mixed(std::uint64_t x) {
     x += 0x9e3779b97f4a7c15U;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;

@@ -58,7 +58,9 @@ RigidTransform HeadMotion::moved(Instant at) const {
     return offset(rate_ * run_s) * at_rest_;
 }
 
-void HeadHistory::add(HeadMotion motion, Instant now) { parts_.push_back({now, room_from_ct(now), std::move(motion)}); }
+void HeadHistory::add(HeadMotion motion, Instant now) {
+    parts_.push_back({now, room_from_ct(now), std::move(motion)});
+}
 
 RigidTransform HeadHistory::room_from_ct(Instant at) const {
     for (auto part = parts_.rbegin(); part != parts_.rend(); ++part)

@@ -10,7 +10,8 @@
 namespace planlight::simulation {
 
 /// One way of moving: nod, turn and tilt about the neck with a little shift, each a periodic sum of sines, so that the
-/// greatest speed of the head's middle is exactly known. Smooth in position; the speed grows from zero over half a second.
+/// greatest speed of the head's middle is exactly known. Smooth in position; the speed grows from zero over half a
+/// second.
 class HeadMotion {
 public:
     /// `neck` and `middle` in room, mm. Moves as told from max(`motion.begins`, `not_before`).

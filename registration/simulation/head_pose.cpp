@@ -37,12 +37,14 @@ RigidTransform lay_head(const TrueSurface& skin, const WorkRegion& region, std::
     const double least = std::cos(28 * M_PI / 180);
     const double cosine = least + (1 - least) * unit(random), sine = std::sqrt(1 - cosine * cosine);
     const double around = 2 * M_PI * unit(random), roll = 2 * M_PI * unit(random);
-    const Vector3d facing(sine * std::cos(around), sine * std::sin(around), -cosine);  // room z runs away from the light
+    const Vector3d facing(sine * std::cos(around), sine * std::sin(around),
+                          -cosine);  // room z runs away from the light
     const Eigen::Quaterniond towards = Eigen::Quaterniond::FromTwoVectors(region.outwards_in_ct, facing);
     RigidTransform room_from_ct = RigidTransform::Identity();
     room_from_ct.linear() = (Eigen::AngleAxisd(roll, facing) * towards).toRotationMatrix();
     // Sideways between the region and the head's middle, in depth at the region.
-    const Vector3d centre = room_from_ct.linear() * region.centre_in_ct, middle = room_from_ct.linear() * skin.middle_in_ct();
+    const Vector3d centre = room_from_ct.linear() * region.centre_in_ct,
+                   middle = room_from_ct.linear() * skin.middle_in_ct();
     const Vector3d anchor(0.5 * (centre.x() + middle.x()), 0.5 * (centre.y() + middle.y()), centre.z() + 15);
     room_from_ct.translation() = Vector3d(jitter(random), jitter(random), jitter(random)) - anchor;
     return room_from_ct;

@@ -74,7 +74,8 @@ Mask largest_body(const Mask& mask, const std::array<int, 3>& size) {
 std::array<int, 3> voxels_of(double mm, const Volume& volume) {
     const Eigen::Vector3d spacing = volume.spacing_mm();
     std::array<int, 3> n{};
-    for (int a = 0; a < 3; ++a) n[static_cast<std::size_t>(a)] = std::max(1, static_cast<int>(std::lround(mm / spacing[a])));
+    for (int a = 0; a < 3; ++a)
+        n[static_cast<std::size_t>(a)] = std::max(1, static_cast<int>(std::lround(mm / spacing[a])));
     return n;
 }
 

@@ -12,12 +12,12 @@
 
 namespace planlight::simulation {
 
-/// What leaves the projector, per panel pixel, linear, 1 = white: as sharp as the lens can and as blurred as it gets away
-/// from the focus. Outside the panel there is no light; a black pixel still leaks.
+/// What leaves the projector, per panel pixel, linear, 1 = white: as sharp as the lens can and as blurred as it gets
+/// away from the focus. Outside the panel there is no light; a black pixel still leaks.
 class LightMap {
 public:
-    /// `picture` may be null: a black panel of this size. `shares`: how much of the light of each colour is there (a colour
-    /// wheel shows one after the other).
+    /// `picture` may be null: a black panel of this size. `shares`: how much of the light of each colour is there (a
+    /// colour wheel shows one after the other).
     LightMap(int width, int height, const RgbImage* picture, const PanelSettings& panel = {},
              const std::array<double, 3>& shares = {1, 1, 1});
 
@@ -64,8 +64,8 @@ public:
     void go_dark(Instant now) noexcept;
     void cover(bool lens_is_covered) { covered_ = lens_is_covered; }  ///< no light at all, also no leak
 
-    /// The light that an exposure gets: that of its middle, or of all of it where the settings say so; never null. Orders
-    /// that ended before `opened` are forgotten.
+    /// The light that an exposure gets: that of its middle, or of all of it where the settings say so; never null.
+    /// Orders that ended before `opened` are forgotten.
     std::shared_ptr<const LightMap> during(Instant opened, Instant closed);
 
     /// Every order so far, going dark included.
@@ -74,9 +74,9 @@ public:
 private:
     struct Order {
         Instant on{}, off{};
-        std::shared_ptr<const RgbImage> picture;  ///< null: dark
-        bool uniform = false;                     ///< one colour all over
-        std::shared_ptr<const LightMap> map;      ///< of all colours at once
+        std::shared_ptr<const RgbImage> picture;                         ///< null: dark
+        bool uniform = false;                                            ///< one colour all over
+        std::shared_ptr<const LightMap> map;                             ///< of all colours at once
         mutable std::array<std::shared_ptr<const LightMap>, 3> colours;  ///< one a colour; made when asked for
     };
     void push(Order order, Instant now);

@@ -12,7 +12,8 @@ namespace {
 
 constexpr double kClearOfPlan_mm = 15, kLeastApart_mm = 25, kReach_mm = 95;
 constexpr double kSteepest = 0.66 /* cos 48.7 degrees */, kSteepestOfFew = 0.5 /* cos 60 degrees */;
-constexpr std::size_t kFewest = 6;  ///< five are needed: nobody leaves it at fewer, rather pastes where the skin is steep
+constexpr std::size_t kFewest =
+    6;  ///< five are needed: nobody leaves it at fewer, rather pastes where the skin is steep
 
 bool sees(const TrueSurface& skin, const Optics& device, const TrueSurface::Hit& at, double steepest) {
     constexpr double kMargin_px = 40;
@@ -28,7 +29,8 @@ bool sees(const TrueSurface& skin, const Optics& device, const TrueSurface::Hit&
 /// A sticker would lie well: the skin under its rim hardly bends away, and is no cut end of the scan.
 bool lies_flat(const TrueSurface& skin, const TrueSurface::Hit& at) {
     constexpr double kRim_mm = 10, kBend = 0.94 /* cos 20 degrees */, kFromEnd_mm = 14;
-    if (at.p_in_ct.z() < skin.low_in_ct().z() + kFromEnd_mm || at.p_in_ct.z() > skin.high_in_ct().z() - kFromEnd_mm) return false;
+    if (at.p_in_ct.z() < skin.low_in_ct().z() + kFromEnd_mm || at.p_in_ct.z() > skin.high_in_ct().z() - kFromEnd_mm)
+        return false;
     const Vector3d a = at.normal_in_ct.unitOrthogonal(), b = at.normal_in_ct.cross(a);
     for (int i = 0; i < 8; ++i) {
         const Vector3d way = std::cos(i * M_PI / 4) * a + std::sin(i * M_PI / 4) * b;
@@ -44,12 +46,13 @@ bool clear_of(const Vector3d& p, const std::vector<Vector3d>& others, double dis
 
 }  // namespace
 
-std::vector<Sticker> place_stickers(const TrueSurface& skin, const WorkRegion& region, const std::vector<Vector3d>& keep_clear,
-                                    const Optics& left, const Optics& right, const Optics& projector, int count,
-                                    std::mt19937& random) {
+std::vector<Sticker> place_stickers(const TrueSurface& skin, const WorkRegion& region,
+                                    const std::vector<Vector3d>& keep_clear, const Optics& left, const Optics& right,
+                                    const Optics& projector, int count, std::mt19937& random) {
     std::uniform_real_distribution<double> across(0, projector.columns - 1), down(0, projector.rows - 1);
     const auto all_see = [&](const TrueSurface::Hit& hit, double steepest) {
-        return sees(skin, projector, hit, steepest) && sees(skin, left, hit, steepest) && sees(skin, right, hit, steepest);
+        return sees(skin, projector, hit, steepest) && sees(skin, left, hit, steepest) &&
+               sees(skin, right, hit, steepest);
     };
     std::vector<TrueSurface::Hit> places, steep_places;
     for (int tries = 0; tries < 4000 && places.size() < 300; ++tries) {

@@ -10,8 +10,8 @@
 
 namespace planlight::simulation {
 
-/// Where a nurse would put the stickers: round the region, apart from one another, off the plan, on flat skin that faces
-/// the light and both cameras (all devices given in ct). Fewer than `count` when there is no room for more.
+/// Where a nurse would put the stickers: round the region, apart from one another, off the plan, on flat skin that
+/// faces the light and both cameras (all devices given in ct). Fewer than `count` when there is no room for more.
 std::vector<Sticker> place_stickers(const TrueSurface& skin, const WorkRegion& region,
                                     const std::vector<Eigen::Vector3d>& keep_clear_in_ct, const Optics& left,
                                     const Optics& right, const Optics& projector, int count, std::mt19937& random);

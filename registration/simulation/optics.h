@@ -14,11 +14,11 @@ struct Optics {
     Eigen::Vector3d eye{0, 0, 0};
     Eigen::Vector3d right{1, 0, 0}, down{0, 1, 0}, forward{0, 0, 1};  ///< unit, orthogonal
 
-    double focal_mm = 0;                    ///< lens to sensor
-    Eigen::Vector2d pitch_mm{0, 0};         ///< of the pixels, across and down
-    Eigen::Vector2d axis_mm{0, 0};          ///< where the optical axis meets the sensor, from its top left corner
-    double radial_per_mm2 = 0, radial_per_mm4 = 0;             ///< relative growth of the image radius
-    double decentred_x_per_mm = 0, decentred_y_per_mm = 0;     ///< of a lens that is not quite centred
+    double focal_mm = 0;             ///< lens to sensor
+    Eigen::Vector2d pitch_mm{0, 0};  ///< of the pixels, across and down
+    Eigen::Vector2d axis_mm{0, 0};   ///< where the optical axis meets the sensor, from its top left corner
+    double radial_per_mm2 = 0, radial_per_mm4 = 0;          ///< relative growth of the image radius
+    double decentred_x_per_mm = 0, decentred_y_per_mm = 0;  ///< of a lens that is not quite centred
 
     /// Turns the device so that its axis meets `target`, then by `roll` (radians) about the axis. `up` is only a hint.
     void look_at(const Eigen::Vector3d& target, const Eigen::Vector3d& up, double roll);

@@ -47,7 +47,8 @@ Optics build_projector(bool paper, double distance_mm, std::mt19937& random) {
     const double field_mm = paper ? 320 : 400, pitch = paper ? 14e-3 : 7.6e-3;
     projector.pitch_mm = {pitch, pitch};
     projector.focal_mm = distance_mm / field_mm * projector.columns * pitch * between(random, 0.99, 1.01);
-    // Lens shift: the axis leaves near the lower edge of the picture, the picture's middle still falls on the working point.
+    // Lens shift: the axis leaves near the lower edge of the picture, the picture's middle still falls on the working
+    // point.
     const double low = between(random, 0.93, 1.0);
     projector.axis_mm = {(projector.columns / 2.0 + between(random, -8, 8)) * pitch, low * projector.rows * pitch};
     const double lift_mm = (low - 0.5) * projector.rows * field_mm / projector.columns;
@@ -70,7 +71,8 @@ void disturb(Optics& device, double scale, double working_distance_mm, std::mt19
     device.axis_mm += shift_px.cwiseProduct(device.pitch_mm);
     device.turn(Vector3d(-shift_px.y(), shift_px.x(), 0) / f_px);
     // 0.05 px in the corner of the picture.
-    const double corner_mm = Vector2d(device.columns * device.pitch_mm.x(), device.rows * device.pitch_mm.y()).norm() / 2;
+    const double corner_mm =
+        Vector2d(device.columns * device.pitch_mm.x(), device.rows * device.pitch_mm.y()).norm() / 2;
     device.radial_per_mm2 += 0.05 * scale * unit(random) * device.pitch_mm.x() / (corner_mm * corner_mm * corner_mm);
     device.turn(0.04 * scale / f_px * Vector3d(unit(random), unit(random), 0));
     device.turn(Vector3d(0, 0, 0.005 * scale * unit(random) * M_PI / 180));

@@ -23,8 +23,8 @@ RigLayout build_rig(Preset preset, std::mt19937& random);
 /// The rig in the product's words.
 RigCalibration exported(const RigLayout& rig);
 
-/// The rig as a good calibration would have found it: a little wrong in every lens value, and placed so that it fits its
-/// own pictures in the working volume nonetheless. `scale` 1: cameras about 0.06 px, projector about 0.12 px.
+/// The rig as a good calibration would have found it: a little wrong in every lens value, and placed so that it fits
+/// its own pictures in the working volume nonetheless. `scale` 1: cameras about 0.06 px, projector about 0.12 px.
 RigCalibration calibrated(const RigLayout& rig, double scale, std::mt19937& random);
 
 }  // namespace planlight::simulation

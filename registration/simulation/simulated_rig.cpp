@@ -85,15 +85,18 @@ SimulatedRig::Room::Room(const Volume& volume, const std::vector<Vector3d>& keep
     history = HeadHistory(lay_head(skin, region, random));
     random = random_for(4);
     const RigidTransform to_ct = ct_from_room({});
-    look.stickers = place_stickers(skin, region, keep_clear_in_ct, rig.left_camera.seen_from(to_ct),
-                                   rig.right_camera.seen_from(to_ct), rig.projector.seen_from(to_ct), settings.markers, random);
+    look.stickers =
+        place_stickers(skin, region, keep_clear_in_ct, rig.left_camera.seen_from(to_ct),
+                       rig.right_camera.seen_from(to_ct), rig.projector.seen_from(to_ct), settings.markers, random);
     for (const Sticker& sticker : look.stickers) markers_in_ct.push_back(sticker.centre_in_ct);
     schedule = LightSchedule(rig.projector.columns, rig.projector.rows, settings.projector_delay, settings.light,
                              mixed(static_cast<std::uint64_t>(settings.seed) + 9000));
-    left_sensor = {rig.left_camera.columns, rig.left_camera.rows, rig.left_blur_px, 0.85, settings.noise,
-                   mixed(2 * static_cast<std::uint64_t>(settings.seed) + 1000)};
-    right_sensor = {rig.right_camera.columns, rig.right_camera.rows, rig.right_blur_px, 0.85, settings.noise,
-                    mixed(2 * static_cast<std::uint64_t>(settings.seed) + 1001)};
+    left_sensor = {rig.left_camera.columns, rig.left_camera.rows,
+                   rig.left_blur_px,        0.85,
+                   settings.noise,          mixed(2 * static_cast<std::uint64_t>(settings.seed) + 1000)};
+    right_sensor = {rig.right_camera.columns, rig.right_camera.rows,
+                    rig.right_blur_px,        0.85,
+                    settings.noise,           mixed(2 * static_cast<std::uint64_t>(settings.seed) + 1001)};
     if (settings.motion.speed_mm_s > 0) add_motion(settings.motion);
     set_exposure();
 }
@@ -184,21 +187,37 @@ StereoFrame SimulatedRig::Room::grab(Instant not_before, std::chrono::millisecon
     return frame;
 }
 
-SimulatedRig::SimulatedRig(const Volume& volume, const std::vector<Vector3d>& keep_clear_in_ct, const RoomSettings& settings)
+SimulatedRig::SimulatedRig(const Volume& volume, const std::vector<Vector3d>& keep_clear_in_ct,
+                           const RoomSettings& settings)
     : room_(std::make_unique<Room>(volume, keep_clear_in_ct, settings)) {}
 SimulatedRig::~SimulatedRig() = default;
 
-Projector& SimulatedRig::projector() { return *room_; }
-StereoCamera& SimulatedRig::cameras() { return *room_; }
-const Clock& SimulatedRig::clock() const { return *room_; }
-const RigCalibration& SimulatedRig::calibration() const { return room_->calibration; }
-void SimulatedRig::wait(Instant duration) { room_->now_ += std::max(duration, Instant{}); }
-void SimulatedRig::cover_projector(bool covered) { room_->schedule.cover(covered); }
-void SimulatedRig::set_motion(const Motion& motion) { room_->add_motion(motion); }
+Projector& SimulatedRig::projector() {
+    return *room_;
+}
+StereoCamera& SimulatedRig::cameras() {
+    return *room_;
+}
+const Clock& SimulatedRig::clock() const {
+    return *room_;
+}
+const RigCalibration& SimulatedRig::calibration() const {
+    return room_->calibration;
+}
+void SimulatedRig::wait(Instant duration) {
+    room_->now_ += std::max(duration, Instant{});
+}
+void SimulatedRig::cover_projector(bool covered) {
+    room_->schedule.cover(covered);
+}
+void SimulatedRig::set_motion(const Motion& motion) {
+    room_->add_motion(motion);
+}
 
 void SimulatedRig::cover_markers(const std::vector<int>& markers) {
     for (std::size_t i = 0; i < room_->look.stickers.size(); ++i)
-        room_->look.stickers[i].covered = std::find(markers.begin(), markers.end(), static_cast<int>(i)) != markers.end();
+        room_->look.stickers[i].covered =
+            std::find(markers.begin(), markers.end(), static_cast<int>(i)) != markers.end();
     room_->seen_room_from_ct.reset();
 }
 
@@ -206,7 +225,9 @@ RigidTransform SimulatedRig::true_rig_from_ct(Instant at) const {
     return room_->rig.room_from_rig.inverse() * room_->history.room_from_ct(at);
 }
 
-Vector3d SimulatedRig::nearest_true_skin(const Vector3d& p_in_ct) const { return room_->skin.nearest(p_in_ct).p_in_ct; }
+Vector3d SimulatedRig::nearest_true_skin(const Vector3d& p_in_ct) const {
+    return room_->skin.nearest(p_in_ct).p_in_ct;
+}
 
 std::vector<double> SimulatedRig::scan_errors_mm(const std::vector<Vector3d>& points_in_rig, Instant at) const {
     const RigidTransform ct_from_rig = true_rig_from_ct(at).inverse();
@@ -233,7 +254,8 @@ std::optional<SimulatedRig::Sight> SimulatedRig::true_sight(Camera camera, const
     const Optics lamp = rig.projector.seen_from(to_ct);
     if (hit->normal_in_ct.dot(lamp.eye - hit->p_in_ct) <= 0 || lamp.depth(hit->p_in_ct) <= 0) return sight;
     const Vector2d lit_by = lamp.pixel_of(hit->p_in_ct);
-    if (in_picture(lamp, lit_by) && !room_->skin.in_shadow(hit->p_in_ct, hit->normal_in_ct, lamp.eye)) sight.lit_by = lit_by;
+    if (in_picture(lamp, lit_by) && !room_->skin.in_shadow(hit->p_in_ct, hit->normal_in_ct, lamp.eye))
+        sight.lit_by = lit_by;
     return sight;
 }
 
@@ -244,9 +266,15 @@ bool SimulatedRig::truly_seen(Camera camera, const Lit& skin, Instant at) const 
            !room_->skin.in_shadow(skin.p_in_ct, skin.normal_in_ct, eye.eye);
 }
 
-const std::vector<Vector3d>& SimulatedRig::true_markers_in_ct() const { return room_->markers_in_ct; }
-const std::vector<TrueLight>& SimulatedRig::true_lights() const { return room_->schedule.truth(); }
-RigCalibration SimulatedRig::true_rig() const { return exported(room_->rig); }
+const std::vector<Vector3d>& SimulatedRig::true_markers_in_ct() const {
+    return room_->markers_in_ct;
+}
+const std::vector<TrueLight>& SimulatedRig::true_lights() const {
+    return room_->schedule.truth();
+}
+RigCalibration SimulatedRig::true_rig() const {
+    return exported(room_->rig);
+}
 
 std::string SimulatedRig::truth_json() const {
     TruthNumbers truth;

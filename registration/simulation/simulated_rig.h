@@ -23,18 +23,18 @@ enum class Preset {
 
 /// How the head moves during a session, as a function of simulated time.
 struct Motion {
-    double speed_mm_s = 0;          ///< greatest speed of the head's middle; 0 = at rest
-    Instant begins{};               ///< at rest before
+    double speed_mm_s = 0;  ///< greatest speed of the head's middle; 0 = at rest
+    Instant begins{};       ///< at rest before
 };
 
 struct RoomSettings {
     Preset preset = Preset::modern;
-    unsigned seed = 1;               ///< of everything random: pose, noise, texture, calibration error, markers
-    double skin_threshold_hu = -300; ///< of the CT field that is the true skin
-    int markers = 8;                 ///< asked for; fewer where the skin has no room
+    unsigned seed = 1;                ///< of everything random: pose, noise, texture, calibration error, markers
+    double skin_threshold_hu = -300;  ///< of the CT field that is the true skin
+    int markers = 8;                  ///< asked for; fewer where the skin has no room
     Motion motion;
-    double ambient = 0.2;            ///< of dimmed lamps: share of full scale on white skin
-    double calibration_error = 1;    ///< scales the difference between true and calibrated rig (0 = perfect)
+    double ambient = 0.2;          ///< of dimmed lamps: share of full scale on white skin
+    double calibration_error = 1;  ///< scales the difference between true and calibrated rig (0 = perfect)
     Instant projector_delay = std::chrono::milliseconds(25);
     bool noise = true;
     LightSettings light;
@@ -49,7 +49,8 @@ public:
     /// Puts the patient of `volume` on the table in a random pose in front of the rig, with markers on the skin near
     /// `keep_clear_in_ct` but not on it (the plan's points; may be empty). Throws std::invalid_argument when no head
     /// surface is in the volume.
-    SimulatedRig(const Volume& volume, const std::vector<Eigen::Vector3d>& keep_clear_in_ct, const RoomSettings& settings);
+    SimulatedRig(const Volume& volume, const std::vector<Eigen::Vector3d>& keep_clear_in_ct,
+                 const RoomSettings& settings);
     ~SimulatedRig();
 
     Projector& projector();
@@ -90,8 +91,8 @@ public:
     std::optional<Lit> true_light(const Eigen::Vector2d& pixel_in_projector, Instant at) const;
 
     enum class Camera { left, right };
-    /// What a camera pixel (sub-pixel) looks at when the head is where it was at `at`: the first true skin, ct, mm, and the
-    /// projector pixel whose light falls there; empty where none does (shadow, turned away, beside the panel).
+    /// What a camera pixel (sub-pixel) looks at when the head is where it was at `at`: the first true skin, ct, mm, and
+    /// the projector pixel whose light falls there; empty where none does (shadow, turned away, beside the panel).
     struct Sight {
         Eigen::Vector3d p_in_ct, normal_in_ct;
         std::optional<Eigen::Vector2d> lit_by;

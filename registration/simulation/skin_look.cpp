@@ -19,10 +19,12 @@ double value_noise(const Vector3d& p, std::uint64_t seed) {
     const auto i = cell.cast<std::int64_t>();
     double sum = 0;
     for (int c = 0; c < 8; ++c) {
-        const auto x = static_cast<std::uint64_t>(i.x() + (c & 1)), y = static_cast<std::uint64_t>(i.y() + ((c >> 1) & 1)),
+        const auto x = static_cast<std::uint64_t>(i.x() + (c & 1)),
+                   y = static_cast<std::uint64_t>(i.y() + ((c >> 1) & 1)),
                    z = static_cast<std::uint64_t>(i.z() + (c >> 2));
         const std::uint64_t h = mixed(seed + x * 0x8da6b343U + y * 0xd8163841U + z * 0xcb1ab31fU);
-        const double weight = ((c & 1) ? s.x() : 1 - s.x()) * ((c & 2) ? s.y() : 1 - s.y()) * ((c & 4) ? s.z() : 1 - s.z());
+        const double weight =
+            ((c & 1) ? s.x() : 1 - s.x()) * ((c & 2) ? s.y() : 1 - s.y()) * ((c & 4) ? s.z() : 1 - s.z());
         sum += weight * static_cast<double>(h >> 40) * 0x1p-24;
     }
     return 2 * sum - 1;
@@ -49,7 +51,8 @@ Look SkinLook::at(const Vector3d& p) const {
         const Vector3d way = p - sticker.centre_in_ct;
         const double square = way.squaredNorm();
         if (square > kReach_mm * kReach_mm) continue;
-        const double distance = std::sqrt(square);  // the chord; the way along the skin is longer by less than 1e-3 of it
+        const double distance =
+            std::sqrt(square);  // the chord; the way along the skin is longer by less than 1e-3 of it
         if (sticker.covered) {
             if (distance < 1e-9 || distance < blot_radius_mm(sticker, way))
                 return {Material::blood, 0.12 * (1 + 0.3 * value_noise(p / 2, seed_ + 3)), 0.06, 0};

@@ -16,7 +16,8 @@ public:
         double distance_mm = 0;
     };
     /// The first skin along a ray (`direction` of unit length).
-    virtual std::optional<Hit> first_hit(const Eigen::Vector3d& origin_in_ct, const Eigen::Vector3d& direction) const = 0;
+    virtual std::optional<Hit> first_hit(const Eigen::Vector3d& origin_in_ct,
+                                         const Eigen::Vector3d& direction) const = 0;
 
     /// True when the object lies between a point of it (moved off the surface by a little) and a light.
     virtual bool in_shadow(const Eigen::Vector3d& p_in_ct, const Eigen::Vector3d& normal_in_ct,

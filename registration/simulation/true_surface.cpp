@@ -206,8 +206,14 @@ TrueSurface::Nearest TrueSurface::nearest(const Vector3d& p) const {
     return {x, normal, sign * (p - x).norm()};
 }
 
-Vector3d TrueSurface::low_in_ct() const { return parts_->low; }
-Vector3d TrueSurface::high_in_ct() const { return parts_->high; }
-std::size_t TrueSurface::triangle_count() const { return parts_->mesh.triangles.size(); }
+Vector3d TrueSurface::low_in_ct() const {
+    return parts_->low;
+}
+Vector3d TrueSurface::high_in_ct() const {
+    return parts_->high;
+}
+std::size_t TrueSurface::triangle_count() const {
+    return parts_->mesh.triangles.size();
+}
 
 }  // namespace planlight::simulation

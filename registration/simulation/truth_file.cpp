@@ -8,12 +8,15 @@ using nlohmann::json;
 
 namespace {
 
-json vector_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+json vector_json(const Eigen::Vector3d& v) {
+    return {v.x(), v.y(), v.z()};
+}
 
 /// Four rows of four.
 json matrix_json(const RigidTransform& t) {
     json rows = json::array();
-    for (int r = 0; r < 4; ++r) rows.push_back({t.matrix()(r, 0), t.matrix()(r, 1), t.matrix()(r, 2), t.matrix()(r, 3)});
+    for (int r = 0; r < 4; ++r)
+        rows.push_back({t.matrix()(r, 0), t.matrix()(r, 1), t.matrix()(r, 2), t.matrix()(r, 3)});
     return rows;
 }
 
@@ -41,7 +44,9 @@ json rig_json(const RigCalibration& rig) {
 
 }  // namespace
 
-std::string rig_as_json(const RigCalibration& rig) { return rig_json(rig).dump(); }
+std::string rig_as_json(const RigCalibration& rig) {
+    return rig_json(rig).dump();
+}
 
 std::string as_json(const TruthNumbers& truth) {
     json markers = json::array();

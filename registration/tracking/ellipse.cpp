@@ -1,4 +1,5 @@
 #include "registration/tracking/ellipse.h"
+#include "planning_io/types/statistics.h"
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -27,14 +28,16 @@ std::optional<Ellipse> ellipse_of_conic(const Vector5& p) {
     return e;
 }
 
-/// A pixel of the edge: the line of equal brightness through it, in coordinates centred and scaled by the start ellipse.
+/// A pixel of the edge: the line of equal brightness through it, in coordinates centred and scaled by the start
+/// ellipse.
 struct EdgeLine {
     Eigen::Vector2d normal;  ///< unit
     double offset;           ///< normal . x = offset on the line
     double weight;           ///< squared gradient
 };
 
-std::vector<EdgeLine> collect_lines(const GrayImage& picture, const Ellipse& start, double half_width_px, double scale) {
+std::vector<EdgeLine> collect_lines(const GrayImage& picture, const Ellipse& start, double half_width_px,
+                                    double scale) {
     std::vector<EdgeLine> lines;
     const Eigen::Vector2d reach = start.shape.diagonal().cwiseSqrt().array() + half_width_px + 1;
     const int x0 = static_cast<int>(std::floor(start.centre.x() - reach.x()));
@@ -122,9 +125,7 @@ std::optional<Ellipse> fit_ellipse_to_points(const std::vector<Eigen::Vector2d>&
         if (pass == 3) break;
         std::vector<double> distances;
         for (const auto& p : points) distances.push_back(std::abs(result->distance(p)));
-        std::vector<double> sorted = distances;
-        std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-        const double gate = std::max(0.4, 3.5 * sorted[sorted.size() / 2]);
+        const double gate = std::max(0.4, 3.5 * median(distances));
         for (std::size_t i = 0; i < points.size(); ++i) used[i] = distances[i] <= gate;
     }
     return result;

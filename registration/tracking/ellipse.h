@@ -29,7 +29,8 @@ std::optional<Ellipse> fit_ellipse_to_points(const std::vector<Eigen::Vector2d>&
 
 /// The ellipse to which the lines of equal brightness near `start` are tangent: the dual conic of the gradients
 /// (Ouellet & Hebert 2009), two robust passes. `half_width_px` is the width of the band of pixels to either side.
-/// Only gradients that point outwards (dark inside) count. Empty when the band leaves the picture or there is no ellipse.
+/// Only gradients that point outwards (dark inside) count. Empty when the band leaves the picture or there is no
+/// ellipse.
 std::optional<Ellipse> fit_ellipse_to_gradients(const GrayImage& picture, const Ellipse& start, double half_width_px);
 
 }  // namespace planlight

@@ -28,7 +28,8 @@ Window make_window(const GrayImage& picture, const cv::Rect& part, int scale) {
     const cv::Mat whole(picture.height, picture.width, CV_8U, const_cast<std::uint8_t*>(picture.pixels.data()));
     Window window{cv::Mat(), static_cast<double>(scale), {part.x, part.y}};
     if (scale == 1) {
-        cv::GaussianBlur(whole(part), window.pixels, cv::Size(3, 3), 0.8, 0, cv::BORDER_REPLICATE | cv::BORDER_ISOLATED);
+        cv::GaussianBlur(whole(part), window.pixels, cv::Size(3, 3), 0.8, 0,
+                         cv::BORDER_REPLICATE | cv::BORDER_ISOLATED);
     } else {
         cv::resize(whole(part), window.pixels, cv::Size(part.width / scale, part.height / scale), 0, 0, cv::INTER_AREA);
     }
@@ -42,7 +43,8 @@ void add_hough_circles(const Window& window, const MarkerSettings& settings, std
     const int least = std::max(3, static_cast<int>(settings.min_radius_px / window.scale));
     const int largest = std::max(least + 1, std::min(30, static_cast<int>(settings.max_radius_px / window.scale)));
     std::vector<cv::Vec3f> circles;
-    cv::HoughCircles(window.pixels, circles, cv::HOUGH_GRADIENT, 1.5, 2.5 * least, kCannyThreshold, kVotes, least, largest);
+    cv::HoughCircles(window.pixels, circles, cv::HOUGH_GRADIENT, 1.5, 2.5 * least, kCannyThreshold, kVotes, least,
+                     largest);
     if (circles.size() > kMost) circles.resize(kMost);
     for (const auto& c : circles) rough.push_back(window.in_picture(circle({c[0], c[1]}, c[2])));
 }
@@ -101,7 +103,8 @@ std::vector<MarkerObservation> find_markers(const GrayImage& picture, const Mark
 std::optional<MarkerObservation> measure_marker(const GrayImage& picture, const Eigen::Vector2d& near_pixel,
                                                 double radius_px, double search_px, const MarkerSettings& settings) {
     const auto fits = [&](const MarkerObservation& m) {
-        return (m.pixel - near_pixel).norm() <= search_px && m.radius_px > 0.7 * radius_px && m.radius_px < 1.4 * radius_px;
+        return (m.pixel - near_pixel).norm() <= search_px && m.radius_px > 0.7 * radius_px &&
+               m.radius_px < 1.4 * radius_px;
     };
     if (!near_pixel.allFinite() || !(radius_px > 0)) return std::nullopt;
     const auto there = measure_disc(picture, circle(near_pixel, radius_px), settings);

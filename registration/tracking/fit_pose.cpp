@@ -13,8 +13,8 @@ namespace {
 using Vector6 = Eigen::Matrix<double, 6, 1>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kHuber = 3;          // sigmas
-constexpr double kAgreement = 3.5;    // reduced chi-square up to which the markers agree
+constexpr double kHuber = 3;        // sigmas
+constexpr double kAgreement = 3.5;  // reduced chi-square up to which the markers agree
 constexpr double kCalibrationPx = 0.07;
 
 struct Linearised {
@@ -60,7 +60,8 @@ std::optional<Linearised> linearise(const RigCalibration& rig, const std::vector
     return result;
 }
 
-RigidTransform moved(const RigidTransform& rig_from_patient, const Vector6& twist, const Eigen::Vector3d& pivot_in_rig) {
+RigidTransform moved(const RigidTransform& rig_from_patient, const Vector6& twist,
+                     const Eigen::Vector3d& pivot_in_rig) {
     return Eigen::Translation3d(pivot_in_rig) * transform_from_twist(twist) * Eigen::Translation3d(-pivot_in_rig) *
            rig_from_patient;
 }
@@ -72,7 +73,8 @@ double centroid_error_mm(const Matrix6& N, const std::vector<PatientMarker>& mar
     std::set<int> seen;
     double reference = 0;
     for (const Sighting& s : sightings)
-        if (seen.insert(s.marker).second) reference += 3 * std::pow(markers[static_cast<std::size_t>(s.marker)].sigma_mm, 2);
+        if (seen.insert(s.marker).second)
+            reference += 3 * std::pow(markers[static_cast<std::size_t>(s.marker)].sigma_mm, 2);
     const double count = static_cast<double>(seen.size());
     return std::sqrt(inflation * covariance.bottomRightCorner<3, 3>().trace() + reference / (count * count));
 }
@@ -128,7 +130,9 @@ std::vector<LeftOut> leave_one_out(const RigCalibration& rig, const std::vector<
 
 }  // namespace
 
-double sighting_sigma_px(const MarkerObservation& seen) { return std::hypot(seen.sigma_px, kCalibrationPx); }
+double sighting_sigma_px(const MarkerObservation& seen) {
+    return std::hypot(seen.sigma_px, kCalibrationPx);
+}
 
 int distinct_markers(const std::vector<Sighting>& sightings) {
     std::set<int> seen;
@@ -165,13 +169,15 @@ std::optional<PoseFit> fit_pose(const RigCalibration& rig, const std::vector<Pat
     PoseFit fit{pose};
     fit.residual_px = std::sqrt(now->squared_px / static_cast<double>(sightings.size()));
     fit.chi_square = now->chi_square;
-    fit.error_mm = centroid_error_mm(now->N, markers, sightings, std::max(1.0, reduced_chi_square(fit, sightings.size())));
+    fit.error_mm =
+        centroid_error_mm(now->N, markers, sightings, std::max(1.0, reduced_chi_square(fit, sightings.size())));
     if (!std::isfinite(fit.error_mm)) return std::nullopt;
     return fit;
 }
 
 CheckedPose fit_pose_checked(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
-                             std::vector<Sighting> sightings, const RigidTransform& start, const TrackingSettings& settings) {
+                             std::vector<Sighting> sightings, const RigidTransform& start,
+                             const TrackingSettings& settings) {
     CheckedPose result;
     const int all = static_cast<int>(markers.size());
     while (true) {
@@ -196,8 +202,8 @@ CheckedPose fit_pose_checked(const RigCalibration& rig, const std::vector<Patien
             const bool explained = !fits.empty() && fits[0].chi < 0.5 * reduced_chi_square(*fit, sightings.size());
             const bool rival = fits.size() > 1 && fits[1].chi < std::max(kAgreement, 1.5 * fits[0].chi);
             if (explained && rival && fit->residual_px > settings.max_residual_px) {
-                result.reason = fmt::format("a marker has moved, but it cannot be told whether {} or {}", fits[0].marker + 1,
-                                            fits[1].marker + 1);
+                result.reason = fmt::format("a marker has moved, but it cannot be told whether {} or {}",
+                                            fits[0].marker + 1, fits[1].marker + 1);
                 return result;
             }
             if (explained) {
@@ -213,8 +219,9 @@ CheckedPose fit_pose_checked(const RigCalibration& rig, const std::vector<Patien
             return result;
         }
         if (fit->error_mm > settings.max_predicted_error_mm) {
-            result.reason = fmt::format("the markers seen leave the pose uncertain by {:.2f} mm; at most {:.2f} is allowed",
-                                        fit->error_mm, settings.max_predicted_error_mm);
+            result.reason =
+                fmt::format("the markers seen leave the pose uncertain by {:.2f} mm; at most {:.2f} is allowed",
+                            fit->error_mm, settings.max_predicted_error_mm);
             return result;
         }
         result.fit = fit;

@@ -19,32 +19,33 @@ struct Sighting {
 
 struct PoseFit {
     RigidTransform rig_from_patient = RigidTransform::Identity();
-    double residual_px = 0;       ///< rms distance in the picture
-    double chi_square = 0;        ///< by the sightings' sigmas
-    double error_mm = 0;          ///< one sigma of the place of the markers' centroid (3-D), by the covariance
+    double residual_px = 0;  ///< rms distance in the picture
+    double chi_square = 0;   ///< by the sightings' sigmas
+    double error_mm = 0;     ///< one sigma of the place of the markers' centroid (3-D), by the covariance
 };
 
 /// How far a sighting's centre may be off, pixels: its own sigma and what calibration leaves.
 double sighting_sigma_px(const MarkerObservation& seen);
 
-/// The pose of least reprojection error in both pictures at once, from `start`: Levenberg-Marquardt on a twist about the
-/// markers' centroid, Huber weights from 3 sigma. Empty when a marker falls behind a camera or the sightings leave the
-/// pose undetermined.
+/// The pose of least reprojection error in both pictures at once, from `start`: Levenberg-Marquardt on a twist about
+/// the markers' centroid, Huber weights from 3 sigma. Empty when a marker falls behind a camera or the sightings leave
+/// the pose undetermined.
 std::optional<PoseFit> fit_pose(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
                                 const std::vector<Sighting>& sightings, const RigidTransform& start);
 
 struct CheckedPose {
-    std::optional<PoseFit> fit;         ///< empty when refused
+    std::optional<PoseFit> fit;  ///< empty when refused
     std::vector<Sighting> used;
-    std::vector<MarkerDoubt> doubts;    ///< markers left out because they do not stand where they stood
-    std::string reason;                 ///< why refused
+    std::vector<MarkerDoubt> doubts;  ///< markers left out because they do not stand where they stood
+    std::string reason;               ///< why refused
 };
 
 /// `fit_pose`, then leave-one-out: while the markers do not agree within their noise, the one without which the others
 /// agree is left out. Refused when too few remain, when no marker explains the disagreement, or when two different ones
 /// would.
 CheckedPose fit_pose_checked(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
-                             std::vector<Sighting> sightings, const RigidTransform& start, const TrackingSettings& settings);
+                             std::vector<Sighting> sightings, const RigidTransform& start,
+                             const TrackingSettings& settings);
 
 /// How many different markers the sightings show.
 int distinct_markers(const std::vector<Sighting>& sightings);

@@ -27,7 +27,8 @@ std::vector<Look> looks_of(const ScanCapture& capture, PatientTracker& tracker) 
 
 }  // namespace
 
-ScanMovement movement_of_markers(const ScanCapture& capture, const RigCalibration& rig, const TrackingSettings& settings) {
+ScanMovement movement_of_markers(const ScanCapture& capture, const RigCalibration& rig,
+                                 const TrackingSettings& settings) {
     ScanMovement movement;
     if (capture.right.empty() || !present(rig.right_camera)) return movement;
     PatientTracker tracker(rig, settings);

@@ -6,10 +6,11 @@
 
 namespace planlight {
 
-/// How far the markers moved between the pictures of a scan: they are measured in every even picture (`uniform_light_frames`) by
-/// both cameras, and a pose is fitted to each. `by` is `nothing` when under three moments have a pose: no markers, one
-/// camera, too few seen. Throws InputError when the pictures are not of the rig's size.
-ScanMovement movement_of_markers(const ScanCapture& capture, const RigCalibration& rig, const TrackingSettings& settings = {});
+/// How far the markers moved between the pictures of a scan: they are measured in every even picture
+/// (`uniform_light_frames`) by both cameras, and a pose is fitted to each. `by` is `nothing` when under three moments
+/// have a pose: no markers, one camera, too few seen. Throws InputError when the pictures are not of the rig's size.
+ScanMovement movement_of_markers(const ScanCapture& capture, const RigCalibration& rig,
+                                 const TrackingSettings& settings = {});
 
 /// By the markers where they can be measured, else by the skin in the pictures.
 ScanMovement movement_in_scan(const ScanCapture& capture, const RigCalibration& rig, const PointCloud& cloud,

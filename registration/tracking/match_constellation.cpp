@@ -30,8 +30,9 @@ struct Proposal {
 
 class Search {
 public:
-    Search(const RigCalibration& rig, const std::vector<PatientMarker>& markers, const std::vector<MarkerObservation>& left,
-           const std::vector<MarkerObservation>& right, const TrackingSettings& settings)
+    Search(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
+           const std::vector<MarkerObservation>& left, const std::vector<MarkerObservation>& right,
+           const TrackingSettings& settings)
         : rig_(rig), markers_(markers), left_(left), right_(right), settings_(settings) {}
 
     std::vector<Proposal> run(const std::vector<MarkerPair>& points) {
@@ -52,7 +53,8 @@ public:
 private:
     bool same_distance(std::size_t i, std::size_t j, const MarkerPair& a, const MarkerPair& b) const {
         const double wanted = (markers_[i].centre_in_patient - markers_[j].centre_in_patient).norm();
-        const double noise = 4 * std::hypot(a.sigma_mm, b.sigma_mm, std::hypot(markers_[i].sigma_mm, markers_[j].sigma_mm));
+        const double noise =
+            4 * std::hypot(a.sigma_mm, b.sigma_mm, std::hypot(markers_[i].sigma_mm, markers_[j].sigma_mm));
         return std::abs((a.centre_in_rig - b.centre_in_rig).norm() - wanted) < kDistanceToleranceMm + noise;
     }
 
@@ -68,7 +70,8 @@ private:
         }
         const auto fit = fit_pose(rig_, markers_, three, fit_rigid_transform(in_patient, in_rig));
         if (!fit || fit->residual_px > 2 * settings_.max_residual_px) return;
-        Proposal proposal{fit->rig_from_patient, sightings_near(rig_, markers_, fit->rig_from_patient, left_, right_, kNearPx)};
+        Proposal proposal{fit->rig_from_patient,
+                          sightings_near(rig_, markers_, fit->rig_from_patient, left_, right_, kNearPx)};
         proposal.markers = distinct_markers(proposal.sightings);
         if (proposal.markers < settings_.min_markers) return;
         if (const auto all = fit_pose(rig_, markers_, proposal.sightings, proposal.pose)) {
@@ -111,8 +114,8 @@ std::vector<Sighting> sightings_near(const RigCalibration& rig, const std::vecto
         const auto& discs = is_left ? left : right;
         std::vector<Candidate> candidates;
         for (std::size_t k = 0; k < markers.size(); ++k) {
-            const auto pixel = project(is_left ? rig.left_camera : rig.right_camera,
-                                       rig_from_patient * markers[k].centre_in_patient);
+            const auto pixel =
+                project(is_left ? rig.left_camera : rig.right_camera, rig_from_patient * markers[k].centre_in_patient);
             for (std::size_t d = 0; pixel && d < discs.size(); ++d)
                 if (const double distance = (discs[d].pixel - *pixel).norm(); distance < max_px)
                     candidates.push_back({distance, {static_cast<int>(k), is_left, discs[d]}, d});
@@ -131,7 +134,8 @@ std::vector<Sighting> sightings_near(const RigCalibration& rig, const std::vecto
 }
 
 ConstellationMatch match_constellation(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
-                                       const std::vector<MarkerObservation>& left, const std::vector<MarkerObservation>& right,
+                                       const std::vector<MarkerObservation>& left,
+                                       const std::vector<MarkerObservation>& right,
                                        const std::optional<RigidTransform>& guess, const TrackingSettings& settings) {
     ConstellationMatch result;
     auto points = possible_pairs(rig, left, right, settings.design, settings.max_epipolar_px);
@@ -139,7 +143,8 @@ ConstellationMatch match_constellation(const RigCalibration& rig, const std::vec
     auto proposals = Search(rig, markers, left, right, settings).run(points);
     const int seen = static_cast<int>(
         consistent_pairs(points, static_cast<int>(left.size()), static_cast<int>(right.size())).size());
-    // Three markers out of many fit somewhere by chance, and in a mirrored arrangement always: a triangle has no handedness.
+    // Three markers out of many fit somewhere by chance, and in a mirrored arrangement always: a triangle has no
+    // handedness.
     const int expected = std::min(seen, static_cast<int>(markers.size()));
     const int needed = std::max(settings.min_markers, expected >= 4 ? std::max(4, (2 * expected + 2) / 3) : 0);
     result.needed = needed;
@@ -152,16 +157,19 @@ ConstellationMatch match_constellation(const RigCalibration& rig, const std::vec
                             : fmt::format("{} discs seen, but not {} in the arrangement of the markers", seen, needed);
         return result;
     }
-    std::sort(proposals.begin(), proposals.end(), [](const Proposal& a, const Proposal& b) { return a.better_than(b); });
+    std::sort(proposals.begin(), proposals.end(),
+              [](const Proposal& a, const Proposal& b) { return a.better_than(b); });
     const double allowed = settings.max_residual_px * settings.max_residual_px;
     if (proposals.front().squared_px <= allowed)  // what fits well has no rival in what does not
         std::erase_if(proposals, [&](const Proposal& p) { return p.squared_px > allowed; });
     const int most = proposals.front().markers;
-    const auto rivals_end = std::find_if(proposals.begin(), proposals.end(), [&](const Proposal& p) { return p.markers < most; });
+    const auto rivals_end =
+        std::find_if(proposals.begin(), proposals.end(), [&](const Proposal& p) { return p.markers < most; });
     if (rivals_end - proposals.begin() > 1) {
         const auto far = [&](const Proposal& p) { return angle_between(*guess, p.pose); };
         if (guess)
-            std::sort(proposals.begin(), rivals_end, [&](const Proposal& a, const Proposal& b) { return far(a) < far(b); });
+            std::sort(proposals.begin(), rivals_end,
+                      [&](const Proposal& a, const Proposal& b) { return far(a) < far(b); });
         constexpr double kClear = 0.35;  // radians nearer to the guess
         if (!guess || far(proposals[1]) - far(proposals[0]) < kClear) {
             result.reason = fmt::format("the {} markers seen fit their arrangement in more than one way", most);

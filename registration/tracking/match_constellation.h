@@ -17,10 +17,12 @@ struct ConstellationMatch {
 };
 
 /// Which disc is which marker, from the distances between the triangulated discs: every three points that have the
-/// distances of three markers propose a pose, and the pose that puts most markers on a disc wins. Two different poses that
-/// explain as many are an ambiguity; it is settled by `guess` when one is much nearer to it, and refused otherwise.
+/// distances of three markers propose a pose, and the pose that puts most markers on a disc wins. Two different poses
+/// that explain as many are an ambiguity; it is settled by `guess` when one is much nearer to it, and refused
+/// otherwise.
 ConstellationMatch match_constellation(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
-                                       const std::vector<MarkerObservation>& left, const std::vector<MarkerObservation>& right,
+                                       const std::vector<MarkerObservation>& left,
+                                       const std::vector<MarkerObservation>& right,
                                        const std::optional<RigidTransform>& guess, const TrackingSettings& settings);
 
 /// The discs within `max_px` of where `rig_from_patient` puts the markers; each disc and each marker at most once.

@@ -58,7 +58,8 @@ std::optional<double> first_rise(const GrayImage& picture, const Eigen::Vector2d
     return std::nullopt;
 }
 
-/// The ellipse through the edge seen along the rays of `rough`; empty when fewer than `min_fraction` of them agree on one.
+/// The ellipse through the edge seen along the rays of `rough`; empty when fewer than `min_fraction` of them agree on
+/// one.
 std::optional<Ellipse> ellipse_from_rays(const GrayImage& picture, const Ellipse& rough, double from, double to,
                                          double min_rise, double min_fraction, std::vector<Eigen::Vector2d>& edge) {
     const Eigen::Matrix2d L = rough.from_unit_circle();
@@ -92,7 +93,8 @@ double median(std::array<double, kRays> values) {
     return values[kRays / 2];
 }
 
-/// Standard deviation of the noise inside the disc, grey values, from second differences (which shading does not reach).
+/// Standard deviation of the noise inside the disc, grey values, from second differences (which shading does not
+/// reach).
 double noise_inside(const GrayImage& picture, const Ellipse& disc) {
     const double reach = 0.5 * disc.half_axes().y();
     const int x0 = static_cast<int>(disc.centre.x() - reach), x1 = static_cast<int>(disc.centre.x() + reach);
@@ -105,8 +107,8 @@ double noise_inside(const GrayImage& picture, const Ellipse& disc) {
     return count > 0 ? std::sqrt(sum / (6 * count)) : 0;
 }
 
-/// One standard deviation of the centre: the noise over the slope of the edge, averaged round it, and the shift of a tilted
-/// circle's centre under perspective (r^2 sin cos / depth, for a disc of 4 mm radius at 0.9 m).
+/// One standard deviation of the centre: the noise over the slope of the edge, averaged round it, and the shift of a
+/// tilted circle's centre under perspective (r^2 sin cos / depth, for a disc of 4 mm radius at 0.9 m).
 double centre_sigma_px(double radius_px, double axis_ratio, double noise, double contrast) {
     constexpr double kEdgeWidthPx = 2;  // contrast / slope of an edge blurred by 0.8 px
     const double edge_sigma_px = kEdgeWidthPx * std::max(0.5, noise) / contrast;
@@ -140,13 +142,15 @@ std::optional<double> ring_contrast(const GrayImage& picture, const Ellipse& dis
     }
     // A circle of light on the skin is as dark inside as outside; round a marker at most a part is the dark background.
     if (skin_outside < 0.4 * outside_seen) return std::nullopt;
-    if (dark_inside < 0.9 * kRays || bright_ring < 0.9 * kRays || darker_outside < 0.6 * outside_seen) return std::nullopt;
+    if (dark_inside < 0.9 * kRays || bright_ring < 0.9 * kRays || darker_outside < 0.6 * outside_seen)
+        return std::nullopt;
     return contrast;
 }
 
 }  // namespace
 
-std::optional<MarkerObservation> measure_disc(const GrayImage& picture, const Ellipse& rough, const MarkerSettings& settings) {
+std::optional<MarkerObservation> measure_disc(const GrayImage& picture, const Ellipse& rough,
+                                              const MarkerSettings& settings) {
     std::vector<Eigen::Vector2d> edge;
     const double min_rise = 0.6 * settings.min_contrast;
     auto ellipse = ellipse_from_rays(picture, rough, 0.3, 1.9, min_rise, 0.6, edge);

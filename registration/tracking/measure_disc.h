@@ -12,6 +12,7 @@ namespace planlight {
 /// bright all round and brighter than what surrounds the sticker.
 ///
 /// `rough` may be off by about half a radius, and be a circle where the disc is a strongly tilted ellipse.
-std::optional<MarkerObservation> measure_disc(const GrayImage& picture, const Ellipse& rough, const MarkerSettings& settings);
+std::optional<MarkerObservation> measure_disc(const GrayImage& picture, const Ellipse& rough,
+                                              const MarkerSettings& settings);
 
 }  // namespace planlight

@@ -55,8 +55,10 @@ std::vector<int> cheapest_assignment(const Eigen::MatrixXd& cost) {
                 if (least[j] < delta) delta = least[j], next = j;
             }
             for (std::size_t j = 0; j < size; ++j) {
-                if (done[j]) row_potential[static_cast<std::size_t>(row_of[j])] += delta, column_potential[j] -= delta;
-                else least[j] -= delta;
+                if (done[j])
+                    row_potential[static_cast<std::size_t>(row_of[j])] += delta, column_potential[j] -= delta;
+                else
+                    least[j] -= delta;
             }
             column = next;
         } while (row_of[column] != 0);
@@ -139,7 +141,8 @@ std::vector<MarkerPair> consistent_pairs(const std::vector<MarkerPair>& possible
         for (int other = 0; other < left_count; ++other) {
             const int right = right_of[static_cast<std::size_t>(other)];
             if (other == p.left || right >= right_count) continue;
-            if (cost(p.left, right) + cost(other, p.right) < cost(p.left, p.right) + cost(other, right) + kMargin) return true;
+            if (cost(p.left, right) + cost(other, p.right) < cost(p.left, p.right) + cost(other, right) + kMargin)
+                return true;
         }
         return false;
     };

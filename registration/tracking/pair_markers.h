@@ -18,7 +18,8 @@ struct MarkerPair {
 };
 
 /// The point seen at both pixels: least squares on the reprojection. Empty when the rays are near parallel or meet
-/// behind a camera. `sigma_mm` and `rms_px` tell its uncertainty and the remaining reprojection error (0 for both perfect).
+/// behind a camera. `sigma_mm` and `rms_px` tell its uncertainty and the remaining reprojection error (0 for both
+/// perfect).
 struct TriangulatedMarker {
     Eigen::Vector3d point_in_rig;
     double sigma_mm = 0;

@@ -41,12 +41,12 @@ struct PosePredictor::Filter {
     bool started = false;
     Instant at{};
     Eigen::Vector3d centre_in_patient = Eigen::Vector3d::Zero();
-    Eigen::Vector3d centre = Eigen::Vector3d::Zero();            // of the head, in rig, mm
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  // of the head, in rig, mm
     Eigen::Vector3d velocity_mm_s = Eigen::Vector3d::Zero();
-    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();      // rig_from_patient
-    Eigen::Vector3d turn_rad_s = Eigen::Vector3d::Zero();        // in rig axes
+    Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();  // rig_from_patient
+    Eigen::Vector3d turn_rad_s = Eigen::Vector3d::Zero();    // in rig axes
     AxisFilter place_axis, turn_axis;
-    double liveliness = 1;                                       // of the process noise, (0, 1]
+    double liveliness = 1;  // of the process noise, (0, 1]
 
     void start(const TrackedPose& pose, const Eigen::Vector3d& about) {
         constexpr double kFirstSpeedMmS = 100;  // of a head about which nothing is known yet
@@ -70,8 +70,9 @@ struct PosePredictor::Filter {
         centre_in_patient = about;
     }
 
-    /// The process noise follows the head: small while it lies still or moves evenly, `acceleration_sigma_mm_s2` at once when
-    /// the measurements leave what a quiet head would do (mean normalised innovation of the six axes above `kSurprise`).
+    /// The process noise follows the head: small while it lies still or moves evenly, `acceleration_sigma_mm_s2` at
+    /// once when the measurements leave what a quiet head would do (mean normalised innovation of the six axes above
+    /// `kSurprise`).
     void advance_axes(double dt_s, const Eigen::Vector3d& off, const Eigen::Vector3d& off_rad) {
         constexpr double kSurprise = 2, kQuietest = 0.06, kCalming = 0.96;
         const double variance = std::pow(settings.measurement_sigma_mm, 2);
@@ -80,7 +81,8 @@ struct PosePredictor::Filter {
             place.advance(dt_s, liveliness * settings.acceleration_sigma_mm_s2);
             turn.advance(dt_s, liveliness * settings.acceleration_sigma_mm_s2 / kLeverMm);
             const double surprise = (off.squaredNorm() / (place.P(0, 0) + variance) +
-                                     off_rad.squaredNorm() / (turn.P(0, 0) + variance / (kLeverMm * kLeverMm))) / 6;
+                                     off_rad.squaredNorm() / (turn.P(0, 0) + variance / (kLeverMm * kLeverMm))) /
+                                    6;
             if (surprise < kSurprise || liveliness >= 1) {
                 place_axis = place, turn_axis = turn;
                 liveliness = std::max(kQuietest, kCalming * liveliness);
@@ -138,6 +140,8 @@ std::optional<RigidTransform> PosePredictor::rig_from_patient_at(Instant at) con
     return pose;
 }
 
-void PosePredictor::reset() { filter_->started = false; }
+void PosePredictor::reset() {
+    filter_->started = false;
+}
 
 }  // namespace planlight

@@ -22,11 +22,12 @@ public:
     PosePredictor(PosePredictor&&) noexcept;
     PosePredictor& operator=(PosePredictor&&) noexcept;
 
-    /// A measured pose; one without `rig_from_patient` is ignored. `centre_in_patient` (mm) is the point about which the
-    /// rotation is filtered (the middle of the head), so that translation and rotation do not mix.
+    /// A measured pose; one without `rig_from_patient` is ignored. `centre_in_patient` (mm) is the point about which
+    /// the rotation is filtered (the middle of the head), so that translation and rotation do not mix.
     void add(const TrackedPose& pose, const Eigen::Vector3d& centre_in_patient);
 
-    /// The pose at a later moment. Empty before the first measurement, and when `at` is more than `max_ahead` past the last.
+    /// The pose at a later moment. Empty before the first measurement, and when `at` is more than `max_ahead` past the
+    /// last.
     std::optional<RigidTransform> rig_from_patient_at(Instant at) const;
 
     void reset();

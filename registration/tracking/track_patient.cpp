@@ -21,7 +21,8 @@ void check_size(const GrayImage& picture, const CameraModel& camera, const char*
                      "Use the camera mode the rig was calibrated in, or calibrate again.");
 }
 
-/// Radius at which a marker is to be expected that was not seen before: between facing (1) and tilted by 60 degrees (0.75).
+/// Radius at which a marker is to be expected that was not seen before: between facing (1) and tilted by 60 degrees
+/// (0.75).
 double expected_radius_px(const CameraModel& camera, const Eigen::Vector3d& p_in_rig, const MarkerDesign& design) {
     return 0.9 * 0.5 * design.disc_diameter_mm * camera.focal_x / (camera.device_from_rig * p_in_rig).z();
 }
@@ -47,7 +48,8 @@ struct PatientTracker::Attempt {
     std::vector<Seen> left, right;
 };
 
-PatientTracker::PatientTracker(const RigCalibration& rig, const TrackingSettings& settings) : rig_(rig), settings_(settings) {
+PatientTracker::PatientTracker(const RigCalibration& rig, const TrackingSettings& settings)
+    : rig_(rig), settings_(settings) {
     settings_.markers.sticker_ratio = settings.design.sticker_diameter_mm / settings.design.disc_diameter_mm;
 }
 
@@ -168,7 +170,8 @@ TrackedPose PatientTracker::update(const StereoFrame& frame) {
     TrackedPose pose;
     pose.at = frame.at;
     if (static_cast<int>(markers_.size()) < settings_.min_markers) {
-        pose.reason = fmt::format("the reference has {} markers; {} are needed", markers_.size(), settings_.min_markers);
+        pose.reason =
+            fmt::format("the reference has {} markers; {} are needed", markers_.size(), settings_.min_markers);
         return pose;
     }
     Attempt attempt;

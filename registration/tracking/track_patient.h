@@ -13,17 +13,17 @@ namespace planlight {
 struct TrackingSettings {
     MarkerSettings markers;
     MarkerDesign design;
-    int min_markers = 3;                 ///< seen by both cameras together; fewer give no pose
-    double max_residual_px = 0.5;        ///< rms above which there is no pose
-    double max_epipolar_px = 1.5;        ///< when the markers of both pictures are paired
-    double search_px = 40;               ///< around the predicted place
-    double max_predicted_error_mm = 1;   ///< one sigma at the markers' centroid above which there is no pose
+    int min_markers = 3;                ///< seen by both cameras together; fewer give no pose
+    double max_residual_px = 0.5;       ///< rms above which there is no pose
+    double max_epipolar_px = 1.5;       ///< when the markers of both pictures are paired
+    double search_px = 40;              ///< around the predicted place
+    double max_predicted_error_mm = 1;  ///< one sigma at the markers' centroid above which there is no pose
 };
 
 /// A marker that does not stand where it stood against the others: it slipped, or something else was taken for it.
 struct MarkerDoubt {
-    int marker = -1;           ///< index into the reference markers
-    double deviation_mm = 0;   ///< from where the others say it is, across the line of sight
+    int marker = -1;          ///< index into the reference markers
+    double deviation_mm = 0;  ///< from where the others say it is, across the line of sight
 };
 
 /// A marker in the patient frame, as measured at the scan instant.
@@ -44,8 +44,8 @@ public:
     /// As above, from markers of an earlier session or a file.
     void set_reference(std::vector<PatientMarker> markers);
 
-    /// The pose in this frame, by minimising the reprojection in both pictures at once. A lost marker is survived; too few
-    /// give no pose, and the next frame is searched whole.
+    /// The pose in this frame, by minimising the reprojection in both pictures at once. A lost marker is survived; too
+    /// few give no pose, and the next frame is searched whole.
     TrackedPose update(const StereoFrame& frame);
 
     const std::vector<PatientMarker>& markers() const { return markers_; }
@@ -75,7 +75,7 @@ private:
     std::vector<MarkerDoubt> doubts_;
     std::vector<double> radius_left_px_, radius_right_px_;  ///< per marker, as last seen; 0 when never
     std::optional<TrackedPose> last_, before_last_;
-    std::optional<RigidTransform> last_known_;              ///< survives a loss, to choose between ambiguous arrangements
+    std::optional<RigidTransform> last_known_;  ///< survives a loss, to choose between ambiguous arrangements
 };
 
 }  // namespace planlight

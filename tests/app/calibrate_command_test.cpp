@@ -12,13 +12,14 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// From simulated captures to rig.json; then what goes wrong leaves the good file alone. One test: the captures take their
-/// time.
+/// From simulated captures to rig.json; then what goes wrong leaves the good file alone. One test: the captures take
+/// their time.
 TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
     const TemporaryFolder folder;
     const fs::path& root = folder.path();
     const std::string board = " --board 'charuco 10x7 25 mm'";
-    const auto simulated = run_planlight("simulate" + board + " --preset paper --seed 2 --poses 4 --out room --json", root);
+    const auto simulated =
+        run_planlight("simulate" + board + " --preset paper --seed 2 --poses 4 --out room --json", root);
     ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
     const auto run = run_planlight(
         "calibrate room/captures" + board + " --serial-left L-1 --serial-projector P-9 --out rig.json --json", root);
@@ -93,8 +94,9 @@ TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
 
 TEST(CalibrateCommand, AFolderThatIsNotThereIsSaidBeforeTheWork) {
     const TemporaryFolder folder;
-    expect_refused(run_planlight("calibrate captures --board 'charuco 10x7 25 mm' --out nowhere/rig.json", folder.path()), 7,
-                   "Make the folder nowhere first");
+    expect_refused(
+        run_planlight("calibrate captures --board 'charuco 10x7 25 mm' --out nowhere/rig.json", folder.path()), 7,
+        "Make the folder nowhere first");
     fs::create_directories(folder.path() / "rig.json");
     expect_refused(run_planlight("calibrate captures --board 'charuco 10x7 25 mm'", folder.path()), 7, "is a folder");
 }

@@ -18,9 +18,13 @@ TEST(Distribution, OfOneToAHundred) {
     EXPECT_DOUBLE_EQ(d.worst, 100);
 }
 
-TEST(Distribution, ANanIsTheWorstAndNeverHidden) { EXPECT_TRUE(std::isnan(distribution_of({1, std::nan(""), 2}).worst)); }
+TEST(Distribution, ANanIsTheWorstAndNeverHidden) {
+    EXPECT_TRUE(std::isnan(distribution_of({1, std::nan(""), 2}).worst));
+}
 
-TEST(Distribution, OfNothingCountsNothing) { EXPECT_EQ(distribution_of({}).count, 0u); }
+TEST(Distribution, OfNothingCountsNothing) {
+    EXPECT_EQ(distribution_of({}).count, 0u);
+}
 
 }  // namespace
 }  // namespace planlight

@@ -3,9 +3,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "planning_io/surface/mesh_file.h"
 #include "planning_io/case/capture_folder.h"
 #include "planning_io/case/rig_file.h"
+#include "planning_io/surface/mesh_file.h"
 #include "tests/app/run_command.h"
 #include "tests/registration/scan/stripe_room.h"
 #include "tests/support/test_data.h"

@@ -35,7 +35,8 @@ protected:
     }
 
     std::size_t at(const std::string& name) const {
-        return static_cast<std::size_t>(std::find(capture_.names.begin(), capture_.names.end(), name) - capture_.names.begin());
+        return static_cast<std::size_t>(std::find(capture_.names.begin(), capture_.names.end(), name) -
+                                        capture_.names.begin());
     }
 
     CommandRun scan(const CaptureFolder& capture, const RigCalibration& rig, const std::string& more = "") {
@@ -58,7 +59,8 @@ TEST_F(GrayCodeFolder, IsScannedByOneCameraAndADoubledFrameIsRefusedByItsName) {
     EXPECT_EQ(good.exit_code, 0) << good.err;
     fs::remove(root() / "cloud.ply");
     capture_.left[at("column-gray-5")] = capture_.left[at("column-gray-4-inverse")];
-    expect_refused(scan(capture_, rig_, "--accept-movement"), 6, "column-gray-5 and its inverse do not complete each other");
+    expect_refused(scan(capture_, rig_, "--accept-movement"), 6,
+                   "column-gray-5 and its inverse do not complete each other");
     EXPECT_FALSE(fs::exists(root() / "cloud.ply"));
     capture_.check_sequence = false;  // said to be right whatever it looks like
     EXPECT_EQ(scan(capture_, rig_, "--accept-movement").exit_code, 0);
@@ -90,9 +92,9 @@ TEST_F(GrayCodeFolder, OfColumnsOnlyNeedsTwoCameras) {
     expect_refused(scan(capture_, rig_), 3, "columns only, and there is one camera");
 }
 
-/// A left lens that was focused anew (0.5 % of its focal length) bends the cloud by millimetres, while most of what it still
-/// keeps looks well: the scan itself says that the cameras do not fit. In what `check` prints of a projector that it could not
-/// place there is no 0, which would read as a perfect one.
+/// A left lens that was focused anew (0.5 % of its focal length) bends the cloud by millimetres, while most of what it
+/// still keeps looks well: the scan itself says that the cameras do not fit. In what `check` prints of a projector that
+/// it could not place there is no 0, which would read as a perfect one.
 TEST(ScanCommand, SaysThatTheCamerasDoNotFitEachOther) {
     const TemporaryFolder folder;
     const auto room = stripe_room::paper_room(stripe_room::sphere({120, -40, 360}, 80));
@@ -113,7 +115,8 @@ TEST(ScanCommand, SaysThatTheCamerasDoNotFitEachOther) {
     RigCalibration refocused = rig;
     refocused.left_camera.focal_x *= 1.005, refocused.left_camera.focal_y *= 1.005;
     write_rig(refocused, folder.path() / "rig.json");
-    EXPECT_NE(run_planlight("scan capture --rig rig.json --out cloud.ply", folder.path()).err.find(words), std::string::npos);
+    EXPECT_NE(run_planlight("scan capture --rig rig.json --out cloud.ply", folder.path()).err.find(words),
+              std::string::npos);
     RigCalibration turned = rig;
     const Eigen::AngleAxisd upwards(0.02, Eigen::Vector3d::UnitX());
     turned.right_camera.device_from_rig = RigidTransform(upwards) * turned.right_camera.device_from_rig;
@@ -122,9 +125,11 @@ TEST(ScanCommand, SaysThatTheCamerasDoNotFitEachOther) {
     EXPECT_EQ(checked.exit_code, 6);
     const json result = json::parse(checked.out);
     EXPECT_GT(result.at("epipolar_px").get<double>(), 1);
-    for (const char* name : {"projector_rms_px", "projector_after_px", "light_off_mm", "projector_moved_mm", "camera_k1_off"})
+    for (const char* name :
+         {"projector_rms_px", "projector_after_px", "light_off_mm", "projector_moved_mm", "camera_k1_off"})
         EXPECT_TRUE(result.at(name).is_null()) << name;
-    EXPECT_EQ(run_planlight("check capture --rig rig.json", folder.path()).exit_code, 6) << "the log with nulls is read back";
+    EXPECT_EQ(run_planlight("check capture --rig rig.json", folder.path()).exit_code, 6)
+        << "the log with nulls is read back";
 }
 
 TEST(PatternsCommand, WritesTheSettingsOfItsCapturesAndNothingOverAnother) {
@@ -142,8 +147,10 @@ TEST(PatternsCommand, WritesTheSettingsOfItsCapturesAndNothingOverAnother) {
     expect_refused(run_planlight(size + "--set fast --out columns", root), 3, "exists already");
     EXPECT_EQ(whole(root / "columns/patterns.json"), before);
     expect_refused(run_planlight(size + "--set fast --phase-steps 9 --out new", root), 3, "its own number of shifts");
-    expect_refused(run_planlight(size + "--set multi-frequency --phase-period-px 20 --out new", root), 3, "its own periods");
-    expect_refused(run_planlight("patterns --width 8192 --height 8192 --set multi-frequency --out new", root), 3, "8192 x 8192");
+    expect_refused(run_planlight(size + "--set multi-frequency --phase-period-px 20 --out new", root), 3,
+                   "its own periods");
+    expect_refused(run_planlight("patterns --width 8192 --height 8192 --set multi-frequency --out new", root), 3,
+                   "8192 x 8192");
     EXPECT_FALSE(fs::exists(root / "new"));
 }
 

@@ -37,9 +37,13 @@ void CommandsTest::SetUp() {
     if (!example_patient()) GTEST_SKIP() << "the package invesalius-examples is not installed";
 }
 
-std::string CommandsTest::patient() { return example_patient()->string(); }
+std::string CommandsTest::patient() {
+    return example_patient()->string();
+}
 
-std::string CommandsTest::plan() { return std::string(PLANLIGHT_EXAMPLE_FOLDER) + "/frontal_defect.mrk.json"; }
+std::string CommandsTest::plan() {
+    return std::string(PLANLIGHT_EXAMPLE_FOLDER) + "/frontal_defect.mrk.json";
+}
 
 const CommandRun& CommandsTest::prepared() {
     return once(prepared_, "prepare " + patient() + " --plan " + plan() + " --out case --json", root());
@@ -47,7 +51,8 @@ const CommandRun& CommandsTest::prepared() {
 
 const CommandRun& CommandsTest::simulated() {
     return once(simulated_,
-                "simulate " + patient() + " --plan " + plan() + " --preset paper --seed 4 --frames 4 --out room --json", root());
+                "simulate " + patient() + " --plan " + plan() + " --preset paper --seed 4 --frames 4 --out room --json",
+                root());
 }
 
 Eigen::Matrix4d CommandsTest::true_rig_from_ct() {
@@ -55,7 +60,9 @@ Eigen::Matrix4d CommandsTest::true_rig_from_ct() {
     return matrix_of(read_json(root() / "room" / "truth.json")["scan_rig_from_ct"]);
 }
 
-json read_json(const fs::path& file) { return json::parse(read_text(file)); }
+json read_json(const fs::path& file) {
+    return json::parse(read_text(file));
+}
 
 std::string read_text(const fs::path& file) {
     std::ifstream in(file, std::ios::binary);
@@ -65,7 +72,8 @@ std::string read_text(const fs::path& file) {
 Eigen::Matrix4d matrix_of(const json& rows) {
     Eigen::Matrix4d m;
     for (int r = 0; r < 4; ++r)
-        for (int c = 0; c < 4; ++c) m(r, c) = rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)].get<double>();
+        for (int c = 0; c < 4; ++c)
+            m(r, c) = rows[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)].get<double>();
     return m;
 }
 

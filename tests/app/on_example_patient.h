@@ -21,8 +21,8 @@ protected:
     void SetUp() override;
 
     static const std::filesystem::path& root() { return folder_->path(); }
-    /// `planlight prepare` of the example patient and plan, run by the first test that asks: the folder "case" and what it
-    /// printed as JSON. Throws when it failed.
+    /// `planlight prepare` of the example patient and plan, run by the first test that asks: the folder "case" and what
+    /// it printed as JSON. Throws when it failed.
     static const CommandRun& prepared();
     /// The same of `planlight simulate`: the folder "room", paper's preset, four frames.
     static const CommandRun& simulated();

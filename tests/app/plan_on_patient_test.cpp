@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "app/prepare_case.h"
-#include "planning_io/volume/invesalius_project.h"
-#include "planning_io/surface/mesh_file.h"
 #include "planning_io/plan/plan_file.h"
-#include "planning_io/volume/read_volume.h"
+#include "planning_io/surface/mesh_file.h"
 #include "planning_io/surface/surface_file.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/invesalius_project.h"
+#include "planning_io/volume/read_volume.h"
 #include "projection/check_plan.h"
 #include "projection/mid_plane.h"
 #include "projection/plan_alternatives.h"
@@ -38,8 +38,8 @@ Plan moved(Plan plan, const Move& move) {
 
 /// The words of a stop that tell its kind.
 std::string kind_of(const std::string& stop) {
-    for (const char* words : {"outside the volume", "too far to be drawn", "items lie more than", "outside the body", "swapped",
-                              "it is named", "axes are exchanged"})
+    for (const char* words : {"outside the volume", "too far to be drawn", "items lie more than", "outside the body",
+                              "swapped", "it is named", "axes are exchanged"})
         if (stop.find(words) != std::string::npos) return words;
     return stop;
 }
@@ -58,7 +58,9 @@ protected:
     void SetUp() override {
         if (!example_patient()) GTEST_SKIP() << "the package invesalius-examples is not installed";
     }
-    static Vector3d middle() { return box.ct_from_voxel * (Vector3d(box.size[0] - 1, box.size[1] - 1, box.size[2] - 1) / 2); }
+    static Vector3d middle() {
+        return box.ct_from_voxel * (Vector3d(box.size[0] - 1, box.size[1] - 1, box.size[2] - 1) / 2);
+    }
     static inline VolumeBox box;
     static inline std::unique_ptr<SkinSurface> skin;
     static inline Plan plan;
@@ -71,17 +73,18 @@ TEST_F(PlanOnPatient, TheExamplePlanPasses) {
     EXPECT_LT(verdict.median_to_skin_mm, 1);
 }
 
-/// How many of the 47 wrong exchanges and flips of the axes about a point are stopped; the rest as matrices. Prints by what.
-std::vector<Eigen::Matrix3d> not_stopped(const Plan& plan, const Vector3d& about, const SkinSurface& skin, const VolumeBox& box,
-                                         const char* words) {
+/// How many of the 47 wrong exchanges and flips of the axes about a point are stopped; the rest as matrices. Prints by
+/// what.
+std::vector<Eigen::Matrix3d> not_stopped(const Plan& plan, const Vector3d& about, const SkinSurface& skin,
+                                         const VolumeBox& box, const char* words) {
     const auto all = axis_permutations_and_flips();
     EXPECT_EQ(all.size(), 48U);
     EXPECT_TRUE(all.front().isIdentity());
     std::map<std::string, int> by, alone;
     std::vector<Eigen::Matrix3d> passed;
     for (std::size_t i = 1; i < all.size(); ++i) {
-        const PlanVerdict verdict =
-            check_plan(moved(plan, [&](const Vector3d& p) { return Vector3d(all[i] * (p - about) + about); }), skin, box);
+        const PlanVerdict verdict = check_plan(
+            moved(plan, [&](const Vector3d& p) { return Vector3d(all[i] * (p - about) + about); }), skin, box);
         std::map<std::string, int> kinds;
         for (const auto& stop : verdict.stops) ++kinds[kind_of(stop)];
         for (const auto& [kind, count] : kinds) ++by[kind];
@@ -89,7 +92,8 @@ std::vector<Eigen::Matrix3d> not_stopped(const Plan& plan, const Vector3d& about
         if (verdict.stops.empty()) passed.push_back(all[i]);
     }
     std::printf("%s: %zu of 47 stopped\n", words, 47 - passed.size());
-    for (const auto& [kind, count] : by) std::printf("  %2d: \"%s\" (%d by it alone)\n", count, kind.c_str(), alone[kind]);
+    for (const auto& [kind, count] : by)
+        std::printf("  %2d: \"%s\" (%d by it alone)\n", count, kind.c_str(), alone[kind]);
     return passed;
 }
 
@@ -99,9 +103,9 @@ TEST_F(PlanOnPatient, NumbersWithAnyExchangedOrFlippedAxesAreStopped) {
 }
 
 TEST_F(PlanOnPatient, VoxelsInAnotherOrderAreStoppedButWhereTheForeheadIsSymmetric) {
-    // Flipped about the middle of the volume, the plan stays on the head. Two of the 47 put this plan of the forehead on skin
-    // again, a median of 1.3 mm off: the mirror left to right, and a quarter turn about the line of sight. Shape alone cannot
-    // tell; a side in the name of one item can.
+    // Flipped about the middle of the volume, the plan stays on the head. Two of the 47 put this plan of the forehead
+    // on skin again, a median of 1.3 mm off: the mirror left to right, and a quarter turn about the line of sight.
+    // Shape alone cannot tell; a side in the name of one item can.
     const auto passed = not_stopped(plan, middle(), *skin, box, "about the middle of the volume");
     EXPECT_LE(passed.size(), 2U);
     for (const auto& axes : passed) EXPECT_EQ(axes(1, 1), 1) << axes;  // front stays front in both
@@ -126,8 +130,8 @@ TEST_F(PlanOnPatient, ASideInANameIsHeldAgainstTheMiddleOfTheHead) {
 }
 
 TEST_F(PlanOnPatient, PlansOnTheSkinAndOnTheBoneBelowItAreNotStopped) {
-    // Patches of 15 points within 40 mm of a random place, under the skin by up to the thickness of a scalp: the copies with
-    // exchanged axes that fit better by chance must not stop them.
+    // Patches of 15 points within 40 mm of a random place, under the skin by up to the thickness of a scalp: the copies
+    // with exchanged axes that fit better by chance must not stop them.
     std::mt19937 random(7);
     std::uniform_real_distribution<double> unit(0, 1);
     const auto& mesh = skin->mesh();
@@ -156,13 +160,14 @@ TEST_F(PlanOnPatient, PlansOnTheSkinAndOnTheBoneBelowItAreNotStopped) {
 
 TEST_F(PlanOnPatient, MetresAndMicrometresAreStopped) {
     for (const double factor : {1e-3, 0.1, 10.0, 25.4, 1e3})
-        EXPECT_THROW(
-            refuse_stopped_plan(check_plan(moved(plan, [&](const Vector3d& p) { return Vector3d(factor * p); }), *skin, box)),
-            InputError)
+        EXPECT_THROW(refuse_stopped_plan(
+                         check_plan(moved(plan, [&](const Vector3d& p) { return Vector3d(factor * p); }), *skin, box)),
+                     InputError)
             << factor;
 }
 
-/// Surfaces that InVesalius segmented on the example patient (skin with all inside, and bone), read as another program's.
+/// Surfaces that InVesalius segmented on the example patient (skin with all inside, and bone), read as another
+/// program's.
 class SurfaceOnPatient : public testing::Test {
 protected:
     void SetUp() override {
@@ -205,7 +210,8 @@ TEST_F(SurfaceOnPatient, OnlyWhereItLiesInTheCtASurfaceIsTaken) {
         for (; shift_mm < 40 && fits(shifted); ++shift_mm)
             for (auto& p : shifted.vertices_in_ct) p.y() += 1;
         std::printf(
-            "%zu triangles: brighter inside at %.0f %% of the points; %d of 47 wrong axes refused; refused when shifted by %.0f "
+            "%zu triangles: brighter inside at %.0f %% of the points; %d of 47 wrong axes refused; refused when "
+            "shifted by %.0f "
             "mm\n",
             surface.mesh.triangles.size(), 100 * share, refused, shift_mm);
         EXPECT_GT(share, 0.9);

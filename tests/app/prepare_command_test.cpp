@@ -42,7 +42,8 @@ TEST_F(CommandsTest, TheExamplePlanRaisesNoWarningOnItsPatient) {
 
 TEST_F(CommandsTest, PlanListsChecksAndConverts) {
     prepared();
-    std::ofstream(root() / "t.csv") << "name,ex,ey,ez,tx,ty,tz,diameter_mm\nT1,-139.68,190.04,120.85,-132.49,134.29,99.87,2.5\n";
+    std::ofstream(root() / "t.csv")
+        << "name,ex,ey,ez,tx,ty,tz,diameter_mm\nT1,-139.68,190.04,120.85,-132.49,134.29,99.87,2.5\n";
     expect_one_clear_sentence(run_planlight("plan t.csv --case case", root()), 3, "does not say its coordinate system");
     expect_one_clear_sentence(run_planlight("plan t.csv --frame LPS --case case", root()), 3, "T1");
     const auto run = run_planlight("plan t.csv --frame RAS --case case --out t.mrk.json --json", root());
@@ -54,7 +55,8 @@ TEST_F(CommandsTest, PlanListsChecksAndConverts) {
     const auto position = read_json(root() / "t.mrk.json")["markups"][0]["controlPoints"][0]["position"];
     EXPECT_EQ(position[0], 139.68);
     // An InVesalius project has no frame of reference: no RTSTRUCT can be written for it.
-    expect_one_clear_sentence(run_planlight("plan t.mrk.json --case case --out t.dcm", root()), 3, "frame of reference");
+    expect_one_clear_sentence(run_planlight("plan t.mrk.json --case case --out t.dcm", root()), 3,
+                              "frame of reference");
     EXPECT_FALSE(fs::exists(root() / "t.dcm"));
     ASSERT_EQ(run_planlight("plan " + plan() + " --case case --out all.vtp", root()).exit_code, 0);
     const auto again = run_planlight("plan all.vtp --case case --json", root());
@@ -78,16 +80,16 @@ TEST_F(CommandsTest, AnotherProgramsSurfaceCanBeProjectedOn) {
     std::ofstream(root() / "unsaid.ply", std::ios::binary) << ply;
     expect_one_clear_sentence(run_planlight(prepare + " --surface unsaid.ply --out never", root()), 3,
                               "does not say its coordinate system");
-    expect_one_clear_sentence(run_planlight(prepare + " --surface unsaid.ply --surface-frame RAS --out never", root()), 3,
-                              "outside the volume");
+    expect_one_clear_sentence(run_planlight(prepare + " --surface unsaid.ply --surface-frame RAS --out never", root()),
+                              3, "outside the volume");
     EXPECT_EQ(run_planlight(prepare + " --surface unsaid.ply --surface-frame LPS --out said", root()).exit_code, 0);
     EXPECT_FALSE(fs::exists(root() / "never"));
 }
 
 TEST_F(CommandsTest, ACaseOnAGivenSurfaceSpeaksOfNoThreshold) {
     prepared();
-    const CommandRun run = run_planlight("prepare " + patient() + " --plan " + plan() +
-                                             " --surface case/skin.ply --out on_surface --json", root());
+    const CommandRun run = run_planlight(
+        "prepare " + patient() + " --plan " + plan() + " --surface case/skin.ply --out on_surface --json", root());
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const json report = read_json(root() / "on_surface" / "report.json");
     EXPECT_TRUE(report["surface_given"].get<bool>());
@@ -117,7 +119,8 @@ TEST_F(CommandsTest, AnAnonymousCaseHoldsNoNameIdOrPathOfTheSeries) {
     const std::string frame_uid = "1.2.826.0.1.3680043.9.9999.5";
     const std::vector<std::string> identity = {"Mustermann", "Erika",   "ID-4711",      "Kopf duenn",
                                                look.uid,     frame_uid, root().string()};
-    const auto named = run_planlight("prepare Mustermann --plan hole.mrk.json --voxel-mm 4 --out named_case --json", root());
+    const auto named =
+        run_planlight("prepare Mustermann --plan hole.mrk.json --voxel-mm 4 --out named_case --json", root());
     ASSERT_EQ(named.exit_code, 0) << named.err;
     EXPECT_TRUE(folder_says(root() / "named_case", look.uid)) << "the search finds what is there";
     const auto run = run_planlight(

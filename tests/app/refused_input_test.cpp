@@ -11,14 +11,16 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 TEST_F(CommandsTest, AMissingFileIsSaidSo) {
-    expect_one_clear_sentence(run_planlight("prepare nowhere.inv3 --plan " + plan() + " --out new", root()), 3, "nowhere.inv3");
+    expect_one_clear_sentence(run_planlight("prepare nowhere.inv3 --plan " + plan() + " --out new", root()), 3,
+                              "nowhere.inv3");
     EXPECT_FALSE(fs::exists(root() / "new"));
 }
 
 TEST_F(CommandsTest, ATruncatedVolumeIsDamagedAndLeavesNothing) {
     fs::copy_file(*example_patient(), root() / "short.inv3", fs::copy_options::overwrite_existing);
     fs::resize_file(root() / "short.inv3", 3'000'000);
-    expect_one_clear_sentence(run_planlight("prepare short.inv3 --plan " + plan() + " --out new", root()), 4, "short.inv3");
+    expect_one_clear_sentence(run_planlight("prepare short.inv3 --plan " + plan() + " --out new", root()), 4,
+                              "short.inv3");
     for (const auto& entry : fs::directory_iterator(root()))
         EXPECT_FALSE(entry.path().filename().string().starts_with("new")) << entry.path();
 }
@@ -27,25 +29,24 @@ TEST_F(CommandsTest, APlanInAnUnknownFrameIsRefusedNotGuessed) {
     json odd = read_json(plan());
     odd["markups"][0]["coordinateSystem"] = "lps";  // 3D Slicer reads a mistyped frame as RAS without a word
     std::ofstream(root() / "odd.mrk.json") << odd;
-    expect_one_clear_sentence(
-        run_planlight("prepare " + patient() + " --plan odd.mrk.json --out new", root()), 3, "lps");
+    expect_one_clear_sentence(run_planlight("prepare " + patient() + " --plan odd.mrk.json --out new", root()), 3,
+                              "lps");
 }
 
 TEST_F(CommandsTest, APlanReadInTheWrongFrameIsRefusedByNameAndLeavesNothing) {
     json turned = read_json(plan());
     for (auto& markup : turned["markups"]) markup["coordinateSystem"] = "RAS";  // turned by 180 degrees about z
     std::ofstream(root() / "turned.mrk.json") << turned;
-    const auto run =
-        run_planlight("prepare " + patient() + " --plan turned.mrk.json --out turned --json", root());
+    const auto run = run_planlight("prepare " + patient() + " --plan turned.mrk.json --out turned --json", root());
     expect_one_clear_sentence(run, 3, "does not fit this patient");
-    for (const char* item : {"Osteotomy", "outside the volume"}) EXPECT_NE(run.err.find(item), std::string::npos) << run.err;
+    for (const char* item : {"Osteotomy", "outside the volume"})
+        EXPECT_NE(run.err.find(item), std::string::npos) << run.err;
     EXPECT_FALSE(fs::exists(root() / "turned"));
 }
 
 TEST_F(CommandsTest, ALutOfAnotherCaseIsRefused) {
     prepared();
-    ASSERT_EQ(run_planlight("prepare " + patient() + " --plan " + plan() +
-                                " --threshold -200 --voxel-mm 2 --out other",
+    ASSERT_EQ(run_planlight("prepare " + patient() + " --plan " + plan() + " --threshold -200 --voxel-mm 2 --out other",
                             root())
                   .exit_code,
               0);
@@ -103,9 +104,8 @@ TEST_F(CommandsTest, WrongUsageGivesExitTwo) {
 }
 
 TEST_F(CommandsTest, EveryCommandExplainsItselfWithAnExample) {
-    for (const char* name :
-         {"demo", "prepare", "plan", "patterns", "scan", "register", "track", "project", "session", "review", "simulate",
-          "board", "calibrate", "check"}) {
+    for (const char* name : {"demo", "prepare", "plan", "patterns", "scan", "register", "track", "project", "session",
+                             "review", "simulate", "board", "calibrate", "check"}) {
         const auto run = run_planlight(std::string(name) + " --help", root());
         EXPECT_EQ(run.exit_code, 0) << name;
         EXPECT_NE(run.out.find("Example:"), std::string::npos) << name;

@@ -27,7 +27,8 @@ Volume air_with_a_ball(const Vector3d& ball_in_ct, double shear = 0) {
     return v;
 }
 
-/// Where the picture is white, relative to its middle, in half pictures (x to the right, y down); letters are off-white.
+/// Where the picture is white, relative to its middle, in half pictures (x to the right, y down); letters are
+/// off-white.
 Eigen::Vector2d white_place(const RgbImage& picture) {
     Eigen::Vector2d sum = Eigen::Vector2d::Zero();
     int count = 0;
@@ -65,7 +66,8 @@ TEST(SlicePicture, ATiltedStackStandsAsThePatientDoes) {
 }
 
 TEST(SlicePicture, SkinLineLiesWhereThePlaneCutsTheMesh) {
-    // A cone of radius 40 at z = 0 and 0 at z = 40 (its tip towards the head): at z = 15 the plane cuts a circle of 25 mm.
+    // A cone of radius 40 at z = 0 and 0 at z = 40 (its tip towards the head): at z = 15 the plane cuts a circle of 25
+    // mm.
     TriangleMesh cone;
     constexpr int kSides = 720;
     for (int i = 0; i < kSides; ++i) {

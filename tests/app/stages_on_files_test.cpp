@@ -4,9 +4,9 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "planning_io/surface/mesh_file.h"
-#include "planning_io/plan/point_pairs_file.h"
 #include "planning_io/case/rig_file.h"
+#include "planning_io/plan/point_pairs_file.h"
+#include "planning_io/surface/mesh_file.h"
 #include "tests/app/on_example_patient.h"
 
 namespace planlight::test {
@@ -19,7 +19,8 @@ TEST_F(CommandsTest, PatternsWritesTheWholeSequence) {
     const auto run = run_planlight("patterns --width 320 --height 240 --out patterns --json", root());
     ASSERT_EQ(run.exit_code, 0) << run.err;
     const json result = json::parse(run.out);
-    for (const auto& name : result["patterns"]) EXPECT_TRUE(fs::exists(root() / "patterns" / (name.get<std::string>() + ".png")));
+    for (const auto& name : result["patterns"])
+        EXPECT_TRUE(fs::exists(root() / "patterns" / (name.get<std::string>() + ".png")));
     EXPECT_GE(result["patterns"].size(), 2u + 2u * 8u);
 }
 
@@ -41,7 +42,8 @@ TEST_F(CommandsTest, StagesOnFilesFindThePatientWithinAMillimetreOfTheTruth) {
     EXPECT_NE(page.find("How far off the match may be"), std::string::npos);
     EXPECT_NE(page.find("pulled along as a whole"), std::string::npos) << "what the bounds cannot know";
     const auto review = run_planlight(
-        "review case --registration registration.json --cloud cloud.ply --view before --picture before.png --json", root());
+        "review case --registration registration.json --cloud cloud.ply --view before --picture before.png --json",
+        root());
     ASSERT_EQ(review.exit_code, 0) << review.err;
     EXPECT_FALSE(json::parse(review.out)["match"].empty());
     EXPECT_EQ(run_planlight("review case --registration cloud.ply", root()).exit_code, 4);
@@ -79,10 +81,12 @@ TEST_F(CommandsTest, ACloudOfAnotherScannerIsRegisteredOnceItsUnitFrameAndViewpo
     const auto scan = run_planlight("scan room/capture --rig room/rig.json --out scanned.ply", root());
     ASSERT_EQ(scan.exit_code, 0) << scan.err;
     write_as_a_foreign_scanner(read_cloud(root() / "scanned.ply"), root() / "foreign.ply");
-    expect_one_clear_sentence(run_planlight("register case --cloud foreign.ply --out refused.json", root()), 3, "rig's frame");
+    expect_one_clear_sentence(run_planlight("register case --cloud foreign.ply --out refused.json", root()), 3,
+                              "rig's frame");
     expect_one_clear_sentence(
         run_planlight("register case --cloud foreign.ply --in-rig --unit m --out refused.json", root()), 3, "normals");
-    const Eigen::Matrix4d rig_from_camera = read_rig(root() / "room" / "rig.json").left_camera.device_from_rig.matrix().inverse();
+    const Eigen::Matrix4d rig_from_camera =
+        read_rig(root() / "room" / "rig.json").left_camera.device_from_rig.matrix().inverse();
     const auto found = run_planlight(
         fmt::format("register case --cloud foreign.ply --in-rig --unit m --viewpoint {} {} {} --slicer match.tfm "
                     "--out foreign.json --json",
@@ -108,7 +112,8 @@ TEST_F(CommandsTest, ACloudOfAnotherScannerIsRegisteredOnceItsUnitFrameAndViewpo
 TEST_F(CommandsTest, LandmarksAloneAreAskedForAndWrongOnesAreRefused) {
     prepared();
     const Eigen::Matrix4d truth = true_rig_from_ct();
-    const std::vector<Eigen::Vector3d> landmarks{{120, 60, 60}, {170, 80, 60}, {70, 80, 60}, {195, 150, 50}, {45, 150, 50}};
+    const std::vector<Eigen::Vector3d> landmarks{
+        {120, 60, 60}, {170, 80, 60}, {70, 80, 60}, {195, 150, 50}, {45, 150, 50}};
     const auto write = [&](const std::string& name, const std::string& space, double shift) {
         std::ofstream out(root() / name);
         out << space << "name,ct_x,ct_y,ct_z,rig_x,rig_y,rig_z\n";
@@ -125,14 +130,17 @@ TEST_F(CommandsTest, LandmarksAloneAreAskedForAndWrongOnesAreRefused) {
     ASSERT_EQ(found.exit_code, 0) << found.err;
     EXPECT_EQ(json::parse(found.out)["verdict"], "ask");
     expect_one_clear_sentence(run_planlight("register case --pairs bad.csv --out refused.json", root()), 6, "landmark");
-    expect_one_clear_sentence(run_planlight("register case --pairs unsaid.csv --out refused2.json", root()), 3, "SPACE=");
+    expect_one_clear_sentence(run_planlight("register case --pairs unsaid.csv --out refused2.json", root()), 3,
+                              "SPACE=");
     EXPECT_EQ(run_planlight("register case --out refused3.json", root()).exit_code, 2);
-    EXPECT_EQ(run_planlight("review case --landmarks good.csv", root()).exit_code, 2) << "landmarks are clicked on a scan";
+    EXPECT_EQ(run_planlight("review case --landmarks good.csv", root()).exit_code, 2)
+        << "landmarks are clicked on a scan";
 }
 
 TEST_F(CommandsTest, LandmarksCheckAScanAndAScanIsASurface) {
     simulated();
-    const auto scanned = run_planlight("scan room/capture --rig room/rig.json --out on.ply --surface surface.ply --json", root());
+    const auto scanned =
+        run_planlight("scan room/capture --rig room/rig.json --out on.ply --surface surface.ply --json", root());
     ASSERT_EQ(scanned.exit_code, 0) << scanned.err;
     const json counts = json::parse(scanned.out);
     const auto points = counts["points"].get<std::size_t>(), triangles = counts["triangles"].get<std::size_t>();
@@ -144,13 +152,15 @@ TEST_F(CommandsTest, LandmarksCheckAScanAndAScanIsASurface) {
     const Eigen::Matrix4d ct_from_rig = true_rig_from_ct().inverse();
     std::vector<PointPair> pairs;
     for (const double share : {0.1, 0.4, 0.6, 0.9}) {
-        const Eigen::Vector3d p_in_rig = cloud.points_in_rig[static_cast<std::size_t>(share * static_cast<double>(points))];
+        const Eigen::Vector3d p_in_rig =
+            cloud.points_in_rig[static_cast<std::size_t>(share * static_cast<double>(points))];
         pairs.push_back({std::to_string(pairs.size() + 1), (ct_from_rig * p_in_rig.homogeneous()).head<3>(), p_in_rig});
     }
     write_point_pairs(pairs, root() / "true.csv");
     pairs[1].in_ct.z() += 6;
     write_point_pairs(pairs, root() / "off.csv");
-    const auto found = run_planlight("register case --cloud surface.ply --pairs true.csv --out yes.json --json", root());
+    const auto found =
+        run_planlight("register case --cloud surface.ply --pairs true.csv --out yes.json --json", root());
     ASSERT_EQ(found.exit_code, 0) << found.err;
     EXPECT_EQ(json::parse(found.out)["verdict"], "yes") << "the faces do no harm";
     const auto asked = run_planlight("register case --cloud surface.ply --pairs off.csv --out ask.json --json", root());
@@ -205,7 +215,8 @@ TEST_F(CommandsTest, ScansOfFewerDevicesAndOfAGrayCodeAlone) {
     };
     const auto has = [](const std::string& name, const char* part) { return name.find(part) != std::string::npos; };
     without("gray", [&](const std::string& n) { return has(n, "phase"); });
-    without("coarse", [&](const std::string& n) { return has(n, "phase") || has(n, "column-gray-6") || has(n, "row-gray-6"); });
+    without("coarse",
+            [&](const std::string& n) { return has(n, "phase") || has(n, "column-gray-6") || has(n, "row-gray-6"); });
     without("hole", [&](const std::string& n) { return n == "column-gray-2"; });
     const auto gray = scan("gray", "room/rig.json"), coarse = scan("coarse", "room/rig.json");
     ASSERT_EQ(gray.exit_code, 0) << gray.err;

@@ -7,8 +7,8 @@
 #include "app/evaluation/run_chain.h"
 #include "app/prepare_case.h"
 #include "planning_io/plan/plan_file.h"
-#include "planning_io/volume/read_volume.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/read_volume.h"
 #include "tests/support/test_data.h"
 
 namespace planlight {
@@ -120,7 +120,8 @@ TEST_F(WholeChain, LandmarksOnTheScanCheckTheMatch) {
     const PointCloud& scanned = session.scan().clean.kept;
     std::vector<PointPair> landmarks;  // places of the scan, and where they truly lie in ct
     for (const double share : {0.05, 0.3, 0.6, 0.95}) {
-        const Eigen::Vector3d p_in_rig = scanned.points_in_rig[static_cast<std::size_t>(share * static_cast<double>(scanned.size()))];
+        const Eigen::Vector3d p_in_rig =
+            scanned.points_in_rig[static_cast<std::size_t>(share * static_cast<double>(scanned.size()))];
         landmarks.push_back({"landmark " + std::to_string(landmarks.size() + 1), truth.inverse() * p_in_rig, p_in_rig});
     }
     EXPECT_EQ(session.find_patient(landmarks).verdict, Verdict::yes);
@@ -159,8 +160,8 @@ protected:
 };
 
 // The room's lenses are mild and the head is in the middle of the pictures: with the sign of the distortion flipped the
-// light still lands within a millimetre. The scan's own evidence must show it all the same, though pose and offset of the
-// skin take up most of it: the residual rises by a fifth.
+// light still lands within a millimetre. The scan's own evidence must show it all the same, though pose and offset of
+// the skin take up most of it: the residual rises by a fifth.
 TEST_F(SpoiledCalibration, FlippedDistortionShowsInTheScan) {
     ChainSettings settings = short_run(1);
     settings.rest_updates = settings.moving_updates = 1;
@@ -174,7 +175,8 @@ TEST_F(SpoiledCalibration, FlippedDistortionShowsInTheScan) {
     const ChainFigures flipped = run(prepared_, settings);
     EXPECT_GT(distribution_of(flipped.scan_error_mm).median, 2 * distribution_of(right.scan_error_mm).median);
     EXPECT_GT(flipped.registration->residual_rms_mm, 1.1 * right.registration->residual_rms_mm)
-        << "flipped " << flipped.registration->residual_rms_mm << " mm, right " << right.registration->residual_rms_mm << " mm";
+        << "flipped " << flipped.registration->residual_rms_mm << " mm, right " << right.registration->residual_rms_mm
+        << " mm";
 }
 
 TEST_F(SpoiledCalibration, TransposedRotationIsNotGood) {

@@ -14,7 +14,8 @@
 #include <string>
 #include <thread>
 
-#include "registration/processor_clones.h"
+#include "planning_io/types/processor_clones.h"
+#include "planning_io/types/statistics.h"
 #include "registration/scan/decode/decode_gray_pairs.h"
 #include "tests/benchmarks/time_round.h"
 #include "tests/registration/scan/stripe_room.h"
@@ -32,7 +33,7 @@ struct Scene {
     Room room;
     std::vector<std::vector<GrayImage>> frames;  // per camera: the code, white, black
     std::vector<Truth> truth;
-    ScanCapture fringes;                         // the default sequence
+    ScanCapture fringes;  // the default sequence
     double megabytes = 0;
 };
 
@@ -53,16 +54,19 @@ Scene make_scene(const std::string& name, Surface surface) {
     patterns.push_back(cv::Mat(kHeight, kWidth, CV_8U, cv::Scalar(0)));
     std::vector<Shown> pictures;
     for (const cv::Mat& pattern : patterns) {
-        Shown shown{RgbImage(kWidth, kHeight), pattern.at<std::uint8_t>(0, 0) == pattern.at<std::uint8_t>(0, kWidth - 1) &&
-                                                   cv::countNonZero(pattern.row(0)) % kWidth == 0};
+        Shown shown{RgbImage(kWidth, kHeight),
+                    pattern.at<std::uint8_t>(0, 0) == pattern.at<std::uint8_t>(0, kWidth - 1) &&
+                        cv::countNonZero(pattern.row(0)) % kWidth == 0};
         for (int y = 0; y < kHeight; ++y)
             for (int x = 0; x < kWidth; ++x) shown.picture.at(x, y).fill(pattern.at<std::uint8_t>(y, x));
         pictures.push_back(std::move(shown));
     }
     for (const Optics* camera : {&scene.room.left, &scene.room.right}) {
-        scene.frames.push_back(photograph(scene.room, *camera, pictures, 1 + static_cast<unsigned>(scene.frames.size())));
+        scene.frames.push_back(
+            photograph(scene.room, *camera, pictures, 1 + static_cast<unsigned>(scene.frames.size())));
         scene.truth.push_back(truth_of(scene.room, *camera));
-        for (const GrayImage& frame : scene.frames.back()) scene.megabytes += static_cast<double>(frame.pixels.size()) / 1e6;
+        for (const GrayImage& frame : scene.frames.back())
+            scene.megabytes += static_cast<double>(frame.pixels.size()) / 1e6;
     }
     scene.fringes = capture(scene.room, stripes_of(scene.room));
     return scene;
@@ -83,12 +87,13 @@ struct Contestant {
     double by(const Contestant& other) const {
         std::vector<double> ratios;
         for (std::size_t r = 0; r < wall_s.size(); ++r) ratios.push_back(wall_s[r] / other.wall_s[r]);
-        std::nth_element(ratios.begin(), ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2), ratios.end());
-        return ratios[ratios.size() / 2];
+        return median(ratios);
     }
 };
 
-void time(Contestant& one) { test::time_round(one.run, one.wall_s, one.processor_s); }
+void time(Contestant& one) {
+    test::time_round(one.run, one.wall_s, one.processor_s);
+}
 
 PLANLIGHT_CLONES std::uint64_t sum_words(const std::uint8_t* bytes, std::size_t count) {
     std::uint64_t sum = 0;
@@ -111,7 +116,8 @@ std::uint64_t read_all(const std::vector<std::vector<GrayImage>>& frames) {
     return tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, pieces.size()), std::uint64_t{0},
         [&](const tbb::blocked_range<std::size_t>& range, std::uint64_t sum) {
-            for (std::size_t i = range.begin(); i < range.end(); ++i) sum += sum_words(pieces[i].data(), pieces[i].size());
+            for (std::size_t i = range.begin(); i < range.end(); ++i)
+                sum += sum_words(pieces[i].data(), pieces[i].size());
             return sum;
         },
         std::plus<>());
@@ -138,8 +144,10 @@ struct Score {
         lit += is_lit;
         if (std::isnan(found.x())) return;
         ++decoded;
-        if (!is_lit) ++unlit;
-        else wrong += (found - truth).cwiseAbs().maxCoeff() > kWrong_px;
+        if (!is_lit)
+            ++unlit;
+        else
+            wrong += (found - truth).cwiseAbs().maxCoeff() > kWrong_px;
     }
     std::string tell() const {
         return fmt::format("{} of {} lit, {} wrong, {} at unlit places", decoded - unlit, lit, wrong, unlit);
@@ -158,8 +166,8 @@ std::vector<DecodedView> our_codes(const Scene& scene) {
     std::vector<DecodedView> views;
     for (const auto& frames : scene.frames) {
         const std::span<const GrayImage> all(frames);
-        views.push_back(decode_gray_pairs({frames[frames.size() - 2], frames.back(), all.subspan(0, 22), all.subspan(22, 20),
-                                           kWidth, kHeight}));
+        views.push_back(decode_gray_pairs(
+            {frames[frames.size() - 2], frames.back(), all.subspan(0, 22), all.subspan(22, 20), kWidth, kHeight}));
     }
     return views;
 }
@@ -232,9 +240,10 @@ void compare(const Scene& scene, int rounds, bool with_peers) {
                        stages.take(scan);
                    }});
     all.back().tell = [&] {
-        return fmt::format("{} pictures; {} points (best: check {:.1f}, decode {:.1f}, triangulate {:.1f}, outliers {:.1f} ms)",
-                           2 * scene.fringes.left.size(), scan.clean.kept.size(), 1e3 * stages.sequence_s, 1e3 * stages.decode_s,
-                           1e3 * stages.triangulate_s, 1e3 * stages.outliers_s);
+        return fmt::format(
+            "{} pictures; {} points (best: check {:.1f}, decode {:.1f}, triangulate {:.1f}, outliers {:.1f} ms)",
+            2 * scene.fringes.left.size(), scan.clean.kept.size(), 1e3 * stages.sequence_s, 1e3 * stages.decode_s,
+            1e3 * stages.triangulate_s, 1e3 * stages.outliers_s);
     };
     if (with_peers) {
         all.push_back({"OpenCV getProjPixel", [&] { peer.pixel_by_pixel(); }});
@@ -247,8 +256,8 @@ void compare(const Scene& scene, int rounds, bool with_peers) {
             if (one.name.starts_with("OpenCV") && r >= 3) continue;
             time(one);
         }
-    fmt::print("\n{}: {} pictures of 1920 x 1080, {:.0f} MB; {} rounds (OpenCV: {})\n", scene.name, 2 * scene.frames[0].size(),
-               scene.megabytes, rounds, std::min(rounds, 3));
+    fmt::print("\n{}: {} pictures of 1920 x 1080, {:.0f} MB; {} rounds (OpenCV: {})\n", scene.name,
+               2 * scene.frames[0].size(), scene.megabytes, rounds, std::min(rounds, 3));
     fmt::print("{:30} {:>9} {:>9} {:>9} {:>9}\n", "", "least ms", "by least", "x read", "mean CPU");
     for (const Contestant& one : all)
         fmt::print("{:30} {:>9.1f} {:>9.2f} {:>9.2f} {:>9.1f}  {}\n", one.name, 1e3 * Contestant::least(one.wall_s),
@@ -266,7 +275,7 @@ int main(int count, char** words) {
     fmt::print("{} processors\n", std::thread::hardware_concurrency());
     const Eigen::Vector3d centre(120, -40, 360), place(120, -40, 300);
     compare(make_scene("ball of 80 mm radius", sphere(centre, 80)), rounds, with_peers);
-    compare(make_scene("plane over the whole picture", plane(place, Eigen::Vector3d(0.35, 0.2, -1).normalized())), rounds,
-            with_peers);
+    compare(make_scene("plane over the whole picture", plane(place, Eigen::Vector3d(0.35, 0.2, -1).normalized())),
+            rounds, with_peers);
     return 0;
 }

@@ -1,10 +1,12 @@
-// Nearest skin voxel of every voxel of the example patient's table: ours, on each set of instructions, against the distance
-// transforms of ITK and VTK. One program, one run, repeats interleaved, so that the ratios hold on a busy machine.
+// Nearest skin voxel of every voxel of the example patient's table: ours, on each set of instructions, against the
+// distance transforms of ITK and VTK. One program, one run, repeats interleaved, so that the ratios hold on a busy
+// machine.
 //
 //   compare_nearest_table [repeats = 3] [sizes = own,256,512] [ours]      ("ours": without the others, for many rounds)
 //
-// Everyone allocates its result within its time; a round before the first warms the memory. Ratios are to the first line. Wall:
-// the least of all rounds (on a busy machine the nearest to a quiet one); processor (all threads together): the median.
+// Everyone allocates its result within its time; a round before the first warms the memory. Ratios are to the first
+// line. Wall: the least of all rounds (on a busy machine the nearest to a quiet one); processor (all threads together):
+// the median.
 #include <fmt/format.h>
 #include <itkDanielssonDistanceMapImageFilter.h>
 #include <itkImage.h>
@@ -24,8 +26,8 @@
 #include <sstream>
 #include <thread>
 
-#include "planning_io/volume/read_volume.h"
 #include "planning_io/case/skin_lut_file.h"
+#include "planning_io/volume/read_volume.h"
 #include "segmentation/build_skin_lut.h"
 #include "segmentation/nearest_transform.h"
 #include "segmentation/segment_skin.h"
@@ -42,7 +44,9 @@ using FloatImage = itk::Image<float, 3>;
 
 constexpr double kDanielssonMost = 300.0 * 300 * 300;  // voxels; beyond it takes minutes and 4 GiB
 
-std::size_t at(int index) { return static_cast<std::size_t>(index); }
+std::size_t at(int index) {
+    return static_cast<std::size_t>(index);
+}
 
 /// The patient's skin in a table of `n` voxels along each side, or of the table's own size for 0.
 SkinLut skin_in_table(const TriangleMesh& skin, int n) {
@@ -63,7 +67,9 @@ struct Contestant {
     std::vector<double> wall_s{}, processor_s{};
     double exact = 0;  ///< share of voxels off the skin
 
-    double wall() const { return *std::min_element(wall_s.begin(), wall_s.end()); }  // others on the machine only add to it
+    double wall() const {
+        return *std::min_element(wall_s.begin(), wall_s.end());
+    }  // others on the machine only add to it
     double processor() const { return middle(processor_s); }
 
 private:
@@ -73,7 +79,9 @@ private:
     }
 };
 
-void time(Contestant& one) { test::time_round(one.run, one.wall_s, one.processor_s); }
+void time(Contestant& one) {
+    test::time_round(one.run, one.wall_s, one.processor_s);
+}
 
 /// The table, and the same voxels as the peers want them.
 struct Scene {
@@ -119,24 +127,26 @@ std::vector<Contestant> contestants(Scene& scene, bool with_peers) {
     if (!with_peers) return all;
     using Maurer = itk::SignedMaurerDistanceMapImageFilter<ByteImage, FloatImage>;
     auto maurer = std::make_shared<Maurer::Pointer>();
-    all.push_back({"itk::SignedMaurerDistanceMap", "distance",
-                   [&scene, maurer] {
-                       *maurer = Maurer::New();
-                       (*maurer)->SetInput(scene.itk_image);
-                       (*maurer)->SquaredDistanceOn();
-                       (*maurer)->UseImageSpacingOff();
-                       (*maurer)->Update();
-                   },
-                   [maurer](std::size_t n) { return static_cast<double>((*maurer)->GetOutput()->GetBufferPointer()[n]); }});
+    all.push_back(
+        {"itk::SignedMaurerDistanceMap", "distance",
+         [&scene, maurer] {
+             *maurer = Maurer::New();
+             (*maurer)->SetInput(scene.itk_image);
+             (*maurer)->SquaredDistanceOn();
+             (*maurer)->UseImageSpacingOff();
+             (*maurer)->Update();
+         },
+         [maurer](std::size_t n) { return static_cast<double>((*maurer)->GetOutput()->GetBufferPointer()[n]); }});
     auto saito = std::make_shared<vtkSmartPointer<vtkImageEuclideanDistance>>();
-    all.push_back({"vtkImageEuclideanDistance", "distance",
-                   [&scene, saito] {
-                       *saito = vtkSmartPointer<vtkImageEuclideanDistance>::New();
-                       (*saito)->SetInputData(scene.vtk_image);
-                       (*saito)->ConsiderAnisotropyOff();
-                       (*saito)->Update();
-                   },
-                   [saito](std::size_t n) { return static_cast<double*>((*saito)->GetOutput()->GetScalarPointer())[n]; }});
+    all.push_back(
+        {"vtkImageEuclideanDistance", "distance",
+         [&scene, saito] {
+             *saito = vtkSmartPointer<vtkImageEuclideanDistance>::New();
+             (*saito)->SetInputData(scene.vtk_image);
+             (*saito)->ConsiderAnisotropyOff();
+             (*saito)->Update();
+         },
+         [saito](std::size_t n) { return static_cast<double*>((*saito)->GetOutput()->GetScalarPointer())[n]; }});
     if (static_cast<double>(scene.voxels()) > kDanielssonMost) return all;
     using Danielsson = itk::DanielssonDistanceMapImageFilter<ByteImage, FloatImage>;
     auto danielsson = std::make_shared<Danielsson::Pointer>();
@@ -185,10 +195,11 @@ void compare(const TriangleMesh& skin, int n, int repeats, bool with_peers) {
     const int samples = 1000, wrong = wrong_of_samples(scene, samples);
     fmt::print("\n{} x {} x {} voxels, {} of skin; {} rounds; ours wrong at {} of {} voxels tried by brute force\n",
                scene.lut.size[0], scene.lut.size[1], scene.lut.size[2], scene.lut.skin.size(), repeats, wrong, samples);
-    fmt::print("{:30} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "", "gives", "wall s", "CPU s", "x wall", "x CPU", "exact %");
+    fmt::print("{:30} {:>9} {:>9} {:>9} {:>9} {:>9} {:>9}\n", "", "gives", "wall s", "CPU s", "x wall", "x CPU",
+               "exact %");
     for (const Contestant& one : all)
-        fmt::print("{:30} {:>9} {:>9.4f} {:>9.4f} {:>9.1f} {:>9.1f} {:>9.3f}\n", one.name, one.gives, one.wall(), one.processor(),
-                   one.wall() / all[0].wall(), one.processor() / all[0].processor(), 100 * one.exact);
+        fmt::print("{:30} {:>9} {:>9.4f} {:>9.4f} {:>9.1f} {:>9.1f} {:>9.3f}\n", one.name, one.gives, one.wall(),
+                   one.processor(), one.wall() / all[0].wall(), one.processor() / all[0].processor(), 100 * one.exact);
     if (with_peers && static_cast<double>(scene.voxels()) > kDanielssonMost)
         fmt::print("itk::DanielssonDistanceMap is left out at this size.\n");
 }
@@ -228,7 +239,8 @@ void tell_rest(const Volume& volume, const TriangleMesh& skin, int repeats) {
         const std::string size = n == 0 ? "own size" : fmt::format("{}^3", n);
         stage("skin.lut written, " + size, [&] { write_skin_lut(lut, file); });
         stage("skin.lut loaded, " + size, [&] { read_skin_lut(file); });
-        fmt::print("{:30} {:>9} {:>9.1f} MB\n", "  its file", "", static_cast<double>(std::filesystem::file_size(file)) / 1e6);
+        fmt::print("{:30} {:>9} {:>9.1f} MB\n", "  its file", "",
+                   static_cast<double>(std::filesystem::file_size(file)) / 1e6);
     }
 }
 
@@ -243,7 +255,8 @@ int main(int count, char** words) {
     itk::MultiThreaderBase::SetGlobalDefaultNumberOfThreads(std::thread::hardware_concurrency());
     const Volume volume = read_volume(*patient);
     const TriangleMesh skin = triangulate_skin(volume, segment_skin(volume));
-    fmt::print("example patient: {} triangles; {} processors\n", skin.triangles.size(), std::thread::hardware_concurrency());
+    fmt::print("example patient: {} triangles; {} processors\n", skin.triangles.size(),
+               std::thread::hardware_concurrency());
     tell_stages(skin, repeats);
     tell_rest(volume, skin, repeats);
     std::istringstream sizes(count > 2 ? words[2] : "own,256,512");

@@ -8,7 +8,8 @@
 namespace planlight::test {
 
 /// Runs it once and adds how long that took: seconds by the wall, and of the processor, all threads.
-inline void time_round(const std::function<void()>& run, std::vector<double>& wall_s, std::vector<double>& processor_s) {
+inline void time_round(const std::function<void()>& run, std::vector<double>& wall_s,
+                       std::vector<double>& processor_s) {
     const auto began = std::chrono::steady_clock::now();
     const std::clock_t began_processor = std::clock();
     run();

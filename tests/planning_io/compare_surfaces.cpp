@@ -2,8 +2,8 @@
 
 #include <cstdlib>
 
-#include "planning_io/volume/read_volume.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/read_volume.h"
 #include "tests/planning_io/surface_distance.h"
 
 /// compare_surfaces VOLUME VOLUME [LEVEL]: how far the iso-surfaces of two volumes of one frame are apart (default 200

@@ -40,10 +40,13 @@ public:
     /// The whole file: preamble, header, these elements.
     std::string file(const std::string& sop_class) const {
         DicomBytes head;
-        head.add(0x00020002, "UI", sop_class).add(0x00020003, "UI", "1.2.3.4.5").add(0x00020010, "UI", "1.2.840.10008.1.2.1");
+        head.add(0x00020002, "UI", sop_class)
+            .add(0x00020003, "UI", "1.2.3.4.5")
+            .add(0x00020010, "UI", "1.2.840.10008.1.2.1");
         DicomBytes length;
         length.add(0x00020000, "UL",
-                   std::string{static_cast<char>(head.bytes_.size() & 0xFF), static_cast<char>(head.bytes_.size() >> 8), 0, 0});
+                   std::string{static_cast<char>(head.bytes_.size() & 0xFF), static_cast<char>(head.bytes_.size() >> 8),
+                               0, 0});
         return std::string(128, '\0') + "DICM" + length.bytes_ + head.bytes_ + bytes_;
     }
 

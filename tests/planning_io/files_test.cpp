@@ -5,17 +5,17 @@
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
 
-#include "planning_io/case/case_folder.h"
-#include "planning_io/files/image_file.h"
-#include "planning_io/case/light_file.h"
-#include "planning_io/surface/mesh_file.h"
-#include "planning_io/plan/point_pairs_file.h"
 #include "planning_io/case/capture_folder.h"
+#include "planning_io/case/case_folder.h"
 #include "planning_io/case/frames_folder.h"
-#include "planning_io/case/registration_file.h"
+#include "planning_io/case/light_file.h"
 #include "planning_io/case/poses_file.h"
+#include "planning_io/case/registration_file.h"
 #include "planning_io/case/rig_file.h"
+#include "planning_io/files/image_file.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/plan/point_pairs_file.h"
+#include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
 #include "tests/planning_io/example_rig.h"
 #include "tests/support/analytic_head.h"
@@ -53,8 +53,8 @@ TEST(SafeWrite, AFailedWriteLeavesTheOldFileAndNothingElse) {
     EXPECT_THROW(read_whole(folder.path() / "none"), InputError);
 }
 
-/// Twelve bits at the lower end of sixteen read as nearly black, and a scan then finds a tenth of the skin, or none; at the
-/// upper end they are read. A dark picture among brighter ones is nothing to refuse.
+/// Twelve bits at the lower end of sixteen read as nearly black, and a scan then finds a tenth of the skin, or none; at
+/// the upper end they are read. A dark picture among brighter ones is nothing to refuse.
 TEST(ImageFile, TwelveBitsAtTheLowerEndOfSixteenAreRefused) {
     const test::TemporaryFolder folder;
     const auto pictures = [&](int factor) {
@@ -233,7 +233,10 @@ TEST(RigFile, ReadsBackValueForValueAndRefusesNonsense) {
         read_rig(file);
         FAIL();
     } catch (const InputError& e) {
-        EXPECT_NE(std::string(e.what()).find("left_camera has a name that means nothing here, \"focal_X\"; is \"focal_x\" meant?"), std::string::npos) << e.what();
+        EXPECT_NE(std::string(e.what()).find(
+                      "left_camera has a name that means nothing here, \"focal_X\"; is \"focal_x\" meant?"),
+                  std::string::npos)
+            << e.what();
     }
     write_safely(file, R"({"format": "planlight rig", "version": 2})");
     EXPECT_THROW(read_rig(file), DamagedFileError);

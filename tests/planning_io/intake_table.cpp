@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "planning_io/plan/plan_import.h"
-#include "planning_io/volume/read_volume.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/read_volume.h"
 #include "tests/planning_io/plan_cases.h"
 #include "tests/planning_io/volume_cases.h"
 #include "tests/support/analytic_head.h"
 #include "tests/support/test_data.h"
 
-/// intake_table FOLDER_OR_FILE...: gives everything found there to read_volume or import_plan, then every synthetic case,
-/// and prints a Markdown table: what, accepted (with its geometry) or refused, and the sentence.
+/// intake_table FOLDER_OR_FILE...: gives everything found there to read_volume or import_plan, then every synthetic
+/// case, and prints a Markdown table: what, accepted (with its geometry) or refused, and the sentence.
 namespace planlight::test {
 namespace {
 
@@ -77,7 +77,8 @@ std::string words_of(const PlanImport& read) {
     return text;
 }
 
-Row plan_row(const std::string& what, const fs::path& path, const std::string& root, const PlanImportSettings& settings = {}) {
+Row plan_row(const std::string& what, const fs::path& path, const std::string& root,
+             const PlanImportSettings& settings = {}) {
     try {
         return {what, true, one_line(words_of(import_plan(path, settings)), path.string(), root)};
     } catch (const Error& e) {

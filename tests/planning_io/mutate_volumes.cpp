@@ -9,9 +9,9 @@
 #include <map>
 #include <random>
 
-#include "planning_io/volume/read_volume.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/read_volume.h"
 #include "tests/planning_io/synthetic_files.h"
 #include "tests/planning_io/volume_cases.h"
 #include "tests/support/test_data.h"

@@ -4,10 +4,10 @@
 
 #include <limits>
 
+#include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/plan/plan_rtstruct.h"
 #include "planning_io/plan/plan_shapes.h"
-#include "planning_io/files/safe_write.h"
 #include "tests/support/analytic_head.h"
 
 namespace planlight::test {
@@ -64,9 +64,12 @@ std::string fcsv(const std::string& system, const std::string& rows, const std::
 
 const std::string kTable = "name,ex,ey,ez,tx,ty,tz\n";
 const std::string kVtk =
-    "# vtk DataFile Version 3.0\n{}\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n-10 -20 30 10 0 0 10 10 0\nLINES 1 4\n3 0 1 2\n";
+    "# vtk DataFile Version 3.0\n{}\nASCII\nDATASET POLYDATA\nPOINTS 3 float\n-10 -20 30 10 0 0 10 10 0\nLINES 1 4\n3 "
+    "0 1 2\n";
 
-std::string vtk(const std::string& second_line) { return fmt::format(fmt::runtime(kVtk), second_line); }
+std::string vtk(const std::string& second_line) {
+    return fmt::format(fmt::runtime(kVtk), second_line);
+}
 
 Plan small_plan() {
     Plan plan;
@@ -75,43 +78,42 @@ Plan small_plan() {
     return plan;
 }
 
-PlanCase rtstruct(const std::string& name, const std::string& says, const PlanImportSettings& settings, double share = 1) {
-    return {name, says,
-            [=](const fs::path& folder) {
-                write_plan_rtstruct(small_plan(), {"code", kFrameOfReference, "2026-01-01T00:00:00Z"}, folder / "plan.dcm");
-                std::string content = read_whole(folder / "plan.dcm");
-                content.resize(static_cast<std::size_t>(share * static_cast<double>(content.size())));
-                if (share < 1) write_safely(folder / "plan.dcm", content);
-                return folder / "plan.dcm";
-            },
-            settings};
+PlanCase rtstruct(const std::string& name, const std::string& says, const PlanImportSettings& settings,
+                  double share = 1) {
+    return {
+        name, says,
+        [=](const fs::path& folder) {
+            write_plan_rtstruct(small_plan(), {"code", kFrameOfReference, "2026-01-01T00:00:00Z"}, folder / "plan.dcm");
+            std::string content = read_whole(folder / "plan.dcm");
+            content.resize(static_cast<std::size_t>(share * static_cast<double>(content.size())));
+            if (share < 1) write_safely(folder / "plan.dcm", content);
+            return folder / "plan.dcm";
+        },
+        settings};
 }
 
 void add_sound_markups(std::vector<PlanCase>& list) {
     for (const char* schema : {"1.0.0", "1.0.1", "1.0.2", "1.0.3"})
         list.push_back(text(fmt::format("markups, schema {}, LPS, mm", schema), "", "p.mrk.json",
                             markup([&](Markup& m) { m.schema = schema; })));
-    list.push_back(text("markups, schema 1.0.2, unit not said (mm by that schema)", "", "p.mrk.json", markup([](Markup& m) {
-                            m.schema = "1.0.2", m.units = "";
-                        })));
-    list.push_back(text("markups, RAS", "", "p.mrk.json", markup([](Markup& m) {
-                            m.system = "\"RAS\"", m.points = "[10, 20, 30]|[1, 2, 3]";
-                        })));
+    list.push_back(text("markups, schema 1.0.2, unit not said (mm by that schema)", "", "p.mrk.json",
+                        markup([](Markup& m) { m.schema = "1.0.2", m.units = ""; })));
+    list.push_back(text("markups, RAS", "", "p.mrk.json",
+                        markup([](Markup& m) { m.system = "\"RAS\"", m.points = "[10, 20, 30]|[1, 2, 3]"; })));
     list.push_back(text("markups, micrometres", "", "p.mrk.json", markup([](Markup& m) {
                             m.units = "\"coordinateUnits\": \"um\",", m.points = "[-10000, -20000, 30000]|[1, 2, 3]";
                         })));
-    list.push_back(text("markups, UCUM unit", "", "p.mrk.json", markup([](Markup& m) {
-                            m.units = R"("coordinateUnits": ["mm", "UCUM", "millimeter"],)";
-                        })));
+    list.push_back(text("markups, UCUM unit", "", "p.mrk.json",
+                        markup([](Markup& m) { m.units = R"("coordinateUnits": ["mm", "UCUM", "millimeter"],)"; })));
     for (const char* type : {"Fiducial", "Curve", "ClosedCurve", "Angle"})
         list.push_back(text(std::string("markups, ") + type, "", "p.mrk.json", markup([&](Markup& m) {
                                 m.type = type, m.points = "[-10, -20, 30]|[1, 2, 3]|[1, 30, 3]";
                             })));
-    list.push_back(text("markups, Plane", "", "p.mrk.json", markup([](Markup& m) {
-                            m.type = "Plane", m.points = "[-10, -20, 30]";
-                            m.more =
-                                R"("center": [-10, -20, 30], "orientation": [1, 0, 0, 0, 1, 0, 0, 0, 1], "size": [80, 40, 0],)";
-                        })));
+    list.push_back(text(
+        "markups, Plane", "", "p.mrk.json", markup([](Markup& m) {
+            m.type = "Plane", m.points = "[-10, -20, 30]";
+            m.more = R"("center": [-10, -20, 30], "orientation": [1, 0, 0, 0, 1, 0, 0, 0, 1], "size": [80, 40, 0],)";
+        })));
 }
 
 void add_spoilt_markups(std::vector<PlanCase>& list) {
@@ -131,9 +133,8 @@ void add_spoilt_markups(std::vector<PlanCase>& list) {
     add("a line of no length", "no length", [](Markup& m) { m.points = "[1, 2, 3]|[1, 2, 3]"; });
     add("a line of one point", "fewer than 2", [](Markup& m) { m.points = "[1, 2, 3]"; });
     add("a line of three points", "more than the two", [](Markup& m) { m.points = "[1, 2, 3]|[2, 2, 30]|[4, 5, 6]"; });
-    add("a curve with a double point", "at the place of the point before", [](Markup& m) {
-        m.type = "Curve", m.points = "[1, 2, 3]|[9, 9, 9]|[9, 9, 9]";
-    });
+    add("a curve with a double point", "at the place of the point before",
+        [](Markup& m) { m.type = "Curve", m.points = "[1, 2, 3]|[9, 9, 9]|[9, 9, 9]"; });
     add("a point that is not placed", "not placed", [](Markup& m) { m.status = "preview"; });
     add("metres called millimetres", "cannot be millimetres",
         [](Markup& m) { m.points = "[0.01, 0.02, 0.03]|[0.01, 0.02, 0.09]"; });
@@ -142,7 +143,8 @@ void add_spoilt_markups(std::vector<PlanCase>& list) {
     add("a diameter of 900 mm", "diameter_mm", [](Markup& m) {
         m.type = "Fiducial", m.points = "[1, 2, 3], \"description\": \"diameter_mm=900\"|[40, 2, 3]";
     });
-    list.push_back(text("markups: LPS, and --frame RAS said", "--frame says otherwise", "p.mrk.json", Markup().text(), kRas));
+    list.push_back(
+        text("markups: LPS, and --frame RAS said", "--frame says otherwise", "p.mrk.json", Markup().text(), kRas));
     list.push_back(text("markups: cut short", "JSON", "p.mrk.json", Markup().text().substr(0, 250)));
     list.push_back(text("markups: 100,000 levels deep", "", "p.mrk.json", std::string(100000, '[')));
     list.back().says = "levels";
@@ -194,14 +196,17 @@ void add_spoilt_shapes(std::vector<PlanCase>& list) {
         "# SPACE=LPS\nv 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
     std::string stack = "# SPACE=LPS\n";
     for (int z = 0; z < 4; ++z)
-        stack += fmt::format("v 0 0 {0}\nv 30 0 {0}\nv 30 30 {0}\nl {1} {2} {3} {1}\n", 3 * z, 3 * z + 1, 3 * z + 2, 3 * z + 3);
+        stack += fmt::format("v 0 0 {0}\nv 30 0 {0}\nv 30 30 {0}\nl {1} {2} {3} {1}\n", 3 * z, 3 * z + 1, 3 * z + 2,
+                             3 * z + 3);
     obj("contours at four heights (a solid)", "a solid", stack);
     list.push_back(text(".stl cut short", "cut short", "p.stl",
                         "solid SPACE=LPS\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\n"));
     list.push_back(text(".stl whose size is not that of its triangles", "announces", "p.stl", std::string(90, 'x')));
-    list.push_back(text(".vtk without a frame", "does not say its coordinate system", "p.vtk", vtk("made by somebody")));
+    list.push_back(
+        text(".vtk without a frame", "does not say its coordinate system", "p.vtk", vtk("made by somebody")));
     list.push_back(text(".vtk that is none", "is not a VTK file", "p.vtk", "no VTK file"));
-    list.push_back(text(".vtp cut short", "p.vtp", "p.vtp", "<?xml version=\"1.0\"?><VTKFile type=\"PolyData\"><PolyData>"));
+    list.push_back(
+        text(".vtp cut short", "p.vtp", "p.vtp", "<?xml version=\"1.0\"?><VTKFile type=\"PolyData\"><PolyData>"));
     list.push_back(rtstruct("RTSTRUCT of another frame of reference than the CT's", "1.2.3", {{}, "1.2.3"}));
     list.push_back(rtstruct("RTSTRUCT, and the CT has no frame of reference", "--accept-frame", {{}, ""}));
     list.push_back(rtstruct("RTSTRUCT, and --frame RAS said", "always LPS", {Space::ras, kFrameOfReference}));
@@ -210,12 +215,17 @@ void add_spoilt_shapes(std::vector<PlanCase>& list) {
     list.push_back(text("an annotation of 3D Slicer 4", "says no frame", "p.acsv", "# Annotation file\n"));
     list.push_back(text("a scene of 3D Slicer", "scene", "p.mrml", "<MRML></MRML>"));
     list.push_back(text("a file of another kind", "of no kind", "p.doc", "anything"));
-    list.push_back({"a folder without plan files", "holds no plan file", [](const fs::path& folder) { return folder; }, {}});
-    list.push_back({"a device", "a pipe or a device", [](const fs::path& folder) {
+    list.push_back(
+        {"a folder without plan files", "holds no plan file", [](const fs::path& folder) { return folder; }, {}});
+    list.push_back({"a device",
+                    "a pipe or a device",
+                    [](const fs::path& folder) {
                         fs::create_symlink("/dev/zero", folder / "p.mrk.json");
                         return folder / "p.mrk.json";
-                    }, {}});
-    list.push_back({"a file that is not there", "", [](const fs::path& folder) { return folder / "none.mrk.json"; }, {}});
+                    },
+                    {}});
+    list.push_back(
+        {"a file that is not there", "", [](const fs::path& folder) { return folder / "none.mrk.json"; }, {}});
     list.back().says = "none.mrk.json";
 }
 
@@ -237,21 +247,24 @@ std::vector<PlanCase> sound_plans() {
         "# SPACE=RAS\n# "
         "units=um\nname\tentry_x\tentry_y\tentry_z\ttarget_x\ttarget_y\ttarget_z\nA\t10000\t20000\t30000\t1\t2\t3\n"));
     list.push_back(text("table of trajectories, --frame LPS", "", "p.csv", kTable + "A,-10,-20,30,1,2,3\n", kLps));
-    list.push_back(text("lines of an .obj, SPACE=RAS", "", "p.obj", "# SPACE=RAS\nv 10 20 30\nv 10 2 3\nv 10 20 3\nl 1 2 3\n"));
+    list.push_back(
+        text("lines of an .obj, SPACE=RAS", "", "p.obj", "# SPACE=RAS\nv 10 20 30\nv 10 2 3\nv 10 20 3\nl 1 2 3\n"));
     list.push_back(text("lines of a .vtk, SPACE=LPS", "", "p.vtk", vtk("3D Slicer output. SPACE=LPS")));
     list.push_back(text("the edge of an open surface (.ply), SPACE=LPS", "", "p.ply",
                         "ply\nformat ascii 1.0\ncomment SPACE=LPS\nelement vertex 4\nproperty float x\nproperty float "
                         "y\nproperty float z\n"
                         "element face 2\nproperty list uchar int vertex_indices\nend_header\n-10 -20 30\n20 -20 30\n20 "
                         "20 30\n-10 20 30\n3 0 1 2\n3 0 2 3\n"));
-    list.push_back({"our own .vtp", "",
+    list.push_back({"our own .vtp",
+                    "",
                     [](const fs::path& folder) {
                         write_plan_vtp(small_plan(), folder / "p.vtp");
                         return folder / "p.vtp";
                     },
                     {}});
     list.push_back(rtstruct("our own RTSTRUCT, frame of reference of the CT", "", kSameCt));
-    list.push_back({"a folder of two files", "",
+    list.push_back({"a folder of two files",
+                    "",
                     [](const fs::path& folder) {
                         write_safely(folder / "a.mrk.json", Markup().text());
                         write_safely(folder / "b.fcsv", fcsv("0", "id_0,10,20,30,0,0,0,1,1,1,0,P1,,\n"));
@@ -283,7 +296,8 @@ std::vector<PlanOnHead> plans_on_head() {
     const Vector3d entry = on_skin(35, -80, 50), hole = on_skin(-40, -60, 60);
     good.trajectories.push_back({"T1", entry, entry - 40 * analytic_head_normal(entry), 2, {}});
     good.boreholes.push_back({"B1", hole, {}, 7, 6, {}});
-    good.osteotomy_lines.push_back({"O1", {on_skin(10, -90, 40), on_skin(-10, -90, 40), on_skin(-10, -80, 60)}, true, {}});
+    good.osteotomy_lines.push_back(
+        {"O1", {on_skin(10, -90, 40), on_skin(-10, -90, 40), on_skin(-10, -80, 60)}, true, {}});
     std::vector<PlanOnHead> list{{"entry, borehole and line on the skin", "", good}};
     const auto add = [&](const std::string& name, const std::string& says, auto spoil) {
         list.push_back({name, says, good});
@@ -293,15 +307,12 @@ std::vector<PlanOnHead> plans_on_head() {
     add("a side in a name that is the other one", "it is named left", [](Plan& p) { p.boreholes[0].name = "B1 left"; });
     add("entry and target swapped", "swapped",
         [](Plan& p) { std::swap(p.trajectories[0].entry_in_ct, p.trajectories[0].target_in_ct); });
-    add("a target outside the body", "its target lies outside the body", [&](Plan& p) {
-        p.trajectories[0].target_in_ct = entry + 25 * analytic_head_normal(entry);
-    });
-    add("entry and target 0.4 mm apart", "only 0.40 mm apart", [&](Plan& p) {
-        p.trajectories[0].target_in_ct = entry - 0.4 * analytic_head_normal(entry);
-    });
-    add("a borehole 40 mm over the skin", "mm from the skin", [&](Plan& p) {
-        p.boreholes[0].position_in_ct = hole + 40 * analytic_head_normal(hole);
-    });
+    add("a target outside the body", "its target lies outside the body",
+        [&](Plan& p) { p.trajectories[0].target_in_ct = entry + 25 * analytic_head_normal(entry); });
+    add("entry and target 0.4 mm apart", "only 0.40 mm apart",
+        [&](Plan& p) { p.trajectories[0].target_in_ct = entry - 0.4 * analytic_head_normal(entry); });
+    add("a borehole 40 mm over the skin", "mm from the skin",
+        [&](Plan& p) { p.boreholes[0].position_in_ct = hole + 40 * analytic_head_normal(hole); });
     add("two of three items 15 mm over the skin", "items lie more than 10 mm from the skin", [&](Plan& p) {
         p.boreholes[0].position_in_ct = hole + 15 * analytic_head_normal(hole);
         p.trajectories[0].entry_in_ct = entry + 15 * analytic_head_normal(entry);
@@ -309,9 +320,8 @@ std::vector<PlanOnHead> plans_on_head() {
     add("a borehole 250 mm deep", "250 mm deep", [](Plan& p) { p.boreholes[0].depth_mm = 250; });
     add("an axis that points out of the body", "out of the body",
         [&](Plan& p) { p.boreholes[0].axis_in_ct = analytic_head_normal(hole); });
-    add("a coordinate that is not a number", "not finite", [](Plan& p) {
-        p.boreholes[0].position_in_ct.x() = std::numeric_limits<double>::quiet_NaN();
-    });
+    add("a coordinate that is not a number", "not finite",
+        [](Plan& p) { p.boreholes[0].position_in_ct.x() = std::numeric_limits<double>::quiet_NaN(); });
     add("a line outside the scanned volume", "outside the volume",
         [](Plan& p) { p.osteotomy_lines[0].points_in_ct[1].z() = 190; });
     add("x and y of all points exchanged", "", [](Plan& p) {

@@ -15,7 +15,8 @@ namespace planlight::test {
 struct PlanCase {
     std::string name;  ///< in words, for the table
     std::string says;  ///< a part of the refusal's sentence; empty: it is to be read
-    std::function<std::filesystem::path(const std::filesystem::path& empty_folder)> make;  ///< what to give to import_plan
+    std::function<std::filesystem::path(const std::filesystem::path& empty_folder)>
+        make;  ///< what to give to import_plan
     PlanImportSettings settings;
 };
 
@@ -35,6 +36,8 @@ std::vector<PlanOnHead> plans_on_head();
 VolumeBox box_of_head();
 
 /// For a failed test's message.
-inline void PrintTo(const PlanCase& c, std::ostream* out) { *out << c.name; }
+inline void PrintTo(const PlanCase& c, std::ostream* out) {
+    *out << c.name;
+}
 
 }  // namespace planlight::test

@@ -19,8 +19,8 @@ public:
         plan.boreholes.push_back({name(), Vector3d(50, 0, 10), std::nullopt, 0, 0, std::nullopt});
         for (int i = count(4); i > 0; --i) plan.trajectories.push_back({name(), point(), point(), size(100), colour()});
         for (int i = count(4); i > 0; --i)
-            plan.boreholes.push_back(
-                {name(), point(), chance(0.5) ? std::optional(direction()) : std::nullopt, size(100), size(200), colour()});
+            plan.boreholes.push_back({name(), point(), chance(0.5) ? std::optional(direction()) : std::nullopt,
+                                      size(100), size(200), colour()});
         for (int i = count(4); i > 0; --i) {
             OsteotomyLine line{name(), {}, chance(0.5), colour()};
             for (int p = 3 + count(20); p > 0; --p) line.points_in_ct.push_back(point());
@@ -28,7 +28,8 @@ public:
         }
         for (int i = count(3); i > 0; --i) {
             const Vector3d normal = direction();
-            plan.cut_planes.push_back({name(), point(), normal, normal.unitOrthogonal(), 1 + size(200), 1 + size(200), colour()});
+            plan.cut_planes.push_back(
+                {name(), point(), normal, normal.unitOrthogonal(), 1 + size(200), 1 + size(200), colour()});
         }
         return plan;
     }
@@ -62,6 +63,8 @@ private:
 
 }  // namespace
 
-Plan random_plan(unsigned seed) { return RandomPlan(seed).make(); }
+Plan random_plan(unsigned seed) {
+    return RandomPlan(seed).make();
+}
 
 }  // namespace planlight::test

@@ -11,7 +11,8 @@ inline void expect_same(const Plan& a, const Plan& b, double mm = 0, double colo
     const auto near = [&](const Eigen::Vector3d& p, const Eigen::Vector3d& q) {
         EXPECT_LE((p - q).cwiseAbs().maxCoeff(), mm) << p.transpose() << " | " << q.transpose();
     };
-    const auto same_colour = [&](const std::optional<Colour>& c, const std::optional<Colour>& d, const std::string& name) {
+    const auto same_colour = [&](const std::optional<Colour>& c, const std::optional<Colour>& d,
+                                 const std::string& name) {
         ASSERT_EQ(c.has_value(), d.has_value()) << name;
         for (std::size_t i = 0; c && i < 3; ++i)
             EXPECT_LE(std::abs(static_cast<double>((*c)[i]) - static_cast<double>((*d)[i])), colour) << name;
@@ -58,7 +59,8 @@ inline void expect_same(const Plan& a, const Plan& b, double mm = 0, double colo
     }
 }
 
-/// A plan of every kind of item, everything random: also names that need care in files, sizes of zero, no colour, no axis.
+/// A plan of every kind of item, everything random: also names that need care in files, sizes of zero, no colour, no
+/// axis.
 Plan random_plan(unsigned seed);
 
 }  // namespace planlight::test

@@ -22,7 +22,8 @@ using test::on_ball;
 constexpr double kRadius_mm = test::kBallRadius_mm;
 
 bool said(const std::vector<std::string>& sentences, const std::string& text) {
-    return std::any_of(sentences.begin(), sentences.end(), [&](const auto& f) { return f.find(text) != std::string::npos; });
+    return std::any_of(sentences.begin(), sentences.end(),
+                       [&](const auto& f) { return f.find(text) != std::string::npos; });
 }
 
 /// A plan of good items, of which one is spoilt.
@@ -62,21 +63,23 @@ TEST(CheckPlan, WhatMustNotBeShownIsStoppedByNameAndNumber) {
         EXPECT_THROW(refuse_stopped_plan(verdict), InputError);
         return verdict.stops;
     };
-    EXPECT_TRUE(
-        said(stops_of([](Plan& p) { p.boreholes[0].position_in_ct.x() = std::nan(""); }), "B1: its numbers are not finite"));
-    EXPECT_TRUE(
-        said(stops_of([](Plan& p) { p.osteotomy_lines[0].points_in_ct[1].z() = std::numeric_limits<double>::infinity(); }),
-             "O1: its numbers are not finite"));
+    EXPECT_TRUE(said(stops_of([](Plan& p) { p.boreholes[0].position_in_ct.x() = std::nan(""); }),
+                     "B1: its numbers are not finite"));
+    EXPECT_TRUE(said(
+        stops_of([](Plan& p) { p.osteotomy_lines[0].points_in_ct[1].z() = std::numeric_limits<double>::infinity(); }),
+        "O1: its numbers are not finite"));
     EXPECT_TRUE(said(stops_of([](Plan& p) { p.trajectories[0].target_in_ct = on_ball(0, 0) * 1.5; }),
                      "T1: its target lies outside the body, 40.0 mm"));
-    EXPECT_TRUE(said(stops_of([](Plan& p) { std::swap(p.trajectories[0].entry_in_ct, p.trajectories[0].target_in_ct); }),
-                     "T1: entry and target are swapped: the entry lies 40.0 mm under the skin"));
+    EXPECT_TRUE(
+        said(stops_of([](Plan& p) { std::swap(p.trajectories[0].entry_in_ct, p.trajectories[0].target_in_ct); }),
+             "T1: entry and target are swapped: the entry lies 40.0 mm under the skin"));
     EXPECT_TRUE(said(stops_of([](Plan& p) { p.trajectories[0].target_in_ct = on_ball(0, 0) * 0.995; }),
                      "T1: entry and target are only 0.40 mm apart"));
     EXPECT_TRUE(said(stops_of([](Plan& p) { p.boreholes[0].depth_mm = 250; }), "B1: it is 250 mm deep"));
     EXPECT_TRUE(said(stops_of([](Plan& p) { p.boreholes[0].axis_in_ct = on_ball(0.5, 0.2).normalized(); }),
                      "B1: its axis points out of the body"));
-    EXPECT_TRUE(said(stops_of([](Plan& p) { p.boreholes[0].position_in_ct *= 1.5; }), "B1: it is 40.0 mm from the skin"));
+    EXPECT_TRUE(
+        said(stops_of([](Plan& p) { p.boreholes[0].position_in_ct *= 1.5; }), "B1: it is 40.0 mm from the skin"));
     EXPECT_TRUE(said(stops_of([](Plan& p) {
                          p.boreholes[0].position_in_ct *= 1.2;
                          p.trajectories[0].entry_in_ct *= 1.2;
@@ -90,16 +93,18 @@ TEST(CheckPlan, WhatLiesOutsideTheVolumeIsStopped) {
     box.size = {181, 181, 181};
     EXPECT_TRUE(check_plan(good_plan(), ball(), box).stops.empty());
     box.size = {181, 181, 140};  // up to z = 49: O1 reaches up to 57.4
-    EXPECT_TRUE(said(check_plan(good_plan(), ball(), box).stops, "O1: its point (53, 16, 57) lies 8 mm outside the volume"));
+    EXPECT_TRUE(
+        said(check_plan(good_plan(), ball(), box).stops, "O1: its point (53, 16, 57) lies 8 mm outside the volume"));
 }
 
 TEST(CheckPlan, OnlyWordsThatMeanASideClaimOne) {
-    for (const char* name : {"left", "Left burr hole", "B1 LINKS", "trajectory-links", "L frontal", "T3_L", "incision gauche"})
+    for (const char* name :
+         {"left", "Left burr hole", "B1 LINKS", "trajectory-links", "L frontal", "T3_L", "incision gauche"})
         EXPECT_EQ(side_named(name), Side::left) << name;
     for (const char* name : {"right", "rechts", "R temporal", "Entry R", "dexter-2"})
         EXPECT_EQ(side_named(name), Side::right) << name;
-    for (const char* name :
-         {"", "L", "R", "L1", "R2D2", "Rand", "cleft", "leftover", "brightness", "left right", "L to R", "Schnitt", "V L 3"})
+    for (const char* name : {"", "L", "R", "L1", "R2D2", "Rand", "cleft", "leftover", "brightness", "left right",
+                             "L to R", "Schnitt", "V L 3"})
         EXPECT_EQ(side_named(name), std::nullopt) << name;
 }
 

@@ -96,9 +96,9 @@ TEST(DrawPlan, AnglesOfTheCrossAndOfLinesAreTrue) {
     plan.osteotomy_lines.push_back({"", {on_ball(-0.4, 0), on_ball(0, 0), on_ball(0, 0.4)}, false, {}});
     const PlanDrawing drawing = draw_plan(plan, ball(), without_labels());
     const auto line = strokes_of(drawing, StrokeKind::osteotomy_line, 0).front();
-    const auto corner = std::min_element(line.points_in_ct.begin(), line.points_in_ct.end(), [](const auto& a, const auto& b) {
-        return (a - on_ball(0, 0)).norm() < (b - on_ball(0, 0)).norm();
-    });
+    const auto corner = std::min_element(
+        line.points_in_ct.begin(), line.points_in_ct.end(),
+        [](const auto& a, const auto& b) { return (a - on_ball(0, 0)).norm() < (b - on_ball(0, 0)).norm(); });
     const Vector3d before = *(corner - 10) - *corner, after = *(corner + 10) - *corner;
     EXPECT_NEAR(std::acos(before.normalized().dot(after.normalized())) * 180 / std::numbers::pi, 90, 1);
 }
@@ -209,7 +209,8 @@ TEST(DrawPlan, EveryStrokeLiesOnTheSkinInSmallSteps) {
     const DrawingSettings settings;
     for (const Stroke& s : draw_plan(forehead_plan(), head, settings).strokes)
         for (std::size_t i = 0; i < s.points_in_ct.size(); ++i) {
-            EXPECT_LT(std::abs(test::analytic_head_distance(s.points_in_ct[i])), 0.15);  // sag of 2 mm edges at small radii
+            EXPECT_LT(std::abs(test::analytic_head_distance(s.points_in_ct[i])),
+                      0.15);  // sag of 2 mm edges at small radii
             EXPECT_NEAR(s.normals_in_ct[i].norm(), 1, 1e-9);
             if (i > 0) {
                 EXPECT_LT((s.points_in_ct[i] - s.points_in_ct[i - 1]).norm(), settings.max_segment_mm + 0.06);

@@ -26,8 +26,10 @@ Plan forehead_plan() {
     Plan plan;
     plan.osteotomy_lines.push_back(
         {"Osteotomy", {on_face(-30, 26), on_face(30, 26), on_face(30, 76), on_face(-30, 76)}, true, {}});
-    plan.boreholes = {{"B1", on_face(-30, 26), {}, 7, 6, {}}, {"B2", on_face(30, 26), {}, 7, 6, {}},
-                      {"B3", on_face(30, 76), {}, 7, 6, {}}, {"B4", on_face(-30, 76), {}, 7, 6, {}}};
+    plan.boreholes = {{"B1", on_face(-30, 26), {}, 7, 6, {}},
+                      {"B2", on_face(30, 26), {}, 7, 6, {}},
+                      {"B3", on_face(30, 76), {}, 7, 6, {}},
+                      {"B4", on_face(-30, 76), {}, 7, 6, {}}};
     plan.trajectories.push_back({"T1", on_face(4, 52), on_face(4, 52) + Vector3d(18, 55, -12), 0, {}});
     plan.cut_planes.push_back(
         {"C1", on_face(3, -85), Vector3d(0.1, 0, 1).normalized(), Vector3d(1, 0, -0.1).normalized(), 60, 60, {}});
@@ -46,7 +48,8 @@ TEST(ExampleDrawing, AForeheadPlanIsLitByAFrontalProjectorWithinTheFrameBudget) 
     for (int i = 0; i < 12; ++i) {
         const auto start = std::chrono::steady_clock::now();
         counts = renderer.render_into(picture, drawing, RigidTransform::Identity());
-        best_ms = std::min(best_ms, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+        best_ms = std::min(best_ms,
+                           std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
     const double cpu_ms = 1e3 * static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC / 12;
     test::keep_picture(picture, "forehead.png");

@@ -129,7 +129,7 @@ TEST(StrokeRaster, CoverageOfAShapeIsItsAreaAndItsMiddleIsItsMiddle) {
                     sum += picture.at(x, y)[0] / 255.0;
                     moment += picture.at(x, y)[0] / 255.0 * Vector2d(x, y);
                 }
-            EXPECT_NEAR(sum, 4 * 6.3 * 2.1, 0.05);  // 8-bit rounding of about 60 edge pixels
+            EXPECT_NEAR(sum, 4 * 6.3 * 2.1, 0.05);             // 8-bit rounding of about 60 edge pixels
             EXPECT_LT((moment / sum - middle).norm(), 0.015);  // likewise; half a pixel would be 0.5
         }
     }
@@ -149,7 +149,8 @@ TEST(StrokeRaster, NeighboursLeaveNoSeamAndTheBorderCutsCleanly) {
 }
 
 TEST(RenderDrawing, LightFallsOnTheLineItWasMeantForWithoutBias) {
-    // Great circles through the facing point in four directions: what is half a pixel off (0.13 mm) in x or y shows in one.
+    // Great circles through the facing point in four directions: what is half a pixel off (0.13 mm) in x or y shows in
+    // one.
     for (const double turn : {0.0, 0.8, 1.57, 2.4}) {
         const Vector3d f = scene().facing();
         const Vector3d pole = Eigen::AngleAxisd(turn, f) * f.unitOrthogonal();
@@ -233,7 +234,8 @@ TEST(RenderDrawing, ACircleKeepsItsDiameterUpTo65DegreesOfSlope) {
             std::erase_if(drawing.strokes, [](const Stroke& s) { return !s.closed; });
             const auto lit = lit_pixels(scene().renderer.render(drawing, scene().rig_from_ct), scene().eye);
             const Vector3d x = n.unitOrthogonal(), y = n.cross(x);
-            std::map<int, std::pair<double, double>> by_direction;  // light-weighted distance from the centre, 12 directions
+            std::map<int, std::pair<double, double>>
+                by_direction;  // light-weighted distance from the centre, 12 directions
             for (const auto& p : lit) {
                 const double far_mm = kRadius_mm * std::acos(std::min(1.0, p.on_ball.normalized().dot(n)));
                 const int direction =
@@ -288,7 +290,8 @@ TEST(RenderDrawing, SkinInTheShadowOfOtherSkinIsNotLit) {
     const SkinSurface skin(mesh);
     const DrawingRenderer renderer(skin, scene().projector);
     PlanDrawing drawing;
-    for (double angle = 0.04; angle < 0.6; angle += 0.04) drawing.strokes.push_back(arc(f, angle, 0, 2 * std::numbers::pi, 0.8));
+    for (double angle = 0.04; angle < 0.6; angle += 0.04)
+        drawing.strokes.push_back(arc(f, angle, 0, 2 * std::numbers::pi, 0.8));
     RgbImage picture;
     const RenderCounts counts = renderer.render_into(picture, drawing, scene().rig_from_ct);
     test::keep_picture(picture, "shadow.png");
@@ -321,7 +324,9 @@ TEST(RenderDrawing, SkinInTheShadowOfOtherSkinIsNotLit) {
 TEST(RenderDrawing, TheFarSideAndGrazingSkinStayDark) {
     const Vector3d f = scene().facing();
     const auto dark = [&](const RgbImage& picture) {
-        return std::all_of(picture.pixels.begin(), picture.pixels.end(), [](const Rgb& c) { return c == Rgb{0, 0, 0}; });
+        return std::all_of(picture.pixels.begin(), picture.pixels.end(), [](const Rgb& c) {
+            return c == Rgb{0, 0, 0};
+        });
     };
     EXPECT_TRUE(dark(scene().render({arc(f, 140 * kDegree, 0, 6, 1)})));
     EXPECT_TRUE(dark(scene().render({arc(f, 86 * kDegree, 0, 6, 1)})));
@@ -331,9 +336,11 @@ TEST(RenderDrawing, TheFarSideAndGrazingSkinStayDark) {
 TEST(RenderDrawing, NoLightTouchesAMarker) {
     const Vector3d f = scene().facing();
     PlanDrawing drawing;
-    for (double angle = 0.02; angle < 0.5; angle += 0.01) drawing.strokes.push_back(arc(f, angle, 0, 2 * std::numbers::pi, 1.2));
+    for (double angle = 0.02; angle < 0.5; angle += 0.01)
+        drawing.strokes.push_back(arc(f, angle, 0, 2 * std::numbers::pi, 1.2));
     const RigidTransform rig_from_patient(Eigen::Translation3d(3, 4, 5));
-    const Vector3d marker_in_rig = scene().rig_from_ct * Vector3d(kRadius_mm * (Eigen::AngleAxisd(0.2, f.unitOrthogonal()) * f));
+    const Vector3d marker_in_rig =
+        scene().rig_from_ct * Vector3d(kRadius_mm * (Eigen::AngleAxisd(0.2, f.unitOrthogonal()) * f));
     RenderSettings settings;
     settings.keep_dark_in_patient = {rig_from_patient.inverse() * marker_in_rig};
     const RgbImage picture = scene().renderer.render(drawing, scene().rig_from_ct, rig_from_patient, settings);
@@ -352,7 +359,8 @@ TEST(RenderDrawing, OneItemAloneAndDimmed) {
     RenderSettings settings;
     settings.only_item = 1;
     settings.brightness = 0.5;
-    const RgbImage picture = scene().renderer.render(drawing, scene().rig_from_ct, RigidTransform::Identity(), settings);
+    const RgbImage picture =
+        scene().renderer.render(drawing, scene().rig_from_ct, RigidTransform::Identity(), settings);
     int brightest = 0;
     for (const auto& p : lit_pixels(picture, scene().eye)) EXPECT_GT(p.on_ball.normalized().dot(f), std::cos(0.45));
     for (const auto& p : lit_pixels(picture, scene().eye)) EXPECT_LT(p.on_ball.normalized().dot(f), std::cos(0.35));

@@ -26,7 +26,8 @@ TriangleMesh ball_mesh(double radius_mm, int halvings) {
     for (int h = 0; h < halvings; ++h) {
         std::map<std::pair<int, int>, std::int32_t> middles;
         const auto middle = [&](std::int32_t a, std::int32_t b) {
-            const auto [entry, fresh] = middles.emplace(std::minmax(a, b), static_cast<std::int32_t>(mesh.vertices_in_ct.size()));
+            const auto [entry, fresh] =
+                middles.emplace(std::minmax(a, b), static_cast<std::int32_t>(mesh.vertices_in_ct.size()));
             if (fresh) {
                 const Vector3d m =
                     mesh.vertices_in_ct[static_cast<std::size_t>(a)] + mesh.vertices_in_ct[static_cast<std::size_t>(b)];
@@ -71,8 +72,8 @@ const SkinSurface& ball() {
 }
 
 Vector3d on_ball(double longitude, double latitude) {
-    return kBallRadius_mm *
-           Vector3d(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude), std::sin(latitude));
+    return kBallRadius_mm * Vector3d(std::cos(latitude) * std::cos(longitude), std::cos(latitude) * std::sin(longitude),
+                                     std::sin(latitude));
 }
 
 TriangleMesh tube_mesh(double radius_mm, double length_mm, double edge_mm) {

@@ -28,7 +28,8 @@ TriangleMesh sphere(double radius, int splits) {
                 middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(mesh.vertices_in_ct.size()));
             if (fresh)
                 mesh.vertices_in_ct.push_back((mesh.vertices_in_ct[static_cast<std::size_t>(a)] +
-                                               mesh.vertices_in_ct[static_cast<std::size_t>(b)]).normalized());
+                                               mesh.vertices_in_ct[static_cast<std::size_t>(b)])
+                                                  .normalized());
             return found->second;
         };
         for (const auto& [a, b, c] : mesh.triangles) {
@@ -91,7 +92,8 @@ TEST(BuildSkinLut, PointsEveryVoxelOfASmallTableToItsNearestSkinVoxel) {
         std::size_t wrong = 0;
         for (int k = 0; k < lut.size[2]; ++k)
             for (int j = 0; j < lut.size[1]; ++j)
-                for (int i = 0; i < lut.size[0]; ++i) wrong += squared_to_pointer(lut, i, j, k) != plain.least_squared(i, j, k);
+                for (int i = 0; i < lut.size[0]; ++i)
+                    wrong += squared_to_pointer(lut, i, j, k) != plain.least_squared(i, j, k);
         EXPECT_EQ(wrong, 0U) << "seed " << seed << ", " << lut.skin.size() << " skin voxels";
     }
 }
@@ -114,7 +116,8 @@ TEST(BuildSkinLut, SkinVoxelsAreThoseTheTrianglesPassThrough) {
     LutSettings settings;
     settings.margin_mm = 4;
     const SkinLut lut = build_skin_lut(soup, settings);
-    std::vector<double> closest(lut.skin.size(), 1e9);  // how far outside its cube the nearest sample of the surface lies
+    std::vector<double> closest(lut.skin.size(),
+                                1e9);  // how far outside its cube the nearest sample of the surface lies
     std::map<std::array<int, 3>, std::size_t> skin_of;
     for (std::size_t s = 0; s < lut.skin.size(); ++s)
         skin_of[{lut.skin[s].voxel[0], lut.skin[s].voxel[1], lut.skin[s].voxel[2]}] = s;
@@ -125,7 +128,8 @@ TEST(BuildSkinLut, SkinVoxelsAreThoseTheTrianglesPassThrough) {
             for (int b = 0; a + b <= kSteps; ++b) {
                 const Vector3d p = (a * soup.vertices_in_ct[static_cast<std::size_t>(t[0])] +
                                     b * soup.vertices_in_ct[static_cast<std::size_t>(t[1])] +
-                                    (kSteps - a - b) * soup.vertices_in_ct[static_cast<std::size_t>(t[2])]) / kSteps;
+                                    (kSteps - a - b) * soup.vertices_in_ct[static_cast<std::size_t>(t[2])]) /
+                                   kSteps;
                 const Vector3d g = (p - lut.origin_in_ct) / lut.voxel_mm;
                 const Eigen::Vector3i v = (g.array() + 0.5).floor().cast<int>();
                 missed += !skin_of.contains({v.x(), v.y(), v.z()});
@@ -171,14 +175,15 @@ TEST(BuildSkinLut, SignedDistanceOfASphereIsItsAnalyticDistance) {
         const auto found = lut.signed_distance(r * d);
         ASSERT_TRUE(found);
         const double error = std::abs(found->mm - (r - radius));
-        (std::abs(r - radius) < 3 ? worst_near : worst_far) = std::max(std::abs(r - radius) < 3 ? worst_near : worst_far, error);
+        (std::abs(r - radius) < 3 ? worst_near : worst_far) =
+            std::max(std::abs(r - radius) < 3 ? worst_near : worst_far, error);
         if (std::abs(r - radius) < 3) worst_turn = std::min(worst_turn, found->gradient.normalized().dot(d));
     }
     // Trilinear on 2 mm over curvature 1/40 in two directions: 2 h^2/(8 R) = 0.025 mm; chords 0.003 mm.
     EXPECT_LT(worst_near, 0.035);
     EXPECT_GT(worst_turn, 0.998);
-    // Far away the pointer's distance: it looks past the nearest point by up to a voxel diagonal e, e^2/(2 d) with d > 5 mm;
-    // near the centre the curvature of the distance itself.
+    // Far away the pointer's distance: it looks past the nearest point by up to a voxel diagonal e, e^2/(2 d) with d >
+    // 5 mm; near the centre the curvature of the distance itself.
     EXPECT_LT(worst_far, 0.5);
 }
 
@@ -218,7 +223,8 @@ TEST(BuildSkinLut, SignIsRightEverywhereAndCornersAreOutside) {
                      static_cast<std::size_t>(j)) *
                         static_cast<std::size_t>(lut.distance_size[0]) +
                     static_cast<std::size_t>(i);
-                const double truth = analytic_head_distance(lut.origin_in_ct + lut.distance_voxel_mm * Vector3d(i, j, k));
+                const double truth =
+                    analytic_head_distance(lut.origin_in_ct + lut.distance_voxel_mm * Vector3d(i, j, k));
                 if (std::abs(truth) < 0.3) continue;  // chords of 3 mm edges in creases
                 ++n;
                 wrong += (truth < 0) != (lut.distance_mm[index] < 0);
@@ -234,8 +240,12 @@ TEST(BuildSkinLut, FlagsOfATriangleReachTheTable) {
         if (mesh.vertices_in_ct[v].z() < -10) mesh.flags[v] = kCutPlane;
     const SkinLut lut = build_skin_lut(mesh);
     for (const auto& s : lut.skin) {
-        if (s.position_in_ct.z() < -10.1F) { EXPECT_EQ(s.flags, kCutPlane); }
-        if (s.position_in_ct.z() > -7) { EXPECT_EQ(s.flags, kSkin); }  // edges are below 2.5 mm
+        if (s.position_in_ct.z() < -10.1F) {
+            EXPECT_EQ(s.flags, kCutPlane);
+        }
+        if (s.position_in_ct.z() > -7) {
+            EXPECT_EQ(s.flags, kSkin);
+        }  // edges are below 2.5 mm
     }
 }
 

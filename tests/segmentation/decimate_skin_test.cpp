@@ -21,26 +21,29 @@ using Triangle = std::array<Vector3d, 3>;
 
 constexpr double kBound_mm = 0.15, kTolerance_mm = 0.01;
 
-/// The greatest distance of any point of `from` to `to`, over-estimated by kTolerance_mm at most: a distance changes by no
-/// more than its point moves, so a triangle holds none above that of its middle plus its radius; larger ones are split.
+/// The greatest distance of any point of `from` to `to`, over-estimated by kTolerance_mm at most: a distance changes by
+/// no more than its point moves, so a triangle holds none above that of its middle plus its radius; larger ones are
+/// split.
 double furthest(const TriangleMesh& from, const TriangleMesh& to) {
     DistanceToMesh distance(to);
     double least = 0;  // of what the answer can be
     std::vector<Triangle> left;
     for (const auto& t : from.triangles) {
-        left.push_back({from.vertices_in_ct[static_cast<std::size_t>(t[0])], from.vertices_in_ct[static_cast<std::size_t>(t[1])],
+        left.push_back({from.vertices_in_ct[static_cast<std::size_t>(t[0])],
+                        from.vertices_in_ct[static_cast<std::size_t>(t[1])],
                         from.vertices_in_ct[static_cast<std::size_t>(t[2])]});
         while (!left.empty()) {
             const auto [a, b, c] = left.back();
             left.pop_back();
             const Vector3d middle = (a + b + c) / 3;
             const double d = distance(middle),
-                         radius = std::sqrt(
-                             std::max({(a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm()}));
+                         radius = std::sqrt(std::max(
+                             {(a - middle).squaredNorm(), (b - middle).squaredNorm(), (c - middle).squaredNorm()}));
             least = std::max(least, d);
             if (d + radius <= least + kTolerance_mm) continue;
             const Vector3d ab = (a + b) / 2, bc = (b + c) / 2, ca = (c + a) / 2;
-            for (const Triangle& part : {Triangle{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}}) left.push_back(part);
+            for (const Triangle& part : {Triangle{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}})
+                left.push_back(part);
         }
     }
     return least + kTolerance_mm;
@@ -57,7 +60,8 @@ TriangleMesh star(Radius&& radius_mm, double about_mm, double edge_mm) {
     };
     put(0, 0);
     for (int r = 1; r < rings; ++r)
-        for (int a = 0; a < around; ++a) put(std::numbers::pi * r / rings, std::numbers::pi * 2 * (a + 0.5 * (r % 2)) / around);
+        for (int a = 0; a < around; ++a)
+            put(std::numbers::pi * r / rings, std::numbers::pi * 2 * (a + 0.5 * (r % 2)) / around);
     put(std::numbers::pi, 0);
     const auto at = [&](int r, int a) { return 1 + (r - 1) * around + (a + around) % around; };
     const int last = static_cast<int>(mesh.vertices_in_ct.size()) - 1;
@@ -84,15 +88,18 @@ std::vector<Shape> shapes() {
     std::normal_distribution<double> noise(0, 0.04);
     std::vector<Shape> all;
     all.push_back({"ball", star([](const Vector3d&) { return 9.0; }, 9, 0.7)});
-    all.push_back(
-        {"bumps",
-         star([](const Vector3d& w) { return 9 + std::sin(9 * w.x()) * std::sin(8 * w.y()) + 0.5 * std::cos(11 * w.z()); }, 9,
-              0.5)});
+    all.push_back({"bumps", star(
+                                [](const Vector3d& w) {
+                                    return 9 + std::sin(9 * w.x()) * std::sin(8 * w.y()) + 0.5 * std::cos(11 * w.z());
+                                },
+                                9, 0.5)});
     all.push_back({"scanner's noise", star([&](const Vector3d&) { return 9 + noise(random); }, 9, 0.7)});
-    all.push_back(
-        {"disc with a sharp rim",
-         star([](const Vector3d& w) { return 1 / std::sqrt(w.x() * w.x() / 100 + w.y() * w.y() / 80 + w.z() * w.z() / 3); }, 8,
-              0.5)});
+    all.push_back({"disc with a sharp rim", star(
+                                                [](const Vector3d& w) {
+                                                    return 1 / std::sqrt(w.x() * w.x() / 100 + w.y() * w.y() / 80 +
+                                                                         w.z() * w.z() / 3);
+                                                },
+                                                8, 0.5)});
     return all;
 }
 
@@ -148,7 +155,8 @@ TEST(DecimateSkin, ACollapseMovesTheSurfaceByNoMoreThanItsBound) {
             const auto on = [&](const Vector3d& centre) {
                 return Vector3d(centre + a * (ring[i] - centre) + b * (ring[(i + 1) % ring.size()] - centre));
             };
-            most = std::max({most, distance_to_fan(on(v), ring[target], ring), distance_to_fan(on(ring[target]), v, ring)});
+            most = std::max(
+                {most, distance_to_fan(on(v), ring[target], ring), distance_to_fan(on(ring[target]), v, ring)});
         }
         ASSERT_LE(most, *bound + 1e-12) << "trial " << trial;
         tightest = std::max(tightest, most / *bound);
@@ -159,7 +167,8 @@ TEST(DecimateSkin, ACollapseMovesTheSurfaceByNoMoreThanItsBound) {
 
 TEST(DecimateSkin, AHexagonWithARaisedMiddleFallsByItsHeight) {
     std::vector<Vector3d> ring;
-    for (int i = 0; i < 6; ++i) ring.emplace_back(std::cos(i * std::numbers::pi / 3), std::sin(i * std::numbers::pi / 3), 0);
+    for (int i = 0; i < 6; ++i)
+        ring.emplace_back(std::cos(i * std::numbers::pi / 3), std::sin(i * std::numbers::pi / 3), 0);
     const auto bound = collapse_bound({0.05, 0.02, 0.3}, ring, 2);
     ASSERT_TRUE(bound);
     EXPECT_NEAR(*bound, 0.3, 1e-3);  // seen along the mean normal, a little off the plane's
@@ -183,7 +192,8 @@ Volume ball_scan(double radius_mm, double spacing_mm) {
         for (int j = 0; j < n; ++j)
             for (int i = 0; i < n; ++i) {
                 const double d = (volume.ct_from_voxel * Vector3d(i, j, k)).norm() - radius_mm;
-                volume.values.push_back(static_cast<float>(-1000 + 1040 * 0.5 * std::erfc(d / 0.8 / std::numbers::sqrt2)));
+                volume.values.push_back(
+                    static_cast<float>(-1000 + 1040 * 0.5 * std::erfc(d / 0.8 / std::numbers::sqrt2)));
             }
     return volume;
 }
@@ -199,8 +209,8 @@ TEST(TriangulateSkin, DoesNotShrinkABall) {
         sum += p.norm();
         worst = std::max(worst, std::abs(p.norm() - radius_mm));
     }
-    // Where a line of voxels crosses a profile of 0.8 mm blur between centres 1.1 mm apart, its straight chord is off by a
-    // few hundredths; to both sides alike.
+    // Where a line of voxels crosses a profile of 0.8 mm blur between centres 1.1 mm apart, its straight chord is off
+    // by a few hundredths; to both sides alike.
     EXPECT_NEAR(sum / static_cast<double>(skin.vertices_in_ct.size()), radius_mm, 0.01);
     EXPECT_LT(worst, 0.1);
     // Triangles are chords: of edges up to 2 mm, their middles lie e^2 / (6 R) = 0.015 mm inside, 0.1 % of the volume.

@@ -11,9 +11,13 @@
 namespace planlight::test {
 namespace {
 
-VoxelGrid cube(int n) { return {{n, n, n}, {1, 1, 1}}; }
+VoxelGrid cube(int n) {
+    return {{n, n, n}, {1, 1, 1}};
+}
 
-std::size_t count(const Mask& mask) { return static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1)); }
+std::size_t count(const Mask& mask) {
+    return static_cast<std::size_t>(std::count(mask.begin(), mask.end(), 1));
+}
 
 /// A ring round the z axis, thick as `tube`, in a cube of `n` voxels.
 Mask ring(int n, double radius, double tube) {

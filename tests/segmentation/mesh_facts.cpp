@@ -8,7 +8,9 @@
 namespace planlight::test {
 namespace {
 
-std::size_t at(std::int32_t i) { return static_cast<std::size_t>(i); }
+std::size_t at(std::int32_t i) {
+    return static_cast<std::size_t>(i);
+}
 
 std::size_t pieces_of(const TriangleMesh& mesh) {
     std::vector<std::int32_t> parent(mesh.vertices_in_ct.size());
@@ -30,13 +32,15 @@ MeshFacts facts_of(const TriangleMesh& mesh) {
     MeshFacts facts;
     std::map<std::pair<std::int32_t, std::int32_t>, int> uses;
     for (const auto& t : mesh.triangles) {
-        const auto &a = mesh.vertices_in_ct[at(t[0])], &b = mesh.vertices_in_ct[at(t[1])], &c = mesh.vertices_in_ct[at(t[2])];
+        const auto &a = mesh.vertices_in_ct[at(t[0])], &b = mesh.vertices_in_ct[at(t[1])],
+                   &c = mesh.vertices_in_ct[at(t[2])];
         facts.volume_ml += a.dot(b.cross(c)) / 6000;
         const Eigen::Vector3d n = (b - a).cross(c - a).normalized();
         for (std::size_t e = 0; e < 3; ++e) {
             ++uses[{t[e], t[(e + 1) % 3]}];
             facts.longest_edge_mm =
-                std::max(facts.longest_edge_mm, (mesh.vertices_in_ct[at(t[e])] - mesh.vertices_in_ct[at(t[(e + 1) % 3])]).norm());
+                std::max(facts.longest_edge_mm,
+                         (mesh.vertices_in_ct[at(t[e])] - mesh.vertices_in_ct[at(t[(e + 1) % 3])]).norm());
             facts.least_normal_dot = std::min(facts.least_normal_dot, n.dot(mesh.normals_in_ct[at(t[e])]));
         }
     }

@@ -16,15 +16,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// An MR of the analytic head: tissue of 600 in air of 0, blurred by 0.8 mm, the coil's side `ratio` times as bright as the
-/// far one, Rician noise. `layers`: fat of 900 to 4 mm under the skin, dark bone to 10 mm, and within it brain.
+/// An MR of the analytic head: tissue of 600 in air of 0, blurred by 0.8 mm, the coil's side `ratio` times as bright as
+/// the far one, Rician noise. `layers`: fat of 900 to 4 mm under the skin, dark bone to 10 mm, and within it brain.
 Volume mr_of_head(double ratio, double sigma = 15, bool layers = false) {
     Volume volume;
     volume.modality = "MR";
     const Vector3d low(-112, -132, -112), high(112, 134, 128), spacing(1.2, 1.2, 1.4);
     volume.ct_from_voxel.linear() = spacing.asDiagonal();
     volume.ct_from_voxel.translation() = low;
-    for (int a = 0; a < 3; ++a) volume.size[static_cast<std::size_t>(a)] = static_cast<int>((high[a] - low[a]) / spacing[a]) + 1;
+    for (int a = 0; a < 3; ++a)
+        volume.size[static_cast<std::size_t>(a)] = static_cast<int>((high[a] - low[a]) / spacing[a]) + 1;
     static const std::vector<float> kDistance = [&] {  // the same grid for all
         std::vector<float> mm;
         for (int k = 0; k < volume.size[2]; ++k)

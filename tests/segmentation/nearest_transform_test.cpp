@@ -12,7 +12,8 @@ namespace planlight::test {
 namespace {
 
 SkinPoint skin_at(int i, int j, int k) {
-    return {Eigen::Vector3f::Zero(), Eigen::Vector3f::UnitZ(),
+    return {Eigen::Vector3f::Zero(),
+            Eigen::Vector3f::UnitZ(),
             {static_cast<std::uint16_t>(i), static_cast<std::uint16_t>(j), static_cast<std::uint16_t>(k)}};
 }
 
@@ -69,7 +70,8 @@ SkinLut sparse(std::array<int, 3> size, double share, unsigned seed) {
 std::vector<Shape> small_shapes() {
     std::vector<Shape> shapes;
     shapes.push_back({"one voxel", table({1, 1, 1}, [](int, int, int) { return true; })});
-    shapes.push_back({"one point", table({37, 41, 29}, [](int i, int j, int k) { return i == 36 && j == 0 && k == 11; })});
+    shapes.push_back(
+        {"one point", table({37, 41, 29}, [](int i, int j, int k) { return i == 36 && j == 0 && k == 11; })});
     shapes.push_back({"first and last", table({33, 20, 19}, [](int i, int j, int k) {
                           return (i == 0 && j == 0 && k == 0) || (i == 32 && j == 19 && k == 18);
                       })});
@@ -79,7 +81,8 @@ std::vector<Shape> small_shapes() {
     shapes.push_back({"two planes, ties between",
                       table({32, 16, 16}, [](int i, int, int k) { return i == 4 || i == 10 || k == 3 || k == 9; })});
     shapes.push_back({"all skin", table({34, 9, 8}, [](int, int, int) { return true; })});
-    shapes.push_back({"chequered, all ties", table({36, 12, 11}, [](int i, int j, int k) { return (i + j + k) % 2 == 0; })});
+    shapes.push_back(
+        {"chequered, all ties", table({36, 12, 11}, [](int i, int j, int k) { return (i + j + k) % 2 == 0; })});
     shapes.push_back({"every third slice and row",
                       table({67, 24, 24}, [](int i, int j, int k) { return k % 3 == 1 && j % 5 == 2 && i % 7 == 3; })});
     shapes.push_back({"row", table({129, 1, 1}, [](int i, int, int) { return i % 40 == 20; })});
@@ -112,7 +115,8 @@ TEST_P(NearestTransform, PointsEveryVoxelOfSmallTablesToTheFirstOfItsNearest) {
         std::size_t wrong = 0, n = 0;
         for (int k = 0; k < shape.lut.size[2]; ++k)
             for (int j = 0; j < shape.lut.size[1]; ++j)
-                for (int i = 0; i < shape.lut.size[0]; ++i) wrong += shape.lut.nearest.at(n++) != trying.nearest(i, j, k);
+                for (int i = 0; i < shape.lut.size[0]; ++i)
+                    wrong += shape.lut.nearest.at(n++) != trying.nearest(i, j, k);
         EXPECT_EQ(wrong, 0U) << shape.name << ", " << shape.lut.size[0] << " x " << shape.lut.size[1] << " x "
                              << shape.lut.size[2];
         EXPECT_EQ(n, shape.lut.nearest.size());
@@ -121,7 +125,8 @@ TEST_P(NearestTransform, PointsEveryVoxelOfSmallTablesToTheFirstOfItsNearest) {
 
 TEST_P(NearestTransform, TablesTooLongForThePackedKeysGetWideOnes) {
     // 1024^3 is the largest cube whose squared distances and slice numbers share 32 bits; one long axis needs 64.
-    for (const std::array<int, 3> size : {std::array{5, 7, 2100}, {40, 1300, 9}, {9000, 4, 6}, {3, 2050, 3}, {1, 1, 16384}}) {
+    for (const std::array<int, 3> size :
+         {std::array{5, 7, 2100}, {40, 1300, 9}, {9000, 4, 6}, {3, 2050, 3}, {1, 1, 16384}}) {
         SkinLut lut = sparse(size, 0.001, 5);
         lut.skin.insert(lut.skin.begin(), skin_at(0, 0, 0));
         if (lut.skin.size() > 1 && lut.skin[1].voxel == lut.skin[0].voxel) lut.skin.erase(lut.skin.begin());
@@ -135,7 +140,8 @@ TEST_P(NearestTransform, TablesTooLongForThePackedKeysGetWideOnes) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Paths, NearestTransform, testing::Values(VectorPath::plain, VectorPath::avx2, VectorPath::avx512),
+INSTANTIATE_TEST_SUITE_P(Paths, NearestTransform,
+                         testing::Values(VectorPath::plain, VectorPath::avx2, VectorPath::avx512),
                          [](const auto& path) {
                              return path.param == VectorPath::plain  ? "Plain"
                                     : path.param == VectorPath::avx2 ? "Avx2"
@@ -163,7 +169,8 @@ TEST(NearestTransformLarge, AHundredThousandVoxelsPointToTheFirstOfTheirNearestA
         point_to_nearest(lut, path);
         EXPECT_EQ(lut.nearest, plain);
     }
-    // Every skin voxel that could be as near lies within the cube of the distance found: rows are looked up, not all tried.
+    // Every skin voxel that could be as near lies within the cube of the distance found: rows are looked up, not all
+    // tried.
     std::vector<std::uint32_t> row_begin(static_cast<std::size_t>(lut.size[1] * lut.size[2]) + 1, 0);
     for (const auto& s : lut.skin) ++row_begin[static_cast<std::size_t>(s.voxel[2] * lut.size[1] + s.voxel[1]) + 1];
     for (std::size_t r = 1; r < row_begin.size(); ++r) row_begin[r] += row_begin[r - 1];
@@ -177,7 +184,8 @@ TEST(NearestTransformLarge, AHundredThousandVoxelsPointToTheFirstOfTheirNearestA
             for (std::size_t a = 0; a < 3; ++a) sum += (lut.skin[s].voxel[a] - v[a]) * (lut.skin[s].voxel[a] - v[a]);
             return sum;
         };
-        const std::uint32_t found = lut.nearest[static_cast<std::size_t>((v[2] * lut.size[1] + v[1]) * lut.size[0] + v[0])];
+        const std::uint32_t found =
+            lut.nearest[static_cast<std::size_t>((v[2] * lut.size[1] + v[1]) * lut.size[0] + v[0])];
         const int least = squared(found), reach = static_cast<int>(std::sqrt(least));
         bool right = true;
         for (int k = std::max(0, v[2] - reach); k <= std::min(lut.size[2] - 1, v[2] + reach); ++k)

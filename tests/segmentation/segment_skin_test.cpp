@@ -20,7 +20,8 @@ struct Errors {
 };
 
 /// Distances of skin vertices from where the scan crosses the threshold on the analytic head.
-Errors errors_of(const TriangleMesh& mesh, double threshold, const Eigen::Matrix3d& scan_from_ct = Eigen::Matrix3d::Identity()) {
+Errors errors_of(const TriangleMesh& mesh, double threshold,
+                 const Eigen::Matrix3d& scan_from_ct = Eigen::Matrix3d::Identity()) {
     std::vector<double> errors;
     const double offset = crossing_distance_mm(threshold);
     for (std::size_t v = 0; v < mesh.vertices_in_ct.size(); ++v)
@@ -85,14 +86,16 @@ TEST(TriangulateSkin, IsOneClosedOutwardSurfaceWithoutHandles) {
     ASSERT_EQ(skin.normals_in_ct.size(), skin.vertices_in_ct.size());
     std::size_t turned = 0;
     for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v)
-        if (skin.flags[v] == kSkin) turned += skin.normals_in_ct[v].dot(analytic_head_normal(skin.vertices_in_ct[v])) < 0.97;
+        if (skin.flags[v] == kSkin)
+            turned += skin.normals_in_ct[v].dot(analytic_head_normal(skin.vertices_in_ct[v])) < 0.97;
     EXPECT_LT(turned, skin.vertices_in_ct.size() / 100);
 }
 
 TEST(SegmentSkin, CutsOffTablePlatesAndWireAndKeepsTheEars) {
     const auto& [scan, mask, skin] = whole();
     EXPECT_GE(mask.pieces_removed, 2);  // table and plates hang together; the wire
-    EXPECT_NEAR(mask.removed_ml, 328 + 2 * 77 + 1, 25);  // 208 x 8 x 197 mm; 3.5 x 163 x 135 mm each; thin things measure thick
+    EXPECT_NEAR(mask.removed_ml, 328 + 2 * 77 + 1,
+                25);  // 208 x 8 x 197 mm; 3.5 x 163 x 135 mm each; thin things measure thick
     double furthest = 0, left_ear = 0, right_ear = 0;
     std::size_t off = 0, count = 0;
     for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
@@ -105,10 +108,11 @@ TEST(SegmentSkin, CutsOffTablePlatesAndWireAndKeepsTheEars) {
         ++count;
         off += std::abs(d - crossing_distance_mm(mask.threshold)) > 0.26;
     }
-    EXPECT_LT(furthest, 2.5 + 1.5 * 1.6);  // a stub where the plate touched: the detach radius and one and a half voxels
-    EXPECT_GT(left_ear, 86);           // the ear's edge is at 89
-    EXPECT_LT(right_ear, -84);         // at -86
-    EXPECT_LT(off, count / 50);        // unflagged and off the skin: at the contacts and openings only
+    EXPECT_LT(furthest,
+              2.5 + 1.5 * 1.6);  // a stub where the plate touched: the detach radius and one and a half voxels
+    EXPECT_GT(left_ear, 86);     // the ear's edge is at 89
+    EXPECT_LT(right_ear, -84);   // at -86
+    EXPECT_LT(off, count / 50);  // unflagged and off the skin: at the contacts and openings only
 }
 
 TEST(SegmentSkin, LidsNostrilsEarCanalsAndThroat) {
@@ -120,7 +124,8 @@ TEST(SegmentSkin, LidsNostrilsEarCanalsAndThroat) {
         if (skin.flags[v] != kCutPlane) deepest = std::min(deepest, analytic_head_distance(skin.vertices_in_ct[v]));
     }
     EXPECT_GT(lids, 20U);
-    EXPECT_GT(deepest, -8);  // the canals go 40 mm deep, the cave lies 30 mm deep; lids sit within the seal radius and its half
+    EXPECT_GT(deepest,
+              -8);  // the canals go 40 mm deep, the cave lies 30 mm deep; lids sit within the seal radius and its half
     const Eigen::Vector3i cave = (scan.ct_from_voxel.inverse() * Vector3d(1, -55, -30)).array().round().cast<int>();
     ASSERT_LT(scan.at(cave.x(), cave.y(), cave.z()), -900);
     EXPECT_EQ(mask.body[scan.index(cave.x(), cave.y(), cave.z())], 1);

@@ -70,8 +70,8 @@ TEST_F(ExamplePatient, SkinIsOneClosedOutwardSurfaceWithoutHandles) {
 }
 
 TEST_F(ExamplePatient, HeadHolderIsGoneAndEarsAreThere) {
-    // Ears stand out furthest; the cup of the holder is wider and behind. Measured on the slices: ear tips 168 mm apart at
-    // the most 185; back of the head to tip of the nose 200 mm.
+    // Ears stand out furthest; the cup of the holder is wider and behind. Measured on the slices: ear tips 168 mm apart
+    // at the most 185; back of the head to tip of the nose 200 mm.
     Vector3d low = skin.vertices_in_ct.front(), high = low;
     for (const auto& p : skin.vertices_in_ct) {
         low = low.cwiseMin(p);
@@ -115,8 +115,8 @@ TEST_F(ExamplePatient, LiesWithinAQuarterOfAMillimetreOfTheSurfaceOfInVesalius) 
     SkinSettings settings;
     settings.threshold = -142;  // of the project's skin surface
     const TriangleMesh mesh = triangulate_skin(volume, segment_skin(volume, settings), settings);
-    // InVesalius keeps cavities, cushion and head holder in its surface: so it is asked from every vertex of our true outer
-    // skin how far theirs is. The other surface of the project is bone.
+    // InVesalius keeps cavities, cushion and head holder in its surface: so it is asked from every vertex of our true
+    // outer skin how far theirs is. The other surface of the project is bone.
     std::vector<Vector3d> outer_skin;
     for (std::size_t v = 0; v < mesh.vertices_in_ct.size(); v += 3)
         if (mesh.flags[v] == kSkin) outer_skin.push_back(mesh.vertices_in_ct[v]);
@@ -135,8 +135,8 @@ TEST_F(ExamplePatient, LiesWithinAQuarterOfAMillimetreOfTheSurfaceOfInVesalius) 
 }
 
 TEST_F(ExamplePatient, NotOneVertexIsOnTheHeadHolder) {
-    // The holder is a plastic cup below the head, round an axis along z. Measured on the slices: all that is denser than
-    // -50 HU outside the head lies within 3 mm of this circle, up to y = -112 mm.
+    // The holder is a plastic cup below the head, round an axis along z. Measured on the slices: all that is denser
+    // than -50 HU outside the head lies within 3 mm of this circle, up to y = -112 mm.
     const Eigen::Vector2d axis(124.8, -103.4);
     const double radius_mm = 113.2, thick_mm = 3, top_y_mm = -112;
     const auto on_cup = [&](const Vector3d& p) {
@@ -153,10 +153,12 @@ TEST_F(ExamplePatient, NotOneVertexIsOnTheHeadHolder) {
     EXPECT_GT(theirs, 10000U);  // and in the surface that a threshold alone gives
     for (const auto& p : skin.vertices_in_ct) ours += on_cup(p);
     EXPECT_EQ(ours, 0U);
-    // Between cup and head lies a folded cushion. Behind the head, above the neck, the scalp is thin: nothing of it is skin.
+    // Between cup and head lies a folded cushion. Behind the head, above the neck, the scalp is thin: nothing of it is
+    // skin.
     std::size_t behind = 0, thick = 0;
     for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
-        if (skin.flags[v] != kSkin || skin.vertices_in_ct[v].y() < axis.y() || skin.vertices_in_ct[v].z() < 60) continue;
+        if (skin.flags[v] != kSkin || skin.vertices_in_ct[v].y() < axis.y() || skin.vertices_in_ct[v].z() < 60)
+            continue;
         ++behind;
         thick += !(skin.thickness_mm[v] < 12);
     }
@@ -165,8 +167,8 @@ TEST_F(ExamplePatient, NotOneVertexIsOnTheHeadHolder) {
 }
 
 TEST_F(ExamplePatient, SoftTissueIsAsThickAsOnPeople) {
-    // Ultrasound and CT studies of adults: 4 to 6 mm over forehead and crown, thicker on cheeks, which have no bone within
-    // reach in places.
+    // Ultrasound and CT studies of adults: 4 to 6 mm over forehead and crown, thicker on cheeks, which have no bone
+    // within reach in places.
     ASSERT_EQ(skin.thickness_mm.size(), skin.vertices_in_ct.size());
     std::vector<double> crown, all;
     std::size_t real = 0;
@@ -178,7 +180,8 @@ TEST_F(ExamplePatient, SoftTissueIsAsThickAsOnPeople) {
         if (skin.vertices_in_ct[v].z() > 100) crown.push_back(all.back());
     }
     for (const int percent : {5, 25, 50, 75, 95})
-        RecordProperty("all_p" + std::to_string(percent) + "_um", static_cast<int>(1000 * share_of(all, 0.01 * percent)));
+        RecordProperty("all_p" + std::to_string(percent) + "_um",
+                       static_cast<int>(1000 * share_of(all, 0.01 * percent)));
     RecordProperty("crown_median_um", static_cast<int>(1000 * share_of(crown, 0.5)));
     EXPECT_GT(static_cast<double>(all.size()), 0.8 * static_cast<double>(real));
     EXPECT_GT(share_of(crown, 0.5), 3);
@@ -224,9 +227,9 @@ TEST(MrHead, HasTheSameSkinWhenACoilMakesOneSideThreeTimesAsBright) {
         for (int k = 0; k < volume.size[2]; ++k)
             for (int j = 0; j < volume.size[1]; ++j)
                 for (int i = 0; i < volume.size[0]; ++i)
-                    biased.values[volume.index(i, j, k)] *= static_cast<float>(
-                        std::pow(3, 0.5 - std::array<double, 3>{1. * i, 1. * j, 1. * k}[static_cast<std::size_t>(axis)] /
-                                              volume.size[static_cast<std::size_t>(axis)]));
+                    biased.values[volume.index(i, j, k)] *= static_cast<float>(std::pow(
+                        3, 0.5 - std::array<double, 3>{1. * i, 1. * j, 1. * k}[static_cast<std::size_t>(axis)] /
+                                     volume.size[static_cast<std::size_t>(axis)]));
         const auto off_of = [&](const Volume& other) {
             const TriangleMesh surface = triangulate_skin(other, segment_skin(other));
             std::vector<Vector3d> vertices;
@@ -239,9 +242,11 @@ TEST(MrHead, HasTheSameSkinWhenACoilMakesOneSideThreeTimesAsBright) {
         const auto off = off_of(biased);
         biased.modality.clear();  // one threshold for all
         const auto raw = off_of(biased);
-        RecordProperty("axis_" + std::to_string(axis) + "_p50_p95_um", std::to_string(1000 * off[off.size() / 2]) + " " +
-                                                                            std::to_string(1000 * off[off.size() * 95 / 100]));
-        RecordProperty("axis_" + std::to_string(axis) + "_raw_p95_um", std::to_string(1000 * raw[raw.size() * 95 / 100]));
+        RecordProperty(
+            "axis_" + std::to_string(axis) + "_p50_p95_um",
+            std::to_string(1000 * off[off.size() / 2]) + " " + std::to_string(1000 * off[off.size() * 95 / 100]));
+        RecordProperty("axis_" + std::to_string(axis) + "_raw_p95_um",
+                       std::to_string(1000 * raw[raw.size() * 95 / 100]));
         EXPECT_LT(off[off.size() / 2], 0.1) << axis;
         EXPECT_LT(off[off.size() * 95 / 100], 0.5) << axis;
         EXPECT_GT(raw[raw.size() * 95 / 100], 1.5 * off[off.size() * 95 / 100]) << axis << ": the fault is there";

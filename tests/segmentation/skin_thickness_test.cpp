@@ -15,10 +15,13 @@ using Eigen::Vector3d;
 
 constexpr double kSkin_mm = 70, kBlur_mm = 0.8;
 const Vector3d kBoneCentre(3, -2, 1);  // soft tissue is thinner on one side
-// Bone of 1000 HU under 40 HU crosses 300 HU where 27 % of the blurred edge is bone: 0.611 standard deviations outside it.
+// Bone of 1000 HU under 40 HU crosses 300 HU where 27 % of the blurred edge is bone: 0.611 standard deviations outside
+// it.
 constexpr double kCrossing_mm = 0.611 * kBlur_mm;
 
-double share(double distance_mm) { return 0.5 * std::erfc(distance_mm / kBlur_mm / std::numbers::sqrt2); }
+double share(double distance_mm) {
+    return 0.5 * std::erfc(distance_mm / kBlur_mm / std::numbers::sqrt2);
+}
 
 /// A CT of a ball of soft tissue with a ball of bone in it, on turned voxel axes.
 Volume ball_with_bone(double bone_radius_mm) {
@@ -42,7 +45,8 @@ Volume ball_with_bone(double bone_radius_mm) {
 /// The way from the skin along its inward normal until it meets the bone's crossing.
 double true_thickness(const Vector3d& on_skin, const Vector3d& normal, double bone_radius_mm) {
     const Vector3d from = on_skin - kBoneCentre;
-    const double along = from.dot(normal), across2 = from.squaredNorm() - along * along, r = bone_radius_mm + kCrossing_mm;
+    const double along = from.dot(normal), across2 = from.squaredNorm() - along * along,
+                 r = bone_radius_mm + kCrossing_mm;
     return along - std::sqrt(r * r - across2);
 }
 
@@ -110,9 +114,12 @@ TEST(SkinThickness, ReachesTheTable) {
         if (skin.vertices_in_ct[v].z() > 50) skin.thickness_mm[v] = NAN;
     const SkinLut lut = build_skin_lut(skin);
     for (const auto& s : lut.skin) {
-        if (s.position_in_ct.z() > 52) { EXPECT_TRUE(std::isnan(s.thickness_mm)); }  // edges are below 2.2 mm
+        if (s.position_in_ct.z() > 52) {
+            EXPECT_TRUE(std::isnan(s.thickness_mm));
+        }  // edges are below 2.2 mm
         if (s.position_in_ct.z() < 48) {
-            ASSERT_NEAR(s.thickness_mm, true_thickness(s.position_in_ct.cast<double>(), s.normal_in_ct.cast<double>(), 60), 0.4);
+            ASSERT_NEAR(s.thickness_mm,
+                        true_thickness(s.position_in_ct.cast<double>(), s.normal_in_ct.cast<double>(), 60), 0.4);
         }
     }
     skin.thickness_mm.clear();

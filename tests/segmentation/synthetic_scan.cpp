@@ -14,7 +14,9 @@ using Eigen::Vector3d;
 constexpr double kBlur_mm = 0.8, kAir = -1000, kSoft = 40;
 
 /// Share of matter at a signed distance from a flat edge seen through the blur.
-double share(double distance_mm) { return 0.5 * std::erfc(distance_mm / kBlur_mm / std::sqrt(2.0)); }
+double share(double distance_mm) {
+    return 0.5 * std::erfc(distance_mm / kBlur_mm / std::sqrt(2.0));
+}
 
 double tube(const Vector3d& p, const Vector3d& a, const Vector3d& b, double radius) {
     const double f = std::clamp((p - a).dot(b - a) / (b - a).squaredNorm(), 0.0, 1.0);
@@ -28,7 +30,8 @@ double box(const Vector3d& p, const Vector3d& low, const Vector3d& high) {
 
 double openings(const Vector3d& p) {
     double d = (p - Vector3d(1, -55, -30)).norm() - 14;
-    for (const double side : {-1.0, 1.0}) d = std::min(d, tube(p, {1 + 6 * side, -98, -75}, {1 + 5 * side, -60, -32}, 3));
+    for (const double side : {-1.0, 1.0})
+        d = std::min(d, tube(p, {1 + 6 * side, -98, -75}, {1 + 5 * side, -60, -32}, 3));
     d = std::min(d, tube(p, {1, -50, -30}, {1, -40, -140}, 8));
     d = std::min(d, tube(p, {110, 12, -12}, {45, 10, -10}, 2.5));
     return std::min(d, tube(p, {-110, 15, -7}, {-45, 12, -8}, 2.5));
@@ -36,12 +39,14 @@ double openings(const Vector3d& p) {
 
 double objects_hu(const Vector3d& p) {
     double hu = kAir;
-    const auto add = [&](double distance, double matter) { hu = std::max(hu, kAir + (matter - kAir) * share(distance)); };
-    add(box(p, {-104, 118, -300}, {104, 126, 300}), -50);    // table
-    add(box(p, {-60, 100, -60}, {60, 118, 100}), -750);      // cushion, under the threshold
-    add(box(p, {88, -45, -300}, {91.5, 118, 60}), 100);      // left plate, on the ear
-    add(box(p, {-95, -45, -300}, {-91.5, 118, 60}), 100);    // right plate
-    add(tube(p, {-140, 10, 110}, {140, 10, 110}, 1.2), 800); // wire on the crown
+    const auto add = [&](double distance, double matter) {
+        hu = std::max(hu, kAir + (matter - kAir) * share(distance));
+    };
+    add(box(p, {-104, 118, -300}, {104, 126, 300}), -50);     // table
+    add(box(p, {-60, 100, -60}, {60, 118, 100}), -750);       // cushion, under the threshold
+    add(box(p, {88, -45, -300}, {91.5, 118, 60}), 100);       // left plate, on the ear
+    add(box(p, {-95, -45, -300}, {-91.5, 118, 60}), 100);     // right plate
+    add(tube(p, {-140, 10, 110}, {140, 10, 110}, 1.2), 800);  // wire on the crown
     return hu;
 }
 

@@ -7,8 +7,8 @@ namespace planlight::test {
 struct ScanOptions {
     Eigen::Vector3d spacing_mm{1.3, 1.3, 1.6};
     double noise_hu = 15;
-    bool objects = true;        ///< table, cushion, two side plates (the left one presses on the ear), a wire on the crown
-    bool openings = true;       ///< nostrils, ear canals and a throat that join an air cave behind the nose
+    bool objects = true;   ///< table, cushion, two side plates (the left one presses on the ear), a wire on the crown
+    bool openings = true;  ///< nostrils, ear canals and a throat that join an air cave behind the nose
     Eigen::Matrix3d ct_from_scan = Eigen::Matrix3d::Identity();  ///< turns the voxel axes against ct
 };
 

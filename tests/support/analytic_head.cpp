@@ -20,15 +20,15 @@ struct Ball {
 
 // x: left, y: posterior, z: superior.
 const std::array<Ball, 9> kBalls{{
-    {{0, 10, 25}, {76, 96, 84}},       // skull
-    {{2, -42, -48}, {50, 48, 56}},     // face
-    {{1, -92, -38}, {13, 17, 24}},     // nose
-    {{3, -76, -88}, {22, 20, 18}},     // chin
-    {{79, 12, -12}, {10, 17, 28}},     // left ear
-    {{-77, 15, -7}, {9, 15, 24}},      // right ear, smaller, higher
-    {{32, -78, 8}, {24, 12, 9}},       // left brow
-    {{-30, -78, 6}, {24, 11, 9}},      // right brow
-    {{-38, -52, 62}, {18, 14, 20}},    // a swelling right of the forehead
+    {{0, 10, 25}, {76, 96, 84}},     // skull
+    {{2, -42, -48}, {50, 48, 56}},   // face
+    {{1, -92, -38}, {13, 17, 24}},   // nose
+    {{3, -76, -88}, {22, 20, 18}},   // chin
+    {{79, 12, -12}, {10, 17, 28}},   // left ear
+    {{-77, 15, -7}, {9, 15, 24}},    // right ear, smaller, higher
+    {{32, -78, 8}, {24, 12, 9}},     // left brow
+    {{-30, -78, 6}, {24, 11, 9}},    // right brow
+    {{-38, -52, 62}, {18, 14, 20}},  // a swelling right of the forehead
 }};
 
 double ball_distance(const Ball& ball, const Vector3d& p) {
@@ -79,18 +79,21 @@ Vector3d on_analytic_head(const Vector3d& p_in_ct) {
 }
 
 TriangleMesh analytic_head_mesh(double edge_mm) {
-    // Naive surface nets (Gibson 1998) on a grid, then Newton onto the surface: closed because the head lies inside the grid.
+    // Naive surface nets (Gibson 1998) on a grid, then Newton onto the surface: closed because the head lies inside the
+    // grid.
     const Vector3d low(-105, -135, -125), high(105, 125, 130);
     const Eigen::Vector3i n = ((high - low) / edge_mm).array().ceil().cast<int>() + 1;
     const auto at = [&](int i, int j, int k) { return Vector3d(low + edge_mm * Vector3d(i, j, k)); };
     const auto index = [&](int i, int j, int k) {
         return (static_cast<std::size_t>(k) * static_cast<std::size_t>(n.y()) + static_cast<std::size_t>(j)) *
-                   static_cast<std::size_t>(n.x()) + static_cast<std::size_t>(i);
+                   static_cast<std::size_t>(n.x()) +
+               static_cast<std::size_t>(i);
     };
     std::vector<float> field(index(0, 0, n.z()));
     for (int k = 0; k < n.z(); ++k)
         for (int j = 0; j < n.y(); ++j)
-            for (int i = 0; i < n.x(); ++i) field[index(i, j, k)] = static_cast<float>(analytic_head_distance(at(i, j, k)));
+            for (int i = 0; i < n.x(); ++i)
+                field[index(i, j, k)] = static_cast<float>(analytic_head_distance(at(i, j, k)));
     TriangleMesh mesh;
     std::map<std::size_t, std::int32_t> vertex_of_cell;
     for (int k = 0; k + 1 < n.z(); ++k)
@@ -139,11 +142,13 @@ SkinLut analytic_head_lut(double voxel_mm, double margin_mm) {
     }
     lut.voxel_mm = lut.distance_voxel_mm = voxel_mm;
     lut.origin_in_ct = low - Vector3d::Constant(margin_mm);
-    const Eigen::Vector3i n = ((high - low + Vector3d::Constant(2 * margin_mm)) / voxel_mm).array().ceil().cast<int>() + 1;
+    const Eigen::Vector3i n =
+        ((high - low + Vector3d::Constant(2 * margin_mm)) / voxel_mm).array().ceil().cast<int>() + 1;
     lut.size = lut.distance_size = {n.x(), n.y(), n.z()};
     const auto index = [&](const Eigen::Vector3i& v) {
         return (static_cast<std::size_t>(v.z()) * static_cast<std::size_t>(n.y()) + static_cast<std::size_t>(v.y())) *
-                   static_cast<std::size_t>(n.x()) + static_cast<std::size_t>(v.x());
+                   static_cast<std::size_t>(n.x()) +
+               static_cast<std::size_t>(v.x());
     };
     const std::size_t count = index({0, 0, n.z()});
     constexpr auto kNone = std::numeric_limits<std::uint32_t>::max();

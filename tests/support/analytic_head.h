@@ -8,9 +8,9 @@
 
 namespace planlight::test {
 
-/// A head made of smooth blended spheres (skull, nose, chin, two unequal ears, brow, a dent in the forehead), in ct (LPS),
-/// mm, about 160 x 200 x 230, centred near the origin. It has no symmetry, so that a mirrored or turned one is wrong.
-/// Negative inside; the gradient has about unit length near the surface.
+/// A head made of smooth blended spheres (skull, nose, chin, two unequal ears, brow, a dent in the forehead), in ct
+/// (LPS), mm, about 160 x 200 x 230, centred near the origin. It has no symmetry, so that a mirrored or turned one is
+/// wrong. Negative inside; the gradient has about unit length near the surface.
 double analytic_head_distance(const Eigen::Vector3d& p_in_ct);
 Eigen::Vector3d analytic_head_normal(const Eigen::Vector3d& p_in_ct);
 

@@ -78,12 +78,14 @@ std::string said_of_gamma(double gamma) {
     constexpr double kLeast = 1.3;
     if (gamma < kLeast) return {};
     return fmt::format(
-        "; the camera seems to encode its pictures for a screen (exponent {:.1f}), which may be the cause: set it to linear "
+        "; the camera seems to encode its pictures for a screen (exponent {:.1f}), which may be the cause: set it to "
+        "linear "
         "(gamma 1, RAW)",
         gamma);
 }
 
-std::vector<float> even_light_picture(const std::vector<GrayImage>& frames, const UniformLightFrame& moment, double gamma) {
+std::vector<float> even_light_picture(const std::vector<GrayImage>& frames, const UniformLightFrame& moment,
+                                      double gamma) {
     if (gamma == 1) return sum_uniform_light(frames, moment);
     std::array<float, 256> light{};
     const Light table = light_of(gamma);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "registration/processor_clones.h"
+#include "planning_io/types/processor_clones.h"
 #include "registration/scan/check/sequence_fringes.h"
 #include "registration/scan/check/sequence_nesting.h"
 #include "registration/scan/check/sequence_samples.h"
@@ -46,7 +46,8 @@ void check_pairs(const Samples& s, const Direction& direction, SequenceCheck& ch
         for (std::size_t side = 0; side < 4; ++side)
             keep_flat(a.data(), b.data(), s.around[gray][side].data(), s.around[inverse][side].data(),
                       s.contrast.data(), flat.data(), s.lit);
-        std::size_t looked = 0, wrong = 0, far_off = 0;  // far off: more than an edge that moved, or a camera's gamma, can make
+        std::size_t looked = 0, wrong = 0,
+                    far_off = 0;  // far off: more than an edge that moved, or a camera's gamma, can make
         for (std::size_t i = 0; i < s.lit; ++i) {
             const int off = std::abs(a[i] + b[i] - white[i] - black[i]);
             far_off += off > 0.6 * s.contrast[i] + 3 * s.noise_grey;
@@ -114,9 +115,8 @@ void check_order(const Samples& s, const Direction& direction, SequenceCheck& ch
 
 /// A Gray code that has no fringes, or no inverses, to be judged by.
 bool judges_itself(const Samples& s) {
-    return std::any_of(s.directions.begin(), s.directions.end(), [](const Direction& d) {
-        return !d.gray.empty() && (d.phase.empty() || d.inverse.empty());
-    });
+    return std::any_of(s.directions.begin(), s.directions.end(),
+                       [](const Direction& d) { return !d.gray.empty() && (d.phase.empty() || d.inverse.empty()); });
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "registration/scan/check/picture_noise.h"
+#include "planning_io/types/statistics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,11 +12,8 @@ namespace {
 constexpr std::size_t kPlaces = 20000, kEnough = 100;
 constexpr double kMedianOfNormal = 0.6745;  // of the size of a normal value of sigma 1
 
-double median(std::vector<int>& sizes) {
-    if (sizes.size() < kEnough) return 0;
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    return *middle;
+double median_of_enough(std::vector<int> sizes) {
+    return sizes.size() < kEnough ? 0 : median(std::move(sizes));
 }
 
 /// Calls `look` with white - black of about kPlaces pixels and of the next ones to the right.
@@ -37,7 +35,7 @@ double noise_in_light(const GrayImage& white, const GrayImage& black) {
     each_place(white, black, [&](int here, int next) {
         if (here >= kLeast_grey) sizes.push_back(std::abs(here - next));
     });
-    return median(sizes) / (2 * kMedianOfNormal);
+    return median_of_enough(std::move(sizes)) / (2 * kMedianOfNormal);
 }
 
 double noise_in_dark(const GrayImage& white, const GrayImage& black) {
@@ -45,7 +43,7 @@ double noise_in_dark(const GrayImage& white, const GrayImage& black) {
     each_place(white, black, [&](int here, int) {
         if (here < 0) sizes.push_back(-here);
     });
-    return median(sizes) / (std::sqrt(2.0) * kMedianOfNormal);
+    return median_of_enough(std::move(sizes)) / (std::sqrt(2.0) * kMedianOfNormal);
 }
 
 }  // namespace planlight

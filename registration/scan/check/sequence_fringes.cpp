@@ -7,7 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "registration/processor_clones.h"
+#include "planning_io/types/processor_clones.h"
 
 namespace planlight::sequence {
 namespace {
@@ -137,7 +137,8 @@ void check_parity(const Samples& s, const Direction& direction, const std::vecto
 namespace {
 
 /// By how many turns the phases of a pixel disagree at least, rms, wherever in the picture it may lie.
-double least_disagreement(const StripeSettings& stripes, int size, const std::vector<std::vector<Fringe>>& fringes, std::size_t i) {
+double least_disagreement(const StripeSettings& stripes, int size, const std::vector<std::vector<Fringe>>& fringes,
+                          std::size_t i) {
     const double turns = fringes[0][i].phase / (2 * std::numbers::pi);
     const int orders = static_cast<int>(std::ceil(size / stripes.phase_period_px)) + 1;
     double least = 1;
@@ -171,8 +172,8 @@ void check_frequencies(const Samples& s, const Direction& direction, const std::
     }
     if (looked < kEnough || share_of(wrong, looked) <= kMost) return;
     check.problems.push_back({direction.phase[0],
-                              fmt::format("the fringes from {} to {} do not belong to each other", s.name(direction.phase.front()),
-                                          s.name(direction.further.back().back())),
+                              fmt::format("the fringes from {} to {} do not belong to each other",
+                                          s.name(direction.phase.front()), s.name(direction.further.back().back())),
                               share_of(wrong, looked)});
 }
 

@@ -28,8 +28,8 @@ void check_parity(const Samples& samples, const Direction& direction, const std:
                   SequenceCheck& check);
 
 /// Fringes of several frequencies must agree about a place.
-void check_frequencies(const Samples& samples, const Direction& direction, const std::vector<std::vector<Fringe>>& fringes,
-                       SequenceCheck& check);
+void check_frequencies(const Samples& samples, const Direction& direction,
+                       const std::vector<std::vector<Fringe>>& fringes, SequenceCheck& check);
 
 /// Another frame that looks just like this one although its picture is another.
 std::optional<std::size_t> twin_of(const Samples& samples, std::size_t frame);

@@ -35,7 +35,8 @@ public:
         if (contrast < s_.least_change || white >= kBright_grey) return {};
         Code code{0, 0, contrast};
         for (std::size_t k = 0; k < direction_.gray.size(); ++k) {
-            const int value = s_.difference(direction_, k, [&](std::size_t frame) { return int{frames_[frame].pixels[pixel]}; });
+            const int value =
+                s_.difference(direction_, k, [&](std::size_t frame) { return int{frames_[frame].pixels[pixel]}; });
             code.set |= static_cast<std::uint32_t>(value > 0) << k;
             code.clear |= static_cast<std::uint32_t>(2 * std::abs(value) > contrast) << k;
         }
@@ -60,7 +61,9 @@ private:
 };
 
 /// A step of the surface, an edge of a shadow or of a stain are likely to change the light.
-bool alike(const Code& a, const Code& b) { return b.contrast > 0 && 4 * std::abs(a.contrast - b.contrast) <= a.contrast; }
+bool alike(const Code& a, const Code& b) {
+    return b.contrast > 0 && 4 * std::abs(a.contrast - b.contrast) <= a.contrast;
+}
 
 /// What was seen where one bit changes, of a finer one.
 struct AtEdges {
@@ -73,9 +76,9 @@ struct Seen {
     std::array<std::size_t, 2> pairs{};
     std::vector<std::size_t> clear;
     std::vector<std::array<std::size_t, 2>> clear_pairs, changes;
-    std::vector<AtEdges> edges;                 ///< [coarser * bits + finer]
-    std::array<std::size_t, 2> up{}, down{};    ///< how the code goes on beside and below
-    double way(std::size_t side) const {        ///< 1: upwards everywhere, -1: downwards
+    std::vector<AtEdges> edges;               ///< [coarser * bits + finer]
+    std::array<std::size_t, 2> up{}, down{};  ///< how the code goes on beside and below
+    double way(std::size_t side) const {      ///< 1: upwards everywhere, -1: downwards
         const auto all = static_cast<double>(up[side] + down[side]);
         return all == 0 ? 0 : (static_cast<double>(up[side]) - static_cast<double>(down[side])) / all;
     }
@@ -99,8 +102,8 @@ void look_at_edges(const Code& a, const Code& b, std::size_t side, Seen& seen) {
     }
 }
 
-/// Stripes of six pixels at least: between two places kFlat_px apart there is one edge at the most. `margin`: by how much it
-/// is missed or kept.
+/// Stripes of six pixels at least: between two places kFlat_px apart there is one edge at the most. `margin`: by how
+/// much it is missed or kept.
 bool resolved(const Seen& seen, std::size_t bit, double margin = 0) {
     const auto &changes = seen.changes[bit], &pairs = seen.clear_pairs[bit];
     const double dense = std::max(share_of(changes[0], pairs[0]), share_of(changes[1], pairs[1]));
@@ -161,8 +164,8 @@ void check_edges(const Samples& s, const Direction& direction, const Seen& seen,
             else if (static_cast<double>(at.steady) >= line && share_of(at.wrong, at.steady) > kMostWrong)
                 check.problems.push_back({direction.gray[j],
                                           fmt::format("{} is not {} where {} changes, as in a Gray code{}{}", fine,
-                                                      j == k + 1 ? "lit" : "dark", coarse, explain(s, direction.gray[j]),
-                                                      explain(s, direction.gray[k])),
+                                                      j == k + 1 ? "lit" : "dark", coarse,
+                                                      explain(s, direction.gray[j]), explain(s, direction.gray[k])),
                                           share_of(at.wrong, at.steady)});
         }
 }
@@ -208,10 +211,11 @@ void check_one_way(const Samples& s, const Direction& direction, const Seen& see
                                  : 1;
     const std::size_t all = seen.up[side] + seen.down[side], against = std::min(seen.up[side], seen.down[side]);
     if (all < kEnough || share_of(against, all) <= kMost) return;
-    check.problems.push_back({direction.gray[0],
-                              fmt::format("the code of {} to {} turns back on the surface: a coarse one is another picture",
-                                          s.name(direction.gray.front()), s.name(direction.gray.back())),
-                              share_of(against, all)});
+    check.problems.push_back(
+        {direction.gray[0],
+         fmt::format("the code of {} to {} turns back on the surface: a coarse one is another picture",
+                     s.name(direction.gray.front()), s.name(direction.gray.back())),
+         share_of(against, all)});
 }
 
 }  // namespace
@@ -232,10 +236,11 @@ void check_nesting(std::span<const GrayImage> frames, const Samples& s, Sequence
     // Cameras and projector look at the same side of the surface: the code is turned at most, never a mirror image.
     const double turned = seen[0].way(0) * seen[1].way(1) - seen[0].way(1) * seen[1].way(0);
     if (turned > -0.3) return;
-    check.problems.push_back({s.directions[0].gray[0],
-                              fmt::format("the code is a mirror image: {} or {} is inverted, or the pictures are mirrored",
-                                          s.name(s.directions[0].gray[0]), s.name(s.directions[1].gray[0])),
-                              1});
+    check.problems.push_back(
+        {s.directions[0].gray[0],
+         fmt::format("the code is a mirror image: {} or {} is inverted, or the pictures are mirrored",
+                     s.name(s.directions[0].gray[0]), s.name(s.directions[1].gray[0])),
+         1});
 }
 
 }  // namespace planlight::sequence

@@ -28,11 +28,21 @@ void sort_frames(std::span<const GrayImage> frames, Samples& s) {
     for (std::size_t i = 0; i < frames.size(); ++i) {
         Direction& direction = s.directions[s.patterns[i].along_rows ? 1 : 0];
         switch (s.patterns[i].kind) {
-            case StripePattern::Kind::white: s.white = i; break;
-            case StripePattern::Kind::black: s.black = i; break;
-            case StripePattern::Kind::gray_bit: direction.gray.push_back(i); break;
-            case StripePattern::Kind::gray_bit_inverse: direction.inverse.push_back(i); break;
-            case StripePattern::Kind::phase: direction.fringes(s.patterns[i].frequency).push_back(i); break;
+            case StripePattern::Kind::white:
+                s.white = i;
+                break;
+            case StripePattern::Kind::black:
+                s.black = i;
+                break;
+            case StripePattern::Kind::gray_bit:
+                direction.gray.push_back(i);
+                break;
+            case StripePattern::Kind::gray_bit_inverse:
+                direction.inverse.push_back(i);
+                break;
+            case StripePattern::Kind::phase:
+                direction.fringes(s.patterns[i].frequency).push_back(i);
+                break;
         }
     }
 }
@@ -74,8 +84,8 @@ Bytes values_at(const GrayImage& frame, const std::vector<std::size_t>& pixels, 
     return values;
 }
 
-/// Leaves out the pixels that show no light in white, black and the first pictures after them: most of a picture is not lit, and
-/// were one of these the wrong frame, the others would still show the light.
+/// Leaves out the pixels that show no light in white, black and the first pictures after them: most of a picture is not
+/// lit, and were one of these the wrong frame, the others would still show the light.
 void leave_out_dark(std::span<const GrayImage> frames, const Samples& s, std::vector<std::size_t>& pixels) {
     constexpr std::size_t kFirst = 8;
     Bytes low = values_at(frames[s.white], pixels, 0), high = low;
@@ -95,8 +105,8 @@ void leave_out_dark(std::span<const GrayImage> frames, const Samples& s, std::ve
     pixels.resize(kept);
 }
 
-/// How much of a change is light and not noise: more than noise makes of fifty frames. Never more than half of the change of the
-/// best lit places (one in a hundred): with white or black out of its place the noise is not known.
+/// How much of a change is light and not noise: more than noise makes of fifty frames. Never more than half of the
+/// change of the best lit places (one in a hundred): with white or black out of its place the noise is not known.
 int least_change(const Bytes& low, const Bytes& high, double dark_noise_grey) {
     std::vector<int> changes;
     for (std::size_t i = 0; i < low.size(); ++i)

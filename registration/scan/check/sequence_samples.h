@@ -39,8 +39,9 @@ struct Samples {
     std::size_t white = 0, black = 1;  ///< frames
     std::array<Direction, 2> directions;
 
-    double noise_grey = kNoise_grey, dark_noise_grey = 0;  ///< one sigma, as measured where there is light and where not
-    int least_change = kLit_grey;                          ///< more is light
+    double noise_grey = kNoise_grey,
+           dark_noise_grey = 0;    ///< one sigma, as measured where there is light and where not
+    int least_change = kLit_grey;  ///< more is light
     std::size_t changing = 0, not_white = 0,
                 not_black = 0;  ///< pixels in which any light changes; white (black) is not the end
     std::size_t lit = 0;        ///< pixels kept: white and black are the ends, and apart
@@ -59,8 +60,8 @@ struct Samples {
     const std::string& name(std::size_t frame) const { return patterns[frame].name; }
 };
 
-/// `patterns`: what the frames are, in their order. Throws std::invalid_argument when number or sizes of the frames do not
-/// fit, or white or black is not among them.
+/// `patterns`: what the frames are, in their order. Throws std::invalid_argument when number or sizes of the frames do
+/// not fit, or white or black is not among them.
 Samples gather_samples(std::span<const GrayImage> frames, const StripeSettings& stripes,
                        std::vector<StripePattern> patterns);
 

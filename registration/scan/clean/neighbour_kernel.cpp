@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-#include "registration/processor_clones.h"
+#include "planning_io/types/processor_clones.h"
 
 namespace planlight::neighbour_kernel {
 namespace {
@@ -49,7 +49,8 @@ PLANLIGHT_INLINE Symmetric square(const Symmetric& m) {
 
 }  // namespace
 
-PLANLIGHT_CLONES int count_within(const Coordinates& points, const Run* runs, int run_count, std::uint32_t at, float reach) {
+PLANLIGHT_CLONES int count_within(const Coordinates& points, const Run* runs, int run_count, std::uint32_t at,
+                                  float reach) {
     const float x = points.x[at], y = points.y[at], z = points.z[at], squared = reach * reach;
     Near near;
     Mask count = {};
@@ -63,7 +64,8 @@ PLANLIGHT_CLONES int count_within(const Coordinates& points, const Run* runs, in
     return sum;
 }
 
-PLANLIGHT_CLONES Sums sum_within(const Coordinates& points, const Run* runs, int run_count, std::uint32_t at, float reach) {
+PLANLIGHT_CLONES Sums sum_within(const Coordinates& points, const Run* runs, int run_count, std::uint32_t at,
+                                 float reach) {
     const float px = points.x[at], py = points.y[at], pz = points.z[at], squared = reach * reach;
     Near near;
     const Lanes one = Lanes{} + 1;
@@ -72,7 +74,8 @@ PLANLIGHT_CLONES Sums sum_within(const Coordinates& points, const Run* runs, int
         for (std::uint32_t k = runs[r].begin; k < runs[r].end; k += kLanes) {
             look(points, k, runs[r].end, px, py, pz, squared, near);
             const Mask use = near.within;
-            const Lanes dx = (Lanes)((Mask)near.dx & use), dy = (Lanes)((Mask)near.dy & use), dz = (Lanes)((Mask)near.dz & use);
+            const Lanes dx = (Lanes)((Mask)near.dx & use), dy = (Lanes)((Mask)near.dy & use),
+                        dz = (Lanes)((Mask)near.dz & use);
             n += (Lanes)((Mask)one & use);
             x += dx;
             y += dy;

@@ -25,10 +25,10 @@ struct Work {
     const Triangulation& raw;
     const OutlierSettings& settings;
     SurfaceGrid grid;
-    Eigen::Vector3f light;          ///< where the projector stands, mm from `origin`
-    Eigen::Vector3d origin;         ///< in rig: single precision is enough for differences from here
-    std::vector<float> x, y, z;     ///< mm from `origin`; x is NaN where the point is removed for the later steps
-    std::vector<float> reach_mm;    ///< how far two points of one surface in neighbouring cells may be apart
+    Eigen::Vector3f light;        ///< where the projector stands, mm from `origin`
+    Eigen::Vector3d origin;       ///< in rig: single precision is enough for differences from here
+    std::vector<float> x, y, z;   ///< mm from `origin`; x is NaN where the point is removed for the later steps
+    std::vector<float> reach_mm;  ///< how far two points of one surface in neighbouring cells may be apart
     std::vector<Fate> fate;
     std::vector<Eigen::Vector3f> normals;
 
@@ -210,7 +210,8 @@ void keep(const Work& work, OutlierReport& report) {
     report.lonely = count[static_cast<std::size_t>(Fate::lonely)];
     std::vector<Eigen::Vector3f> points(left_over.size());
     for (std::size_t i = 0; i < points.size(); ++i) points[i] = work.point(left_over[i]);
-    const std::size_t limit = work.settings.max_points > 0 ? static_cast<std::size_t>(work.settings.max_points) : points.size();
+    const std::size_t limit =
+        work.settings.max_points > 0 ? static_cast<std::size_t>(work.settings.max_points) : points.size();
     std::vector<std::size_t> chosen = voxel_downsample(points, limit);
     report.thinned = points.size() - chosen.size();
     const PointCloud& raw = work.raw.cloud;
@@ -219,15 +220,16 @@ void keep(const Work& work, OutlierReport& report) {
     kept.normals_in_rig.resize(chosen.size());
     kept.sigma_mm.resize(chosen.size());
     kept.pixels_in_projector.resize(chosen.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chosen.size(), 4096), [&](const tbb::blocked_range<std::size_t>& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-            const std::uint32_t k = left_over[chosen[i]], original = work.grid.order()[k];
-            kept.points_in_rig[i] = raw.points_in_rig[original];
-            kept.normals_in_rig[i] = work.normals[k].cast<double>().normalized();
-            kept.sigma_mm[i] = raw.sigma_mm[original];
-            kept.pixels_in_projector[i] = raw.pixels_in_projector[original];
-        }
-    });
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chosen.size(), 4096),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                              const std::uint32_t k = left_over[chosen[i]], original = work.grid.order()[k];
+                              kept.points_in_rig[i] = raw.points_in_rig[original];
+                              kept.normals_in_rig[i] = work.normals[k].cast<double>().normalized();
+                              kept.sigma_mm[i] = raw.sigma_mm[original];
+                              kept.pixels_in_projector[i] = raw.pixels_in_projector[original];
+                          }
+                      });
 }
 
 }  // namespace

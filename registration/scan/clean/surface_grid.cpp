@@ -12,7 +12,8 @@ double occupied_around(const std::vector<Eigen::Vector2i>& pixels, const Eigen::
     for (const Eigen::Vector2i& p : pixels) {
         const int x = static_cast<int>((static_cast<float>(p.x() - low.x()) + 0.5f) * by_cell);
         const int y = static_cast<int>((static_cast<float>(p.y() - low.y()) + 0.5f) * by_cell);
-        occupied[static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x + 1)] = 1;
+        occupied[static_cast<std::size_t>(y + 1) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x + 1)] =
+            1;
     }
     std::size_t cells = 0, around = 0;
     for (int y = 0; y < rows; ++y) {
@@ -20,8 +21,8 @@ double occupied_around(const std::vector<Eigen::Vector2i>& pixels, const Eigen::
                            *below = line + width;
         unsigned cells_here = 0, around_here = 0;
         for (int x = 1; x <= columns; ++x) {
-            const int sum =
-                above[x - 1] + above[x] + above[x + 1] + line[x - 1] + line[x + 1] + below[x - 1] + below[x] + below[x + 1];
+            const int sum = above[x - 1] + above[x] + above[x + 1] + line[x - 1] + line[x + 1] + below[x - 1] +
+                            below[x] + below[x + 1];
             cells_here += line[x];
             around_here += static_cast<unsigned>(line[x] * sum);
         }

@@ -8,9 +8,9 @@
 
 namespace planlight {
 
-/// Points sorted into cells of the projector's picture, so that the neighbours of a point are found at once: those of a run
-/// of cells of one line follow each other. The cells are as small as lets nearly every point on a closed surface have
-/// neighbours all around.
+/// Points sorted into cells of the projector's picture, so that the neighbours of a point are found at once: those of a
+/// run of cells of one line follow each other. The cells are as small as lets nearly every point on a closed surface
+/// have neighbours all around.
 class SurfaceGrid {
 public:
     explicit SurfaceGrid(const std::vector<Eigen::Vector2i>& pixels);
@@ -25,7 +25,8 @@ public:
     /// Places of the points in the cells [column - reach, column + reach] of a line; empty outside the grid.
     std::pair<std::uint32_t, std::uint32_t> in_cells(int row, int column, int reach) const {
         if (row < 0 || row >= rows_) return {0, 0};
-        const int first = column < reach ? 0 : column - reach, end = column + reach >= columns_ ? columns_ : column + reach + 1;
+        const int first = column < reach ? 0 : column - reach,
+                  end = column + reach >= columns_ ? columns_ : column + reach + 1;
         return {begin_[at(first, row)], begin_[at(end, row)]};
     }
 

@@ -1,4 +1,5 @@
 #include "registration/scan/clean/surface_triangles.h"
+#include "planning_io/types/statistics.h"
 
 #include <CGAL/Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -17,7 +18,9 @@ using Vertices = CGAL::Triangulation_vertex_base_with_info_2<std::int32_t, Kerne
 using Delaunay = CGAL::Delaunay_triangulation_2<Kernel, CGAL::Triangulation_data_structure_2<Vertices>>;
 using Triangle = std::array<std::int32_t, 3>;
 
-bool has_normals(const PointCloud& cloud) { return cloud.normals_in_rig.size() == cloud.size(); }
+bool has_normals(const PointCloud& cloud) {
+    return cloud.normals_in_rig.size() == cloud.size();
+}
 
 /// Where each finite point lies in a picture of the surface.
 std::vector<std::pair<Kernel::Point_2, std::int32_t>> flattened(const PointCloud& cloud) {
@@ -36,7 +39,8 @@ std::vector<std::pair<Kernel::Point_2, std::int32_t>> flattened(const PointCloud
     for (std::size_t i = 0; i < cloud.size(); ++i) {
         const Eigen::Vector3d& p = cloud.points_in_rig[i];
         const Eigen::Vector2d at = by_pixels ? cloud.pixels_in_projector[i] : Eigen::Vector2d(u.dot(p), v.dot(p));
-        if (p.allFinite() && at.allFinite()) flat.emplace_back(Kernel::Point_2(at.x(), at.y()), static_cast<std::int32_t>(i));
+        if (p.allFinite() && at.allFinite())
+            flat.emplace_back(Kernel::Point_2(at.x(), at.y()), static_cast<std::int32_t>(i));
     }
     return flat;
 }
@@ -52,7 +56,8 @@ double longest_side_mm(const PointCloud& cloud, const Triangle& t) {
 double agreement(const PointCloud& cloud, const std::vector<Triangle>& triangles) {
     double sum = 0;
     for (const Triangle& t : triangles) {
-        const auto a = static_cast<std::size_t>(t[0]), b = static_cast<std::size_t>(t[1]), c = static_cast<std::size_t>(t[2]);
+        const auto a = static_cast<std::size_t>(t[0]), b = static_cast<std::size_t>(t[1]),
+                   c = static_cast<std::size_t>(t[2]);
         const auto& p = cloud.points_in_rig;
         const Eigen::Vector3d normal = cloud.normals_in_rig[a] + cloud.normals_in_rig[b] + cloud.normals_in_rig[c];
         const double part = (p[b] - p[a]).cross(p[c] - p[a]).dot(normal);
@@ -73,9 +78,7 @@ std::vector<std::array<std::int32_t, 3>> surface_triangles(const PointCloud& clo
         sides.push_back(longest_side_mm(cloud, all.back()));
     }
     if (all.empty()) return all;
-    std::vector<double> sorted = sides;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-    const double most = std::min(settings.max_edge_medians * sorted[sorted.size() / 2], settings.max_edge_mm);
+    const double most = std::min(settings.max_edge_medians * median(sides), settings.max_edge_mm);
     std::vector<Triangle> kept;
     kept.reserve(all.size());
     for (std::size_t i = 0; i < all.size(); ++i)

@@ -7,7 +7,7 @@
 #include <limits>
 #include <numeric>
 
-#include "registration/processor_clones.h"
+#include "planning_io/types/processor_clones.h"
 
 namespace planlight {
 namespace {
@@ -119,8 +119,8 @@ std::vector<std::size_t> voxel_downsample(const std::vector<Eigen::Vector3f>& po
     const float size = std::max((high - low).maxCoeff(), 1e-6f);
     Cubes cubes(points, low, high - low);
     float fine = cubes.finest_mm(), coarse = 2 * size;  // coarse: one cube
-    // A surface's cubes go with the inverse square of their edge, with less where cubes hold single points: start there, then
-    // bisect on the logarithm.
+    // A surface's cubes go with the inverse square of their edge, with less where cubes hold single points: start
+    // there, then bisect on the logarithm.
     float edge = std::max(size / std::sqrt(static_cast<float>(max_points)), fine);
     for (int step = 0; step < 24 && coarse > 1.01f * fine; ++step) {
         const float ratio = static_cast<float>(cubes.count(edge)) / static_cast<float>(max_points);

@@ -7,7 +7,7 @@
 #include <cstring>
 #include <limits>
 
-#include "registration/processor_clones.h"
+#include "planning_io/types/processor_clones.h"
 
 namespace planlight {
 namespace {
@@ -15,33 +15,36 @@ namespace {
 constexpr int kReach = 2, kSide = 2 * kReach + 1;  // 5 x 5 neighbours
 constexpr int kWhole = kSide * kSide;
 constexpr float kByCount = 1.0f / kWhole, kBySquares = 1.0f / 50;  // of a plane over all of them
-constexpr int kMinNeighbours = 12;   // about half of them
-constexpr float kRoughness_px = 0.25f;  // rms about the affine map that the surface's own curvature and texture may make
+constexpr int kMinNeighbours = 12;                                 // about half of them
+constexpr float kRoughness_px =
+    0.25f;  // rms about the affine map that the surface's own curvature and texture may make
 // A camera pixel spans a few projector pixels at most; a jump of more is another surface, not a slope.
 constexpr float kMaxJump_px = 12;
 constexpr int kMaxSteps = 5;
 constexpr int kCell_px = 4, kRings = 2;  // of the index: a view may see the projector's pixels coarsely
-constexpr int kTries = 4;  // from cells where the search fails: nearly all of them end at the same edge
+constexpr int kTries = 4;                // from cells where the search fails: nearly all of them end at the same edge
 constexpr double kMaxWay_px = 16;        // from where the search begins to what it finds
 
 // Of the quadratic fit over all 25 neighbours: sums of (x^2 - 2)^2, and what is then taken off the mean at the centre.
 constexpr float kQuadraticSquares = 70, kMeanOfSquares = 2;
-constexpr float kQuadricVariance = 2 * kMeanOfSquares * kMeanOfSquares / kQuadraticSquares;  // what that adds, of one pixel's
-// A code with this noise (projector pixels) is fitted half way between a plane and a quadric: the quadric's value at the
-// centre has sqrt(0.114) times the noise more, and skin's detail bends the code by about 0.06 px over the window.
+constexpr float kQuadricVariance =
+    2 * kMeanOfSquares * kMeanOfSquares / kQuadraticSquares;  // what that adds, of one pixel's
+// A code with this noise (projector pixels) is fitted half way between a plane and a quadric: the quadric's value at
+// the centre has sqrt(0.114) times the noise more, and skin's detail bends the code by about 0.06 px over the window.
 constexpr float kHalfWaySigma_px = 0.2f;
-// Over what variance (camera pixels squared, an axis) the lens and the skin spread light: a lens as it is focused (0.6 to
-// 0.8 px), and as much again in the skin.
+// Over what variance (camera pixels squared, an axis) the lens and the skin spread light: a lens as it is focused (0.6
+// to 0.8 px), and as much again in the skin.
 constexpr float kSpread_px2 = 1;
-// Slope of the light's logarithm, a pixel, above which it is more an edge (of the projector's picture, a shadow, ink) than
-// the shading of a surface: there the code is no quadric and the light not spread evenly about its slope.
+// Slope of the light's logarithm, a pixel, above which it is more an edge (of the projector's picture, a shadow, ink)
+// than the shading of a surface: there the code is no quadric and the light not spread evenly about its slope.
 constexpr float kEdge = 0.16f;
 
 /// Sums of a weighted affine fit, weights 0 or 1, about the centre's own code (column, row).
 struct Sums {
     float n = 0, c[2] = {}, cx[2] = {}, cy[2] = {}, cc = 0;
-    float squares[2] = {}, light = 0, light_x = 0, light_y = 0;  ///< of (x^2 + y^2) code; of light, and x and y times it
-    float x = 0, y = 0, xx = 0, xy = 0, yy = 0;   ///< set where n is less than kWhole: else x, y, xy vanish
+    float squares[2] = {}, light = 0, light_x = 0,
+          light_y = 0;                           ///< of (x^2 + y^2) code; of light, and x and y times it
+    float x = 0, y = 0, xx = 0, xy = 0, yy = 0;  ///< set where n is less than kWhole: else x, y, xy vanish
 };
 
 typedef float Lanes __attribute__((vector_size(32)));
@@ -67,7 +70,8 @@ PLANLIGHT_CLONES void sum_neighbours(const float* column, const float* row, cons
     const Mask use = {-1, -1, -1, -1, -1, 0, 0, 0}, size_only = Mask{} + 0x7fffffff;
     const Lanes dx = {-2, -1, 0, 1, 2, 0, 0, 0}, limit = Lanes{} + max_jump_px, column_here = Lanes{} + *column,
                 row_here = Lanes{} + (row ? *row : 0);
-    Lanes c = {}, r = {}, c_by_y = {}, r_by_y = {}, c_by_yy = {}, r_by_yy = {}, squares = {}, light = {}, light_by_y = {};
+    Lanes c = {}, r = {}, c_by_y = {}, r_by_y = {}, c_by_yy = {}, r_by_yy = {}, squares = {}, light = {},
+          light_by_y = {};
     Lanes n = {}, y = {}, yy = {};
 #pragma GCC unroll 5
     for (int dy = -kReach; dy <= kReach; ++dy) {
@@ -145,8 +149,10 @@ PLANLIGHT_INLINE bool smooth(float residual, float freedom, float own_squared, f
     return residual <= directions * freedom * allowed && own_squared <= 9 * directions * allowed;
 }
 
-/// The plane over all 25 neighbours: sums of x, y and x y vanish, those of x^2 and y^2 are 50. Nearly all fits are of these.
-PLANLIGHT_INLINE bool fit_whole(const Sums& s, double column, double row, float sigma_px, float directions, Correspondence& local) {
+/// The plane over all 25 neighbours: sums of x, y and x y vanish, those of x^2 and y^2 are 50. Nearly all fits are of
+/// these.
+PLANLIGHT_INLINE bool fit_whole(const Sums& s, double column, double row, float sigma_px, float directions,
+                                Correspondence& local) {
     const float c = s.c[0], r = s.c[1], cx = s.cx[0], rx = s.cx[1], cy = s.cy[0], ry = s.cy[1];
     const float centres = (c * c + r * r) * kByCount;
     const float residual = s.cc - centres - (cx * cx + rx * rx + cy * cy + ry * ry) * kBySquares;
@@ -161,7 +167,8 @@ PLANLIGHT_INLINE bool fit_whole(const Sums& s, double column, double row, float 
 /// From the plane over all neighbours to what the code is at the centre: the quadric there, and as it would be without
 /// the light that lens and skin bring from beside it, more from where there is more.
 PLANLIGHT_INLINE void sharpen(const Sums& s, float sigma_px, Correspondence& local) {
-    const float by_light = kBySquares * kWhole / s.light, slope_x = s.light_x * by_light, slope_y = s.light_y * by_light;
+    const float by_light = kBySquares * kWhole / s.light, slope_x = s.light_x * by_light,
+                slope_y = s.light_y * by_light;
     const float steep = (slope_x * slope_x + slope_y * slope_y) * (1 / (kEdge * kEdge));
     const float noisy = 1 + sigma_px * sigma_px * (1 / (kHalfWaySigma_px * kHalfWaySigma_px));
     const float quadric = 1 / ((1 + steep * steep) * noisy), towards = kSpread_px2 * kBySquares * quadric * noisy;
@@ -186,9 +193,11 @@ bool fit_part(const Sums& s, const Eigen::Vector2d& centre, float sigma_px, floa
     if (!invertible) return false;
     const Eigen::Matrix<double, 3, 2> fit = inverse * b;
     const double residual = s.cc - (fit.array() * b.array()).sum();
-    if (!smooth(static_cast<float>(residual), s.n - 3, static_cast<float>(fit.row(0).squaredNorm()), sigma_px, directions))
+    if (!smooth(static_cast<float>(residual), s.n - 3, static_cast<float>(fit.row(0).squaredNorm()), sigma_px,
+                directions))
         return false;
-    local = {centre + fit.row(0).transpose(), fit.bottomRows<2>().transpose(), false, sigma_px * std::sqrt(inverse(0, 0))};
+    local = {centre + fit.row(0).transpose(), fit.bottomRows<2>().transpose(), false,
+             sigma_px * std::sqrt(inverse(0, 0))};
     return true;
 }
 
@@ -227,7 +236,9 @@ std::optional<Correspondence> correspondence_at(const DecodedView& view, int x, 
 }
 
 CorrespondenceIndex::CorrespondenceIndex(const DecodedView& view, int projector_width, int projector_height)
-    : view_(view), columns_((projector_width + kCell_px - 1) / kCell_px), rows_((projector_height + kCell_px - 1) / kCell_px),
+    : view_(view),
+      columns_((projector_width + kCell_px - 1) / kCell_px),
+      rows_((projector_height + kCell_px - 1) / kCell_px),
       pixel_in_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_), -1) {
     constexpr float kByCell = 1.0f / kCell_px;
     // Every third pixel of every third line: a piece of code without one of them is too small to be fitted.
@@ -253,8 +264,8 @@ bool CorrespondenceIndex::find(const Eigen::Vector2d& code, Match& match) const 
         for (int y = std::max(0, r - ring); y <= std::min(rows_ - 1, r + ring); ++y)
             for (int x = std::max(0, c - ring); x <= std::min(columns_ - 1, c + ring); ++x) {
                 if (std::max(std::abs(y - r), std::abs(x - c)) != ring) continue;
-                const std::int32_t start =
-                    pixel_in_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x)];
+                const std::int32_t start = pixel_in_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
+                                                     static_cast<std::size_t>(x)];
                 if (start < 0) continue;
                 if (find_from(code, {start % view_.width, start / view_.width}, match)) return true;
                 if (++tries == kTries) return false;

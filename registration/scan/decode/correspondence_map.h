@@ -11,10 +11,10 @@ namespace planlight {
 
 /// The code around a camera pixel as an affine map, fitted to its neighbours (5 x 5).
 struct Correspondence {
-    Eigen::Vector2d code;         ///< projector pixel (column, row) at the centre pixel; row 0 when rows are not coded
-    Eigen::Matrix2d by_pixel;     ///< its derivative by the camera pixel; second row zero when rows are not coded
-    bool whole = false;           ///< every neighbour took part: no edge of an object, a shadow or the picture is near
-    double sigma_px = 0;          ///< one standard deviation of `code`, projector pixels, from the noise alone
+    Eigen::Vector2d code;      ///< projector pixel (column, row) at the centre pixel; row 0 when rows are not coded
+    Eigen::Matrix2d by_pixel;  ///< its derivative by the camera pixel; second row zero when rows are not coded
+    bool whole = false;        ///< every neighbour took part: no edge of an object, a shadow or the picture is near
+    double sigma_px = 0;       ///< one standard deviation of `code`, projector pixels, from the noise alone
 };
 
 /// Fits the code around camera pixel (x, y). Empty where the pixel itself is not decoded, or has too few neighbours, or
@@ -31,11 +31,11 @@ public:
 
     struct Match {
         Eigen::Vector2d code, pixel;    ///< as asked for, and where it is: sub-pixel
-        Correspondence local;                ///< around the nearest whole pixel
+        Correspondence local;           ///< around the nearest whole pixel
         Eigen::Matrix2d pixel_by_code;  ///< inverse of its derivative
     };
-    /// The sub-pixel place in the view that has this code; false when no smooth piece of code there contains it (`match` is
-    /// then not to be used).
+    /// The sub-pixel place in the view that has this code; false when no smooth piece of code there contains it
+    /// (`match` is then not to be used).
     bool find(const Eigen::Vector2d& code, Match& match) const;
 
     /// The same, searched from a place nearby; false also when the way there is broken.
@@ -43,8 +43,9 @@ public:
 
 private:
     const DecodedView& view_;
-    int columns_, rows_;                  ///< cells
-    std::vector<std::int32_t> pixel_in_;  ///< per cell of the projector's picture a camera pixel that sees it, -1 where none
+    int columns_, rows_;  ///< cells
+    std::vector<std::int32_t>
+        pixel_in_;  ///< per cell of the projector's picture a camera pixel that sees it, -1 where none
 };
 
 }  // namespace planlight

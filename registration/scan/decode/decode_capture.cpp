@@ -14,7 +14,8 @@ namespace {
 using Kind = StripePattern::Kind;
 
 /// One camera's pictures by what they are. A cell of the finest Gray bit is half a period.
-GrayFrames sort_gray(const std::vector<GrayImage>& frames, const std::vector<StripePattern>& patterns, const StripeSettings& s) {
+GrayFrames sort_gray(const std::vector<GrayImage>& frames, const std::vector<StripePattern>& patterns,
+                     const StripeSettings& s) {
     if (frames.size() != patterns.size())
         throw std::invalid_argument("decode_capture: the pictures are not as many as their patterns");
     GrayFrames sorted;

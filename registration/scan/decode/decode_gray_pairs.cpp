@@ -21,7 +21,8 @@ struct Block {
 
 void check_sizes(const GrayPairs& frames) {
     const auto same = [&](const GrayImage& f) {
-        return f.width == frames.white.width && f.height == frames.white.height && f.pixels.size() == frames.white.pixels.size();
+        return f.width == frames.white.width && f.height == frames.white.height &&
+               f.pixels.size() == frames.white.pixels.size();
     };
     if (!same(frames.black) || !std::all_of(frames.columns.begin(), frames.columns.end(), same) ||
         !std::all_of(frames.rows.begin(), frames.rows.end(), same))
@@ -60,14 +61,14 @@ struct Direction {
         kernels::decide_bits(data, data + pairs, nullptr, b.limit.data(), coarse(), b.code.high, b.code.doubt_high, n);
     }
     void decide_fine(std::size_t n, Block& b) const {
-        kernels::decide_bits(data + coarse(), data + pairs + coarse(), nullptr, b.limit.data(), pairs - coarse(), b.code.low,
-                             b.code.doubt_low, n);
+        kernels::decide_bits(data + coarse(), data + pairs + coarse(), nullptr, b.limit.data(), pairs - coarse(),
+                             b.code.low, b.code.doubt_low, n);
     }
     int coarse() const { return kernels::coarse_bits(pairs); }
 };
 
-kernels::Counts decode_block(const GrayPairs& frames, const GrayLimits& limits, std::size_t begin, std::size_t n, Block& b,
-                             DecodedView& view) {
+kernels::Counts decode_block(const GrayPairs& frames, const GrayLimits& limits, std::size_t begin, std::size_t n,
+                             Block& b, DecodedView& view) {
     const std::uint8_t *white = frames.white.pixels.data() + begin, *black = frames.black.pixels.data() + begin;
     kernels::expect_next(white, kernels::kFarAhead);
     kernels::expect_next(black, kernels::kFarAhead);
@@ -75,12 +76,13 @@ kernels::Counts decode_block(const GrayPairs& frames, const GrayLimits& limits, 
     if (kernels::highest_contrast(white, black, n) < limits.least_grey)
         return kernels::keep_none(white, limits.saturated_at, column, row, sigma, n);
     // In doubt is what lies below the limit: one grey less than the least that is believed.
-    kernels::doubt_below_contrast(white, black, static_cast<float>(limits.least_share), static_cast<float>(limits.least_grey),
-                                  b.limit.data(), n);
+    kernels::doubt_below_contrast(white, black, static_cast<float>(limits.least_share),
+                                  static_cast<float>(limits.least_grey), b.limit.data(), n);
     const BlockFrames all(frames, begin);
     kernels::LinesAhead ahead(all.data(), all.size());
     const Direction columns{all.data(), static_cast<int>(frames.columns.size() / 2), frames.projector_width};
-    const Direction rows{all.data() + frames.columns.size(), static_cast<int>(frames.rows.size() / 2), frames.projector_height};
+    const Direction rows{all.data() + frames.columns.size(), static_cast<int>(frames.rows.size() / 2),
+                         frames.projector_height};
     const gray_pair_kernel::Limits known{limits.least_grey, limits.saturated_at};
     columns.decide_coarse(n, b);
     if (columns.coarse() >= 2 && !gray_pair_kernel::any_left(white, black, b.code.doubt_high, known, n)) {
@@ -94,7 +96,8 @@ kernels::Counts decode_block(const GrayPairs& frames, const GrayLimits& limits, 
         gray_pair_kernel::find_halves(b.code, rows.size, b.rows.data(), n, ahead);
     }
     constexpr float kSigma_px = 0.29f;
-    return gray_pair_kernel::keep_pairs(b.columns.data(), b.rows.data(), white, black, known, kSigma_px, column, row, sigma, n, ahead);
+    return gray_pair_kernel::keep_pairs(b.columns.data(), b.rows.data(), white, black, known, kSigma_px, column, row,
+                                        sigma, n, ahead);
 }
 
 }  // namespace

@@ -21,9 +21,9 @@ struct GrayLimits {
     int saturated_at = 254;
 };
 
-/// Decodes to whole projector pixels, or between two of them where just the bit of their common border is in doubt; NaN where
-/// any other bit is. `sigma_px` is 0.29, that of an even spread over one pixel. Throws std::invalid_argument when the frames
-/// differ in size or a code has more than 16 bits.
+/// Decodes to whole projector pixels, or between two of them where just the bit of their common border is in doubt; NaN
+/// where any other bit is. `sigma_px` is 0.29, that of an even spread over one pixel. Throws std::invalid_argument when
+/// the frames differ in size or a code has more than 16 bits.
 DecodedView decode_gray_pairs(const GrayPairs& frames, const GrayLimits& limits = {});
 
 }  // namespace planlight

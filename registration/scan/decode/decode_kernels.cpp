@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <limits>
 
-#include "registration/processor_clones.h"
+#include "planning_io/types/processor_clones.h"
 #include "registration/scan/decode/write_past_cache.h"
 
 namespace planlight::decode_kernels {
@@ -17,7 +17,8 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 /// atan(t) for t in [0,1], to 1.2e-5 radians (minimax polynomial): 3e-5 pixels at a period of 16.
 PLANLIGHT_INLINE float arctan_unit(float t) {
     const float s = t * t;
-    return t * (0.99997726f + s * (-0.33262347f + s * (0.19354346f + s * (-0.11643287f + s * (0.05265332f - s * 0.01172120f)))));
+    return t * (0.99997726f +
+                s * (-0.33262347f + s * (0.19354346f + s * (-0.11643287f + s * (0.05265332f - s * 0.01172120f)))));
 }
 
 PLANLIGHT_INLINE float arctan2(float y, float x) {
@@ -70,8 +71,8 @@ PLANLIGHT_CLONES void add_phase(const std::uint8_t* frame, float sine, float cos
 PLANLIGHT_CLONES void sum_eight_phases(const std::uint8_t* const* frames, float* __restrict sine_sum,
                                        float* __restrict cosine_sum, std::uint8_t* __restrict top, std::size_t n) {
     constexpr float kDiagonal = 0.70710678f;
-    const std::uint8_t *f0 = frames[0], *f1 = frames[1], *f2 = frames[2], *f3 = frames[3], *f4 = frames[4], *f5 = frames[5],
-                       *f6 = frames[6], *f7 = frames[7];
+    const std::uint8_t *f0 = frames[0], *f1 = frames[1], *f2 = frames[2], *f3 = frames[3], *f4 = frames[4],
+                       *f5 = frames[5], *f6 = frames[6], *f7 = frames[7];
     for (std::size_t i = 0; i < n; ++i) {
         // Frames half a period apart have opposite weights.
         const int d0 = f0[i] - f4[i], d1 = f1[i] - f5[i], d2 = f2[i] - f6[i], d3 = f3[i] - f7[i];
@@ -104,19 +105,20 @@ PLANLIGHT_CLONES void doubt_below(const float* amplitude, float part, float floo
     }
 }
 
-PLANLIGHT_CLONES void doubt_below_contrast(const std::uint8_t* white, const std::uint8_t* black, float part, float floor,
-                                           std::uint8_t* __restrict limit, std::size_t n) {
+PLANLIGHT_CLONES void doubt_below_contrast(const std::uint8_t* white, const std::uint8_t* black, float part,
+                                           float floor, std::uint8_t* __restrict limit, std::size_t n) {
     for (std::size_t i = 0; i < n; ++i) {
         const float wanted = part * static_cast<float>(white[i] - black[i]), most = wanted > floor ? wanted : floor;
-        // Rounded up, less one: a difference that reaches `most` is none in doubt. (256 - x rounds down what x rounds up.)
+        // Rounded up, less one: a difference that reaches `most` is none in doubt. (256 - x rounds down what x rounds
+        // up.)
         limit[i] = static_cast<std::uint8_t>(255 - static_cast<int>(256.f - (most < 255.f ? most : 255.f)));
     }
 }
 
 namespace {
 
-/// The bits of `kVectors` x 64 pixels, in registers until all are decided. Of every frame several cache lines after each
-/// other: memory gives runs of a frame much sooner than a line of each in turn.
+/// The bits of `kVectors` x 64 pixels, in registers until all are decided. Of every frame several cache lines after
+/// each other: memory gives runs of a frame much sooner than a line of each in turn.
 template <int kVectors>
 PLANLIGHT_INLINE void decide_run(const std::uint8_t* const* frames, const std::uint8_t* const* inverses,
                                  const std::uint8_t* middle, const std::uint8_t* limit_at, int count, std::size_t i,
@@ -157,7 +159,8 @@ PLANLIGHT_CLONES void decide_bits(const std::uint8_t* const* frames, const std::
     std::size_t i = 0;
     for (; i + kRun <= n; i += kRun)
         decide_run<kRun / sizeof(Bytes)>(frames, inverses, middle, limit, bits, i, code, doubt);
-    for (; i + sizeof(Bytes) <= n; i += sizeof(Bytes)) decide_run<1>(frames, inverses, middle, limit, bits, i, code, doubt);
+    for (; i + sizeof(Bytes) <= n; i += sizeof(Bytes))
+        decide_run<1>(frames, inverses, middle, limit, bits, i, code, doubt);
     for (; i < n; ++i) {
         unsigned set = 0, unsure = 0;
         for (int k = 0; k < bits; ++k) {
@@ -178,8 +181,8 @@ PLANLIGHT_CLONES void middle_of(const std::uint8_t* white, const std::uint8_t* b
     }
 }
 
-PLANLIGHT_CLONES void unwrap(const CodeBytes& bytes, const float* phase_px, float period, float size, float* __restrict pixel,
-                             std::size_t n) {
+PLANLIGHT_CLONES void unwrap(const CodeBytes& bytes, const float* phase_px, float period, float size,
+                             float* __restrict pixel, std::size_t n) {
     // A half period reaches a quarter of a period to either side of its centre; the phase may lie up to half a period
     // away before the order is wrong. Close to that end nothing is believed.
     constexpr float kMaxTurns = 0.44f;
@@ -194,8 +197,8 @@ PLANLIGHT_CLONES void unwrap(const CodeBytes& bytes, const float* phase_px, floa
         const float order_b = static_cast<float>(static_cast<int>(turns_b + 1.5f) - 1);
         const float off_a = std::fabs(turns_a - order_a), off_b = std::fabs(turns_b - order_b);
         const float found = phase_px[i] + order_a * period, off = off_a < off_b ? off_a : off_b;
-        const bool good = bool(((doubt & (doubt - 1)) == 0) & (order_a == order_b) & (off <= kMaxTurns) & (found >= -0.5f) &
-                               (found < size - 0.5f));
+        const bool good = bool(((doubt & (doubt - 1)) == 0) & (order_a == order_b) & (off <= kMaxTurns) &
+                               (found >= -0.5f) & (found < size - 0.5f));
         pixel[i] = good ? found : kNaN;
     }
 }
@@ -211,7 +214,8 @@ PLANLIGHT_CLONES Counts keep_good(const DirectionBlock& columns, const Direction
         const float least = direct > l.min_modulation ? direct : l.min_modulation;
         const float first_amplitude = columns.amplitude[i], second_amplitude = second.amplitude[i];
         const float lesser = first_amplitude < second_amplitude ? first_amplitude : second_amplitude;
-        const int first_bright = columns.top[i] >= l.saturated_at, first_dark = (first_amplitude < least) & !first_bright;
+        const int first_bright = columns.top[i] >= l.saturated_at,
+                  first_dark = (first_amplitude < least) & !first_bright;
         const int ahead = !(first_bright | first_dark);  // the first direction has said nothing against it
         // NaN is not equal to itself.
         const int first_good = ahead & (columns.pixel[i] == columns.pixel[i]) &
@@ -228,7 +232,8 @@ PLANLIGHT_CLONES Counts keep_good(const DirectionBlock& columns, const Direction
     }
     if (rows)
         for (std::size_t i = 0; i < n; ++i) row[i] = column[i] == column[i] ? second.pixel[i] : kNaN;
-    return {static_cast<std::uint32_t>(decoded), static_cast<std::uint32_t>(dark), static_cast<std::uint32_t>(saturated),
+    return {static_cast<std::uint32_t>(decoded), static_cast<std::uint32_t>(dark),
+            static_cast<std::uint32_t>(saturated),
             static_cast<std::uint32_t>(static_cast<int>(n) - decoded - dark - saturated)};
 }
 

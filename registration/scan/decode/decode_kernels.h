@@ -16,15 +16,16 @@ struct CodeBytes {
     alignas(64) std::uint8_t low[kBlock], high[kBlock], doubt_low[kBlock], doubt_high[kBlock];
 };
 
-/// Asks for the next block of a frame while this one is worked on: the processor by itself does not follow 40 frames at once.
+/// Asks for the next block of a frame while this one is worked on: the processor by itself does not follow 40 frames at
+/// once.
 inline void expect_next(const std::uint8_t* frame, std::size_t blocks_ahead = 1) {
     const std::uint8_t* next = frame + blocks_ahead * kBlock;
 #pragma GCC unroll 16
     for (std::size_t at = 0; at < kBlock; at += 64) __builtin_prefetch(next + at);
 }
 
-/// Lines of the frames' next block, asked for a few at a time while something else is computed: of what it is asked for all at
-/// once, by `decide_bits`, the processor forgets a part.
+/// Lines of the frames' next block, asked for a few at a time while something else is computed: of what it is asked for
+/// all at once, by `decide_bits`, the processor forgets a part.
 class LinesAhead {
 public:
     LinesAhead(const std::uint8_t* const* frames, std::size_t count) : frames_(frames), lines_(count * kLines) {}
@@ -48,11 +49,12 @@ inline constexpr std::size_t kFarAhead = 6;
 int highest_contrast(const std::uint8_t* white, const std::uint8_t* black, std::size_t n);
 
 /// Adds a fringe frame, weighted by the sine and cosine of its shift; `top` keeps the brightest value.
-void add_phase(const std::uint8_t* frame, float sine, float cosine, float* sine_sum, float* cosine_sum, std::uint8_t* top,
-               std::size_t n);
+void add_phase(const std::uint8_t* frame, float sine, float cosine, float* sine_sum, float* cosine_sum,
+               std::uint8_t* top, std::size_t n);
 
 /// The same for all of eight frames shifted by an eighth of a period each; the sums and `top` are set, not added to.
-void sum_eight_phases(const std::uint8_t* const* frames, float* sine_sum, float* cosine_sum, std::uint8_t* top, std::size_t n);
+void sum_eight_phases(const std::uint8_t* const* frames, float* sine_sum, float* cosine_sum, std::uint8_t* top,
+                      std::size_t n);
 
 /// The fringe amplitude (`amplitude_scale` is 2 / steps) and the phase as pixels in [-period/2, period/2].
 void finish_phase(const float* sine_sum, const float* cosine_sum, float amplitude_scale, float period, float* amplitude,
@@ -62,16 +64,18 @@ void finish_phase(const float* sine_sum, const float* cosine_sum, float amplitud
 void doubt_below(const float* amplitude, float part, float floor, std::uint8_t* limit, std::size_t n);
 
 /// For a code without fringes: the difference below which, by (white - black) and in grey, a bit is in doubt, less one.
-void doubt_below_contrast(const std::uint8_t* white, const std::uint8_t* black, float part, float floor, std::uint8_t* limit,
-                          std::size_t n);
+void doubt_below_contrast(const std::uint8_t* white, const std::uint8_t* black, float part, float floor,
+                          std::uint8_t* limit, std::size_t n);
 
-/// Decides up to 8 bits, coarsest first, each by its frame against its inverse (`inverses`: one a bit), or all against one
-/// other threshold (`inverses` null: `middle`). A difference of `limit` or less is doubt.
+/// Decides up to 8 bits, coarsest first, each by its frame against its inverse (`inverses`: one a bit), or all against
+/// one other threshold (`inverses` null: `middle`). A difference of `limit` or less is doubt.
 void decide_bits(const std::uint8_t* const* frames, const std::uint8_t* const* inverses, const std::uint8_t* middle,
                  const std::uint8_t* limit, int bits, std::uint8_t* code, std::uint8_t* doubt, std::size_t n);
 
 /// How many of a code's bits stand in the upper byte: the coarse ones.
-constexpr int coarse_bits(int bits) { return bits > 8 ? bits - 8 : 0; }
+constexpr int coarse_bits(int bits) {
+    return bits > 8 ? bits - 8 : 0;
+}
 
 /// Halfway between white and black, and half of `limit`: the threshold for a bit without an inverse.
 void middle_of(const std::uint8_t* white, const std::uint8_t* black, const std::uint8_t* limit, std::uint8_t* middle,
@@ -96,9 +100,11 @@ struct DirectionBlock {
     const std::uint8_t* top;  ///< the brightest value seen
 };
 
-/// Writes column, row (if coded: `rows` and `row` not null) and sigma of the believable pixels, NaN for the rest, counted.
+/// Writes column, row (if coded: `rows` and `row` not null) and sigma of the believable pixels, NaN for the rest,
+/// counted.
 Counts keep_good(const DirectionBlock& columns, const DirectionBlock* rows, const std::uint8_t* white,
-                 const std::uint8_t* black, const Limits& limits, float* column, float* row, float* sigma_px, std::size_t n);
+                 const std::uint8_t* black, const Limits& limits, float* column, float* row, float* sigma_px,
+                 std::size_t n);
 
 /// Whether a pixel of the first direction is neither dark nor saturated.
 bool any_lit(const float* amplitude, const std::uint8_t* top, const std::uint8_t* white, const std::uint8_t* black,

@@ -8,6 +8,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "planning_io/types/statistics.h"
 #include "registration/scan/decode/decode_blocks.h"
 #include "registration/scan/decode/fringe_order.h"
 
@@ -23,7 +24,7 @@ using Bytes = const std::uint8_t*;
 struct Direction {
     std::vector<Bytes> gray, inverse, phase;
     std::vector<std::vector<Bytes>> further;  ///< fringes of the further frequencies
-    int size = 0;  ///< of the projector along it, pixels
+    int size = 0;                             ///< of the projector along it, pixels
 
     std::vector<Bytes>& fringes(int frequency) {
         return frequency == 0 ? phase : further[static_cast<std::size_t>(frequency - 1)];
@@ -50,15 +51,26 @@ Frames sort_frames(std::span<const GrayImage> frames, const StripeSettings& stri
         const GrayImage& f = frames[i];
         if (f.width < 1 || f.height < 1 || f.width != width || f.height != height ||
             f.pixels.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
-            throw std::invalid_argument(fmt::format("decode_stripes: frame {} ({}) has {} x {} pixels, the first {} x {}", i,
-                                                    sequence[i].name, f.width, f.height, width, height));
+            throw std::invalid_argument(
+                fmt::format("decode_stripes: frame {} ({}) has {} x {} pixels, the first {} x {}", i, sequence[i].name,
+                            f.width, f.height, width, height));
         Direction& direction = sorted.directions[sequence[i].along_rows ? 1 : 0];
         switch (sequence[i].kind) {
-            case StripePattern::Kind::white: sorted.white = f.pixels.data(); break;
-            case StripePattern::Kind::black: sorted.black = f.pixels.data(); break;
-            case StripePattern::Kind::gray_bit: direction.gray.push_back(f.pixels.data()); break;
-            case StripePattern::Kind::gray_bit_inverse: direction.inverse.push_back(f.pixels.data()); break;
-            case StripePattern::Kind::phase: direction.fringes(sequence[i].frequency).push_back(f.pixels.data()); break;
+            case StripePattern::Kind::white:
+                sorted.white = f.pixels.data();
+                break;
+            case StripePattern::Kind::black:
+                sorted.black = f.pixels.data();
+                break;
+            case StripePattern::Kind::gray_bit:
+                direction.gray.push_back(f.pixels.data());
+                break;
+            case StripePattern::Kind::gray_bit_inverse:
+                direction.inverse.push_back(f.pixels.data());
+                break;
+            case StripePattern::Kind::phase:
+                direction.fringes(sequence[i].frequency).push_back(f.pixels.data());
+                break;
         }
     }
     return sorted;
@@ -100,12 +112,12 @@ double measure_noise(const Direction& direction, std::size_t pixels, const Decod
         const float quadrature = sum[2] * cosine_twice - sum[3] * sine_twice;
         const float in_phase = sum[2] * sine_twice + sum[3] * cosine_twice;
         const float by_phase_noise = 2 * in_phase / first;  // the reference phase is noisy as well
-        off.push_back(std::abs(quadrature) / std::sqrt(static_cast<float>(steps) / 2 * (1 + by_phase_noise * by_phase_noise)));
+        off.push_back(std::abs(quadrature) /
+                      std::sqrt(static_cast<float>(steps) / 2 * (1 + by_phase_noise * by_phase_noise)));
     });
     if (off.size() < 50) return kFallbackNoiseGrey;
-    const auto middle = off.begin() + static_cast<std::ptrdiff_t>(off.size() / 2);
-    std::nth_element(off.begin(), middle, off.end());
-    return std::max(1.4826 * *middle, 0.29);  // 0.29: the rounding to whole grey values
+    const auto middle = median(off);
+    return std::max(1.4826 * middle, 0.29);  // 0.29: the rounding to whole grey values
 }
 
 /// Working arrays of one block of pixels, and what one direction says about it.
@@ -114,7 +126,8 @@ struct Block {
     alignas(64) std::array<std::uint8_t, kernels::kBlock> limit, top, middle, half_limit;
     alignas(64) kernels::CodeBytes code;
     /// Of the further frequencies.
-    alignas(64) std::array<std::array<float, kernels::kBlock>, fringe_order::kMostFrequencies> further_amplitude, further_turns;
+    alignas(64) std::array<std::array<float, kernels::kBlock>, fringe_order::kMostFrequencies> further_amplitude,
+        further_turns;
 
     kernels::DirectionBlock result() const { return {amplitude.data(), pixel.data(), top.data()}; }
 };
@@ -124,8 +137,8 @@ struct Work {
 };
 
 /// Amplitude and phase (projector pixels, or turns with a period of 1) of one frequency.
-void decode_phase(const std::vector<Bytes>& phase, float period, std::size_t begin, std::size_t n, Block& b, float* amplitude,
-                  float* phase_px) {
+void decode_phase(const std::vector<Bytes>& phase, float period, std::size_t begin, std::size_t n, Block& b,
+                  float* amplitude, float* phase_px) {
     const std::size_t steps = phase.size();
     if (steps == 8 && amplitude == b.amplitude.data()) {  // the first: the brightest value is set, not raised
         std::array<Bytes, 8> frames;
@@ -137,10 +150,12 @@ void decode_phase(const std::vector<Bytes>& phase, float period, std::size_t beg
         for (std::size_t k = 0; k < steps; ++k) {
             const double shift = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(steps);
             kernels::add_phase(phase[k] + begin, static_cast<float>(std::sin(shift)),
-                               static_cast<float>(std::cos(shift)), b.sine_sum.data(), b.cosine_sum.data(), b.top.data(), n);
+                               static_cast<float>(std::cos(shift)), b.sine_sum.data(), b.cosine_sum.data(),
+                               b.top.data(), n);
         }
     }
-    kernels::finish_phase(b.sine_sum.data(), b.cosine_sum.data(), 2 / static_cast<float>(steps), period, amplitude, phase_px, n);
+    kernels::finish_phase(b.sine_sum.data(), b.cosine_sum.data(), 2 / static_cast<float>(steps), period, amplitude,
+                          phase_px, n);
 }
 
 /// One standard deviation of a phase in turns, by the inverse of its amplitude.
@@ -148,7 +163,8 @@ float sigma_turns(int steps, double noise_grey) {
     return static_cast<float>(std::sqrt(2.0 / steps) * noise_grey / (2 * std::numbers::pi));
 }
 
-/// The order of the fringes by those of further frequencies. A frequency without light there has no say, and no order is sure.
+/// The order of the fringes by those of further frequencies. A frequency without light there has no say, and no order
+/// is sure.
 void order_by_fringes(const Direction& direction, const StripeSettings& stripes, double noise_grey, std::size_t begin,
                       std::size_t n, Block& b) {
     fringe_order::Fringes others;
@@ -161,14 +177,17 @@ void order_by_fringes(const Direction& direction, const StripeSettings& stripes,
         others.by_period[k] = static_cast<float>(stripes.phase_period_px / stripes.order_periods_px[k]);
         others.sigma_turns[k] = sigma_turns(stripes.order_steps, noise_grey);
     }
-    fringe_order::find_order(b.phase_px.data(), b.amplitude.data(), others, {}, static_cast<float>(stripes.phase_period_px),
-                             static_cast<float>(direction.size), b.pixel.data(), n);
+    fringe_order::find_order(b.phase_px.data(), b.amplitude.data(), others, {},
+                             static_cast<float>(stripes.phase_period_px), static_cast<float>(direction.size),
+                             b.pixel.data(), n);
 }
 
 /// Amplitude and phase of the first frequency.
-void decode_fringes(const Direction& direction, const StripeSettings& stripes, std::size_t begin, std::size_t n, Block& b) {
+void decode_fringes(const Direction& direction, const StripeSettings& stripes, std::size_t begin, std::size_t n,
+                    Block& b) {
     b.top.fill(0);
-    decode_phase(direction.phase, static_cast<float>(stripes.phase_period_px), begin, n, b, b.amplitude.data(), b.phase_px.data());
+    decode_phase(direction.phase, static_cast<float>(stripes.phase_period_px), begin, n, b, b.amplitude.data(),
+                 b.phase_px.data());
 }
 
 /// Then the rest of the code.
@@ -189,8 +208,8 @@ void decode_order(const Frames& frames, const Direction& direction, const Stripe
     const std::uint8_t* limit = stripes.inverse ? b.limit.data() : b.half_limit.data();
     const int count = static_cast<int>(direction.gray.size()), coarse = kernels::coarse_bits(count);
     const auto decide = [&](int first, int some, std::uint8_t* code, std::uint8_t* doubt) {
-        kernels::decide_bits(bits.data() + first, stripes.inverse ? inverses.data() + first : nullptr, b.middle.data(), limit,
-                             some, code, doubt, n);
+        kernels::decide_bits(bits.data() + first, stripes.inverse ? inverses.data() + first : nullptr, b.middle.data(),
+                             limit, some, code, doubt, n);
     };
     decide(0, coarse, b.code.high, b.code.doubt_high);
     decide(coarse, count - coarse, b.code.low, b.code.doubt_low);
@@ -223,12 +242,15 @@ kernels::Counts decode_into(const Frames& frames, const StripeSettings& stripes,
 
 }  // namespace
 
-DecodedView decode_stripes(std::span<const GrayImage> frames, const StripeSettings& stripes, const DecodeSettings& settings) {
+DecodedView decode_stripes(std::span<const GrayImage> frames, const StripeSettings& stripes,
+                           const DecodeSettings& settings) {
     const Frames sorted = sort_frames(frames, stripes);
     DecodedView view = empty_view(frames[0].width, frames[0].height, stripes.rows);
     const std::size_t pixels = frames[0].pixels.size();
-    view.noise_grey = settings.noise_grey > 0 ? settings.noise_grey : measure_noise(sorted.directions[0], pixels, settings);
-    const kernels::Limits limits{static_cast<float>(settings.min_modulation), static_cast<float>(settings.min_direct_fraction),
+    view.noise_grey =
+        settings.noise_grey > 0 ? settings.noise_grey : measure_noise(sorted.directions[0], pixels, settings);
+    const kernels::Limits limits{static_cast<float>(settings.min_modulation),
+                                 static_cast<float>(settings.min_direct_fraction),
                                  static_cast<float>(stripes.phase_period_px / (2 * std::numbers::pi) *
                                                     std::sqrt(2.0 / stripes.phase_steps) * view.noise_grey),
                                  static_cast<float>(settings.max_phase_sigma_px), settings.saturated_at};

@@ -5,7 +5,7 @@
 #include <cstring>
 #include <limits>
 
-#include "registration/processor_clones.h"
+#include "planning_io/types/processor_clones.h"
 
 namespace planlight::fringe_order {
 namespace {
@@ -22,8 +22,9 @@ PLANLIGHT_INLINE void off_whole(Lanes& turns) {
 
 }  // namespace
 
-PLANLIGHT_CLONES void find_order(const float* phase_px, const float* amplitude, const Fringes& others, const Sureness& sure,
-                                 float period, float size, float* __restrict pixel, std::size_t n) {
+PLANLIGHT_CLONES void find_order(const float* phase_px, const float* amplitude, const Fringes& others,
+                                 const Sureness& sure, float period, float size, float* __restrict pixel,
+                                 std::size_t n) {
     const int orders = static_cast<int>(std::ceil(size / period)) + 1;
     const std::size_t count = others.count;
     for (std::size_t begin = 0; begin < n; begin += kLanes) {

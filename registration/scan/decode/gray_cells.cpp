@@ -1,4 +1,5 @@
 #include "registration/scan/decode/gray_cells.h"
+#include "planning_io/types/statistics.h"
 
 #include <tbb/parallel_for.h>
 
@@ -49,8 +50,8 @@ int number_of(int gray) {
     return gray;
 }
 
-/// The middle of a pixel's cell, projector pixels; between two cells where just the bit of their border is in doubt; NaN
-/// where another is.
+/// The middle of a pixel's cell, projector pixels; between two cells where just the bit of their border is in doubt;
+/// NaN where another is.
 float cell_of(const GrayFrames& frames, const GrayDirection& d, std::size_t bits, double cell_px, std::size_t pixel,
               const GrayCellSettings& settings) {
     const double least = 2 * least_difference(frames, pixel, settings);
@@ -82,13 +83,14 @@ double cell_in_camera(const std::vector<float>& code, int width, int height, dou
             if (std::abs(slope) > 0) slopes.push_back(std::abs(slope) / (2 * kStep));  // NaN is not greater
         }
     if (slopes.empty()) return 1;
-    std::nth_element(slopes.begin(), slopes.begin() + static_cast<std::ptrdiff_t>(slopes.size() / 2), slopes.end());
-    return cell_px / std::max(slopes[slopes.size() / 2], 1e-3);
+    return cell_px / std::max(median(slopes), 1e-3);
 }
 
 /// The plane through the codes round a pixel, at the pixel; empty where they lie on none.
-std::optional<float> smoothed(const std::vector<float>& code, int width, int height, int x, int y, int reach, double cell_px) {
-    const double centre = code[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
+std::optional<float> smoothed(const std::vector<float>& code, int width, int height, int x, int y, int reach,
+                              double cell_px) {
+    const double centre =
+        code[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
     const double jump = 4 * cell_px + 4;
     const int step = std::max(1, reach / 4);
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
@@ -98,9 +100,9 @@ std::optional<float> smoothed(const std::vector<float>& code, int width, int hei
         for (int dx = -reach; dx <= reach; dx += step) {
             ++asked;
             if (x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height) continue;
-            const double d =
-                code[static_cast<std::size_t>(y + dy) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x + dx)] -
-                centre;
+            const double d = code[static_cast<std::size_t>(y + dy) * static_cast<std::size_t>(width) +
+                                  static_cast<std::size_t>(x + dx)] -
+                             centre;
             if (!(std::abs(d) <= jump)) continue;
             const Eigen::Vector3d row(1, dx, dy);
             A += row * row.transpose();
@@ -139,7 +141,8 @@ Direction read_direction(const GrayFrames& frames, const GrayDirection& d, bool 
     read.sigma_px = 0.29 * read.cell_px / std::sqrt(std::max(1.0, (2 * reach + 1) / across));
     tbb::parallel_for(0, height, [&](int y) {
         for (int x = 0; x < width; ++x) {
-            const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+            const std::size_t i =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
             if (std::isnan(cells[i])) continue;
             if (const auto code = smoothed(cells, width, height, x, y, reach, read.cell_px)) read.code[i] = *code;
         }
@@ -170,8 +173,10 @@ GrayCells decode_gray_cells(const GrayFrames& frames, const GrayCellSettings& se
     const std::size_t count = frames.white->pixels.size();
     std::vector<Fate> fate(count, Fate::lit);
     for (std::size_t i = 0; i < count; ++i) {
-        if (frames.white->pixels[i] >= settings.saturated_at) fate[i] = Fate::saturated;
-        else if (frames.white->pixels[i] - frames.black->pixels[i] < settings.least_difference_grey) fate[i] = Fate::dark;
+        if (frames.white->pixels[i] >= settings.saturated_at)
+            fate[i] = Fate::saturated;
+        else if (frames.white->pixels[i] - frames.black->pixels[i] < settings.least_difference_grey)
+            fate[i] = Fate::dark;
     }
     GrayCells cells;
     const bool with_rows = !frames.rows.bits.empty();

@@ -15,8 +15,8 @@ struct GrayDirection {
         inverses;  ///< equally many; inverses empty: a bit is decided by the mean of white and black
 };
 
-/// A Gray code without fringes: someone else's sequence, or what is left of ours where the fringes or the finest bits are
-/// missing. `rows.bits` empty: only columns were coded.
+/// A Gray code without fringes: someone else's sequence, or what is left of ours where the fringes or the finest bits
+/// are missing. `rows.bits` empty: only columns were coded.
 struct GrayFrames {
     const GrayImage* white = nullptr;
     const GrayImage* black = nullptr;
@@ -24,8 +24,9 @@ struct GrayFrames {
 };
 
 struct GrayCellSettings {
-    double least_difference_grey = 5, least_share = 0.15;  ///< of (white - black): a bit that differs by less is in doubt
-    double useless_share = 0.5;                            ///< of the lit pixels in doubt: the optics do not resolve the bit
+    double least_difference_grey = 5,
+           least_share = 0.15;   ///< of (white - black): a bit that differs by less is in doubt
+    double useless_share = 0.5;  ///< of the lit pixels in doubt: the optics do not resolve the bit
     int saturated_at = 254;
 };
 
@@ -33,7 +34,8 @@ struct GrayCellSettings {
 /// a plane is fitted to the codes round a pixel, and a pixel off it by more than a cell and a half is dropped.
 struct GrayCells {
     DecodedView view;  ///< `sigma_px` is that of the smoothed column
-    double step_px = 0;  ///< size of the finest cell that could be read, the larger of both directions, projector pixels
+    double step_px =
+        0;  ///< size of the finest cell that could be read, the larger of both directions, projector pixels
     int useless_bits = 0;  ///< captured and too fine for the optics
 };
 

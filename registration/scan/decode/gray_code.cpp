@@ -24,7 +24,8 @@ std::vector<StripePattern> gray_code_patterns(const StripeSettings& stripes) {
     for (const bool along_rows : {false, true}) {
         if (along_rows && !stripes.rows) continue;
         const int bits = bits_for(along_rows ? stripes.height : stripes.width);
-        for (StripePattern& pattern : gray_patterns(bits, along_rows, stripes.inverse)) patterns.push_back(std::move(pattern));
+        for (StripePattern& pattern : gray_patterns(bits, along_rows, stripes.inverse))
+            patterns.push_back(std::move(pattern));
     }
     return patterns;
 }
@@ -32,8 +33,8 @@ std::vector<StripePattern> gray_code_patterns(const StripeSettings& stripes) {
 DecodedView decode_gray_code(std::span<const GrayImage> frames, int projector_width, int projector_height) {
     const int column_bits = bits_for(projector_width), row_bits = bits_for(projector_height);
     if (frames.size() != static_cast<std::size_t>(2 + 2 * column_bits + 2 * row_bits))
-        throw std::invalid_argument(
-            fmt::format("decode_gray_code: {} frames, {} are needed", frames.size(), 2 + 2 * column_bits + 2 * row_bits));
+        throw std::invalid_argument(fmt::format("decode_gray_code: {} frames, {} are needed", frames.size(),
+                                                2 + 2 * column_bits + 2 * row_bits));
     const auto column_frames = static_cast<std::size_t>(2 * column_bits);
     return decode_gray_pairs({frames[0], frames[1], frames.subspan(2, column_frames), frames.subspan(2 + column_frames),
                               projector_width, projector_height});

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <limits>
 
-#include "registration/processor_clones.h"
+#include "planning_io/types/processor_clones.h"
 #include "registration/scan/decode/write_past_cache.h"
 
 namespace planlight::gray_pair_kernel {
@@ -46,7 +46,8 @@ PLANLIGHT_INLINE std::uint32_t sum_of(const Numbers& counts) {
 
 PLANLIGHT_CLONES void find_halves(const decode_kernels::CodeBytes& code, int size, std::uint16_t* halves, std::size_t n,
                                   decode_kernels::LinesAhead& ahead) {
-    const Words end = Words{} + static_cast<std::uint16_t>(size), unknown = Words{} + kUnknown, one = Words{} + 1, none = {};
+    const Words end = Words{} + static_cast<std::uint16_t>(size), unknown = Words{} + kUnknown, one = Words{} + 1,
+                none = {};
     for (std::size_t i = 0; i < n; i += kLanes) {
         ahead.ask_for_four();
         Words number, doubt;
@@ -71,13 +72,14 @@ PLANLIGHT_CLONES bool any_left(const std::uint8_t* white, const std::uint8_t* bl
     const Limits l = limits;
     int left = 0;
     for (std::size_t i = 0; i < n; ++i)
-        left |= (white[i] - black[i] >= l.least_grey) & (white[i] < l.saturated_at) & ((doubt[i] & (doubt[i] - 1)) == 0);
+        left |=
+            (white[i] - black[i] >= l.least_grey) & (white[i] < l.saturated_at) & ((doubt[i] & (doubt[i] - 1)) == 0);
     return left != 0;
 }
 
 PLANLIGHT_CLONES Counts keep_pairs(const std::uint16_t* columns, const std::uint16_t* rows, const std::uint8_t* white,
-                                                   const std::uint8_t* black, const Limits& limits, float sigma_px,
-                                                   float* column, float* row, float* sigma, std::size_t n, decode_kernels::LinesAhead& ahead) {
+                                   const std::uint8_t* black, const Limits& limits, float sigma_px, float* column,
+                                   float* row, float* sigma, std::size_t n, decode_kernels::LinesAhead& ahead) {
     const Numbers least = Numbers{} + static_cast<std::int16_t>(limits.least_grey);
     const Numbers bright_from = Numbers{} + static_cast<std::int16_t>(limits.saturated_at);
     const Numbers none = {}, one = Numbers{} + 1;
@@ -92,10 +94,11 @@ PLANLIGHT_CLONES Counts keep_pairs(const std::uint16_t* columns, const std::uint
         std::memcpy(&b, black + i, sizeof b);
         std::memcpy(&c, columns + i, sizeof c);
         std::memcpy(&r, rows + i, sizeof r);
-        const Numbers light = __builtin_convertvector(w, Numbers), contrast = light - __builtin_convertvector(b, Numbers);
+        const Numbers light = __builtin_convertvector(w, Numbers),
+                      contrast = light - __builtin_convertvector(b, Numbers);
         const Numbers bright = light >= bright_from ? one : none;
         const Numbers unlit = contrast < least ? one & ~bright : none;
-        const Words bad = c == kUnknown ? every_bit : r == kUnknown ? every_bit : (Words)-(bright | unlit);
+        const Words bad = c == kUnknown ? every_bit : r == kUnknown ? every_bit : (Words) - (bright | unlit);
         c |= bad;
         r |= bad;
         decoded += (Numbers)bad + one;

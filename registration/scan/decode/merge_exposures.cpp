@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "planning_io/types/error.h"
+#include "planning_io/types/statistics.h"
 
 namespace planlight {
 namespace {
@@ -24,12 +25,6 @@ double saturated_share(const GrayImage& white, const GrayImage& black) {
     return lit == 0 ? 0 : static_cast<double>(full) / static_cast<double>(lit);
 }
 
-float middle_of(std::vector<float>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 /// Throws where the codes of what both exposures decoded differ by more than their noise: the surface lies elsewhere.
 void check_one_pose(const LargeArray<float>& code, const LargeArray<float>& other, const DecodedView& view,
                     const DecodedView& other_view) {
@@ -43,24 +38,26 @@ void check_one_pose(const LargeArray<float>& code, const LargeArray<float>& othe
         other_sigma.push_back(other_view.sigma_px[i]);
     }
     if (off.size() < kEnough) return;
-    const float a = middle_of(sigma), b = middle_of(other_sigma), median_px = middle_of(off);
+    const float a = median(sigma), b = median(other_sigma), median_px = median(off);
     // Half of all differences lie within 0.67 sigma; Gray codes of different cells also differ by their roundings.
     constexpr float kCells_px = 0.2F;
     const float rounding_px = std::max(a, b) > kCells_px ? 1.5F * std::abs(a - b) : 0;
     if (median_px <= kMost_px + 0.67F * std::hypot(a, b) + rounding_px) return;
     throw CheckFailedError(
-        fmt::format("the exposures are not of one pose: their light differs by {:.2f} projector pixels in the median", median_px),
+        fmt::format("the exposures are not of one pose: their light differs by {:.2f} projector pixels in the median",
+                    median_px),
         "Scan again; the patient and the rig must rest from the first exposure to the last.");
 }
 
-/// How much dimmer the projector's light is in the other exposure: the median over what both decoded; 1 where that is little.
+/// How much dimmer the projector's light is in the other exposure: the median over what both decoded; 1 where that is
+/// little.
 float dimmer_by(const DecodedView& view, const DecodedView& other) {
     constexpr std::size_t kEnough = 100;
     std::vector<float> ratio;
     for (std::size_t i = 0; i < view.column.size(); ++i)
         if (!std::isnan(view.column[i]) && !std::isnan(other.column[i]))
             ratio.push_back(dimness_of(other)[i] / dimness_of(view)[i]);
-    return ratio.size() < kEnough ? 1 : middle_of(ratio);
+    return ratio.size() < kEnough ? 1 : median(ratio);
 }
 
 }  // namespace
@@ -92,13 +89,15 @@ void take_better(DecodedView& view, const DecodedView& other) {
     view.uncertain = left_over;
 }
 
-void add_darker_captures(Projector& projector, StereoCamera& cameras, const Clock& clock, std::vector<ScanCapture>& captures,
-                         const std::function<void(int, int)>& progress, const ExposureSettings& settings) {
+void add_darker_captures(Projector& projector, StereoCamera& cameras, const Clock& clock,
+                         std::vector<ScanCapture>& captures, const std::function<void(int, int)>& progress,
+                         const ExposureSettings& settings) {
     if (captures.empty()) throw std::invalid_argument("add_darker_captures: no capture to judge by");
     StripeSettings darker = captures.back().stripes;
     while (static_cast<int>(captures.size()) < settings.most) {
         const ScanCapture& last = captures.back();  // white and black are the first two pictures
-        const double left = saturated_share(last.left[0], last.left[1]), right = saturated_share(last.right[0], last.right[1]);
+        const double left = saturated_share(last.left[0], last.left[1]),
+                     right = saturated_share(last.right[0], last.right[1]);
         if (std::max(left, right) <= settings.max_saturated) break;
         darker.brightness = static_cast<int>(std::lround(settings.darker * darker.brightness));
         if (darker.brightness < 16) break;

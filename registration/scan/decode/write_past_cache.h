@@ -7,12 +7,13 @@
 #include <xmmintrin.h>
 #endif
 
-#include "registration/processor_clones.h"
+#include "planning_io/types/processor_clones.h"
 
 namespace planlight {
 
-/// Writes a vector of floats without fetching what stood there, which takes half of the time where the memory is slow, and
-/// without putting out of the caches what is needed soon. `to`, aligned to 16 bytes, is read after `finish_writing`.
+/// Writes a vector of floats without fetching what stood there, which takes half of the time where the memory is slow,
+/// and without putting out of the caches what is needed soon. `to`, aligned to 16 bytes, is read after
+/// `finish_writing`.
 template <class Floats>
 PLANLIGHT_INLINE void write_past_cache(const Floats& values, float* to) {
 #ifdef __SSE2__

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "planning_io/types/statistics.h"
 #include "registration/scan/check/camera_gamma.h"
 #include "registration/scan/check/picture_noise.h"
 
@@ -71,7 +72,8 @@ Template make_template(const std::vector<float>& first, const std::vector<float>
     Template t;
     const int width = white.width;
     const auto lit = [&](std::size_t i) {
-        return light[i] > kLeastLight_grey && white.pixels[i] > black.pixels[i] + noise_grey && white.pixels[i] < kSaturated;
+        return light[i] > kLeastLight_grey && white.pixels[i] > black.pixels[i] + noise_grey &&
+               white.pixels[i] < kSaturated;
     };
     Eigen::Array2d sum = Eigen::Array2d::Zero(), squares = sum;
     for (int y = 4; y + 4 < white.height; ++y)
@@ -81,7 +83,8 @@ Template make_template(const std::vector<float>& first, const std::vector<float>
                 !lit(white.index(x, y + 4)))
                 continue;
             const float dx = 0.5F * (first[i + 1] - first[i - 1]),
-                        dy = 0.5F * (first[i + static_cast<std::size_t>(width)] - first[i - static_cast<std::size_t>(width)]);
+                        dy = 0.5F *
+                             (first[i + static_cast<std::size_t>(width)] - first[i - static_cast<std::size_t>(width)]);
             if (std::hypot(dx, dy) > kSteepest) continue;
             t.pixels.push_back({x, y, dx, dy, light[i]});
             sum += Eigen::Array2d(x, y);
@@ -105,7 +108,8 @@ Vector7d laid_on(const Template& t, const std::vector<float>& first, const std::
          {1e9, 24.0, 12.0}) {  // what does not fit a map (an edge, a hand) is given less and less weight
         Vector7d b = Vector7d::Zero();
         for (const auto& p : t.pixels) {
-            const std::size_t i = static_cast<std::size_t>(p.y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(p.x);
+            const std::size_t i =
+                static_cast<std::size_t>(p.y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(p.x);
             const Vector7d J = by_map(t, p);
             const double r = static_cast<double>(first[i]) - static_cast<double>(later[i]) - J.dot(map);
             b += J * std::clamp(r, -huber_grey, huber_grey);
@@ -146,8 +150,7 @@ ScanMovement movement_in_pictures(const ScanCapture& capture, double mm_per_px) 
     movement.camera_gamma = gamma;
     movement.moments = static_cast<int>(moments.size());
     std::vector<Vector7d> maps;
-    for (const auto& moment : moments)
-        maps.push_back(laid_on(t, first, even(moment), white.width));
+    for (const auto& moment : moments) maps.push_back(laid_on(t, first, even(moment), white.width));
     for (std::size_t i = 0; i < maps.size(); ++i)
         for (std::size_t j = i + 1; j < maps.size(); ++j) {
             const double moved_mm = mm_per_px * way_px(t, maps[i], maps[j]);
@@ -163,9 +166,8 @@ double mm_per_left_pixel(const PointCloud& cloud, const CameraModel& left_camera
     std::vector<double> depths;
     for (const auto& p : cloud.points_in_rig) depths.push_back((left_camera.device_from_rig * p).z());
     if (depths.empty()) return 0;
-    const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
-    std::nth_element(depths.begin(), middle, depths.end());
-    return *middle / left_camera.focal_x;
+    const auto middle = median(depths);
+    return middle / left_camera.focal_x;
 }
 
 }  // namespace planlight

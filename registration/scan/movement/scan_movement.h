@@ -10,7 +10,8 @@ namespace planlight {
 /// How far the patient moved between the pictures of one scan.
 struct ScanMovement {
     enum class By { nothing, markers, pictures } by = By::nothing;  ///< nothing: not known, and the next two are 0
-    double moved_mm = 0;   ///< greatest way between two moments: of a marker, or of most of the lit skin across the line of sight
+    double moved_mm =
+        0;  ///< greatest way between two moments: of a marker, or of most of the lit skin across the line of sight
     double turned = 0;     ///< radians, between those moments; by markers only
     std::string from, to;  ///< names of the pictures at those moments
     int moments = 0;       ///< looked at
@@ -18,10 +19,10 @@ struct ScanMovement {
     double camera_gamma = 1;  ///< what was taken out of the pictures; by pictures only
 };
 
-/// From the skin itself, without markers: every even picture of the left camera (`uniform_light_frames`) is laid on the first by an
-/// affine map of least squares over the lit pixels (Lucas & Kanade 1981, one map for all). `mm_per_px`: of the skin in the
-/// left picture. It sees what moves across the line of sight: of a head's way a third to three quarters. `by` is `nothing`
-/// with under three moments or too little that could move in the picture.
+/// From the skin itself, without markers: every even picture of the left camera (`uniform_light_frames`) is laid on the
+/// first by an affine map of least squares over the lit pixels (Lucas & Kanade 1981, one map for all). `mm_per_px`: of
+/// the skin in the left picture. It sees what moves across the line of sight: of a head's way a third to three
+/// quarters. `by` is `nothing` with under three moments or too little that could move in the picture.
 ScanMovement movement_in_pictures(const ScanCapture& capture, double mm_per_px);
 
 /// What a left camera pixel is on the scanned points, mm (median); 0 without points.

@@ -22,7 +22,8 @@ std::vector<UniformLightFrame> uniform_light_frames(const ScanCapture& capture) 
     for (std::size_t i = 0; i < patterns.size(); ++i) {
         const bool next = i + 1 < patterns.size();
         if (patterns[i].kind == Kind::white && next && patterns[i + 1].kind == Kind::black) add({i, i + 1});
-        if (patterns[i].kind == Kind::gray_bit && next && patterns[i + 1].kind == Kind::gray_bit_inverse) add({i, i + 1});
+        if (patterns[i].kind == Kind::gray_bit && next && patterns[i + 1].kind == Kind::gray_bit_inverse)
+            add({i, i + 1});
         if (patterns[i].kind != Kind::phase) continue;
         fringes.push_back(i);
         if (next && patterns[i + 1].kind == Kind::phase && patterns[i + 1].along_rows == patterns[i].along_rows &&

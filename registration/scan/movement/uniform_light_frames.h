@@ -7,8 +7,8 @@
 
 namespace planlight {
 
-/// A moment of a scan under even light: a bit with its inverse, or all fringes of a direction, summed. What is drawn on the
-/// patient cancels; the skin and its markers stay.
+/// A moment of a scan under even light: a bit with its inverse, or all fringes of a direction, summed. What is drawn on
+/// the patient cancels; the skin and its markers stay.
 struct UniformLightFrame {
     std::string name;                 ///< of the first picture that takes part
     double when = 0;                  ///< the middle of its pictures as a share of the sequence, 0 to 1

@@ -32,11 +32,16 @@ std::uint8_t phase_value(const StripeSettings& s, int pixel, int frequency, int 
 
 std::uint8_t value_at(const StripeSettings& s, const StripePattern& pattern, int pixel, int bits) {
     switch (pattern.kind) {
-        case StripePattern::Kind::white: return static_cast<std::uint8_t>(s.brightness);
-        case StripePattern::Kind::black: return 0;
-        case StripePattern::Kind::gray_bit: return gray_value(s, pixel, pattern.index, bits, false);
-        case StripePattern::Kind::gray_bit_inverse: return gray_value(s, pixel, pattern.index, bits, true);
-        case StripePattern::Kind::phase: return phase_value(s, pixel, pattern.frequency, pattern.index);
+        case StripePattern::Kind::white:
+            return static_cast<std::uint8_t>(s.brightness);
+        case StripePattern::Kind::black:
+            return 0;
+        case StripePattern::Kind::gray_bit:
+            return gray_value(s, pixel, pattern.index, bits, false);
+        case StripePattern::Kind::gray_bit_inverse:
+            return gray_value(s, pixel, pattern.index, bits, true);
+        case StripePattern::Kind::phase:
+            return phase_value(s, pixel, pattern.frequency, pattern.index);
     }
     throw std::invalid_argument("draw_stripes: a kind of picture that is not in the sequence");
 }
@@ -53,10 +58,12 @@ void add_direction(const StripeSettings& s, bool along_rows, std::vector<StripeP
                                 fmt::format("{}-phase{}-{}", direction, frequency + 1, step), frequency});
 }
 
-double off_whole(double turns) { return std::abs(turns - std::round(turns)); }
+double off_whole(double turns) {
+    return std::abs(turns - std::round(turns));
+}
 
-/// How far apart the phases of any two of the fringes are at least, in turns over all further frequencies, where these make
-/// `turns` whole turns over all fringes.
+/// How far apart the phases of any two of the fringes are at least, in turns over all further frequencies, where these
+/// make `turns` whole turns over all fringes.
 double least_distance(int fringes, const std::vector<int>& turns) {
     double least = 1;
     for (int apart = 1; 2 * apart <= fringes; ++apart) {
@@ -67,8 +74,8 @@ double least_distance(int fringes, const std::vector<int>& turns) {
     return std::sqrt(least);
 }
 
-/// The two or three frequencies, each lower than the first and over half of it, that keep all fringes farthest apart: their
-/// phases are a lattice (rank 1, Korobov), tried out.
+/// The two or three frequencies, each lower than the first and over half of it, that keep all fringes farthest apart:
+/// their phases are a lattice (rank 1, Korobov), tried out.
 std::vector<int> best_turns(int fringes, int frequencies) {
     std::vector<int> best;
     double farthest = -1;
@@ -77,19 +84,21 @@ std::vector<int> best_turns(int fringes, int frequencies) {
         for (int b = lowest; b < a; b += step)
             for (int c = frequencies == 3 ? lowest : b - 1; c < b; c += step) {
                 const std::vector<int> turns = frequencies == 3 ? std::vector{a, b, c} : std::vector{a, b};
-                if (const double distance = least_distance(fringes, turns); distance > farthest) farthest = distance, best = turns;
+                if (const double distance = least_distance(fringes, turns); distance > farthest)
+                    farthest = distance, best = turns;
             }
     return best;
 }
 
-/// Two fringes of the first frequency at which all the others have nearly the same phase are not told apart: how many fringes
-/// they are apart; 0 where there are none.
+/// Two fringes of the first frequency at which all the others have nearly the same phase are not told apart: how many
+/// fringes they are apart; 0 where there are none.
 int fringes_confused(const StripeSettings& s) {
     constexpr double kLeastTurns = 0.1;
     const int fringes = static_cast<int>(std::ceil(std::max(s.width, s.rows ? s.height : 0) / s.phase_period_px));
     for (int apart = 1; apart < fringes; ++apart) {
         double squares = 0;
-        for (const double period : s.order_periods_px) squares += std::pow(off_whole(apart * s.phase_period_px / period), 2);
+        for (const double period : s.order_periods_px)
+            squares += std::pow(off_whole(apart * s.phase_period_px / period), 2);
         if (squares < kLeastTurns * kLeastTurns) return apart;
     }
     return 0;
@@ -101,11 +110,13 @@ void check_stripes(const StripeSettings& s) {
     const auto refuse = [](const std::string& why) { throw std::invalid_argument("stripes: " + why); };
     if (s.width < 1 || s.height < 1) refuse(fmt::format("the projector has {} x {} pixels", s.width, s.height));
     if (s.phase_steps < 3) refuse(fmt::format("{} phase steps; at least 3 are needed", s.phase_steps));
-    if (!(s.phase_period_px >= 4)) refuse(fmt::format("a phase period of {} pixels; at least 4 are needed", s.phase_period_px));
+    if (!(s.phase_period_px >= 4))
+        refuse(fmt::format("a phase period of {} pixels; at least 4 are needed", s.phase_period_px));
     if (s.brightness < 1 || s.brightness > 255) refuse(fmt::format("a brightness of {}; 1 to 255", s.brightness));
     if (!s.order_periods_px.empty()) {
         if (s.order_steps < 3 || s.order_periods_px.size() > 8)
-            refuse(fmt::format("{} further fringes of {} steps; up to 8 of at least 3", s.order_periods_px.size(), s.order_steps));
+            refuse(fmt::format("{} further fringes of {} steps; up to 8 of at least 3", s.order_periods_px.size(),
+                               s.order_steps));
         for (const double period : s.order_periods_px)
             if (!(period >= 4)) refuse(fmt::format("a phase period of {} pixels; at least 4 are needed", period));
         if (const int apart = fringes_confused(s); apart > 0)
@@ -142,7 +153,9 @@ double period_of(const StripeSettings& s, int frequency) {
     return frequency == 0 ? s.phase_period_px : s.order_periods_px.at(static_cast<std::size_t>(frequency - 1));
 }
 
-int steps_of(const StripeSettings& s, int frequency) { return frequency == 0 ? s.phase_steps : s.order_steps; }
+int steps_of(const StripeSettings& s, int frequency) {
+    return frequency == 0 ? s.phase_steps : s.order_steps;
+}
 
 int gray_bits(const StripeSettings& settings, bool along_rows) {
     if (!settings.order_periods_px.empty()) return 0;
@@ -173,9 +186,11 @@ std::vector<StripePattern> stripe_sequence(const StripeSettings& settings) {
 RgbImage draw_stripes(const StripeSettings& settings, const StripePattern& pattern) {
     check_stripes(settings);
     const int bits = gray_bits(settings, pattern.along_rows);
-    const bool is_gray = pattern.kind == StripePattern::Kind::gray_bit || pattern.kind == StripePattern::Kind::gray_bit_inverse;
+    const bool is_gray =
+        pattern.kind == StripePattern::Kind::gray_bit || pattern.kind == StripePattern::Kind::gray_bit_inverse;
     const bool is_phase = pattern.kind == StripePattern::Kind::phase;
-    const bool is_frequency = pattern.frequency >= 0 && pattern.frequency <= static_cast<int>(settings.order_periods_px.size());
+    const bool is_frequency =
+        pattern.frequency >= 0 && pattern.frequency <= static_cast<int>(settings.order_periods_px.size());
     if (pattern.index < 0 || (is_gray && pattern.index >= bits) ||
         (is_phase && (!is_frequency || pattern.index >= steps_of(settings, pattern.frequency))))
         throw std::invalid_argument(fmt::format("draw_stripes: no picture {} in this sequence", pattern.name));
@@ -188,7 +203,8 @@ RgbImage draw_stripes(const StripeSettings& settings, const StripePattern& patte
         return picture;
     }
     std::vector<Rgb> line(static_cast<std::size_t>(settings.width));
-    for (int x = 0; x < settings.width; ++x) line[static_cast<std::size_t>(x)].fill(value_at(settings, pattern, x, bits));
+    for (int x = 0; x < settings.width; ++x)
+        line[static_cast<std::size_t>(x)].fill(value_at(settings, pattern, x, bits));
     for (int y = 0; y < settings.height; ++y)
         std::copy(line.begin(), line.end(), picture.pixels.begin() + static_cast<std::ptrdiff_t>(picture.index(0, y)));
     return picture;

@@ -23,12 +23,14 @@ public:
           rows_(view.height / stride.y + 1),
           cells_(std::make_unique<std::atomic<bool>[]>(static_cast<std::size_t>(columns_) *
                                                        static_cast<std::size_t>(rows_))) {}
-    void mark(const Eigen::Vector2d& pixel) { cells_[place(column(pixel), row(pixel))].store(true, std::memory_order_relaxed); }
+    void mark(const Eigen::Vector2d& pixel) {
+        cells_[place(column(pixel), row(pixel))].store(true, std::memory_order_relaxed);
+    }
     /// That rectangle's, or one's beside it: the partners of a left grid do not meet every rectangle.
     bool marked(const Eigen::Vector2d& pixel) const {
         const int c = column(pixel), r = row(pixel);
-        return set(c, r) || set(std::max(0, c - 1), r) || set(std::min(columns_ - 1, c + 1), r) || set(c, std::max(0, r - 1)) ||
-               set(c, std::min(rows_ - 1, r + 1));
+        return set(c, r) || set(std::max(0, c - 1), r) || set(std::min(columns_ - 1, c + 1), r) ||
+               set(c, std::max(0, r - 1)) || set(c, std::min(rows_ - 1, r + 1));
     }
 
 private:
@@ -57,9 +59,11 @@ struct Line {
 template <class Make>
 std::vector<Line> for_lines(const DecodedView& view, int stride, const Make& make) {
     std::vector<Line> lines(static_cast<std::size_t>((view.height + stride - 1) / stride));
-    tbb::parallel_for(tbb::blocked_range<int>(0, static_cast<int>(lines.size()), 8), [&](const tbb::blocked_range<int>& range) {
-        for (int r = range.begin(); r < range.end(); ++r) make(r * stride, lines[static_cast<std::size_t>(r)]);
-    });
+    tbb::parallel_for(tbb::blocked_range<int>(0, static_cast<int>(lines.size()), 8),
+                      [&](const tbb::blocked_range<int>& range) {
+                          for (int r = range.begin(); r < range.end(); ++r)
+                              make(r * stride, lines[static_cast<std::size_t>(r)]);
+                      });
     return lines;
 }
 
@@ -68,7 +72,8 @@ void join(const std::vector<Line>& lines, std::vector<ViewMatch> Line::*part, La
     for (const Line& line : lines) begin.push_back(begin.back() + (line.*part).size());
     all.resize(begin.back());
     tbb::parallel_for(std::size_t{0}, lines.size(), [&](std::size_t i) {
-        std::copy((lines[i].*part).begin(), (lines[i].*part).end(), all.begin() + static_cast<std::ptrdiff_t>(begin[i]));
+        std::copy((lines[i].*part).begin(), (lines[i].*part).end(),
+                  all.begin() + static_cast<std::ptrdiff_t>(begin[i]));
     });
 }
 
@@ -94,9 +99,12 @@ private:
     bool known_ = false;
 };
 
-ViewMatch alone(int x, int y, const Correspondence& local) { return {Eigen::Vector2d(x, y), local.code, local.sigma_px, local.whole}; }
+ViewMatch alone(int x, int y, const Correspondence& local) {
+    return {Eigen::Vector2d(x, y), local.code, local.sigma_px, local.whole};
+}
 
-void match_line(const DecodedView& left, const CorrespondenceIndex& in_right, int y, int stride, Seen& seen, Line& line) {
+void match_line(const DecodedView& left, const CorrespondenceIndex& in_right, int y, int stride, Seen& seen,
+                Line& line) {
     Follower partners(in_right);
     Correspondence local;
     const float* column = left.column.data() + static_cast<std::ptrdiff_t>(y) * left.width;
@@ -120,7 +128,8 @@ void match_line(const DecodedView& left, const CorrespondenceIndex& in_right, in
     }
 }
 
-void match_right_line(const DecodedView& right, const CorrespondenceIndex& in_left, int y, int stride, Seen& seen, Line& line) {
+void match_right_line(const DecodedView& right, const CorrespondenceIndex& in_left, int y, int stride, Seen& seen,
+                      Line& line) {
     Follower partners(in_left);
     Correspondence local;
     const float* column = right.column.data() + static_cast<std::ptrdiff_t>(y) * right.width;

@@ -11,9 +11,9 @@ namespace planlight {
 
 /// A pixel of one camera, the projector pixel that lit it, and where the other camera sees that same light.
 struct ViewMatch {
-    Eigen::Vector2d pixel, code;    ///< of the camera; of the projector
-    double sigma_px = 0;            ///< of the code, from the noise alone
-    bool whole = false;             ///< no edge is near the pixel (see Correspondence)
+    Eigen::Vector2d pixel, code;  ///< of the camera; of the projector
+    double sigma_px = 0;          ///< of the code, from the noise alone
+    bool whole = false;           ///< no edge is near the pixel (see Correspondence)
     // Only for pixels that both cameras see:
     Eigen::Vector2d right = Eigen::Vector2d::Zero();
     Eigen::Matrix2d right_by_code = Eigen::Matrix2d::Zero();  ///< derivative of the right pixel by the code
@@ -23,7 +23,7 @@ struct ViewMatch {
 /// What the codes alone say, before any geometry: it holds for every calibration of the rig.
 struct ViewMatches {
     LargeArray<ViewMatch> both, left_only, right_only;  ///< in the order of the pixels of the left (right) picture
-    std::size_t ragged = 0;                              ///< left pixels around which the code is not smooth
+    std::size_t ragged = 0;                             ///< left pixels around which the code is not smooth
     Stride stride;
 };
 

@@ -7,7 +7,8 @@
 namespace planlight {
 namespace {
 
-void add_information(const CameraModel& device, const Eigen::Vector3d& p, double sigma_px, Eigen::Matrix3d& information) {
+void add_information(const CameraModel& device, const Eigen::Vector3d& p, double sigma_px,
+                     Eigen::Matrix3d& information) {
     Eigen::Matrix<double, 2, 3> by_point;
     if (device.width < 1 || !project(device, p, by_point)) return;
     information += by_point.transpose() * by_point / (sigma_px * sigma_px);
@@ -15,8 +16,8 @@ void add_information(const CameraModel& device, const Eigen::Vector3d& p, double
 
 }  // namespace
 
-Eigen::Matrix3d expected_covariance(const Eigen::Vector3d& p_in_rig, const RigCalibration& rig, Triangulation::Seen seen,
-                                    const TriangulationSettings& settings) {
+Eigen::Matrix3d expected_covariance(const Eigen::Vector3d& p_in_rig, const RigCalibration& rig,
+                                    Triangulation::Seen seen, const TriangulationSettings& settings) {
     using Seen = Triangulation::Seen;
     Eigen::Matrix3d information = Eigen::Matrix3d::Zero(), shape = information;
     if (seen != Seen::right_only) add_information(rig.left_camera, p_in_rig, settings.camera_sigma_px, information);

@@ -13,7 +13,7 @@ namespace planlight {
 namespace {
 
 constexpr int kMaxIterations = 20;
-constexpr double kHuber_px = 0.5;  // three times the usual residual: beyond it a point counts linearly
+constexpr double kHuber_px = 0.5;      // three times the usual residual: beyond it a point counts linearly
 constexpr std::size_t kEnough = 8000;  // pairs: together they leave less than a hundredth of a pixel of noise
 
 using Pair = Triangulation::ByCameras;
@@ -45,7 +45,8 @@ struct Normal {
     double weighted_squares = 0, weights = 0;
 };
 
-/// Normal equations about `projector`: rotation and translation in its frame, principal point, logarithm of the focal length.
+/// Normal equations about `projector`: rotation and translation in its frame, principal point, logarithm of the focal
+/// length.
 Normal linearise_part(std::span<const Pair* const> pairs, const CameraModel& projector) {
     Normal normal;
     const Eigen::Matrix3d rig_from_device = projector.device_from_rig.linear().transpose();
@@ -88,7 +89,9 @@ Normal linearise(const std::vector<const Pair*>& pairs, const CameraModel& proje
     return sum;
 }
 
-double rms_of(const Normal& normal) { return std::sqrt(normal.weighted_squares / std::max(2 * normal.weights, 1e-12)); }
+double rms_of(const Normal& normal) {
+    return std::sqrt(normal.weighted_squares / std::max(2 * normal.weights, 1e-12));
+}
 
 CameraModel stepped(CameraModel projector, const Vector9d& step) {
     projector.device_from_rig = transform_from_twist(step.head<6>()) * projector.device_from_rig;
@@ -104,7 +107,8 @@ CameraModel stepped(CameraModel projector, const Vector9d& step) {
 std::optional<Resection> resect_projector(const Triangulation& raw, const RigCalibration& rig,
                                           const ResectionSettings& settings) {
     const auto pairs = usable(raw, settings);
-    if (pairs.size() < settings.min_points || !spread_enough(pairs, rig.projector, settings.min_spread)) return std::nullopt;
+    if (pairs.size() < settings.min_points || !spread_enough(pairs, rig.projector, settings.min_spread))
+        return std::nullopt;
     const int free = settings.free_intrinsics ? 9 : 6;
     Resection result;
     result.projector = rig.projector;

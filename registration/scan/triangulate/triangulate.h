@@ -9,10 +9,10 @@
 namespace planlight {
 
 struct TriangulationSettings {
-    /// What the calibration leaves, one standard deviation of a pixel; the noise of the code is added to it. The projector
-    /// is calibrated worse than the cameras: the cameras place the point, the projector checks it.
+    /// What the calibration leaves, one standard deviation of a pixel; the noise of the code is added to it. The
+    /// projector is calibrated worse than the cameras: the cameras place the point, the projector checks it.
     double camera_sigma_px = 0.1, projector_sigma_px = 0.25;
-    double max_residual_sigma = 3.5;  ///< three-view agreement: normalised residual above which a point is dropped
+    double max_residual_sigma = 3.5;      ///< three-view agreement: normalised residual above which a point is dropped
     double near_mm = 200, far_mm = 3000;  ///< from the projector: the working volume
     bool one_camera = true;               ///< also points that only one camera and the projector see
     int stride = 0;  ///< every how many camera pixels a point is made; 0: so that a view makes at most 75,000
@@ -28,7 +28,7 @@ struct Triangulation {
     enum class Seen : unsigned char { both, left_only, right_only };
     PointCloud cloud;  ///< in rig; one point per left-camera pixel (or right, where only that sees it); no normals yet
     std::vector<Eigen::Vector2i> grid;  ///< per point: the rounded projector pixel (column, row), for neighbourhoods
-    std::vector<Seen> seen;         ///< per point: by whom
+    std::vector<Seen> seen;             ///< per point: by whom
     std::size_t three_view = 0, two_view = 0;
     std::size_t no_partner = 0, disagree = 0, outside_volume = 0;
     std::size_t ragged =
@@ -36,8 +36,8 @@ struct Triangulation {
     Stride stride;  ///< as used
 
     /// Evidence about the calibration, over the points that both cameras placed without the projector: the median of
-    /// (decoded - expected) projector pixel (of the sample below), and the rms distance from the epipolar line in camera
-    /// pixels. Points that the gate drops count as well, or a rig that is off would look fine.
+    /// (decoded - expected) projector pixel (of the sample below), and the rms distance from the epipolar line in
+    /// camera pixels. Points that the gate drops count as well, or a rig that is off would look fine.
     Eigen::Vector2d projector_offset_px = Eigen::Vector2d::Zero();
     double epipolar_rms_px = 0;
 

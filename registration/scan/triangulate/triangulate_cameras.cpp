@@ -47,8 +47,9 @@ public:
         for (long column = middle - 1; column <= middle + 1; ++column) {
             if (column < 0 || column >= static_cast<long>(pixels_.size())) continue;
             for (const Seen& s : pixels_[static_cast<std::size_t>(column)]) {
-                const double off = std::abs(line.x() * s.normalised.x() + line.y() * s.normalised.y() + line.z()) * scale +
-                                   0.25 * static_cast<double>(std::abs(column - middle));
+                const double off =
+                    std::abs(line.x() * s.normalised.x() + line.y() * s.normalised.y() + line.z()) * scale +
+                    0.25 * static_cast<double>(std::abs(column - middle));
                 if (off >= best) continue;
                 best = off;
                 found = Vector2d(s.x, s.y);
@@ -71,7 +72,8 @@ private:
 
 /// The epipolar line of a line of sight in a camera's normalised coordinates.
 Vector3d epipolar_line(const Ray& sight, const CameraModel& camera) {
-    const Vector3d origin = camera.device_from_rig * sight.origin, way = camera.device_from_rig.linear() * sight.direction;
+    const Vector3d origin = camera.device_from_rig * sight.origin,
+                   way = camera.device_from_rig.linear() * sight.direction;
     return origin.cross(way);
 }
 
@@ -110,8 +112,8 @@ struct Pixels {
 };
 
 /// The point of least reprojection in both cameras, and what is left of it (in sigmas).
-void place_by_both(const Pixels& seen, const RigCalibration& rig, const Vector3d& start, const TriangulationSettings& settings,
-                   PointOutcome& outcome) {
+void place_by_both(const Pixels& seen, const RigCalibration& rig, const Vector3d& start,
+                   const TriangulationSettings& settings, PointOutcome& outcome) {
     outcome.kind = PointOutcome::Kind::disagree;
     Vector3d p = start;
     for (int iteration = 0; iteration < 6; ++iteration) {
@@ -142,7 +144,8 @@ void place_by_both(const Pixels& seen, const RigCalibration& rig, const Vector3d
 /// What remains of the right pixel's difference across the epipolar line, right pixels.
 double off_the_line(const Ray& sight, const Vector3d& p, const Vector2d& pixel, const CameraModel& camera) {
     Eigen::Matrix<double, 2, 3> by_point;
-    const auto expected = project(camera, sight.origin + (p - sight.origin).dot(sight.direction) * sight.direction, by_point);
+    const auto expected =
+        project(camera, sight.origin + (p - sight.origin).dot(sight.direction) * sight.direction, by_point);
     if (!expected) return 0;
     const Vector2d along = (by_point * sight.direction).normalized(), d = pixel - *expected;
     return along.x() * d.y() - along.y() * d.x();
@@ -165,13 +168,18 @@ struct Matcher {
         outcome.kind = Kind::no_partner;
         const auto sight = ray_through(rig.left_camera, Vector2d(x, y));
         if (!sight) return;
-        if (by_code) both_directions(Vector2d(x, y), *sight, *local, outcome);
-        else columns_only(*sight, *local, outcome, y);
+        if (by_code)
+            both_directions(Vector2d(x, y), *sight, *local, outcome);
+        else
+            columns_only(*sight, *local, outcome, y);
         if (outcome.kind != Kind::point) return;
-        if (!(outcome.sigma_mm < kMaxSigma_mm)) outcome.kind = Kind::disagree;
-        else if (!in_volume(rig.left_camera, outcome.p_in_rig, settings)) outcome.kind = Kind::outside_volume;
+        if (!(outcome.sigma_mm < kMaxSigma_mm))
+            outcome.kind = Kind::disagree;
+        else if (!in_volume(rig.left_camera, outcome.p_in_rig, settings))
+            outcome.kind = Kind::outside_volume;
     }
-    void both_directions(const Vector2d& pixel, const Ray& sight, const Correspondence& local, PointOutcome& outcome) const {
+    void both_directions(const Vector2d& pixel, const Ray& sight, const Correspondence& local,
+                         PointOutcome& outcome) const {
         CorrespondenceIndex::Match match;
         if (!by_code->find(local.code, match)) return;
         outcome.kind = PointOutcome::Kind::disagree;
@@ -183,8 +191,8 @@ struct Matcher {
         outcome.epipolar_px = off_the_line(sight, *start, match.pixel, rig.right_camera);
         const double code_sigma = std::hypot(local.sigma_px, match.local.sigma_px);
         const double by_code_px = match.local.by_pixel.inverse().norm() / std::sqrt(2.0);
-        place_by_both({pixel, match.pixel, std::hypot(settings.camera_sigma_px, by_code_px * code_sigma)}, rig, *start, settings,
-                      outcome);
+        place_by_both({pixel, match.pixel, std::hypot(settings.camera_sigma_px, by_code_px * code_sigma)}, rig, *start,
+                      settings, outcome);
     }
     void columns_only(const Ray& sight, const Correspondence& local, PointOutcome& outcome, int y) const {
         outcome.pixel_in_projector.y() = y;  // the grid of neighbours: the picture's own rows
@@ -205,8 +213,10 @@ Triangulation triangulate_cameras(const DecodedView& left, const DecodedView& ri
     result.stride = stride_for(left.decoded, settings);
     std::optional<CorrespondenceIndex> by_code;
     std::optional<ColumnIndex> by_column;
-    if (left.row.empty()) by_column.emplace(right, rig.right_camera, projector_width);
-    else by_code.emplace(right, projector_width, projector_height);
+    if (left.row.empty())
+        by_column.emplace(right, rig.right_camera, projector_width);
+    else
+        by_code.emplace(right, projector_width, projector_height);
     const Matcher matcher{left, right, rig, settings, by_code ? &*by_code : nullptr, by_column ? &*by_column : nullptr};
     const auto [step_x, step_y] = result.stride;
     const int columns = (left.width + step_x - 1) / step_x, rows = (left.height + step_y - 1) / step_y;
@@ -216,8 +226,9 @@ Triangulation triangulate_cameras(const DecodedView& left, const DecodedView& ri
             const int x = c * step_x, y = r * step_y;
             if (!std::isnan(left.column[static_cast<std::size_t>(y) * static_cast<std::size_t>(left.width) +
                                         static_cast<std::size_t>(x)]))
-                matcher.place(x, y, outcomes[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) +
-                                             static_cast<std::size_t>(c)]);
+                matcher.place(x, y,
+                              outcomes[static_cast<std::size_t>(r) * static_cast<std::size_t>(columns) +
+                                       static_cast<std::size_t>(c)]);
         }
     });
     collect(outcomes, result);

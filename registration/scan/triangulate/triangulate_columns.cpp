@@ -64,15 +64,17 @@ std::optional<Depth> depth_from_right(const DecodedView& right, const CameraMode
 
 /// Depth from the projector's column and depth from the other camera are two measurements of one number: they must
 /// agree, and their weighted mean is the point.
-void place(const DecodedView& right, const Eigen::Vector2d& pixel, const Correspondence& local, const RigCalibration& rig,
-           const TriangulationSettings& settings, PointOutcome& outcome) {
+void place(const DecodedView& right, const Eigen::Vector2d& pixel, const Correspondence& local,
+           const RigCalibration& rig, const TriangulationSettings& settings, PointOutcome& outcome) {
     outcome.kind = PointOutcome::Kind::no_partner;
     const auto sight = ray_through(rig.left_camera, pixel);
     if (!sight) return;
-    const double middle = (rig.projector.centre_in_rig() - sight->origin).norm() * 0.5 + 0.5 * std::min(settings.far_mm, 1500.0);
+    const double middle =
+        (rig.projector.centre_in_rig() - sight->origin).norm() * 0.5 + 0.5 * std::min(settings.far_mm, 1500.0);
     const auto by_projector = depth_of_column(*sight, local.code.x(), rig.projector, middle);
     if (!by_projector) return;
-    const auto by_right = depth_from_right(right, rig.right_camera, *sight, local, *by_projector, settings.camera_sigma_px);
+    const auto by_right =
+        depth_from_right(right, rig.right_camera, *sight, local, *by_projector, settings.camera_sigma_px);
     if (!by_right) return;
     const Eigen::Vector3d p = sight->origin + by_right->t * sight->direction;
     Eigen::Matrix<double, 2, 3> by_point;
@@ -88,9 +90,12 @@ void place(const DecodedView& right, const Eigen::Vector2d& pixel, const Corresp
     outcome.p_in_rig = sight->origin + (wp * *by_projector + wr * by_right->t) / (wp + wr) * sight->direction;
     outcome.sigma_mm = 1 / std::sqrt(wp + wr);
     const auto at = project(rig.projector, outcome.p_in_rig);
-    if (disagreement > settings.max_residual_sigma || !at) outcome.kind = PointOutcome::Kind::disagree;
-    else if (!in_volume(rig.projector, outcome.p_in_rig, settings)) outcome.kind = PointOutcome::Kind::outside_volume;
-    else outcome.kind = PointOutcome::Kind::point;
+    if (disagreement > settings.max_residual_sigma || !at)
+        outcome.kind = PointOutcome::Kind::disagree;
+    else if (!in_volume(rig.projector, outcome.p_in_rig, settings))
+        outcome.kind = PointOutcome::Kind::outside_volume;
+    else
+        outcome.kind = PointOutcome::Kind::point;
     if (at) outcome.pixel_in_projector = {local.code.x(), at->y()};
 }
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "registration/processor_clones.h"
+#include "planning_io/types/processor_clones.h"
 
 // Written without branches and with plain numbers, or the compiler could not put points side by side.
 namespace planlight::triangulate_kernel {
@@ -16,7 +16,9 @@ struct Symmetric {
     double xx, xy, xz, yy, yz, zz;
 };
 
-PLANLIGHT_INLINE double dot(const Triple& a, const Triple& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+PLANLIGHT_INLINE double dot(const Triple& a, const Triple& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 
 /// The distorted normalised point, and its (symmetric) derivative.
 struct Distorted {
@@ -25,7 +27,8 @@ struct Distorted {
 PLANLIGHT_INLINE Distorted distort(const Device& d, double x, double y) {
     const double r2 = x * x + y * y;
     const double radial = 1 + r2 * (d.k1 + r2 * (d.k2 + r2 * d.k3)), slope = d.k1 + r2 * (2 * d.k2 + 3 * r2 * d.k3);
-    return {x * radial + 2 * d.p1 * x * y + d.p2 * (r2 + 2 * x * x), y * radial + d.p1 * (r2 + 2 * y * y) + 2 * d.p2 * x * y,
+    return {x * radial + 2 * d.p1 * x * y + d.p2 * (r2 + 2 * x * x),
+            y * radial + d.p1 * (r2 + 2 * y * y) + 2 * d.p2 * x * y,
             radial + 2 * x * x * slope + 2 * d.p1 * y + 6 * d.p2 * x, 2 * x * y * slope + 2 * d.p1 * x + 2 * d.p2 * y,
             radial + 2 * y * y * slope + 6 * d.p1 * y + 2 * d.p2 * x};
 }
@@ -72,7 +75,8 @@ PLANLIGHT_INLINE Seen see(const Device& d, const Triple& p, double& good) {
 }
 
 /// The middle of the shortest way between two rays; `along` is how far the first one goes to it.
-PLANLIGHT_INLINE Triple between(const Device& a, const Device& b, const Triple& u, const Triple& v, double& along, double& good) {
+PLANLIGHT_INLINE Triple between(const Device& a, const Device& b, const Triple& u, const Triple& v, double& along,
+                                double& good) {
     const Triple w{b.eye[0] - a.eye[0], b.eye[1] - a.eye[1], b.eye[2] - a.eye[2]};
     const double cosine = dot(u, v), sine_squared = 1 - cosine * cosine, wu = dot(w, u), wv = dot(w, v);
     const double by_sine = 1 / (sine_squared > 1e-9 ? sine_squared : 1e-9);
@@ -101,7 +105,9 @@ PLANLIGHT_INLINE void add_row(Normal& n, const Triple& j, double r) {
     n.b.z += j.z * r;
     n.squares += r * r;
 }
-PLANLIGHT_INLINE Triple scaled(const Triple& a, double s) { return {a.x * s, a.y * s, a.z * s}; }
+PLANLIGHT_INLINE Triple scaled(const Triple& a, double s) {
+    return {a.x * s, a.y * s, a.z * s};
+}
 /// a + s b + t c
 PLANLIGHT_INLINE Triple sum(const Triple& a, double s, const Triple& b, double t, const Triple& c) {
     return {a.x + s * b.x + t * c.x, a.y + s * b.y + t * c.y, a.z + s * b.z + t * c.z};
@@ -110,8 +116,12 @@ PLANLIGHT_INLINE Triple sum(const Triple& a, double s, const Triple& b, double t
 PLANLIGHT_INLINE Symmetric inverse(const Symmetric& m) {
     const double xx = m.yy * m.zz - m.yz * m.yz, xy = m.xz * m.yz - m.xy * m.zz, xz = m.xy * m.yz - m.xz * m.yy;
     const double by_determinant = 1 / (m.xx * xx + m.xy * xy + m.xz * xz);
-    return {xx * by_determinant, xy * by_determinant, xz * by_determinant, (m.xx * m.zz - m.xz * m.xz) * by_determinant,
-            (m.xy * m.xz - m.xx * m.yz) * by_determinant, (m.xx * m.yy - m.xy * m.xy) * by_determinant};
+    return {xx * by_determinant,
+            xy * by_determinant,
+            xz * by_determinant,
+            (m.xx * m.zz - m.xz * m.xz) * by_determinant,
+            (m.xy * m.xz - m.xx * m.yz) * by_determinant,
+            (m.xx * m.yy - m.xy * m.xy) * by_determinant};
 }
 
 PLANLIGHT_INLINE Symmetric square(const Symmetric& m) {
@@ -157,7 +167,8 @@ PLANLIGHT_CLONES void start_three(const Device& left, const Device& right, const
     const Device l = left, r = right, d = projector;
     for (int i = 0; i < kLanes; ++i) {
         double good = 1, along = 0;
-        const Triple u = direction_of(l, p.pixel_x[i], p.pixel_y[i], good), v = direction_of(r, p.right_x[i], p.right_y[i], good);
+        const Triple u = direction_of(l, p.pixel_x[i], p.pixel_y[i], good),
+                     v = direction_of(r, p.right_x[i], p.right_y[i], good);
         const Triple q = between(l, r, u, v, along, good);
         const Seen lit = see(d, q, good);
         // What remains of the difference to the right pixel across the direction in which depth moves it.
@@ -179,7 +190,8 @@ PLANLIGHT_CLONES void start_two(const Device& camera, const Device& projector, P
     const Device c = camera, d = projector;
     for (int i = 0; i < kLanes; ++i) {
         double good = 1, along = 0;
-        const Triple u = direction_of(c, p.pixel_x[i], p.pixel_y[i], good), v = direction_of(d, p.code_x[i], p.code_y[i], good);
+        const Triple u = direction_of(c, p.pixel_x[i], p.pixel_y[i], good),
+                     v = direction_of(d, p.code_x[i], p.code_y[i], good);
         const Triple q = between(c, d, u, v, along, good);
         p.x[i] = q.x;
         p.y[i] = q.y;
@@ -188,8 +200,8 @@ PLANLIGHT_CLONES void start_two(const Device& camera, const Device& projector, P
     }
 }
 
-PLANLIGHT_CLONES void adjust_three(const Device& left, const Device& right, const Device& projector, const Sigmas& sigmas,
-                                   Points& p) {
+PLANLIGHT_CLONES void adjust_three(const Device& left, const Device& right, const Device& projector,
+                                   const Sigmas& sigmas, Points& p) {
     const Device l = left, r = right, d = projector;
     const double camera = sigmas.camera_px * sigmas.camera_px, lamp = sigmas.projector_px * sigmas.projector_px;
     const double by_camera = 1 / sigmas.camera_px;

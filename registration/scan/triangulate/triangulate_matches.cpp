@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "planning_io/types/statistics.h"
 #include "registration/scan/triangulate/triangulate_kernel.h"
 #include "registration/scan/triangulate/triangulate_parts.h"
 
@@ -38,7 +39,8 @@ struct Batch {
 
 struct Rig {
     Device left, right, projector;
-    explicit Rig(const RigCalibration& rig) : left(rig.left_camera), right(rig.right_camera), projector(rig.projector) {}
+    explicit Rig(const RigCalibration& rig)
+        : left(rig.left_camera), right(rig.right_camera), projector(rig.projector) {}
 };
 
 /// Fills the lanes; unused ones repeat the first match.
@@ -66,22 +68,31 @@ void place(const Rig& rig, Seen seen, const TriangulationSettings& settings, Bat
     const triangulate_kernel::Sigmas sigmas{settings.camera_sigma_px, settings.projector_sigma_px};
     Points& p = batch.points;
     const Device& camera = seen == Seen::right_only ? rig.right : rig.left;
-    if (seen == Seen::both) start_three(rig.left, rig.right, rig.projector, p);
-    else start_two(camera, rig.projector, p);
+    if (seen == Seen::both)
+        start_three(rig.left, rig.right, rig.projector, p);
+    else
+        start_two(camera, rig.projector, p);
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-        if (seen == Seen::both) adjust_three(rig.left, rig.right, rig.projector, sigmas, p);
-        else adjust_two(camera, rig.projector, sigmas, p);
+        if (seen == Seen::both)
+            adjust_three(rig.left, rig.right, rig.projector, sigmas, p);
+        else
+            adjust_two(camera, rig.projector, sigmas, p);
         if (*std::max_element(p.step_squared, p.step_squared + batch.count) < kMaxStep_mm * kMaxStep_mm) break;
     }
     find_worst_sigma(p);
     const double allowed = settings.max_residual_sigma * settings.max_residual_sigma;
     for (std::size_t i = 0; i < batch.count; ++i) {
-        const double dx = p.x[i] - rig.projector.eye[0], dy = p.y[i] - rig.projector.eye[1], dz = p.z[i] - rig.projector.eye[2];
+        const double dx = p.x[i] - rig.projector.eye[0], dy = p.y[i] - rig.projector.eye[1],
+                     dz = p.z[i] - rig.projector.eye[2];
         const double away = std::sqrt(dx * dx + dy * dy + dz * dz);
-        const bool solved = p.good[i] != 0 && p.step_squared[i] < kMaxStep_mm * kMaxStep_mm && p.residual_squared[i] <= allowed;
-        if (!solved) batch.fate[i] = Fate::disagree;
-        else if (!(away >= settings.near_mm && away <= settings.far_mm)) batch.fate[i] = Fate::outside_volume;
-        else batch.fate[i] = p.sigma_mm[i] < kMaxSigma_mm ? Fate::point : Fate::disagree;
+        const bool solved =
+            p.good[i] != 0 && p.step_squared[i] < kMaxStep_mm * kMaxStep_mm && p.residual_squared[i] <= allowed;
+        if (!solved)
+            batch.fate[i] = Fate::disagree;
+        else if (!(away >= settings.near_mm && away <= settings.far_mm))
+            batch.fate[i] = Fate::outside_volume;
+        else
+            batch.fate[i] = p.sigma_mm[i] < kMaxSigma_mm ? Fate::point : Fate::disagree;
     }
 }
 
@@ -116,8 +127,8 @@ void keep_points(const std::vector<const ViewMatch*>& matches, std::size_t begin
     }
 }
 
-void keep_evidence(const std::vector<const ViewMatch*>& matches, std::size_t begin, const Batch& batch, std::size_t sample_every,
-                   Part& part) {
+void keep_evidence(const std::vector<const ViewMatch*>& matches, std::size_t begin, const Batch& batch,
+                   std::size_t sample_every, Part& part) {
     const Points& p = batch.points;
     for (std::size_t i = 0; i < batch.count; ++i) {
         if (p.good[i] == 0) continue;
@@ -174,12 +185,6 @@ void append(const std::vector<Part>& parts, Seen seen, Triangulation& result) {
     });
 }
 
-double median(std::vector<float>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 void tell_evidence(const std::vector<Part>& parts, Triangulation& result) {
     std::vector<float> offset_x, offset_y;
     double squares = 0;
@@ -193,8 +198,8 @@ void tell_evidence(const std::vector<Part>& parts, Triangulation& result) {
     }
     if (offset_x.empty()) return;
     result.epipolar_rms_px = std::sqrt(squares / static_cast<double>(count));
-    tbb::parallel_invoke([&] { result.projector_offset_px.x() = median(offset_x); },
-                         [&] { result.projector_offset_px.y() = median(offset_y); });
+    tbb::parallel_invoke([&] { result.projector_offset_px.x() = median(std::move(offset_x)); },
+                         [&] { result.projector_offset_px.y() = median(std::move(offset_y)); });
 }
 
 /// At an edge of an object, a shadow or the projector's picture, blur mixes light with darkness and shifts the code.
@@ -206,12 +211,14 @@ bool near_an_edge(const ViewMatch& match, const CameraModel& projector) {
 }
 
 /// The matches of one camera that may be used, every `every`-th.
-std::vector<const ViewMatch*> usable(const LargeArray<ViewMatch>& matches, const CameraModel& projector, std::size_t every,
-                                     Triangulation& result) {
+std::vector<const ViewMatch*> usable(const LargeArray<ViewMatch>& matches, const CameraModel& projector,
+                                     std::size_t every, Triangulation& result) {
     std::vector<const ViewMatch*> chosen;
     for (std::size_t i = 0; i < matches.size(); i += every) {
-        if (near_an_edge(matches[i], projector)) ++result.ragged;
-        else chosen.push_back(&matches[i]);
+        if (near_an_edge(matches[i], projector))
+            ++result.ragged;
+        else
+            chosen.push_back(&matches[i]);
     }
     return chosen;
 }
@@ -226,8 +233,8 @@ ViewMatches match_views(const DecodedView& left, const DecodedView& right, const
                        stride_for(std::max(left.decoded, right.decoded), settings), settings.one_camera);
 }
 
-Triangulation triangulate_matches(const ViewMatches& matches, const RigCalibration& rig, const TriangulationSettings& settings,
-                            std::size_t every) {
+Triangulation triangulate_matches(const ViewMatches& matches, const RigCalibration& rig,
+                                  const TriangulationSettings& settings, std::size_t every) {
     const Rig devices(rig);
     Triangulation result;
     result.stride = matches.stride;

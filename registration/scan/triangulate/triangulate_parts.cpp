@@ -1,4 +1,5 @@
 #include "registration/scan/triangulate/triangulate_parts.h"
+#include "planning_io/types/statistics.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -6,13 +7,6 @@
 
 namespace planlight {
 namespace {
-
-double median(std::vector<double>& values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// A sample of the points that the cameras placed, evenly along the list.
 void keep_by_cameras(const std::vector<PointOutcome>& outcomes, std::size_t count, Triangulation& result) {
@@ -37,7 +31,7 @@ void collect_evidence(const std::vector<PointOutcome>& outcomes, Triangulation& 
     if (du.empty()) return;
     keep_by_cameras(outcomes, du.size(), result);
     result.epipolar_rms_px = std::sqrt(squares / static_cast<double>(du.size()));
-    result.projector_offset_px = {median(du), median(dv)};
+    result.projector_offset_px = {median(std::move(du)), median(std::move(dv))};
 }
 
 }  // namespace

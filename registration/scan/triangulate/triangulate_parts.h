@@ -11,14 +11,21 @@ namespace planlight {
 
 /// What became of one camera pixel.
 struct PointOutcome {
-    enum class Kind : unsigned char { nothing, point, no_partner, ragged, disagree, outside_volume } kind = Kind::nothing;
+    enum class Kind : unsigned char {
+        nothing,
+        point,
+        no_partner,
+        ragged,
+        disagree,
+        outside_volume
+    } kind = Kind::nothing;
     Triangulation::Seen seen = Triangulation::Seen::both;
     Eigen::Vector3d p_in_rig = Eigen::Vector3d::Zero();
     Eigen::Vector2d pixel_in_projector = Eigen::Vector2d::Zero();
     double sigma_mm = 0;
-    bool placed_by_cameras = false;                                   ///< then the next three are set
-    Eigen::Vector3d p_by_cameras = Eigen::Vector3d::Zero();           ///< without the projector
-    Eigen::Vector2d projector_offset_px = Eigen::Vector2d::Zero();    ///< decoded - expected
+    bool placed_by_cameras = false;                                 ///< then the next three are set
+    Eigen::Vector3d p_by_cameras = Eigen::Vector3d::Zero();         ///< without the projector
+    Eigen::Vector2d projector_offset_px = Eigen::Vector2d::Zero();  ///< decoded - expected
     double epipolar_px = 0;
 };
 

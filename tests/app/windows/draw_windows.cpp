@@ -5,7 +5,8 @@
 #include "fake_model.h"
 #include "write_picture.h"
 
-/// draw_windows scene FILE [azimuth elevation], or draw_windows window FILE [width height status [view of the match: 0 to 2]]
+/// draw_windows scene FILE [azimuth elevation], or draw_windows window FILE [width height status [view of the match: 0
+/// to 2]]
 int main(int argc, char** argv) {
     using namespace planlight;
     OperatorModel model = test::fake_model();

@@ -9,13 +9,13 @@
 namespace planlight::test {
 namespace {
 
-Stroke loop(StrokeKind kind, int item, const Rgb& colour, const Eigen::Vector3d& centre_in_ct, double radius_mm, double wave) {
+Stroke loop(StrokeKind kind, int item, const Rgb& colour, const Eigen::Vector3d& centre_in_ct, double radius_mm,
+            double wave) {
     Stroke stroke{kind, item, colour, 0.8, true, {}, {}};
     const Eigen::Vector3d normal = analytic_head_normal(centre_in_ct), u = normal.unitOrthogonal(), v = normal.cross(u);
     for (int i = 0; i < 120; ++i) {
         const double angle = 2 * std::numbers::pi * i / 120, r = radius_mm * (1 + wave * std::cos(3 * angle));
-        const Eigen::Vector3d p =
-            on_analytic_head(centre_in_ct + r * (std::cos(angle) * u + std::sin(angle) * v));
+        const Eigen::Vector3d p = on_analytic_head(centre_in_ct + r * (std::cos(angle) * u + std::sin(angle) * v));
         stroke.points_in_ct.push_back(p);
         stroke.normals_in_ct.push_back(analytic_head_normal(p));
     }
@@ -52,7 +52,8 @@ CameraPicture camera(const std::string& title, double shift) {
         for (int y = -12; y <= 12; ++y)
             for (int x = -12; x <= 12; ++x)
                 if (x * x + y * y < 144)
-                    picture.at(static_cast<int>(at.x()) + x, static_cast<int>(at.y()) + y) = x * x + y * y < 36 ? 10 : 235;
+                    picture.at(static_cast<int>(at.x()) + x, static_cast<int>(at.y()) + y) =
+                        x * x + y * y < 36 ? 10 : 235;
         result.found.push_back({at, 6});
     }
     result.picture = std::make_shared<GrayImage>(std::move(picture));
@@ -70,8 +71,8 @@ SceneModel scene() {
     result.cloud_distance_mm = distance;
     result.plan = std::make_shared<PlanDrawing>(plan_on_forehead());
     auto markers = std::make_shared<std::vector<SceneMarker>>();
-    for (const Eigen::Vector3d& near : {Eigen::Vector3d(-70, -50, 20), Eigen::Vector3d(0, -95, 75), Eigen::Vector3d(62, -60, 20),
-                                        Eigen::Vector3d(-20, -90, 20)}) {
+    for (const Eigen::Vector3d& near : {Eigen::Vector3d(-70, -50, 20), Eigen::Vector3d(0, -95, 75),
+                                        Eigen::Vector3d(62, -60, 20), Eigen::Vector3d(-20, -90, 20)}) {
         const Eigen::Vector3d p = on_analytic_head(near);
         markers->push_back({p, analytic_head_normal(p), markers->size() != 2});
     }
@@ -90,7 +91,8 @@ FitViews fit_of(const SceneModel& scene) {
     fit.before_ct_from_rig = Eigen::Translation3d(-4, 0, 0) * scene.ct_from_rig;
     fit.before_distance_mm = std::make_shared<std::vector<float>>(scene.cloud->size(), 1.2F);
     auto predicted = std::make_shared<std::vector<float>>();
-    for (const Eigen::Vector3d& p : scene.skin->vertices_in_ct) predicted->push_back(static_cast<float>(0.5 + (p.y() + 90) / 60));
+    for (const Eigen::Vector3d& p : scene.skin->vertices_in_ct)
+        predicted->push_back(static_cast<float>(0.5 + (p.y() + 90) / 60));
     fit.predicted_mm = predicted;
     return fit;
 }
@@ -98,7 +100,8 @@ FitViews fit_of(const SceneModel& scene) {
 /// The whole head as scanned, so that every place can be clicked on both sides.
 LandmarkViews landmarks_of(const SceneModel& scene) {
     static const SkinSurface skin(*scene.skin);
-    return {&skin, std::make_shared<ClickableScan>(ClickableScan{SkinSurface(*scene.skin), RigidTransform::Identity()})};
+    return {&skin,
+            std::make_shared<ClickableScan>(ClickableScan{SkinSurface(*scene.skin), RigidTransform::Identity()})};
 }
 
 }  // namespace
@@ -107,18 +110,21 @@ OperatorModel fake_model() {
     OperatorModel model;
     model.case_title = "Case 0051 · right frontal";
     model.case_subtitle = "CT 2012-09-14 · plan v3 · 1 osteotomy, 4 boreholes, 1 trajectory";
-    model.steps = {StepState::done, StepState::done, StepState::done, StepState::done, StepState::done, StepState::active};
+    model.steps = {StepState::done, StepState::done, StepState::done,
+                   StepState::done, StepState::done, StepState::active};
     model.scene = scene();
     model.left = camera("Left camera", -40);
     model.right = camera("Right camera", 40);
     model.rows = {{{40, 235, 110}, "Osteotomy, 148.0 mm", {}, 0.7, 0.3}};
     for (int i = 1; i <= 4; ++i)
-        model.rows.push_back({{70, 170, 250}, "Borehole " + std::to_string(i) + ", ⌀ 7.0 mm", 6.0, 0.6 + 0.05 * i, 0.2});
+        model.rows.push_back(
+            {{70, 170, 250}, "Borehole " + std::to_string(i) + ", ⌀ 7.0 mm", 6.0, 0.6 + 0.05 * i, 0.2});
     model.rows.push_back({{255, 180, 30}, "Trajectory, 60.0 mm", 60.0, 1.2, 0.3});
     model.evidence = {"One answer: the runner-up is 2.4 times worse · this patient · not the mirror image",
                       "Surface sufficient: weakest direction 0.2 mm · patient still during the scan",
                       "Projector unmoved since 09:41 · last check 0.4 s ago"};
-    model.status = {StatusKind::aligned, "The plan on the skin may be used.",
+    model.status = {StatusKind::aligned,
+                    "The plan on the skin may be used.",
                     {"Trajectory target: 1.2 mm at 60.0 mm depth: check before drilling deep."}};
     model.figures = {0.3, 60.0, 4.1, 1.2, 41.0};
     model.scan = {true, ""};
@@ -147,8 +153,8 @@ OperatorModel fake_model_with(StatusKind kind) {
         model.figures = {};
     } else if (kind == StatusKind::scanning || kind == StatusKind::ready) {
         model.status.headline = kind == StatusKind::ready ? "Ready to scan." : "Pattern 12 of 44. Keep the head still.";
-        model.steps = {StepState::done, StepState::done, StepState::active, StepState::waiting, StepState::waiting,
-                       StepState::waiting};
+        model.steps = {StepState::done,    StepState::done,    StepState::active,
+                       StepState::waiting, StepState::waiting, StepState::waiting};
         model.scan = {false, "is running"};
         model.do_register = {false, "scan first"};
         model.track = {false, "register first"};

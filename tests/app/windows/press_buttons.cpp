@@ -1,6 +1,6 @@
-// Run by press_buttons.sh: shows the operator window with a fake model, writes where its controls are into FOLDER/actions
-// and FOLDER/views (FOLDER/landmarks once these are clicked), and prints every action and landmark, until the window is
-// closed or a minute has passed. Argument: FOLDER.
+// Run by press_buttons.sh: shows the operator window with a fake model, writes where its controls are into
+// FOLDER/actions and FOLDER/views (FOLDER/landmarks once these are clicked), and prints every action and landmark,
+// until the window is closed or a minute has passed. Argument: FOLDER.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -25,10 +25,11 @@ void write_place(std::ofstream& places, const std::string& name, const std::arra
     places << name << ' ' << x + width / 2 << ' ' << y + height / 2 << ' ' << width << ' ' << height << '\n';
 }
 
-/// Both places on the surface of the head, which is the same on both sides, and where it was clicked: on the front of it.
+/// Both places on the surface of the head, which is the same on both sides, and where it was clicked: on the front of
+/// it.
 bool on_the_head(const PointPair& pair) {
-    return std::abs(test::analytic_head_distance(pair.in_ct)) < 0.5 && std::abs(test::analytic_head_distance(pair.in_rig)) < 0.5 &&
-           pair.in_rig.y() < 0;
+    return std::abs(test::analytic_head_distance(pair.in_ct)) < 0.5 &&
+           std::abs(test::analytic_head_distance(pair.in_rig)) < 0.5 && pair.in_rig.y() < 0;
 }
 
 }  // namespace
@@ -48,14 +49,18 @@ int main(int, char** argv) {
     };
     {
         std::ofstream places(folder + "/actions");
-        for (const auto& [name, action] : {std::pair("scan", OperatorAction::scan), {"register", OperatorAction::do_register},
-                                           {"track", OperatorAction::track}, {"stop", OperatorAction::stop},
-                                           {"dark", OperatorAction::dark}, {"confirm", OperatorAction::confirm}}) {
+        for (const auto& [name, action] : {std::pair("scan", OperatorAction::scan),
+                                           {"register", OperatorAction::do_register},
+                                           {"track", OperatorAction::track},
+                                           {"stop", OperatorAction::stop},
+                                           {"dark", OperatorAction::dark},
+                                           {"confirm", OperatorAction::confirm}}) {
             write_place(places, name, window.place_of(action));
         }
     }
     write_places("views", {"before", "after", "error", "landmarks"});
-    const char* const names[] = {"none", "scan", "register", "track", "stop", "dark", "quit", "confirm", "use landmarks"};
+    const char* const names[] = {"none", "scan", "register", "track",        "stop",
+                                 "dark", "quit", "confirm",  "use landmarks"};
     const auto start = steady_clock::now();
     const char* const views[] = {"view after", "view before", "view error"};
     FitView last_view = window.fit_view();
@@ -65,7 +70,8 @@ int main(int, char** argv) {
     while (steady_clock::now() - start < std::chrono::seconds(60)) {
         const OperatorAction action = window.frame(model);
         if (action != OperatorAction::none) fmt::print("{}\n", names[static_cast<int>(action)]);
-        if (window.view().azimuth != last_azimuth) fmt::print("turned {}\n", window.view().azimuth > last_azimuth ? "+" : "-");
+        if (window.view().azimuth != last_azimuth)
+            fmt::print("turned {}\n", window.view().azimuth > last_azimuth ? "+" : "-");
         last_azimuth = window.view().azimuth;
         if (window.fit_view() != last_view) fmt::print("{}\n", views[static_cast<int>(window.fit_view())]);
         last_view = window.fit_view();
@@ -74,7 +80,8 @@ int main(int, char** argv) {
             write_places("landmarks", {"undo", "turn", "use", "close", "skin-view", "scan-view"});
         }
         for (const auto pairs = window.landmarks(); clicked != pairs.size(); clicked = pairs.size())
-            fmt::print("landmarks {} {}\n", pairs.size(), pairs.empty() || on_the_head(pairs.back()) ? "on the head" : "off");
+            fmt::print("landmarks {} {}\n", pairs.size(),
+                       pairs.empty() || on_the_head(pairs.back()) ? "on the head" : "off");
         std::fflush(stdout);
         if (action == OperatorAction::quit) return 0;
         std::this_thread::sleep_for(std::chrono::milliseconds(30));

@@ -1,5 +1,6 @@
-// Run by two_monitors.sh on an X server with two monitors: opens both windows, lights the second monitor, and at each step
-// looks at the root window as a person would see it. Argument: folder for the pictures. Exit code 0 when all holds.
+// Run by two_monitors.sh on an X server with two monitors: opens both windows, lights the second monitor, and at each
+// step looks at the root window as a person would see it. Argument: folder for the pictures. Exit code 0 when all
+// holds.
 #include <fmt/format.h>
 
 #include <atomic>
@@ -29,7 +30,8 @@ void expect_refusal(const std::string& what, const std::string& word, const std:
         act();
         expect(false, what + " (nothing was thrown)");
     } catch (const DeviceError& error) {
-        expect(std::string(error.what()).find(word) != std::string::npos && !error.remedy.empty(), what + ": " + error.what());
+        expect(std::string(error.what()).find(word) != std::string::npos && !error.remedy.empty(),
+               what + ": " + error.what());
     }
 }
 
@@ -46,7 +48,8 @@ void run(const std::string& folder) {
     const OperatorModel model = test::fake_model();
     OperatorWindow operator_window({"Planlight", 1280, 800, first.name, true});
     ProjectorWindow projector(second.name, clock);
-    expect(projector.width() == second.width && projector.height() == second.height, "the projector has the monitor's size");
+    expect(projector.width() == second.width && projector.height() == second.height,
+           "the projector has the monitor's size");
     const RgbImage black(second.width, second.height), picture = test::projector_picture(second.width, second.height);
 
     for (int i = 0; i < 3; ++i) operator_window.frame(model), projector.refresh();
@@ -54,7 +57,8 @@ void run(const std::string& folder) {
     expect(different(before, second, black) == 0, "the second monitor is black at first");
 
     const Instant asked = clock.now(), lit = projector.show(picture, clock.now() + seconds(60));
-    expect(lit >= asked + std::chrono::milliseconds(25), "the light is said to come 25 ms or more after it was asked for");
+    expect(lit >= asked + std::chrono::milliseconds(25),
+           "the light is said to come 25 ms or more after it was asked for");
     const RgbImage shown = screen(folder, "2_shown");
     expect(different(shown, second, picture) == 0, "the second monitor shows the picture, pixel by pixel");
     RgbImage operator_before(first.width, first.height);
@@ -63,7 +67,8 @@ void run(const std::string& folder) {
     expect(different(shown, first, operator_before) == 0, "the first monitor has not changed by one pixel");
     operator_window.frame(model);
     projector.refresh();
-    expect(different(screen(folder, "3_operator_drew"), second, picture) == 0, "it stays while the operator window draws");
+    expect(different(screen(folder, "3_operator_drew"), second, picture) == 0,
+           "it stays while the operator window draws");
 
     projector.go_dark();
     expect(projector.dark() && different(screen(folder, "4_go_dark"), second, black) == 0, "go_dark is black");
@@ -77,8 +82,9 @@ void run(const std::string& folder) {
     expect(different(screen(folder, "6_stale"), second, black) == 0, "a picture that has expired already is not shown");
 
     projector.show(picture, clock.now() + seconds(60));
-    expect_refusal("a picture of another size is refused", "fit",
-                   [&] { projector.show(RgbImage(800, 601, {255, 255, 255}), clock.now() + seconds(60)); });
+    expect_refusal("a picture of another size is refused", "fit", [&] {
+        projector.show(RgbImage(800, 601, {255, 255, 255}), clock.now() + seconds(60));
+    });
     expect(different(screen(folder, "7_wrong_size"), second, black) == 0, "and it is dark then");
 
     projector.show(picture, clock.now() + seconds(60));
@@ -90,7 +96,8 @@ void run(const std::string& folder) {
     expect(projector.dark(), "and it is dark then");
     for (int i = 0; i < 3; ++i) operator_window.frame(model);  // the server gives the screen a new, unpainted memory
     const RgbImage after = screen(folder, "8_unplugged");
-    expect(different(after, first, operator_before) == 0, "the operator's monitor still shows the operator window alone");
+    expect(different(after, first, operator_before) == 0,
+           "the operator's monitor still shows the operator window alone");
     expect_refusal("the only monitor is refused", "only", [&] { ProjectorWindow window("0", clock); });
 }
 

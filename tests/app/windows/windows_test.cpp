@@ -78,8 +78,8 @@ TEST(Fonts, EveryShownCharacterExistsInEverySize) {
         const FontSet& f = loaded.fonts;
         for (const ImFont* font : {f.small, f.body, f.strong, f.number, f.title})
             EXPECT_EQ(missing_glyphs(*font, shown), std::vector<std::string>{});
-        for (const StatusKind kind : {StatusKind::ready, StatusKind::scanning, StatusKind::matching, StatusKind::aligned,
-                                      StatusKind::check, StatusKind::refused, StatusKind::dark})
+        for (const StatusKind kind : {StatusKind::ready, StatusKind::scanning, StatusKind::matching,
+                                      StatusKind::aligned, StatusKind::check, StatusKind::refused, StatusKind::dark})
             EXPECT_TRUE(missing_glyphs(*f.word, status_word(kind)).empty()) << status_word(kind);
         EXPECT_EQ(missing_glyphs(*f.body, "a漢b"), std::vector<std::string>{"漢"}) << "what is missing is found out";
     }
@@ -108,8 +108,8 @@ TEST(Layout, NothingOverlapsOrLeavesTheWindowAtAnySize) {
     for (int width = 1280; width <= 3840; width += 64)
         for (int height = 800; height <= 2160; height += 56) {
             const WindowLayout p = layout_of(width, height);
-            const std::vector<Box> all{p.title, p.steps, p.dark,    p.scene, p.left_camera, p.right_camera,
-                                       p.table, p.buttons, p.banner};
+            const std::vector<Box> all{p.title,        p.steps, p.dark,    p.scene, p.left_camera,
+                                       p.right_camera, p.table, p.buttons, p.banner};
             for (std::size_t i = 0; i < all.size(); ++i) {
                 EXPECT_GE(all[i].x, 0);
                 EXPECT_GE(all[i].y, 0);
@@ -134,13 +134,16 @@ std::array<double, 3> centre_of(const RgbImage& picture, Like like) {
     return {x_sum / count / picture.width, y_sum / count / picture.height, count};
 }
 
-bool is_plan_green(const Rgb& c) { return c[1] > 200 && c[0] < 80 && c[2] < 140; }
+bool is_plan_green(const Rgb& c) {
+    return c[1] > 200 && c[0] < 80 && c[2] < 140;
+}
 
 SceneModel head_with_a_green_ring_near(const Eigen::Vector3d& near_in_ct) {
     SceneModel scene;
     scene.skin = std::make_shared<TriangleMesh>(test::analytic_head_mesh(4));
     Stroke ring{StrokeKind::borehole, 0, {40, 235, 110}, 0.8, true, {}, {}};
-    const Eigen::Vector3d middle = test::on_analytic_head(near_in_ct), u = test::analytic_head_normal(middle).unitOrthogonal(),
+    const Eigen::Vector3d middle = test::on_analytic_head(near_in_ct),
+                          u = test::analytic_head_normal(middle).unitOrthogonal(),
                           v = test::analytic_head_normal(middle).cross(u);
     for (int i = 0; i < 40; ++i) {
         const double a = 2 * M_PI * i / 40;
@@ -179,7 +182,8 @@ std::size_t pixels_like(const RgbImage& picture, const Rgb& colour) {
     for (int y = 0; y < picture.height; ++y)
         for (int x = 0; x < picture.width; ++x) {
             const Rgb& p = picture.at(x, y);
-            const double scale = std::max({p[0], p[1], p[2]}) / static_cast<double>(std::max({colour[0], colour[1], colour[2]}));
+            const double scale =
+                std::max({p[0], p[1], p[2]}) / static_cast<double>(std::max({colour[0], colour[1], colour[2]}));
             if (scale < 0.25) continue;
             double off = 0;
             for (std::size_t c = 0; c < 3; ++c) off = std::max(off, std::abs(p[c] - scale * colour[c]));

@@ -8,7 +8,8 @@ namespace planlight::test {
 void write_picture(const std::filesystem::path& file, const RgbImage& picture) {
     std::ofstream out(file, std::ios::binary);
     out << "P6\n" << picture.width << ' ' << picture.height << "\n255\n";
-    out.write(reinterpret_cast<const char*>(picture.pixels.data()), static_cast<std::streamsize>(3 * picture.pixels.size()));
+    out.write(reinterpret_cast<const char*>(picture.pixels.data()),
+              static_cast<std::streamsize>(3 * picture.pixels.size()));
     if (!out.flush()) throw std::runtime_error("cannot write " + file.string());
 }
 

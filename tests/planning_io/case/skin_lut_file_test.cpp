@@ -9,8 +9,8 @@
 #include <limits>
 #include <random>
 
-#include "planning_io/files/safe_write.h"
 #include "planning_io/case/skin_lut_file.h"
+#include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "tests/support/analytic_head.h"
 #include "tests/support/test_data.h"
@@ -48,7 +48,8 @@ void expect_same(const SkinLut& a, const SkinLut& b) {
         ASSERT_EQ(a.skin[i].normal_in_ct, b.skin[i].normal_in_ct);
         ASSERT_EQ(a.skin[i].voxel, b.skin[i].voxel);
         ASSERT_EQ(a.skin[i].flags, b.skin[i].flags);
-        ASSERT_EQ(std::bit_cast<std::uint32_t>(a.skin[i].thickness_mm), std::bit_cast<std::uint32_t>(b.skin[i].thickness_mm));
+        ASSERT_EQ(std::bit_cast<std::uint32_t>(a.skin[i].thickness_mm),
+                  std::bit_cast<std::uint32_t>(b.skin[i].thickness_mm));
     }
 }
 
@@ -78,7 +79,8 @@ TEST(SkinLutFile, EveryFlippedBitIsRefused) {
             return true;
         }
     };
-    for (std::size_t byte = 0; byte < 400; ++byte) ASSERT_TRUE(refused(byte, static_cast<int>(byte % 8))) << "byte " << byte;
+    for (std::size_t byte = 0; byte < 400; ++byte)
+        ASSERT_TRUE(refused(byte, static_cast<int>(byte % 8))) << "byte " << byte;
     for (int i = 0; i < 2000; ++i) {
         const auto byte = std::uniform_int_distribution<std::size_t>(0, whole.size() - 1)(random);
         ASSERT_TRUE(refused(byte, i % 8)) << "byte " << byte << " bit " << i % 8;
@@ -135,7 +137,8 @@ TEST(SkinLutFile, LoadsAPatientSizedTable) {
     };
     for (std::size_t c = 0; c < skin_of.size(); ++c) {
         skin_of[c] = static_cast<std::uint32_t>(lut.skin.size());
-        lut.skin.push_back({Eigen::Vector3f::Constant(static_cast<float>(c) * 0.01F), Eigen::Vector3f::UnitX(), {1, 2, 3}});
+        lut.skin.push_back(
+            {Eigen::Vector3f::Constant(static_cast<float>(c) * 0.01F), Eigen::Vector3f::UnitX(), {1, 2, 3}});
     }
     lut.nearest.resize(std::size_t{256} * 256 * 256);
     lut.distance_mm.resize(std::size_t{128} * 128 * 128);
@@ -159,7 +162,8 @@ TEST(SkinLutFile, LoadsAPatientSizedTable) {
         const std::clock_t begin_processor = std::clock();
         const SkinLut back = read_skin_lut(folder.path() / "skin.lut");
         best_s = std::min(best_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count());
-        best_processor_s = std::min(best_processor_s, static_cast<double>(std::clock() - begin_processor) / CLOCKS_PER_SEC);
+        best_processor_s =
+            std::min(best_processor_s, static_cast<double>(std::clock() - begin_processor) / CLOCKS_PER_SEC);
         EXPECT_EQ(back.nearest, lut.nearest);
     }
     RecordProperty("load_s", std::to_string(best_s));

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "planning_io/dicom/dicom_slices.h"
-#include "planning_io/volume/read_volume.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/read_volume.h"
 #include "tests/planning_io/synthetic_series.h"
 #include "tests/support/test_data.h"
 

@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
-#include "planning_io/files/image_file.h"
 #include "planning_io/case/capture_folder.h"
 #include "planning_io/case/rig_file.h"
+#include "planning_io/files/image_file.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "tests/planning_io/example_rig.h"
@@ -30,7 +30,8 @@ TEST(RigFile, ARigOfTwoDevicesIsReadOnlyWhereItIsEnough) {
             read_rig(file);
             FAIL();
         } catch (const InputError& e) {
-            EXPECT_NE(std::string(e.what()).find(no_right ? "has no right_camera" : "has no projector"), std::string::npos);
+            EXPECT_NE(std::string(e.what()).find(no_right ? "has no right_camera" : "has no projector"),
+                      std::string::npos);
         }
     }
     RigCalibration alone = test::example_rig();
@@ -57,7 +58,8 @@ TEST(Recordings, ACaptureOfOneCameraAndTiffPicturesAreRead) {
     const auto number = [&](unsigned value, int bytes) {
         for (int i = 0; i < bytes; ++i) tiff.push_back(static_cast<char>(value >> (8 * i)));
     };
-    const unsigned fields[][2] = {{256, 8}, {257, 6}, {258, 8}, {259, 1}, {262, 1}, {273, 8}, {277, 1}, {278, 6}, {279, 48}};
+    const unsigned fields[][2] = {{256, 8}, {257, 6}, {258, 8}, {259, 1}, {262, 1},
+                                  {273, 8}, {277, 1}, {278, 6}, {279, 48}};
     number(9, 2);
     for (const auto& field : fields) number(field[0], 2), number(4, 2), number(1, 4), number(field[1], 4);
     number(0, 4);

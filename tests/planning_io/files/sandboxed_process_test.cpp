@@ -6,9 +6,9 @@
 #include <cstdlib>
 #include <vector>
 
-#include "planning_io/volume/volume_in_child.h"
 #include "planning_io/files/sandboxed_process.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/volume_in_child.h"
 
 namespace planlight {
 namespace {

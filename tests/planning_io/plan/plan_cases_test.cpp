@@ -17,7 +17,8 @@ TEST(PlanCases, ASoundPlanOfEveryFormatStandsWhereItsNumbersSay) {
         const TemporaryFolder folder;
         const auto points = points_of(import_plan(c.make(folder.path()), c.settings).plan);
         ASSERT_FALSE(points.empty()) << c.name;
-        EXPECT_TRUE(points.front().isApprox(Vector3d(-10, -20, 30), 1e-7)) << c.name << ": " << points.front().transpose();
+        EXPECT_TRUE(points.front().isApprox(Vector3d(-10, -20, 30), 1e-7))
+            << c.name << ": " << points.front().transpose();
     }
 }
 
@@ -29,7 +30,8 @@ TEST(PlanCases, ASpoiltPlanIsRefusedWithItsReasonAndARemedy) {
             import_plan(path, c.settings);
             ADD_FAILURE() << c.name << " was read";
         } catch (const Error& e) {
-            EXPECT_NE((std::string(e.what()) + ". " + e.remedy).find(c.says), std::string::npos) << c.name << ": " << e.what();
+            EXPECT_NE((std::string(e.what()) + ". " + e.remedy).find(c.says), std::string::npos)
+                << c.name << ": " << e.what();
             EXPECT_FALSE(c.says.empty()) << c.name;
             EXPECT_FALSE(e.remedy.empty()) << c.name;
         }

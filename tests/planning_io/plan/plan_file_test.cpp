@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 
-#include "planning_io/plan/plan_file.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 #include "tests/support/test_data.h"
 
@@ -22,7 +22,8 @@ Plan a_plan() {
     plan.boreholes.push_back({"B2", {-30.1, -60.2, 70.3}, std::nullopt, 1.0 / 3, 0, Colour{1, 0, 0}});
     plan.osteotomy_lines.push_back({"flap", {{1, 2, 3}, {4, 5, 6}, {7, 8, 10}, {1, 0, 0.1}}, true, Colour{0, 1, 0}});
     plan.osteotomy_lines.push_back({"cut", {{1, 2, 3}, {4, 5, 6.1}}, false, std::nullopt});
-    plan.cut_planes.push_back({"Le Fort", {1, -80, -40.5}, Vector3d(0, 0.6, 0.8), Vector3d(1, 0, 0), 80.5, 40.25, std::nullopt});
+    plan.cut_planes.push_back(
+        {"Le Fort", {1, -80, -40.5}, Vector3d(0, 0.6, 0.8), Vector3d(1, 0, 0), 80.5, 40.25, std::nullopt});
     return plan;
 }
 
@@ -92,7 +93,8 @@ TEST_F(PlanText, RasIsTurnedHalfwayAboutZAndMicrometresAreThousandths) {
     EXPECT_EQ(
         read(line_file(R"("LPS")", R"("coordinateUnits": ["mm", "UCUM", "millimeter"],)")).trajectories[0].entry_in_ct,
         Vector3d(10, -20, 30));
-    EXPECT_EQ(read(line_file(R"("LPS")", "", "[10, -20, 30]", "v1.0.2")).trajectories[0].entry_in_ct, Vector3d(10, -20, 30));
+    EXPECT_EQ(read(line_file(R"("LPS")", "", "[10, -20, 30]", "v1.0.2")).trajectories[0].entry_in_ct,
+              Vector3d(10, -20, 30));
     EXPECT_EQ((*read(line_file()).trajectories[0].colour)[1], 0.5F);
 }
 

@@ -4,10 +4,10 @@
 
 #include <functional>
 
+#include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/plan/plan_import.h"
 #include "planning_io/plan/plan_shapes.h"
-#include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "tests/planning_io/plan_facts.h"
 #include "tests/support/test_data.h"
@@ -79,13 +79,16 @@ TEST_F(PlanImportTest, FcsvPointsStandWhereSlicerPutsThem) {
         EXPECT_EQ(plan.boreholes[0].depth_mm, 6.5);
     }
     for (const char* lps : {"1", "LPS"})
-        EXPECT_EQ(import_plan(write("a.fcsv", fcsv("4.11", lps, row))).plan.boreholes[0].position_in_ct, Vector3d(10, 20, 30))
+        EXPECT_EQ(import_plan(write("a.fcsv", fcsv("4.11", lps, row))).plan.boreholes[0].position_in_ct,
+                  Vector3d(10, 20, 30))
             << lps;
-    EXPECT_EQ(import_plan(write("a.fcsv", fcsv("4.10", "", row)), kLps).plan.boreholes[0].position_in_ct, Vector3d(10, 20, 30));
+    EXPECT_EQ(import_plan(write("a.fcsv", fcsv("4.10", "", row)), kLps).plan.boreholes[0].position_in_ct,
+              Vector3d(10, 20, 30));
     // Quoted labels, Windows line ends, and the fields that Slicer 5 adds.
     const Plan quoted =
-        import_plan(write("b.fcsv", fcsv("5.6", "LPS",
-                                         "id,1,2,3,0,0,0,1,1,1,0,\"a, \"\"b\"\"\",,,2,0\r\nid,9,2,3,0,0,0,1,1,1,0,,,,2,0\r\n")))
+        import_plan(
+            write("b.fcsv", fcsv("5.6", "LPS",
+                                 "id,1,2,3,0,0,0,1,1,1,0,\"a, \"\"b\"\"\",,,2,0\r\nid,9,2,3,0,0,0,1,1,1,0,,,,2,0\r\n")))
             .plan;
     EXPECT_EQ(quoted.boreholes[0].name, "a, \"b\"");
     EXPECT_EQ(quoted.boreholes[1].name, "b-2");
@@ -128,11 +131,11 @@ TEST_F(PlanImportTest, TrajectoriesOfATableNeedTheirFrame) {
     EXPECT_EQ(ras.trajectories[0].entry_in_ct, Vector3d(30.4242, 22.574, 8.00022));
     EXPECT_EQ(import_plan(kData / "seeg_trajectories.csv", kLps).plan.trajectories[0].target_in_ct,
               Vector3d(-52.9504, -29.8389, 14.3085));
-    const PlanImport said =
-        import_plan(write("t.tsv",
-                          "\xEF\xBB\xBF# SPACE=RAS\n# "
-                          "units=um\nname\tentry_x\tentry_y\tentry_z\ttarget_x\ttarget_y\ttarget_z\tdiameter_mm\tsurgeon\n"
-                          "A\t10000\t20000\t30000\t10000\t20000\t-5000\t2.5\tX\n"));
+    const PlanImport said = import_plan(
+        write("t.tsv",
+              "\xEF\xBB\xBF# SPACE=RAS\n# "
+              "units=um\nname\tentry_x\tentry_y\tentry_z\ttarget_x\ttarget_y\ttarget_z\tdiameter_mm\tsurgeon\n"
+              "A\t10000\t20000\t30000\t10000\t20000\t-5000\t2.5\tX\n"));
     EXPECT_TRUE(said.plan.trajectories[0].entry_in_ct.isApprox(Vector3d(-10, -20, 30), 1e-12));
     EXPECT_EQ(said.plan.trajectories[0].diameter_mm, 2.5);
     ASSERT_EQ(said.notes.size(), 1U);
@@ -142,7 +145,8 @@ TEST_F(PlanImportTest, TrajectoriesOfATableNeedTheirFrame) {
 TEST_F(PlanImportTest, TablesThatDoNotSayWhatTheyHoldAreRefused) {
     const auto table = [&](const std::string& text) { return refusal("t.csv", text, kLps); };
     const std::string header = "name,ex,ey,ez,tx,ty,tz\n";
-    EXPECT_SAYS(table("name,start_x,start_y,start_z,end_x,end_y,end_z\nA,1,2,3,4,5,6\n"), "does not name an entry and a target");
+    EXPECT_SAYS(table("name,start_x,start_y,start_z,end_x,end_y,end_z\nA,1,2,3,4,5,6\n"),
+                "does not name an entry and a target");
     EXPECT_SAYS(table("trajectory_name,index,x,y,z\nA,1,2,3,4\n"), "its columns are trajectory_name, index, x, y, z");
     EXPECT_SAYS(table("Name,EX,EY,EZ,TX,TY,TZ\nA,1,2,3,4,5,6\n"), "does not name an entry");
     EXPECT_SAYS(table("name,ex,ex,ey,ez,tx,ty,tz\nA,1,2,3,4,5,6,7\n"), "\"ex\" twice");
@@ -180,7 +184,8 @@ TEST_F(PlanImportTest, LinesOfMeshFilesAreOsteotomyLines) {
     EXPECT_EQ(edge.osteotomy_lines[0].name, "patch");
     // Segments end to end in a legacy VTK file, as many programs write curves.
     const std::string vtk =
-        "# vtk DataFile Version 3.0\n3D Slicer output. SPACE=LPS\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 10 0 0 10 10 0 "
+        "# vtk DataFile Version 3.0\n3D Slicer output. SPACE=LPS\nASCII\nDATASET POLYDATA\nPOINTS 4 float\n0 0 0 10 0 "
+        "0 10 10 0 "
         "10 10 10\n"
         "LINES 3 9\n2 0 1\n2 1 2\n2 2 3\n";
     const Plan joined = import_plan(write("curve.vtk", vtk)).plan;
@@ -189,18 +194,21 @@ TEST_F(PlanImportTest, LinesOfMeshFilesAreOsteotomyLines) {
     std::string unmarked = vtk;
     unmarked.replace(unmarked.find("3D Slicer output. SPACE=LPS"), 27, "made by somebody else       ");
     EXPECT_SAYS(refusal("curve.vtk", unmarked), "does not say its coordinate system");
-    EXPECT_EQ(import_plan(write("curve.vtk", unmarked), kRas).plan.osteotomy_lines[0].points_in_ct[2], Vector3d(-10, -10, 0));
+    EXPECT_EQ(import_plan(write("curve.vtk", unmarked), kRas).plan.osteotomy_lines[0].points_in_ct[2],
+              Vector3d(-10, -10, 0));
 }
 
 TEST_F(PlanImportTest, MeshesThatAreNoLinesAreRefused) {
     EXPECT_SAYS(refusal("a.obj", kSquareObj), "does not say its coordinate system");
     EXPECT_SAYS(refusal("a.obj", std::string("# SPACE=LPS\n# SPACE=RAS\n") + kSquareObj), "both");
     EXPECT_SAYS(refusal("a.obj", std::string("# SPACE=lps\n") + kSquareObj), "SPACE=lps");
-    const std::string tetrahedron = "# SPACE=LPS\nv 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
+    const std::string tetrahedron =
+        "# SPACE=LPS\nv 0 0 0\nv 30 0 0\nv 0 30 0\nv 0 0 30\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
     EXPECT_SAYS(refusal("a.obj", tetrahedron), "closed surface of 4 triangles");
     std::string stack = "# SPACE=LPS\n";
     for (int z = 0; z < 4; ++z)
-        stack += fmt::format("v 0 0 {0}\nv 30 0 {0}\nv 30 30 {0}\nl {1} {2} {3} {1}\n", 3 * z, 3 * z + 1, 3 * z + 2, 3 * z + 3);
+        stack += fmt::format("v 0 0 {0}\nv 30 0 {0}\nv 30 30 {0}\nl {1} {2} {3} {1}\n", 3 * z, 3 * z + 1, 3 * z + 2,
+                             3 * z + 3);
     EXPECT_SAYS(refusal("a.obj", stack), "contours at 4 heights");
     EXPECT_SAYS(refusal("a.obj", "# SPACE=LPS\nv 0 0 0\nv 9 0 0\nl 1 5\n"), "which does not exist");
     EXPECT_SAYS(refusal("a.obj", "# SPACE=LPS\nv 0 0 nan\nv 9 0 0\nl 1 2\n"), "not a finite number");

@@ -2,8 +2,8 @@
 
 #include <cstdlib>
 
-#include "planning_io/plan/plan_rtstruct.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/plan/plan_rtstruct.h"
 #include "planning_io/types/error.h"
 #include "tests/planning_io/plan_facts.h"
 #include "tests/support/test_data.h"
@@ -84,7 +84,8 @@ TEST(PlanRtStruct, ACutOrFlippedFileNeverCrashesTheProgramAndACutOneIsRefused) {
         std::string flipped = whole;
         flipped[i] = static_cast<char>(flipped[i] ^ 0x24);
         write_safely(folder.path() / "flipped.dcm", flipped);
-        EXPECT_NO_FATAL_FAILURE(refusal(folder.path() / "flipped.dcm", kSameCt));  // anything but another exception, or the end
+        EXPECT_NO_FATAL_FAILURE(
+            refusal(folder.path() / "flipped.dcm", kSameCt));  // anything but another exception, or the end
     }
 }
 

@@ -10,8 +10,8 @@
 #include <functional>
 #include <random>
 
-#include "planning_io/surface/mesh_file.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/surface/mesh_file.h"
 #include "planning_io/surface/surface_file.h"
 #include "planning_io/types/error.h"
 #include "tests/planning_io/dicom_bytes.h"
@@ -52,7 +52,8 @@ double share_outward(const TriangleMesh& mesh) {
     std::size_t outward = 0;
     for (const auto& t : mesh.triangles) {
         const Vector3d n = (corner(mesh, t, 1) - corner(mesh, t, 0)).cross(corner(mesh, t, 2) - corner(mesh, t, 0));
-        outward += n.dot(test::analytic_head_normal((corner(mesh, t, 0) + corner(mesh, t, 1) + corner(mesh, t, 2)) / 3)) > 0;
+        outward +=
+            n.dot(test::analytic_head_normal((corner(mesh, t, 0) + corner(mesh, t, 1) + corner(mesh, t, 2)) / 3)) > 0;
     }
     return static_cast<double>(outward) / static_cast<double>(mesh.triangles.size());
 }
@@ -167,12 +168,13 @@ TEST_F(SurfaceFileTest, WhatIsNoSurfaceIsRefusedWithNumbers) {
     EXPECT_SAYS(refusal(write("strip.obj", strip)), "inside that runs over into its outside");
 }
 
-/// A SEG of an oblique stack: a ball of radius 30 mm round (5, -10, 20), voxels 1.5 x 1.2 x 2 mm, slices from the last to the
-/// first; segment 2 is a small cube elsewhere.
+/// A SEG of an oblique stack: a ball of radius 30 mm round (5, -10, 20), voxels 1.5 x 1.2 x 2 mm, slices from the last
+/// to the first; segment 2 is a small cube elsewhere.
 std::string ball_seg(const std::string& frame_of_reference, const std::string& labels = "Bone") {
     const int columns = 56, rows = 60, slices = 40;
     const Eigen::Matrix3d axes = Eigen::AngleAxisd(0.3, Vector3d(1, 2, 3).normalized()).toRotationMatrix();
-    const Vector3d centre(5, -10, 20), first = centre - axes * Vector3d(1.5 * columns / 2, 1.2 * rows / 2, 2.0 * slices / 2);
+    const Vector3d centre(5, -10, 20),
+        first = centre - axes * Vector3d(1.5 * columns / 2, 1.2 * rows / 2, 2.0 * slices / 2);
     const auto ds = [](std::initializer_list<double> values) {
         std::string text;
         for (const double v : values) {
@@ -204,14 +206,16 @@ std::string ball_seg(const std::string& frame_of_reference, const std::string& l
         if (!any) continue;
         per_frame.push_back(
             DicomBytes()
-                .add_sequence(0x00209113, {DicomBytes().add(0x00200032, "DS", ds({position.x(), position.y(), position.z()}))})
+                .add_sequence(0x00209113,
+                              {DicomBytes().add(0x00200032, "DS", ds({position.x(), position.y(), position.z()}))})
                 .add_sequence(0x0062000A, {DicomBytes().add_us(0x0062000B, 1)}));
     }
     const DicomBytes shared =
         DicomBytes()
-            .add_sequence(0x00209116,
-                          {DicomBytes().add(0x00200037, "DS",
-                                            ds({axes(0, 0), axes(1, 0), axes(2, 0), axes(0, 1), axes(1, 1), axes(2, 1)}))})
+            .add_sequence(
+                0x00209116,
+                {DicomBytes().add(0x00200037, "DS",
+                                  ds({axes(0, 0), axes(1, 0), axes(2, 0), axes(0, 1), axes(1, 1), axes(2, 1)}))})
             .add_sequence(0x00289110, {DicomBytes().add(0x00180050, "DS", "2").add(0x00280030, "DS", "1.2\\1.5")});
     std::vector<DicomBytes> segments{DicomBytes().add_us(0x00620004, 1).add(0x00620005, "LO", labels)};
     if (labels != "Bone") segments.push_back(DicomBytes().add_us(0x00620004, 2).add(0x00620005, "LO", "Other"));
@@ -247,10 +251,10 @@ TEST_F(SurfaceFileTest, ASegmentOfABallIsABallWhereItLies) {
         worst = std::max(worst, std::abs(off));
     }
     EXPECT_NEAR(sum / static_cast<double>(read.mesh.vertices_in_ct.size()), 0, 0.1);  // voxels are cut at their centres
-    EXPECT_LT(worst, 1.3);                                                             // two thirds of the longest voxel edge
+    EXPECT_LT(worst, 1.3);  // two thirds of the longest voxel edge
     for (const auto& t : read.mesh.triangles) {
-        const Vector3d n =
-            (corner(read.mesh, t, 1) - corner(read.mesh, t, 0)).cross(corner(read.mesh, t, 2) - corner(read.mesh, t, 0));
+        const Vector3d n = (corner(read.mesh, t, 1) - corner(read.mesh, t, 0))
+                               .cross(corner(read.mesh, t, 2) - corner(read.mesh, t, 0));
         ASSERT_GE(n.dot(corner(read.mesh, t, 0) - Vector3d(5, -10, 20)), 0);
     }
 }
@@ -266,10 +270,12 @@ TEST_F(SurfaceFileTest, ASegmentationOfAnotherCtOrUnknownSegmentIsRefused) {
     EXPECT_SAYS(refusal(two, of_ct("1.2.3", "Other")), "0 frames");
     const std::string whole = ball_seg("1.2.3");
     for (std::size_t part = 1; part < 16; ++part)
-        EXPECT_FALSE(refusal(write("cut.dcm", whole.substr(0, whole.size() * part / 16)), of_ct("1.2.3")).empty()) << part;
+        EXPECT_FALSE(refusal(write("cut.dcm", whole.substr(0, whole.size() * part / 16)), of_ct("1.2.3")).empty())
+            << part;
 }
 
-/// An RT Structure Set of one ball of 60 mm radius round (10, 20, -30), contours of 120 corners every 2.5 mm, and of one line.
+/// An RT Structure Set of one ball of 60 mm radius round (10, 20, -30), contours of 120 corners every 2.5 mm, and of
+/// one line.
 std::string ball_rt_struct() {
     std::vector<DicomBytes> contours;
     for (double z = -57.5; z < 60; z += 2.5) {
@@ -280,16 +286,19 @@ std::string ball_rt_struct() {
             data += fmt::format("{:.3f}\\{:.3f}\\{:.3f}", 10 + r * std::cos(2 * M_PI * i / 120),
                                 20 + r * std::sin(2 * M_PI * i / 120), z - 30);
         }
-        contours.push_back(
-            DicomBytes().add(0x30060042, "CS", "CLOSED_PLANAR").add(0x30060046, "IS", "120").add(0x30060050, "DS", data));
+        contours.push_back(DicomBytes()
+                               .add(0x30060042, "CS", "CLOSED_PLANAR")
+                               .add(0x30060046, "IS", "120")
+                               .add(0x30060050, "DS", data));
     }
     return DicomBytes()
         .add(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.481.3")
         .add(0x00080060, "CS", "RTSTRUCT")
         .add(0x00200052, "UI", "1.2.3")
-        .add_sequence(0x30060020,
-                      {DicomBytes().add(0x30060022, "IS", "1").add(0x30060024, "UI", "1.2.3").add(0x30060026, "LO", "Ball"),
-                       DicomBytes().add(0x30060022, "IS", "2").add(0x30060024, "UI", "1.2.3").add(0x30060026, "LO", "Line")})
+        .add_sequence(
+            0x30060020,
+            {DicomBytes().add(0x30060022, "IS", "1").add(0x30060024, "UI", "1.2.3").add(0x30060026, "LO", "Ball"),
+             DicomBytes().add(0x30060022, "IS", "2").add(0x30060024, "UI", "1.2.3").add(0x30060026, "LO", "Line")})
         .add_sequence(0x30060039, {DicomBytes().add_sequence(0x30060040, contours).add(0x30060084, "IS", "1"),
                                    DicomBytes().add_sequence(0x30060040, {contours[10]}).add(0x30060084, "IS", "2")})
         .file("1.2.840.10008.5.1.4.1.1.481.3");
@@ -341,7 +350,8 @@ TEST_F(SurfaceFileTest, NoFlippedByteOfASegmentationBringsTheProgramDownOrHoldsI
         std::ofstream(folder_.path() / "flipped.dcm", std::ios::binary) << flipped;
         const auto began = std::chrono::steady_clock::now();
         refusal(folder_.path() / "flipped.dcm", of_ct("1.2.3"));  // anything but an Error would end the test
-        slowest_s = std::max(slowest_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
+        slowest_s =
+            std::max(slowest_s, std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count());
     }
     EXPECT_LT(slowest_s, 2);
 }

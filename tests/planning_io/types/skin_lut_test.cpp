@@ -31,7 +31,8 @@ SkinLut linear_field() {
 
 TEST(SkinLut, ALinearFieldComesBackExactlyWithItsGradient) {
     const SkinLut lut = linear_field();
-    for (const auto& p : {Eigen::Vector3d(10.3, -19.1, 33.7), Eigen::Vector3d(17.9, -10.1, 41.9), Eigen::Vector3d(10, -20, 30)}) {
+    for (const auto& p :
+         {Eigen::Vector3d(10.3, -19.1, 33.7), Eigen::Vector3d(17.9, -10.1, 41.9), Eigen::Vector3d(10, -20, 30)}) {
         const auto d = lut.signed_distance(p);
         ASSERT_TRUE(d);
         EXPECT_NEAR(d->mm, 2 * p.x() - p.y() + 3 * p.z() - 5, 1e-4);

@@ -6,10 +6,11 @@
 #include <optional>
 #include <random>
 
-#include "planning_io/volume/invesalius_project.h"
-#include "planning_io/volume/read_volume.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/statistics.h"
+#include "planning_io/volume/invesalius_project.h"
+#include "planning_io/volume/read_volume.h"
 #include "tests/support/test_data.h"
 
 namespace planlight {
@@ -37,12 +38,14 @@ std::optional<std::pair<double, Eigen::Vector3d>> sample(const Volume& volume, c
         const Eigen::Array3d slope = 2 * bit.cast<double>() - 1;
         const double c = volume.at(cell.x() + bit.x(), cell.y() + bit.y(), cell.z() + bit.z());
         value += w.prod() * c;
-        gradient += c * Eigen::Vector3d(slope.x() * w.y() * w.z(), w.x() * slope.y() * w.z(), w.x() * w.y() * slope.z());
+        gradient +=
+            c * Eigen::Vector3d(slope.x() * w.y() * w.z(), w.x() * slope.y() * w.z(), w.x() * w.y() * slope.z());
     }
     return std::pair(value, Eigen::Vector3d(volume.ct_from_voxel.linear().inverse().transpose() * gradient));
 }
 
-/// First-order distance of the points to the iso-surface of the volume, mm; median over those in the volume with a slope.
+/// First-order distance of the points to the iso-surface of the volume, mm; median over those in the volume with a
+/// slope.
 double median_distance(const Volume& volume, const TriangleMesh& surface) {
     std::vector<double> distances;
     for (std::size_t i = 0; i < surface.vertices_in_ct.size(); i += 7) {
@@ -52,8 +55,7 @@ double median_distance(const Volume& volume, const TriangleMesh& surface) {
         distances.push_back(slope > 1 ? std::abs(there->first - kSkinThreshold_hu) / slope : 100.0);
     }
     if (distances.size() < 1000) return 1e9;
-    std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2), distances.end());
-    return distances[distances.size() / 2];
+    return median(distances);
 }
 
 class InvesaliusProject : public ::testing::Test {
@@ -77,7 +79,8 @@ TEST_F(InvesaliusProject, HasTheShapeSpacingAndUnitsOfTheExamplePatient) {
     EXPECT_EQ(*high, 2986);  // of the int16 matrix itself, read without us
 }
 
-// The project's own skin, made by InVesalius from the same voxels: only the right orientation brings it onto our iso-surface.
+// The project's own skin, made by InVesalius from the same voxels: only the right orientation brings it onto our
+// iso-surface.
 TEST_F(InvesaliusProject, VolumeLiesOnTheProjectsOwnSkinAndAMirroredOneDoesNot) {
     const auto surfaces = read_invesalius_surfaces(*test::example_patient());
     ASSERT_EQ(surfaces.size(), 2u);
@@ -109,7 +112,8 @@ TEST_F(InvesaliusProject, CrownIsUpAndTheNoseLooksForward) {
     };
     EXPECT_LT(area_of_head(volume.size[2] - 1), area_of_head(volume.size[2] / 2) / 4);  // the top slices leave the head
     EXPECT_GT(area_of_head(0), 4 * area_of_head(volume.size[2] - 1));
-    // At the height of the nose, the 10 mm behind the most forward skin are narrow; behind the head is the wide headrest.
+    // At the height of the nose, the 10 mm behind the most forward skin are narrow; behind the head is the wide
+    // headrest.
     const int nose = 30;
     const auto width_within_10_mm_of = [&](int j_first, int step) {
         int low = volume.size[0], high = -1, rows = 0;
@@ -154,7 +158,8 @@ TEST_F(InvesaliusProject, CutOrDamagedProjectIsRefusedAsDamaged) {
     std::mt19937 random(5);
     for (int i = 0; i < 8; ++i) {
         std::string flipped = whole;
-        const auto at = std::uniform_int_distribution<std::size_t>(20, whole.size() - 1)(random);  // past gzip's name and date
+        const auto at =
+            std::uniform_int_distribution<std::size_t>(20, whole.size() - 1)(random);  // past gzip's name and date
         flipped[at] = static_cast<char>(flipped[at] ^ (1 << (i % 8)));
         write_safely(file, flipped);
         EXPECT_THROW(read_volume(file), DamagedFileError) << "flipped at " << at;

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "planning_io/volume/read_volume.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/read_volume.h"
 #include "tests/planning_io/mutate_volumes.h"
 #include "tests/planning_io/volume_cases.h"
 #include "tests/support/test_data.h"

@@ -24,15 +24,17 @@ StripeSettings stripes_of(const simulation::SimulatedBoardRoom& room) {
 }
 
 std::vector<PoseObservation> observe_room(simulation::SimulatedBoardRoom& room, const BoardSpec& board,
-                                          const std::function<void(int)>& before, const std::function<void(int, int)>& during) {
+                                          const std::function<void(int)>& before,
+                                          const std::function<void(int, int)>& during) {
     const StripeSettings stripes = stripes_of(room);
     std::vector<PoseObservation> poses;
     for (int i = 0; i < room.poses(); ++i) {
         room.lay(i);
         if (before) before(i);
-        const ScanCapture capture = capture_scan(room.projector(), room.cameras(), room.clock(), stripes, [&](int done, int) {
-            if (during) during(i, done);
-        });
+        const ScanCapture capture =
+            capture_scan(room.projector(), room.cameras(), room.clock(), stripes, [&](int done, int) {
+                if (during) during(i, done);
+            });
         poses.push_back({fmt::format("pose-{:02}", i), observe_board(capture.left, stripes, board),
                          observe_board(capture.right, stripes, board)});
     }

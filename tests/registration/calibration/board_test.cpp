@@ -16,7 +16,8 @@ namespace planlight {
 namespace {
 
 TEST(BoardSpec, ReadsWhatItWrites) {
-    for (const char* text : {"charuco 10x7 25 mm", "chessboard 9x6 24.96 mm"}) EXPECT_EQ(text_of(parse_board(text)), text);
+    for (const char* text : {"charuco 10x7 25 mm", "chessboard 9x6 24.96 mm"})
+        EXPECT_EQ(text_of(parse_board(text)), text);
     const BoardSpec chess = parse_board("Chessboard 9 x 6 corners 25mm");
     EXPECT_EQ(chess.corner_count(), 54);
     EXPECT_EQ(chess.squares_across(), 10);
@@ -25,10 +26,9 @@ TEST(BoardSpec, ReadsWhatItWrites) {
 }
 
 TEST(BoardSpec, RefusesWhatItCannotMean) {
-    for (const char* text :
-         {"", "charuco", "charuco 10x7", "charuco 10x7 25", "charuco 10x7 25 cm", "circles 10x7 25 mm", "charuco 2x7 25 mm",
-          "charuco 99x99 25 mm", "chessboard 9x6 0 mm", "charuco -10x7 25 mm", "charuco 10x7 nan mm",
-          "chessboard 999x999 1000 mm"})
+    for (const char* text : {"", "charuco", "charuco 10x7", "charuco 10x7 25", "charuco 10x7 25 cm",
+                             "circles 10x7 25 mm", "charuco 2x7 25 mm", "charuco 99x99 25 mm", "chessboard 9x6 0 mm",
+                             "charuco -10x7 25 mm", "charuco 10x7 nan mm", "chessboard 999x999 1000 mm"})
         EXPECT_THROW(parse_board(text), InputError) << text;
 }
 
@@ -41,7 +41,8 @@ std::uint32_t number_at(const std::string& png, std::size_t at) {
 
 // A square of 24.96 mm is not a whole number of tenths: pixels and their number in a metre agree all the same.
 TEST(BoardPng, IsPrintedInItsTrueSizeToAHundredthOfAPercent) {
-    for (const char* text : {"chessboard 9x6 24.96 mm", "charuco 10x7 1.05 mm", "charuco 10x7 25 mm", "chessboard 90x60 40 mm"}) {
+    for (const char* text :
+         {"chessboard 9x6 24.96 mm", "charuco 10x7 1.05 mm", "charuco 10x7 25 mm", "chessboard 90x60 40 mm"}) {
         const BoardSpec board = parse_board(text);
         const std::string png = board_png(board);
         const std::size_t phys = png.find("pHYs");
@@ -78,14 +79,15 @@ GrayImage photographed(const BoardSpec& board, int px_per_square, int margin) {
 
 // The corners that are found are those that were drawn, under their own names: frames, order and half pixels agree.
 TEST(FindBoard, FindsEveryDrawnCornerWhereItWasDrawn) {
-    for (const char* text : {"charuco 10x7 25 mm", "charuco 9x6 25 mm", "chessboard 9x6 25 mm", "chessboard 9x7 25 mm"}) {
+    for (const char* text :
+         {"charuco 10x7 25 mm", "charuco 9x6 25 mm", "chessboard 9x6 25 mm", "chessboard 9x7 25 mm"}) {
         const BoardSpec board = parse_board(text);
         const int px = 40, margin = 60;
         const BoardCorners found = find_board(photographed(board, px, margin), board);
         ASSERT_EQ(found.size(), static_cast<std::size_t>(board.corner_count())) << text;
         for (std::size_t i = 0; i < found.size(); ++i) {
-            const Eigen::Vector2d drawn =
-                board.corner_in_board(found.ids[i]).head<2>() * px / board.square_mm + Eigen::Vector2d::Constant(margin - 0.5);
+            const Eigen::Vector2d drawn = board.corner_in_board(found.ids[i]).head<2>() * px / board.square_mm +
+                                          Eigen::Vector2d::Constant(margin - 0.5);
             EXPECT_LT((found.pixels[i] - drawn).norm(), 0.03) << text << " corner " << found.ids[i];
         }
     }
@@ -111,7 +113,8 @@ GrayImage tilted_board(const GrayImage& drawn, double tilt_deg, double turn_deg,
         for (int c = 0; c < 3; ++c) warp(r, c) = to_finer(r, c);
     const cv::Mat sheet(drawn.height, drawn.width, CV_8UC1, const_cast<std::uint8_t*>(drawn.pixels.data()));
     cv::Mat large, seen;
-    cv::warpPerspective(sheet, large, warp, {kFiner * kWidth, kFiner * kHeight}, cv::INTER_LINEAR, cv::BORDER_CONSTANT, {255});
+    cv::warpPerspective(sheet, large, warp, {kFiner * kWidth, kFiner * kHeight}, cv::INTER_LINEAR, cv::BORDER_CONSTANT,
+                        {255});
     cv::resize(large, seen, {kWidth, kHeight}, 0, 0, cv::INTER_AREA);
     cv::GaussianBlur(seen, seen, {0, 0}, 0.9);
     GrayImage picture(kWidth, kHeight);
@@ -120,8 +123,8 @@ GrayImage tilted_board(const GrayImage& drawn, double tilt_deg, double turn_deg,
     return picture;
 }
 
-// Where a board is foreshortened its markers come near to the corners. A window of fixed size that reaches into them is off
-// by up to a pixel; a flat-on board is found as well as a tilted one.
+// Where a board is foreshortened its markers come near to the corners. A window of fixed size that reaches into them is
+// off by up to a pixel; a flat-on board is found as well as a tilted one.
 TEST(FindBoard, CornersOfATiltedBoardAreFoundToAThirtiethOfAPixel) {
     const BoardSpec board = parse_board("charuco 10x7 25 mm");
     constexpr int kDrawnPx = 64;
@@ -157,7 +160,8 @@ TEST(FindBoard, AnotherBoardOrNoneIsNotFound) {
     const BoardSpec board = parse_board("charuco 10x7 25 mm");
     EXPECT_EQ(find_board(GrayImage(640, 480, 128), board).size(), 0u);
     EXPECT_EQ(find_board(photographed(parse_board("chessboard 9x6 25 mm"), 40, 60), board).size(), 0u);
-    EXPECT_EQ(find_board(photographed(parse_board("chessboard 7x5 25 mm"), 40, 60), parse_board("chessboard 9x6 25 mm")).size(),
+    EXPECT_EQ(find_board(photographed(parse_board("chessboard 7x5 25 mm"), 40, 60), parse_board("chessboard 9x6 25 mm"))
+                  .size(),
               0u);
 }
 
@@ -186,8 +190,8 @@ TEST(DrawBoard, TheSheetIsTrueToTheMillimetre) {
     double px_per_m = 0;
     for (std::size_t i = 0; i < 4; ++i) px_per_m = 256 * px_per_m + static_cast<std::uint8_t>(png[density + 4 + i]);
     EXPECT_NEAR(px_per_m, 10000, 500) << "fine enough to print";
-    const cv::Mat sheet =
-        cv::imdecode(cv::Mat(1, static_cast<int>(png.size()), CV_8U, const_cast<char*>(png.data())), cv::IMREAD_GRAYSCALE);
+    const cv::Mat sheet = cv::imdecode(cv::Mat(1, static_cast<int>(png.size()), CV_8U, const_cast<char*>(png.data())),
+                                       cv::IMREAD_GRAYSCALE);
     ASSERT_FALSE(sheet.empty());
     GrayImage picture(sheet.cols, sheet.rows);
     std::copy(sheet.begin<std::uint8_t>(), sheet.end<std::uint8_t>(), picture.pixels.begin());

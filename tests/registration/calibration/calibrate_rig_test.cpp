@@ -35,12 +35,13 @@ TEST(CalibrateRig, WithoutNoiseTheRigComesBackExactly) {
     const CameraModel* truths[] = {&room.rig.left_camera, &room.rig.right_camera, &room.rig.projector};
     for (std::size_t d = 0; d < 3; ++d) {
         const CameraModel& device = *found.bundle.rig.devices[d];
-        // The weak priors (round pixels, small distortion) pull by about a thousandth of a pixel at the floor of sigma, 0.005
-        // px.
+        // The weak priors (round pixels, small distortion) pull by about a thousandth of a pixel at the floor of sigma,
+        // 0.005 px.
         EXPECT_NEAR(device.focal_x, truths[d]->focal_x, 0.02) << text_of(kDevices[d]);
         EXPECT_NEAR(device.centre_y, truths[d]->centre_y, 0.05) << text_of(kDevices[d]);
         EXPECT_NEAR(device.k1, truths[d]->k1, 1e-3);
-        const RigidTransform true_from_left = truths[d]->device_from_rig * room.rig.left_camera.device_from_rig.inverse();
+        const RigidTransform true_from_left =
+            truths[d]->device_from_rig * room.rig.left_camera.device_from_rig.inverse();
         EXPECT_LT(angle_between(device.device_from_rig, true_from_left), 5e-5);
         EXPECT_LT((device.centre_in_rig() - true_from_left.inverse().translation()).norm(), 0.03);
     }
@@ -97,10 +98,11 @@ TEST(CalibrateRig, ABentBoardIsFoundBent) {
     EXPECT_FALSE(found.warnings.empty());
 }
 
-/// A device that hangs upside down beside another and looks at the same place is turned by just 180 degrees against it. There
-/// a rotation vector jumps from one side to the other, and the rigs of the held-out poses came to lie on both: one and the
-/// same rig, far apart by its numbers. The prediction is that of the device upright, but for what a covariance over so few poses
-/// scatters by itself: turned by other angles it is 0.011 to 0.019 mm as well. It was 76 m.
+/// A device that hangs upside down beside another and looks at the same place is turned by just 180 degrees against it.
+/// There a rotation vector jumps from one side to the other, and the rigs of the held-out poses came to lie on both:
+/// one and the same rig, far apart by its numbers. The prediction is that of the device upright, but for what a
+/// covariance over so few poses scatters by itself: turned by other angles it is 0.011 to 0.019 mm as well. It was 76
+/// m.
 TEST(CalibrateRig, ADeviceHungUpsideDownIsAsGoodAsAnUprightOne) {
     const Calibration upright = calibrated(test::ideal_room(), test::ideal_room().observe());
     ASSERT_FALSE(upright.refusal) << upright.refusal->reason;
@@ -108,7 +110,8 @@ TEST(CalibrateRig, ADeviceHungUpsideDownIsAsGoodAsAnUprightOne) {
         test::IdealRoom room = test::ideal_room();
         CameraModel& device = camera ? room.rig.right_camera : room.rig.projector;
         const RigidTransform from_left = device.device_from_rig * room.rig.left_camera.device_from_rig.inverse();
-        const Eigen::Quaterniond q(from_left.linear());  // the turn about z that makes its real part 0: 180 degrees in all
+        const Eigen::Quaterniond q(
+            from_left.linear());  // the turn about z that makes its real part 0: 180 degrees in all
         const double roll = 2 * std::atan2(q.w(), q.z());
         RigidTransform rolled = RigidTransform::Identity();
         rolled.linear() = Eigen::AngleAxisd(roll, Vector3d::UnitZ()).toRotationMatrix();
@@ -132,10 +135,11 @@ void turn_names(test::IdealRoom& room, PoseObservation& pose, int quarters) {
     }
 }
 
-/// A chessboard of 9x7 corners looks the same turned by half a turn: a right camera that hangs upside down names its corners
-/// from the other end in every pose, one that is upright only where the board lies on its side. The corners of a square board
-/// lie the same by a quarter. The rig is the one whose cameras stand to each other as they do: 0.05 px of noise on 8 poses
-/// leaves a thousandth of a radian of their turn open (centre and turn of a camera can hardly be told apart), wrong names 0.1.
+/// A chessboard of 9x7 corners looks the same turned by half a turn: a right camera that hangs upside down names its
+/// corners from the other end in every pose, one that is upright only where the board lies on its side. The corners of
+/// a square board lie the same by a quarter. The rig is the one whose cameras stand to each other as they do: 0.05 px
+/// of noise on 8 poses leaves a thousandth of a radian of their turn open (centre and turn of a camera can hardly be
+/// told apart), wrong names 0.1.
 TEST(CalibrateRig, ABoardWithoutATopIsNamedAlikeByBothCameras) {
     for (const auto& [kind, quarters] : {std::pair("chessboard 9x7 22 mm", 2), std::pair("chessboard 7x7 22 mm", 1)}) {
         test::IdealRoom room = test::ideal_room(8, 25, kind);
@@ -189,7 +193,8 @@ TEST(CalibrateRig, OutliersAreLeftOutAndCounted) {
     auto poses = room.observe();
     for (auto& pose : poses) {
         pose.left.corners.pixels.front() += Vector2d(3, -2);
-        for (std::size_t i = 0; i < pose.left.light.size(); i += 20) pose.left.light[i].pixel_in_projector += Vector2d(16, 0);
+        for (std::size_t i = 0; i < pose.left.light.size(); i += 20)
+            pose.left.light[i].pixel_in_projector += Vector2d(16, 0);
     }
     const Calibration found = calibrated(room, poses);
     ASSERT_FALSE(found.refusal) << found.refusal->reason;
@@ -218,9 +223,10 @@ TEST(CalibrateRigRefuses, BoardsFlatOn) {
     test::IdealRoom room = test::ideal_room(8, 1);
     for (auto& pose : room.rig_from_board) {  // flat on to the left camera
         const Vector3d middle = pose * Vector3d(125, 87.5, 0);
-        pose.linear() = room.rig.left_camera.device_from_rig.linear().transpose() *
-                        Eigen::AngleAxisd(0.3 * static_cast<double>(&pose - room.rig_from_board.data()), Vector3d::UnitZ())
-                            .toRotationMatrix();
+        pose.linear() =
+            room.rig.left_camera.device_from_rig.linear().transpose() *
+            Eigen::AngleAxisd(0.3 * static_cast<double>(&pose - room.rig_from_board.data()), Vector3d::UnitZ())
+                .toRotationMatrix();
         pose.translation() = middle - pose.linear() * Vector3d(125, 87.5, 0);
     }
     expect_refused(calibrated(room, room.observe()), "flat on");
@@ -258,7 +264,8 @@ TEST(CalibrateRigRefuses, CamerasThatAreSwapped) {
 }
 
 TEST(CalibrateRigRefuses, AMirroredCamera) {
-    // A chessboard's mirror image is a chessboard: only the other camera can tell. Its corners come in mirrored order, too.
+    // A chessboard's mirror image is a chessboard: only the other camera can tell. Its corners come in mirrored order,
+    // too.
     const test::IdealRoom room = test::ideal_room(8, 25, "chessboard 9x7 20 mm");
     auto poses = room.observe();
     const int across = room.board.corners_across();
@@ -270,8 +277,9 @@ TEST(CalibrateRigRefuses, AMirroredCamera) {
             const auto at = std::find(c.ids.begin(), c.ids.end(), other);
             if (at == c.ids.end()) continue;
             mirrored.ids.push_back(id);
-            mirrored.pixels.emplace_back(pose.right.width - 1 - c.pixels[static_cast<std::size_t>(at - c.ids.begin())].x(),
-                                         c.pixels[static_cast<std::size_t>(at - c.ids.begin())].y());
+            mirrored.pixels.emplace_back(
+                pose.right.width - 1 - c.pixels[static_cast<std::size_t>(at - c.ids.begin())].x(),
+                c.pixels[static_cast<std::size_t>(at - c.ids.begin())].y());
         }
         pose.right.corners = mirrored;
     }

@@ -64,7 +64,8 @@ TEST(CheckDrift, TheUsualEpipolarDistanceIsThatOfNormalNoiseWhateverAFewPointsDo
     Triangulation raw;
     EXPECT_EQ(usual_epipolar_px(raw), 0) << "not known";
     for (int i = 0; i < 20000; ++i)
-        raw.by_cameras.push_back({Eigen::Vector3d::Zero(), Eigen::Vector2d::Zero(), i % 1000 == 0 ? 50.0 : noise(random)});
+        raw.by_cameras.push_back(
+            {Eigen::Vector3d::Zero(), Eigen::Vector2d::Zero(), i % 1000 == 0 ? 50.0 : noise(random)});
     EXPECT_NEAR(usual_epipolar_px(raw), 0.1, 0.003);
 }
 
@@ -141,7 +142,8 @@ TEST(CheckDrift, NothingInViewCannotTell) {
     EXPECT_FALSE(check.remedy.empty());
 }
 
-/// Coarse cells and a missing direction say nothing of the rig: neither that cameras moved nor that too little is in view.
+/// Coarse cells and a missing direction say nothing of the rig: neither that cameras moved nor that too little is in
+/// view.
 TEST(CheckDrift, LightThatIsReadTooCoarselyCannotTell) {
     ScanResult scan = scan_from_capture(scanned().shot, scanned().rig);
     scan.code_step_px = 20;
@@ -151,7 +153,8 @@ TEST(CheckDrift, LightThatIsReadTooCoarselyCannotTell) {
     EXPECT_NE(coarse.reason.find("20 projector pixels"), std::string::npos) << coarse.reason;
     StripeSettings columns = stripes_of(scanned().room);
     columns.rows = false;
-    const DriftCheck half = check_drift(scan_from_capture(capture(scanned().room, columns), scanned().rig), scanned().rig);
+    const DriftCheck half =
+        check_drift(scan_from_capture(capture(scanned().room, columns), scanned().rig), scanned().rig);
     EXPECT_EQ(half.verdict, Verdict::cannot_tell);
     EXPECT_NE(half.reason.find("columns only"), std::string::npos) << half.reason;
     EXPECT_FALSE(half.remedy.empty());

@@ -56,7 +56,8 @@ Sums over_draws(double common, int poses) {
     return sums;
 }
 
-// 400 draws of 5 numbers leave a tenth open. Leaving out one of eight poses is a little pessimistic, never the other way.
+// 400 draws of 5 numbers leave a tenth open. Leaving out one of eight poses is a little pessimistic, never the other
+// way.
 TEST(CovarianceOverPoses, IndependentErrorsAreStatedAsTheNormalMatrixSaysOrALittleLarger) {
     const Sums sums = over_draws(0, 8);
     EXPECT_NEAR(sums.true_square / sums.by_normal_matrix, 1, 0.1);
@@ -64,8 +65,8 @@ TEST(CovarianceOverPoses, IndependentErrorsAreStatedAsTheNormalMatrixSaysOrALitt
     EXPECT_LT(sums.true_square / sums.stated, 1.1);
 }
 
-// A pose whose 80 residuals share an error of 0.7 of their noise says as much as a few residuals. The fewer the poses, the more
-// pessimistic: with five the stated sigma is 1.4 times the true error.
+// A pose whose 80 residuals share an error of 0.7 of their noise says as much as a few residuals. The fewer the poses,
+// the more pessimistic: with five the stated sigma is 1.4 times the true error.
 TEST(CovarianceOverPoses, ErrorsThatAPoseHasInCommonAreStatedAndTheNormalMatrixAloneIsBlindToThem) {
     for (const int poses : {5, 8, 14}) {
         const Sums sums = over_draws(0.7, poses);
@@ -100,8 +101,8 @@ TEST(CovarianceOverPoses, ANumberThatOnlyThePriorKnowsKeepsItsUncertainty) {
     EXPECT_NEAR(stated.covariance(4, 4), 0.25, 1e-6);
 }
 
-/// Light that a pose shifts by 0.05 px rms (its noise is 0.08 px a sample, of thousands): sample by sample that says nothing, but
-/// it is most of the projector's error.
+/// Light that a pose shifts by 0.05 px rms (its noise is 0.08 px a sample, of thousands): sample by sample that says
+/// nothing, but it is most of the projector's error.
 TEST(CovarianceOverPoses, OfARigCountsErrorsThatAPoseHasInCommon) {
     const test::IdealRoom room = test::ideal_room();
     RigEstimate truth;

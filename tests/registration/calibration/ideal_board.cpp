@@ -35,23 +35,26 @@ CameraModel device(int width, int height, double focal, double centre_x, double 
 }
 
 /// Pixels of the camera that look at the board, and what lights them.
-void light_up(const IdealRoom& room, const CameraModel& camera, const RigidTransform& rig_from_board, std::mt19937& random,
-              CameraObservation& seen) {
+void light_up(const IdealRoom& room, const CameraModel& camera, const RigidTransform& rig_from_board,
+              std::mt19937& random, CameraObservation& seen) {
     std::normal_distribution<double> noise(0, room.light_noise_px);
     const RigidTransform board_from_camera = rig_from_board.inverse() * camera.device_from_rig.inverse();
     for (int y = 4; y < camera.height; y += 25)
         for (int x = 4; x < camera.width; x += 25) {
             std::vector<cv::Point2d> normal;
-            cv::undistortPoints(std::vector<cv::Point2d>{{static_cast<double>(x), static_cast<double>(y)}}, normal,
-                                cv::Matx33d(camera.focal_x, 0, camera.centre_x, 0, camera.focal_y, camera.centre_y, 0, 0, 1),
-                                std::vector<double>{camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}, cv::noArray(),
-                                cv::noArray(), {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 60, 1e-12});
+            cv::undistortPoints(
+                std::vector<cv::Point2d>{{static_cast<double>(x), static_cast<double>(y)}}, normal,
+                cv::Matx33d(camera.focal_x, 0, camera.centre_x, 0, camera.focal_y, camera.centre_y, 0, 0, 1),
+                std::vector<double>{camera.k1, camera.k2, camera.p1, camera.p2, camera.k3}, cv::noArray(),
+                cv::noArray(), {cv::TermCriteria::COUNT + cv::TermCriteria::EPS, 60, 1e-12});
             const Vector3d origin = board_from_camera.translation(),
                            way = board_from_camera.linear() * Vector3d(normal[0].x, normal[0].y, 1);
             const Vector3d p = origin - way * (origin.z() / way.z());
-            if (p.x() < 2 || p.y() < 2 || p.x() > room.board.width_mm() - 2 || p.y() > room.board.height_mm() - 2) continue;
+            if (p.x() < 2 || p.y() < 2 || p.x() > room.board.width_mm() - 2 || p.y() > room.board.height_mm() - 2)
+                continue;
             const Vector2d lit = opencv_pixel(room.rig.projector, rig_from_board * p);
-            if (inside(room.rig.projector, lit)) seen.light.push_back({{x, y}, lit + Vector2d(noise(random), noise(random))});
+            if (inside(room.rig.projector, lit))
+                seen.light.push_back({{x, y}, lit + Vector2d(noise(random), noise(random))});
         }
 }
 
@@ -99,9 +102,9 @@ IdealRoom ideal_room(int poses, double tilt_deg, const char* board) {
     for (int i = 0; i < poses; ++i) {
         const double way = 2 * M_PI * i / poses + 0.3, tilt = tilt_deg * M_PI / 180;
         RigidTransform pose = RigidTransform::Identity();
-        pose.linear() =
-            (Eigen::AngleAxisd(tilt, Vector3d(std::cos(way), std::sin(way), 0)) * Eigen::AngleAxisd(0.7 * i, Vector3d::UnitZ()))
-                .toRotationMatrix();
+        pose.linear() = (Eigen::AngleAxisd(tilt, Vector3d(std::cos(way), std::sin(way), 0)) *
+                         Eigen::AngleAxisd(0.7 * i, Vector3d::UnitZ()))
+                            .toRotationMatrix();
         pose.translation() = target + Vector3d(20 * std::cos(3.0 * i), 15 * std::sin(2.0 * i), i % 2 ? 45 : -45) -
                              pose.linear() * Vector3d(room.board.width_mm() / 2, room.board.height_mm() / 2, 0);
         room.rig_from_board.push_back(pose);

@@ -7,8 +7,8 @@
 
 namespace planlight::test {
 
-/// A rig as in the paper's room, and poses of a board before it, seen without pictures: corners and lit pixels are computed
-/// (by OpenCV's projection, not by ours) and given Gaussian noise.
+/// A rig as in the paper's room, and poses of a board before it, seen without pictures: corners and lit pixels are
+/// computed (by OpenCV's projection, not by ours) and given Gaussian noise.
 struct IdealRoom {
     BoardSpec board;
     RigCalibration rig;

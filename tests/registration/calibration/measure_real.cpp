@@ -12,15 +12,16 @@ namespace {
 
 void print_device(const char* whose, const CameraModel& d, const BundleResult* bundle, Eigen::Index at) {
     const auto sigma = [&](Eigen::Index i) {
-        return bundle ? fmt::format(" +-{:<7.2f}", std::sqrt(bundle->covariance(at + i, at + i))) : std::string("          ");
+        return bundle ? fmt::format(" +-{:<7.2f}", std::sqrt(bundle->covariance(at + i, at + i)))
+                      : std::string("          ");
     };
-    fmt::print("  {:<10} f {:8.2f}{} {:8.2f}{} axis {:7.2f}{} {:7.2f}{} k {:+.4f} {:+.4f} {:+.5f} {:+.5f} {:+.4f}\n", whose,
-               d.focal_x, sigma(0), d.focal_y, sigma(1), d.centre_x, sigma(2), d.centre_y, sigma(3), d.k1, d.k2, d.p1, d.p2,
-               d.k3);
+    fmt::print("  {:<10} f {:8.2f}{} {:8.2f}{} axis {:7.2f}{} {:7.2f}{} k {:+.4f} {:+.4f} {:+.5f} {:+.5f} {:+.4f}\n",
+               whose, d.focal_x, sigma(0), d.focal_y, sigma(1), d.centre_x, sigma(2), d.centre_y, sigma(3), d.k1, d.k2,
+               d.p1, d.p2, d.k3);
 }
 
-/// Devices judged by the same measure, whoever found them: the board's poses from the left camera's corners alone, flat; root
-/// mean square length of what is left of its corners, and of the light, nothing left out.
+/// Devices judged by the same measure, whoever found them: the board's poses from the left camera's corners alone,
+/// flat; root mean square length of what is left of its corners, and of the light, nothing left out.
 struct Judged {
     double corners_px = 0, light_px = 0;
 };
@@ -32,12 +33,13 @@ Judged judge(const test::RealCaptures& captures, const RigEstimate& rig) {
         const auto rig_from_board = board_pose(camera, pose.left.corners, captures.board);
         if (!rig_from_board) continue;
         for (std::size_t i = 0; i < pose.left.corners.size(); ++i, ++corners)
-            judged.corners_px += (*project(camera, *rig_from_board * captures.board.corner_in_board(pose.left.corners.ids[i])) -
-                                  pose.left.corners.pixels[i])
-                                     .squaredNorm();
+            judged.corners_px +=
+                (*project(camera, *rig_from_board * captures.board.corner_in_board(pose.left.corners.ids[i])) -
+                 pose.left.corners.pixels[i])
+                    .squaredNorm();
         for (const LightSample& sample : pose.left.light)
-            if (const auto p =
-                    board_point(camera, sample.pixel_in_camera, *rig_from_board, Eigen::Vector3d::Zero(), captures.board)) {
+            if (const auto p = board_point(camera, sample.pixel_in_camera, *rig_from_board, Eigen::Vector3d::Zero(),
+                                           captures.board)) {
                 judged.light_px +=
                     (*project(*rig.device(DeviceName::projector), *rig_from_board * *p) - sample.pixel_in_projector)
                         .squaredNorm();
@@ -59,8 +61,8 @@ Calibration with_their_model(const test::RealCaptures& captures) {
 
 void table(const char* name, const test::RealCaptures& captures) {
     fmt::print("{}\n", name);
-    const Calibration ours = calibrate_rig(captures.poses, captures.board, captures.projector_width, captures.projector_height,
-                                           test::settings_for_real_captures());
+    const Calibration ours = calibrate_rig(captures.poses, captures.board, captures.projector_width,
+                                           captures.projector_height, test::settings_for_real_captures());
     if (ours.refusal) {
         fmt::print("  refused: {} {}\n", ours.refusal->reason, ours.refusal->remedy);
         return;
@@ -79,7 +81,8 @@ void table(const char* name, const test::RealCaptures& captures) {
                        theirs.held_out.rms_px[d]);
             print_device("flat, k3", *theirs.device(device), &theirs.bundle, at);
         }
-        if (captures.published.device(device)) print_device("published", *captures.published.device(device), nullptr, 0);
+        if (captures.published.device(device))
+            print_device("published", *captures.published.device(device), nullptr, 0);
         at += device == DeviceName::left_camera ? 9 : 15;
     }
     const auto line = [&](const char* whose, const RigEstimate& rig) {
@@ -91,9 +94,9 @@ void table(const char* name, const test::RealCaptures& captures) {
     line("ours", ours.bundle.rig);
     if (!theirs.refusal) line("flat, k3", theirs.bundle.rig);
     line("published", captures.published);
-    fmt::print(" lengths {:.3f} of 200 rms over {}, mean {:+.3f}; bend {:.3f} {:.3f} {:.3f}", ours.held_out.length_rms_mm,
-               ours.held_out.lengths, ours.held_out.length_mean_mm, ours.bundle.rig.bend_mm.x(), ours.bundle.rig.bend_mm.y(),
-               ours.bundle.rig.bend_mm.z());
+    fmt::print(" lengths {:.3f} of 200 rms over {}, mean {:+.3f}; bend {:.3f} {:.3f} {:.3f}",
+               ours.held_out.length_rms_mm, ours.held_out.lengths, ours.held_out.length_mean_mm,
+               ours.bundle.rig.bend_mm.x(), ours.bundle.rig.bend_mm.y(), ours.bundle.rig.bend_mm.z());
     if (ours.volume) fmt::print("; predicted {:.3f} (95 %)", ours.volume->p95_mm);
     fmt::print("; uncertainty factor {:.2f}", ours.bundle.uncertainty_factor);
     fmt::print("\n");

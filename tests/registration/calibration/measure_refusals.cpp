@@ -16,11 +16,13 @@ namespace {
 using Poses = std::vector<PoseObservation>;
 
 /// From the middle pose on a device stands turned.
-Poses knocked_half_way(const test::IdealRoom& room, unsigned seed, CameraModel RigCalibration::*device, double degrees) {
+Poses knocked_half_way(const test::IdealRoom& room, unsigned seed, CameraModel RigCalibration::*device,
+                       double degrees) {
     test::IdealRoom after = room;
     const double way = seed;
     const Eigen::Vector3d axis(std::cos(way), std::sin(way), 0);
-    (after.rig.*device).device_from_rig = Eigen::AngleAxisd(degrees * M_PI / 180, axis) * (room.rig.*device).device_from_rig;
+    (after.rig.*device).device_from_rig =
+        Eigen::AngleAxisd(degrees * M_PI / 180, axis) * (room.rig.*device).device_from_rig;
     Poses poses = room.observe(seed);
     const Poses later = after.observe(seed);
     for (std::size_t i = poses.size() / 2; i < poses.size(); ++i) poses[i] = later[i];

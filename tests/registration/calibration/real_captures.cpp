@@ -60,8 +60,8 @@ std::optional<RealCaptures> camera_and_projector() {
     if (!folder) return std::nullopt;
     RealCaptures captures;
     captures.board = parse_board("chessboard 9x7 75 mm");
-    // The published numbers are in pixels of which two make a cell of the code (their script's graycode_step): codes run to
-    // 960 x 540, as of a 1920x1080 projector.
+    // The published numbers are in pixels of which two make a cell of the code (their script's graycode_step): codes
+    // run to 960 x 540, as of a 1920x1080 projector.
     captures.projector_width = 960;
     captures.projector_height = 540;
     StripeSettings gray;

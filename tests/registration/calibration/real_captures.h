@@ -15,11 +15,12 @@ struct RealCaptures {
     RigEstimate published;  ///< devices only
 };
 
-/// The usual ones, but three poses of a board whose unit is unknown (a third of a mm, if it is printed on A4) may leave more in
-/// doubt.
+/// The usual ones, but three poses of a board whose unit is unknown (a third of a mm, if it is printed on A4) may leave
+/// more in doubt.
 CalibrationSettings settings_for_real_captures();
 
-/// 13 stereo pairs of OpenCV's documentation; the left camera's intrinsics are published. Empty when not on this machine.
+/// 13 stereo pairs of OpenCV's documentation; the left camera's intrinsics are published. Empty when not on this
+/// machine.
 std::optional<RealCaptures> stereo_pairs();
 
 /// Three poses under 42 Gray-code pictures, one camera and a projector (kamino410/procam-calibration, MIT); published

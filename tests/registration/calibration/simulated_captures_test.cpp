@@ -46,11 +46,13 @@ TEST_F(SimulatedCaptures, CornersAndLightAreWhereTheSimulatorPutThem) {
         std::vector<double> corner_off, light_off;
         const auto& seen = poses()[i].left;
         for (std::size_t c = 0; c < seen.corners.size(); ++c)
-            corner_off.push_back((seen.corners.pixels[c] -
-                                  *project(truth.left_camera, rig_from_board * board.corner_in_board(seen.corners.ids[c])))
-                                     .norm());
+            corner_off.push_back(
+                (seen.corners.pixels[c] -
+                 *project(truth.left_camera, rig_from_board * board.corner_in_board(seen.corners.ids[c])))
+                    .norm());
         for (const LightSample& sample : seen.light) {
-            const auto p = board_point(truth.left_camera, sample.pixel_in_camera, rig_from_board, Vector3d::Zero(), board);
+            const auto p =
+                board_point(truth.left_camera, sample.pixel_in_camera, rig_from_board, Vector3d::Zero(), board);
             light_off.push_back((sample.pixel_in_projector - *project(truth.projector, rig_from_board * *p)).norm());
         }
         ASSERT_GT(corner_off.size(), 25u);
@@ -129,9 +131,9 @@ TEST_F(SimulatedCaptures, OneDoubledFrameOrTwoSwappedFringesAreNamed) {
     EXPECT_EQ(observe_board(capture.left, stripes, board).wrong_sequence, "");
     const auto at = [&](const std::string& name) {
         const auto sequence = stripe_sequence(stripes);
-        return static_cast<std::size_t>(std::find_if(sequence.begin(), sequence.end(),
-                                                     [&](const StripePattern& p) { return p.name == name; }) -
-                                        sequence.begin());
+        return static_cast<std::size_t>(
+            std::find_if(sequence.begin(), sequence.end(), [&](const StripePattern& p) { return p.name == name; }) -
+            sequence.begin());
     };
     std::vector<GrayImage> doubled = capture.left, swapped = capture.left;
     doubled[at("column-gray-5")] = doubled[at("column-gray-4-inverse")];
@@ -170,7 +172,8 @@ TEST(GrayCode, DecodesItsOwnPatternsToTheirPixels) {
         }
         frames.push_back(std::move(frame));
     }
-    GrayImage& doubtful = frames[2 + 2 * 6];  // the finest column bit and its inverse alike at a pixel on that bit's border
+    GrayImage& doubtful =
+        frames[2 + 2 * 6];  // the finest column bit and its inverse alike at a pixel on that bit's border
     doubtful.at(40, 3) = frames[2 + 2 * 6 + 1].at(40, 3) = 100;
     frames[2].at(20, 3) = frames[3].at(20, 3) = 100;  // the coarsest, far from its border
     const DecodedView view = decode_gray_code(frames, width, height);

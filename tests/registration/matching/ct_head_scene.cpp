@@ -42,7 +42,8 @@ const CtHead* ct_head() {
         auto made = std::make_unique<CtHead>();
         made->volume = read_volume(*file);
         SkinSettings settings;
-        settings.threshold = kSkin_hu;  // the same surface as the scan's, or the registration would be shifted by the difference
+        settings.threshold =
+            kSkin_hu;  // the same surface as the scan's, or the registration would be shifted by the difference
         const SkinMask mask = segment_skin(made->volume, settings);
         made->lut = build_skin_lut(triangulate_skin(made->volume, mask, settings));
         return made;
@@ -76,7 +77,8 @@ PointCloud scan_of_ct(const Volume& volume, const Vector3d& eye_in_ct, double wi
         const double slice = (voxel_from_ct * p).z();
         if (slice < end_slices || slice > size.z() - 1 - end_slices) continue;
         Vector3d gradient;
-        for (int axis = 0; axis < 3; ++axis) gradient[axis] = at(p + Vector3d::Unit(axis)) - at(p - Vector3d::Unit(axis));
+        for (int axis = 0; axis < 3; ++axis)
+            gradient[axis] = at(p + Vector3d::Unit(axis)) - at(p - Vector3d::Unit(axis));
         const Vector3d normal = -gradient.normalized();
         if (!normal.allFinite() || normal.dot(direction) > -0.26) continue;
         cloud.points_in_rig.push_back(p);

@@ -17,10 +17,12 @@ using Eigen::Vector3d;
 
 /// Front, half left, half right, left, from the CT's middle, 0.9 m away.
 PointCloud ct_view(const CtHead& head, unsigned i, double width_mm, int points) {
-    static const std::vector<Vector3d> kDirections{{0.1, -1, 0.15}, {0.8, -0.7, 0.1}, {-0.75, -0.7, 0.2}, {1, -0.25, 0.1}};
+    static const std::vector<Vector3d> kDirections{
+        {0.1, -1, 0.15}, {0.8, -0.7, 0.1}, {-0.75, -0.7, 0.2}, {1, -0.25, 0.1}};
     const Vector3d size(head.volume.size[0], head.volume.size[1], head.volume.size[2]);
     const Vector3d middle = head.volume.ct_from_voxel * Vector3d(0.5 * size);
-    return scan_of_ct(head.volume, middle + 900 * kDirections[i % kDirections.size()].normalized(), width_mm, points, i);
+    return scan_of_ct(head.volume, middle + 900 * kDirections[i % kDirections.size()].normalized(), width_mm, points,
+                      i);
 }
 
 struct Trial {
@@ -37,8 +39,12 @@ Trial trial(const CtHead& head, unsigned i, double width_mm, double noise_mm, do
     for (const auto& reason : result.reasons) reasons += reason + "; ";
     const RigidTransform truth = rig_from_ct.inverse();
     return {target_error_mm(result.patient_from_ct.inverse(), truth, cloud),
-            target_error_mm(result.initial_patient_from_ct.inverse(), truth, cloud), result.initial_match_s, result.refine_s,
-            result.inlier_fraction, result.verdict, reasons};
+            target_error_mm(result.initial_patient_from_ct.inverse(), truth, cloud),
+            result.initial_match_s,
+            result.refine_s,
+            result.inlier_fraction,
+            result.verdict,
+            reasons};
 }
 
 std::string spread(const std::string& name, std::vector<double> values) {
@@ -66,7 +72,8 @@ TEST(CtHead, MirroredIsNotAYes) {
         PointCloud cloud = ct_view(*head, i, 190, 12000);
         for (auto& p : cloud.points_in_rig) p.x() = -p.x();
         for (auto& n : cloud.normals_in_rig) n.x() = -n.x();
-        const RegistrationResult result = register_patient(spoiled(moved(cloud, random_pose(i)), 0.4, 0.1, i), head->lut);
+        const RegistrationResult result =
+            register_patient(spoiled(moved(cloud, random_pose(i)), 0.4, 0.1, i), head->lut);
         EXPECT_NE(result.verdict, Verdict::yes) << i << " mirror ratio " << result.mirror_ratio;
     }
 }
@@ -93,8 +100,9 @@ TEST(CtHead, DISABLED_Figures) {
         }
         fmt::print("{} mm wide, noise {} mm, {:.0f} % strays: found {}/40, yes {} ask {} no {}, wrong yes {}\n",
                    width_mm, noise_mm, 100 * strays, found, verdicts[0], verdicts[1], verdicts[2], wrong_yes);
-        fmt::print("{}{}{}{}", spread("error at targets 60 mm deep, mm", errors), spread("same before the ICP, mm", starts),
-                   spread("initial match, s", match_s), spread("ICP, s", icp_s));
+        fmt::print("{}{}{}{}", spread("error at targets 60 mm deep, mm", errors),
+                   spread("same before the ICP, mm", starts), spread("initial match, s", match_s),
+                   spread("ICP, s", icp_s));
         if (std::getenv("PLANLIGHT_REASONS")) fmt::print("{}", reasons);
     }
 }

@@ -20,7 +20,8 @@ TEST_P(FromAnyPose, TheContactTripletsFindTheHead) {
     const unsigned i = GetParam();
     const double noise_mm = 0.3 + 0.1 * (i % 3), strays = 0.05 + 0.1 * ((i / 4) % 3);
     const RigidTransform rig_from_ct = random_pose(i);
-    const PointCloud cloud = spoiled(moved(head_view(static_cast<View>(i % 4), 200, 8000, i), rig_from_ct), noise_mm, strays, i);
+    const PointCloud cloud =
+        spoiled(moved(head_view(static_cast<View>(i % 4), 200, 8000, i), rig_from_ct), noise_mm, strays, i);
     const InitialMatch match = find_initial_match(cloud, head_lut());
     ASSERT_FALSE(match.candidates.empty());
     EXPECT_LT(target_error_mm(match.candidates[0].ct_from_rig, rig_from_ct.inverse(), cloud), kGoodStart_mm);
@@ -62,8 +63,10 @@ TEST(InitialMatch, PointsThatAreNotNumbersDoNotMatter) {
     const PointCloud clean = cloud;
     constexpr double kNaN = std::numeric_limits<double>::quiet_NaN(), kInf = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < cloud.size(); i += 7) {
-        if (i % 2) cloud.points_in_rig[i] = {kNaN, 1, kInf};
-        else cloud.normals_in_rig[i] = {kNaN, kNaN, kNaN};
+        if (i % 2)
+            cloud.points_in_rig[i] = {kNaN, 1, kInf};
+        else
+            cloud.normals_in_rig[i] = {kNaN, kNaN, kNaN};
     }
     cloud.points_in_rig[1] = {1e300, -1e300, 1e12};
     const InitialMatch match = find_initial_match(cloud, head_lut());

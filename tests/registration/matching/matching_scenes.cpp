@@ -53,8 +53,8 @@ PointCloud spoiled(const PointCloud& cloud, double noise_mm, double stray_share,
 }
 
 PointCloud head_view(View view, double width_mm, int points, unsigned seed) {
-    const Vector3d eye = view == View::front  ? Vector3d(120, -850, 150)
-                         : view == View::left ? Vector3d(850, -250, 100)
+    const Vector3d eye = view == View::front   ? Vector3d(120, -850, 150)
+                         : view == View::left  ? Vector3d(850, -250, 100)
                          : view == View::right ? Vector3d(-850, -200, 50)
                                                : Vector3d(80, -350, 850);
     return view_of_analytic_head(eye, width_mm, points, seed);

@@ -83,16 +83,18 @@ void print_row(const std::string& name, const std::vector<TrialRecord>& all,
     if (n == 0) return;
     const auto percent = [&](std::size_t k) { return 100. * static_cast<double>(k) / static_cast<double>(n); };
     fmt::print(
-        "| {} | {} | {:.1f} / {:.1f} % | {:.1f} % | {:.0f} / {:.0f} / {:.0f} % | {} / {} | {:.2f}, {:.2f} | {:.2f}, {:.2f} | "
+        "| {} | {} | {:.1f} / {:.1f} % | {:.1f} % | {:.0f} / {:.0f} / {:.0f} % | {} / {} | {:.2f}, {:.2f} | {:.2f}, "
+        "{:.2f} | "
         "{:.2f}, {:.2f} | {:.2f} |\n",
-        name, n, percent(found), percent(finally), percent(good), percent(verdicts[0]), percent(verdicts[1]), percent(verdicts[2]),
-        wrong[0], wrong[1], quantile(before, 0.5), quantile(before, 0.95), quantile(after, 0.5), quantile(after, 0.95),
-        quantile(initial_s, 0.5), quantile(initial_s, 0.99), quantile(processor_s, 0.5));
+        name, n, percent(found), percent(finally), percent(good), percent(verdicts[0]), percent(verdicts[1]),
+        percent(verdicts[2]), wrong[0], wrong[1], quantile(before, 0.5), quantile(before, 0.95), quantile(after, 0.5),
+        quantile(after, 0.95), quantile(initial_s, 0.5), quantile(initial_s, 0.99), quantile(processor_s, 0.5));
 }
 
 void print_table(const std::vector<TrialRecord>& all) {
     fmt::print(
-        "| trials | number | found (within 3 degrees, 5 mm): before / after the fine match | found, and < 2 mm at targets | yes / ask / no | wrong (> "
+        "| trials | number | found (within 3 degrees, 5 mm): before / after the fine match | found, and < 2 mm at "
+        "targets | yes / ask / no | wrong (> "
         "5 mm): yes / ask | "
         "error of those found, mm, before: median, 95 % | after | initial match, s by the wall: median, 99 % | "
         "processor s in all: median |\n"

@@ -1,5 +1,5 @@
-// How true is the predicted error? Scans of skin that moved since the CT, by models that the prediction does not know, are
-// registered from any pose; the true error at targets inside the head is compared with the 95 % bound.
+// How true is the predicted error? Scans of skin that moved since the CT, by models that the prediction does not know,
+// are registered from any pose; the true error at targets inside the head is compared with the 95 % bound.
 // measure_prediction [CASES [FIRST_SEED]]   (default 2000 cases, seed 1); about 0.5 s a case.
 #include <fmt/format.h>
 
@@ -74,7 +74,8 @@ double drawn_error_mm(const PoseCovariance& covariance, const Vector3d& p_in_ct,
 PointCloud some_scan(unsigned seed, std::mt19937& random, const SkinLut*& lut) {
     std::uniform_real_distribution<double> width(92, 250), across(-1.6, 1.6), up(-0.3, 0.5);
     const double azimuth = across(random), elevation = up(random), w = width(random);
-    const Vector3d from(std::sin(azimuth) * std::cos(elevation), -std::cos(azimuth) * std::cos(elevation), std::sin(elevation));
+    const Vector3d from(std::sin(azimuth) * std::cos(elevation), -std::cos(azimuth) * std::cos(elevation),
+                        std::sin(elevation));
     const CtHead* head = seed % 4 == 0 ? nullptr : ct_head();
     if (!head) {
         lut = &head_lut();
@@ -94,7 +95,8 @@ Case run(unsigned seed) {
     const auto& movements = skin_movements();
     result.movement = movements[seed % movements.size()].name;
     const double rms_mm = size(random), noise_mm = noise(random), stray_share = strays(random);
-    const PointCloud in_ct = spoiled(with_moved_skin(still, result.movement, rms_mm, seed + 7), noise_mm, stray_share, seed);
+    const PointCloud in_ct =
+        spoiled(with_moved_skin(still, result.movement, rms_mm, seed + 7), noise_mm, stray_share, seed);
     const RigidTransform rig_from_ct = random_pose(seed);
     const PointCloud cloud = moved(in_ct, rig_from_ct);
     const RegistrationResult found = register_patient(cloud, *lut);
@@ -119,7 +121,8 @@ Case run(unsigned seed) {
 }
 
 void print_row(const std::string& name, const std::array<unsigned, 3>& verdicts, std::vector<Target> targets) {
-    const auto covered = std::count_if(targets.begin(), targets.end(), [](const auto& t) { return t.error_mm <= t.bound_mm; });
+    const auto covered =
+        std::count_if(targets.begin(), targets.end(), [](const auto& t) { return t.error_mm <= t.bound_mm; });
     const double correlation = rank_correlation(targets, [](const Target& t) { return t.error_mm; });
     const double possible = rank_correlation(targets, [](const Target& t) { return t.drawn_mm; });
     const auto at = [&](double share, auto key) {
@@ -129,10 +132,12 @@ void print_row(const std::string& name, const std::array<unsigned, 3>& verdicts,
     const auto error = [](const Target& t) { return t.error_mm; };
     const auto ratio = [](const Target& t) { return t.error_mm / t.bound_mm; };
     const auto bound = [](const Target& t) { return t.bound_mm; };
-    fmt::print("| {} | {} / {} / {} | {} | {:.1f} % | {:.2f} ({:.2f}) | {:.2f} / {:.2f} / {:.2f} | {:.2f} / {:.2f} | {:.2f} |\n",
-               name, verdicts[0], verdicts[1], verdicts[2], targets.size(),
-               100. * static_cast<double>(covered) / static_cast<double>(targets.size()), correlation, possible, at(0.5, error),
-               at(0.95, error), at(1, error), at(0.5, bound), at(0.95, bound), at(1, ratio));
+    fmt::print(
+        "| {} | {} / {} / {} | {} | {:.1f} % | {:.2f} ({:.2f}) | {:.2f} / {:.2f} / {:.2f} | {:.2f} / {:.2f} | {:.2f} "
+        "|\n",
+        name, verdicts[0], verdicts[1], verdicts[2], targets.size(),
+        100. * static_cast<double>(covered) / static_cast<double>(targets.size()), correlation, possible,
+        at(0.5, error), at(0.95, error), at(1, error), at(0.5, bound), at(0.95, bound), at(1, ratio));
 }
 
 }  // namespace
@@ -154,11 +159,14 @@ int main(int argc, char** argv) {
             double& worst = worst_mm[done.verdict == planlight::Verdict::yes ? 0 : 1];
             worst = std::max(worst, target.error_mm);
         }
-        ++verdicts[done.movement][done.verdict == planlight::Verdict::yes ? 0 : done.verdict == planlight::Verdict::ask ? 1 : 2];
+        ++verdicts[done.movement][done.verdict == planlight::Verdict::yes   ? 0
+                                  : done.verdict == planlight::Verdict::ask ? 1
+                                                                            : 2];
     }
     std::array<unsigned, 3> of_others{};
     fmt::print(
-        "| skin moved by | yes / ask / no | targets | within the 95 % bound | rank correlation (if the covariances were exactly right) | true error mm: median "
+        "| skin moved by | yes / ask / no | targets | within the 95 % bound | rank correlation (if the covariances "
+        "were exactly right) | true error mm: median "
         "/ 95 % / worst | bound mm: median / 95 % | worst error / bound |\n|---|---|---|---|---|---|---|---|\n");
     for (const auto& movement : skin_movements()) {
         const auto& targets = by_movement[movement.name];
@@ -170,5 +178,6 @@ int main(int argc, char** argv) {
         print_row(movement.name + (movement.tuned_on ? " (tuned on)" : ""), verdicts[movement.name], targets);
     }
     if (!others.empty()) print_row("**all not tuned on**", of_others, others);
-    fmt::print("\nWorst error at a target: {:.2f} mm where the verdict is yes, {:.2f} mm where it is ask.\n", worst_mm[0], worst_mm[1]);
+    fmt::print("\nWorst error at a target: {:.2f} mm where the verdict is yes, {:.2f} mm where it is ask.\n",
+               worst_mm[0], worst_mm[1]);
 }

@@ -57,7 +57,8 @@ std::vector<double> sagged(const PointCloud& cloud, std::mt19937& random) {
     return moved;
 }
 
-/// The soft half of the skin is pulled one way, the other half stays: cheeks and temples against forehead and nose bridge.
+/// The soft half of the skin is pulled one way, the other half stays: cheeks and temples against forehead and nose
+/// bridge.
 std::vector<double> pulled(const PointCloud& cloud, std::mt19937& random) {
     const Vector3d way = normal_vector(random).normalized();
     const auto soft = smooth_field(30, random);
@@ -71,7 +72,8 @@ std::vector<double> pulled(const PointCloud& cloud, std::mt19937& random) {
 std::vector<double> pressed(const PointCloud& cloud, std::mt19937& random) {
     const Vector3d middle = cloud.points_in_rig[random() % cloud.size()];
     std::vector<double> moved;
-    for (const auto& p : cloud.points_in_rig) moved.push_back(-std::max(0., 1 - (p - middle).squaredNorm() / (50. * 50)));
+    for (const auto& p : cloud.points_in_rig)
+        moved.push_back(-std::max(0., 1 - (p - middle).squaredNorm() / (50. * 50)));
     return moved;
 }
 
@@ -98,11 +100,16 @@ std::vector<double> along_normals(const PointCloud& cloud, const std::string& mo
     if (movement == "jaw") return opened_jaw(cloud);
     if (movement == "thicker all over") return std::vector<double>(cloud.size(), random() % 2 == 0 ? 1 : -1);
     std::function<double(const Vector3d&)> field, other;
-    if (movement == "waves of 25 mm") field = smooth_field(25, random);
-    else if (movement == "waves of 12 mm") field = smooth_field(12, random);
-    else if (movement == "waves of 50 mm") field = smooth_field(50, random);
-    else if (movement == "waves of 8 and 40 mm") field = smooth_field(8, random), other = smooth_field(40, random);
-    else throw std::invalid_argument("no such movement: " + movement);
+    if (movement == "waves of 25 mm")
+        field = smooth_field(25, random);
+    else if (movement == "waves of 12 mm")
+        field = smooth_field(12, random);
+    else if (movement == "waves of 50 mm")
+        field = smooth_field(50, random);
+    else if (movement == "waves of 8 and 40 mm")
+        field = smooth_field(8, random), other = smooth_field(40, random);
+    else
+        throw std::invalid_argument("no such movement: " + movement);
     std::vector<double> moved;
     for (const auto& p : cloud.points_in_rig) moved.push_back(field(p) + (other ? other(p) : 0));
     return moved;

@@ -14,7 +14,8 @@ namespace {
 using Eigen::Vector3d;
 
 /// Nasion, both outer eye corners, both tragi, tip of the nose: of a head about its middle (ct, mm).
-const std::vector<Vector3d> kLandmarks{{0, -95, 20}, {48, -80, 15}, {-48, -80, 15}, {75, 5, 0}, {-75, 5, 0}, {0, -115, -10}};
+const std::vector<Vector3d> kLandmarks{{0, -95, 20}, {48, -80, 15}, {-48, -80, 15},
+                                       {75, 5, 0},   {-75, 5, 0},   {0, -115, -10}};
 
 std::vector<PointPair> touched(const RigidTransform& rig_from_ct, double error_mm, unsigned seed) {
     std::mt19937 random(seed);

@@ -41,7 +41,8 @@ TEST(LutIcp, ClosestPointsRecoverThePoseMoreLoosely) {
     const SkinLut lut = build_skin_lut(analytic_head_mesh(2));
     for (unsigned i = 0; i < 4; ++i) {
         const RigidTransform truth = random_pose(i + 70).inverse();
-        const PointCloud cloud = spoiled(moved(head_view(static_cast<View>(i), 200, 8000, i), truth.inverse()), 0.3, 0.05, i);
+        const PointCloud cloud =
+            spoiled(moved(head_view(static_cast<View>(i), 200, 8000, i), truth.inverse()), 0.3, 0.05, i);
         IcpSettings settings;
         settings.mode = IcpSettings::Mode::closest_point;
         const RigidTransform start = disturbed(truth, cloud, i);
@@ -62,7 +63,8 @@ TEST(LutIcp, SealsAndCutPlanesTakeNoPart) {
         if (cloud.points_in_rig[i].z() < -22) cloud.points_in_rig[i] += 2.5 * cloud.normals_in_rig[i];
     const RigidTransform truth = RigidTransform::Identity();
     const IcpResult icp = refine_icp(cloud, lut, disturbed(truth, cloud, 3));
-    EXPECT_LT(target_error_mm(icp.ct_from_rig, truth, cloud), 0.15);  // the band between -20 and -22 is all that is shared
+    EXPECT_LT(target_error_mm(icp.ct_from_rig, truth, cloud),
+              0.15);  // the band between -20 and -22 is all that is shared
     EXPECT_LT(icp.used, cloud.size());
 }
 
@@ -92,7 +94,8 @@ TEST(LutIcp, PointsThatAreNotNumbersDoNotMatter) {
     const RigidTransform truth = random_pose(11).inverse();
     PointCloud cloud = moved(head_view(View::right, 200, 8000, 2), truth.inverse());
     const PointCloud clean = cloud;
-    for (std::size_t i = 0; i < cloud.size(); i += 5) cloud.points_in_rig[i].y() = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t i = 0; i < cloud.size(); i += 5)
+        cloud.points_in_rig[i].y() = std::numeric_limits<double>::quiet_NaN();
     const IcpResult icp = refine_icp(cloud, head_lut(), disturbed(truth, clean, 1));
     EXPECT_LT(target_error_mm(icp.ct_from_rig, truth, clean), 0.1);
 }

@@ -57,8 +57,8 @@ TEST(RefinePoseDeformable, StillSkinIsSaidToBeStillAndItsPoseIsKept) {
 }
 
 TEST(RefinePoseDeformable, TheBoundHoldsWhereSkinMovedInWavesAndGrowsWithThem) {
-    // "Waves of 50 mm" were not looked at when the bound was made. 19 of 20 are to be within; 17 or fewer by chance: 8 %,
-    // 16 or fewer: 2 %.
+    // "Waves of 50 mm" were not looked at when the bound was made. 19 of 20 are to be within; 17 or fewer by chance: 8
+    // %, 16 or fewer: 2 %.
     int within = 0;
     double small_mm = 0, large_mm = 0;
     for (unsigned seed = 0; seed < 20; ++seed) {
@@ -79,7 +79,8 @@ TEST(RefinePoseDeformable, TooLittleSkinToTellIsAnInfiniteBoundNotASmallOne) {
 }
 
 TEST(RefinePoseDeformable, TheScanStillLiesOnTheSkinAfterwards) {
-    // A round crown, noisy: shift, offset, growth and long waves can stand for each other, and any of them is found large.
+    // A round crown, noisy: shift, offset, growth and long waves can stand for each other, and any of them is found
+    // large.
     for (unsigned seed = 0; seed < 12; ++seed) {
         const RigidTransform rig_from_ct = random_pose(seed), ct_from_rig = rig_from_ct.inverse();
         const PointCloud in_ct = with_moved_skin(head_view(View::top, 150, 20000, seed), "waves of 25 mm", 0.9, seed);
@@ -105,7 +106,8 @@ TEST(RefinePoseDeformable, SkinThatIsThickOverTheBoneIsTrustedLess) {
             if (in_ct.points_in_rig[i].z() < 0) in_ct.points_in_rig[i] = all_moved.points_in_rig[i];
         const PointCloud cloud = moved(spoiled(in_ct, 0.2, 0.05, seed), rig_from_ct);
         const auto error_mm = [&](const SkinLut& lut) {
-            return target_error_mm(refine_pose_deformable(cloud, lut, ct_from_rig).ct_from_rig, ct_from_rig, cloud) / 12;
+            return target_error_mm(refine_pose_deformable(cloud, lut, ct_from_rig).ct_from_rig, ct_from_rig, cloud) /
+                   12;
         };
         known_mm += error_mm(thick_below);
         unknown_mm += error_mm(head_lut());

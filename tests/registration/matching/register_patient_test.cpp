@@ -123,7 +123,8 @@ TEST(RegisterPatient, NormalsTurnedInwardsAreNotAYes) {
 
 TEST(RegisterPatient, ASmoothDomeMayNotBeAccepted) {
     // A scan of the crown only: nearly a ball, it could turn about its own axis.
-    const RegistrationResult result = register_patient(spoiled(head_view(View::top, 110, 12000, 1), 0.4, 0.1, 1), head_lut());
+    const RegistrationResult result =
+        register_patient(spoiled(head_view(View::top, 110, 12000, 1), 0.4, 0.1, 1), head_lut());
     EXPECT_NE(result.verdict, Verdict::yes);
     EXPECT_TRUE(mentions(result, "turn about")) << told(result);
 }

@@ -77,7 +77,8 @@ void write_roc(const std::vector<RocCurve>& curves, const std::vector<RocPoint>&
     for (std::size_t c = 0; c < curves.size(); ++c) {
         const cv::Point key = at(1.03, 0.9 - 0.06 * static_cast<double>(c));  // beside the axes, over no curve
         cv::line(picture, key, key + cv::Point(30, 0), colours[c % colours.size()], 3);
-        write_text(picture, fmt::format("{} (area {:.4f})", curves[c].name, area_under(curves[c])), key + cv::Point(40, 5));
+        write_text(picture, fmt::format("{} (area {:.4f})", curves[c].name, area_under(curves[c])),
+                   key + cv::Point(40, 5));
     }
     for (const RocPoint& point : points) {
         const cv::Point where = at(across(point.wrong_share, least), point.right_share);

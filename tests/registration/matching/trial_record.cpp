@@ -23,8 +23,7 @@ std::string line_of(const TrialRecord& r) {
         r.seed, r.kind, r.head, r.right_object, r.width_mm, r.noise_mm, r.strays, r.drape, r.movement_mm, r.view,
         r.movement, r.points, r.verdict, r.searched, r.initial.turn_deg, r.initial.middle_mm, r.initial.target_mm,
         r.final.turn_deg, r.final.middle_mm, r.final.target_mm, r.bound_mm, r.runner_up, r.mirror, r.inliers, r.rms_mm,
-        r.median_mm, r.scale, r.weakest_mm, r.bases, r.initial_s, r.refine_s, r.processor_s,
-        r.blocked, r.reasons);
+        r.median_mm, r.scale, r.weakest_mm, r.bases, r.initial_s, r.refine_s, r.processor_s, r.blocked, r.reasons);
 }
 
 void take(const std::string& text, std::string& into) {

@@ -9,8 +9,8 @@ namespace planlight::test {
 namespace {
 
 TEST(InitialMatch, AHeadUnderAClothThatHidesThreeTenthsOfItIsFound) {
-    // A cloth lies outside of the body. A search that takes what lies outside for as wrong as what lies inside pulls the cloth
-    // onto the skin, and finds five of these eight.
+    // A cloth lies outside of the body. A search that takes what lies outside for as wrong as what lies inside pulls
+    // the cloth onto the skin, and finds five of these eight.
     const TrialSurface surface(analytic_head_mesh(1.5));
     int found = 0;
     constexpr int kScans = 8;

@@ -55,7 +55,8 @@ struct FakeCameras : StereoCamera {
         if (i == empty_at) return frame;
         frame.left = frame.right = GrayImage(64, 48);
         for (std::size_t p = 0; p < frame.left.pixels.size(); ++p)
-            frame.left.pixels[p] = frame.right.pixels[p] = static_cast<std::uint8_t>(projector.on.pixels[p][0] * 4 / 5 + 10);
+            frame.left.pixels[p] = frame.right.pixels[p] =
+                static_cast<std::uint8_t>(projector.on.pixels[p][0] * 4 / 5 + 10);
         return frame;
     }
 };

@@ -51,7 +51,9 @@ RgbImage draw_cloud(const PointCloud& cloud, const std::vector<Rgb>& colours, co
                   y0 = static_cast<int>(std::lround(height / 2.0 + p.y() / mm_per_px));
         double light = 1;
         if (!cloud.normals_in_rig.empty())
-            light = 0.35 + 0.65 * std::abs((view_from_rig * cloud.normals_in_rig[i]).dot(Eigen::Vector3d(-0.35, -0.45, -0.82)));
+            light =
+                0.35 +
+                0.65 * std::abs((view_from_rig * cloud.normals_in_rig[i]).dot(Eigen::Vector3d(-0.35, -0.45, -0.82)));
         for (int y = y0 - radius_px; y <= y0 + radius_px; ++y)
             for (int x = x0 - radius_px; x <= x0 + radius_px; ++x) {
                 if (x < 0 || y < 0 || x >= width || y >= height) continue;
@@ -79,10 +81,12 @@ RgbImage draw_columns(const DecodedView& view, int projector_width) {
 void write_words(RgbImage& picture, const std::string& words, int x, int y) {
     cv::Mat pixels(picture.height, picture.width, CV_8UC3, picture.pixels.data());
     cv::putText(pixels, words, {x, y}, cv::FONT_HERSHEY_SIMPLEX, 0.45, cv::Scalar(0, 0, 0), 3, cv::LINE_AA);
-    cv::putText(pixels, words, {x, y}, cv::FONT_HERSHEY_SIMPLEX, 0.45, cv::Scalar(kInk[0], kInk[1], kInk[2]), 1, cv::LINE_AA);
+    cv::putText(pixels, words, {x, y}, cv::FONT_HERSHEY_SIMPLEX, 0.45, cv::Scalar(kInk[0], kInk[1], kInk[2]), 1,
+                cv::LINE_AA);
 }
 
-RgbImage with_legend(const RgbImage& picture, const std::string& words, double low, double high, Rgb (*colour)(double)) {
+RgbImage with_legend(const RgbImage& picture, const std::string& words, double low, double high,
+                     Rgb (*colour)(double)) {
     constexpr int kBar = 44;
     RgbImage whole(picture.width, picture.height + kBar, kBackground);
     std::copy(picture.pixels.begin(), picture.pixels.end(), whole.pixels.begin());
@@ -101,10 +105,10 @@ RgbImage half_size(const RgbImage& picture) {
     for (int y = 0; y < half.height; ++y)
         for (int x = 0; x < half.width; ++x)
             for (std::size_t c = 0; c < 3; ++c)
-                half.at(x, y)[c] =
-                    static_cast<std::uint8_t>((picture.at(2 * x, 2 * y)[c] + picture.at(2 * x + 1, 2 * y)[c] +
-                                               picture.at(2 * x, 2 * y + 1)[c] + picture.at(2 * x + 1, 2 * y + 1)[c] + 2) /
-                                              4);
+                half.at(x, y)[c] = static_cast<std::uint8_t>(
+                    (picture.at(2 * x, 2 * y)[c] + picture.at(2 * x + 1, 2 * y)[c] + picture.at(2 * x, 2 * y + 1)[c] +
+                     picture.at(2 * x + 1, 2 * y + 1)[c] + 2) /
+                    4);
     return half;
 }
 

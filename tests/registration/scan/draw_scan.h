@@ -16,8 +16,8 @@ Rgb sequential_colour(double share);
 /// 0 blue, 0.5 near white, 1 red.
 Rgb signed_colour(double share);
 
-/// Points as discs, the nearest in front, seen by a parallel view: `view_from_rig` has x right, y down, z away from the eye;
-/// the cloud's middle is in the picture's. Shaded by the normals where there are any.
+/// Points as discs, the nearest in front, seen by a parallel view: `view_from_rig` has x right, y down, z away from the
+/// eye; the cloud's middle is in the picture's. Shaded by the normals where there are any.
 RgbImage draw_cloud(const PointCloud& cloud, const std::vector<Rgb>& colours, const Eigen::Matrix3d& view_from_rig,
                     double mm_per_px, int width, int height, int radius_px = 1);
 

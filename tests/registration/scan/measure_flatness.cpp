@@ -1,5 +1,5 @@
-// How flat the planes in a cloud are: measure_flatness CLOUD.ply [REACH_MM]. The three planes with most points within REACH_MM
-// (3), and the rms distance of these points to the plane and to a surface of second degree.
+// How flat the planes in a cloud are: measure_flatness CLOUD.ply [REACH_MM]. The three planes with most points within
+// REACH_MM (3), and the rms distance of these points to the plane and to a surface of second degree.
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
@@ -50,8 +50,8 @@ std::vector<Eigen::Vector3d> in_plane(const std::vector<Eigen::Vector3d>& points
     return turned;
 }
 
-/// The points within `reach_mm` of the plane that most points lie on, out of 400 planes through three random ones; they leave
-/// `points`.
+/// The points within `reach_mm` of the plane that most points lie on, out of 400 planes through three random ones; they
+/// leave `points`.
 std::vector<Eigen::Vector3d> take_plane(std::vector<Eigen::Vector3d>& points, double reach_mm, std::mt19937& random) {
     std::uniform_int_distribution<std::size_t> any(0, points.size() - 1);
     std::size_t most = 0;

@@ -1,12 +1,13 @@
-// What is noticed of a patient who moves during the scan: measure_movement [SEED] [ROOMS] [paper|modern]. Each room is scanned
-// five times, at rest and at four speeds. Printed: the true way of the skin near the markers against what is said.
+// What is noticed of a patient who moves during the scan: measure_movement [SEED] [ROOMS] [paper|modern]. Each room is
+// scanned five times, at rest and at four speeds. Printed: the true way of the skin near the markers against what is
+// said.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 
-#include "planning_io/volume/read_volume.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/read_volume.h"
 #include "registration/tracking/markers_in_scan.h"
 #include "tests/registration/scan/random_rooms.h"
 
@@ -25,7 +26,8 @@ double true_way_mm(const SimulatedRig& room, const ScanCapture& capture) {
         poses.push_back(room.true_rig_from_ct(capture.began + (capture.ended - capture.began) * k / kMoments));
     for (std::size_t i = 0; i < poses.size(); ++i)
         for (std::size_t j = i + 1; j < poses.size(); ++j)
-            for (const auto& m : room.true_markers_in_ct()) moved = std::max(moved, (poses[j] * m - poses[i] * m).norm());
+            for (const auto& m : room.true_markers_in_ct())
+                moved = std::max(moved, (poses[j] * m - poses[i] * m).norm());
     return moved;
 }
 
@@ -41,10 +43,12 @@ int main(int argc, char** argv) {
     try {
         const unsigned seed = argc > 1 ? static_cast<unsigned>(std::stoul(argv[1])) : 1;
         const unsigned rooms = argc > 2 ? static_cast<unsigned>(std::stoul(argv[2])) : 2;
-        const auto preset = argc > 3 && std::string(argv[3]) == "modern" ? simulation::Preset::modern : simulation::Preset::paper;
+        const auto preset =
+            argc > 3 && std::string(argv[3]) == "modern" ? simulation::Preset::modern : simulation::Preset::paper;
         constexpr double kLimit_mm = 0.15;
         const Volume head = read_volume("/usr/share/doc/invesalius-examples/examples/Cranium.inv3");
-        std::array<Bin, 7> bins{{{0, 1e-9}, {1e-9, 0.1}, {0.1, 0.15}, {0.15, 0.2}, {0.2, 0.35}, {0.35, 0.7}, {0.7, 1e9}}};
+        std::array<Bin, 7> bins{
+            {{0, 1e-9}, {1e-9, 0.1}, {0.1, 0.15}, {0.15, 0.2}, {0.2, 0.35}, {0.35, 0.7}, {0.7, 1e9}}};
         for (unsigned k = 0; k < rooms; ++k)
             for (const double speed_mm_s : {0.0, 0.1, 0.2, 0.4, 1.2}) {
                 SimulatedRig room(head, {}, random_room(preset, seed + k));
@@ -56,17 +60,19 @@ int main(int argc, char** argv) {
                 const double truth = true_way_mm(room, capture);
                 const ScanResult scan = scan_from_capture(capture, room.calibration());
                 const ScanMovement markers = movement_of_markers(capture, room.calibration());
-                const ScanMovement pictures = movement_in_pictures(
-                    capture, mm_per_left_pixel(scan.clean.kept, room.calibration().left_camera));
+                const ScanMovement pictures =
+                    movement_in_pictures(capture, mm_per_left_pixel(scan.clean.kept, room.calibration().left_camera));
                 auto errors = room.scan_errors_mm(scan.clean.kept.points_in_rig, capture.began);
                 for (double& e : errors) e = std::abs(e);
-                std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
-                fmt::print(
-                    stderr,
-                    "{} room {} {:.2f} mm/s: true {:.3f}, markers {:.3f} ({} of {} moments), pictures {:.3f}, cloud {:.3f}\n",
-                    name_of(preset), seed + k, speed_mm_s, truth, markers.moved_mm, markers.markers, markers.moments,
-                    pictures.moved_mm, errors[errors.size() / 2]);
-                Bin& bin = *std::find_if(bins.begin(), bins.end(), [&](const Bin& b) { return truth >= b.from && truth < b.to; });
+                std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),
+                                 errors.end());
+                fmt::print(stderr,
+                           "{} room {} {:.2f} mm/s: true {:.3f}, markers {:.3f} ({} of {} moments), pictures {:.3f}, "
+                           "cloud {:.3f}\n",
+                           name_of(preset), seed + k, speed_mm_s, truth, markers.moved_mm, markers.markers,
+                           markers.moments, pictures.moved_mm, errors[errors.size() / 2]);
+                Bin& bin = *std::find_if(bins.begin(), bins.end(),
+                                         [&](const Bin& b) { return truth >= b.from && truth < b.to; });
                 ++bin.scans;
                 const bool by_markers = markers.by == ScanMovement::By::markers;
                 bin.markers += by_markers;
@@ -76,13 +82,15 @@ int main(int argc, char** argv) {
                 bin.worst_off_pictures = std::max(bin.worst_off_pictures, std::abs(pictures.moved_mm - truth));
                 bin.error_mm += errors[errors.size() / 2];
             }
-        fmt::print("{}: said to have moved more than {} mm\n{:>16}{:>7}{:>12}{:>11}{:>12}{:>14}{:>12}\n", name_of(preset),
-                   kLimit_mm, "true way (mm)", "scans", "by markers", "worst off", "by pictures", "worst off", "cloud off");
+        fmt::print("{}: said to have moved more than {} mm\n{:>16}{:>7}{:>12}{:>11}{:>12}{:>14}{:>12}\n",
+                   name_of(preset), kLimit_mm, "true way (mm)", "scans", "by markers", "worst off", "by pictures",
+                   "worst off", "cloud off");
         for (const Bin& bin : bins)
             if (bin.scans > 0)
                 fmt::print("{:>16}{:>7}{:>12}{:>11.3f}{:>12}{:>14.3f}{:>12.3f}\n",
-                           bin.to < 1e-8 ? "at rest"
-                                         : fmt::format("{:g} to {:g}", bin.from < 1e-8 ? 0 : bin.from, std::min(bin.to, 9.0)),
+                           bin.to < 1e-8
+                               ? "at rest"
+                               : fmt::format("{:g} to {:g}", bin.from < 1e-8 ? 0 : bin.from, std::min(bin.to, 9.0)),
                            bin.scans, fmt::format("{} of {}", bin.noticed, bin.markers), bin.worst_off,
                            bin.noticed_by_pictures, bin.worst_off_pictures, bin.error_mm / bin.scans);
         return 0;

@@ -32,7 +32,10 @@ void measure(const char* name, const Room& room, const Eigen::Vector3d& centre, 
         if (!std::isnan(truth.code[i].x())) ++lit;
         if (std::isnan(best.left.column[i])) continue;
         const double e = best.left.column[i] - truth.code[i].x();
-        if (!(std::abs(e) < 2)) { ++wrong; continue; }
+        if (!(std::abs(e) < 2)) {
+            ++wrong;
+            continue;
+        }
         bias += e;
         errors.push_back(std::abs(e));
     }
@@ -56,10 +59,10 @@ void measure(const char* name, const Room& room, const Eigen::Vector3d& centre, 
     fmt::print("  sphere: mean {:+.4f} mm, rms {:.4f} mm; projector off {:.3f} {:.3f} px, epipolar {:.3f} px\n",
                sum / n, std::sqrt(squares / n), best.raw.projector_offset_px.x(), best.raw.projector_offset_px.y(),
                best.raw.epipolar_rms_px);
-    fmt::print("  kept {}, jump {}, grazing {}, small {}, lonely {}, thinned {}\n", best.clean.kept.size(), best.clean.jump,
-               best.clean.grazing, best.clean.small_piece, best.clean.lonely, best.clean.thinned);
-    fmt::print("  best of 5: sequence {:.1f} ms, decode {:.1f} ms, triangulate {:.1f} ms, outliers {:.1f} ms\n", 1e3 * best.sequence_s,
-               1e3 * best.decode_s, 1e3 * best.triangulate_s, 1e3 * best.outliers_s);
+    fmt::print("  kept {}, jump {}, grazing {}, small {}, lonely {}, thinned {}\n", best.clean.kept.size(),
+               best.clean.jump, best.clean.grazing, best.clean.small_piece, best.clean.lonely, best.clean.thinned);
+    fmt::print("  best of 5: sequence {:.1f} ms, decode {:.1f} ms, triangulate {:.1f} ms, outliers {:.1f} ms\n",
+               1e3 * best.sequence_s, 1e3 * best.decode_s, 1e3 * best.triangulate_s, 1e3 * best.outliers_s);
 }
 
 }  // namespace

@@ -9,9 +9,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "planning_io/volume/read_volume.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/statistics.h"
+#include "planning_io/volume/read_volume.h"
 #include "registration/calibration/check_drift.h"
 #include "tests/registration/scan/footprint_figures.h"
 #include "tests/registration/scan/random_rooms.h"
@@ -156,8 +157,7 @@ void try_spoilt(const ScanCapture& capture, const SimulatedRig& room, std::vecto
         std::vector<double> errors = room.scan_errors_mm(scan.clean.kept.points_in_rig, capture.began);
         for (double& e : errors) e = std::abs(e);
         if (errors.empty()) continue;
-        std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2), errors.end());
-        row.error_mm += errors[errors.size() / 2];
+        row.error_mm += median(errors);
     }
 }
 

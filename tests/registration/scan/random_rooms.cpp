@@ -29,7 +29,8 @@ Volume sphere_volume() {
         for (int j = 0; j < n; ++j)
             for (int i = 0; i < n; ++i) {
                 const double distance = (volume.ct_from_voxel * Eigen::Vector3d(i, j, k)).norm() - kSphereRadius_mm;
-                volume.values[volume.index(i, j, k)] = static_cast<float>(std::clamp(-300 - 150 * distance, -1000.0, 400.0));
+                volume.values[volume.index(i, j, k)] =
+                    static_cast<float>(std::clamp(-300 - 150 * distance, -1000.0, 400.0));
             }
     return volume;
 }
@@ -39,10 +40,13 @@ ScanCapture capture_of(simulation::SimulatedRig& room, const std::string& set) {
     stripes.width = room.projector().width();
     stripes.height = room.projector().height();
     if (set == "fast") stripes = fast_stripes(stripes.width, stripes.height);
-    if (set.starts_with("multi")) stripes = multi_frequency_stripes(stripes.width, stripes.height, set == "multi-frequency");
+    if (set.starts_with("multi"))
+        stripes = multi_frequency_stripes(stripes.width, stripes.height, set == "multi-frequency");
     return capture_scan(room.projector(), room.cameras(), room.clock(), stripes);
 }
 
-std::string name_of(simulation::Preset preset) { return preset == simulation::Preset::paper ? "paper" : "modern"; }
+std::string name_of(simulation::Preset preset) {
+    return preset == simulation::Preset::paper ? "paper" : "modern";
+}
 
 }  // namespace planlight::scan_rooms

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <unordered_map>
 
+#include "planning_io/types/statistics.h"
 #include "registration/scan/triangulate/point_covariance.h"
 
 namespace planlight::scan_rooms {
@@ -16,13 +17,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using simulation::SimulatedRig;
-
-double median(std::vector<double> values) {
-    if (values.empty()) return 0;
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
 
 /// Points by cube; the key keeps 21 bits an axis.
 class Cubes {

@@ -21,8 +21,10 @@ RgbImage no_wider_than(RgbImage picture, int width) {
 RgbImage patterns(const StripeSettings& stripes) {
     std::vector<RgbImage> pictures;
     const auto sequence = stripe_sequence(stripes);
-    for (const char* name : {"white", "column-gray-2", "column-gray-4", "column-phase-0", "row-gray-3", "row-phase-2"}) {
-        const auto found = std::find_if(sequence.begin(), sequence.end(), [&](const auto& p) { return p.name == name; });
+    for (const char* name :
+         {"white", "column-gray-2", "column-gray-4", "column-phase-0", "row-gray-3", "row-phase-2"}) {
+        const auto found =
+            std::find_if(sequence.begin(), sequence.end(), [&](const auto& p) { return p.name == name; });
         if (found == sequence.end()) continue;
         RgbImage picture = no_wider_than(draw_stripes(stripes, *found), 300);
         write_words(picture, name);
@@ -35,8 +37,10 @@ RgbImage camera_and_code(const ScanCapture& capture, const ScanResult& scan) {
     const auto sequence = stripe_sequence(capture.stripes);
     std::vector<RgbImage> pictures;
     for (const char* name : {"column-phase-0"}) {
-        const auto found = std::find_if(sequence.begin(), sequence.end(), [&](const auto& p) { return p.name == name; });
-        RgbImage picture = no_wider_than(coloured(capture.left.at(static_cast<std::size_t>(found - sequence.begin()))), 500);
+        const auto found =
+            std::find_if(sequence.begin(), sequence.end(), [&](const auto& p) { return p.name == name; });
+        RgbImage picture =
+            no_wider_than(coloured(capture.left.at(static_cast<std::size_t>(found - sequence.begin()))), 500);
         write_words(picture, fmt::format("left camera, {}", name));
         pictures.push_back(std::move(picture));
     }
@@ -56,17 +60,19 @@ RgbImage cloud_error(const simulation::SimulatedRig& room, const ScanCapture& ca
     const Eigen::Matrix3d front = room.calibration().projector.device_from_rig.linear();
     std::vector<RgbImage> views;
     for (const double turned : {-0.7, 0.0, 0.7})
-        views.push_back(draw_cloud(cloud, colours, Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitY()).toRotationMatrix() * front,
-                                   1.05, 240, 240, 1));
-    return with_legend(side_by_side(views, 3), "distance to the true skin (mm), red outside, blue inside", -kRange_mm, kRange_mm,
-                       signed_colour);
+        views.push_back(draw_cloud(cloud, colours,
+                                   Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitY()).toRotationMatrix() * front, 1.05,
+                                   240, 240, 1));
+    return with_legend(side_by_side(views, 3), "distance to the true skin (mm), red outside, blue inside", -kRange_mm,
+                       kRange_mm, signed_colour);
 }
 
 /// One standard deviation along the worst direction, at three depths before the projector.
 RgbImage volume_sigma(const RigCalibration& rig) {
     constexpr double kHalfWidth_mm = 200, kHalfHeight_mm = 130, kStep_mm = 1.25;
     const RigidTransform rig_from_projector = rig.projector.device_from_rig.inverse();
-    const auto middle = ray_through(rig.projector, Eigen::Vector2d(rig.projector.width / 2.0, rig.projector.height / 2.0));
+    const auto middle =
+        ray_through(rig.projector, Eigen::Vector2d(rig.projector.width / 2.0, rig.projector.height / 2.0));
     const Eigen::Vector3d way = rig.projector.device_from_rig.linear() * middle->direction;
     std::vector<std::vector<double>> planes;
     double most = 0;
@@ -77,9 +83,9 @@ RgbImage volume_sigma(const RigCalibration& rig) {
         for (int y = 0; y < h; ++y)
             for (int x = 0; x < w; ++x) {
                 const Eigen::Vector3d p =
-                    rig_from_projector * Eigen::Vector3d(depth * way.x() / way.z() + (x + 0.5) * kStep_mm - kHalfWidth_mm,
-                                                         depth * way.y() / way.z() + (y + 0.5) * kStep_mm - kHalfHeight_mm,
-                                                         depth);
+                    rig_from_projector *
+                    Eigen::Vector3d(depth * way.x() / way.z() + (x + 0.5) * kStep_mm - kHalfWidth_mm,
+                                    depth * way.y() / way.z() + (y + 0.5) * kStep_mm - kHalfHeight_mm, depth);
                 const auto seen = [&](const CameraModel& d) {
                     const auto pixel = project(d, p);
                     return pixel && in_picture(d, *pixel);
@@ -104,8 +110,9 @@ RgbImage volume_sigma(const RigCalibration& rig) {
     }
     return with_legend(
         side_by_side(pictures, 3),
-        fmt::format("one sigma in depth (mm), from the calibration alone; each {:g} x {:g} mm; grey: not all three see it",
-                    2 * kHalfWidth_mm, 2 * kHalfHeight_mm),
+        fmt::format(
+            "one sigma in depth (mm), from the calibration alone; each {:g} x {:g} mm; grey: not all three see it",
+            2 * kHalfWidth_mm, 2 * kHalfHeight_mm),
         0, top, sequential_colour);
 }
 

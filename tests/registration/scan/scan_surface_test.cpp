@@ -180,12 +180,17 @@ TEST(ScanSurface, OneCameraBlockedLeavesTwoViewPoints) {
 
 // Mutations of the rig: each must be seen, by the gate or by the evidence, and the sound rig must not be.
 bool looks_sound(const Triangulation& t) {
-    const double points = static_cast<double>(t.three_view), all = points + static_cast<double>(t.disagree + t.outside_volume);
+    const double points = static_cast<double>(t.three_view),
+                 all = points + static_cast<double>(t.disagree + t.outside_volume);
     return points > 0.97 * all && t.epipolar_rms_px < 0.15 && t.projector_offset_px.norm() < 0.2;
 }
-Triangulation with(const RigCalibration& rig) { return triangulate(on_sphere().result.left, on_sphere().result.right, rig); }
+Triangulation with(const RigCalibration& rig) {
+    return triangulate(on_sphere().result.left, on_sphere().result.right, rig);
+}
 
-TEST(ThreeViewGate, ASoundRigIsSound) { EXPECT_TRUE(looks_sound(on_sphere().result.raw)); }
+TEST(ThreeViewGate, ASoundRigIsSound) {
+    EXPECT_TRUE(looks_sound(on_sphere().result.raw));
+}
 
 TEST(ThreeViewGate, HalfAPixelInOneCameraShows) {
     for (int axis = 0; axis < 2; ++axis) {
@@ -222,7 +227,8 @@ TEST(ThreeViewGate, SwappedRowsAndColumnsShow) {
 }
 
 TEST(ThreeViewGate, AFlippedDistortionOrATransposedRotationShows) {
-    RigCalibration rig = on_plane().rig;  // it fills the picture: distortion grows with the cube of the distance from its centre
+    RigCalibration rig =
+        on_plane().rig;  // it fills the picture: distortion grows with the cube of the distance from its centre
     EXPECT_TRUE(looks_sound(triangulate(on_plane().result.left, on_plane().result.right, rig)));
     rig.right_camera.k1 = -rig.right_camera.k1;
     EXPECT_FALSE(looks_sound(triangulate(on_plane().result.left, on_plane().result.right, rig)));
@@ -278,8 +284,9 @@ TEST(RemoveOutliers, CountsAddUpAndThinningIsEven) {
         for (const auto& p : points) n += (p - kCentre).normalized().dot(kTowards) > 0.75 ? 1 : 0;
         return n / static_cast<double>(points.size());
     };
-    // The caps of a sphere have areas as their heights: 0.25 of (1 - cos 75 degrees = 0.74), where the pixels of a camera
-    // would have 0.47. The points of a cube grid are as dense as its cubes cut the surface: up to 1.7 times more obliquely.
+    // The caps of a sphere have areas as their heights: 0.25 of (1 - cos 75 degrees = 0.74), where the pixels of a
+    // camera would have 0.47. The points of a cube grid are as dense as its cubes cut the surface: up to 1.7 times more
+    // obliquely.
     EXPECT_NEAR(share(thin.kept.points_in_rig), 0.25 / 0.74, 0.08);
 }
 

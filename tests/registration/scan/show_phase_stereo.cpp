@@ -1,9 +1,9 @@
-// Real pictures of others: a rectified stereo pair under phase-shifted fringes of two frequencies (two times eight pictures a
-// camera). show_phase_stereo FOLDER OUT: decodes the fringes, matches along the rows, triangulates, writes cloud.ply and
-// cloud.png to OUT. FOLDER: frames0_0.png (white), frames0_1.png (black), frames0_2 to 9 (first frequency) and
-// secondary_cam1/frames0_10 to 17 (second one) of the left camera; frames1_* and secondary_cam2/ of the right.
-// The calibration is not published: focal length, axes and distance of the cameras are CHOSEN below, so that the shape is
-// right up to a stretch along the line of sight, and no length is known.
+// Real pictures of others: a rectified stereo pair under phase-shifted fringes of two frequencies (two times eight
+// pictures a camera). show_phase_stereo FOLDER OUT: decodes the fringes, matches along the rows, triangulates, writes
+// cloud.ply and cloud.png to OUT. FOLDER: frames0_0.png (white), frames0_1.png (black), frames0_2 to 9 (first
+// frequency) and secondary_cam1/frames0_10 to 17 (second one) of the left camera; frames1_* and secondary_cam2/ of the
+// right. The calibration is not published: focal length, axes and distance of the cameras are CHOSEN below, so that the
+// shape is right up to a stretch along the line of sight, and no length is known.
 #include <fmt/format.h>
 
 #include <Eigen/Eigenvalues>
@@ -16,6 +16,7 @@
 #include "planning_io/files/image_file.h"
 #include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/statistics.h"
 #include "registration/scan/clean/remove_outliers.h"
 #include "registration/scan/triangulate/triangulate_cameras.h"
 #include "tests/registration/scan/draw_scan.h"
@@ -37,7 +38,9 @@ struct Pictures {
 
 Pictures read_pictures(const fs::path& folder, int camera) {
     Pictures p;
-    const auto read = [&](const fs::path& in, int k) { return read_gray(in / fmt::format("frames{}_{}.png", camera, k)); };
+    const auto read = [&](const fs::path& in, int k) {
+        return read_gray(in / fmt::format("frames{}_{}.png", camera, k));
+    };
     p.white = read(folder, 0);
     p.black = read(folder, 1);
     for (int k = 0; k < kSteps; ++k) {
@@ -96,8 +99,10 @@ DecodedView decode(const Pictures& p, int periods) {
     constexpr double kNoise_grey = 1, kSureOfOrder = 0.25;  // periods between beat and phase
     for (std::size_t i = 0; i < count; ++i) {
         const Fringe a = fringe_at(p.first, i), b = fringe_at(p.second, i);
-        if (p.white.pixels[i] >= 254) ++view.saturated;
-        else if (a.amplitude < kLeastAmplitude_grey || b.amplitude < kLeastAmplitude_grey) ++view.dark;
+        if (p.white.pixels[i] >= 254)
+            ++view.saturated;
+        else if (a.amplitude < kLeastAmplitude_grey || b.amplitude < kLeastAmplitude_grey)
+            ++view.dark;
         else {
             const double beat = b.turns - a.turns - std::floor(b.turns - a.turns), wanted = periods * beat - a.turns;
             const double order = std::round(wanted);
@@ -107,8 +112,8 @@ DecodedView decode(const Pictures& p, int periods) {
             }
             const double column = kPeriod_px * (order + a.turns);
             view.column[i] = static_cast<float>(periods > 0 ? column : kPeriod_px * std::abs(periods) + column);
-            view.sigma_px[i] =
-                static_cast<float>(kPeriod_px / (2 * std::numbers::pi) * std::sqrt(2.0 / kSteps) * kNoise_grey / a.amplitude);
+            view.sigma_px[i] = static_cast<float>(kPeriod_px / (2 * std::numbers::pi) * std::sqrt(2.0 / kSteps) *
+                                                  kNoise_grey / a.amplitude);
             ++view.decoded;
         }
     }
@@ -127,7 +132,8 @@ RigCalibration chosen_rig(int width, int height) {
     return rig;
 }
 
-/// rms distance of points from the plane through their neighbours in the picture (about 3 mm), by the median of its size.
+/// rms distance of points from the plane through their neighbours in the picture (about 3 mm), by the median of its
+/// size.
 double roughness_mm(const PointCloud& cloud) {
     std::vector<double> sizes;
     const std::size_t n = cloud.size();
@@ -148,8 +154,7 @@ double roughness_mm(const PointCloud& cloud) {
         sizes.push_back(std::abs(solver.eigenvectors().col(0).dot(mean)));
     }
     if (sizes.empty()) return 0;
-    std::nth_element(sizes.begin(), sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2), sizes.end());
-    return 1.4826 * sizes[sizes.size() / 2];
+    return 1.4826 * median(sizes);
 }
 
 RgbImage picture_of(const PointCloud& cloud) {
@@ -162,8 +167,8 @@ RgbImage picture_of(const PointCloud& cloud) {
     for (const double z : depth) colours.push_back(sequential_colour((high - z) / (high - low)));
     std::vector<RgbImage> views;
     for (const double turned : {-0.6, 0.0, 0.6})
-        views.push_back(draw_cloud(cloud, colours, Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitY()).toRotationMatrix(), 1.2,
-                                   205, 262, 1));
+        views.push_back(draw_cloud(
+            cloud, colours, Eigen::AngleAxisd(turned, Eigen::Vector3d::UnitY()).toRotationMatrix(), 1.2, 205, 262, 1));
     return with_legend(side_by_side(views, 3), "far to near; the scale is chosen, not known", 0, 1, sequential_colour);
 }
 
@@ -178,8 +183,8 @@ int main(int argc, char** argv) {
         const Pictures left = read_pictures(argv[1], 0), right = read_pictures(argv[1], 1);
         const auto [periods, disagree] = periods_of(left);
         const auto [periods_right, disagree_right] = periods_of(right);
-        fmt::print("periods in one beat: {} (rms {:.3f} of a period) left, {} ({:.3f}) right\n", periods, disagree, periods_right,
-                   disagree_right);
+        fmt::print("periods in one beat: {} (rms {:.3f} of a period) left, {} ({:.3f}) right\n", periods, disagree,
+                   periods_right, disagree_right);
         const DecodedView left_view = decode(left, periods), right_view = decode(right, periods);
         for (const auto& [name, v] : {std::pair{"left", &left_view}, std::pair{"right", &right_view}})
             fmt::print("{}: decoded {}, dark {}, saturated {}, uncertain {}\n", name, v->decoded, v->dark, v->saturated,
@@ -190,15 +195,17 @@ int main(int argc, char** argv) {
         rig.projector = rig.left_camera;
         const OutlierReport clean = remove_outliers(raw, rig);
         fmt::print(
-            "points {} (no partner {}, ragged {}, outside {}); kept {} (jump {}, grazing {}, small pieces {}, lonely {}, "
+            "points {} (no partner {}, ragged {}, outside {}); kept {} (jump {}, grazing {}, small pieces {}, lonely "
+            "{}, "
             "thinned {})\n",
-            raw.cloud.size(), raw.no_partner, raw.ragged, raw.outside_volume, clean.kept.size(), clean.jump, clean.grazing,
-            clean.small_piece, clean.lonely, clean.thinned);
+            raw.cloud.size(), raw.no_partner, raw.ragged, raw.outside_volume, clean.kept.size(), clean.jump,
+            clean.grazing, clean.small_piece, clean.lonely, clean.thinned);
         Eigen::AlignedBox3d box;
         for (const auto& p : clean.kept.points_in_rig) box.extend(p);
-        fmt::print("chosen: focal length {} px, cameras {} mm apart; then {:.0f} x {:.0f} x {:.0f} mm, roughness {:.3f} mm\n",
-                   kChosenFocal_px, kChosenBaseline_mm, box.sizes().x(), box.sizes().y(), box.sizes().z(),
-                   roughness_mm(clean.kept));
+        fmt::print(
+            "chosen: focal length {} px, cameras {} mm apart; then {:.0f} x {:.0f} x {:.0f} mm, roughness {:.3f} mm\n",
+            kChosenFocal_px, kChosenBaseline_mm, box.sizes().x(), box.sizes().y(), box.sizes().z(),
+            roughness_mm(clean.kept));
         fs::create_directories(argv[2]);
         write_cloud(clean.kept, fs::path(argv[2]) / "cloud.ply");
         write_png(picture_of(clean.kept), fs::path(argv[2]) / "cloud.png");

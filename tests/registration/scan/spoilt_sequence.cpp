@@ -18,7 +18,9 @@ RgbImage gray_picture(const stripe_room::Room& room, const StripePattern& p, int
         for (int x = 0; x < picture.width; ++x) {
             const int cell = static_cast<int>((p.along_rows ? y : x) / cell_px), code = cell ^ (cell >> 1);
             const bool set = ((code >> (bits - 1 - p.index)) & 1) != 0;
-            const bool lit = p.kind == Kind::gray_bit ? set : p.kind == Kind::gray_bit_inverse ? !set : p.kind == Kind::white;
+            const bool lit = p.kind == Kind::gray_bit           ? set
+                             : p.kind == Kind::gray_bit_inverse ? !set
+                                                                : p.kind == Kind::white;
             picture.at(x, y).fill(lit ? 255 : 0);
         }
     return picture;
@@ -31,7 +33,8 @@ Sequence sequence_of(const stripe_room::Room& room, const StripeSettings& stripe
 }
 
 Sequence gray_code_of(const stripe_room::Room& room, double cell_px, bool inverse) {
-    Sequence gray{stripe_room::stripes_of(room), {{Kind::white, false, 0, "white"}, {Kind::black, false, 0, "black"}}, {}};
+    Sequence gray{
+        stripe_room::stripes_of(room), {{Kind::white, false, 0, "white"}, {Kind::black, false, 0, "black"}}, {}};
     gray.stripes.phase_steps = 0;
     gray.stripes.phase_period_px = 2 * cell_px;
     gray.stripes.inverse = inverse;

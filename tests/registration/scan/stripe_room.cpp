@@ -11,8 +11,12 @@ namespace {
 
 const double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-cv::Matx33d matrix_of(const Optics& o) { return {o.fx, 0, o.cx, 0, o.fy, o.cy, 0, 0, 1}; }
-cv::Mat distortion_of(const Optics& o) { return cv::Mat(1, 5, CV_64F, const_cast<double*>(o.distortion.data())).clone(); }
+cv::Matx33d matrix_of(const Optics& o) {
+    return {o.fx, 0, o.cx, 0, o.fy, o.cy, 0, 0, 1};
+}
+cv::Mat distortion_of(const Optics& o) {
+    return cv::Mat(1, 5, CV_64F, const_cast<double*>(o.distortion.data())).clone();
+}
 
 Optics looking_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& down) {
     Optics o;
@@ -45,7 +49,8 @@ Room room_of(Surface surface) {
     return room;
 }
 
-/// Light along one direction of a picture: pixels are squares of even light, then the lens blurs. Samples of 1/16 pixel.
+/// Light along one direction of a picture: pixels are squares of even light, then the lens blurs. Samples of 1/16
+/// pixel.
 class Profile {
 public:
     Profile(const std::vector<double>& values, double blur_px) : size_(static_cast<int>(values.size())) {
@@ -70,7 +75,8 @@ private:
     cv::Mat fine_;
 };
 
-/// What reaches each sub-sample of a camera: its place in the projector's picture and its shade (0: no projector light).
+/// What reaches each sub-sample of a camera: its place in the projector's picture and its shade (0: no projector
+/// light).
 struct Sample {
     float u, v, shade, albedo;
 };
@@ -196,14 +202,16 @@ Truth truth_of(const Room& room, const Optics& camera) {
     return truth;
 }
 
-std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const StripeSettings& stripes, unsigned seed) {
+std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const StripeSettings& stripes,
+                                  unsigned seed) {
     std::vector<Shown> pictures;
     for (const StripePattern& pattern : stripe_sequence(stripes))
         pictures.push_back({draw_stripes(stripes, pattern), pattern.along_rows});
     return photograph(room, camera, pictures, seed);
 }
 
-std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const std::vector<Shown>& pictures, unsigned seed) {
+std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const std::vector<Shown>& pictures,
+                                  unsigned seed) {
     std::vector<std::vector<Sample>> samples;
     for (const double dy : {-0.25, 0.25})
         for (const double dx : {-0.25, 0.25}) samples.push_back(samples_of(room, camera, dx, dy));

@@ -22,7 +22,8 @@ struct Optics {
 
     Eigen::Vector3d eye() const { return -R.transpose() * t; }
     std::vector<Eigen::Vector2d> pixels_of(const std::vector<Eigen::Vector3d>& points) const;
-    std::vector<Eigen::Vector3d> directions_of(const std::vector<Eigen::Vector2d>& pixels) const;  ///< in the room, unit
+    std::vector<Eigen::Vector3d> directions_of(
+        const std::vector<Eigen::Vector2d>& pixels) const;  ///< in the room, unit
 };
 
 /// First hit along a ray: distance (mm, direction of unit length) and normal.
@@ -40,7 +41,8 @@ struct Light {
     double projector_blur_px = 0.6, camera_blur_px = 0.6;
     double ambient_grey = 18, white_grey = 190;  ///< of a surface that faces the projector
     double noise_grey = 1.5;
-    double glint_grey = 0, glint_power = 300;  ///< mirrored light where the normal halves the way (Blinn), of full projector light
+    double glint_grey = 0,
+           glint_power = 300;  ///< mirrored light where the normal halves the way (Blinn), of full projector light
     unsigned seed = 1;
 };
 
@@ -66,7 +68,8 @@ struct Shown {
     RgbImage picture;
     bool along_rows = false;
 };
-std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const std::vector<Shown>& pictures, unsigned seed);
+std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const std::vector<Shown>& pictures,
+                                  unsigned seed);
 
 /// The frames of one camera.
 std::vector<GrayImage> photograph(const Room& room, const Optics& camera, const StripeSettings& stripes, unsigned seed);

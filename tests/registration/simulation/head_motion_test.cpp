@@ -14,7 +14,8 @@ TEST(HeadMotion, ReachesItsGreatestSpeedAndNeverMore) {
         double greatest = 0;
         const double step_s = 0.001, until_s = 60 * 50 / speed_mm_s + 5;
         for (double t = 1; t < until_s; t += step_s) {
-            const Vector3d moved = motion.moved(from_seconds(t + step_s)) * middle - motion.moved(from_seconds(t)) * middle;
+            const Vector3d moved =
+                motion.moved(from_seconds(t + step_s)) * middle - motion.moved(from_seconds(t)) * middle;
             greatest = std::max(greatest, moved.norm() / step_s);
         }
         EXPECT_NEAR(greatest, speed_mm_s, 0.01 * speed_mm_s);

@@ -26,10 +26,13 @@ RoomSettings paper_room(unsigned seed) {
     return settings;
 }
 
-RgbImage plain(const Projector& p, std::uint8_t grey) { return {p.width(), p.height(), {grey, grey, grey}}; }
+RgbImage plain(const Projector& p, std::uint8_t grey) {
+    return {p.width(), p.height(), {grey, grey, grey}};
+}
 
 double brightness(const GrayImage& picture) {
-    return std::accumulate(picture.pixels.begin(), picture.pixels.end(), 0.0) / static_cast<double>(picture.pixels.size());
+    return std::accumulate(picture.pixels.begin(), picture.pixels.end(), 0.0) /
+           static_cast<double>(picture.pixels.size());
 }
 
 class Room : public testing::Test {

@@ -8,16 +8,16 @@
 
 #include "registration/simulation/simulated_rig.h"
 #include "registration/simulation/true_surface.h"
-#include "tests/registration/simulation/analytic_volume.h"
 #include "tests/registration/opencv_pixel.h"
+#include "tests/registration/simulation/analytic_volume.h"
 
 namespace planlight::simulation {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using test::opencv_pixel;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
+using test::opencv_pixel;
 
 namespace {
 
@@ -96,7 +96,8 @@ TEST_P(Picture, ALitProjectorPixelIsSeenWhereOpenCvSays) {
             if (cosine(side->centre_in_rig()) < 0.6) continue;
             const bool left = side == &calibration.left_camera;
             const Vector2d expected = opencv_pixel(*side, in_rig(light->p_in_ct));
-            const auto found = middle_of_change(left ? lit.left : lit.right, left ? dark.left : dark.right, expected, 9);
+            const auto found =
+                middle_of_change(left ? lit.left : lit.right, left ? dark.left : dark.right, expected, 9);
             if (!found) continue;
             ++seen;
             sum += (*found - expected).squaredNorm();
@@ -122,12 +123,14 @@ TEST_P(Picture, MarkersAreDarkDiscsRoundTheirTrueCentres) {
             double weight = 0, white = 0;
             for (int y = -reach; y <= reach; ++y)
                 for (int x = -reach; x <= reach; ++x) {
-                    const int px = static_cast<int>(std::lround(c.x())) + x, py = static_cast<int>(std::lround(c.y())) + y;
+                    const int px = static_cast<int>(std::lround(c.x())) + x,
+                              py = static_cast<int>(std::lround(c.y())) + y;
                     white = std::max(white, static_cast<double>(picture.at(px, py)));
                 }
             for (int y = -reach; y <= reach; ++y)
                 for (int x = -reach; x <= reach; ++x) {
-                    const int px = static_cast<int>(std::lround(c.x())) + x, py = static_cast<int>(std::lround(c.y())) + y;
+                    const int px = static_cast<int>(std::lround(c.x())) + x,
+                              py = static_cast<int>(std::lround(c.y())) + y;
                     const double dark = std::max(0.0, 0.55 * white - picture.at(px, py));
                     if (std::hypot(x, y) > reach) continue;
                     sum += dark * Vector2d(px, py);
@@ -172,20 +175,23 @@ TEST_P(Picture, WhatTheHeadHidesFromTheProjectorIsInShadow) {
     std::normal_distribution<double> unit;
     int lit = 0, lit_wrong = 0, hidden = 0, hidden_wrong = 0;
     for (int i = 0; i < 30000; ++i) {
-        const Vector3d s = rig().nearest_true_skin(95 * Vector3d(unit(random), unit(random), unit(random)).normalized());
+        const Vector3d s =
+            rig().nearest_true_skin(95 * Vector3d(unit(random), unit(random), unit(random)).normalized());
         const Vector2d in_left = opencv_pixel(calibration.left_camera, in_rig(s));
         if (in_left.x() < 5 || in_left.y() < 5 || in_left.x() > white.left.width - 6 ||
             in_left.y() > white.left.height - 6)
             continue;
-        if (dark.left.at(static_cast<int>(std::lround(in_left.x())), static_cast<int>(std::lround(in_left.y()))) < 4) continue;
+        if (dark.left.at(static_cast<int>(std::lround(in_left.x())), static_cast<int>(std::lround(in_left.y()))) < 4)
+            continue;
         const auto first = surface.first_hit(eye_in_ct, (s - eye_in_ct).normalized());
         if (!first || (first->p_in_ct - s).norm() > 0.3) continue;  // the camera itself does not see it
         const Vector2d on_panel = opencv_pixel(calibration.projector, in_rig(s));
         const auto light = rig().true_light(on_panel, now);
         if (!light || (light->normal_in_ct.dot((light_in_ct - light->p_in_ct).normalized()) < 0.3)) continue;
         const double depth_mm = (s - light->p_in_ct).norm();
-        const int gained = white.left.at(static_cast<int>(std::lround(in_left.x())), static_cast<int>(std::lround(in_left.y()))) -
-                           dark.left.at(static_cast<int>(std::lround(in_left.x())), static_cast<int>(std::lround(in_left.y())));
+        const int gained =
+            white.left.at(static_cast<int>(std::lround(in_left.x())), static_cast<int>(std::lround(in_left.y()))) -
+            dark.left.at(static_cast<int>(std::lround(in_left.x())), static_cast<int>(std::lround(in_left.y())));
         if (depth_mm < 0.5) {
             ++lit;
             lit_wrong += gained < 8;

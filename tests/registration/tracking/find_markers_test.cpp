@@ -69,9 +69,9 @@ struct Case {
 
 class MarkerCentre : public testing::TestWithParam<Case> {};
 
-// Tolerances: 0.03 px is the target of the design; the low-contrast pictures (an edge of 25 grey values under noise of 2)
-// carry a fifth of the signal. A tilted disc's ellipse is off its projected centre by r^2 sin cos / depth = 0.009 mm: 0.05 px
-// of the modern optics, which is why these bounds are wider (0.009 mm is what it comes to on the head).
+// Tolerances: 0.03 px is the target of the design; the low-contrast pictures (an edge of 25 grey values under noise of
+// 2) carry a fifth of the signal. A tilted disc's ellipse is off its projected centre by r^2 sin cos / depth = 0.009
+// mm: 0.05 px of the modern optics, which is why these bounds are wider (0.009 mm is what it comes to on the head).
 TEST_P(MarkerCentre, IsFoundAndMeasured) {
     const Case& c = GetParam();
     Score s;
@@ -84,8 +84,8 @@ TEST_P(MarkerCentre, IsFoundAndMeasured) {
         ms += 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / pictures;
         score(grid, markers, s);
     }
-    std::printf("%-28s found %d/%d wrong %d rms %.3f px worst %.3f stated sigma %.3f  %.1f ms CPU\n", c.name, s.found, s.all,
-                s.wrong, s.rms(), s.worst, s.sigma(), ms);
+    std::printf("%-28s found %d/%d wrong %d rms %.3f px worst %.3f stated sigma %.3f  %.1f ms CPU\n", c.name, s.found,
+                s.all, s.wrong, s.rms(), s.worst, s.sigma(), ms);
     EXPECT_EQ(s.found, s.all);
     EXPECT_EQ(s.wrong, 0);
     EXPECT_LT(s.rms(), c.max_rms_px);
@@ -116,7 +116,8 @@ TEST(MarkerCentre, IsTenTimesBetterThanTheHoughTransformAlone) {
     for (unsigned seed = 0; seed < 4; ++seed) {
         const Grid grid = grid_picture(paper_camera(), 30, {}, seed);
         score(grid, find_markers(grid.picture), ours);
-        cv::Mat picture(grid.picture.height, grid.picture.width, CV_8U, const_cast<std::uint8_t*>(grid.picture.pixels.data()));
+        cv::Mat picture(grid.picture.height, grid.picture.width, CV_8U,
+                        const_cast<std::uint8_t*>(grid.picture.pixels.data()));
         cv::Mat smooth;
         cv::medianBlur(picture, smooth, 3);
         std::vector<cv::Vec3f> circles;
@@ -125,7 +126,8 @@ TEST(MarkerCentre, IsTenTimesBetterThanTheHoughTransformAlone) {
         for (const auto& c : circles) markers.push_back({.pixel = {c[0], c[1]}});
         score(grid, markers, hough);
     }
-    std::printf("Hough alone: found %d/%d, rms %.2f px; measured: %.3f px\n", hough.found, hough.all, hough.rms(), ours.rms());
+    std::printf("Hough alone: found %d/%d, rms %.2f px; measured: %.3f px\n", hough.found, hough.all, hough.rms(),
+                ours.rms());
     ASSERT_GT(hough.found, 20);
     EXPECT_GT(hough.rms(), 10 * ours.rms());
 }
@@ -138,9 +140,10 @@ GrayImage clutter(unsigned seed) {
     const auto ellipse = [&](cv::Point p, int a, int b, int grey) {
         cv::ellipse(m, p, {a, b}, rng.uniform(0, 180), 0, 360, cv::Scalar(grey), cv::FILLED, cv::LINE_AA);
     };
-    for (int k = 0; k < 20; ++k) ellipse(place(), rng.uniform(6, 14), rng.uniform(5, 12), rng.uniform(10, 60));     // nostrils
-    for (int k = 0; k < 8; ++k) cv::line(m, place(), place(), cv::Scalar(230), 3, cv::LINE_AA);                   // plan lines
-    for (int k = 0; k < 6; ++k) {                                                                                  // eyes
+    for (int k = 0; k < 20; ++k)
+        ellipse(place(), rng.uniform(6, 14), rng.uniform(5, 12), rng.uniform(10, 60));           // nostrils
+    for (int k = 0; k < 8; ++k) cv::line(m, place(), place(), cv::Scalar(230), 3, cv::LINE_AA);  // plan lines
+    for (int k = 0; k < 6; ++k) {                                                                // eyes
         const cv::Point p = place();
         cv::ellipse(m, p, {24, 9}, 0, 0, 360, cv::Scalar(205), cv::FILLED, cv::LINE_AA);
         cv::ellipse(m, p, {9, 9}, 0, 0, 360, cv::Scalar(40), cv::FILLED, cv::LINE_AA);
@@ -150,13 +153,13 @@ GrayImage clutter(unsigned seed) {
         cv::rectangle(m, {p.x - 18, p.y - 18, 36, 36}, cv::Scalar(200), cv::FILLED);
         cv::rectangle(m, {p.x - 8, p.y - 8, 16, 16}, cv::Scalar(30), cv::FILLED);
     }
-    for (int k = 0; k < 5; ++k) {                                                                                  // half a ring
+    for (int k = 0; k < 5; ++k) {  // half a ring
         const cv::Point p = place();
         cv::ellipse(m, p, {18, 18}, rng.uniform(0, 360), 0, 220, cv::Scalar(200), cv::FILLED, cv::LINE_AA);
         cv::ellipse(m, p, {9, 9}, 0, 0, 360, cv::Scalar(30), cv::FILLED, cv::LINE_AA);
     }
-    cv::rectangle(m, {560, 380, 184, 196}, cv::Scalar(210), cv::FILLED);  // a white drape,
-    ellipse({650, 470}, 9, 9, 30);                                                                                 // with a hole
+    cv::rectangle(m, {560, 380, 184, 196}, cv::Scalar(210), cv::FILLED);                      // a white drape,
+    ellipse({650, 470}, 9, 9, 30);                                                            // with a hole
     for (int k = 0; k < 5; ++k) cv::circle(m, place(), 12, cv::Scalar(230), 3, cv::LINE_AA);  // drawn boreholes
     cv::GaussianBlur(m, m, {0, 0}, 0.8);
     cv::Mat noise(m.size(), CV_16S), sum;
@@ -167,15 +170,15 @@ GrayImage clutter(unsigned seed) {
     return picture;
 }
 
-// 49 shapes in each of 20 pictures. What is left are chance overlaps (a spot on a drawn circle) that do show a dark disc in
-// a closed bright ring; the arrangement of the markers refuses those.
+// 49 shapes in each of 20 pictures. What is left are chance overlaps (a spot on a drawn circle) that do show a dark
+// disc in a closed bright ring; the arrangement of the markers refuses those.
 TEST(FindMarkers, TakesLessThanOneShapeInAHundredAndFiftyForAMarker) {
     int wrong = 0;
     for (unsigned seed = 0; seed < 20; ++seed) {
         for (const auto& m : find_markers(clutter(seed))) {
             ++wrong;
-            std::printf("seed %u at %.0f %.0f r %.1f ratio %.2f contrast %.0f\n", seed, m.pixel.x(), m.pixel.y(), m.radius_px,
-                        m.axis_ratio, m.contrast);
+            std::printf("seed %u at %.0f %.0f r %.1f ratio %.2f contrast %.0f\n", seed, m.pixel.x(), m.pixel.y(),
+                        m.radius_px, m.axis_ratio, m.contrast);
         }
     }
     EXPECT_LE(wrong, 6);

@@ -14,7 +14,9 @@ constexpr double kDegree = std::numbers::pi / 180;
 cv::Matx33d camera_matrix(const CameraModel& c) {
     return {c.focal_x, 0, c.centre_x, 0, c.focal_y, c.centre_y, 0, 0, 1};
 }
-cv::Vec<double, 5> distortion(const CameraModel& c) { return {c.k1, c.k2, c.p1, c.p2, c.k3}; }
+cv::Vec<double, 5> distortion(const CameraModel& c) {
+    return {c.k1, c.k2, c.p1, c.p2, c.k3};
+}
 
 CameraModel camera(int width, int height, double focal) {
     CameraModel c;
@@ -64,7 +66,8 @@ Eigen::Vector2d seen_at(const CameraModel& camera, const Eigen::Vector3d& p_in_r
     return {pixels[0].x, pixels[0].y};
 }
 
-GrayImage render(const CameraModel& camera, const std::vector<Sticker>& stickers_in_rig, const Look& look, std::mt19937& random) {
+GrayImage render(const CameraModel& camera, const std::vector<Sticker>& stickers_in_rig, const Look& look,
+                 std::mt19937& random) {
     cv::Mat picture(camera.height, camera.width, CV_32F);
     for (int y = 0; y < camera.height; ++y) {
         for (int x = 0; x < camera.width; ++x) {
@@ -87,7 +90,8 @@ GrayImage render(const CameraModel& camera, const std::vector<Sticker>& stickers
                 std::vector<cv::Point2d> places, rays;
                 for (int k = 0; k < kSub * kSub; ++k)
                     places.emplace_back(x + (k % kSub + 0.5) / kSub - 0.5, y + (k / kSub + 0.5) / kSub - 0.5);
-                cv::undistortPoints(places, rays, camera_matrix(camera), distortion(camera), cv::noArray(), cv::noArray(),
+                cv::undistortPoints(places, rays, camera_matrix(camera), distortion(camera), cv::noArray(),
+                                    cv::noArray(),
                                     cv::TermCriteria(cv::TermCriteria::COUNT | cv::TermCriteria::EPS, 20, 1e-9));
                 double sum = 0;
                 for (const auto& ray : rays) {
@@ -111,10 +115,18 @@ GrayImage render(const CameraModel& camera, const std::vector<Sticker>& stickers
     return result;
 }
 
-CameraModel paper_camera() { return camera(744, 576, 2090); }
-CameraModel modern_camera() { return camera(1920, 1200, 5080); }
-RigCalibration paper_rig() { return rig_of(paper_camera()); }
-RigCalibration modern_rig() { return rig_of(modern_camera()); }
+CameraModel paper_camera() {
+    return camera(744, 576, 2090);
+}
+CameraModel modern_camera() {
+    return camera(1920, 1200, 5080);
+}
+RigCalibration paper_rig() {
+    return rig_of(paper_camera());
+}
+RigCalibration modern_rig() {
+    return rig_of(modern_camera());
+}
 
 std::vector<Sticker> stickers_on_head() {
     std::vector<Sticker> stickers;
@@ -127,7 +139,9 @@ std::vector<Sticker> stickers_on_head() {
     return stickers;
 }
 
-Eigen::Vector3d head_centre() { return {4, -3, 950}; }
+Eigen::Vector3d head_centre() {
+    return {4, -3, 950};
+}
 
 std::vector<Sticker> moved(const RigidTransform& b_from_a, std::vector<Sticker> stickers) {
     for (Sticker& s : stickers) s.centre = b_from_a * s.centre, s.normal = b_from_a.linear() * s.normal;

@@ -20,16 +20,17 @@ struct Sticker {
 /// How a camera sees: grey values of what is lit, and what the lens and the sensor add.
 struct Look {
     double black = 25, skin = 95, white = 190;
-    double light = 1;             ///< factor on the above
-    double shading_per_px = 0;    ///< relative change of the light per pixel to the right
+    double light = 1;           ///< factor on the above
+    double shading_per_px = 0;  ///< relative change of the light per pixel to the right
     double blur_px = 0.7;
     double noise = 2;
-    bool stray_lines = false;     ///< bright projected lines across the skin
+    bool stray_lines = false;  ///< bright projected lines across the skin
 };
 
 /// A picture of stickers on a skin-coloured plane behind them: rays through every pixel (16 in each where it matters)
 /// cut with the stickers' planes. The rays come from cv::undistortPoints, not from the product's camera model.
-GrayImage render(const CameraModel& camera, const std::vector<Sticker>& stickers_in_rig, const Look& look, std::mt19937& random);
+GrayImage render(const CameraModel& camera, const std::vector<Sticker>& stickers_in_rig, const Look& look,
+                 std::mt19937& random);
 
 /// Two cameras and no light, of about the paper's optics (744x576, f 2090 px) or modern ones (1920x1200, f 5080 px):
 /// 450 mm apart, looking at a point 900 mm away, with lens distortion.

@@ -10,9 +10,10 @@ namespace {
 
 constexpr int kBits = 5;
 
-/// A Gray code of columns on a head whose pose is `at(share)` when a share of the pictures is taken; stripes as seen from the
-/// left camera and the right one, hard over the markers too.
-ScanCapture capture_of(const RigCalibration& rig, const std::function<RigidTransform(double)>& at, bool with_stickers = true) {
+/// A Gray code of columns on a head whose pose is `at(share)` when a share of the pictures is taken; stripes as seen
+/// from the left camera and the right one, hard over the markers too.
+ScanCapture capture_of(const RigCalibration& rig, const std::function<RigidTransform(double)>& at,
+                       bool with_stickers = true) {
     ScanCapture capture;
     capture.stripes.width = 800;
     capture.stripes.height = 600;
@@ -45,7 +46,8 @@ ScanCapture capture_of(const RigCalibration& rig, const std::function<RigidTrans
 
 TEST(MarkersInScan, AHeadAtRestAndOneThatMoves) {
     const RigCalibration rig = paper_rig();
-    const ScanMovement rest = movement_of_markers(capture_of(rig, [](double) { return RigidTransform::Identity(); }), rig);
+    const ScanMovement rest =
+        movement_of_markers(capture_of(rig, [](double) { return RigidTransform::Identity(); }), rig);
     ASSERT_EQ(rest.by, ScanMovement::By::markers);
     EXPECT_EQ(rest.markers, 6);
     EXPECT_EQ(rest.moments, 1 + kBits);
@@ -61,8 +63,11 @@ TEST(MarkersInScan, AHeadAtRestAndOneThatMoves) {
 
 TEST(MarkersInScan, ATurnIsAMovement) {
     const RigCalibration rig = paper_rig();
-    const ScanMovement movement =
-        movement_of_markers(capture_of(rig, [](double share) { return head_move({0, 0.3 * share, 0}, {0, 0, 0}); }), rig);
+    const ScanMovement movement = movement_of_markers(capture_of(rig,
+                                                                 [](double share) {
+                                                                     return head_move({0, 0.3 * share, 0}, {0, 0, 0});
+                                                                 }),
+                                                      rig);
     EXPECT_NEAR(movement.turned, 0.3 * M_PI / 180 * 10 / 11, 0.0015);
     EXPECT_GT(movement.moved_mm, 0.15) << "0.3 degrees at 80 mm are 0.4 mm";
 }

@@ -69,8 +69,8 @@ TEST_P(HeadSpeed, PredictionIsBetterThanNone) {
                          {speed / omega * std::sin(omega * t), 0.3 * speed / omega * std::sin(0.7 * omega * t), 0});
     };
     const auto [plain, predicted] = compare(motion, 20);
-    std::printf("%.0f mm/s, 45 ms: none median %.2f p95 %.2f worst %.2f mm; predicted %.2f, %.2f, %.2f\n", speed, plain.median,
-                plain.p95, plain.worst, predicted.median, predicted.p95, predicted.worst);
+    std::printf("%.0f mm/s, 45 ms: none median %.2f p95 %.2f worst %.2f mm; predicted %.2f, %.2f, %.2f\n", speed,
+                plain.median, plain.p95, plain.worst, predicted.median, predicted.p95, predicted.worst);
     EXPECT_LT(predicted.median, 0.35 * plain.median);
     // Slow heads: the measurement's noise, not the latency, is most of what is left.
     EXPECT_LT(predicted.p95, (speed < 30 ? 0.5 : 0.35) * plain.p95);
@@ -99,8 +99,9 @@ TEST(PosePredictor, RunsOnAfterASuddenStopByNoMoreThanTheLatency) {
     double worst = 0, late = 0;
     for (double t = 0; t < 2; t += kFrameS) {
         predictor.add(measured(head_move({0, 0, 0}, {place(t), 0, 0}), t, random), head_centre());
-        const double past = ((*predictor.rig_from_patient_at(from_seconds(t + kLatencyS))) * head_centre() - head_centre()).x() -
-                            place(t + kLatencyS);
+        const double past =
+            ((*predictor.rig_from_patient_at(from_seconds(t + kLatencyS))) * head_centre() - head_centre()).x() -
+            place(t + kLatencyS);
         if (t > 0.95) worst = std::max(worst, past);
         if (t > 1.3) late = std::max(late, std::abs(past));
     }

@@ -22,14 +22,15 @@ Outcome track_with(const RigCalibration& mutant, const RigCalibration& truth) {
     // Reference with the head at the edge of the view, then turned and moved across it: the lens' distortion differs.
     const RigidTransform first = head_move({0, 0, 0}, {-50, -35, 0}), then = head_move({6, -12, 25}, {55, 40, 30});
     outcome.reference_markers =
-        tracker.set_reference(render_frame(truth, moved(first * rig_from_head, stickers_on_head()), {}, {}, random)).size();
-    const TrackedPose pose = tracker.update(
-        render_frame(truth, moved(then * rig_from_head, stickers_on_head()), {}, std::chrono::milliseconds(20), random));
+        tracker.set_reference(render_frame(truth, moved(first * rig_from_head, stickers_on_head()), {}, {}, random))
+            .size();
+    const TrackedPose pose = tracker.update(render_frame(truth, moved(then * rig_from_head, stickers_on_head()), {},
+                                                         std::chrono::milliseconds(20), random));
     outcome.pose = pose.rig_from_patient.has_value();
     outcome.residual_px = pose.residual_px;
     outcome.reason = pose.reason;
-    std::printf("reference %zu, pose %d, residual %.2f px, %s\n", outcome.reference_markers, outcome.pose, outcome.residual_px,
-                outcome.reason.c_str());
+    std::printf("reference %zu, pose %d, residual %.2f px, %s\n", outcome.reference_markers, outcome.pose,
+                outcome.residual_px, outcome.reason.c_str());
     return outcome;
 }
 

@@ -15,7 +15,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-RigidTransform rig_from_head() { return RigidTransform(Eigen::Translation3d(head_centre())); }
+RigidTransform rig_from_head() {
+    return RigidTransform(Eigen::Translation3d(head_centre()));
+}
 
 std::vector<Sticker> stickers_in_rig(const RigidTransform& rig_from_patient = RigidTransform::Identity()) {
     return moved(rig_from_patient * rig_from_head(), stickers_on_head());
@@ -74,7 +76,8 @@ TEST_P(BothOptics, ReferenceHoldsEveryMarkerWhereItIs) {
     }
 }
 
-// The bounds are the design's: accuracy to 0.1 mm at the skin under the markers (median), 0.25 mm for the paper's coarse pixels.
+// The bounds are the design's: accuracy to 0.1 mm at the skin under the markers (median), 0.25 mm for the paper's
+// coarse pixels.
 TEST_P(BothOptics, FollowsASwayingHead) {
     Tracked t(rig());
     std::vector<double> errors, ratio;
@@ -89,10 +92,12 @@ TEST_P(BothOptics, FollowsASwayingHead) {
     }
     std::sort(errors.begin(), errors.end());
     std::sort(ratio.begin(), ratio.end());
-    std::printf("worst marker: median %.3f mm, p95 %.3f mm; error / predicted: median %.2f\n", errors[10], errors[18], ratio[10]);
+    std::printf("worst marker: median %.3f mm, p95 %.3f mm; error / predicted: median %.2f\n", errors[10], errors[18],
+                ratio[10]);
     EXPECT_LT(errors[10], GetParam() ? 0.06 : 0.12);
     EXPECT_LT(errors[18], GetParam() ? 0.1 : 0.25);
-    // The prediction allows for a calibration error of 0.07 px, which this rig does not have: it is cautious here, not wrong.
+    // The prediction allows for a calibration error of 0.07 px, which this rig does not have: it is cautious here, not
+    // wrong.
     EXPECT_GT(ratio[10], 0.02);
     EXPECT_LT(ratio[10], 1.6);
 }
@@ -252,7 +257,8 @@ TEST_P(BothOptics, TimeOfAFrame) {
     }
     std::sort(followed.begin(), followed.end());
     std::sort(searched.begin(), searched.end());
-    std::printf("followed: median %.2f ms CPU; searched whole and found: median %.1f ms CPU\n", followed[15], searched[4]);
+    std::printf("followed: median %.2f ms CPU; searched whole and found: median %.1f ms CPU\n", followed[15],
+                searched[4]);
 }
 
 }  // namespace

@@ -62,7 +62,8 @@ TEST(CheckSequence, AHeadThatMovesAFifthOfAMillimetreIsNotRefused) {
         std::vector<GrayImage> frames = head().frames;
         std::copy(moved_head().frames.begin() + static_cast<std::ptrdiff_t>(from), moved_head().frames.end(),
                   frames.begin() + static_cast<std::ptrdiff_t>(from));
-        const SequenceCheck check = check_sequence(with_noise(frames, 1.5, static_cast<unsigned>(from)), head().stripes);
+        const SequenceCheck check =
+            check_sequence(with_noise(frames, 1.5, static_cast<unsigned>(from)), head().stripes);
         EXPECT_TRUE(check.problems.empty()) << from << ": " << said(check);
     }
 }
@@ -74,7 +75,9 @@ std::vector<GrayImage> spoil(const Scene& s, Fault fault, std::size_t m, std::mt
     std::vector<GrayImage> f = s.frames;
     const std::size_t n = f.size();
     switch (fault) {
-        case Fault::late_once: f[m] = s.frames[m - 1]; break;
+        case Fault::late_once:
+            f[m] = s.frames[m - 1];
+            break;
         case Fault::late_from_here:
             for (std::size_t i = m; i < n; ++i) f[i] = s.frames[i - 1];
             break;
@@ -84,14 +87,18 @@ std::vector<GrayImage> spoil(const Scene& s, Fault fault, std::size_t m, std::mt
         case Fault::late_by_two:
             for (std::size_t i = std::max<std::size_t>(m, 2); i < n; ++i) f[i] = s.frames[i - 2];
             break;
-        case Fault::swapped_with_next: std::swap(f[m], f[m == n - 1 ? m - 1 : m + 1]); break;
+        case Fault::swapped_with_next:
+            std::swap(f[m], f[m == n - 1 ? m - 1 : m + 1]);
+            break;
         case Fault::inverted: {
             const auto sequence = stripe_sequence(s.stripes);
             while (sequence[m].kind != StripePattern::Kind::gray_bit) m = 2 + random() % (n - 2);
             std::swap(f[m], f[m + 1]);
             break;
         }
-        case Fault::swapped_anywhere: std::swap(f[m], f[random() % n]); break;
+        case Fault::swapped_anywhere:
+            std::swap(f[m], f[random() % n]);
+            break;
     }
     return f;
 }
@@ -108,7 +115,8 @@ TEST_P(FaultIsNoticed, WhereverItHappens) {
                 ++harmless;
                 continue;
             }
-            const SequenceCheck check = check_sequence(with_noise(spoilt, 1.5, static_cast<unsigned>(random())), s->stripes);
+            const SequenceCheck check =
+                check_sequence(with_noise(spoilt, 1.5, static_cast<unsigned>(random())), s->stripes);
             EXPECT_FALSE(check.problems.empty()) << "frame " << m << " of " << (s == &head() ? "head" : "plane");
             noticed += !check.problems.empty();
         }
@@ -129,7 +137,8 @@ TEST(CheckSequence, ThePictureIsNamed) {
     const SequenceCheck check = check_sequence(with_noise(frames, 1.5, 3), head().stripes);
     ASSERT_FALSE(check.problems.empty());
     EXPECT_EQ(check.problems[0].frame, doubled);
-    EXPECT_NE(check.problems[0].what.find("column-gray-4 looks like column-gray-3-inverse"), std::string::npos) << said(check);
+    EXPECT_NE(check.problems[0].what.find("column-gray-4 looks like column-gray-3-inverse"), std::string::npos)
+        << said(check);
 }
 
 TEST(CheckSequence, SwappedFineBitsAreNoticed) {
@@ -168,8 +177,9 @@ TEST(CheckSequence, AScanNamesThePictureAndRefuses) {
 
 TEST(CheckSequence, EdgesShadowsAndAModernRigAreNotRefused) {
     const Eigen::Vector3d towards = Eigen::Vector3d(0.1, 0.35, -1).normalized();
-    Room room = modern_room(nearest_of({sphere(kCentre, 60), plane(kPlace + 80 * Eigen::Vector3d(0, 0, 1), -towards, 90),
-                                        plane(kPlace + 120 * towards, -towards, 15)}));
+    Room room =
+        modern_room(nearest_of({sphere(kCentre, 60), plane(kPlace + 80 * Eigen::Vector3d(0, 0, 1), -towards, 90),
+                                plane(kPlace + 120 * towards, -towards, 15)}));
     room.light.white_grey = 90;
     const ScanCapture shot = capture(room, stripes_of(room));
     for (const auto* frames : {&shot.left, &shot.right}) {
@@ -179,8 +189,8 @@ TEST(CheckSequence, EdgesShadowsAndAModernRigAreNotRefused) {
     }
 }
 
-/// What a camera makes of light, 255 the most it can show, that encodes its pictures for a screen: read noise and, of 25,000
-/// electrons, shot noise, and then the power of 1 / 2.2.
+/// What a camera makes of light, 255 the most it can show, that encodes its pictures for a screen: read noise and, of
+/// 25,000 electrons, shot noise, and then the power of 1 / 2.2.
 std::vector<GrayImage> encoded(std::vector<GrayImage> frames, double noise_grey, unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
@@ -213,14 +223,16 @@ TEST(CheckSequence, ACameraThatEncodesForAScreenIsNotRefusedForItsNoiseInTheDark
             EXPECT_TRUE(check.problems.empty()) << ambient_grey << ", " << noise_grey << ": " << said(check);
             const auto moved = movement_in_pictures(shot, 0.43);
             EXPECT_NEAR(moved.camera_gamma, 2.2, 0.05);
-            EXPECT_LT(moved.moved_mm, 0.075) << "half of the limit, as `scan` asks of pictures: a still ball without any texture";
+            EXPECT_LT(moved.moved_mm, 0.075)
+                << "half of the limit, as `scan` asks of pictures: a still ball without any texture";
         }
         std::swap(shot.left[10], shot.left[14]);
         EXPECT_FALSE(check_sequence(shot.left, dim_room.stripes).problems.empty()) << "and faults are noticed still";
     }
 }
 
-// A white drape beside the skin, of which a fault shows nothing: the coarsest bit inverted is there what the next one is.
+// A white drape beside the skin, of which a fault shows nothing: the coarsest bit inverted is there what the next one
+// is.
 TEST(CheckSequence, AFaultThatOnlySkinShowsIsNoticedBesideABrightDrape) {
     Room room = paper_room(sphere(kCentre, 80));
     room.light.noise_grey = 0;
@@ -245,14 +257,16 @@ TEST(CheckSequence, AFaultThatOnlySkinShowsIsNoticedBesideABrightDrape) {
             std::vector<GrayImage> frames = skin;
             for (std::size_t f = 0; f < frames.size(); ++f)
                 for (std::size_t i = 0; i < truth.code.size(); ++i)
-                    if (truth.code[i].x() > kFirst && truth.code[i].x() < last) frames[f].pixels[i] = drape[f].pixels[i];
+                    if (truth.code[i].x() > kFirst && truth.code[i].x() < last)
+                        frames[f].pixels[i] = drape[f].pixels[i];
             const auto clean = check_sequence(with_noise(frames, 1.5, 1), stripes);
             EXPECT_TRUE(clean.checked && clean.problems.empty()) << said(clean);
             ASSERT_EQ(stripe_sequence(stripes)[4].name, "column-gray-1");
             frames[4] = frames[3];  // late: the inverse of column-gray-0 again
             frames[5] = frames[2];
             const auto check = check_sequence(with_noise(frames, 1.5, 1), stripes);
-            EXPECT_FALSE(check.problems.empty()) << brighter << " times brighter over " << 100 * share << " %: " << said(check);
+            EXPECT_FALSE(check.problems.empty())
+                << brighter << " times brighter over " << 100 * share << " %: " << said(check);
         }
     }
 }

@@ -5,8 +5,8 @@
 
 #include "tests/registration/scan/spoilt_sequence.h"
 
-// Every kind of fault at every place of the sequences that have less to check them by than the usual one: no inverses, or no
-// fringes.
+// Every kind of fault at every place of the sequences that have less to check them by than the usual one: no inverses,
+// or no fringes.
 namespace planlight {
 namespace {
 
@@ -41,7 +41,8 @@ struct Table {
     void look(const Fault& fault) {
         if (changed(sequence.frames, fault.frames) < 0.1) {
             ++harmless;
-        } else if (const auto check = checked(sequence, fault.frames, static_cast<unsigned>(noticed)); !check.problems.empty()) {
+        } else if (const auto check = checked(sequence, fault.frames, static_cast<unsigned>(noticed));
+                   !check.problems.empty()) {
             ++noticed;
         } else {
             passed.push_back(fault.what);
@@ -112,8 +113,8 @@ TEST(SequenceFaults, OfAGrayCodeWithInversesAreNoticedWhereverTheyHappen) {
     EXPECT_LT(table.harmless, 6u);
 }
 
-// Cells of a projector pixel, here of a camera pixel: the two finest bits of a direction have stripes of two and four camera
-// pixels, and of faults among these four pictures nothing is said. All others are noticed.
+// Cells of a projector pixel, here of a camera pixel: the two finest bits of a direction have stripes of two and four
+// camera pixels, and of faults among these four pictures nothing is said. All others are noticed.
 TEST(SequenceFaults, OfAGrayCodeToSinglePixelsAreNoticedButAmongTheFinestBits) {
     const Sequence gray = gray_code_of(head_room(), 1, false);
     expect_clean(gray, gray_code_of(head_room(kFifthOfAMillimetre), 1, false));

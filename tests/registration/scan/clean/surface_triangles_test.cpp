@@ -15,7 +15,8 @@ constexpr double kDistance = 900, kRadius = 80, kFocal_px = 2000;
 
 /// Where a ray from the origin through a pixel meets a ball before it; not finite where it misses.
 Eigen::Vector3d on_ball(double u, double v) {
-    const Eigen::Vector3d direction = Eigen::Vector3d(u / kFocal_px, v / kFocal_px, 1).normalized(), centre(0, 0, kDistance);
+    const Eigen::Vector3d direction = Eigen::Vector3d(u / kFocal_px, v / kFocal_px, 1).normalized(),
+                          centre(0, 0, kDistance);
     const double along = direction.dot(centre), under = along * along - kDistance * kDistance + kRadius * kRadius;
     if (under < 0) return Eigen::Vector3d::Constant(std::nan(""));
     return (along - std::sqrt(under)) * direction;
@@ -82,7 +83,8 @@ TEST(SurfaceTriangles, ASmoothSurfaceHasNoHolesAndNoEdgeOfThreeTriangles) {
         once += count == 1;
     }
     // Points - edges + triangles of a disc is 1: one rim and no hole.
-    EXPECT_EQ(static_cast<long>(cloud.size()) - static_cast<long>(used.size()) + static_cast<long>(triangles.size()), 1);
+    EXPECT_EQ(static_cast<long>(cloud.size()) - static_cast<long>(used.size()) + static_cast<long>(triangles.size()),
+              1);
     EXPECT_LT(once, 400);
 }
 
@@ -91,7 +93,9 @@ TEST(SurfaceTriangles, NoTriangleBridgesAStep) {
     const auto triangles = surface_triangles(cloud);
     EXPECT_EQ(triangles.size(), 2u * 50 * (24 + 25));  // 51 rows; 25 columns to the left, 26 to the right
     for (const auto& t : triangles) {
-        const auto nearer = [&](std::size_t corner) { return cloud.points_in_rig[static_cast<std::size_t>(t[corner])].z() < 890; };
+        const auto nearer = [&](std::size_t corner) {
+            return cloud.points_in_rig[static_cast<std::size_t>(t[corner])].z() < 890;
+        };
         EXPECT_EQ(nearer(0), nearer(1));
         EXPECT_EQ(nearer(0), nearer(2));
     }

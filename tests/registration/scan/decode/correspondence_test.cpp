@@ -70,7 +70,8 @@ TEST(Correspondence, SaysItsOwnNoise) {
         constexpr int kDraws = 4000;
         for (int k = 0; k < kDraws; ++k) {
             const auto local = correspondence_at(
-                view_of([&](double x, double y) { return Vector2d(400 + x + noise(random), 300 + y + noise(random)); }, sigma),
+                view_of([&](double x, double y) { return Vector2d(400 + x + noise(random), 300 + y + noise(random)); },
+                        sigma),
                 kMiddle, kMiddle);
             ASSERT_TRUE(local);
             squares += (local->code - Vector2d(400, 300)).squaredNorm() / 2;
@@ -83,11 +84,13 @@ TEST(Correspondence, SaysItsOwnNoise) {
     }
 }
 
-/// Light blurred over one pixel (one standard deviation, an axis) that rises by 4 % a pixel shows at every pixel the code of a
-/// place 0.04 px nearer to the light: the integral of a Gaussian times 1 + 0.04 x. That is taken back.
+/// Light blurred over one pixel (one standard deviation, an axis) that rises by 4 % a pixel shows at every pixel the
+/// code of a place 0.04 px nearer to the light: the integral of a Gaussian times 1 + 0.04 x. That is taken back.
 TEST(Correspondence, IsTakenBackFromTheLight) {
     constexpr double kRise = 0.04;
-    const Map seen = [&](double x, double y) { return Vector2d(400 + 1.1 * (x + kRise), 300 + 0.9 * y + 0.1 * (x + kRise)); };
+    const Map seen = [&](double x, double y) {
+        return Vector2d(400 + 1.1 * (x + kRise), 300 + 0.9 * y + 0.1 * (x + kRise));
+    };
     const auto dim = [&](double x, double) { return std::exp(-kRise * x); };
     const auto even = correspondence_at(view_of(seen, 0.02), kMiddle, kMiddle),
                lit = correspondence_at(view_of(seen, 0.02, dim), kMiddle, kMiddle);

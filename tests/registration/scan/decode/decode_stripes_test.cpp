@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "planning_io/types/statistics.h"
 #include "registration/scan/decode/gray_code.h"
 #include "tests/registration/scan/stripe_room.h"
 
@@ -71,8 +72,7 @@ double mean(const std::vector<double>& v) {
 }
 double median_size(std::vector<double> v) {
     for (double& x : v) x = std::abs(x);
-    std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-    return v[v.size() / 2];
+    return median(v);
 }
 
 TEST(DecodeStripes, APlaneThroughGammaBlurAndNoise) {
@@ -130,8 +130,10 @@ TEST(DecodeStripes, TheFastSetHasAsFewWrongCodes) {
             if (std::isnan(v.column[i]) || std::isnan(s.truth.code[i].x())) continue;
             ++decoded;
             const double e = v.column[i] - s.truth.code[i].x();
-            if (std::abs(e) > 4) ++wrong;
-            else errors.push_back(e);
+            if (std::abs(e) > 4)
+                ++wrong;
+            else
+                errors.push_back(e);
         }
     }
     EXPECT_GT(static_cast<double>(decoded), 0.95 * static_cast<double>(lit));
@@ -185,15 +187,18 @@ std::vector<float> smoothed(const GrayImage& frame, double sigma) {
     const int reach = static_cast<int>(3 * sigma);
     std::vector<float> weights, along(frame.pixels.size()), out(frame.pixels.size());
     float sum = 0;
-    for (int d = -reach; d <= reach; ++d) sum += weights.emplace_back(static_cast<float>(std::exp(-d * d / (2 * sigma * sigma))));
+    for (int d = -reach; d <= reach; ++d)
+        sum += weights.emplace_back(static_cast<float>(std::exp(-d * d / (2 * sigma * sigma))));
     for (int pass = 0; pass < 2; ++pass)
         for (int y = 0; y < frame.height; ++y)
             for (int x = 0; x < frame.width; ++x) {
                 float value = 0;
                 for (int d = -reach; d <= reach; ++d) {
                     const float w = weights[static_cast<std::size_t>(d + reach)] / sum;
-                    if (pass == 0) value += w * static_cast<float>(frame.at(std::clamp(x + d, 0, frame.width - 1), y));
-                    else value += w * along[frame.index(x, std::clamp(y + d, 0, frame.height - 1))];
+                    if (pass == 0)
+                        value += w * static_cast<float>(frame.at(std::clamp(x + d, 0, frame.width - 1), y));
+                    else
+                        value += w * along[frame.index(x, std::clamp(y + d, 0, frame.height - 1))];
                 }
                 (pass == 0 ? along : out)[frame.index(x, y)] = value;
             }
@@ -201,8 +206,8 @@ std::vector<float> smoothed(const GrayImage& frame, double sigma) {
 }
 
 TEST(DecodeStripes, LightByWayOfAnotherWallIsDropped) {
-    // A wall 60 pixels aside throws on every pixel 0.6 of its own light, washed out over 4.8 pixels as by matt skin: in the
-    // shadow of a disc there is bright light with a weak, sharp enough code in it, and it is the code of the wall.
+    // A wall 60 pixels aside throws on every pixel 0.6 of its own light, washed out over 4.8 pixels as by matt skin: in
+    // the shadow of a disc there is bright light with a weak, sharp enough code in it, and it is the code of the wall.
     const Eigen::Vector3d towards = Eigen::Vector3d(0.1, 0.35, -1).normalized();
     Room room = paper_room(nearest_of({plane(kPlace, kTilted), plane(kPlace + 120 * towards, -towards, 25)}));
     room.light.ambient_grey = 8;
@@ -253,7 +258,8 @@ TEST(DecodeStripes, SaturatedPixelsAreDropped) {
     const StripeSettings stripes = stripes_of(room);
     const DecodedView v = decode_stripes(photograph(room, room.left, stripes, 3), stripes);
     EXPECT_GT(v.saturated, 100000u);
-    EXPECT_LT(static_cast<double>(errors_of(v, plane_shot().truth).wrong), 1e-4 * static_cast<double>(v.decoded + 10000));
+    EXPECT_LT(static_cast<double>(errors_of(v, plane_shot().truth).wrong),
+              1e-4 * static_cast<double>(v.decoded + 10000));
 }
 
 TEST(DecodeStripes, DimAndNoisyDropsRatherThanGuesses) {
@@ -280,11 +286,13 @@ TEST(DecodeStripes, ADisturbedGrayFrameDropsPixelsInsteadOfMovingThem) {
     EXPECT_LT(static_cast<double>(e.wrong), 1e-4 * static_cast<double>(e.lit));
 }
 
-/// A picture of 1500 x 7 pixels, dark but for every 517th, which is lit from a place of its own; `drawn` is what the projector
-/// shows there (0 to 1).
+/// A picture of 1500 x 7 pixels, dark but for every 517th, which is lit from a place of its own; `drawn` is what the
+/// projector shows there (0 to 1).
 constexpr int kSparseWidth = 1500, kSparseHeight = 7;
 constexpr std::size_t kEvery = 517;
-Eigen::Vector2i place_of(std::size_t i) { return {static_cast<int>(i * 37 % 800), static_cast<int>(i * 53 % 600)}; }
+Eigen::Vector2i place_of(std::size_t i) {
+    return {static_cast<int>(i * 37 % 800), static_cast<int>(i * 53 % 600)};
+}
 
 template <class Drawn>
 GrayImage sparse_picture(unsigned seed, const Drawn& drawn) {

@@ -24,8 +24,8 @@ Room glaring_room(double white_grey) {
 }
 
 std::size_t far_off(const std::vector<Eigen::Vector3d>& points) {
-    return static_cast<std::size_t>(
-        std::count_if(points.begin(), points.end(), [](const auto& p) { return std::abs((p - kCentre).norm() - 80) > 0.5; }));
+    return static_cast<std::size_t>(std::count_if(
+        points.begin(), points.end(), [](const auto& p) { return std::abs((p - kCentre).norm() - 80) > 0.5; }));
 }
 
 TEST(MergeExposures, ASaturatedPixelTakesTheDarkerOneAndADarkPixelTheBrighter) {
@@ -40,7 +40,8 @@ TEST(MergeExposures, ASaturatedPixelTakesTheDarkerOneAndADarkPixelTheBrighter) {
     ASSERT_GT(glare.left.saturated, 20000u);
     EXPECT_GT(merged.left.decoded, glare.left.decoded + 20000);
     EXPECT_GE(merged.left.decoded, gloom.left.decoded + 300);
-    EXPECT_EQ(merged.left.decoded + merged.left.dark + merged.left.saturated + merged.left.uncertain, merged.left.column.size());
+    EXPECT_EQ(merged.left.decoded + merged.left.dark + merged.left.saturated + merged.left.uncertain,
+              merged.left.column.size());
     for (std::size_t i = 0; i < merged.left.column.size(); ++i) {
         const float best = std::fmin(glare.left.sigma_px[i], gloom.left.sigma_px[i]);  // fmin passes NaN over
         ASSERT_TRUE(merged.left.sigma_px[i] == best || (std::isnan(best) && std::isnan(merged.left.column[i]))) << i;
@@ -51,8 +52,8 @@ TEST(MergeExposures, ASaturatedPixelTakesTheDarkerOneAndADarkPixelTheBrighter) {
               far_off(glare.raw.cloud.points_in_rig) + far_off(gloom.raw.cloud.points_in_rig));
 }
 
-/// The light of two exposures is one light: where the brighter one is blind it goes on as the darker one saw it, and does not
-/// fall to a third there.
+/// The light of two exposures is one light: where the brighter one is blind it goes on as the darker one saw it, and
+/// does not fall to a third there.
 TEST(MergeExposures, TheLightGoesOnFromOneToTheOther) {
     DecodedView bright;
     bright.width = 40, bright.height = 20;
@@ -65,7 +66,8 @@ TEST(MergeExposures, TheLightGoesOnFromOneToTheOther) {
     DecodedView dark = bright;
     for (float& sigma : dark.sigma_px) sigma *= 3;
     for (std::size_t i = 0; i < 800; ++i)
-        if (i % 40 < 12) bright.column[i] = bright.row[i] = bright.sigma_px[i] = std::numeric_limits<float>::quiet_NaN();
+        if (i % 40 < 12)
+            bright.column[i] = bright.row[i] = bright.sigma_px[i] = std::numeric_limits<float>::quiet_NaN();
     take_better(bright, dark);
     for (std::size_t i = 0; i < 800; ++i) {
         ASSERT_EQ(bright.sigma_px[i], (i % 40 < 12 ? 3 : 1) * dimness(i)) << i;  // the noise is what it is
@@ -73,8 +75,8 @@ TEST(MergeExposures, TheLightGoesOnFromOneToTheOther) {
     }
 }
 
-/// Moist skin: a glint of five times the skin's light, at another place for each camera. The darker captures that the session
-/// adds see the code inside it.
+/// Moist skin: a glint of five times the skin's light, at another place for each camera. The darker captures that the
+/// session adds see the code inside it.
 TEST(MergeExposures, AGlintIsReadInTheDarkerCapturesAndPutsNothingOffTheSkin) {
     Room room = paper_room(sphere(kCentre, 80));
     room.light.glint_grey = 900;
@@ -93,7 +95,8 @@ TEST(MergeExposures, AGlintIsReadInTheDarkerCapturesAndPutsNothingOffTheSkin) {
     EXPECT_LE(far_off(one.clean.kept.points_in_rig), 2u);
     EXPECT_LE(far_off(all.clean.kept.points_in_rig), 2u);
     // Where the glint lies (the normal halfway between lamp and camera) there is skin now.
-    const Eigen::Vector3d to_lamp = (room.projector.eye() - kCentre).normalized(), to_eye = (room.left.eye() - kCentre).normalized();
+    const Eigen::Vector3d to_lamp = (room.projector.eye() - kCentre).normalized(),
+                          to_eye = (room.left.eye() - kCentre).normalized();
     const Eigen::Vector3d glint = kCentre + 80 * (to_lamp + to_eye).normalized();
     const auto near_glint = [&](const ScanResult& scan) {
         return std::count_if(scan.raw.cloud.points_in_rig.begin(), scan.raw.cloud.points_in_rig.end(),
@@ -105,7 +108,8 @@ TEST(MergeExposures, AGlintIsReadInTheDarkerCapturesAndPutsNothingOffTheSkin) {
 // Half a millimetre between two exposures of three seconds each is soon done.
 TEST(MergeExposures, APatientWhoMovedBetweenThemIsRefused) {
     const Room bright = glaring_room(350);
-    for (const Eigen::Vector3d& way : {Eigen::Vector3d(0, 0, 0.5), Eigen::Vector3d(2, 0, 0), Eigen::Vector3d(0, -2, 0)}) {
+    for (const Eigen::Vector3d& way :
+         {Eigen::Vector3d(0, 0, 0.5), Eigen::Vector3d(2, 0, 0), Eigen::Vector3d(0, -2, 0)}) {
         Room moved = paper_room(sphere(kCentre + way, 80));
         moved.light.white_grey = 60;
         moved.light.seed = 9;

@@ -17,7 +17,8 @@ using namespace stripe_room;
 const Eigen::Vector3d kCentre(120, -40, 360);
 
 struct Codes {
-    std::size_t lit = 0, decoded = 0, wrong = 0, unlit = 0;  ///< wrong: by a quarter of a fringe or more; unlit: where nothing is lit
+    std::size_t lit = 0, decoded = 0, wrong = 0,
+                unlit = 0;  ///< wrong: by a quarter of a fringe or more; unlit: where nothing is lit
 };
 
 Codes codes_of(const DecodedView& view, const Truth& truth) {
@@ -55,9 +56,10 @@ TEST(MultiFrequency, AnUncertainOrderIsDroppedAndNeverGuessed) {
         room.light.white_grey = white_grey;
         room.light.noise_grey = noise_grey;
         const StripeSettings stripes = multi_frequency_stripes(800, 600);
-        const Codes codes = codes_of(decode_stripes(photograph(room, room.left, stripes, 5), stripes), truth_of(room, room.left));
-        fmt::print("white {} grey, noise {}: {} of {} decoded, {} wrong, {} unlit\n", white_grey, noise_grey, codes.decoded, codes.lit,
-                   codes.wrong, codes.unlit);
+        const Codes codes =
+            codes_of(decode_stripes(photograph(room, room.left, stripes, 5), stripes), truth_of(room, room.left));
+        fmt::print("white {} grey, noise {}: {} of {} decoded, {} wrong, {} unlit\n", white_grey, noise_grey,
+                   codes.decoded, codes.lit, codes.wrong, codes.unlit);
         EXPECT_GT(static_cast<double>(codes.decoded), least_decoded * static_cast<double>(codes.lit));
         EXPECT_LT(static_cast<double>(codes.wrong), 1e-4 * static_cast<double>(codes.lit));
         // The silhouette, where blur carries light to pixels that see past the ball, is half a percent of the pixels.
@@ -84,7 +86,8 @@ TEST(MultiFrequency, ABallIsScannedAsTrulyAsByAGrayCode) {
         double squares = 0;
         for (const auto& p : scan.raw.cloud.points_in_rig) squares += std::pow((p - kCentre).norm() - 80, 2);
         const double rms = std::sqrt(squares / static_cast<double>(scan.raw.cloud.size()));
-        fmt::print("{}: {} points, rms {:.4f} mm\n", rows ? "both directions" : "columns only", scan.raw.cloud.size(), rms);
+        fmt::print("{}: {} points, rms {:.4f} mm\n", rows ? "both directions" : "columns only", scan.raw.cloud.size(),
+                   rms);
         EXPECT_GT(scan.raw.cloud.size(), 30000u);
         EXPECT_LT(rms, 0.05);
     }
@@ -140,7 +143,8 @@ TEST(MultiFrequency, FaultsOfTheSequenceAreNoticed) {
             if (!seen) missed += fmt::format(" {}:{}", fault, stripe_sequence(shot().stripes)[m].name);
         }
     fmt::print("{} of {} faults noticed; missed:{}\n", noticed, all, missed);
-    EXPECT_EQ(noticed + 1, all) << missed;  // where the last frame is the missing one, nothing follows and nothing is wrong
+    EXPECT_EQ(noticed + 1, all)
+        << missed;  // where the last frame is the missing one, nothing follows and nothing is wrong
 }
 
 TEST(MultiFrequency, WholeFrequenciesSwappedAreNoticed) {

@@ -39,7 +39,9 @@ ScanCapture capture_of(const std::function<Eigen::Vector2d(double)>& at, double 
             for (int x = 0; x < kWidth; ++x) {
                 const auto kind = capture.partial[k].kind;
                 bool lit = kind == StripePattern::Kind::white;
-                if (k >= 2) lit = ((x >> (kBits - capture.partial[k].index)) % 2 == 0) == (kind == StripePattern::Kind::gray_bit);
+                if (k >= 2)
+                    lit =
+                        ((x >> (kBits - capture.partial[k].index)) % 2 == 0) == (kind == StripePattern::Kind::gray_bit);
                 const bool head = std::hypot(x - kWidth / 2.0 - d.x(), y - kHeight / 2.0 - d.y()) < 100;
                 const double light = head ? skin(x - d.x(), y - d.y()) * ((lit ? gain : 0) + 0.12) : 3;
                 frame.at(x, y) = static_cast<std::uint8_t>(std::clamp(std::lround(light + noise(random)), 0L, 255L));
@@ -49,7 +51,8 @@ ScanCapture capture_of(const std::function<Eigen::Vector2d(double)>& at, double 
     return capture;
 }
 
-/// The same with the edges of the stripes blurred over three pixels, by a camera that gives light to the power 1 / `gamma`.
+/// The same with the edges of the stripes blurred over three pixels, by a camera that gives light to the power 1 /
+/// `gamma`.
 ScanCapture encoded_capture(double gamma, const Eigen::Vector2d& way_px) {
     ScanCapture capture = capture_of([](double) { return Eigen::Vector2d(0, 0); });
     std::mt19937 random(7);
@@ -61,7 +64,8 @@ ScanCapture encoded_capture(double gamma, const Eigen::Vector2d& way_px) {
             for (int x = 0; x < kWidth; ++x) {
                 double lit = pattern.kind == StripePattern::Kind::white ? 1 : 0;
                 for (int i = -1; k >= 2 && i <= 1; ++i)
-                    lit += (((x + i) >> (kBits - pattern.index)) % 2 == 0) == (pattern.kind == StripePattern::Kind::gray_bit)
+                    lit += (((x + i) >> (kBits - pattern.index)) % 2 == 0) ==
+                                   (pattern.kind == StripePattern::Kind::gray_bit)
                                ? 1.0 / 3
                                : 0.0;
                 const bool head = std::hypot(x - kWidth / 2.0 - d.x(), y - kHeight / 2.0 - d.y()) < 100;
@@ -73,7 +77,9 @@ ScanCapture encoded_capture(double gamma, const Eigen::Vector2d& way_px) {
     return capture;
 }
 
-ScanMovement seen(const ScanCapture& capture) { return movement_in_pictures(capture, 0.42); }
+ScanMovement seen(const ScanCapture& capture) {
+    return movement_in_pictures(capture, 0.42);
+}
 
 TEST(ScanMovement, APatientAtRestMovesByTheNoiseOnly) {
     const ScanMovement movement = seen(capture_of([](double) { return Eigen::Vector2d(0, 0); }));
@@ -82,8 +88,8 @@ TEST(ScanMovement, APatientAtRestMovesByTheNoiseOnly) {
     EXPECT_LT(movement.moved_mm, 0.02);
 }
 
-// Where a stripe's edge halves the light, such a camera shows more than half: stripes are left in the sum of a bit and its
-// inverse. They are no movement.
+// Where a stripe's edge halves the light, such a camera shows more than half: stripes are left in the sum of a bit and
+// its inverse. They are no movement.
 TEST(ScanMovement, ACameraThatEncodesForAScreenIsUnderstood) {
     for (const double gamma : {1.0, 1.8, 2.2}) {
         const ScanCapture still = encoded_capture(gamma, {0, 0});
@@ -96,8 +102,8 @@ TEST(ScanMovement, ACameraThatEncodesForAScreenIsUnderstood) {
 
 TEST(ScanMovement, AShiftAcrossThePictureIsMeasured) {
     for (const double way_px : {0.25, 0.5, 1.0}) {
-        const ScanMovement movement =
-            seen(capture_of([&](double share) -> Eigen::Vector2d { return way_px * share * Eigen::Vector2d(0.8, -0.6); }));
+        const ScanMovement movement = seen(
+            capture_of([&](double share) -> Eigen::Vector2d { return way_px * share * Eigen::Vector2d(0.8, -0.6); }));
         // The first and the last moment are half a pair of pictures inside the sequence: 12 of 13 steps.
         EXPECT_NEAR(movement.moved_mm, 0.42 * way_px * 12 / 13, 0.02 + 0.05 * way_px) << way_px;
         EXPECT_EQ(movement.from, "white");

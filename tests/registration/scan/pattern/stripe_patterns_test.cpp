@@ -25,7 +25,8 @@ std::vector<GrayImage> seen_by_the_projector(const StripeSettings& s, double gam
         const RgbImage picture = draw_stripes(s, pattern);
         GrayImage frame(s.width, s.height);
         for (std::size_t i = 0; i < frame.pixels.size(); ++i)
-            frame.pixels[i] = static_cast<std::uint8_t>(std::lround(15 + 200 * std::pow(picture.pixels[i][1] / 255.0, gamma)));
+            frame.pixels[i] =
+                static_cast<std::uint8_t>(std::lround(15 + 200 * std::pow(picture.pixels[i][1] / 255.0, gamma)));
         frames.push_back(frame);
     }
     return frames;
@@ -78,7 +79,8 @@ TEST(StripePatterns, SettingsThatMakeNoCodeAreRefused) {
     s = stripes(800, 600);
     s.phase_period_px = 1;
     EXPECT_THROW(draw_stripes(s, {StripePattern::Kind::white, false, 0, "white"}), std::invalid_argument);
-    EXPECT_THROW(draw_stripes(stripes(800, 600), {StripePattern::Kind::gray_bit, false, 7, "eighth"}), std::invalid_argument);
+    EXPECT_THROW(draw_stripes(stripes(800, 600), {StripePattern::Kind::gray_bit, false, 7, "eighth"}),
+                 std::invalid_argument);
 }
 
 class EveryPixelIsItself : public testing::TestWithParam<std::tuple<int, int, bool, double, double>> {};
@@ -93,7 +95,8 @@ TEST_P(EveryPixelIsItself, ToAFiftiethOfAPixel) {
     double worst = 0, sum = 0;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x) {
-            const std::size_t i = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+            const std::size_t i =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
             ASSERT_FALSE(std::isnan(view.column[i])) << x << " " << y;
             worst = std::max({worst, std::abs(double{view.column[i]} - x), std::abs(double{view.row[i]} - y)});
             sum += double{view.column[i]} - x;
@@ -105,8 +108,9 @@ TEST_P(EveryPixelIsItself, ToAFiftiethOfAPixel) {
 
 INSTANTIATE_TEST_SUITE_P(Sizes, EveryPixelIsItself,
                          testing::Values(std::tuple{800, 600, true, 16.0, 2.2}, std::tuple{1920, 1080, true, 16.0, 2.2},
-                                         std::tuple{1920, 1080, false, 16.0, 1.0}, std::tuple{641, 479, true, 16.0, 2.2},
-                                         std::tuple{800, 600, false, 24.0, 2.2}, std::tuple{1280, 720, true, 20.0, 1.8}));
+                                         std::tuple{1920, 1080, false, 16.0, 1.0},
+                                         std::tuple{641, 479, true, 16.0, 2.2}, std::tuple{800, 600, false, 24.0, 2.2},
+                                         std::tuple{1280, 720, true, 20.0, 1.8}));
 
 }  // namespace
 }  // namespace planlight

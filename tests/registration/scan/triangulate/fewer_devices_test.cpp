@@ -116,7 +116,8 @@ TEST(FewerDevices, TwoCamerasDoWithoutKnowingTheProjector) {
     EXPECT_LT(off.rms, 0.08);
     EXPECT_LT(scan.raw.epipolar_rms_px, 0.2);
     for (std::size_t i = 0; i < scan.clean.kept.size(); i += 100)
-        EXPECT_GT(scan.clean.kept.normals_in_rig[i].dot(scan.clean.kept.points_in_rig[i] - kCentre), 0) << "towards the cameras";
+        EXPECT_GT(scan.clean.kept.normals_in_rig[i].dot(scan.clean.kept.points_in_rig[i] - kCentre), 0)
+            << "towards the cameras";
 }
 
 TEST(FewerDevices, TwoCamerasAndColumnsOnlyMeetOnTheEpipolarLine) {

@@ -109,7 +109,8 @@ TEST(ResectProjector, TheScanUsesItForPointsOfOneCamera) {
                      with = scan_from_capture(scanned().shot, rig);
     EXPECT_FALSE(without.resection_used);
     ASSERT_TRUE(with.resection_used);
-    EXPECT_GT(with.raw.two_view, without.raw.two_view + 300);  // the gate drops what the knocked projector would misplace
+    EXPECT_GT(with.raw.two_view,
+              without.raw.two_view + 300);  // the gate drops what the knocked projector would misplace
     double squares = 0, n = 0;
     for (std::size_t i = 0; i < with.raw.cloud.size(); ++i) {
         if (with.raw.seen[i] == Triangulation::Seen::both) continue;
