@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/calib3d.hpp>
+#include <opencv2/core/eigen.hpp>
 
 #include "planning_io/types/statistics.h"
 #include "registration/calibration/board_turns.h"
@@ -101,19 +102,14 @@ Eigen::Matrix<double, 12, 1> smallest_vector(const Eigen::MatrixXd& rows) {
     return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 12, 12>>(square).eigenvectors().col(0);
 }
 
-/// K (upper triangular, positive diagonal) and rotation of a 3x3 matrix of positive determinant.
-void split(const Matrix3d& m, Matrix3d& K, Matrix3d& R) {
-    const Matrix3d flip = (Matrix3d() << 0, 0, 1, 0, 1, 0, 1, 0, 0).finished();
-    const Eigen::HouseholderQR<Matrix3d> qr((flip * m).transpose());
-    const Matrix3d q = qr.householderQ();
-    const Matrix3d upper = qr.matrixQR().triangularView<Eigen::Upper>();
-    K = flip * upper.transpose() * flip;
-    R = flip * q.transpose();
-    for (int i = 0; i < 3; ++i)
-        if (K(i, i) < 0) {
-            K.col(i) *= -1;
-            R.row(i) *= -1;
-        }
+/// RQ decomposition of a 3x3 matrix of positive determinant into K (upper triangular, positive diagonal, K(2,2) = 1) and a
+/// rotation R (Hartley & Zisserman, A4.1.1).
+void rq_decomposition(const Matrix3d& m, Matrix3d& K, Matrix3d& R) {
+    cv::Matx33d matrix, upper, rotation;
+    cv::eigen2cv(m, matrix);
+    cv::RQDecomp3x3(matrix, upper, rotation);
+    cv::cv2eigen(upper, K);
+    cv::cv2eigen(rotation, R);
     K /= K(2, 2);
 }
 
@@ -307,7 +303,7 @@ void add_initial_projector(const std::vector<PoseObservation>& poses, const Boar
     for (const Vector3d& p : points) behind += positive.row(2).dot(p.homogeneous()) < 0;
     start.projector_mirrored = 2 * behind > points.size();
     Matrix3d K, R;
-    split(positive.leftCols<3>(), K, R);
+    rq_decomposition(positive.leftCols<3>(), K, R);
     CameraModel projector;
     projector.width = width;
     projector.height = height;
