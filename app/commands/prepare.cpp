@@ -3,11 +3,11 @@
 #include <iostream>
 #include <optional>
 
+#include "app/case_model.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/plan_options.h"
 #include "app/console.h"
-#include "app/live/case_model.h"
 #include "app/live/live_window.h"
 #include "app/prepare_case.h"
 #include "app/report/preparation_report.h"

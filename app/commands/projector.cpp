@@ -5,9 +5,9 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
-#include "app/commands/light_source.h"
 #include "app/console.h"
 #include "app/live/identify_monitors.h"
+#include "app/live/light_source.h"
 #include "app/live/projector_options.h"
 #include "app/live/show_light.h"
 #include "app/report/projector_report.h"

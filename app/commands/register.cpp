@@ -4,9 +4,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "app/case_model.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
-#include "app/live/case_model.h"
 #include "app/report/registration_certificate.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/case/registration_file.h"

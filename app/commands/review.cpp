@@ -3,10 +3,10 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "app/case_model.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/console.h"
-#include "app/live/case_model.h"
 #include "app/live/clickable_scan.h"
 #include "app/live/live_window.h"
 #include "app/windows/scene_view.h"

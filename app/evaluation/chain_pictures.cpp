@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "app/live/case_model.h"
+#include "app/case_model.h"
 #include "app/live/scene_of_session.h"
 #include "app/windows/scene_view.h"
 

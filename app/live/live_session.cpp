@@ -1,6 +1,6 @@
 #include "app/live/live_session.h"
 
-#include "app/live/case_model.h"
+#include "app/case_model.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
-#include "app/live/case_model.h"
+#include "app/case_model.h"
 #include "app/live/clickable_scan.h"
 #include "app/live/live_session.h"
 #include "app/live/scene_of_session.h"

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <memory>
 
-#include "app/live/case_model.h"
+#include "app/case_model.h"
 #include "app/live/live_session.h"
 #include "app/live/steady_clock.h"
 #include "app/windows/operator_window.h"

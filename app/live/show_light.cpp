@@ -7,8 +7,8 @@
 #include <iostream>
 #include <thread>
 
-#include "app/commands/light_source.h"
 #include "app/console.h"
+#include "app/live/light_source.h"
 #include "app/live/steady_clock.h"
 #include "planning_io/case/light_file.h"
 #include "planning_io/files/safe_write.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "app/live/case_model.h"
+#include "app/case_model.h"
 #include "app/report/html_page.h"
 #include "app/windows/scene_view.h"
 #include "planning_io/case/registration_file.h"

@@ -1,4 +1,4 @@
-#include "app/live/case_model.h"
+#include "app/case_model.h"
 
 #include <fmt/format.h>
 

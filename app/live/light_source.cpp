@@ -1,4 +1,4 @@
-#include "app/commands/light_source.h"
+#include "app/live/light_source.h"
 
 #include <fmt/format.h>
 
