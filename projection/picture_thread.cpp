@@ -82,6 +82,7 @@ struct PictureThread::Painter {
             glDrawArrays(GL_TRIANGLES, 0, 3);
         }
         const GLenum error = glGetError();
+        if (error != GL_NO_ERROR) glClear(GL_COLOR_BUFFER_BIT);  // black first, then the report
         glfwSwapBuffers(window);
         glFinish();
         if (error != GL_NO_ERROR) throw failed("the graphics driver reports error " + std::to_string(error));

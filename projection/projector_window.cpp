@@ -12,6 +12,7 @@
 #include "planning_io/types/error.h"
 #include "projection/edid.h"
 #include "projection/glfw_session.h"
+#include "projection/monitor_lock.h"
 #include "projection/picture_thread.h"
 
 namespace planlight {
@@ -113,6 +114,7 @@ struct ProjectorWindow::Parts {
     const Clock& clock;
     GLFWmonitor* handle = nullptr;
     Monitor monitor;
+    std::optional<MonitorLock> lock;
     GLFWwindow* window = nullptr;
     std::optional<PictureThread> picture;
     bool damaged = false;
@@ -124,6 +126,7 @@ struct ProjectorWindow::Parts {
         const std::size_t index = choose(list_monitors(), wanted, allow_only_monitor);
         handle = handles.at(index);
         monitor = describe(handle);
+        lock.emplace(monitor.name);
         window = hidden_window(monitor);
         glfwSetWindowUserPointer(window, this);
         glfwSetWindowRefreshCallback(

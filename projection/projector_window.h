@@ -31,8 +31,8 @@ struct ProjectorWindowSettings {
 class ProjectorWindow final : public Projector {
 public:
     /// Opens on the monitor of that name (or index as text). Throws DeviceError when there is no such monitor, when it
-    /// is the only one or the primary one and `allow_only_monitor` is false, or when the window does not land exactly
-    /// on it.
+    /// is the only one or the primary one and `allow_only_monitor` is false, when another process lights it, or when
+    /// the window does not land exactly on it.
     ProjectorWindow(const std::string& monitor, const Clock& clock, bool allow_only_monitor = false,
                     const ProjectorWindowSettings& settings = {});
     ~ProjectorWindow() override;

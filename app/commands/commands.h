@@ -24,6 +24,7 @@ Run add_register(CLI::App& app);
 Run add_track(CLI::App& app);
 Run add_project(CLI::App& app);
 Run add_projector(CLI::App& app);
+Run add_projector_window(CLI::App& app);
 Run add_session(CLI::App& app);
 Run add_review(CLI::App& app);
 Run add_simulate(CLI::App& app);

@@ -8,6 +8,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/simulate_options.h"
 #include "app/console.h"
+#include "planning_io/case/frames_folder.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_file.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/console.h"
-#include "app/live/steady_clock.h"
+#include "planning_io/types/steady_clock.h"
 #include "projection/monitor_card.h"
 
 namespace planlight {

@@ -3,6 +3,7 @@
 #include "app/case_model.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/steady_clock.h"
 
 namespace planlight {
 
@@ -13,24 +14,27 @@ public:
     int width() const override { return simulated_.width(); }
     int height() const override { return simulated_.height(); }
     Instant show(const RgbImage& picture, Instant valid_until) override {
-        if (session_.dark_wanted_) {
-            go_dark();
+        session_.show_alive();
+        if (!keep(std::make_shared<RgbImage>(picture))) {
+            simulated_.go_dark();
             return simulated_.show(RgbImage(width(), height()), valid_until);
         }
-        const Instant lit_from = simulated_.show(picture, valid_until);
-        keep(std::make_shared<RgbImage>(picture));
-        return lit_from;
+        return simulated_.show(picture, valid_until);
     }
     void go_dark() noexcept override {
+        session_.show_alive();
         simulated_.go_dark();
         keep(nullptr);
     }
 
 private:
-    void keep(std::shared_ptr<const RgbImage> picture) noexcept {
+    /// Under one lock with the presses of DARK: false, and darkness, when one came after this light was asked for.
+    bool keep(std::shared_ptr<const RgbImage> picture) noexcept {
         const std::lock_guard lock(session_.mutex_);
-        session_.light_.picture = std::move(picture);
+        const bool permitted = session_.permitted_ == session_.darks_;
+        session_.light_.picture = permitted ? std::move(picture) : nullptr;
         ++session_.light_.number;
+        return permitted;
     }
     Projector& simulated_;
     LiveSession& session_;
@@ -40,12 +44,13 @@ LiveSession::LiveSession(const Volume& volume, const Case& the_case, const CaseD
                          const LiveSettings& settings)
     : case_(the_case), drawing_(drawing), settings_(settings), model_(model_of_case(the_case, drawing)) {
     set_status(StatusKind::ready, "The simulated room is being made.");
+    show_alive();
     thread_ = std::thread([this, &volume] {
         try {
             run(volume, settings_);
-        } catch (const std::exception& fault) {
+        } catch (...) {
             const std::lock_guard lock(mutex_);
-            fault_ = fault.what();
+            fault_ = std::current_exception();
             light_ = {nullptr, light_.number + 1};
         }
         projecting_ = false;
@@ -66,11 +71,11 @@ void LiveSession::post(OperatorAction action) {
     {
         const std::lock_guard lock(mutex_);
         if (action == OperatorAction::dark || action == OperatorAction::stop) {
-            actions_.clear();
-            dark_wanted_ = true;
+            presses_.clear();
+            ++darks_;
             light_ = {nullptr, light_.number + 1};
         }
-        actions_.push_back(action);
+        presses_.push_back({action, darks_});
     }
     wake_.notify_all();
 }
@@ -97,9 +102,24 @@ bool LiveSession::projecting() const {
     return projecting_;
 }
 
-std::string LiveSession::fault() const {
+void LiveSession::rethrow_fault() const {
     const std::lock_guard lock(mutex_);
-    return fault_;
+    if (fault_) std::rethrow_exception(fault_);
+}
+
+void LiveSession::show_alive() {
+    alive_at_ = SteadyClock().now().count();
+}
+
+/// The light of this press may be shown, unless DARK was pressed after it.
+void LiveSession::permit_light(const Press& press) {
+    const std::lock_guard lock(mutex_);
+    permitted_ = press.darks;
+}
+
+bool LiveSession::light_permitted() const {
+    const std::lock_guard lock(mutex_);
+    return permitted_ == darks_;
 }
 
 void LiveSession::set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details) {
@@ -116,14 +136,14 @@ void LiveSession::set_steps(int active, StepState state) {
     });
 }
 
-OperatorAction LiveSession::next_action(bool wait) {
+LiveSession::Press LiveSession::next_press(bool wait) {
     std::unique_lock lock(mutex_);
-    if (wait) wake_.wait(lock, [&] { return ending_ || !actions_.empty(); });
-    if (ending_) return OperatorAction::quit;
-    if (actions_.empty()) return OperatorAction::none;
-    const OperatorAction action = actions_.front();
-    actions_.pop_front();
-    return action;
+    if (wait) wake_.wait(lock, [&] { return ending_ || !presses_.empty(); });
+    if (ending_) return {OperatorAction::quit, darks_};
+    if (presses_.empty()) return {OperatorAction::none, darks_};
+    const Press press = presses_.front();
+    presses_.pop_front();
+    return press;
 }
 
 void LiveSession::run(const Volume& volume, const LiveSettings& settings) {
@@ -144,10 +164,11 @@ void LiveSession::run(const Volume& volume, const LiveSettings& settings) {
         m.stop = {false, "nothing runs"};
     });
     for (;;) {
-        const OperatorAction action = next_action(!following_);
-        if (action == OperatorAction::quit) return;
+        const Press press = next_press(!following_);
+        show_alive();
+        if (press.action == OperatorAction::quit) return;
         try {
-            act(action, session, rig);
+            act(press, session, rig);
         } catch (const Error& refusal) {
             following_ = projecting_ = false;
             session.go_dark();
@@ -156,10 +177,11 @@ void LiveSession::run(const Volume& volume, const LiveSettings& settings) {
     }
 }
 
-void LiveSession::act(OperatorAction action, Session& session, simulation::SimulatedRig& rig) {
-    switch (action) {
+void LiveSession::act(const Press& press, Session& session, simulation::SimulatedRig& rig) {
+    switch (press.action) {
         case OperatorAction::scan:
-            following_ = projecting_ = dark_wanted_ = false;
+            following_ = projecting_ = false;
+            permit_light(press);
             if (moving_) rig.set_motion({0, rig.clock().now()});
             moving_ = false;
             scan(session);
@@ -169,7 +191,7 @@ void LiveSession::act(OperatorAction action, Session& session, simulation::Simul
             find_patient(session, newest_landmarks());
             return;
         case OperatorAction::track:
-            dark_wanted_ = false;
+            permit_light(press);
             following_ = true;
             if (!moving_) rig.set_motion({settings_.speed_mm_s, rig.clock().now()});
             moving_ = true;

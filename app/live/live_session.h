@@ -3,6 +3,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <deque>
+#include <exception>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -50,13 +51,20 @@ public:
 
     /// True once the patient is followed and light is on the skin.
     bool projecting() const;
-    /// Why the thread ended, if it did; empty while it runs.
-    std::string fault() const;
+    /// Throws what ended the thread, if anything did.
+    void rethrow_fault() const;
+    /// The last sign of life of the thread, on the wall's monotonic clock.
+    Instant alive_at() const { return Instant(alive_at_); }
 
 private:
     class LightTap;
+    /// What a person wants, and how often DARK had been pressed by then: an action that DARK overtook lights nothing.
+    struct Press {
+        OperatorAction action = OperatorAction::none;
+        std::uint64_t darks = 0;
+    };
     void run(const Volume& volume, const LiveSettings& settings);
-    void act(OperatorAction action, Session& session, simulation::SimulatedRig& rig);
+    void act(const Press& press, Session& session, simulation::SimulatedRig& rig);
     void scan(Session& session);
     void find_patient(Session& session, const std::vector<PointPair>& landmarks);
     void confirm(Session& session);
@@ -67,7 +75,10 @@ private:
     void show_update(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update);
     void set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details = {});
     void set_steps(int active, StepState state = StepState::active);
-    OperatorAction next_action(bool wait);
+    Press next_press(bool wait);
+    void permit_light(const Press& press);
+    bool light_permitted() const;
+    void show_alive();
     template <class Change>
     void change_model(Change change) {
         const std::lock_guard lock(mutex_);
@@ -79,13 +90,16 @@ private:
     LiveSettings settings_;
     mutable std::mutex mutex_;
     std::condition_variable wake_;
-    std::deque<OperatorAction> actions_;
+    std::deque<Press> presses_;
     std::vector<PointPair> landmarks_;  ///< of the last `post_find_patient`
     OperatorModel model_;
     Light light_;
-    std::string fault_;
+    std::exception_ptr fault_;
+    std::uint64_t darks_ = 0;      ///< DARK presses so far
+    std::uint64_t permitted_ = 0;  ///< `darks_` when the light of now was asked for; it is dark where they differ
     bool ending_ = false, following_ = false, moving_ = false;
-    std::atomic<bool> projecting_{false}, dark_wanted_{false};
+    std::atomic<bool> projecting_{false};
+    std::atomic<Instant::rep> alive_at_{0};
     std::thread thread_;
 };
 

@@ -9,6 +9,7 @@
 #include "app/live/live_session.h"
 #include "app/live/scene_of_session.h"
 #include "app/report/registration_certificate.h"
+#include "planning_io/types/error.h"
 
 namespace planlight {
 
@@ -29,6 +30,7 @@ void LiveSession::scan(Session& session) {
         m.track = {false, "register first"};
     });
     const ScanResult& scan = session.scan([&](int done, int of) {
+        if (!light_permitted()) throw CheckFailedError("The scan was ended by DARK", "Press Scan to begin again.");
         set_status(StatusKind::scanning, fmt::format("Scanning: picture {} of {}.", done, of),
                    {"Keep the patient still."});
     });
@@ -110,7 +112,7 @@ void LiveSession::confirm(Session& session) {
 
 void LiveSession::follow(Session& session, simulation::SimulatedRig& rig) {
     const auto update = session.update();
-    if (dark_wanted_) return;
+    if (!light_permitted()) return;  // DARK was pressed meanwhile; its own turn comes next
     projecting_ = update.overlay.lit;
     show_update(session, rig, update);
 }

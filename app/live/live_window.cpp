@@ -8,8 +8,8 @@
 #include <memory>
 
 #include "app/case_model.h"
+#include "app/live/light_keeper.h"
 #include "app/live/live_session.h"
-#include "app/live/steady_clock.h"
 #include "app/windows/operator_window.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/types/error.h"
@@ -21,51 +21,6 @@ namespace {
 /// Set by Ctrl-C or a polite kill: the loop ends as if the window had been closed, and everything is dark on the way
 /// out.
 volatile std::sig_atomic_t asked_to_end = 0;
-
-/// The simulated room needs longer for a picture than a real one; the projector window forgives it this much.
-constexpr auto kPictureValidity = std::chrono::milliseconds(2500);
-
-/// The picture for a monitor of another size: scaled by nearest pixel, so that nothing is invented; black bars.
-RgbImage fitted(const RgbImage& picture, int width, int height) {
-    if (picture.width == width && picture.height == height) return picture;
-    const double scale =
-        std::min(static_cast<double>(width) / picture.width, static_cast<double>(height) / picture.height);
-    const double left = (width - scale * picture.width) / 2, top = (height - scale * picture.height) / 2;
-    RgbImage out(width, height);
-    for (int y = 0; y < height; ++y)
-        for (int x = 0; x < width; ++x) {
-            const int sx = static_cast<int>((x + 0.5 - left) / scale), sy = static_cast<int>((y + 0.5 - top) / scale);
-            if (x + 0.5 > left && y + 0.5 > top && sx < picture.width && sy < picture.height)
-                out.at(x, y) = picture.at(sx, sy);
-        }
-    return out;
-}
-
-/// Keeps the projector window at the newest light of the session.
-class LightWindow {
-public:
-    LightWindow(const std::string& monitor, const ProjectorWindowSettings& settings)
-        : window_(monitor, clock_, false, settings) {}
-
-    void follow(const LiveSession& session) {
-        const auto light = session.light();
-        if (light.number != number_) {
-            number_ = light.number;
-            if (light.picture)
-                window_.show(fitted(*light.picture, window_.width(), window_.height()),
-                             clock_.now() + kPictureValidity);
-            else
-                window_.go_dark();
-        }
-        window_.refresh();
-    }
-    void go_dark() noexcept { window_.go_dark(); }
-
-private:
-    SteadyClock clock_;
-    ProjectorWindow window_;
-    std::uint64_t number_ = 0;
-};
 
 /// The monitor for the light: as asked for, else the first that is not the primary one; empty when there is only one.
 std::string light_monitor(const LiveOptions& options) {
@@ -137,6 +92,19 @@ private:
     int kind_ = -1, frames_ = 0, number_ = 0;
 };
 
+/// A projector that is lost is said in place of the status, and the session made dark once; match and markers are kept.
+void tell_of_projector(const LightKeeper::Problem& problem, LiveSession& session, bool& lost, OperatorModel& model) {
+    if (problem.empty()) {
+        lost = false;
+        return;
+    }
+    if (!lost) session.post(OperatorAction::dark);
+    lost = true;
+    model.status = {StatusKind::dark,
+                    "No projector: " + problem.what + ".",
+                    {problem.remedy, "It is looked for every second. Scan and match are kept."}};
+}
+
 }  // namespace
 
 bool display_is_there() {
@@ -147,22 +115,25 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
     OperatorWindowSettings window_settings;
     if (!options.operator_monitor.empty()) window_settings.monitor = options.operator_monitor;
     OperatorWindow window(window_settings);
-    std::unique_ptr<LightWindow> light;
-    if (const std::string monitor = light_monitor(options); !monitor.empty()) {
-        check_monitor(monitor, options.projector);
-        ProjectorWindowSettings light_settings;
-        light_settings.light_delay = options.projector.light_delay.value_or(light_settings.light_delay);
-        light = std::make_unique<LightWindow>(monitor, light_settings);
-    }
     LiveSession session(volume, the_case, drawing,
                         {options.preset, options.seed, options.speed_mm_s, options.keep_matches_in});
+    std::unique_ptr<LightKeeper> light;  // dark and gone before the session is
+    if (const std::string monitor = light_monitor(options); !monitor.empty()) {
+        check_monitor(monitor, options.projector);
+        LightKeeperSettings light_settings;
+        light_settings.process.light_delay = options.projector.light_delay.value_or(light_settings.process.light_delay);
+        light = std::make_unique<LightKeeper>(monitor, session, light_settings);
+    }
+    bool projector_lost = false;
     Autoplay autoplay;
     Screenshots screenshots(options.screenshots);
     std::optional<std::chrono::steady_clock::time_point> projecting_since;
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
     while (!asked_to_end) {
-        const OperatorModel model = session.model();
+        OperatorModel model = session.model();
+        if (light) tell_of_projector(light->problem(), session, projector_lost, model);
         const OperatorAction action = window.frame(model);
+        if (light) light->beat();
         if (action == OperatorAction::quit) return 0;
         if (light && (action == OperatorAction::dark || action == OperatorAction::stop)) light->go_dark();
         // Landmarks that stand in the window count for every match of their scan: a match that they refuse stays
@@ -172,9 +143,8 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
         else
             session.post(action);
         if (options.autoplay) session.post(autoplay.next(model));
-        if (light) light->follow(session);
         screenshots.take(window, model, session);
-        if (const auto fault = session.fault(); !fault.empty()) throw std::runtime_error(fault);
+        session.rethrow_fault();
         const auto now = std::chrono::steady_clock::now();
         if (session.projecting() && !projecting_since) projecting_since = now;
         if (options.end_after_s > 0 && projecting_since &&

@@ -9,10 +9,10 @@
 
 #include "app/console.h"
 #include "app/live/light_source.h"
-#include "app/live/steady_clock.h"
 #include "planning_io/case/light_file.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/steady_clock.h"
 #include "projection/projector_window.h"
 
 namespace planlight {
@@ -74,7 +74,7 @@ int show_light(const ProjectorOptions& options) {
             window, pace, clock, [&](Instant at) { pace.wait_until(at); }, [&](double share) { bar.show(part, share); },
             {}};
         const LightRecording shown = record_part(part, bench, record, {});
-        write_folder_safely(options.keep / part, false, [&](const Path& into) {
+        write_folder_safely(options.keep / part, false, [&](const std::filesystem::path& into) {
             write_light_file({shown.settle, shown.orders, {}}, into);
         });
     }

@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <thread>
 
-#include "app/live/steady_clock.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/steady_clock.h"
 #include "projection/monitor_card.h"
 #include "root_window.h"
 

@@ -11,10 +11,10 @@
 #include <string>
 #include <thread>
 
-#include "app/live/steady_clock.h"
 #include "app/windows/operator_window.h"
 #include "fake_model.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/steady_clock.h"
 #include "projection/projector_window.h"
 #include "projector_picture.h"
 #include "root_window.h"

@@ -1,0 +1,177 @@
+#include "projection/projector_process.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstring>
+#include <thread>
+
+#include "planning_io/types/error.h"
+
+extern char** environ;
+
+namespace planlight {
+namespace {
+
+constexpr auto kPoll = std::chrono::milliseconds(1);
+
+/// Starts `PROGRAM projector-window --monitor M` with the two descriptors and nothing else of ours open.
+pid_t spawn(const std::filesystem::path& program, const std::string& monitor, int bell, int mailbox) {
+    posix_spawn_file_actions_t files;
+    posix_spawn_file_actions_init(&files);
+    // Through high numbers first: 3 and 4 may be the very descriptors that are to be copied.
+    const int bell_copy = fcntl(bell, F_DUPFD_CLOEXEC, 100), mailbox_copy = fcntl(mailbox, F_DUPFD_CLOEXEC, 100);
+    posix_spawn_file_actions_adddup2(&files, bell_copy, kProjectorBell);
+    posix_spawn_file_actions_adddup2(&files, mailbox_copy, kProjectorMailbox);
+    const std::string executable = program.string();
+    std::array<std::string, 4> words{executable, "projector-window", "--monitor", monitor};
+    std::array<char*, 5> arguments{words[0].data(), words[1].data(), words[2].data(), words[3].data(), nullptr};
+    pid_t process = -1;
+    const int failed = posix_spawn(&process, executable.c_str(), &files, nullptr, arguments.data(), environ);
+    posix_spawn_file_actions_destroy(&files);
+    close(bell_copy);
+    close(mailbox_copy);
+    if (failed != 0)
+        throw DeviceError("projector process", std::string("it cannot be started: ") + std::strerror(failed),
+                          "Check the installation, and free memory.");
+    return process;
+}
+
+}  // namespace
+
+ProjectorProcess::ProjectorProcess(const std::string& monitor, const ProjectorProcessSettings& settings)
+    : settings_(settings) {
+    start(monitor);
+    try {
+        wait_until_ready();
+    } catch (...) {
+        end();
+        throw;
+    }
+}
+
+ProjectorProcess::~ProjectorProcess() {
+    go_dark();
+    end();
+}
+
+void ProjectorProcess::start(const std::string& monitor) {
+    int ends[2];
+    if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+        throw DeviceError("projector process", std::strerror(errno), "Close other programs and try again.");
+    bell_ = ends[0];
+    try {
+        process_ = spawn(settings_.program, monitor, ends[1], mailbox_.descriptor());
+    } catch (...) {
+        close(ends[1]);
+        end();
+        throw;
+    }
+    close(ends[1]);
+}
+
+void ProjectorProcess::wait_until_ready() {
+    const Instant until = clock_.now() + settings_.start_allowed;
+    while (mailbox_.state() == LightMailbox::State::starting) {
+        if (waitpid(process_, nullptr, WNOHANG) == process_) {
+            process_ = -1;
+            throw DeviceError("projector process", "it ended while it started",
+                              "Update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1.");
+        }
+        if (clock_.now() > until)
+            throw DeviceError("projector process", "its window did not open in time",
+                              "Update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1.");
+        std::this_thread::sleep_for(kPoll);
+    }
+    if (mailbox_.state() == LightMailbox::State::failed) fail(mailbox_.problem(), mailbox_.remedy());
+    width_ = mailbox_.width();
+    height_ = mailbox_.height();
+}
+
+void ProjectorProcess::fail(const std::string& problem, const std::string& remedy) {
+    end();
+    // The process names its device itself.
+    throw Error(ExitCode::device, problem, remedy);
+}
+
+void ProjectorProcess::end() noexcept {
+    if (bell_ >= 0) close(bell_);
+    bell_ = -1;
+    if (process_ < 0) return;
+    // Killed, not asked: the window goes with the process, also when that was stopped.
+    kill(process_, SIGKILL);
+    waitpid(process_, nullptr, 0);
+    process_ = -1;
+}
+
+void ProjectorProcess::wake() {
+    const char byte = 1;
+    static_cast<void>(send(bell_, &byte, 1, MSG_NOSIGNAL | MSG_DONTWAIT));
+}
+
+void ProjectorProcess::renew() {
+    mailbox_.renew_lease(clock_.now() + settings_.lease);
+}
+
+void ProjectorProcess::check() {
+    const std::lock_guard lock(mutex_);
+    check_locked();
+}
+
+void ProjectorProcess::check_locked() {
+    constexpr const char* kRemedy =
+        "The light is dark. It can be started again; if this comes back, restart the computer.";
+    if (process_ < 0) fail("projector process: it has ended", kRemedy);
+    if (mailbox_.state() == LightMailbox::State::failed) fail(mailbox_.problem(), mailbox_.remedy());
+    if (waitpid(process_, nullptr, WNOHANG) == process_) {
+        process_ = -1;
+        fail("projector process: it was ended from outside, or crashed", kRemedy);
+    }
+    if (clock_.now() - mailbox_.alive_at() > settings_.silence_allowed)
+        fail("projector process: it does not answer any more", kRemedy);
+}
+
+bool ProjectorProcess::shown_in_time(std::uint64_t number) {
+    while (mailbox_.done() < number) {
+        check_locked();
+        std::this_thread::sleep_for(kPoll);
+    }
+    return true;
+}
+
+Instant ProjectorProcess::show(const RgbImage& picture, Instant valid_until) {
+    const std::lock_guard lock(mutex_);
+    check_locked();
+    if (picture.width != width_ || picture.height != height_) {
+        mailbox_.order({}, {});
+        wake();
+        throw DeviceError("projector window",
+                          "a picture of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
+                              " does not fit the monitor's " + std::to_string(width_) + "x" + std::to_string(height_),
+                          "Calibrate the rig at the projector's own resolution, or set the monitor to it.");
+    }
+    const std::uint64_t number = mailbox_.order(picture, valid_until);
+    wake();
+    shown_in_time(number);
+    return mailbox_.done_at() + settings_.light_delay;
+}
+
+void ProjectorProcess::go_dark() noexcept {
+    const std::lock_guard lock(mutex_);
+    mailbox_.renew_lease({});
+    if (process_ < 0) return;
+    const std::uint64_t number = mailbox_.order({}, {});
+    wake();
+    try {
+        shown_in_time(number);
+    } catch (const std::exception&) {
+        // The process is ended then, and dark.
+    }
+}
+
+}  // namespace planlight

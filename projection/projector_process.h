@@ -1,0 +1,81 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <mutex>
+#include <string>
+
+#include "planning_io/types/steady_clock.h"
+#include "projection/light_mailbox.h"
+#include "registration/devices/projector.h"
+
+namespace planlight {
+
+struct ProjectorProcessSettings {
+    std::filesystem::path program = "/proc/self/exe";          ///< run as `PROGRAM projector-window ...`
+    Instant light_delay = std::chrono::milliseconds(25);       ///< from the swap to light on the skin
+    Instant lease = std::chrono::milliseconds(200);            ///< the light outlives the last `renew` by this at most
+    Instant silence_allowed = std::chrono::milliseconds(250);  ///< of the projector process; then it is ended
+    Instant start_allowed = std::chrono::seconds(10);
+};
+
+/// The projector window in a process of its own, so that a program that hangs, is stopped or is killed cannot leave its
+/// light on a patient: each picture has its expiry, and all light a lease that this process must renew. All moments are
+/// of the wall's monotonic clock (`SteadyClock`).
+///
+/// May be used from any thread.
+class ProjectorProcess final : public Projector {
+public:
+    /// Starts it on that monitor (a name, or its number as text) and waits until its window is black there. Throws
+    /// DeviceError as `ProjectorWindow` does, or when another Planlight lights that monitor.
+    explicit ProjectorProcess(const std::string& monitor, const ProjectorProcessSettings& settings = {});
+    ~ProjectorProcess() override;
+    ProjectorProcess(const ProjectorProcess&) = delete;
+    ProjectorProcess& operator=(const ProjectorProcess&) = delete;
+
+    int width() const override { return width_; }
+    int height() const override { return height_; }
+
+    /// Returns when the picture is on the display. Throws DeviceError, with the process ended and so dark, when it does
+    /// not come there, the monitor is gone or the window does not cover it.
+    Instant show(const RgbImage& picture, Instant valid_until) override;
+    void go_dark() noexcept override;
+
+    /// Keeps the light for another lease. To be called while everything that the light depends on is alive.
+    void renew();
+
+    /// Looks whether the process still answers; throws DeviceError, with it ended and so dark, when it does not. To be
+    /// called at least ten times a second: a projector process that was stopped keeps its last picture until this ends
+    /// it.
+    void check();
+
+    pid_t process() const { return process_; }
+
+private:
+    void start(const std::string& monitor);
+    void wait_until_ready();
+    [[noreturn]] void fail(const std::string& problem, const std::string& remedy);
+    void check_locked();
+    bool shown_in_time(std::uint64_t number);
+    void wake();
+    void end() noexcept;
+
+    ProjectorProcessSettings settings_;
+    SteadyClock clock_;
+    LightMailbox mailbox_;
+    std::mutex mutex_;
+    pid_t process_ = -1;
+    int bell_ = -1;  ///< a byte here wakes the process; its end tells it that we are gone
+    int width_ = 0, height_ = 0;
+};
+
+/// The descriptors that the projector process finds open.
+inline constexpr int kProjectorBell = 3, kProjectorMailbox = 4;
+
+/// What the projector process does: opens the window on `monitor`, shows what the mailbox behind `descriptor` orders,
+/// dark whenever picture or lease has expired, until `bell` says that the program is gone. Gives its exit code; what
+/// went wrong stands in the mailbox.
+int serve_projector(const std::string& monitor, int bell, int descriptor);
+
+}  // namespace planlight

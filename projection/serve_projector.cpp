@@ -1,0 +1,78 @@
+// The projector process: a window, a mailbox, and a lease.
+#include <poll.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "planning_io/types/error.h"
+#include "projection/projector_process.h"
+#include "projection/projector_window.h"
+
+namespace planlight {
+namespace {
+
+constexpr int kPoll_ms = 5;
+
+/// The wall's monotonic clock while the lease lasts, the end of time afterwards: every picture has expired then, also
+/// for the thread that owns it while this one hangs.
+class LeasedClock final : public Clock {
+public:
+    explicit LeasedClock(const LightMailbox& mailbox) : mailbox_(mailbox) {}
+    Instant now() const override {
+        const Instant now = clock_.now();
+        return now < mailbox_.lease_until() ? now : Instant::max() / 2;
+    }
+
+private:
+    const LightMailbox& mailbox_;
+    SteadyClock clock_;
+};
+
+/// Waits for a ring or a while; false when the program is gone.
+bool wait_for_bell(int bell) {
+    pollfd waiting{bell, POLLIN, 0};
+    if (poll(&waiting, 1, kPoll_ms) <= 0) return true;
+    char bytes[64];
+    return (waiting.revents & POLLIN) != 0 && read(bell, bytes, sizeof bytes) > 0;
+}
+
+void follow(ProjectorWindow& window, LightMailbox& mailbox, int bell) {
+    const SteadyClock clock;
+    LightMailbox::Order order;
+    mailbox.say_alive(clock.now());
+    mailbox.say_ready(window.width(), window.height());
+    do {
+        mailbox.say_alive(clock.now());
+        if (mailbox.take(order)) {
+            if (order.picture.empty())
+                window.go_dark();
+            else
+                window.show(order.picture, order.valid_until);
+            mailbox.say_done(order.number, clock.now());
+        }
+        window.refresh();
+    } while (wait_for_bell(bell));
+}
+
+}  // namespace
+
+int serve_projector(const std::string& monitor, int bell, int descriptor) {
+    // Ctrl-C goes to the whole group; who decides on the end is the program.
+    for (const int signal : {SIGINT, SIGHUP}) std::signal(signal, SIG_IGN);
+    setpriority(PRIO_PROCESS, 0, -10);  // where the system allows it
+    LightMailbox mailbox(descriptor);
+    try {
+        const LeasedClock clock(mailbox);
+        ProjectorWindow window(monitor, clock);
+        follow(window, mailbox, bell);
+        return 0;
+    } catch (const Error& error) {
+        mailbox.say_failed(error.what(), error.remedy);
+    } catch (const std::exception& error) {
+        mailbox.say_failed(std::string("projector process: ") + error.what(), "Report this.");
+    }
+    return static_cast<int>(ExitCode::device);
+}
+
+}  // namespace planlight
