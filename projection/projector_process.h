@@ -16,7 +16,7 @@ struct ProjectorProcessSettings {
     std::filesystem::path program = "/proc/self/exe";          ///< run as `PROGRAM projector-window ...`
     Instant light_delay = std::chrono::milliseconds(25);       ///< from the swap to light on the skin
     Instant lease = std::chrono::milliseconds(200);            ///< the light outlives the last `renew` by this at most
-    Instant silence_allowed = std::chrono::milliseconds(250);  ///< of the projector process; then it is ended
+    Instant silence_allowed = std::chrono::milliseconds(200);  ///< of the projector process; then it is ended
     Instant start_allowed = std::chrono::seconds(10);
 };
 

@@ -14,7 +14,8 @@ namespace planlight {
 
 struct LightKeeperSettings {
     ProjectorProcessSettings process;
-    Instant window_patience = std::chrono::milliseconds(250);  ///< since the operator window's last frame
+    /// Since the operator window's last frame: without graphics hardware one may take half a second.
+    Instant window_patience = std::chrono::seconds(1);
     /// Since the session's last sign of life. The simulated room computes longer than a real one exposes.
     Instant session_patience = std::chrono::milliseconds(2500);
     Instant picture_validity = std::chrono::milliseconds(2500);  ///< of a picture of the simulated room, by the wall

@@ -1,0 +1,182 @@
+// How long a light outlives the program that holds it, in the pixels of the monitor. Run by two_monitors.sh on an X
+// server with two monitors: `watch_darkness FOLDER`, with PLANLIGHT the program (for its projector process) and ROUNDS
+// how often each fault is tried (default 3). The same executable, as `watch_darkness hold MONITOR`, is the program that
+// is stopped, killed, or made to hang while its light is on. Exit code 0 when every light was dark in 300 ms.
+#include <X11/Xlib.h>
+#include <X11/Xutil.h>
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdlib>
+#include <optional>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "planning_io/types/error.h"
+#include "projection/projector_process.h"
+#include "projection/projector_window.h"
+#include "root_window.h"
+
+namespace {
+
+using namespace planlight;
+using test::expect;
+using namespace std::chrono_literals;
+
+constexpr Instant kLongest = 300ms;
+
+volatile std::sig_atomic_t deadlock = 0, endless_loop = 0;
+
+/// Holds a white light as a session does: checks, renews, sleeps. SIGUSR1 makes it a deadlock, SIGUSR2 a loop without
+/// end.
+int hold(const std::string& monitor) {
+    std::signal(SIGUSR1, [](int) { deadlock = 1; });
+    std::signal(SIGUSR2, [](int) { endless_loop = 1; });
+    ProjectorProcessSettings settings;
+    settings.program = std::getenv("PLANLIGHT");
+    ProjectorProcess projector(monitor, settings);
+    projector.renew();
+    projector.show(RgbImage(projector.width(), projector.height(), {255, 255, 255}), SteadyClock().now() + 600s);
+    fmt::print("{}\n", projector.process());
+    std::fflush(stdout);
+    for (;;) {
+        while (deadlock) std::this_thread::sleep_for(1h);
+        while (endless_loop) {
+        }
+        projector.check();
+        projector.renew();
+        std::this_thread::sleep_for(4ms);
+    }
+}
+
+/// What a person sees at one place of the screen.
+class Eye {
+public:
+    explicit Eye(const Monitor& monitor) : x_(monitor.x + monitor.width / 2), y_(monitor.y + monitor.height / 2) {}
+    ~Eye() { XCloseDisplay(display_); }
+    bool lit() const {
+        XImage* const image = XGetImage(display_, DefaultRootWindow(display_), x_, y_, 1, 1, AllPlanes, ZPixmap);
+        const bool lit = (XGetPixel(image, 0, 0) & 0xFFFFFF) != 0;
+        XDestroyImage(image);
+        return lit;
+    }
+    /// How long until it is dark; empty after `patience`.
+    std::optional<Instant> until_dark(Instant patience) const {
+        const SteadyClock clock;
+        const Instant start = clock.now();
+        while (lit()) {
+            if (clock.now() - start > patience) return std::nullopt;
+            std::this_thread::sleep_for(500us);
+        }
+        return clock.now() - start;
+    }
+
+private:
+    Display* display_ = XOpenDisplay(nullptr);
+    int x_, y_;
+};
+
+struct Holder {
+    pid_t program = -1, projector = -1;
+};
+
+/// Starts a program that holds light, and waits until it is lit.
+Holder start_holder(const char* self, const std::string& monitor) {
+    int ends[2];
+    if (pipe(ends) != 0) std::abort();
+    Holder holder;
+    holder.program = fork();
+    if (holder.program == 0) {
+        dup2(ends[1], STDOUT_FILENO);
+        close(ends[0]);
+        close(ends[1]);
+        execl(self, self, "hold", monitor.c_str(), nullptr);
+        _exit(127);
+    }
+    close(ends[1]);
+    char text[32] = {};
+    if (read(ends[0], text, sizeof text - 1) > 0) holder.projector = std::atoi(text);
+    close(ends[0]);
+    return holder;
+}
+
+struct Fault {
+    const char* name;
+    int signal;
+    bool to_projector;
+};
+constexpr Fault kFaults[] = {
+    {"the program is stopped (SIGSTOP)", SIGSTOP, false},
+    {"the program is killed (SIGKILL)", SIGKILL, false},
+    {"the program deadlocks", SIGUSR1, false},
+    {"the program loops without end", SIGUSR2, false},
+    {"the projector process is stopped", SIGSTOP, true},
+    {"the projector process is killed", SIGKILL, true},
+};
+
+void watch(const char* self, const Monitor& monitor, int rounds) {
+    const Eye eye(monitor);
+    std::minstd_rand random(1);
+    std::uniform_int_distribution<int> delay_ms(0, 120);
+    for (const Fault& fault : kFaults) {
+        std::vector<Instant> times;
+        int never = 0;
+        for (int round = 0; round < rounds; ++round) {
+            const Holder holder = start_holder(self, monitor.name);
+            const bool lit = holder.projector > 0 && eye.lit();
+            if (!lit) expect(false, std::string(fault.name) + ": there was light before");
+            std::this_thread::sleep_for(std::chrono::milliseconds(delay_ms(random)));
+            kill(fault.to_projector ? holder.projector : holder.program, fault.signal);
+            if (const auto dark = eye.until_dark(5s))
+                times.push_back(*dark);
+            else
+                ++never;
+            kill(holder.program, SIGKILL);
+            waitpid(holder.program, nullptr, 0);
+            kill(holder.projector, SIGKILL);
+            std::this_thread::sleep_for(20ms);
+        }
+        std::sort(times.begin(), times.end());
+        const auto ms = [&](std::size_t i) { return 1000 * seconds(times.at(i)); };
+        if (times.empty()) times.push_back(5s);
+        expect(never == 0 && times.back() <= kLongest,
+               fmt::format("{}: dark after {:.0f} ms (median), {:.0f} ms (worst of {}), never {} times", fault.name,
+                           ms(times.size() / 2), ms(times.size() - 1), rounds, never));
+    }
+}
+
+void second_master(const Monitor& monitor) {
+    ProjectorProcessSettings settings;
+    settings.program = std::getenv("PLANLIGHT");
+    const ProjectorProcess first(monitor.name, settings);
+    try {
+        const ProjectorProcess second(monitor.name, settings);
+        expect(false, "a second program is refused the same monitor");
+    } catch (const Error& error) {
+        expect(std::string(error.what()).find(std::to_string(first.process())) != std::string::npos,
+               std::string("a second program is refused by name: ") + error.what());
+    }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc == 3 && std::string(argv[1]) == "hold") {
+        try {
+            return hold(argv[2]);
+        } catch (const Error& error) {
+            fmt::print(stderr, "{}\n", error.what());
+            return static_cast<int>(error.exit_code);
+        }
+    }
+    const std::vector<Monitor> monitors = list_monitors();
+    if (std::getenv("PLANLIGHT") == nullptr || monitors.size() != 2) return 2;
+    const char* const rounds = std::getenv("ROUNDS");
+    second_master(monitors[1]);
+    watch(argv[0], monitors[1], rounds == nullptr ? 3 : std::atoi(rounds));
+    return test::failures() == 0 ? 0 : 1;
+}

@@ -1,0 +1,90 @@
+#include "projection/light_mailbox.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <thread>
+
+#include "planning_io/types/error.h"
+#include "projection/monitor_lock.h"
+
+namespace planlight {
+namespace {
+
+using namespace std::chrono_literals;
+
+RgbImage filled(std::uint8_t grey) {
+    return {40, 30, {grey, grey, grey}};
+}
+
+TEST(LightMailbox, HandsOverTheNewestOrderOnceAcrossTwoMappings) {
+    LightMailbox program;
+    LightMailbox projector(dup(program.descriptor()));
+    LightMailbox::Order order;
+    EXPECT_FALSE(projector.take(order));
+    program.order(filled(7), 5s);
+    EXPECT_EQ(program.order(filled(9), 6s), 2U);
+    ASSERT_TRUE(projector.take(order));
+    EXPECT_EQ(order.number, 2U);
+    EXPECT_EQ(order.valid_until, 6s);
+    EXPECT_EQ(order.picture.pixels, filled(9).pixels);
+    EXPECT_FALSE(projector.take(order));
+    program.order({}, {});
+    ASSERT_TRUE(projector.take(order));
+    EXPECT_TRUE(order.picture.empty());
+}
+
+TEST(LightMailbox, HasNoLeaseBeforeItIsGiven) {
+    const LightMailbox mailbox;
+    EXPECT_EQ(mailbox.lease_until(), Instant{});
+    EXPECT_EQ(mailbox.state(), LightMailbox::State::starting);
+}
+
+// A reader that is as fast as it can against a writer that is: never a mixture of two pictures, never back in time.
+TEST(LightMailbox, NeverMixesTwoPictures) {
+    constexpr std::uint64_t kOrders = 20000;
+    LightMailbox program;
+    LightMailbox projector(dup(program.descriptor()));
+    std::jthread writer([&] {
+        for (std::uint64_t i = 1; i <= kOrders; ++i) program.order(filled(static_cast<std::uint8_t>(i)), Instant(i));
+    });
+    LightMailbox::Order order;
+    std::uint64_t last = 0, taken = 0;
+    while (last < kOrders) {
+        if (!projector.take(order)) continue;
+        ++taken;
+        ASSERT_GT(order.number, last);
+        last = order.number;
+        ASSERT_EQ(order.valid_until.count(), static_cast<std::int64_t>(last));
+        for (const Rgb& pixel : order.picture.pixels) ASSERT_EQ(pixel.r, static_cast<std::uint8_t>(last));
+    }
+    EXPECT_GT(taken, 10U);
+}
+
+TEST(LightMailbox, TellsWhatWentWrongThere) {
+    LightMailbox program;
+    LightMailbox projector(dup(program.descriptor()));
+    projector.say_failed(std::string(5000, 'x'), "Connect the projector.");
+    EXPECT_EQ(program.state(), LightMailbox::State::failed);
+    EXPECT_EQ(program.problem(), std::string(599, 'x'));
+    EXPECT_EQ(program.remedy(), "Connect the projector.");
+}
+
+TEST(MonitorLock, HasOneHolderWhoIsNamed) {
+    const std::string monitor = "TEST-" + std::to_string(getpid());
+    {
+        const MonitorLock first(monitor);
+        const MonitorLock other(monitor + "-2");
+        try {
+            const MonitorLock second(monitor);
+            FAIL() << "the second one was given the same monitor";
+        } catch (const DeviceError& error) {
+            EXPECT_NE(std::string(error.what()).find("process " + std::to_string(getpid())), std::string::npos)
+                << error.what();
+        }
+    }
+    const MonitorLock again(monitor);
+}
+
+}  // namespace
+}  // namespace planlight
