@@ -56,7 +56,7 @@ TEST(LightMailbox, NeverMixesTwoPictures) {
         ASSERT_GT(order.number, last);
         last = order.number;
         ASSERT_EQ(order.valid_until.count(), static_cast<std::int64_t>(last));
-        for (const Rgb& pixel : order.picture.pixels) ASSERT_EQ(pixel.r, static_cast<std::uint8_t>(last));
+        for (const Rgb& pixel : order.picture.pixels) ASSERT_EQ(pixel[0], static_cast<std::uint8_t>(last));
     }
     EXPECT_GT(taken, 10U);
 }
