@@ -42,15 +42,16 @@ TEST(LightMailbox, HasNoLeaseBeforeItIsGiven) {
 
 // A reader that is as fast as it can against a writer that is: never a mixture of two pictures, never back in time.
 TEST(LightMailbox, NeverMixesTwoPictures) {
-    constexpr std::uint64_t kOrders = 20000;
+    constexpr int kTaken = 500;
     LightMailbox program;
     LightMailbox projector(dup(program.descriptor()));
-    std::jthread writer([&] {
-        for (std::uint64_t i = 1; i <= kOrders; ++i) program.order(filled(static_cast<std::uint8_t>(i)), Instant(i));
+    std::jthread writer([&](const std::stop_token& stop) {
+        for (std::uint64_t i = 1; !stop.stop_requested(); ++i)
+            program.order(filled(static_cast<std::uint8_t>(i)), Instant(i));
     });
     LightMailbox::Order order;
-    std::uint64_t last = 0, taken = 0;
-    while (last < kOrders) {
+    std::uint64_t last = 0;
+    for (int taken = 0; taken < kTaken;) {
         if (!projector.take(order)) continue;
         ++taken;
         ASSERT_GT(order.number, last);
@@ -58,7 +59,6 @@ TEST(LightMailbox, NeverMixesTwoPictures) {
         ASSERT_EQ(order.valid_until.count(), static_cast<std::int64_t>(last));
         for (const Rgb& pixel : order.picture.pixels) ASSERT_EQ(pixel[0], static_cast<std::uint8_t>(last));
     }
-    EXPECT_GT(taken, 10U);
 }
 
 TEST(LightMailbox, TellsWhatWentWrongThere) {
