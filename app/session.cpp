@@ -40,6 +40,7 @@ Session::~Session() {
 }
 
 void Session::go_dark() noexcept {
+    lit_since_ = Instant::max();
     overlay_.reset();
     projector_.go_dark();
 }
@@ -148,7 +149,23 @@ Session::Update Session::update() {
     const auto drawing_began = std::chrono::steady_clock::now();
     update.overlay = overlay_->step(update.pose);
     update.times.draw_s = elapsed_s(drawing_began);
+    const auto checking_began = std::chrono::steady_clock::now();
+    update.light = look_at_light(update);
+    update.times.check_s = elapsed_s(checking_began);
+    if (!update.overlay.lit)
+        lit_since_ = Instant::max();
+    else if (lit_since_ == Instant::max())
+        lit_since_ = update.overlay.lit_from;
     return update;
+}
+
+/// CHECK: the frame was exposed under the light of the updates before; was there light for all of the exposure?
+std::optional<LightCheck> Session::look_at_light(const Update& update) {
+    if (settings_.check_light_every <= 0 || ++updates_ % settings_.check_light_every != 0) return std::nullopt;
+    const Instant half = update.frame.exposure / 2;
+    if (!update.pose.rig_from_patient || update.frame.at - half < lit_since_) return std::nullopt;
+    return check_light(drawing_, skin_, rig_, *update.pose.rig_from_patient * registration_->patient_from_ct,
+                       update.frame, settings_.check_light);
 }
 
 }  // namespace planlight

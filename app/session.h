@@ -9,6 +9,7 @@
 #include "planning_io/case/case_folder.h"
 #include "planning_io/types/registration_result.h"
 #include "planning_io/types/rig_calibration.h"
+#include "projection/check_light.h"
 #include "projection/overlay_loop.h"
 #include "registration/matching/register_with_landmarks.h"
 #include "registration/scan/scan_surface.h"
@@ -22,6 +23,8 @@ struct SessionSettings {
     TrackingSettings tracking;
     OverlaySettings overlay;
     DrawingSettings drawing;
+    CheckLightSettings check_light;
+    int check_light_every = 3;            ///< updates; 0: the light is not measured
     double max_motion_in_scan_mm = 0.15;  ///< of any marker between two moments of a scan; above: the scan is repeated
     int max_scans = 3;                    ///< so often at most, then refused
     int min_reference_markers = 5;        ///< found in both pictures at the scan
@@ -40,8 +43,8 @@ struct CaseDrawing {
 
 /// The times of one tracked update: the product's own work.
 struct UpdateTimes {
-    double track_s = 0, draw_s = 0;
-    double total_s() const { return track_s + draw_s; }
+    double track_s = 0, draw_s = 0, check_s = 0;
+    double total_s() const { return track_s + draw_s + check_s; }
 };
 
 /// One session with one patient: scan, find, follow, draw (Hoppe 2001, 2.2). Devices and clock are real, recorded or
@@ -73,6 +76,9 @@ public:
         TrackedPose pose;
         OverlayStep overlay;
         UpdateTimes times;
+        /// The light of the picture before, as this frame shows it; empty where it was not looked at, or not lit for
+        /// the whole exposure.
+        std::optional<LightCheck> light;
     };
     Update update();
 
@@ -97,6 +103,7 @@ private:
     double moved_at_the_end_mm();
     void draw_beside_markers();
     void start_overlay();
+    std::optional<LightCheck> look_at_light(const Update& update);
 
     const Case& case_;
     const SkinSurface& skin_;
@@ -112,6 +119,8 @@ private:
     std::optional<ScanResult> scanned_;
     std::optional<RegistrationResult> registration_;
     std::unique_ptr<OverlayLoop> overlay_;
+    Instant lit_since_ = Instant::max();  ///< light without a break; max: it is dark
+    int updates_ = 0;
     bool confirmed_ = false;  ///< the last match, by the operator
     double motion_in_scan_mm_ = 0;
     int scans_repeated_ = 0;
