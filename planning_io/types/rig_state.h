@@ -72,8 +72,6 @@ struct RigState {
 
     /// Something moved: `rig` is not rig.json.
     bool moved() const { return verdict == Verdict::corrected || verdict == Verdict::not_trusted; }
-    /// Something moved: `rig` is not rig.json.
-    bool moved() const { return verdict == Verdict::corrected || verdict == Verdict::not_trusted; }
     bool checked() const { return verdict == Verdict::as_calibrated || verdict == Verdict::corrected; }
 };
 const char* text_of(RigState::Verdict verdict);
