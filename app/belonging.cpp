@@ -27,10 +27,11 @@ std::string words_of(const CaseName& name) {
 }
 
 std::string words_of(const RigName& name) {
-    std::string text = fmt::format("rig {} (calibrated {}", begin_of(name.hash), name.made_on.empty() ? "on a day not said" : name.made_on);
-    for (const auto& [what, serial] : {std::pair{"left camera", &name.serials.left_camera},
-                                       std::pair{"right camera", &name.serials.right_camera},
-                                       std::pair{"projector", &name.serials.projector}})
+    std::string text = fmt::format("rig {} (calibrated {}", begin_of(name.hash),
+                                   name.made_on.empty() ? "on a day not said" : name.made_on);
+    for (const auto& [what, serial] :
+         {std::pair{"left camera", &name.serials.left_camera}, std::pair{"right camera", &name.serials.right_camera},
+          std::pair{"projector", &name.serials.projector}})
         if (!serial->empty()) text += fmt::format(", {} {}", what, *serial);
     return text + ")";
 }
@@ -71,7 +72,8 @@ void take_case_and_rig(const Case& the_case, const std::optional<RigState>& rig,
     if (!rig || match.verdict == Verdict::no) return;
     if (rig->verdict == RigState::Verdict::not_trusted) {
         match.verdict = Verdict::no;
-        match.reasons.insert(match.reasons.begin(), fmt::format("The rig cannot be trusted: {}. {}", rig->sentence, rig->remedy));
+        match.reasons.insert(match.reasons.begin(),
+                             fmt::format("The rig cannot be trusted: {}. {}", rig->sentence, rig->remedy));
         return;
     }
     const auto ask = [&](const std::string& reason) {
@@ -88,28 +90,32 @@ void take_case_and_rig(const Case& the_case, const std::optional<RigState>& rig,
     for (const auto& p_in_ct : points_of(the_case.plan))
         hidden_mm = std::max(hidden_mm, hidden_light_mm(*rig, match.patient_from_ct * p_in_ct));
     if (hidden_mm > kMaxHidden_mm)
-        ask(fmt::format("The rig moved in a way that one scan cannot tell ({}): at a point of the plan it may hide {:.1f} mm.",
-                        rig->sentence, hidden_mm));
+        ask(fmt::format(
+            "The rig moved in a way that one scan cannot tell ({}): at a point of the plan it may hide {:.1f} mm.",
+            rig->sentence, hidden_mm));
 }
 
-void check_case(const RegistrationResult& match, const Case& the_case, const fs::path& file, std::vector<std::string>& unknown) {
+void check_case(const RegistrationResult& match, const Case& the_case, const fs::path& file,
+                std::vector<std::string>& unknown) {
     const CaseName here = name_of(the_case);
     if (!match.of_case.known()) {
-        unknown.push_back(fmt::format("{} does not say of which case it is; it is taken for one of {}", file.string(), words_of(here)));
+        unknown.push_back(fmt::format("{} does not say of which case it is; it is taken for one of {}", file.string(),
+                                      words_of(here)));
     } else if (match.of_case.volume_hash != here.volume_hash || match.of_case.mesh_hash != here.mesh_hash) {
         throw InputError(file, fmt::format("is a match of {}, and this is {}", words_of(match.of_case), words_of(here)),
                          "Name the case that was matched, or register the patient on this one.");
     }
 }
 
-void check_rig(const RegistrationResult& match, const RigCalibration& rig, const fs::path& file, const fs::path& rig_file,
-               std::vector<std::string>& unknown) {
+void check_rig(const RegistrationResult& match, const RigCalibration& rig, const fs::path& file,
+               const fs::path& rig_file, std::vector<std::string>& unknown) {
     const RigName here = name_of(rig);
     if (!match.rig || !match.rig->calibrated.known()) {
         unknown.push_back(fmt::format("{} does not say with which rig its cloud was made", file.string()));
     } else if (match.rig->calibrated.hash != here.hash) {
-        throw InputError(file, fmt::format("is of a scan with {}, and {} is {}", words_of(match.rig->calibrated), rig_file.string(),
-                                           words_of(here)),
+        throw InputError(file,
+                         fmt::format("is of a scan with {}, and {} is {}", words_of(match.rig->calibrated),
+                                     rig_file.string(), words_of(here)),
                          "Name the rig.json that the scan was made with, or scan and register again with this one.");
     }
 }
@@ -117,24 +123,30 @@ void check_rig(const RegistrationResult& match, const RigCalibration& rig, const
 void check_poses(const std::optional<PosesOrigin>& origin, const RegistrationResult& match, const RigCalibration& rig,
                  const fs::path& file, std::vector<std::string>& unknown) {
     if (!origin) {
-        unknown.push_back(fmt::format("{} does not say with which rig and from which scan its poses are", file.string()));
+        unknown.push_back(
+            fmt::format("{} does not say with which rig and from which scan its poses are", file.string()));
         return;
     }
     const RigName here = name_of(rig);
     if (origin->calibrated.hash != here.hash)
-        throw InputError(file, fmt::format("holds poses of {}, and this is {}", words_of(origin->calibrated), words_of(here)),
+        throw InputError(file,
+                         fmt::format("holds poses of {}, and this is {}", words_of(origin->calibrated), words_of(here)),
                          "Track the frames with this rig.json.");
     if (origin->capture_hash.empty())
-        unknown.push_back(fmt::format("the poses of {} begin at its first frame, not at a scan: they are right only if the patient "
-                                      "had not moved since the scan",
-                                      file.string()));
+        unknown.push_back(
+            fmt::format("the poses of {} begin at its first frame, not at a scan: they are right only if the patient "
+                        "had not moved since the scan",
+                        file.string()));
     if (!match.rig) return;
-    if (!origin->capture_hash.empty() && !match.rig->capture_hash.empty() && origin->capture_hash != match.rig->capture_hash)
-        throw InputError(file,
-                         fmt::format("holds poses from the scan of capture {}, and the match is of the scan of capture {}",
-                                     begin_of(origin->capture_hash), begin_of(match.rig->capture_hash)),
-                         "Track the frames with --capture of the scan that was matched.");
-    if (!same(origin->rig.left_camera, match.rig->rig.left_camera) || !same(origin->rig.right_camera, match.rig->rig.right_camera))
+    if (!origin->capture_hash.empty() && !match.rig->capture_hash.empty() &&
+        origin->capture_hash != match.rig->capture_hash)
+        throw InputError(
+            file,
+            fmt::format("holds poses from the scan of capture {}, and the match is of the scan of capture {}",
+                        begin_of(origin->capture_hash), begin_of(match.rig->capture_hash)),
+            "Track the frames with --capture of the scan that was matched.");
+    if (!same(origin->rig.left_camera, match.rig->rig.left_camera) ||
+        !same(origin->rig.right_camera, match.rig->rig.right_camera))
         throw InputError(file, "was tracked with cameras that stand elsewhere than the scan found them",
                          "Track the frames with --capture or --registration of the scan that was matched.");
 }
@@ -143,9 +155,10 @@ RigCalibration rig_of_light(const RegistrationResult& match, const RigCalibratio
     if (match.rig && match.rig->verdict == RigState::Verdict::not_trusted)
         throw CheckFailedError("the rig cannot be trusted: " + match.rig->sentence, match.rig->remedy);
     if ((!match.rig || !match.rig->checked()) && !confirmed)
-        throw CheckFailedError("nothing says whether the rig is as it was calibrated: the match is not of a scan that could check it",
-                               "Look at the light on landmarks and give --confirmed, or match a cloud of `planlight scan` (columns "
-                               "and rows, both cameras).");
+        throw CheckFailedError(
+            "nothing says whether the rig is as it was calibrated: the match is not of a scan that could check it",
+            "Look at the light on landmarks and give --confirmed, or match a cloud of `planlight scan` (columns "
+            "and rows, both cameras).");
     return match.rig && match.rig->rig.whole() ? match.rig->rig : rig;
 }
 

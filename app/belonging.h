@@ -32,8 +32,8 @@ void check_rig(const RegistrationResult& match, const RigCalibration& rig, const
 void check_poses(const std::optional<PosesOrigin>& origin, const RegistrationResult& match, const RigCalibration& rig,
                  const std::filesystem::path& file, std::vector<std::string>& unknown);
 
-/// The rig that the light of a match is to be drawn with: as the scan found it. Throws CheckFailedError where it may not be
-/// trusted, or where nothing is known of it and `confirmed` is not said.
+/// The rig that the light of a match is to be drawn with: as the scan found it. Throws CheckFailedError where it may
+/// not be trusted, or where nothing is known of it and `confirmed` is not said.
 RigCalibration rig_of_light(const RegistrationResult& match, const RigCalibration& rig, bool confirmed);
 
 }  // namespace planlight

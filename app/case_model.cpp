@@ -60,11 +60,16 @@ OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing) {
     return model;
 }
 
+double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct) {
+    const double hidden_mm = found.rig ? hidden_light_mm(*found.rig, found.patient_from_ct * p_in_ct) : 0;
+    return std::hypot(predicted_error(found.covariance, p_in_ct).bound_95_mm, hidden_mm);
+}
+
 std::vector<double> predicted_errors_mm(const Plan& plan, const RegistrationResult& found) {
     std::vector<double> errors;
     const auto add = [&](const std::vector<Eigen::Vector3d>& points_in_ct) {
         double worst = 0;
-        for (const auto& p : points_in_ct) worst = std::max(worst, predicted_error(found.covariance, p).bound_95_mm);
+        for (const auto& p : points_in_ct) worst = std::max(worst, predicted_light_mm(found, p));
         errors.push_back(worst);
     };
     for (const auto& line : plan.osteotomy_lines) add(line.points_in_ct);
@@ -79,8 +84,10 @@ std::shared_ptr<const std::vector<float>> predicted_on_skin_mm(const TriangleMes
                                                                const RegistrationResult& found) {
     auto errors = std::make_shared<std::vector<float>>();
     errors->reserve(skin.vertices_in_ct.size());
+    const double hidden_mm =
+        found.rig ? found.rig->hidden_light_mm : 0;  // over the scanned skin: at each vertex it would take a second
     for (const auto& p : skin.vertices_in_ct)
-        errors->push_back(static_cast<float>(predicted_error(found.covariance, p).bound_95_mm));
+        errors->push_back(static_cast<float>(std::hypot(predicted_error(found.covariance, p).bound_95_mm, hidden_mm)));
     return errors;
 }
 
