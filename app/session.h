@@ -55,7 +55,8 @@ public:
     /// SCAN: shows the stripes, makes the cloud, takes the markers of the first picture as reference. Repeats it when
     /// the patient moved (the markers are looked at in every picture that is even light when summed with its inverse,
     /// and once more under white light at the end). Throws CheckFailedError when the patient did not lie still in
-    /// `max_scans` scans, or too few markers were found.
+    /// `max_scans` scans, too few markers were found, or the rig moved so that it cannot be trusted. Cloud, poses and
+    /// light are made with the rig as this scan finds it.
     const ScanResult& scan(const std::function<void(int, int)>& progress = {});
 
     /// MATCH: T_ini from the last scan; landmarks check it, and help where it is refused (`register_with_landmarks`).

@@ -110,6 +110,7 @@ int run_register(const RegisterOptions& options) {
             {"scale_sigma", result.scale_sigma},
             {"skin_movement_mm", result.skin_movement_mm},
             {"skin_offset_mm", result.skin_offset_mm},
+            {"rig", result.rig ? nlohmann::json(json_of(*result.rig)) : nlohmann::json()},
             {"items", items},
             {"seconds", {{"initial", result.initial_match_s}, {"fine", result.refine_s}}}};
         std::cout << out.dump(2) << '\n';
@@ -126,10 +127,14 @@ int run_register(const RegisterOptions& options) {
                        item["predicted_95_mm"].get<double>());
         for (const auto& reason : result.reasons) fmt::print("  {}\n", reason);
     }
+    const bool bad_rig = result.rig && result.rig->verdict == RigState::Verdict::not_trusted;
     if (result.verdict == Verdict::no)
         throw CheckFailedError(
-            "the patient was not found: " + fmt::format("{}", fmt::join(result.reasons, "; ")),
-            "Scan again from a side that shows more of the head, and check that this is the patient of the case.");
+            fmt::format("{}: {}", bad_rig ? "the match may not be used" : "the patient was not found",
+                        fmt::join(result.reasons, "; ")),
+            bad_rig ? result.rig->remedy
+                    : "Scan again from a side that shows more of the head, and check that this is the patient of the "
+                      "case.");
     return 0;
 }
 
