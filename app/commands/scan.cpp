@@ -71,8 +71,13 @@ void warn_of(const ScanResult& scan, const RigCalibration& rig) {
                          drift.remedy));
 }
 
+/// By rig.json, as `check` says it.
+double epipolar_of(const ScanResult& scan) {
+    return scan.rig.moved() ? scan.epipolar_as_calibrated_px : usual_epipolar_px(scan.raw);
+}
+
 std::string said_of_cameras(const ScanResult& scan) {
-    const double off_px = usual_epipolar_px(scan.raw);
+    const double off_px = epipolar_of(scan);
     return off_px > 0 ? fmt::format("; epipolar error {:.2f} px", off_px) : std::string();
 }
 
@@ -179,7 +184,7 @@ int run_scan(const ScanOptions& options) {
               {"thinned", scan.clean.thinned}}},
             {"devices", devices_of(scan, rig)},
             {"code_step_px", scan.code_step_px},
-            {"epipolar_px", or_null(usual_epipolar_px(scan.raw))},
+            {"epipolar_px", or_null(epipolar_of(scan))},
             {"epipolar_rms_px", or_null(scan.raw.epipolar_rms_px)},
             {"projector_offset_px", {scan.raw.projector_offset_px.x(), scan.raw.projector_offset_px.y()}},
             {"projector", projector_of(scan)},

@@ -66,6 +66,10 @@ void refuse_wrong_sequence(const ScanCapture& capture, ScanResult& result) {
 /// The light must be read to this many projector pixels to judge a rig by it.
 constexpr double kFineLight_px = 2;
 
+void place_projector(const std::optional<Resection>& resection, RigCalibration& rig) {
+    if (resection && resection->believable) rig.projector = resection->projector;
+}
+
 /// The codes are matched once; where the devices stand is found from a part of the matches, then all are placed.
 void triangulate_and_resect(const ScanSettings& settings, ScanResult& result, RigCalibration& rig) {
     if (result.left.row.empty() || result.right.row.empty()) {
@@ -82,19 +86,19 @@ void triangulate_and_resect(const ScanSettings& settings, ScanResult& result, Ri
         if (result.epipolar_as_calibrated_px == 0) result.epipolar_as_calibrated_px = usual_epipolar_px(some);
         return resect_projector(some, rig, settings.resection);
     };
-    const CameraModel as_calibrated = rig.projector;
-    std::optional<Resection> placed = result.resection = resected();
-    if (result.code_step_px > kFineLight_px) {
+    const RigidTransform as_calibrated = rig.projector.device_from_rig;
+    result.resection = resected();
+    if (result.code_step_px > kFineLight_px)
         result.rig.sentence = "whether the rig moved is not known: the light was read too coarsely";
-    } else {
+    else
         result.rig = find_rig_state(matches, rig, settings.rig);
-        if (settings.use_resection && result.rig.moved()) {
-            rig = result.rig.rig;
-            placed = resected();
-        }
+    if (settings.use_resection && result.rig.moved()) {
+        rig = result.rig.rig;
+        place_projector(resected(), rig);
+    } else if (settings.use_resection) {
+        place_projector(result.resection, rig);
     }
-    if (settings.use_resection && placed && placed->believable) rig.projector = placed->projector;
-    result.resection_used = rig.projector.device_from_rig.matrix() != as_calibrated.device_from_rig.matrix();
+    result.resection_used = rig.projector.device_from_rig.matrix() != as_calibrated.matrix();
     result.raw = triangulate_matches(matches, rig, settings.triangulation);
 }
 
