@@ -66,6 +66,20 @@ DeviceMatrix calibration_covariance(const CameraModel& device, double distance_m
     return worse * worse * G * G.transpose();
 }
 
+RigMatrix calibration_covariance(const RigCalibration& rig, const std::vector<SeenPlace>& places,
+                                 const CalibrationPrior& prior) {
+    RigMatrix covariance = RigMatrix::Zero();
+    const double worse = std::clamp(rig.reprojection_rms_px / prior.usual_rms_px, 1.0, prior.at_most);
+    for (std::size_t d = 0; d < kRigDevices; ++d) {
+        const CameraModel& device = device_of(rig, static_cast<RigDevice>(d));
+        const double factor = static_cast<RigDevice>(d) == RigDevice::projector ? prior.projector : 1;
+        const auto at = 10 * static_cast<Eigen::Index>(d);
+        covariance.block<10, 10>(at, at) =
+            calibration_covariance(device, distance_to(places, device), worse * factor, prior);
+    }
+    return covariance;
+}
+
 /// One way in which the rig may have changed.
 struct Explanation {
     std::vector<RigDevice> moved, lens;
@@ -312,14 +326,7 @@ RigState find_rig_state(const ViewMatches& matches, const RigCalibration& rig, c
         state.sentence = "whether the rig moved is not known: too little is seen by both cameras under the light";
         return state;
     }
-    RigMatrix calibration = RigMatrix::Zero();
-    for (std::size_t d = 0; d < kRigDevices; ++d) {
-        const auto device = static_cast<RigDevice>(d);
-        const auto at = 10 * static_cast<Eigen::Index>(d);
-        calibration.block<10, 10>(at, at) = calibration_covariance(
-            device_of(rig, device), distance_to(places, device_of(rig, device)),
-            device == RigDevice::projector ? settings.calibration.projector : 1, settings.calibration);
-    }
+    const RigMatrix calibration = calibration_covariance(rig, places, settings.calibration);
     Explanation as_calibrated;
     fit(as_calibrated, calibration, places, rig, settings, 3);
     std::vector<Explanation> all = explanations(settings);
@@ -333,14 +340,16 @@ RigState find_rig_state(const ViewMatches& matches, const RigCalibration& rig, c
     for (std::size_t i = 0; i < places.size(); i += 1 + places.size() / kPlacesOfDoubt) some.push_back(places[i]);
     if (as_calibrated.chi_square > settings.moved_chi_square) fit_all();  // else none can be so much better
     const Explanation& best = all.front();
+    // Where the light is read with more noise than expected, differences say less.
+    const double noise = std::max(1.0, best.usual * best.usual);
     const bool moved = as_calibrated.chi_square > settings.moved_chi_square &&
-                       as_calibrated.chi_square - best.chi_square > settings.moved_chi_square;
+                       as_calibrated.chi_square - best.chi_square > noise * settings.moved_chi_square;
     std::vector<const Explanation*> possible;
     if (moved) state.rig = changed(rig, best.numbers);
     state.doubts = own_doubts(moved ? best : as_calibrated, state.rig, some);
     if (moved)
         for (const Explanation& e : all) {
-            if (e.chi_square > best.chi_square + settings.doubt_chi_square) continue;
+            if (e.chi_square > best.chi_square + noise * settings.doubt_chi_square) continue;
             possible.push_back(&e);
             if (&e == &best) continue;
             RigDoubt doubt = doubt_between(state.rig, changed(rig, e.numbers), some);
@@ -352,6 +361,11 @@ RigState find_rig_state(const ViewMatches& matches, const RigCalibration& rig, c
     state.hidden_light_mm = hidden_over(state, some);
     if (moved) {
         judge(best, possible, settings, state);
+    } else if (as_calibrated.usual > settings.max_usual_residual) {
+        state.verdict = RigState::Verdict::not_trusted;
+        state.sentence =
+            "the devices fit each other from no place: another rig, or a lens or a distortion that is wrong";
+        state.remedy = "Use the rig.json of this rig, or calibrate it again.";
     } else {
         state.verdict = RigState::Verdict::as_calibrated;
         state.sentence = "the rig is as it was calibrated";

@@ -8,6 +8,9 @@ namespace planlight {
 /// What a good calibration leaves wrong in a device, one standard deviation. What the lens's numbers get wrong the pose
 /// makes up for at the working distance, as it does in a calibration that fits its pictures; a little of it stays.
 struct CalibrationPrior {
+    double usual_rms_px =
+        0.12;  ///< these numbers are of a rig with this `reprojection_rms_px`; a worse one has them in proportion
+    double at_most = 4;       ///< times
     double focal = 2.6e-4;    ///< relative, made up for by depth
     double centre_px = 0.2;   ///< made up for by a turn
     double corner_px = 0.07;  ///< of distortion, in the corner of the picture
