@@ -95,6 +95,11 @@ void take_case_and_rig(const Case& the_case, const std::optional<RigState>& rig,
             rig->sentence, hidden_mm));
 }
 
+double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct) {
+    const double hidden_mm = found.rig ? hidden_light_mm(*found.rig, found.patient_from_ct * p_in_ct) : 0;
+    return std::hypot(predicted_error(found.covariance, p_in_ct).bound_95_mm, hidden_mm);
+}
+
 void check_case(const RegistrationResult& match, const Case& the_case, const fs::path& file,
                 std::vector<std::string>& unknown) {
     const CaseName here = name_of(the_case);

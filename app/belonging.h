@@ -24,6 +24,10 @@ RigState named_rig_state(const ScanResult& scan, const RigCalibration& calibrate
 /// empty: the cloud of another scanner, of which nothing is known.
 void take_case_and_rig(const Case& the_case, const std::optional<RigState>& rig, RegistrationResult& match);
 
+/// How far off light may be at one point, 95 %, mm: by the registration, and by what the scan could not tell of the
+/// rig.
+double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct);
+
 /// Warnings for what is not known are added to `unknown`.
 void check_case(const RegistrationResult& match, const Case& the_case, const std::filesystem::path& file,
                 std::vector<std::string>& unknown);

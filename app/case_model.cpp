@@ -7,6 +7,8 @@
 #include <limits>
 #include <memory>
 
+#include "app/belonging.h"
+
 namespace planlight {
 namespace {
 
@@ -58,11 +60,6 @@ OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing) {
     model.status = {StatusKind::dark, "Nothing is projected.", {}};
     for (auto* button : {&model.scan, &model.do_register, &model.track, &model.stop}) *button = {false, "no rig"};
     return model;
-}
-
-double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct) {
-    const double hidden_mm = found.rig ? hidden_light_mm(*found.rig, found.patient_from_ct * p_in_ct) : 0;
-    return std::hypot(predicted_error(found.covariance, p_in_ct).bound_95_mm, hidden_mm);
 }
 
 std::vector<double> predicted_errors_mm(const Plan& plan, const RegistrationResult& found) {

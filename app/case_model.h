@@ -11,10 +11,6 @@ namespace planlight {
 /// What the operator window shows of a case before anything is scanned: title, skin, plan, table of its items.
 OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing);
 
-/// How far off light may be at one point, 95 %, mm: by the registration, and by what the scan could not tell of the
-/// rig.
-double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct);
-
 /// How far off each item of the plan may be by the registration, 95 %, mm: its worst point. In the order in which
 /// `draw_plan` gives the items. Infinite where the scan held too little skin to tell.
 std::vector<double> predicted_errors_mm(const Plan& plan, const RegistrationResult& found);

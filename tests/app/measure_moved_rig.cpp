@@ -18,7 +18,6 @@
 #include <string>
 
 #include "app/belonging.h"
-#include "app/case_model.h"
 #include "app/prepare_case.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
