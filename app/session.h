@@ -58,7 +58,8 @@ public:
     /// SCAN: shows the stripes, makes the cloud, takes the markers of the first picture as reference. Repeats it when
     /// the patient moved (the markers are looked at in every picture that is even light when summed with its inverse,
     /// and once more under white light at the end). Throws CheckFailedError when the patient did not lie still in
-    /// `max_scans` scans, or too few markers were found.
+    /// `max_scans` scans, too few markers were found, or the rig moved so that it cannot be trusted. Cloud, poses and
+    /// light are made with the rig as this scan finds it.
     const ScanResult& scan(const std::function<void(int, int)>& progress = {});
 
     /// MATCH: T_ini from the last scan; landmarks check it, and help where it is refused (`register_with_landmarks`).
@@ -85,12 +86,14 @@ public:
     /// Dark now, and no more light until the next `update`.
     void go_dark() noexcept;
 
+    /// The rig as the last scan found it, and as it was calibrated before the first.
     const RigCalibration& rig() const { return rig_; }
+    const RigState* rig_state() const { return rig_state_ ? &*rig_state_ : nullptr; }
     const ScanCapture* capture() const { return capture_ ? &*capture_ : nullptr; }
     const ScanResult* scanned() const { return scanned_ ? &*scanned_ : nullptr; }
     const RegistrationResult* registration() const { return registration_ ? &*registration_ : nullptr; }
     const PatientTracker& tracker() const { return tracker_; }
-    const DrawingRenderer& renderer() const { return renderer_; }
+    const DrawingRenderer& renderer() const { return *renderer_; }
     /// The plan as this session draws it: labels lie beside the markers, so that none is cut by the darkness round
     /// them.
     const PlanDrawing& drawing() const { return drawing_; }
@@ -99,7 +102,10 @@ public:
     int scans_repeated() const { return scans_repeated_; }  ///< in the last `scan`, because the patient moved
 
 private:
+    void use_rig(const RigCalibration& rig);
+    std::size_t reference_markers(const ScanCapture& capture);
     void take_reference(const ScanCapture& capture);
+    void take_rig(const ScanCapture& capture);
     double moved_at_the_end_mm();
     void draw_beside_markers();
     void start_overlay();
@@ -108,13 +114,15 @@ private:
     const Case& case_;
     const SkinSurface& skin_;
     PlanDrawing drawing_;
-    RigCalibration rig_;
+    const RigCalibration calibrated_;  ///< rig.json
+    RigCalibration rig_;               ///< as the last scan found it: cloud, poses and light are made with it
+    std::optional<RigState> rig_state_;
     Projector& projector_;
     StereoCamera& cameras_;
     const Clock& clock_;
     SessionSettings settings_;
     PatientTracker tracker_;
-    DrawingRenderer renderer_;
+    std::unique_ptr<DrawingRenderer> renderer_;
     std::optional<ScanCapture> capture_;
     std::optional<ScanResult> scanned_;
     std::optional<RegistrationResult> registration_;

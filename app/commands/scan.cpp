@@ -4,11 +4,14 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "app/belonging.h"
 #include "app/commands/capture_conversion.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/device_check.h"
+#include "app/commands/rig_words.h"
 #include "app/console.h"
+#include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
@@ -60,21 +63,21 @@ void warn_of(const ScanResult& scan, const RigCalibration& rig) {
             "the light was read to {:g} projector pixels only: the fringes, or the finest bits that count them, are "
             "not in the capture or not resolved by the cameras; the cloud is coarser",
             scan.code_step_px));
-    constexpr double kMoved_mm = 1, kTurned = 0.0035;  // 0.2 degrees
-    if (scan.resection_used && (scan.resection->moved_mm > kMoved_mm || scan.resection->turned > kTurned))
-        warn(fmt::format(
-            "the projector was found {:.1f} mm and {:.2f} degrees from where {} has it; `planlight check` tells more",
-            scan.resection->moved_mm, scan.resection->turned * 180 / std::numbers::pi,
-            rig.made_on.empty() ? "the rig file" : "the calibration of " + rig.made_on));
-    if (scan.code_step_px > 0) return;  // cells are no measure of the cameras
+    if (scan.rig.moved()) warn(fmt::format("{}. {}", scan.rig.sentence, scan.rig.remedy));
+    if (scan.code_step_px > 0 || scan.rig.moved()) return;  // cells are no measure of the cameras
     const DriftCheck drift = check_drift(scan, rig);
     if (drift.verdict == DriftCheck::Verdict::cameras_moved)
         warn(fmt::format("{}; the cloud may be off by millimetres and nothing in it shows where. {}", drift.reason,
                          drift.remedy));
 }
 
+/// By rig.json, as `check` says it.
+double epipolar_of(const ScanResult& scan) {
+    return scan.rig.moved() ? scan.epipolar_as_calibrated_px : usual_epipolar_px(scan.raw);
+}
+
 std::string said_of_cameras(const ScanResult& scan) {
-    const double off_px = usual_epipolar_px(scan.raw);
+    const double off_px = epipolar_of(scan);
     return off_px > 0 ? fmt::format("; epipolar error {:.2f} px", off_px) : std::string();
 }
 
@@ -151,14 +154,15 @@ int run_scan(const ScanOptions& options) {
     const ScanResult scan = scan_from_exposures(captures, rig);
     judge_fit(scan, rig);
     warn_of(scan, rig);
-    const ScanMovement movement = movement_in_scan(capture, rig, scan.clean.kept);
+    const ScanMovement movement = movement_in_scan(capture, scan.rig.rig.whole() ? scan.rig.rig : rig, scan.clean.kept);
     judge_movement(movement, options);
-    write_cloud(scan.clean.kept, options.out);
-    if (!options.raw_out.empty()) write_cloud(scan.raw.cloud, options.raw_out);
+    const std::vector<std::string> names = comments_of(named_rig_state(scan, rig, capture));
+    write_cloud(scan.clean.kept, options.out, {}, names);
+    if (!options.raw_out.empty()) write_cloud(scan.raw.cloud, options.raw_out, {}, names);
     std::vector<std::array<std::int32_t, 3>> triangles;
     if (!options.surface_out.empty()) {
         triangles = surface_triangles(scan.clean.kept);
-        write_cloud(scan.clean.kept, options.surface_out, triangles);
+        write_cloud(scan.clean.kept, options.surface_out, triangles, names);
     }
     if (options.json) {
         const nlohmann::json result = {
@@ -180,10 +184,11 @@ int run_scan(const ScanOptions& options) {
               {"thinned", scan.clean.thinned}}},
             {"devices", devices_of(scan, rig)},
             {"code_step_px", scan.code_step_px},
-            {"epipolar_px", or_null(usual_epipolar_px(scan.raw))},
+            {"epipolar_px", or_null(epipolar_of(scan))},
             {"epipolar_rms_px", or_null(scan.raw.epipolar_rms_px)},
             {"projector_offset_px", {scan.raw.projector_offset_px.x(), scan.raw.projector_offset_px.y()}},
             {"projector", projector_of(scan)},
+            {"rig", json_of(scan.rig)},
             {"movement", json_of(movement)},
             {"seconds",
              {{"sequence", scan.sequence_s},

@@ -85,6 +85,10 @@ void check_same_patient(const Case& prepared, const std::string& mesh_hash, cons
 
 }  // namespace
 
+CaseName name_of(const Case& prepared) {
+    return {prepared.code, prepared.volume_hash, prepared.lut.mesh_hash};
+}
+
 void write_case(const Case& prepared, const fs::path& folder, bool replace) {
     if (prepared.lut.volume_hash != prepared.volume_hash || prepared.lut.mesh_hash != hash_of(prepared.skin))
         throw InputError(folder, "would hold the LUT of another case",

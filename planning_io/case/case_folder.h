@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "planning_io/types/plan.h"
+#include "planning_io/types/registration_result.h"
 #include "planning_io/types/skin_lut.h"
 #include "planning_io/types/triangle_mesh.h"
 
@@ -28,6 +29,9 @@ struct Case {
     Plan plan;
     std::vector<std::string> warnings;  ///< of the preparation, in words
 };
+
+/// What other files call this case.
+CaseName name_of(const Case& prepared);
 
 /// Writes the folder so that it is whole or not there: into a temporary folder beside it, synced, then renamed. An
 /// existing case folder is replaced only with `replace`; any other existing folder is refused, and a case that holds
