@@ -218,10 +218,11 @@ std::string calibration_json(const CalibrationReport& report) {
                        {"mean_mm_at_200", if_any(c.held_out.lengths, c.held_out.length_mean_mm)}};
     json["predicted_error"] = nullptr;
     if (c.volume)
-        json["predicted_error"] = {{"median_mm", c.volume->median_mm},
-                                   {"p95_mm", c.volume->p95_mm},
-                                   {"worst_mm", c.volume->worst_mm},
-                                   {"light_p95_mm", c.volume->light_p95_mm}};
+        json["predicted_error"] = {
+            {"median_mm", c.volume->median_mm},
+            {"p95_mm", c.volume->p95_mm},
+            {"worst_mm", c.volume->worst_mm},
+            {"light_p95_mm", c.volume->light_p95_mm > 0 ? Json(c.volume->light_p95_mm) : Json()}};
     json["residuals"] = Json::array();
     for (const PoseResidual& r : c.bundle.residuals)
         json["residuals"].push_back({{"pose", report.poses[r.pose].name},

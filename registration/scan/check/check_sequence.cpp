@@ -74,13 +74,14 @@ void check_pairs(const Samples& s, const Direction& direction, SequenceCheck& ch
 /// Of two bits the finer one changes more often.
 void check_order(const Samples& s, const Direction& direction, const std::vector<Changes>& changes,
                  SequenceCheck& check) {
+    constexpr std::size_t kFewLines =
+        6;  // that far from the finest a bit has too few stripes over the surface to count on
     const std::size_t bits = std::min(changes.size(), direction.wide);
     double lines = 0;  // the finest bit changes every other half period; the one before half as often, and so on
     for (std::size_t k = 0; k < bits; ++k) lines = std::max(lines, static_cast<double>(changes[k].all()));
     for (std::size_t k = 0; k + 1 < bits; ++k) {
         const double expected = lines / std::pow(2.0, static_cast<double>(bits - 1 - k));
-        // Too few stripes over the surface to count on.
-        if (expected < lines / 32 || expected < 60 || !changes[k + 1].clear) continue;
+        if (k + kFewLines < changes.size() || expected < 60 || !changes[k + 1].clear) continue;
         if (static_cast<double>(changes[k].all()) > 1.25 * static_cast<double>(changes[k + 1].all()))
             check.problems.push_back(
                 {direction.gray[k],

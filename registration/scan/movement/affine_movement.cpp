@@ -176,12 +176,12 @@ Laid Surface::lay(const Moment& later) const {
         numbers += step;
     }
     Normal scatter = Normal::Zero();
-    int patches = 0;
     for (const Numbers& score : scores) {
-        patches += !score.isZero();
         const Numbers s = weights.asDiagonal() * normal.solve(weights.asDiagonal() * score);
         scatter += s * s.transpose();
     }
+    std::sort(patch.begin(), patch.end());
+    const auto patches = static_cast<int>(std::unique(patch.begin(), patch.end()) - patch.begin());
     if (patches < 2 * kNumbers) return laid;  // too few to tell how they scatter
     laid.map = numbers.head<kAffine>();
     laid.covariance = scatter.topLeftCorner<kAffine, kAffine>() * (static_cast<double>(patches) / (patches - kNumbers));

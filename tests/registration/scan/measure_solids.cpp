@@ -4,7 +4,9 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <map>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include "planning_io/files/image_file.h"
 #include "planning_io/surface/mesh_file.h"
@@ -23,18 +25,32 @@ struct Set {
     bool one_camera = false;
 };
 
+/// White, black and the bits of a Gray code to single pixels, without the `less` finest.
+std::vector<StripePattern> gray_code(bool rows, int less) {
+    std::vector<StripePattern> patterns{{StripePattern::Kind::white, false, 0, "white"},
+                                        {StripePattern::Kind::black, false, 0, "black"}};
+    for (const bool along_rows : {false, true})
+        for (const auto& pattern : gray_patterns(10 - less, along_rows, true))
+            if (rows || !along_rows) patterns.push_back(pattern);
+    return patterns;
+}
+
 std::vector<Set> sets_of(const Room& room) {
     StripeSettings full;
     full.width = room.projector.width, full.height = room.projector.height;
-    StripeSettings gray = full;
+    StripeSettings gray = full, columns = full, gray_columns;
     gray.phase_steps = 0, gray.phase_period_px = 2;
-    std::vector<StripePattern> patterns{{StripePattern::Kind::white, false, 0, "white"},
-                                        {StripePattern::Kind::black, false, 0, "black"}};
-    for (const bool rows : {false, true})
-        for (auto& pattern : gray_patterns(10, rows, true)) patterns.push_back(pattern);
+    columns.rows = false;
+    gray_columns = gray;
+    gray_columns.rows = false;
     return {{"full", full, {}},
             {"full, left only", full, {}, true},
-            {"Gray code", gray, patterns},
+            {"columns, left only", columns, {}, true},
+            {"Gray code", gray, gray_code(true, 0)},
+            {"Gray code, left only", gray, gray_code(true, 0), true},
+            {"Gray columns, left only", gray_columns, gray_code(false, 0), true},
+            {"Gray code to 8 pixels", gray, gray_code(true, 3)},
+            {"Gray code to 8 pixels, left only", gray, gray_code(true, 3), true},
             {"fast", fast_stripes(full.width, full.height), {}},
             {"multi-frequency", multi_frequency_stripes(full.width, full.height), {}}};
 }
@@ -46,8 +62,9 @@ double share_over(const std::vector<double>& off, double limit) {
 }
 
 void measure(const std::string& name, const Room& room, const std::filesystem::path& folder) {
+    Cameras cameras(room);
     for (const Set& set : sets_of(room)) {
-        ScanCapture shot = capture(room, set.stripes, set.patterns);
+        ScanCapture shot = cameras.capture(set.stripes, set.patterns);
         if (set.one_camera) shot.right.clear();
         if (!folder.empty() && set.name == "full") write_png(shot.left[0], folder / (name + ".png"));
         try {
@@ -58,8 +75,7 @@ void measure(const std::string& name, const Room& room, const std::filesystem::p
             };
             fmt::print("| {} | {} | {} | {:.3f} | {:.2f} | {:.2f} % | {:.2f} % |\n", name, set.name, off.size(),
                        at(0.5), at(0.95), 100 * share_over(off, 1), 100 * share_over(off, 5));
-            if (!folder.empty())
-                write_cloud(scan.clean.kept, folder / (name + "-" + std::to_string(set.name.size()) + ".ply"));
+            if (!folder.empty()) write_cloud(scan.clean.kept, folder / (name + ", " + set.name + ".ply"));
         } catch (const Error& refused) {
             fmt::print("| {} | {} | refused: {} |\n", name, set.name, refused.what());
         }
@@ -70,20 +86,31 @@ void measure(const std::string& name, const Room& room, const std::filesystem::p
 }  // namespace
 
 int main(int argc, char** argv) {
-    const std::filesystem::path folder = argc > 1 ? argv[1] : "";
+    const std::string only = argc > 1 ? argv[1] : "";
+    const std::filesystem::path folder = argc > 2 ? argv[2] : "";
     if (!folder.empty()) std::filesystem::create_directories(folder);
     const Vector3d place(15, -10, 600);
     fmt::print(
         "| solid | set | points | median (mm) | 95 % | over 1 mm | over 5 mm |\n|---|---|---|---|---|---|---|\n");
-    const auto room_with = [&](Solid solid, const Material& material) {
-        Room room = desk_room(std::move(solid));
-        room.material = material;
-        return room;
+    const Material dull{0.6, 1, 0, 60, 0.8, 0.1}, pale{0.85, 1, 0.25, 40, 1.5, 0.05}, glossy{0.7, 1, 0.6, 60, 1.0, 0.3};
+    const Solid behind = wall(place + Vector3d(0, 0, 70), Vector3d(0.1, 0.05, -1));
+    const auto before_a_wall = [&](const Solid& solid) -> Solid {
+        return [=](const Vector3d& p) { return std::min(solid(p), behind(p)); };
     };
-    Material dull{0.6, 1, 0, 60, 0.8, 0.1}, pale{0.85, 1, 0.25, 40, 1.5, 0.05};
-    measure("head", room_with(head(place + Vector3d(0, 0, 90)), dull), folder);
-    measure("shell", room_with(shell(place), pale), folder);
-    measure("folds 12 mm", room_with(folds(place, 12), dull), folder);
-    measure("folds 30 mm, pale", room_with(folds(place, 30), pale), folder);
+    const std::vector<std::tuple<std::string, Solid, Material, double>> scenes{
+        {"head", head(place + Vector3d(0, 0, 90)), dull, 170},
+        {"shell", shell(place), pale, 170},
+        {"shell on a wall", before_a_wall(shell(place)), glossy, 120},
+        {"shell on a wall, overexposed", before_a_wall(shell(place)), glossy, 330},
+        {"shell on a wall, dim", before_a_wall(shell(place)), pale, 35},
+        {"folds of 12 mm", folds(place, 12), dull, 170},
+        {"folds of 30 mm", before_a_wall(folds(place, 30)), pale, 170}};
+    for (const auto& [name, solid, material, white_grey] : scenes) {
+        if (name.find(only) == std::string::npos) continue;
+        Room room = desk_room(solid);
+        room.material = material;
+        room.photography.white_grey = white_grey;
+        measure(name, room, folder);
+    }
     return 0;
 }

@@ -14,7 +14,7 @@ namespace planlight::solid_room {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr int kLattice_px = 5, kBounces = 40;
+constexpr int kLattice_px = 6, kBounces = 28;
 constexpr double kFar_mm = 1500;
 
 double smooth_min(double a, double b, double k) {
@@ -384,21 +384,19 @@ std::vector<double> shown(const StripeSettings& s, const StripePattern& pattern)
     return values;
 }
 
-ScanCapture capture(const Room& room, const StripeSettings& stripes, const std::vector<StripePattern>& patterns) {
+Cameras::Cameras(const Room& room)
+    : left_(room, room.left, room.photography.seed), right_(room, room.right, room.photography.seed + 5000) {}
+
+ScanCapture Cameras::capture(const StripeSettings& stripes, const std::vector<StripePattern>& partial) {
     ScanCapture capture;
     capture.stripes = stripes;
-    capture.partial = patterns;
-    Exposure left(room, room.left, room.photography.seed), right(room, room.right, room.photography.seed + 5000);
-    for (const StripePattern& pattern : patterns.empty() ? stripe_sequence(stripes) : patterns) {
+    capture.partial = partial;
+    for (const StripePattern& pattern : partial.empty() ? stripe_sequence(stripes) : partial) {
         const std::vector<double> values = shown(stripes, pattern);
-        capture.left.push_back(left.picture(values, pattern.along_rows));
-        capture.right.push_back(right.picture(values, pattern.along_rows));
+        capture.left.push_back(left_.picture(values, pattern.along_rows));
+        capture.right.push_back(right_.picture(values, pattern.along_rows));
     }
     return capture;
-}
-
-ScanCapture capture(const Room& room, const StripeSettings& stripes) {
-    return capture(room, stripes, {});
 }
 
 RigCalibration rig_of(const Room& room) {

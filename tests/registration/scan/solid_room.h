@@ -94,9 +94,17 @@ private:
 /// fringes: a Gray code to single pixels.
 std::vector<double> shown(const StripeSettings& stripes, const StripePattern& pattern);
 
-/// The frames of both cameras (`partial` of `patterns` where it is not the whole sequence).
-ScanCapture capture(const Room& room, const StripeSettings& stripes, const std::vector<StripePattern>& patterns);
-ScanCapture capture(const Room& room, const StripeSettings& stripes);
+/// Both cameras of a room, which must outlive them. The rays are traced once, for any pictures.
+class Cameras {
+public:
+    explicit Cameras(const Room& room);
+    /// The frames of the whole sequence, or of `partial` where it is not empty.
+    ScanCapture capture(const StripeSettings& stripes, const std::vector<StripePattern>& partial = {});
+    const Exposure& left() const { return left_; }
+
+private:
+    Exposure left_, right_;
+};
 
 RigCalibration rig_of(const Room& room);
 
