@@ -29,7 +29,7 @@ struct ScanOptions {
     Path surface_out;               ///< the same points with triangles; empty: not wanted
     std::vector<Path> exposures;    ///< further captures of the same pose
     double max_movement_mm = 0.15;  ///< of the patient during the scan
-    bool accept_movement = false, json = false;
+    bool accept_movement = false, allow_missing = false, json = false;
 };
 
 nlohmann::json counts(const DecodedView& view) {
@@ -58,6 +58,11 @@ nlohmann::json projector_of(const ScanResult& scan) {
 }
 
 void warn_of(const ScanResult& scan, const RigCalibration& rig) {
+    if (scan.left.row.empty() && scan.right.width <= 1)
+        warn(
+            "one camera and the projector's columns alone: each point is where a line of sight meets a plane of light, "
+            "and nothing "
+            "checks it; a wrong rig file or light that came another way shows in nothing");
     if (scan.code_step_px > 0)
         warn(fmt::format(
             "the light was read to {:g} projector pixels only: the fringes, or the finest bits that count them, are "
@@ -84,7 +89,10 @@ std::string said_of_cameras(const ScanResult& scan) {
 nlohmann::json json_of(const ScanMovement& movement) {
     if (movement.by == ScanMovement::By::nothing) return nullptr;
     return {{"by", movement.by == ScanMovement::By::markers ? "markers" : "pictures"},
-            {"moved_mm", movement.moved_mm},
+            {"moved_mm", movement.way_mm()},
+            {"seen_mm", movement.moved_mm},
+            {"unseen_mm",
+             movement.by == ScanMovement::By::pictures ? nlohmann::json(movement.unseen_mm()) : nlohmann::json()},
             {"turned_deg", movement.turned * 180 / std::numbers::pi},
             {"from", movement.from},
             {"to", movement.to},
@@ -97,24 +105,26 @@ void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
         warn("whether the patient moved during the scan is not known: too little is seen under even light");
         return;
     }
-    // Pictures show about half of a way (scan_movement.h).
+    if (movement.way_mm() <= options.max_movement_mm) {
+        if (movement.unseen_mm() > options.max_movement_mm)
+            warn(
+                fmt::format("whether the patient moved during the scan is known to {:.1f} mm only: the skin shows "
+                            "little that could be "
+                            "seen to move (markers would show it)",
+                            movement.unseen_mm()));
+        return;
+    }
     const bool by_markers = movement.by == ScanMovement::By::markers;
-    if (movement.moved_mm <= (by_markers ? 1 : 0.5) * options.max_movement_mm) return;
-    const std::string problem =
-        fmt::format("the patient moved {:.2f} mm during the scan (between {} and {}, by {}); {:g} mm is the limit{}",
-                    movement.moved_mm, movement.from, movement.to,
-                    by_markers ? "the markers" : "the skin in the pictures, which show about half of it",
-                    options.max_movement_mm, said_of_gamma(movement.camera_gamma));
+    const std::string problem = fmt::format(
+        "the patient moved {}{:.2f} mm during the scan (between {} and {}, by {}); {:.2f} mm is the limit{}",
+        by_markers ? "" : "about ", movement.way_mm(), movement.from, movement.to,
+        by_markers ? "the markers"
+                   : fmt::format("the skin in the pictures: {:.2f} mm across the line of sight, twice that in all",
+                                 movement.moved_mm),
+        options.max_movement_mm, said_of_gamma(movement.camera_gamma));
     if (!options.accept_movement)
         throw CheckFailedError(problem, "Scan again, or take the cloud as it is with --accept-movement.");
     warn(problem);
-}
-
-/// One camera needs both directions: nothing else says whether a pixel was read right.
-void check_directions(const ScanCapture& capture, const RigCalibration& rig, const Path& folder) {
-    if (capture.stripes.rows || (!capture.right.empty() && present(rig.right_camera))) return;
-    throw InputError(folder, "codes the projector's columns only, and there is one camera",
-                     "Capture a sequence that codes columns and rows, or with both cameras of a calibrated rig.");
 }
 
 /// Where most of what was read lies off the rays of the rig file, the rest lies on them by chance.
@@ -141,10 +151,12 @@ int run_scan(const ScanOptions& options) {
     std::vector<ScanCapture> captures;
     std::vector<Path> folders{options.capture};
     folders.insert(folders.end(), options.exposures.begin(), options.exposures.end());
+    ProgressBar bar;
+    const ReadCapture how{options.allow_missing, [&](double share) { bar.show("pictures", share); },
+                          [](const std::string& what) { warn(what); }};
     for (const Path& folder : folders) {
-        captures.push_back(scan_capture_from(read_capture_of(rig, folder), folder));
+        captures.push_back(scan_capture_from(read_capture_of(rig, folder, how), folder));
         check_sizes(captures.back(), rig, folder);
-        check_directions(captures.back(), rig, folder);
         if (captures.back().stripes.rows != captures.front().stripes.rows ||
             captures.back().right.empty() != captures.front().right.empty())
             throw InputError(folder, "has other directions or cameras than the first capture",
@@ -227,6 +239,8 @@ Run add_scan(CLI::App& app) {
         ->capture_default_str()
         ->check(CLI::Range(0.01, 100.0));
     sub->add_flag("--accept-movement", o.accept_movement, "Write the cloud of a patient who moved; only warn");
+    sub->add_flag("--allow-missing", o.allow_missing,
+                  "Where pictures are missing use what can be read without them, coarser; else that is refused");
     json_flag(sub, o.json);
     return [options] { return run_scan(*options); };
 }

@@ -56,8 +56,7 @@ void refuse_wrong_sequence(const ScanCapture& capture, ScanResult& result) {
             fmt::format("the {} camera's frames do not show the sequence: {} ({:.0f} % of the lit pixels){}", camera,
                         check.problems[0].what, 100 * check.problems[0].share,
                         said_of_gamma(camera_gamma(frames, uniform_light_frames(capture)))),
-            "Scan again; if it comes back, check the delay between projector and cameras and the names of "
-            "the pictures. \"check_sequence\": false in capture.json takes them as they are.");
+            remedy_of(check.problems[0]) + " \"check_sequence\": false in capture.json takes them as they are.");
     };
     judge(result.left_sequence, capture.left, "left");
     judge(result.right_sequence, capture.right, "right");
