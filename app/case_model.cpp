@@ -42,12 +42,13 @@ std::vector<PlanRow> rows_of(const Plan& plan, const PlanDrawing& drawing) {
 OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing) {
     OperatorModel model;
     const Plan& plan = the_case.plan;
-    model.case_title = "Case " + the_case.code;
+    model.case_title = title_of(the_case);
     const auto counted = [](std::size_t count, const char* one, const char* many) {
         return fmt::format("{} {}", count, count == 1 ? one : many);
     };
     model.case_subtitle =
-        fmt::format("{} \u00b7 {}, {}, {}", the_case.created.substr(0, 10),
+        fmt::format("Case {} \u00b7 {}{} \u00b7 {}, {}, {}", the_case.code, the_case.created.substr(0, 10),
+                    the_case.names.series_date.empty() ? "" : " of a scan of " + the_case.names.series_date,
                     counted(plan.osteotomy_lines.size() + plan.cut_planes.size(), "cutting line", "cutting lines"),
                     counted(plan.boreholes.size(), "borehole", "boreholes"),
                     counted(plan.trajectories.size(), "trajectory", "trajectories"));

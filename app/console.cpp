@@ -9,7 +9,9 @@
 #include <ctime>
 #include <exception>
 #include <new>
+#include <system_error>
 
+#include "planning_io/files/memory_need.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -62,6 +64,19 @@ std::string today() {
     return text;
 }
 
+namespace {
+
+int explain_short_memory() {
+    fmt::print(
+        stderr,
+        "planlight: there is not enough memory: this needs more than the {} MiB that it had. Close other programs, or "
+        "use larger voxels.\n",
+        most_memory_used_bytes() >> 20);
+    return static_cast<int>(ExitCode::disk);
+}
+
+}  // namespace
+
 int run_and_explain(const std::function<int()>& command) {
     try {
         return command();
@@ -69,7 +84,12 @@ int run_and_explain(const std::function<int()>& command) {
         fmt::print(stderr, "planlight: {}. {}\n", error.what(), error.remedy);
         return static_cast<int>(error.exit_code);
     } catch (const std::bad_alloc&) {
-        fmt::print(stderr, "planlight: there is not enough memory. Close other programs, or use larger voxels.\n");
+        return explain_short_memory();
+    } catch (const std::system_error& fault) {  // a thread that finds no room
+        if (fault.code() == std::errc::resource_unavailable_try_again || fault.code() == std::errc::not_enough_memory)
+            return explain_short_memory();
+        fmt::print(stderr, "planlight: a fault of ours: {}. Please report it with the command that you gave.\n",
+                   fault.what());
     } catch (const std::exception& fault) {
         fmt::print(stderr, "planlight: a fault of ours: {}. Please report it with the command that you gave.\n",
                    fault.what());

@@ -55,7 +55,7 @@ int run_demo(const DemoOptions& options) {
     bar.show("volume", 0);
     const Volume volume = read_volume(options.volume);
     bar.show("volume", 1);
-    const Preparation prepared = prepare_case(volume, plan, {}, {}, iso_date_now(), bar.callback());
+    const Preparation prepared = prepare_case(volume, plan, {}, {}, iso_date_now(), {bar.callback(), {}});
     std::filesystem::create_directories(options.out);
     write_case(prepared.prepared, options.out / "case", true);
     const CaseDrawing drawing(prepared.prepared);

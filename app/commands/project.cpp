@@ -91,10 +91,16 @@ int run_project(const ProjectOptions& options) {
         for (const auto& warning : item.warnings) warn(warning);
     }
     if (options.json)
-        std::cout << nlohmann::json{{"picture", options.out.string()}, {"lit_pixels", lit}, {"items", items}}.dump(2)
+        std::cout << nlohmann::json{{"case", the_case.code},
+                                    {"title", title_of(the_case)},
+                                    {"picture", options.out.string()},
+                                    {"lit_pixels", lit},
+                                    {"items", items}}
+                         .dump(2)
                   << '\n';
     else
-        fmt::print("{} items in {} ({} lit pixels).\n", items.size(), options.out.string(), lit);
+        fmt::print("{}\n{} items in {} ({} lit pixels).\n", title_of(the_case), items.size(), options.out.string(),
+                   lit);
     return 0;
 }
 

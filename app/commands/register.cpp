@@ -93,6 +93,8 @@ int run_register(const RegisterOptions& options) {
         nlohmann::json matrix = nlohmann::json::array();
         for (int r = 0; r < 4; ++r) matrix.push_back({m(r, 0), m(r, 1), m(r, 2), m(r, 3)});
         const nlohmann::json out = {
+            {"case", the_case.code},
+            {"title", title_of(the_case)},
             {"verdict", name_of(result.verdict)},
             {"reasons", result.reasons},
             {"patient_from_ct", matrix},
@@ -115,6 +117,7 @@ int run_register(const RegisterOptions& options) {
             {"seconds", {{"initial", result.initial_match_s}, {"fine", result.refine_s}}}};
         std::cout << out.dump(2) << '\n';
     } else {
+        fmt::print("{}\n", title_of(the_case));
         if (options.cloud.empty())
             fmt::print("{}: {} landmarks, {:.2f} mm rms.\n", name_of(result.verdict), result.points,
                        result.residual_rms_mm);

@@ -112,6 +112,7 @@ int run_review(const ReviewOptions& options) {
                          {"warnings", item.warnings}});
     if (options.json)
         std::cout << nlohmann::json{{"case", the_case.code},
+                                    {"title", title_of(the_case)},
                                     {"created", the_case.created},
                                     {"items", items},
                                     {"warnings", the_case.warnings},
@@ -124,6 +125,7 @@ int run_review(const ReviewOptions& options) {
         return 0;
     }
     if (options.json) return 0;
+    fmt::print("{}\n", title_of(the_case));
     for (const auto& warning : the_case.warnings) warn(warning);
     if (const auto report = options.case_folder / "report.html"; std::filesystem::exists(report))
         fmt::print("Report: {}\n", report.string());

@@ -271,14 +271,14 @@ void write_calibration_html(const CalibrationReport& report, const std::filesyst
                 "dark blue 0, green {:.3f}, red {:.3f} mm; "
                 "seen from the projector, nearest first.</p>",
                 c.volume->median_mm, c.volume->p95_mm, c.volume->worst_mm, c.volume->light_p95_mm, full / 2, full) +
-            html_figures(pictures, file, 5);
+            html_figures(pictures, 5);
     }
     std::vector<ReportPicture> where;
     for (const DeviceName name : kDevices)
         if (c.device(name))
             where.push_back(
                 {text_of(name), "A colour a pose. Where no board was, the lens is guessed.", coverage(report, name)});
-    body += "<h2>Where the board was</h2>" + html_figures(where, file, 3);
+    body += "<h2>Where the board was</h2>" + html_figures(where, 3);
     write_safely(file, html_page("Calibration", body));
 }
 

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "planning_io/files/image_file.h"
-#include "planning_io/files/safe_write.h"
 
 namespace planlight {
 namespace {
@@ -36,15 +35,11 @@ std::string base64(const std::string& bytes) {
     return out;
 }
 
-std::string embedded(const RgbImage& picture, const std::filesystem::path& beside) {
-    const auto file = beside.parent_path() / (beside.filename().string() + ".picture.png");
-    write_png(picture, file);
-    const std::string bytes = read_whole(file);
-    std::filesystem::remove(file);
-    return "data:image/png;base64," + base64(bytes);
-}
-
 }  // namespace
+
+std::string embedded_png(const RgbImage& picture) {
+    return "data:image/png;base64," + base64(png_bytes(picture));
+}
 
 std::string html_escaped(const std::string& text) {
     std::string out;
@@ -63,15 +58,14 @@ std::string html_escaped(const std::string& text) {
     return out;
 }
 
-std::string html_figures(const std::vector<ReportPicture>& pictures, const std::filesystem::path& scratch,
-                         int columns) {
+std::string html_figures(const std::vector<ReportPicture>& pictures, int columns) {
     std::string html =
         columns == 0 ? "<div class=\"grid\">"
                      : fmt::format("<div class=\"grid\" style=\"grid-template-columns:repeat({},1fr)\">", columns);
     for (const auto& p : pictures)
-        html += fmt::format("<figure><img alt=\"{}\" src=\"{}\"><figcaption><b>{}</b>{}</figcaption></figure>",
-                            html_escaped(p.title), embedded(p.picture, scratch), html_escaped(p.title),
-                            html_escaped(p.caption));
+        html +=
+            fmt::format("<figure><img alt=\"{}\" src=\"{}\"><figcaption><b>{}</b>{}</figcaption></figure>",
+                        html_escaped(p.title), embedded_png(p.picture), html_escaped(p.title), html_escaped(p.caption));
     return html + "</div>";
 }
 

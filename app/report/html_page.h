@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -17,10 +16,11 @@ struct ReportPicture {
 /// Text with & < > " made safe for a page.
 std::string html_escaped(const std::string& text);
 
-/// The pictures as a grid of figures, PNG inside the page, `columns` a row (0 = as many as fit). `scratch`: a file
-/// beside it is written and removed.
-std::string html_figures(const std::vector<ReportPicture>& pictures, const std::filesystem::path& scratch,
-                         int columns = 0);
+/// The picture as the address of an <img>: PNG inside the page.
+std::string embedded_png(const RgbImage& picture);
+
+/// The pictures as a grid of figures, PNG inside the page, `columns` a row (0 = as many as fit).
+std::string html_figures(const std::vector<ReportPicture>& pictures, int columns = 0);
 
 /// One self-contained page, dark, no network. `body` is what stands under the heading.
 std::string html_page(const std::string& title, const std::string& body);

@@ -73,9 +73,9 @@ void write_certificate_html(const Case& the_case, const CaseDrawing& drawing, co
         pictures.push_back({"How far off the match may be",
                             "95 % bound at every point of the skin; deeper points may be further off.",
                             picture(FitView::predicted_error)});
-        body += html_figures(pictures, file, 2);
+        body += html_figures(pictures, 2);
     }
-    write_safely(file, html_page("Match of case " + the_case.code, body));
+    write_safely(file, html_page("Match: " + title_of(the_case), body));
 }
 
 fs::path keep_match(const RegistrationResult& found, const PointCloud* cloud, const std::vector<PointPair>& landmarks,

@@ -19,6 +19,7 @@
 #include "planning_io/dicom/dicom_folder.h"
 #include "planning_io/dicom/dicom_values.h"
 #include "planning_io/files/header_text.h"
+#include "planning_io/files/memory_need.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/volume_checks.h"
 
@@ -28,6 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kScanDepth = 10;
+constexpr const char* kTooLarge = "Close other programs, or give a series of fewer or smaller slices.";
 constexpr double kTilted = 1e-3;  // radians
 constexpr const char* kCopyAgain = "Copy or export the series again.";
 
@@ -141,6 +143,16 @@ std::string words_of_class(const DicomFile& file) {
     return fmt::format("of modality \"{}\", storage class {}", file.modality, file.storage_class);
 }
 
+/// The reader's own pictures, mostly of 16 bits, and ours beside them.
+std::uint64_t memory_to_read(const DicomSeries& series) {
+    std::uint64_t pixels = 0;
+    for (const auto& file : series.files)
+        for (const auto& slice : file.slices)
+            pixels += static_cast<std::uint64_t>(std::max(slice.rows, 0)) *
+                      static_cast<std::uint64_t>(std::max(slice.columns, 0));
+    return pixels * (sizeof(std::uint16_t) + sizeof(float));
+}
+
 /// A localizer that a scanner put into the series of the slices is not one of them.
 int leave_localizers_aside(DicomSeries& series) {
     const auto before = series.files.size();
@@ -155,14 +167,22 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
     const bool is_folder = fs::is_directory(path);
     const bool is_index = !is_folder && is_dicom_directory(path);
     const fs::path folder = is_folder ? path : path.has_parent_path() ? path.parent_path() : fs::path(".");
-    DicomSeries series = choose_series(find_dicom(folder, is_folder || is_index ? kScanDepth : 1), path, wanted);
+    const DicomFolder found = find_dicom(folder, is_folder || is_index ? kScanDepth : 1);
+    DicomSeries series = choose_series(found, path, wanted);
     const int localizers = leave_localizers_aside(series);
     for (const auto& file : series.files)
         if (file.damaged) throw DamagedFileError(file.path, "is damaged or cut short in its header", kCopyAgain);
     if (!series.is_volume())
         throw InputError(path, "is no CT or MR volume but " + words_of_class(series.files.front()),
                          "Give a series of CT or MR image objects.");
-    if (const auto fault = fault_of(series.all_slices())) throw InputError(path, fault->problem, fault->remedy);
+    if (const auto fault = fault_of(series.all_slices())) {
+        if (!found.unreadable.empty())  // perhaps what is missing
+            throw DamagedFileError(found.unreadable.front(),
+                                   "is a DICOM file that is damaged, and without it the series " + fault->problem,
+                                   kCopyAgain);
+        throw InputError(path, fault->problem, fault->remedy);
+    }
+    check_memory(path.string() + ": reading its pictures", memory_to_read(series), kTooLarge);
 
     vtkNew<vtkStringArray> names;
     for (const auto& file : series.files) names->InsertNextValue(file.readable_as);
@@ -188,6 +208,14 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
     volume.modality = series.modality;
     volume.frame_of_reference_uid = slices[0].frame_of_reference_uid;
     volume.source = fmt::format("DICOM series {}", series.uid);
+    volume.series_description = series.description;
+    volume.series_date = series.files.front().date;
+    if (!found.unreadable.empty())
+        volume.notes.push_back(fmt::format(
+            "left aside: {} that {} damaged and {} not say of which series: if a slice at the end of this one is among "
+            "them, the volume ends before it",
+            counted(static_cast<long long>(found.unreadable.size()), "DICOM file"),
+            found.unreadable.size() == 1 ? "is" : "are", found.unreadable.size() == 1 ? "does" : "do"));
     if (localizers > 0)
         volume.notes.push_back("left aside: " + counted(localizers, "localizer picture") + " of the series");
     note_geometry(series, volume);

@@ -9,7 +9,7 @@
 
 namespace planlight {
 
-enum class Packing { none, deflate };  ///< deflate: gzip or zlib, with their checksums
+enum class Packing { none, deflate };  ///< deflate: gzip (of any number of members) or zlib, with their checksums
 
 /// The bytes of a file from `offset` on, unpacked as they are read. Throws InputError when it cannot be opened.
 class ByteSource {

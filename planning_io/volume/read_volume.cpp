@@ -53,6 +53,8 @@ Volume read_volume(const fs::path& path, const std::string& series) {
 void make_anonymous(Volume& volume) {
     volume.source = volume.modality + " volume";
     volume.frame_of_reference_uid.clear();
+    volume.series_description.clear();
+    volume.series_date.clear();
 }
 
 std::string hash_of(const Volume& volume) {
