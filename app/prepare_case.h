@@ -9,6 +9,7 @@
 #include "planning_io/types/volume.h"
 #include "segmentation/build_skin_lut.h"
 #include "segmentation/segment_skin.h"
+#include "segmentation/skin_judgement.h"
 
 namespace planlight {
 
@@ -19,6 +20,7 @@ struct Preparation {
     double brightness_ratio = 1;    ///< of an MR, across the head, evened out before the threshold
     double threshold = 0, body_ml = 0, removed_ml = 0;
     int pieces_removed = 0;
+    SkinJudgement judgement;  ///< how the skin was checked, where the volume cuts it off; empty on a given surface or a phantom
     double segment_s = 0, triangulate_s = 0, lut_s = 0;
 };
 

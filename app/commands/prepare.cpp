@@ -25,13 +25,16 @@ struct PrepareOptions {
     double threshold = 0;  ///< HU; 0 = found from the histogram
     double voxel_mm = 1;
     bool anonymous = false;  ///< no UID and no file name of the volume in the case folder
+    bool resample = false;   ///< slices with uneven steps onto an even grid
+    bool phantom = false;    ///< not a head: a phantom, a dry skull or a plate, to commission a room
     bool replace = false, preview = false, json = false;
 };
 
 int run_prepare(const PrepareOptions& options) {
     ProgressBar bar;
     bar.show("volume", 0);
-    Volume volume = read_volume(options.volume, options.series_uid);
+    Volume volume = read_volume(options.volume, options.series_uid,
+                                options.resample ? SliceGaps::resampled : SliceGaps::refused);
     const PlanImport plan =
         import_plan(options.plan, plan_settings(options.frame, options.accept_frame, volume.frame_of_reference_uid));
     std::optional<SurfaceFile> surface;
@@ -45,6 +48,7 @@ int run_prepare(const PrepareOptions& options) {
     bar.show("volume", 1);
     SkinSettings skin;
     skin.threshold = options.threshold;
+    skin.phantom = options.phantom;
     LutSettings lut;
     lut.voxel_mm = options.voxel_mm;
     Preparation done = surface ? prepare_case_on(volume, *surface, plan.plan, lut, iso_date_now(), bar.callback())
@@ -83,7 +87,7 @@ Run add_prepare(CLI::App& app) {
     PrepareOptions& o = *options;
     auto* sub = add_command(app, "prepare", "CT or MR volume and plan -> case folder (skin, LUT, plan, checksums)",
                             "prepare Cranium.inv3 --plan frontal_defect.mrk.json --out case");
-    sub->add_option("volume", o.volume, "DICOM folder or file, NIfTI, NRRD, MetaImage, or InVesalius project (.inv3)")
+    sub->add_option("volume", o.volume, "DICOM folder or file, NIfTI, FreeSurfer MGZ, NRRD, MetaImage, or InVesalius project (.inv3)")
         ->required();
     sub->add_option(
            "--plan", o.plan,
@@ -100,6 +104,8 @@ Run add_prepare(CLI::App& app) {
     sub->add_option("--series", o.series_uid, "UID or number of the DICOM series, where the folder holds several");
     sub->add_flag("--anonymous", o.anonymous, "Leave UIDs and file names of the volume out of the case folder");
     sub->add_option("--threshold", o.threshold, "Skin threshold, HU (default: found from the histogram)");
+    sub->add_flag("--resample", o.resample, "Lay DICOM slices with uneven steps onto an even grid, between the cuts where they lie");
+    sub->add_flag("--phantom", o.phantom, "Take a phantom, a dry skull or a plate: do not ask whether it is a head");
     sub->add_option("--voxel-mm", o.voxel_mm, "Edge of the LUT's cubic voxels")
         ->capture_default_str()
         ->check(CLI::Range(0.25, 10.0));
