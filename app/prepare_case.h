@@ -11,6 +11,7 @@
 #include "planning_io/types/volume.h"
 #include "segmentation/build_skin_lut.h"
 #include "segmentation/segment_skin.h"
+#include "segmentation/skin_judgement.h"
 
 namespace planlight {
 
@@ -32,6 +33,8 @@ struct Preparation {
     double threshold = 0, body_ml = 0, removed_ml = 0;
     int pieces_removed = 0;
     SkinMask mask;  ///< empty on a given surface
+    SkinJudgement
+        judgement;  ///< how the skin was checked, where the volume cuts it off; empty on a given surface or a phantom
     double segment_s = 0, triangulate_s = 0, lut_s = 0;
 };
 
