@@ -140,7 +140,7 @@ TEST_F(MovedRig, FilesOfOthersAreRefusedWithBothNames) {
         return done;
     };
     expect_one_clear_sentence(project("case --rig room2/rig.json --registration good.json"), 3,
-                              "calibrated 2024-01-01) and");
+                              "and room2/rig.json is rig");
     expect_one_clear_sentence(project("case2 --rig room/rig.json --registration good.json"), 3, "is a match of case");
     ASSERT_EQ(run("track room2/frames --rig room2/rig.json --capture room2/capture --out poses2.json").exit_code, 0);
     expect_one_clear_sentence(project("case --rig room/rig.json --registration good.json --poses poses2.json"), 3,

@@ -14,7 +14,7 @@ namespace planlight {
 namespace {
 
 constexpr double kDegrees = 180 / std::numbers::pi;
-constexpr std::size_t kPlacesOfDoubt = 80;
+constexpr std::size_t kPlacesOfDoubt = 50;
 
 bool contains(const std::vector<RigDevice>& devices, RigDevice device) {
     return std::find(devices.begin(), devices.end(), device) != devices.end();

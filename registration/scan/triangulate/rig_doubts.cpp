@@ -12,6 +12,35 @@ namespace {
 
 constexpr Eigen::Index kModes = 3;
 
+/// The places that settle, with their points where this rig sees them.
+std::vector<SeenPlace> seen_by(const RigCalibration& rig, const std::vector<SeenPlace>& places) {
+    std::vector<SeenPlace> seen;
+    for (const SeenPlace& place : places)
+        if (const auto p = point_of_pixels(rig, place.pixels, place.p_in_rig)) seen.push_back({place.pixels, *p});
+    return seen;
+}
+
+/// How the points of all places move when they are seen by another rig; one below the other.
+Eigen::VectorXd moves_of(const RigCalibration& other, const std::vector<SeenPlace>& seen) {
+    Eigen::VectorXd moves = Eigen::VectorXd::Zero(3 * static_cast<Eigen::Index>(seen.size()));
+    for (std::size_t i = 0; i < seen.size(); ++i)
+        if (const auto p = point_of_pixels(other, seen[i].pixels, seen[i].p_in_rig))
+            moves.segment<3>(3 * static_cast<Eigen::Index>(i)) = *p - seen[i].p_in_rig;
+    return moves;
+}
+
+/// Takes a common turn and shift out of every column: a match does so as well.
+void remove_common_motion(const std::vector<SeenPlace>& seen, Eigen::MatrixXd& moves) {
+    Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+    for (const SeenPlace& place : seen) middle += place.p_in_rig / static_cast<double>(seen.size());
+    Eigen::MatrixXd common(moves.rows(), 6);
+    constexpr double kArm_mm = 100;  // turns in units like the shifts'
+    for (std::size_t i = 0; i < seen.size(); ++i)
+        common.middleRows<3>(3 * static_cast<Eigen::Index>(i)) =
+            movement_by_twist((seen[i].p_in_rig - middle) / kArm_mm);
+    moves -= common * (common.transpose() * common).ldlt().solve(common.transpose() * moves);
+}
+
 }  // namespace
 
 RigDoubt doubt_between(const RigCalibration& used, const RigCalibration& other, const std::vector<SeenPlace>& places) {
@@ -44,27 +73,17 @@ std::vector<RigDoubt> own_doubts(const Explanation& explanation, const RigCalibr
     const Eigen::LLT<RigMatrix> root(explanation.covariance + 1e-18 * RigMatrix::Identity());
     if (root.info() != Eigen::Success) return {};
     const RigMatrix L = root.matrixL();
-    const auto rows = 3 * static_cast<Eigen::Index>(places.size());
-    Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(rows, kRigNumbers);
-    const auto move_of = [&](const RigNumbers& numbers) {
-        const RigDoubt doubt = doubt_between(used, changed(used, numbers), places);
-        const RigCalibration other = doubted(used, doubt);
-        Eigen::VectorXd move = Eigen::VectorXd::Zero(rows);
-        for (std::size_t i = 0; i < places.size(); ++i) {
-            const auto p = point_of_pixels(other, places[i].pixels, places[i].p_in_rig);
-            const auto q = point_of_pixels(used, places[i].pixels, places[i].p_in_rig);
-            if (p && q) move.segment<3>(3 * static_cast<Eigen::Index>(i)) = *p - *q;
-        }
-        return move;
-    };
+    const std::vector<SeenPlace> seen = seen_by(used, places);
+    Eigen::MatrixXd moves(3 * static_cast<Eigen::Index>(seen.size()), kRigNumbers);
     tbb::parallel_for(Eigen::Index{0}, Eigen::Index{kRigNumbers},
-                      [&](Eigen::Index k) { moves.col(k) = move_of(L.col(k)); });
+                      [&](Eigen::Index k) { moves.col(k) = moves_of(changed(used, RigNumbers(L.col(k))), seen); });
+    remove_common_motion(seen, moves);
     const RigMatrix squares = moves.transpose() * moves;
     const Eigen::SelfAdjointEigenSolver<RigMatrix> axes(squares);  // ascending
     std::vector<RigDoubt> doubts;
     for (Eigen::Index k = 0; k < kModes; ++k) {
-        RigDoubt doubt =
-            doubt_between(used, changed(used, RigNumbers(L * axes.eigenvectors().col(kRigNumbers - 1 - k))), places);
+        const RigNumbers numbers = L * axes.eigenvectors().col(kRigNumbers - 1 - k);
+        RigDoubt doubt = doubt_between(used, changed(used, numbers), places);
         doubt.sigma = true;
         doubt.what = "what the calibration and this scan leave open";
         doubts.push_back(doubt);

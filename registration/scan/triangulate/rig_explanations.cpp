@@ -10,7 +10,7 @@
 namespace planlight {
 namespace {
 
-constexpr int kIterations = 8, kIterationsAsCalibrated = 3;
+constexpr int kIterations = 8, kIterationsAsCalibrated = 1;
 using DeviceMatrix = Eigen::Matrix<double, 10, 10>;
 
 double distance_to(const std::vector<SeenPlace>& places, const CameraModel& device) {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/poses_file.h"
 #include "planning_io/case/registration_file.h"
@@ -27,7 +29,8 @@ RigState a_state() {
     RigDoubt doubt;
     doubt.what = "the left camera moved";
     doubt.chi_square = 3;
-    for (auto& by : doubt.by) by.setRandom();
+    for (std::size_t d = 0; d < kRigDevices; ++d)
+        for (int i = 0; i < 10; ++i) doubt.by[d][i] = std::sin(1 + 7.0 * static_cast<double>(d) + i);
     state.doubts = {doubt};
     state.hidden_light_mm = 0.31;
     return state;
