@@ -9,6 +9,7 @@
 #include "planning_io/case/case_folder.h"
 #include "planning_io/surface/surface_file.h"
 #include "planning_io/types/volume.h"
+#include "projection/draw_plan.h"
 #include "segmentation/build_skin_lut.h"
 #include "segmentation/segment_skin.h"
 
@@ -31,7 +32,8 @@ struct Preparation {
     double brightness_ratio = 1;    ///< of an MR, across the head, evened out before the threshold
     double threshold = 0, body_ml = 0, removed_ml = 0;
     int pieces_removed = 0;
-    SkinMask mask;  ///< empty on a given surface
+    SkinMask mask;        ///< empty on a given surface
+    PlanDrawing drawing;  ///< of the plan on the skin
     double segment_s = 0, triangulate_s = 0, lut_s = 0;
 };
 
