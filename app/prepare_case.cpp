@@ -11,6 +11,7 @@
 #include "planning_io/files/memory_need.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/surface/mesh_file.h"
+#include "planning_io/types/error.h"
 #include "planning_io/types/spare_memory.h"
 #include "planning_io/volume/read_volume.h"
 #include "projection/check_plan.h"
@@ -30,6 +31,19 @@ double timed(const std::string& name, const PreparationWatcher& watcher,
     });
     if (watcher.progress) watcher.progress(name, 1);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+}
+
+/// Refuses a plan that does not fit. What is doubtful about the skin comes first: it may be the one to be mistrusted.
+void refuse_misfit(const PlanVerdict& of_plan, const SkinJudgement& skin) {
+    try {
+        refuse_stopped_plan(of_plan);
+    } catch (const InputError& error) {
+        if (skin.doubts.empty()) throw;
+        std::string doubts;
+        for (const SkinDoubt& doubt : skin.doubts) doubts += (doubts.empty() ? "" : "; ") + doubt.finding;
+        throw InputError({}, "The skin itself is doubtful, mistrust it first (" + doubts + "). " + error.what(),
+                         skin.doubts.front().remedy + " " + error.remedy);
+    }
 }
 
 /// Keeps a warning and tells it at once: a later step may fail.
@@ -56,6 +70,21 @@ void tell_of_volume(const Volume& volume, const Plan& plan, const std::string& c
     the_case.plan = plan;
 }
 
+/// Is this the skin of a head? A phantom is not asked. Refuses what is not, warns of what is doubtful.
+void judge(const Volume& volume, const SkinSettings& skin, const PreparationWatcher& watcher, Preparation& done) {
+    Case& the_case = done.prepared;
+    if (skin.phantom) {
+        the_case.skin_edge_sigma_mm = skin_edge_sigma_mm(volume, done.mask, the_case.skin);
+        add_warnings({"taken as a phantom: it was not asked whether this is the skin of a head"}, watcher, the_case);
+        return;
+    }
+    done.judgement = judge_skin(volume, done.mask, the_case.skin);
+    refuse_implausible(done.judgement);
+    the_case.skin_edge_sigma_mm = done.judgement.sigma_mm;
+    for (const SkinDoubt& doubt : done.judgement.doubts)
+        add_warnings({doubt.finding + ". " + doubt.remedy}, watcher, the_case);
+}
+
 /// The LUT, and the plan checked: of a case that has its skin.
 void finish(Preparation& done, const Volume& volume, const LutSettings& lut, const PreparationWatcher& watcher) {
     Case& the_case = done.prepared;
@@ -63,7 +92,7 @@ void finish(Preparation& done, const Volume& volume, const LutSettings& lut, con
         const SkinSurface surface(the_case.skin);
         const PlanVerdict of_plan = check_plan(the_case.plan, surface, box_of(volume));
         add_warnings(of_plan.warnings, watcher, the_case);
-        refuse_stopped_plan(of_plan);
+        refuse_misfit(of_plan, done.judgement);
         done.drawing = draw_plan(the_case.plan, surface);
     }
     const auto bare = std::count_if(done.drawing.items.begin(), done.drawing.items.end(),
@@ -105,21 +134,20 @@ Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSetti
     done.segment_s = timed("skin", watcher, [&](const auto& share) { done.mask = segment_skin(volume, skin, share); });
     const SkinMask& mask = done.mask;
     done.threshold_given = skin.threshold != 0;
-    done.threshold = the_case.skin_threshold = mask.threshold;
-    done.brightness_ratio = mask.bias.ratio();
+    done.threshold = the_case.skin_threshold = mask.threshold_said;
+    done.brightness_ratio = mask.brightness_ratio;
     done.body_ml = mask.volume_ml;
     done.removed_ml = mask.removed_ml;
     done.pieces_removed = mask.pieces_removed;
     add_warnings(mask.warnings, watcher, the_case);
     if (volume.modality == "CT" && !volume.is_hu)
-        add_warnings(
-            {fmt::format("the values of this CT are not HU; the skin threshold {:.0f} was {}: look at the skin "
-                         "before you use it",
-                         mask.threshold, done.threshold_given ? "given" : "found from their histogram")},
-            watcher, the_case);
+        add_warnings({fmt::format("the values of this CT are not HU; the skin threshold {:.0f} was {}: look at the "
+                                  "skin before you use it",
+                                  done.threshold, done.threshold_given ? "given" : "found from their histogram")},
+                     watcher, the_case);
     done.triangulate_s = timed("surface", watcher,
                                [&](const auto& share) { the_case.skin = triangulate_skin(volume, mask, skin, share); });
-    the_case.skin_edge_sigma_mm = skin_edge_sigma_mm(volume, mask, the_case.skin);
+    judge(volume, skin, watcher, done);
     finish(done, volume, lut, watcher);
     return done;
 }

@@ -12,6 +12,7 @@
 #include "projection/draw_plan.h"
 #include "segmentation/build_skin_lut.h"
 #include "segmentation/segment_skin.h"
+#include "segmentation/skin_judgement.h"
 
 namespace planlight {
 
@@ -32,7 +33,9 @@ struct Preparation {
     double brightness_ratio = 1;    ///< of an MR, across the head, evened out before the threshold
     double threshold = 0, body_ml = 0, removed_ml = 0;
     int pieces_removed = 0;
-    SkinMask mask;        ///< empty on a given surface
+    SkinMask mask;  ///< empty on a given surface
+    SkinJudgement
+        judgement;  ///< how the skin was checked, where the volume cuts it off; empty on a given surface or a phantom
     PlanDrawing drawing;  ///< of the plan on the skin
     double segment_s = 0, triangulate_s = 0, lut_s = 0;
 };

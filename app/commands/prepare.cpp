@@ -28,6 +28,8 @@ struct PrepareOptions {
     double voxel_mm = 1;
     CaseNames names;         ///< the series' are the volume's
     bool anonymous = false;  ///< no UID and no file name of the volume in the case folder
+    bool resample = false;   ///< slices with uneven steps onto an even grid
+    bool phantom = false;    ///< not a head: a phantom, a dry skull or a plate, to commission a room
     bool replace = false, preview = false, json = false;
 };
 
@@ -40,7 +42,8 @@ struct Inputs {
 
 Inputs read_inputs(const PrepareOptions& options) {
     Inputs in;
-    in.volume = read_volume(options.volume, options.series_uid);
+    in.volume =
+        read_volume(options.volume, options.series_uid, options.resample ? SliceGaps::resampled : SliceGaps::refused);
     const std::string& frame_uid = in.volume.frame_of_reference_uid;
     in.plan = import_plan(options.plan, plan_settings(options.frame, options.accept_frame, frame_uid));
     if (!options.surface.empty()) {
@@ -62,6 +65,7 @@ CaseNames names_of(const PrepareOptions& options) {
 Preparation prepare(const Inputs& in, const PrepareOptions& options, ProgressBar& bar) {
     SkinSettings skin;
     skin.threshold = options.threshold;
+    skin.phantom = options.phantom;
     LutSettings lut;
     lut.voxel_mm = options.voxel_mm;
     check_memory_to_prepare(in.volume, lut);
@@ -130,7 +134,8 @@ Run add_prepare(CLI::App& app) {
     PrepareOptions& o = *options;
     auto* sub = add_command(app, "prepare", "CT or MR volume and plan -> case folder (skin, LUT, plan, checksums)",
                             "prepare Cranium.inv3 --plan frontal_defect.mrk.json --out case");
-    sub->add_option("volume", o.volume, "DICOM folder or file, NIfTI, NRRD, MetaImage, or InVesalius project (.inv3)")
+    sub->add_option("volume", o.volume,
+                    "DICOM folder or file, NIfTI, FreeSurfer MGZ, NRRD, MetaImage, or InVesalius project (.inv3)")
         ->required();
     sub->add_option(
            "--plan", o.plan,
@@ -154,6 +159,9 @@ Run add_prepare(CLI::App& app) {
                   "Leave UIDs, dates, descriptions and names of files and series out of the case folder")
         ->excludes(patient);
     sub->add_option("--threshold", o.threshold, "Skin threshold, HU (default: found from the histogram)");
+    sub->add_flag("--resample", o.resample,
+                  "Lay DICOM slices with uneven steps onto an even grid, between the cuts where they lie");
+    sub->add_flag("--phantom", o.phantom, "Take a phantom, a dry skull or a plate: do not ask whether it is a head");
     sub->add_option("--voxel-mm", o.voxel_mm, "Edge of the LUT's cubic voxels")
         ->capture_default_str()
         ->check(CLI::Range(0.25, 10.0));

@@ -7,6 +7,7 @@
 #include "app/case_model.h"
 #include "app/report/html_page.h"
 #include "app/windows/scene_view.h"
+#include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/registration_file.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/point_pairs_file.h"
@@ -85,7 +86,8 @@ fs::path keep_match(const RegistrationResult& found, const PointCloud* cloud, co
         const fs::path wanted = folder / fmt::format("{:04d}", number);
         if (fs::create_directory(wanted)) kept = wanted;  // false: it is there already
     }
-    if (cloud) write_cloud(*cloud, kept / "cloud.ply");
+    if (cloud)
+        write_cloud(*cloud, kept / "cloud.ply", {}, found.rig ? comments_of(*found.rig) : std::vector<std::string>{});
     if (!landmarks.empty()) write_point_pairs(landmarks, kept / "landmarks.csv");
     write_registration(found, kept / "registration.json");
     return kept;

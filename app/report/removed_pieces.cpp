@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 
 #include "segmentation/voxel_morphology.h"
@@ -22,35 +21,12 @@ constexpr double kLeastPiece_ml = 0.05;
 constexpr int kNumbered = 5, kWidth = 480, kHeight = 480;
 const cv::Scalar kRed(200, 30, 40), kWhite(255, 255, 255), kInk(40, 44, 52);
 
-/// The factor by which an MR is brighter at a voxel than on average, as it was taken out before the threshold.
-class Evened {
-public:
-    Evened(const Volume& volume, const BiasField& bias) : size_(volume.size), bias_(bias), none_(bias.ratio() == 1) {}
-    double factor(int i, int j, int k) const {
-        if (none_) return 1;
-        const double x = unit(i, 0), y = unit(j, 1), z = unit(k, 2);
-        const std::array<double, 10> terms{1, x, y, z, x * x, y * y, z * z, x * y, x * z, y * z};
-        double log_factor = 0;
-        for (std::size_t t = 0; t < terms.size(); ++t) log_factor += terms[t] * bias_.log_coefficients[t];
-        return std::exp(std::clamp(log_factor, bias_.log_low, bias_.log_high));
-    }
-
-private:
-    double unit(int i, std::size_t axis) const { return size_[axis] > 1 ? 2.0 * i / (size_[axis] - 1) - 1 : 0; }
-    std::array<int, 3> size_;
-    const BiasField& bias_;
-    bool none_;
-};
-
 /// 1 where a voxel is as dense as skin and no body.
 Mask dense_outside(const Volume& volume, const SkinMask& mask) {
-    const Evened evened(volume, mask.bias);
+    const Volume values = skin_values(volume, mask);
     Mask outside(volume.values.size());
-    std::size_t v = 0;
-    for (int k = 0; k < volume.size[2]; ++k)
-        for (int j = 0; j < volume.size[1]; ++j)
-            for (int i = 0; i < volume.size[0]; ++i, ++v)
-                outside[v] = !mask.body[v] && volume.values[v] >= mask.threshold * evened.factor(i, j, k);
+    for (std::size_t v = 0; v < outside.size(); ++v)
+        outside[v] = !mask.body[v] && static_cast<double>(values.values[v]) >= mask.threshold;
     return outside;
 }
 

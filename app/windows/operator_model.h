@@ -137,7 +137,8 @@ struct OperatorModel {
     Figures figures;
     ButtonState scan, do_register, track, stop;   ///< DARK is always enabled
     std::string use_landmarks = "Use landmarks";  ///< on the button that hands over the landmarks that were clicked
-    bool confirm = false;                         ///< the match needs a person's look: a button says that it fits
+    bool confirm = false;  ///< the match, or its light, needs a person's look: a button says that it is right
+    std::string confirm_words = "It fits: use it";  ///< on that button
 };
 
 /// The scene as that view shows it. Without a match it is the scene as it is.

@@ -150,6 +150,10 @@ std::string checksums_in(const fs::path& folder) {
 
 }  // namespace
 
+CaseName name_of(const Case& prepared) {
+    return {prepared.code, prepared.volume_hash, prepared.lut.mesh_hash};
+}
+
 std::string code_of(const std::string& volume_hash, const std::string& plan_hash) {
     return volume_hash.substr(0, 8) + "-" + plan_hash.substr(0, 4);
 }

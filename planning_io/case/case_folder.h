@@ -7,6 +7,7 @@
 
 #include "planning_io/case/case_names.h"
 #include "planning_io/types/plan.h"
+#include "planning_io/types/registration_result.h"
 #include "planning_io/types/skin_lut.h"
 #include "planning_io/types/triangle_mesh.h"
 
@@ -32,6 +33,9 @@ struct Case {
     Plan plan;
     std::vector<std::string> warnings;  ///< of the preparation, in words
 };
+
+/// What other files call this case.
+CaseName name_of(const Case& prepared);
 
 /// "1a2b3c4d-9f3e": the volume's first eight digits and the plan's first four.
 std::string code_of(const std::string& volume_hash, const std::string& plan_hash);

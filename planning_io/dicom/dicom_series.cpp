@@ -31,6 +31,7 @@ namespace fs = std::filesystem;
 constexpr int kScanDepth = 10;
 constexpr const char* kTooLarge = "Close other programs, or give a series of fewer or smaller slices.";
 constexpr double kTilted = 1e-3;  // radians
+constexpr double kEven_mm = 0.01;
 constexpr const char* kCopyAgain = "Copy or export the series again.";
 
 /// File and frame of each slice of the reader's volume.
@@ -117,6 +118,44 @@ void note_geometry(const DicomSeries& series, Volume& volume) {
         }
 }
 
+/// Slices that lie off their places on an even grid: laid onto one of the smallest step, linear between the cuts where
+/// they really are. A few hundredths of a step are left as they are, and said.
+void lay_on_even_grid(Volume& volume, const std::vector<DicomSlice>& slices) {
+    const double off_mm = unevenness_of(slices);
+    if (off_mm < kEven_mm) return;
+    const std::vector<double> places = places_along_stack(slices);
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < places.size(); ++i) steps.push_back(std::abs(places[i] - places[i - 1]));
+    const auto [least, most] = std::minmax_element(steps.begin(), steps.end());
+    if (*most - *least < 0.05 * *most) {
+        volume.notes.push_back(fmt::format("its slices lie up to {:.2f} mm off an even spacing of {:.2f} mm", off_mm,
+                                           std::abs(places.back()) / static_cast<double>(steps.size())));
+        return;
+    }
+    const double length = std::abs(places.back()), sign = places.back() < 0 ? -1 : 1;
+    const int count = static_cast<int>(std::ceil(length / *least - 1e-6)) + 1;
+    const double step = length / (count - 1);
+    const std::size_t slab = volume.index(0, 0, 1);
+    std::vector<float> laid(slab * static_cast<std::size_t>(count));
+    std::size_t below = 0;
+    for (int k = 0; k < count; ++k) {
+        const double at = step * k;
+        while (below + 2 < places.size() && sign * places[below + 1] <= at) ++below;
+        const auto f = static_cast<float>(
+            std::clamp((at - sign * places[below]) / (sign * (places[below + 1] - places[below])), 0.0, 1.0));
+        const float *low = volume.values.data() + below * slab, *high = low + slab;
+        float* to = laid.data() + static_cast<std::size_t>(k) * slab;
+        for (std::size_t v = 0; v < slab; ++v) to[v] = low[v] + f * (high[v] - low[v]);
+    }
+    volume.values = std::move(laid);
+    volume.ct_from_voxel.linear().col(2) = volume.ct_from_voxel.linear().col(2).normalized() * step;
+    volume.size[2] = count;
+    volume.notes.push_back(
+        fmt::format("its {} slices lie {:.2f} to {:.2f} mm apart; they were laid onto an even grid of {} with steps of "
+                    "{:.2f} mm, linear between the cuts: where they are far apart the skin is coarser",
+                    slices.size(), *least, *most, count, step));
+}
+
 /// What a file is, for people: by its storage class (DICOM PS3.6 A), else by its modality.
 std::string words_of_class(const DicomFile& file) {
     static const std::map<std::string, std::string> kWords = {{"1.1", "a computed radiograph"},
@@ -175,7 +214,8 @@ std::vector<fs::path> crashing_files_of(const fs::path& path) {
     return headers_that_crash(folder, depth);
 }
 
-Volume parse_dicom_series(const fs::path& path, const std::string& wanted, const std::vector<fs::path>& unreadable) {
+Volume parse_dicom_series(const fs::path& path, const std::string& wanted, SliceGaps gaps,
+                          const std::vector<fs::path>& unreadable) {
     const auto [folder, depth] = place_to_search(path);
     const DicomFolder found = find_dicom(folder, depth, unreadable);
     DicomSeries series = choose_series(found, path, wanted);
@@ -185,7 +225,7 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted, const
     if (!series.is_volume())
         throw InputError(path, "is no CT or MR volume but " + words_of_class(series.files.front()),
                          "Give a series of CT or MR image objects.");
-    if (const auto fault = fault_of(series.all_slices())) {
+    if (const auto fault = fault_of(series.all_slices(), gaps)) {
         if (!found.unreadable.empty())  // perhaps what is missing
             throw DamagedFileError(found.unreadable.front(),
                                    "is a DICOM file that is damaged, and without it the series " + fault->problem,
@@ -232,6 +272,7 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted, const
     check_against_reader(reader, volume, path);
     copy_stored_values(reader->GetOutput(), volume, path);
     rescale(volume, meaning, series.files.front().rescale_type, slices.front().has_rescale);
+    lay_on_even_grid(volume, slices);
     make_right_handed(volume);
     check_for_skin(volume, path);
     return volume;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "planning_io/dicom/slice_gaps.h"
 #include "planning_io/types/volume.h"
 
 namespace planlight {
@@ -12,6 +13,7 @@ namespace planlight {
 /// may crash: to be called in a child process.
 /// `unreadable`: files that are known to crash it.
 Volume parse_dicom_series(const std::filesystem::path& folder_or_file, const std::string& series,
+                          SliceGaps gaps = SliceGaps::refused,
                           const std::vector<std::filesystem::path>& unreadable = {});
 
 /// The files beside it, or below it, that would crash `parse_dicom_series` before it knows whose they are.

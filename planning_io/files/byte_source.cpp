@@ -176,7 +176,8 @@ std::size_t bytes_of(VoxelType type) {
     return 1;
 }
 
-std::vector<float> read_voxels(ByteSource& source, VoxelType type, bool big_endian, std::size_t count) {
+std::vector<float> read_voxels(ByteSource& source, VoxelType type, bool big_endian, std::size_t count,
+                               std::uint64_t allowed) {
     const std::size_t each = bytes_of(type);
     if (count > source.upper_bound() / each)
         throw DamagedFileError(
@@ -192,7 +193,7 @@ std::vector<float> read_voxels(ByteSource& source, VoxelType type, bool big_endi
         source.read(block.data(), now * each);
         append(type, block, now, swap, values);
     }
-    source.finish(4096);
+    source.finish(allowed);
     const auto odd = std::count_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); });
     if (odd > 0)
         throw DamagedFileError(source.file(), fmt::format("holds {} voxels that are not numbers", odd),

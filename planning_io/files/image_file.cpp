@@ -4,6 +4,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include "planning_io/files/safe_write.h"
@@ -87,12 +88,14 @@ std::string png_bytes(const RgbImage& picture) {
 GrayImage read_gray(const fs::path& file) {
     const cv::Mat picture = decode(file);
     GrayImage grey(picture.cols, picture.rows);
+    if (picture.channels() == 1) {
+        for (int y = 0; y < picture.rows; ++y)
+            std::copy_n(picture.ptr<std::uint8_t>(y), picture.cols,
+                        grey.pixels.begin() + static_cast<std::ptrdiff_t>(grey.index(0, y)));
+        return grey;
+    }
     for (int y = 0; y < picture.rows; ++y)
         for (int x = 0; x < picture.cols; ++x) {
-            if (picture.channels() == 1) {
-                grey.at(x, y) = picture.at<std::uint8_t>(y, x);
-                continue;
-            }
             const auto& bgr = picture.at<cv::Vec3b>(y, x);  // ITU-R BT.601 luma
             grey.at(x, y) = static_cast<std::uint8_t>(std::lround(0.299 * bgr[2] + 0.587 * bgr[1] + 0.114 * bgr[0]));
         }

@@ -115,8 +115,8 @@ void add_stack(std::vector<VolumeCase>& list) {
         o.number(0x00280010, 32), o.pixels(std::vector<std::int16_t>(32 * 64, 24));
     }));
     list.push_back(slice("two ways of storing", "stored with", [](DicomObject& o) { o.number(0x00280103, 1); }));
-    list.push_back(series("uneven spacing: one slice 0.02 mm off", "not evenly spaced",
-                          [](Objects& o) { put_z(o[9], -46 + 36.02); }));
+    list.push_back(series("uneven spacing: one slice 0.2 mm off", "not evenly spaced",
+                          [](Objects& o) { put_z(o[9], -46 + 36.2); }));
     list.push_back(series("uneven spacing: 4 mm below, 2.5 mm above", "evenly", [](Objects& o) {
         for (int k = 12; k < 24; ++k) put_z(o[static_cast<std::size_t>(k)], -46 + 44 + 2.5 * (k - 11));
     }));

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning_io/types/rig_calibration.h"
+#include "planning_io/types/stereo_frame.h"
+#include "projection/draw_plan.h"
+#include "projection/skin_surface.h"
+
+namespace planlight {
+
+struct CheckLightSettings {
+    double spacing_mm = 0.5;       ///< between the places that are looked at along a stroke
+    double segment_mm = 5;         ///< of stroke whose profiles are averaged before light is looked for; circles: half
+    double search_mm = 3;          ///< to both sides of where the light belongs, less where another stroke is near
+    double least_search_mm = 1.2;  ///< where less is free of other strokes nothing is looked for
+    double least_peak_sigmas = 6;  ///< light stands out from the profile's noise by this
+    double least_peak_grey = 1.5;  ///< and by this
+    double least_px_per_mm = 0.5;  ///< a camera that sees the skin more obliquely or from farther is not asked
+    double steepest = 1.2;         ///< radians between the skin's normal and projector or camera
+    double place_sigma_mm = 0.1;   ///< of one segment beside its noise: texture, the skin's own shape
+};
+
+/// Where the light of one stretch of stroke was seen.
+struct SeenSegment {
+    int item = -1;
+    Eigen::Vector3d p_in_ct, sideways_in_ct;  ///< its middle; unit vector along the skin, square to the stroke
+    bool seen = false;                        ///< light was found; false: none within reach, though it should be seen
+    double off_mm = 0;                        ///< of the light along `sideways_in_ct`
+    double sigma_mm = 0;                      ///< one standard deviation of that
+    std::array<bool, 2> by_camera{};          ///< left, right
+};
+
+/// Where one item's light lies against the plan.
+struct ItemLight {
+    int segments = 0, seen = 0;  ///< stretches that should be seen by a camera, and those where light was found
+    Eigen::Vector3d shift_in_ct = Eigen::Vector3d::Zero();  ///< of the light along the skin, mm
+    double off_mm = 0;                                      ///< its length, in the directions that the strokes tell
+    double sigma_mm = 0;                                    ///< one standard deviation of it
+    bool one_direction_only = false;                        ///< a straight line tells nothing along itself
+    bool known() const { return seen > 0; }
+};
+
+/// What the cameras see of the light. All lengths are along the skin, mm.
+struct LightCheck {
+    std::vector<ItemLight> items;  ///< as in the drawing
+    std::vector<SeenSegment> segments;
+    int expected = 0, seen = 0;  ///< segments
+    double off_mm = 0;           ///< 95 % of the segments' sides lie within this; 0 when nothing was seen
+    double median_mm = 0;
+    double sigma_mm = 0;  ///< of a single segment, median
+    double seen_share() const { return expected == 0 ? 0 : static_cast<double>(seen) / expected; }
+};
+
+/// CHECK: the light of a drawing as both cameras see it in one frame, against where it belongs.
+///
+/// `drawing` holds the plan on the skin; `rig_from_ct` is where the head was at the frame's exposure, so that a picture
+/// that was late, or drawn for another pose, is seen as light beside the plan. Each stroke (labels are not asked) is
+/// predicted into the cameras; across it, in the tangent plane of the skin, the brightest ridge of the width of a
+/// stroke is looked for in the mean of some millimetres of stroke. Stretches near another stroke are left out: their
+/// light could be that one's. What all parties share cannot be seen: skin that slid over the bone, an error common to
+/// CT and scan.
+LightCheck check_light(const PlanDrawing& drawing, const SkinSurface& skin, const RigCalibration& rig,
+                       const RigidTransform& rig_from_ct, const StereoFrame& frame,
+                       const CheckLightSettings& settings = {});
+
+}  // namespace planlight

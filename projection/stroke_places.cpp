@@ -1,0 +1,123 @@
+#include "projection/stroke_places.h"
+
+#include <cmath>
+#include <unordered_map>
+
+namespace planlight {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Points of all strokes by cubes, to find what lies near a place.
+class StrokesNear {
+public:
+    StrokesNear(const PlanDrawing& drawing, double reach_mm) : drawing_(drawing), reach_mm_(reach_mm) {
+        for (std::size_t s = 0; s < drawing.strokes.size(); ++s)
+            for (const Vector3d& p : drawing.strokes[s].points_in_ct) cells_[key(cell(p))].push_back({s, p});
+    }
+    /// How far to both sides of a place no light but this stroke's is wanted, mm, at most the reach: another stroke, or
+    /// a part of the same that comes back beside itself.
+    double free_mm(std::size_t stroke, const StrokePlace& at) const {
+        double free_mm = reach_mm_;
+        const Eigen::Vector3i middle = cell(at.p_in_ct);
+        for (int x = -1; x <= 1; ++x)
+            for (int y = -1; y <= 1; ++y)
+                for (int z = -1; z <= 1; ++z) {
+                    const auto found = cells_.find(key(middle + Eigen::Vector3i(x, y, z)));
+                    if (found == cells_.end()) continue;
+                    for (const auto& [other, p] : found->second)
+                        free_mm = std::min(free_mm, free_of_mm(other, p, stroke, at));
+                }
+        return free_mm;
+    }
+
+private:
+    double free_of_mm(std::size_t other, const Vector3d& p, std::size_t stroke, const StrokePlace& at) const {
+        const Vector3d way = p - at.p_in_ct;
+        const double widths_mm = (at.width_mm + drawing_.strokes[other].width_mm) / 2;
+        const double aside_mm = std::abs(way.dot(at.sideways_in_ct)), along_mm = std::abs(way.dot(at.along_in_ct));
+        if (along_mm > 2 * widths_mm || way.norm() > 2 * reach_mm_) return reach_mm_;
+        if (other == stroke && aside_mm < 2 * widths_mm) return reach_mm_;  // the stroke itself
+        return aside_mm - widths_mm;
+    }
+    Eigen::Vector3i cell(const Vector3d& p) const { return (p / reach_mm_).array().floor().matrix().cast<int>(); }
+    static std::int64_t key(const Eigen::Vector3i& c) {
+        return ((static_cast<std::int64_t>(c.x()) * 2097152) + c.y()) * 2097152 + c.z();
+    }
+    struct Near {
+        std::size_t stroke;
+        Vector3d p;
+    };
+    const PlanDrawing& drawing_;
+    double reach_mm_;
+    std::unordered_map<std::int64_t, std::vector<Near>> cells_;
+};
+
+/// The places of a stroke, evenly along it.
+std::vector<StrokePlace> places_of(const Stroke& stroke, double spacing_mm) {
+    std::vector<StrokePlace> places;
+    const std::size_t n = stroke.points_in_ct.size(), segments = stroke.closed ? n : n - 1;
+    double wait_mm = 0;
+    for (std::size_t i = 0; n > 1 && i < segments; ++i) {
+        const Vector3d a = stroke.points_in_ct[i], way = stroke.points_in_ct[(i + 1) % n] - a;
+        const double length_mm = way.norm();
+        if (length_mm < 1e-9) continue;
+        for (; wait_mm < length_mm; wait_mm += spacing_mm) {
+            StrokePlace place;
+            place.p_in_ct = a + way * (wait_mm / length_mm);
+            place.normal_in_ct = stroke.normals_in_ct[i];
+            place.sideways_in_ct = place.normal_in_ct.cross(way / length_mm).normalized();
+            place.along_in_ct = place.sideways_in_ct.cross(place.normal_in_ct);
+            place.width_mm = stroke.width_mm;
+            places.push_back(place);
+        }
+        wait_mm -= length_mm;
+    }
+    return places;
+}
+
+}  // namespace
+
+bool freely_seen(const StrokePlace& place, const SkinSurface& skin, const CameraModel& device,
+                 const RigidTransform& rig_from_ct, double steepest) {
+    constexpr double kOffSkin_mm = 1.5;  // the stroke may lie a little in the mesh
+    const auto pixel = project(device, rig_from_ct * place.p_in_ct);
+    if (!pixel || !in_picture(device, *pixel)) return false;
+    const Vector3d way = rig_from_ct.inverse() * device.centre_in_rig() - place.p_in_ct;
+    const Vector3d direction = way.normalized();
+    if (place.normal_in_ct.dot(direction) < std::cos(steepest)) return false;
+    return !skin.first_hit({place.p_in_ct + kOffSkin_mm * place.normal_in_ct, direction});
+}
+
+std::vector<StrokeSegment> segments_to_look_at(const PlanDrawing& drawing, const SkinSurface& skin,
+                                               const CameraModel& projector, const RigidTransform& rig_from_ct,
+                                               const CheckLightSettings& settings) {
+    const StrokesNear near(drawing, settings.search_mm);
+    std::vector<StrokeSegment> segments;
+    for (std::size_t s = 0; s < drawing.strokes.size(); ++s) {
+        const Stroke& stroke = drawing.strokes[s];
+        if (stroke.kind == StrokeKind::label) continue;
+        const double most_mm = stroke.closed ? settings.segment_mm / 2 : settings.segment_mm;
+        const auto most = static_cast<std::size_t>(std::max(1.0, most_mm / settings.spacing_mm));
+        StrokeSegment segment{stroke.item, {}, settings.search_mm};
+        const auto close = [&] {
+            if (2 * segment.places.size() >= most) segments.push_back(segment);
+            segment = {stroke.item, {}, settings.search_mm};
+        };
+        for (const StrokePlace& place : places_of(stroke, settings.spacing_mm)) {
+            const double free_mm = near.free_mm(s, place);
+            if (free_mm < settings.least_search_mm ||
+                !freely_seen(place, skin, projector, rig_from_ct, settings.steepest)) {
+                close();
+                continue;
+            }
+            segment.search_mm = std::min(segment.search_mm, free_mm);
+            segment.places.push_back(place);
+            if (segment.places.size() >= most) close();
+        }
+        close();
+    }
+    return segments;
+}
+
+}  // namespace planlight

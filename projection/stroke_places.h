@@ -1,0 +1,34 @@
+#pragma once
+
+#include <vector>
+
+#include "projection/check_light.h"
+
+namespace planlight {
+
+/// A place on a stroke at which light is looked for.
+struct StrokePlace {
+    Eigen::Vector3d p_in_ct, normal_in_ct, along_in_ct, sideways_in_ct;  ///< directions: unit, square to each other
+    double width_mm = 0;                                                 ///< of the stroke
+};
+
+/// Some millimetres of one stroke whose light should fall freely on the skin.
+struct StrokeSegment {
+    int item = -1;
+    std::vector<StrokePlace> places;
+    double search_mm = 0;  ///< to both sides: no other light is wanted there
+    const StrokePlace& middle() const { return places[places.size() / 2]; }
+};
+
+/// The drawing's strokes, labels aside, cut into segments of about `segment_mm` (circles half of it). Left out: what no
+/// light of the projector reaches (steep, hidden by other skin, beside the picture), and what lies so near another
+/// stroke or label that its light could be mistaken.
+std::vector<StrokeSegment> segments_to_look_at(const PlanDrawing& drawing, const SkinSurface& skin,
+                                               const CameraModel& projector, const RigidTransform& rig_from_ct,
+                                               const CheckLightSettings& settings);
+
+/// True when a device sees the place: in its picture, not too steep, no skin before it.
+bool freely_seen(const StrokePlace& place, const SkinSurface& skin, const CameraModel& device,
+                 const RigidTransform& rig_from_ct, double steepest);
+
+}  // namespace planlight
