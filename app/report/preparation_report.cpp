@@ -68,6 +68,13 @@ std::string threshold_of(const Preparation& done) {
                        done.threshold_given ? "given by hand" : "found automatically");
 }
 
+std::string cut_sides_of(const SkinJudgement& skin) {
+    std::string words;
+    for (const CutSide& side : skin.cut_sides)
+        words += fmt::format("{}{}, {:.0f} cm²", words.empty() ? "" : "; ", side.name, side.area_cm2);
+    return words;
+}
+
 std::string series_of(const CaseNames& names) {
     if (names.series_date.empty()) return names.series;
     return names.series.empty() ? "of " + names.series_date : names.series + ", " + names.series_date;
@@ -87,7 +94,7 @@ std::string identity_html(const Preparation& done) {
             v.modality.empty() ? "not said" : v.modality + (v.modality == "CT" && !v.is_hu ? ", not in HU" : "")) +
         row("Voxels", fmt::format("{} x {} x {} of {:.2f} x {:.2f} x {:.2f} mm", v.size[0], v.size[1], v.size[2],
                                   v.voxel_mm.x(), v.voxel_mm.y(), v.voxel_mm.z())) +
-        row("Skin threshold", threshold_of(done)) +
+        row("Skin threshold", threshold_of(done)) + row("Cut off by the volume", cut_sides_of(done.judgement)) +
         (done.on_given_surface ? "" : row("Body", fmt::format("{:.0f} ml", done.body_ml))) +
         (done.brightness_ratio > 1 ? row("Evened out", fmt::format("{:.1f} : 1 across the head", done.brightness_ratio))
                                    : "") +
