@@ -24,7 +24,8 @@ p{margin:.8mm 0}.muted{color:#5b6470;font-size:8pt}
 table{border-collapse:collapse;width:100%}
 td,th{padding:.5mm 2mm .5mm 0;border-bottom:.2mm solid #d5d9df;text-align:left;vertical-align:top}
 th{color:#5b6470;font-weight:500;font-size:8pt}tr{break-inside:avoid}
-td.name{width:27%;overflow-wrap:anywhere}.plan td{padding:.35mm 2mm .35mm 0}
+td.name{width:24%;overflow-wrap:anywhere}.plan td{padding:.35mm 2mm .35mm 0}
+.plan td:nth-child(n+2):nth-child(-n+5),.plan td:nth-child(7){white-space:nowrap}
 .two{display:grid;grid-template-columns:1fr 1fr;gap:0 6mm}
 .two td:first-child{color:#5b6470;width:34%}
 .verdict{border:.5mm solid;border-radius:1.5mm;padding:1.5mm 3mm;font-weight:600;margin:2.5mm 0 1.5mm;break-inside:avoid}
@@ -34,7 +35,7 @@ ul{margin:1mm 0;padding-left:5mm}li{margin:.4mm 0}
 figure{margin:0;break-inside:avoid}
 figure img{width:100%;display:block;border:.2mm solid #c3c8d0}
 figcaption{font-size:7.5pt;line-height:1.25;padding-top:.6mm;color:#353b45}
-.sign{display:grid;grid-template-columns:5fr 3fr 6fr;gap:0 6mm;margin-top:9mm;break-inside:avoid}
+.sign{display:grid;grid-template-columns:5fr 3fr 6fr;gap:0 6mm;margin-top:7.5mm;break-inside:avoid}
 .sign span{border-top:.25mm solid #15181d;font-size:7.5pt;color:#5b6470;padding-top:.5mm})";
 
 }  // namespace
