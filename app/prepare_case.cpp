@@ -3,6 +3,7 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <ctime>
@@ -11,6 +12,7 @@
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/spare_memory.h"
 #include "planning_io/volume/read_volume.h"
 #include "projection/check_plan.h"
 
@@ -18,7 +20,7 @@ namespace planlight {
 namespace {
 
 // What a preparation has at its fullest, at least: measured, rounded down, so that what would do is never refused.
-constexpr double kBytesOfVoxel = 12, kBytesOfTableVoxel = 4, kTableShare = 0.5, kBytesAnyway = 100e6;
+constexpr double kBytesOfVoxel = 15, kBytesOfTableVoxel = 4, kBytesAnyway = 150e6;
 
 /// Runs one step, with its name in the progress, and gives its time.
 double timed(const std::string& name, const PreparationWatcher& watcher,
@@ -86,13 +88,25 @@ void judge(const Volume& volume, const SkinSettings& skin, const PreparationWatc
 /// The LUT, and the plan checked: of a case that has its skin.
 void finish(Preparation& done, const Volume& volume, const LutSettings& lut, const PreparationWatcher& watcher) {
     Case& the_case = done.prepared;
-    const PlanVerdict of_plan = check_plan(the_case.plan, SkinSurface(the_case.skin), box_of(volume));
-    add_warnings(of_plan.warnings, watcher, the_case);
-    refuse_misfit(of_plan, done.judgement);
+    {
+        const SkinSurface surface(the_case.skin);
+        const PlanVerdict of_plan = check_plan(the_case.plan, surface, box_of(volume));
+        add_warnings(of_plan.warnings, watcher, the_case);
+        refuse_misfit(of_plan, done.judgement);
+        done.drawing = draw_plan(the_case.plan, surface);
+    }
+    const auto bare = std::count_if(done.drawing.items.begin(), done.drawing.items.end(),
+                                    [](const DrawnItem& item) { return !item.labelled; });
+    if (bare > 0)
+        add_warnings({fmt::format("the plan is crowded: the names of {} of {} items find no free skin, and are not "
+                                  "written there",
+                                  bare, done.drawing.items.size())},
+                     watcher, the_case);
     done.lut_s =
         timed("table", watcher, [&](const auto& share) { the_case.lut = build_skin_lut(the_case.skin, lut, share); });
     the_case.lut.volume_hash = the_case.volume_hash;
     the_case.lut.mesh_hash = hash_of(the_case.skin);
+    release_spare_memory();
 }
 
 }  // namespace
@@ -105,7 +119,7 @@ void check_memory_to_prepare(const Volume& volume, const LutSettings& lut) {
     double body_mm3 = 1;  // the table reaches over the volume at most, with its margin
     for (std::size_t axis = 0; axis < 3; ++axis)
         body_mm3 *= volume.size[axis] * volume.spacing_mm()[static_cast<Eigen::Index>(axis)];
-    const double table = kTableShare * body_mm3 / std::pow(lut.voxel_mm, 3) * kBytesOfTableVoxel;
+    const double table = body_mm3 / std::pow(lut.voxel_mm, 3) * kBytesOfTableVoxel;
     const double need = kBytesOfVoxel * static_cast<double>(volume.values.size()) + table + kBytesAnyway;
     check_memory("Preparing this volume", static_cast<std::uint64_t>(need),
                  "Close other programs, give a larger --voxel-mm, or resample the volume to larger voxels.");

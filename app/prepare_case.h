@@ -9,6 +9,7 @@
 #include "planning_io/case/case_folder.h"
 #include "planning_io/surface/surface_file.h"
 #include "planning_io/types/volume.h"
+#include "projection/draw_plan.h"
 #include "segmentation/build_skin_lut.h"
 #include "segmentation/segment_skin.h"
 #include "segmentation/skin_judgement.h"
@@ -35,6 +36,7 @@ struct Preparation {
     SkinMask mask;  ///< empty on a given surface
     SkinJudgement
         judgement;  ///< how the skin was checked, where the volume cuts it off; empty on a given surface or a phantom
+    PlanDrawing drawing;  ///< of the plan on the skin
     double segment_s = 0, triangulate_s = 0, lut_s = 0;
 };
 

@@ -251,8 +251,12 @@ void Drawer::draw_labels() {
     // Points can be labelled in fewer places than lines: they choose first.
     std::stable_sort(wishes_.begin(), wishes_.end(),
                      [](const auto& a, const auto& b) { return a.anchors.size() < b.anchors.size(); });
-    for (const LabelWish& w : wishes_) {
+    // Of many labels over each other none could be read: from here on there is a free place for one, or none is drawn.
+    constexpr std::size_t kCrowded = 40;
+    for (LabelWish& w : wishes_) {
+        w.may_overlap = wishes_.size() <= kCrowded;
         const auto strokes = place_label(w, skin_, settings_, occupied);
+        item(w.item).labelled = !strokes.empty();
         drawing.strokes.insert(drawing.strokes.end(), strokes.begin(), strokes.end());
     }
 }

@@ -31,6 +31,7 @@ struct DrawnItem {
     Eigen::Vector3d anchor_in_ct;       ///< its place on the skin
     double distance_to_skin_mm = 0;     ///< of the plan's point(s) to the skin, largest
     std::vector<std::string> warnings;  ///< in words, with the item's name
+    bool labelled = true;               ///< false where a crowded plan left no free skin for its label
 };
 
 /// The plan in the skin's own metric: what is light on the skin, independent of projector and pose.

@@ -232,6 +232,7 @@ std::vector<Stroke> place_label(const LabelWish& wish, const SkinSurface& skin, 
                                 OccupiedSkin& occupied) {
     const TextBlock block = lay_out(wish.text, settings.text_height_mm);
     Candidate best;
+    if (!wish.may_overlap) best.overlaps = 1;
     for (const double gap_mm : {0.0, 3.0, 7.0, 12.0, 18.0, 26.0}) {
         try_ring(wish, skin, settings, occupied, block, gap_mm, best);
         if (best.overlaps == 0) break;

@@ -12,6 +12,7 @@
 #include "app/prepare_case.h"
 #include "app/report/preparation_report.h"
 #include "planning_io/plan/plan_file.h"
+#include "planning_io/types/spare_memory.h"
 #include "planning_io/volume/read_volume.h"
 
 namespace planlight {
@@ -79,11 +80,19 @@ Preparation prepare(const Inputs& in, const PrepareOptions& options, ProgressBar
     return done;
 }
 
-PreparationReport report_of(const Inputs& in, const Preparation& done, const PlanDrawing& drawing, ProgressBar& bar) {
+/// The volume is given up when its pictures are made: the views take as much memory as it does.
+PreparationReport report_of(Inputs& in, Preparation& done, ProgressBar& bar) {
     bar.show("report", 0);
-    const PreparationPictures pictures = preparation_pictures(in.volume, done.prepared, drawing);
+    PreparationPictures pictures;
+    add_slices(in.volume, done.prepared, pictures);
+    const RemovedPieces removed = find_removed_pieces(in.volume, done.mask);
+    in.volume.values = {};
+    done.mask.body = {};
+    release_spare_memory();
+    add_views(done.prepared, done.drawing, pictures);
     if (!pictures.no_views.empty()) bar.note("warning: " + pictures.no_views);
-    PreparationReport report = preparation_report(done, drawing, find_removed_pieces(in.volume, done.mask), pictures);
+    PreparationReport report = preparation_report(done, done.drawing, removed, pictures);
+    release_spare_memory();
     bar.show("report", 1);
     return report;
 }
@@ -102,11 +111,10 @@ int run_prepare(const PrepareOptions& options) {
     check_case_place(options.out, options.replace);
     ProgressBar bar;
     bar.show("volume", 0);
-    const Inputs in = read_inputs(options);
+    Inputs in = read_inputs(options);
     bar.show("volume", 1);
-    const Preparation done = prepare(in, options, bar);
-    const CaseDrawing drawing(done.prepared);
-    const PreparationReport report = report_of(in, done, drawing.drawing, bar);
+    Preparation done = prepare(in, options, bar);
+    const PreparationReport report = report_of(in, done, bar);
     bar.show("case folder", 0);
     write_case(done.prepared, options.out, options.replace,
                [&](const Path& into) { write_preparation_report(report, into); });
@@ -115,7 +123,7 @@ int run_prepare(const PrepareOptions& options) {
         std::cout << report.json;
     else
         print_summary(done, options);
-    if (options.preview) show_model(model_of_case(done.prepared, drawing));
+    if (options.preview) show_model(model_of_case(done.prepared, CaseDrawing(done.prepared)));
     return 0;
 }
 

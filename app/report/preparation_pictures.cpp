@@ -2,13 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "app/report/slice_picture.h"
 #include "app/windows/scene_view.h"
-#include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -16,6 +15,8 @@ namespace planlight {
 using Eigen::Vector3d;
 
 namespace {
+
+constexpr int kView_px = 440;  // 45 mm of paper at 250 a inch
 
 Vector3d mean_of(const std::vector<Vector3d>& points) {
     Vector3d sum = Vector3d::Zero();
@@ -58,8 +59,8 @@ std::vector<ReportPicture> slices_at(const Volume& volume, const Case& the_case,
 std::vector<ReportPicture> views_of(const Case& the_case, const PlanDrawing& drawing) {
     SceneModel scene;
     scene.on_paper = true;
-    scene.skin = std::make_shared<TriangleMesh>(the_case.skin);
-    scene.plan = std::make_shared<PlanDrawing>(drawing);
+    scene.skin = {std::shared_ptr<void>(), &the_case.skin};  // theirs: they outlive the scene
+    scene.plan = {std::shared_ptr<void>(), &drawing};
     constexpr double kQuarter = std::numbers::pi / 2;
     struct Side {
         const char* name;
@@ -76,7 +77,7 @@ std::vector<ReportPicture> views_of(const Case& the_case, const PlanDrawing& dra
         views.back().azimuth = side.azimuth;
         views.back().elevation = side.elevation;
     }
-    std::vector<RgbImage> drawn = render_views(scene, views, 520, 520);
+    std::vector<RgbImage> drawn = render_views(scene, views, kView_px, kView_px);
     std::vector<ReportPicture> pictures;
     for (std::size_t i = 0; i < drawn.size(); ++i) pictures.push_back({kSides[i].name, "", std::move(drawn[i])});
     return pictures;
@@ -85,23 +86,31 @@ std::vector<ReportPicture> views_of(const Case& the_case, const PlanDrawing& dra
 }  // namespace
 
 Vector3d point_of_interest(const Case& the_case) {
-    if (!the_case.plan.trajectories.empty() && the_case.plan.trajectories.front().target_in_ct.allFinite())
-        return the_case.plan.trajectories.front().target_in_ct;
-    const auto points = points_of(the_case.plan);
-    if (!points.empty() && mean_of(points).allFinite()) return mean_of(points);
-    return the_case.skin.vertices_in_ct.empty() ? Vector3d::Zero() : mean_of(the_case.skin.vertices_in_ct);
+    std::vector<Vector3d> points;
+    for (const auto& t : the_case.plan.trajectories) points.push_back(t.entry_in_ct);
+    for (const auto& b : the_case.plan.boreholes) points.push_back(b.position_in_ct);
+    for (const auto& line : the_case.plan.osteotomy_lines)
+        points.insert(points.end(), line.points_in_ct.begin(), line.points_in_ct.end());
+    for (const auto& c : the_case.plan.cut_planes) points.push_back(c.origin_in_ct);
+    std::erase_if(points, [](const Vector3d& p) { return !p.allFinite(); });
+    if (points.empty()) return middle_of(the_case.skin);
+    const Vector3d middle = mean_of(points);
+    return *std::min_element(points.begin(), points.end(), [&](const Vector3d& a, const Vector3d& b) {
+        return (a - middle).squaredNorm() < (b - middle).squaredNorm();
+    });
 }
 
-PreparationPictures preparation_pictures(const Volume& volume, const Case& the_case, const PlanDrawing& drawing) {
-    PreparationPictures pictures;
+void add_slices(const Volume& volume, const Case& the_case, PreparationPictures& pictures) {
     pictures.middle_slices = slices_at(volume, the_case, middle_of(the_case.skin));
     if (!the_case.plan.empty()) pictures.plan_slices = slices_at(volume, the_case, point_of_interest(the_case));
+}
+
+void add_views(const Case& the_case, const PlanDrawing& drawing, PreparationPictures& pictures) {
     try {
         pictures.views = views_of(the_case, drawing);
     } catch (const DeviceError& error) {
         pictures.no_views = fmt::format("the report has no views of the head: {}", error.what());
     }
-    return pictures;
 }
 
 }  // namespace planlight

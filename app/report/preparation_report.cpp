@@ -56,10 +56,23 @@ std::string contents_of(const Plan& plan) {
     return words.empty() ? "nothing" : words;
 }
 
+/// "2025-02-01 09:30 UTC" of an ISO 8601 time.
+std::string time_in_words(const std::string& iso) {
+    if (iso.size() < 16 || iso[10] != 'T') return iso;
+    return iso.substr(0, 10) + " " + iso.substr(11, 5) + (iso.ends_with('Z') ? " UTC" : "");
+}
+
 std::string threshold_of(const Preparation& done) {
     if (done.on_given_surface) return "none: the surface was given, not segmented here";
     return fmt::format("{:.0f} {}, {}", done.threshold, done.volume.is_hu ? "HU" : "(stored values, not HU)",
                        done.threshold_given ? "given by hand" : "found automatically");
+}
+
+std::string cut_sides_of(const SkinJudgement& skin) {
+    std::string words;
+    for (const CutSide& side : skin.cut_sides)
+        words += fmt::format("{}{}, {:.0f} cm²", words.empty() ? "" : "; ", side.name, side.area_cm2);
+    return words;
 }
 
 std::string series_of(const CaseNames& names) {
@@ -74,14 +87,14 @@ std::string identity_html(const Preparation& done) {
                              row("Title", c.names.title) +
                              row("Plan", c.names.plan.empty() ? "not named" : c.names.plan) +
                              row("Version of the plan", c.names.plan_version) + row("It holds", contents_of(c.plan)) +
-                             row("Case", c.code) + row("Prepared", c.created);
+                             row("Case", c.code) + row("Prepared", time_in_words(c.created));
     const std::string right =
         row("Source", c.source) + row("Series", series_of(c.names)) +
         row("Modality",
             v.modality.empty() ? "not said" : v.modality + (v.modality == "CT" && !v.is_hu ? ", not in HU" : "")) +
         row("Voxels", fmt::format("{} x {} x {} of {:.2f} x {:.2f} x {:.2f} mm", v.size[0], v.size[1], v.size[2],
                                   v.voxel_mm.x(), v.voxel_mm.y(), v.voxel_mm.z())) +
-        row("Skin threshold", threshold_of(done)) +
+        row("Skin threshold", threshold_of(done)) + row("Cut off by the volume", cut_sides_of(done.judgement)) +
         (done.on_given_surface ? "" : row("Body", fmt::format("{:.0f} ml", done.body_ml))) +
         (done.brightness_ratio > 1 ? row("Evened out", fmt::format("{:.1f} : 1 across the head", done.brightness_ratio))
                                    : "") +
@@ -146,27 +159,29 @@ std::string views_html(const Preparation& done, const PreparationPictures& pictu
 }
 
 std::string number(const std::optional<double>& value, int digits, const char* unit) {
-    return value ? fmt::format("{:.{}f} {}", *value, digits, unit) : std::string("–");
+    return value ? fmt::format("{:.{}f}{}", *value, digits, unit) : std::string("–");
 }
 
 std::string fact_html(const PlanFact& fact) {
     constexpr double kDegrees = 57.29577951308232;
     const std::optional<double> tilt = fact.tilt ? std::optional(kDegrees * *fact.tilt) : std::nullopt;
     const char* gravity = fact.gravity == Gravity::stop ? "stop" : fact.gravity == Gravity::look ? "look" : "";
-    std::string shape = number(fact.depth_mm ? fact.depth_mm : fact.length_mm, 1, "mm");
-    if (fact.diameter_mm) shape += fmt::format(", ⌀ {:g} mm", *fact.diameter_mm);
     return fmt::format(
-        "<tr><td class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}{}</td><td>{}</td><td class=\"{}\">{}</td></tr>",
-        html_escaped(fact.name.empty() ? "without a name" : fact.name), fact.kind, shape, number(tilt, 0, "°"),
-        fact.inwards_in_ct ? "; " + direction_in_words(*fact.inwards_in_ct) : "", number(fact.over_bone_mm, 1, "mm"),
-        gravity, html_escaped(fact.distance));
+        "<tr><td class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
+        "class=\"{}\">{}</td></tr>",
+        html_escaped(fact.name.empty() ? "without a name" : fact.name), fact.kind,
+        number(fact.depth_mm ? fact.depth_mm : fact.length_mm, 1, " mm"), number(fact.diameter_mm, 1, " mm"),
+        number(tilt, 0, "°"), fact.inwards_in_ct ? direction_in_words(*fact.inwards_in_ct) : "–",
+        number(fact.over_bone_mm, 1, " mm"), gravity, html_escaped(fact.distance));
 }
 
 std::string plan_html(const std::vector<PlanFact>& facts) {
     if (facts.empty()) return "<h2>The plan</h2><p>It holds nothing.</p>";
     std::string html =
-        "<h2>The plan</h2><table><thead><tr><th>Name</th><th>Kind</th><th>Depth or length</th><th>Angle to the skin's "
-        "perpendicular; direction inwards</th><th>Soft tissue</th><th>Its points lie</th></tr></thead>";
+        "<h2>The plan</h2><table class=\"plan\"><thead><tr><th>Name</th><th>Kind</th><th>Depth or "
+        "length</th><th>Diameter</th><th>Tilt "
+        "from the skin's perpendicular</th><th>Direction inwards</th><th>Soft tissue over bone</th><th>Its points "
+        "lie</th></tr></thead>";
     for (const auto& fact : facts) html += fact_html(fact);
     return html + "</table>";
 }
@@ -209,7 +224,7 @@ PreparationReport preparation_report(const Preparation& done, const PlanDrawing&
     const std::string body =
         "<section class=\"sheet\">" + first + "</section><section class=\"sheet\">" + second + "</section>";
     return {paper_page("Preparation: " + title_of(c), body,
-                       fmt::format("{} · case {} · prepared {}", title_of(c), c.code, c.created)),
+                       fmt::format("{} · case {} · prepared {}", title_of(c), c.code, time_in_words(c.created))),
             preparation_json(done, drawing, facts, removed)};
 }
 

@@ -63,7 +63,7 @@ public:
             low_ = low_.cwiseMin(at);
             high = high.cwiseMax(at);
         }
-        mm_per_px_ = 1.1 * volume.spacing_mm().maxCoeff();
+        mm_per_px_ = 1.05 * volume.spacing_mm().maxCoeff();
         const Vector2d pixels = (high - low_) / mm_per_px_;
         body_ = cv::Mat::zeros(static_cast<int>(pixels.y()) + 2, static_cast<int>(pixels.x()) + 2, CV_32F);
         removed_ = body_.clone();
@@ -93,12 +93,14 @@ void write_in(cv::Mat& canvas, const std::string& text, const cv::Point& middle,
 }
 
 RgbImage Shadow::picture(const std::vector<RemovedPiece>& pieces, const std::array<const char*, 4>& letters) const {
+    cv::Mat depth;  // rows of pixels hold one or two rows of voxels: evened out
+    cv::GaussianBlur(body_, depth, {}, 1.5);
     double most = 1;
-    cv::minMaxLoc(body_, nullptr, &most);
+    cv::minMaxLoc(depth, nullptr, &most);
     cv::Mat small(body_.size(), CV_8UC3);
     for (int y = 0; y < small.rows; ++y)
         for (int x = 0; x < small.cols; ++x) {
-            const float body = body_.at<float>(y, x);
+            const float body = body_.at<float>(y, x) > 0 ? depth.at<float>(y, x) : 0;
             const auto grey = static_cast<std::uint8_t>(body > 0 ? 225 - 95 * body / std::max(most, 1.0) : 255);
             const bool red = removed_.at<float>(y, x) > 0;
             small.at<cv::Vec3b>(y, x) =

@@ -98,7 +98,7 @@ public:
     }
     void verify(const char* name) const {
         const auto expected = checksums_.find(name);
-        if (expected == checksums_.end() || expected->second != content_hash(read_whole(path(name))))
+        if (expected == checksums_.end() || expected->second != content_hash_of(path(name)))
             throw DamagedFileError(path(name), "is not the file that was prepared (its checksum differs)", kPrepare);
     }
 
@@ -144,7 +144,7 @@ std::string checksums_in(const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
     std::sort(names.begin(), names.end());
     std::string checksums;
-    for (const auto& name : names) checksums += content_hash(read_whole(folder / name)) + "  " + name + "\n";
+    for (const auto& name : names) checksums += content_hash_of(folder / name) + "  " + name + "\n";
     return checksums;
 }
 

@@ -14,6 +14,7 @@
 
 #include "planning_io/dicom/inflated_dicom.h"
 #include "planning_io/files/header_text.h"
+#include "planning_io/files/sandboxed_process.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/volume_checks.h"
 
@@ -276,9 +277,29 @@ bool is_dicom_directory(const fs::path& file) {
     return lower_case(file.filename().string()).starts_with("dicomdir");
 }
 
-DicomFolder find_dicom(const fs::path& folder, int depth) {
-    DicomFolder found;
+std::vector<fs::path> headers_that_crash(const fs::path& folder, int depth) {
+    std::vector<fs::path> crashing;
     for (const fs::path& path : files_in(folder, depth)) {
+        if (!says_dicom(path)) continue;
+        try {
+            parse_in_child(path, {"DICOM header"}, [&](Parcel&) {
+                DicomFile file;
+                file.path = path;
+                bool is_directory = false;
+                read_any_header(file, is_directory);
+            });
+        } catch (const ParserCrash&) {
+            crashing.push_back(path);
+        }
+    }
+    return crashing;
+}
+
+DicomFolder find_dicom(const fs::path& folder, int depth, const std::vector<fs::path>& unreadable) {
+    DicomFolder found;
+    found.unreadable = unreadable;
+    for (const fs::path& path : files_in(folder, depth)) {
+        if (std::find(unreadable.begin(), unreadable.end(), path) != unreadable.end()) continue;
         if (!says_dicom(path) && !vtkDICOMUtilities::IsDICOMFile(path.c_str())) continue;
         DicomFile file;
         file.path = path;

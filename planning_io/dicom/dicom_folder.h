@@ -39,7 +39,14 @@ struct DicomFolder {
 /// Finds every DICOM object in a folder (ten levels deep, whatever the files are called; DICOMDIR is not needed and not
 /// believed). Throws InputError for more than 200,000 files, and for what cannot be opened: it may be a slice. Crashes
 /// on some damaged files: to be called in a child process.
-DicomFolder find_dicom(const std::filesystem::path& folder, int depth);
+///
+/// Files of `unreadable` (those of `headers_that_crash`) are not looked into.
+DicomFolder find_dicom(const std::filesystem::path& folder, int depth,
+                       const std::vector<std::filesystem::path>& unreadable = {});
+
+/// The DICOM files below a folder whose header brings the parser down, each tried in a child process of its own: for
+/// when the whole folder did.
+std::vector<std::filesystem::path> headers_that_crash(const std::filesystem::path& folder, int depth);
 
 /// Whether a file is a DICOMDIR by its name: it stands for its folder.
 bool is_dicom_directory(const std::filesystem::path& file);

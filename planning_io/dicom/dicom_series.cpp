@@ -200,13 +200,24 @@ int leave_localizers_aside(DicomSeries& series) {
     return static_cast<int>(before - series.files.size());
 }
 
+/// The folder that a series lies in, and how deep; of a file its own folder only.
+std::pair<fs::path, int> place_to_search(const fs::path& path) {
+    const bool is_folder = fs::is_directory(path);
+    const fs::path folder = is_folder ? path : path.has_parent_path() ? path.parent_path() : fs::path(".");
+    return {folder, is_folder || is_dicom_directory(path) ? kScanDepth : 1};
+}
+
 }  // namespace
 
-Volume parse_dicom_series(const fs::path& path, const std::string& wanted, SliceGaps gaps) {
-    const bool is_folder = fs::is_directory(path);
-    const bool is_index = !is_folder && is_dicom_directory(path);
-    const fs::path folder = is_folder ? path : path.has_parent_path() ? path.parent_path() : fs::path(".");
-    const DicomFolder found = find_dicom(folder, is_folder || is_index ? kScanDepth : 1);
+std::vector<fs::path> crashing_files_of(const fs::path& path) {
+    const auto [folder, depth] = place_to_search(path);
+    return headers_that_crash(folder, depth);
+}
+
+Volume parse_dicom_series(const fs::path& path, const std::string& wanted, SliceGaps gaps,
+                          const std::vector<fs::path>& unreadable) {
+    const auto [folder, depth] = place_to_search(path);
+    const DicomFolder found = find_dicom(folder, depth, unreadable);
     DicomSeries series = choose_series(found, path, wanted);
     const int localizers = leave_localizers_aside(series);
     for (const auto& file : series.files)

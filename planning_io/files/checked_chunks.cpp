@@ -70,6 +70,7 @@ std::string compress(const Slice& slice) {
     const std::size_t size = ZSTD_compress(packed.data(), packed.size(), source, slice.bytes, kLevel);
     if (ZSTD_isError(size)) throw std::runtime_error("zstd could not compress");
     packed.resize(size);
+    packed.shrink_to_fit();  // all chunks wait for the last: a megabyte each would be the table once more
     return packed;
 }
 

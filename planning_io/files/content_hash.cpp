@@ -4,6 +4,10 @@
 #include <xxhash.h>
 
 #include <bit>
+#include <fstream>
+#include <vector>
+
+#include "planning_io/types/error.h"
 
 namespace planlight {
 
@@ -35,6 +39,17 @@ std::string ContentHash::hex() const {
 std::string content_hash(std::string_view content) {
     const XXH128_hash_t digest = XXH3_128bits(content.data(), content.size());
     return fmt::format("{:016x}{:016x}", digest.high64, digest.low64);
+}
+
+std::string content_hash_of(const std::filesystem::path& file) {
+    ContentHash hash;
+    std::ifstream in(file, std::ios::binary);
+    if (!in) throw InputError(file, "cannot be opened", "Check the permissions of the file.");
+    std::vector<char> block(std::size_t{1} << 18);
+    while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0)
+        hash.add_bytes(block.data(), static_cast<std::size_t>(in.gcount()));
+    if (!in.eof()) throw InputError(file, "cannot be read", "Check the permissions of the file and the disk it is on.");
+    return hash.hex();
 }
 
 }  // namespace planlight

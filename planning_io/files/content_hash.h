@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -30,5 +31,8 @@ private:
 
 /// XXH3-128 of one piece, as 32 hex digits.
 std::string content_hash(std::string_view content);
+
+/// The same of a file, read piece by piece. Throws InputError when it cannot be read.
+std::string content_hash_of(const std::filesystem::path& file);
 
 }  // namespace planlight

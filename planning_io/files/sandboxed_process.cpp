@@ -92,11 +92,9 @@ void check_end(int status, const rusage& used, const fs::path& file, const Child
                                         used.ru_maxrss >> 10),
                             "Close other programs, or give a smaller file.");
         const bool slow = signal == SIGXCPU || signal == SIGKILL || signal == SIGALRM;
-        throw DamagedFileError(
-            file,
-            slow ? "took longer to read than a sound " + limits.what + " does"
-                 : "made the reader of a " + limits.what + " crash (signal " + std::to_string(signal) + ")",
-            kCopyAgain);
+        if (slow) throw DamagedFileError(file, "took longer to read than a sound " + limits.what + " does", kCopyAgain);
+        throw ParserCrash(
+            file, "made the reader of a " + limits.what + " crash (signal " + std::to_string(signal) + ")", kCopyAgain);
     }
     if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
         throw DamagedFileError(file, "could not be read to its end", kCopyAgain);

@@ -8,6 +8,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "planning_io/types/error.h"
+
 namespace planlight {
 
 /// Values that a child process hands to its parent, as they lie in memory, one after the other: an unnamed file in
@@ -69,6 +71,12 @@ private:
     std::uint64_t left_ = 0;
 };
 
+/// The child ended by a signal that its own steps raised: the file brought its parser down.
+class ParserCrash : public DamagedFileError {
+public:
+    using DamagedFileError::DamagedFileError;
+};
+
 /// What a child may use; all of them get 4 GiB of memory, 8 GiB for their answer, and 4096 open files.
 struct ChildLimits {
     std::string what = "file";  ///< the kind of file, for the sentences
@@ -79,7 +87,7 @@ struct ChildLimits {
 
 /// Runs `parse` in a child process within `limits` and gives what it put into its parcel. An Error thrown there is
 /// thrown here again; more memory than there is for it is an InputError that says how much; a crash, an endless loop or
-/// any other exception a DamagedFileError: the child is lost, never the program.
+/// any other exception a DamagedFileError (the first a ParserCrash): the child is lost, never the program.
 Parcel parse_in_child(const std::filesystem::path& file, const ChildLimits& limits,
                       const std::function<void(Parcel&)>& parse);
 

@@ -35,7 +35,9 @@ public:
             for (const std::int32_t corner : triangle) add(corner);
         }
     }
-    std::string header_and_rows(const std::string& header) const { return header + content_; }
+    void write(const std::string& header, const fs::path& file) const {
+        write_safely(file, [&](std::ostream& out) { out << header << content_; });
+    }
 
 private:
     std::string content_;
@@ -105,7 +107,7 @@ void write_mesh(const TriangleMesh& mesh, const fs::path& file) {
         if (!mesh.thickness_mm.empty()) rows.add(mesh.thickness_mm[i]);
     }
     rows.add(mesh.triangles);
-    write_safely(file, rows.header_and_rows(header));
+    rows.write(header, file);
 }
 
 TriangleMesh read_mesh(const fs::path& file) {
@@ -158,7 +160,7 @@ void write_cloud(const PointCloud& cloud, const fs::path& file,
     }
     if (!triangles.empty()) header += faces_in_header(triangles.size());
     rows.add(triangles);
-    write_safely(file, rows.header_and_rows(header + "end_header\n"));
+    rows.write(header + "end_header\n", file);
 }
 
 PointCloud read_cloud(const fs::path& file, const CloudOrigin& origin, std::vector<std::string>* comments) {

@@ -1,5 +1,6 @@
 #include "planning_io/types/large_array.h"
 
+#include <malloc.h>
 #include <sys/mman.h>
 
 #include <algorithm>
@@ -7,6 +8,8 @@
 #include <mutex>
 #include <new>
 #include <vector>
+
+#include "planning_io/types/spare_memory.h"
 
 namespace planlight {
 namespace {
@@ -39,6 +42,13 @@ public:
         blocks_.push_back({memory, bytes});
         bytes_ += bytes;
         return true;
+    }
+
+    void release() {
+        const std::scoped_lock lock(mutex_);
+        for (const Block& block : blocks_) std::free(block.memory);
+        blocks_.clear();
+        bytes_ = 0;
     }
 
     /// Never destroyed: arrays may be given back when the program has ended.
@@ -84,6 +94,11 @@ void* allocate_large(std::size_t bytes) {
 
 void free_large(void* memory, std::size_t bytes) noexcept {
     if (!is_large(bytes) || !Spares::all().keep(memory, size_of(bytes))) std::free(memory);
+}
+
+void release_spare_memory() {
+    Spares::all().release();
+    malloc_trim(0);
 }
 
 }  // namespace planlight

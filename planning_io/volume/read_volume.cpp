@@ -5,6 +5,7 @@
 #include "planning_io/dicom/dicom_series.h"
 #include "planning_io/files/content_hash.h"
 #include "planning_io/files/header_text.h"
+#include "planning_io/files/sandboxed_process.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/invesalius_project.h"
 #include "planning_io/volume/metaimage_file.h"
@@ -49,7 +50,14 @@ Volume read_volume(const fs::path& path, const std::string& series, SliceGaps ga
     if (!fs::exists(path, error)) throw InputError(path, "does not exist", "Check the name of the file or folder.");
     if (!fs::is_regular_file(path, error) && !fs::is_directory(path, error))
         throw InputError(path, "is neither a file nor a folder", "Name a file or folder.");
-    return volume_in_child(path, [&] { return parse_volume(path, series, gaps); });
+    try {
+        return volume_in_child(path, [&] { return parse_volume(path, series, gaps); });
+    } catch (const ParserCrash&) {  // of a DICOM folder perhaps a file of somebody else's
+        if (!fs::is_directory(path)) throw;
+        const std::vector<fs::path> crashing = crashing_files_of(path);
+        if (crashing.empty()) throw;
+        return volume_in_child(path, [&] { return parse_dicom_series(path, series, gaps, crashing); });
+    }
 }
 
 void make_anonymous(Volume& volume) {

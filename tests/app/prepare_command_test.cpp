@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/app/on_example_patient.h"
+#include "tests/planning_io/synthetic_files.h"
 #include "tests/planning_io/synthetic_series.h"
 
 namespace planlight::test {
@@ -38,24 +39,24 @@ TEST_F(CommandsTest, PrepareEndsWithAReportThatNeedsNothingElse) {
     EXPECT_TRUE(report["threshold_automatic"].get<bool>());
     // The head holder's plates lie behind this patient, and nothing of the head is among what was thrown away.
     ASSERT_FALSE(report["removed"].empty());
-    EXPECT_NEAR(report["removed"][0]["ml"].get<double>(), report["removed_ml"].get<double>(), 100);
+    double removed_ml = 0;
+    for (const auto& piece : report["removed"]) removed_ml += piece["ml"].get<double>();
+    EXPECT_NEAR(removed_ml, report["removed_ml"].get<double>(), 0.02 * removed_ml);
     const std::string sums = read_text(root() / "case" / "checksums.xxh128");
     for (const char* name : {"report.html", "report.json", "case.json", "skin.ply", "skin.lut", "plan.mrk.json"})
         EXPECT_NE(sums.find(std::string("  ") + name + "\n"), std::string::npos) << name;
 }
 
 TEST_F(CommandsTest, AWarningIsPrintedThoughALaterStepFails) {
-    // The example plan moved up by 25 mm: its skin's warnings are known by the time it is stopped.
-    json plan = json::parse(read_text(CommandsTest::plan()));
-    for (auto& markup : plan["markups"])
-        for (auto& point : markup["controlPoints"]) point["position"][2] = point["position"][2].get<double>() + 300;
-    std::ofstream(root() / "far.mrk.json") << plan;
-    const auto run = run_planlight("prepare " + patient() + " --plan far.mrk.json --out far", root());
+    std::ofstream(root() / "phantom.nii", std::ios::binary) << nifti_bytes(nifti_header({}), {});
+    std::ofstream(root() / "far.mrk.json")
+        << R"({"@schema": "https://raw.githubusercontent.com/slicer/slicer/master/Modules/Loadable/Markups/Resources/Schema/markups-schema-v1.0.3.json#",
+        "markups": [{"type": "Fiducial", "coordinateSystem": "LPS", "coordinateUnits": "mm",
+        "controlPoints": [{"id": "1", "label": "B1", "position": [71, 4, 320], "description": "diameter_mm=7 depth_mm=6", "positionStatus": "defined"}]}]})";
+    const auto run = run_planlight("prepare phantom.nii --plan far.mrk.json --voxel-mm 4 --out far", root());
     EXPECT_EQ(run.exit_code, 3) << run.err;
     EXPECT_NE(run.err.find("does not fit this patient"), std::string::npos) << run.err;
-    const auto warnings = json::parse(prepared().out)["warnings"];
-    ASSERT_FALSE(warnings.empty()) << "the example patient is cut at the upper lip";
-    EXPECT_NE(run.err.find("warning: " + warnings[0].get<std::string>()), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("warning: the file does not say whether it is CT or MR"), std::string::npos) << run.err;
     EXPECT_FALSE(fs::exists(root() / "far"));
 }
 

@@ -270,9 +270,9 @@ void add_damage(std::vector<VolumeCase>& list) {
                         const SeriesLook look;
                         const auto files = write_series(synthetic_series({}, look), folder);
                         const std::string whole = read_whole(files.front());
-                        std::string cut = whole.substr(0, whole.find(look.uid) + look.uid.size());
-                        for (std::size_t at = 132; at < 140; ++at) cut[at] = 'x';  // nor can its header be read
-                        write_safely(files.front(), cut);
+                        std::string rest = whole.substr(0, whole.find(look.uid) + look.uid.size());
+                        for (std::size_t at = 132; at < 140; ++at) rest[at] = 'x';  // nor can its header be read
+                        write_safely(files.front(), rest);
                         return folder;
                     },
                     "", true, "CT"});

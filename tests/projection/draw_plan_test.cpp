@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 #include "projection/place_labels.h"
 #include "tests/projection/shapes.h"
@@ -162,6 +163,29 @@ TEST(DrawPlan, ALettersStrokesAreNotMirrored) {
     double height_mm = 0;
     for (const Vector3d& q : p) height_mm = std::max(height_mm, great_circle_mm(p.front(), q));
     EXPECT_NEAR(height_mm, 5 * std::sqrt(1 + 16.0 / 36), 0.05);  // diagonal of a capital 5 high, 4/6 as wide
+}
+
+TEST(DrawPlan, OfACrowdedPlanNoLabelLiesOverAnotherAndTheOthersAreLeftOut) {
+    Plan plan;  // 300 holes on a patch of 30 mm: there is skin for the names of a few
+    for (int i = 0; i < 300; ++i)
+        plan.boreholes.push_back(
+            {"Hole " + std::to_string(i), on_ball(0.02 * (i % 20), 0.02 * (i / 20.0)), {}, 2, 5, {}});
+    const PlanDrawing drawing = draw_plan(plan, ball());
+    ASSERT_EQ(drawing.items.size(), 300u);
+    std::set<int> labelled;
+    OccupiedSkin lines;
+    for (const Stroke& stroke : drawing.strokes)
+        if (stroke.kind != StrokeKind::label)
+            for (const Vector3d& p : stroke.points_in_ct) lines.add(p);
+    for (const Stroke& stroke : drawing.strokes) {
+        if (stroke.kind != StrokeKind::label || stroke.width_mm < 0.45) continue;  // leaders may cross
+        labelled.insert(stroke.item);
+        for (const Vector3d& p : stroke.points_in_ct) EXPECT_FALSE(lines.within(p, 1)) << drawing.items[0].label;
+    }
+    EXPECT_GT(labelled.size(), 3u);
+    EXPECT_LT(labelled.size(), 290u);
+    for (int i = 0; i < 300; ++i)
+        EXPECT_EQ(drawing.items[static_cast<std::size_t>(i)].labelled, labelled.contains(i)) << i;
 }
 
 Plan forehead_plan() {
