@@ -22,7 +22,7 @@ constexpr double kLeastBall_mm = 40, kMostBall_mm = 100;  // newborn 45, adult w
 constexpr double kFewLayers_refused = 0.2, kFewLayers_masked = 0.45, kFewLayers_doubted = 0.5;
 constexpr double kFaintLayers = 0.85;  // of the vault: blurred averages show a faint layer all over, brains do not
 constexpr double kThinnestScalp_mm = 1.5;
-constexpr double kNose_mm = 12;             // an infant's stands out by 15
+constexpr double kNose_mm = 18;             // of an adult: noses stand out by 28 to 50; smaller heads in proportion
 constexpr double kBlurred_mm = 4;
 constexpr double kUnsure_doubted = 0.1, kUnsure_refused = 0.3;
 constexpr double kGap_cm2 = 15, kLeastCut_cm2 = 1;
@@ -165,9 +165,9 @@ void judge_layers(const Volume& volume, bool air_is_blank, SkinJudgement& r) {
 }
 
 void judge_face(SkinJudgement& r) {
-    if (!(r.nose_mm < kNose_mm)) return;
+    if (!(r.nose_mm < kNose_mm * std::min(1.0, r.ball_radius_mm / 72))) return;
     add(r.doubts, fmt::format("The face is not there: nothing stands out before the cheeks by more than {:.0f} mm where a nose "
-                              "should (a nose has 15 to 40 mm); it was taken away, covered or cut off", r.nose_mm),
+                              "should (noses have 25 to 50 mm); it was taken away, covered or cut off", r.nose_mm),
         "Give the series as the scanner made it: the scan is matched by the face.");
 }
 
