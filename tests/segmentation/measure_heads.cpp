@@ -32,13 +32,29 @@ struct Row {
     SkinMask mask;
 };
 
-/// Share of the rays' points further than 2 mm from the surface, per cent. Under the neck's cut there is no skin.
+/// The triangles that have a corner on a lid or an end of the volume.
+TriangleMesh not_skin(const TriangleMesh& skin) {
+    TriangleMesh lids;
+    lids.vertices_in_ct = skin.vertices_in_ct;
+    for (const auto& t : skin.triangles)
+        if (std::any_of(t.begin(), t.end(), [&](std::int32_t c) { return skin.flags[static_cast<std::size_t>(c)] != kSkin; }))
+            lids.triangles.push_back(t);
+    return lids;
+}
+
+/// Share of the rays' points further than 2 mm from the surface, per cent. What lies behind a lid (nostril, ear) is flagged as no
+/// skin and not counted.
 double off_percent(const std::vector<Eigen::Vector3d>& points, const TriangleMesh& skin) {
     if (points.empty() || skin.triangles.empty()) return NAN;
-    const DistanceToMesh distance(skin);
-    std::size_t off = 0;
-    for (const auto& p : points) off += distance(p) > 2;
-    return 100.0 * static_cast<double>(off) / static_cast<double>(points.size());
+    const DistanceToMesh distance(skin), from_lid(not_skin(skin));
+    std::size_t off = 0, of = 0;
+    for (const auto& p : points) {
+        const double mm = distance(p);
+        if (mm > 0.5 && from_lid(p) < mm + 0.5) continue;
+        ++of;
+        off += mm > 2;
+    }
+    return of > 0 ? 100.0 * static_cast<double>(off) / static_cast<double>(of) : NAN;
 }
 
 /// Threshold, largest piece, fill.
