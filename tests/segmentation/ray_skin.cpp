@@ -47,7 +47,7 @@ double skin_at(const std::vector<double>& profile, double contrast) {
             std::vector<double> last(air.size() > 60 ? air.end() - 60 : air.begin(), air.end() - 4);
             const double middle = median(last);
             for (double& a : last) a = std::abs(a - middle);
-            const double level = middle + std::max(kDeviations * 1.4826 * median(last), 0.06 * contrast);
+            const double level = middle + std::max(kDeviations * 1.4826 * median(last), 0.15 * contrast);
             bool stays = true;
             for (std::size_t n = s; n < s + kStays; ++n) stays = stays && profile[n] > level;
             if (stays) {
