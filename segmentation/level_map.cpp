@@ -10,32 +10,42 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// The eight nodes round a place and their weights.
+struct Corners {
+    std::array<std::size_t, 8> node{};
+    std::array<float, 8> weight{};
+
+    Corners(const LevelMap& map, const Vector3d& at_in_ct) {
+        std::size_t low[3], high[3];
+        float f[3];
+        for (int a = 0; a < 3; ++a) {
+            const int last = map.size[static_cast<std::size_t>(a)] - 1;
+            const double at = std::clamp((at_in_ct[a] - map.first_in_ct[a]) / map.step_mm, 0.0, static_cast<double>(last));
+            const int floor = std::min(static_cast<int>(at), std::max(0, last - 1));
+            f[a] = static_cast<float>(at - floor);
+            low[a] = static_cast<std::size_t>(floor);
+            high[a] = static_cast<std::size_t>(std::min(floor + 1, last));
+        }
+        for (unsigned c = 0; c < 8; ++c) {
+            node[c] = ((c & 4 ? high[2] : low[2]) * static_cast<std::size_t>(map.size[1]) + (c & 2 ? high[1] : low[1])) *
+                          static_cast<std::size_t>(map.size[0]) + (c & 1 ? high[0] : low[0]);
+            weight[c] = (c & 1 ? f[0] : 1 - f[0]) * (c & 2 ? f[1] : 1 - f[1]) * (c & 4 ? f[2] : 1 - f[2]);
+        }
+    }
+    float of(const std::vector<float>& values) const {
+        float sum = 0;
+        for (std::size_t c = 0; c < 8; ++c) sum += weight[c] * values[node[c]];
+        return sum;
+    }
+};
+
 struct Levels {
     float air = 0, skin = 1;
 };
 
 Levels levels_at(const LevelMap& map, const Vector3d& at_in_ct) {
-    std::size_t low[3], high[3];
-    float f[3];
-    for (int a = 0; a < 3; ++a) {
-        const int last = map.size[static_cast<std::size_t>(a)] - 1;
-        const double at = std::clamp((at_in_ct[a] - map.first_in_ct[a]) / map.step_mm, 0.0, static_cast<double>(last));
-        const int floor = std::min(static_cast<int>(at), std::max(0, last - 1));
-        f[a] = static_cast<float>(at - floor);
-        low[a] = static_cast<std::size_t>(floor);
-        high[a] = static_cast<std::size_t>(std::min(floor + 1, last));
-    }
-    Levels sum{0, 0};
-    for (int corner = 0; corner < 8; ++corner) {
-        const std::size_t node = (((corner >> 2) & 1 ? high[2] : low[2]) * static_cast<std::size_t>(map.size[1]) +
-                                  ((corner >> 1) & 1 ? high[1] : low[1])) * static_cast<std::size_t>(map.size[0]) +
-                                 (corner & 1 ? high[0] : low[0]);
-        float weight = 1;
-        for (int a = 0; a < 3; ++a) weight *= (corner >> a) & 1 ? f[a] : 1 - f[a];
-        sum.air += weight * map.air[node];
-        sum.skin += weight * map.skin[node];
-    }
-    return sum;
+    const Corners corners(map, at_in_ct);
+    return {corners.of(map.air), corners.of(map.skin)};
 }
 
 }  // namespace
@@ -57,6 +67,10 @@ Volume in_levels(Volume volume, const LevelMap& map) {
             }
     });
     return volume;
+}
+
+float value_at(const LevelMap& map, const std::vector<float>& of, const Vector3d& at_in_ct) {
+    return Corners(map, at_in_ct).of(of);
 }
 
 double middle_threshold(const LevelMap& map) {

@@ -16,11 +16,16 @@ struct LevelMap {
     std::vector<float> air;   ///< what air shows
     std::vector<float> skin;  ///< from which on it is body; greater than `air`
 
+    std::vector<float> smoothings;  ///< how often noise must be smoothed away before the levels are asked; empty: never
+
     bool empty() const { return air.empty(); }
 };
 
 /// The volume in units of the map: 0 is air, 1 the threshold of the skin. An empty map leaves it as it is.
 Volume in_levels(Volume volume, const LevelMap& map);
+
+/// `of` at a place in ct, linear between the nodes, the last ones held beyond; `of` has one value a node.
+float value_at(const LevelMap& map, const std::vector<float>& of, const Eigen::Vector3d& at_in_ct);
 
 /// The middle (median) of the map's thresholds, for reports.
 double middle_threshold(const LevelMap& map);

@@ -29,8 +29,10 @@ constexpr double kLeastBody_ml = 50;
                      "Check that the series shows the head with air round it, or give another threshold.");
 }
 
-/// One smoothing by w, 1 - 2w, w along each axis, where `w` keeps it within kSmoothing_mm also across thick slices.
-void smooth_once(Volume& volume) {
+/// One smoothing by w, 1 - 2w, w along each axis, where `w` keeps it within kSmoothing_mm also across thick slices; only where
+/// the map asks for more than `done` of them.
+void smooth_once(Volume& volume, const LevelMap& map, int done) {
+    const std::vector<float> before = volume.values;
     std::vector<float> next(volume.values.size());
     const std::array<std::size_t, 3> strides{1, volume.index(0, 1, 0), volume.index(0, 0, 1)};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -48,6 +50,18 @@ void smooth_once(Volume& volume) {
         });
         std::swap(volume.values, next);
     }
+    constexpr int kEvery = 4;
+    tbb::parallel_for(0, volume.size[2], [&](int k) {
+        for (int j = 0; j < volume.size[1]; ++j)
+            for (int from = 0; from < volume.size[0]; from += kEvery) {
+                const float asked = value_at(map, map.smoothings, volume.ct_from_voxel * Vector3d(from + 0.5 * kEvery, j, k)),
+                            share = std::clamp(asked - static_cast<float>(done), 0.0F, 1.0F);
+                for (int i = from; i < std::min(from + kEvery, volume.size[0]); ++i) {
+                    const std::size_t v = volume.index(i, j, k);
+                    volume.values[v] = share >= 1 ? volume.values[v] : before[v] + share * (volume.values[v] - before[v]);
+                }
+            }
+    });
 }
 
 /// How far each voxel of the survey lies outside (positive) or inside the outline, mm, as far as the band needs it.
@@ -86,12 +100,39 @@ Mask places_of(const Volume& volume, const HeadSurvey& survey, const HeadOutline
     return places;
 }
 
-/// What all but one in 200 of the voxels where air is sure stay below, in levels.
-double loud_air(const Volume& leveled, const Mask& places) {
-    std::vector<float> air;
-    for (std::size_t v = 0; v < places.size(); v += 17)
-        if (places[v] == kOutside && std::isfinite(leveled.values[v])) air.push_back(leveled.values[v]);
-    return air.size() < 100 ? 0 : static_cast<double>(quantile(std::move(air), 0.995));
+/// The nodes of the map round which air is loud: of the voxels where it is sure one in fifty passes kLoudAir.
+std::vector<std::uint8_t> loud_nodes(const Volume& leveled, const Mask& places, const LevelMap& map) {
+    std::vector<std::vector<float>> air(map.air.size());
+    for (std::size_t v = 0; v < places.size(); v += 3) {
+        if (places[v] != kOutside || !std::isfinite(leveled.values[v])) continue;
+        const auto row = static_cast<std::size_t>(leveled.size[0]), columns = static_cast<std::size_t>(leveled.size[1]);
+        const Vector3d at = (leveled.ct_from_voxel * Vector3d(static_cast<double>(v % row), static_cast<double>(v / row % columns),
+                                                              static_cast<double>(v / row / columns)) - map.first_in_ct) / map.step_mm;
+        std::size_t node = 0;
+        for (int a = 2; a >= 0; --a)
+            node = node * static_cast<std::size_t>(map.size[static_cast<std::size_t>(a)]) +
+                   static_cast<std::size_t>(std::clamp<long>(std::lround(at[a]), 0, map.size[static_cast<std::size_t>(a)] - 1));
+        air[node].push_back(leveled.values[v]);
+    }
+    std::vector<std::uint8_t> loud(map.air.size(), 0);
+    for (std::size_t n = 0; n < loud.size(); ++n)
+        loud[n] = air[n].size() >= 50 && static_cast<double>(quantile(std::move(air[n]), 0.98)) > kLoudAir;
+    return loud;
+}
+
+/// Smooths `leveled` where its air is loud, and there once more, and writes into the map how often.
+void smooth_loud_places(Volume& leveled, const Mask& places, LevelMap& map, int& smoothings) {
+    const VoxelGrid nodes{map.size, {1, 1, 1}};
+    map.smoothings.assign(map.air.size(), 0);
+    for (smoothings = 0; smoothings < kMostSmoothings;) {
+        Mask loud = loud_nodes(leveled, places, map);
+        if (std::find(loud.begin(), loud.end(), 1) == loud.end()) break;
+        loud = dilate(loud, nodes, 1.5);  // the nodes within the head know no air
+        for (std::size_t n = 0; n < loud.size(); ++n)
+            if (loud[n]) map.smoothings[n] = static_cast<float>(smoothings + 1);
+        smooth_once(leveled, map, smoothings);
+        ++smoothings;
+    }
 }
 
 /// Whether the air round the head shows anything but the blank value.
@@ -116,7 +157,7 @@ Volume skin_values(const Volume& volume, const SkinMask& mask) {
     Volume leveled = volume;
     if (mask.blank) forget_blank(leveled, *mask.blank);
     leveled = in_levels(std::move(leveled), mask.levels);
-    for (int n = 0; n < mask.smoothings; ++n) smooth_once(leveled);
+    for (int n = 0; n < mask.smoothings; ++n) smooth_once(leveled, mask.levels, n);
     return leveled;
 }
 
@@ -151,10 +192,7 @@ SkinMask segment_mr_skin(const Volume& volume, const SkinSettings& settings, con
     result.unsure_share = outline.unsure_share;
     const Mask places = places_of(volume, survey, outline);
     leveled = in_levels(std::move(leveled), result.levels);
-    while (result.smoothings < kMostSmoothings && loud_air(leveled, places) > kLoudAir) {
-        smooth_once(leveled);
-        ++result.smoothings;
-    }
+    smooth_loud_places(leveled, places, result.levels, result.smoothings);
     Mask body(places.size());
     for (std::size_t v = 0; v < body.size(); ++v)
         body[v] = places[v] == kInside || (places[v] == kBand && leveled.values[v] >= 1);

@@ -22,8 +22,9 @@ constexpr double kLeastBall_mm = 40, kMostBall_mm = 100;  // newborn 45, adult w
 constexpr double kFewLayers_refused = 0.2, kFewLayers_masked = 0.45, kFewLayers_doubted = 0.5;
 constexpr double kFaintLayers = 0.85;  // of the vault: blurred averages show a faint layer all over, brains do not
 constexpr double kThinnestScalp_mm = 1.5;
-constexpr double kNose_mm = 12;             // an infant's stands out by 15
-constexpr double kBlurred_mm = 4;
+constexpr double kNose_mm = 18;             // of an adult: noses stand out by 28 to 50; smaller heads in proportion
+constexpr double kBlurred_mm = 4.2;
+constexpr double kThick_mm = 3.5;           // thicker slices than that leave more than 1 % of the skin over 2 mm off
 constexpr double kUnsure_doubted = 0.1, kUnsure_refused = 0.3;
 constexpr double kGap_cm2 = 15, kLeastCut_cm2 = 1;
 
@@ -119,7 +120,7 @@ double nose_of(const TriangleMesh& skin, const SkinJudgement& result) {
         return ys;
     };
     double best = 0;
-    for (int z = static_cast<int>(std::floor((c.z() - 1.6 * r) / kCell_mm)); z <= static_cast<int>(std::floor(c.z() / kCell_mm)); ++z)
+    for (int z = static_cast<int>(std::floor((c.z() - 1.6 * r) / kCell_mm)); z <= static_cast<int>(std::floor((c.z() - 0.2 * r) / kCell_mm)); ++z)
         for (double aside = -16; aside <= 16; aside += 4) {  // a head may lie askew
             const double x = middle + aside;
             const auto ridge = front_at(x - 6 * scale, x + 6 * scale, z), left = front_at(x + 24 * scale, x + 36 * scale, z),
@@ -165,9 +166,9 @@ void judge_layers(const Volume& volume, bool air_is_blank, SkinJudgement& r) {
 }
 
 void judge_face(SkinJudgement& r) {
-    if (!(r.nose_mm < kNose_mm)) return;
+    if (!(r.nose_mm < kNose_mm * std::min(1.0, r.ball_radius_mm / 72))) return;
     add(r.doubts, fmt::format("The face is not there: nothing stands out before the cheeks by more than {:.0f} mm where a nose "
-                              "should (a nose has 15 to 40 mm); it was taken away, covered or cut off", r.nose_mm),
+                              "should (noses have 25 to 50 mm); it was taken away, covered or cut off", r.nose_mm),
         "Give the series as the scanner made it: the scan is matched by the face.");
 }
 
@@ -186,6 +187,14 @@ void judge_edges(const SkinMask& mask, SkinJudgement& r) {
         add(r.refusals, "The skin cannot be told from what surrounds it: " + unsure, tries);
     else if (mask.unsure_share > kUnsure_doubted)
         add(r.doubts, "The skin is uncertain in places: " + unsure, tries);
+}
+
+void judge_steps(const Volume& volume, SkinJudgement& r) {
+    const double step_mm = volume.spacing_mm().maxCoeff();
+    if (step_mm < kThick_mm) return;
+    r.sigma_mm = std::max(r.sigma_mm, step_mm / 6);
+    add(r.doubts, fmt::format("The slices lie {:.1f} mm apart: between them the skin is guessed, and uncertain by {:.1f} mm", step_mm, r.sigma_mm),
+        "Use a series of thinner slices if there is one.");
 }
 
 void judge_cuts(SkinJudgement& r) {
@@ -215,6 +224,7 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     judge_layers(volume, layers.faint_share < kFaintLayers && layers.air_is_blank, result);
     judge_face(result);
     judge_edges(mask, result);
+    judge_steps(volume, result);
     judge_cuts(result);
     return result;
 }

@@ -105,13 +105,13 @@ double bone_in_hu(const Sample& s) {
 }
 
 /// Whether the values 5 to 8 mm before the skin are one and the same nearly everywhere.
-bool is_blank(const std::vector<Sample>& samples) {
+bool is_blank(const std::vector<Sample>& samples, float threshold) {
     std::vector<float> before;
     for (const Sample& s : samples)
         for (double d = -8; d <= -5; d += kStep_mm)
             if (std::isfinite(s.at(d))) before.push_back(static_cast<float>(s.at(d)));
     if (before.empty()) return false;
-    return quantile(before, 0.05) == quantile(before, 0.7);
+    return quantile(before, 0.7) - quantile(before, 0.05) < 0.01F * std::max(1.0F, std::abs(threshold));
 }
 
 struct Layer {
@@ -122,19 +122,29 @@ struct Layer {
 /// The layer of bone between scalp and brain, of values whose air is 0: darker than both, or (`bright`) brighter than both.
 Layer bone_of(const Sample& s, double brain) {
     Layer layer;
-    double least = INFINITY, most = -INFINITY, least_at = 0, most_at = 0;
-    for (double d = kBoneFrom_mm; d <= kBoneTo_mm; d += kStep_mm) {
-        const double v = s.at(d);
-        if (v < least) least = v, least_at = d;
-        if (v > most) most = v, most_at = d;
+    std::vector<double> over, under;  // the brightest so far, and within 14 mm further on
+    for (double d = 0; d <= kBoneTo_mm; d += kStep_mm) {
+        over.push_back(std::max(over.empty() ? -INFINITY : over.back(), s.at(d)));
+        double most_under = -INFINITY;
+        for (double u = d; u <= d + 14; u += kStep_mm) most_under = std::max(most_under, s.at(u));
+        under.push_back(most_under);
     }
-    double over = -INFINITY, under = -INFINITY, over_bright = INFINITY;
-    for (double d = 0; d < least_at; d += kStep_mm) over = std::max(over, s.at(d));
-    for (double d = least_at; d <= least_at + 14; d += kStep_mm) under = std::max(under, s.at(d));
+    double ratio = INFINITY, least_at = kBoneFrom_mm, most = -INFINITY, most_at = 0;
+    std::size_t dip = 0, at = 0;
+    for (double d = 0; d <= kBoneTo_mm; d += kStep_mm, ++at) {
+        const double v = s.at(d), of = std::min(over[at], under[at]);
+        if (d >= kBoneFrom_mm && v > most) most = v, most_at = d;
+        if (d < 1 || !(of > 0) || !(v / of < ratio)) continue;
+        ratio = v / of;
+        least_at = d;
+        dip = at;
+    }
+    const double least = s.at(least_at);
+    double over_bright = INFINITY;
     for (double d = 1; d < most_at; d += kStep_mm) over_bright = std::min(over_bright, s.at(d));
     layer.level = least / brain;
-    layer.dark = least < kDark * brain && over > 1.4 * least && under > 1.4 * least && under > 0.5 * brain;
-    layer.faint = least < 0.85 * std::min(over, under);
+    layer.dark = least < kDark * brain && ratio < 0.7 && under[dip] > 0.5 * brain;
+    layer.faint = ratio < 0.85;
     layer.bright = most > kBright * brain && over_bright < 0.75 * most && median_between(s, most_at + 8, most_at + 20) < 0.75 * most;
     layer.depth_mm = layer.dark ? least_at : most_at;
     return layer;
@@ -176,7 +186,7 @@ SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const Triang
     layers.bright_bone = bright > 0.5 * vault && layered < 0.3 * vault;
     layers.layered_share = vault < 50 ? NAN : (layers.bright_bone ? bright : layered) / vault;
     layers.faint_share = vault < 50 ? NAN : faint / vault;
-    layers.air_is_blank = is_blank(samples);
+    layers.air_is_blank = is_blank(samples, static_cast<float>(mask.threshold));
     layers.scalp_mm = depths.empty() ? NAN : median(std::move(depths));
     layers.dip = levels.empty() ? NAN : median(std::move(levels));
     double area_cm2 = 0;

@@ -149,7 +149,7 @@ std::optional<DicomRefusal> fault_of_stack(const std::vector<DicomSlice>& slices
     const Eigen::Vector3d along = (slices.back().position_in_ct - first).normalized(), step = along * usual;
     for (std::size_t i = 0; i < slices.size(); ++i) {
         const double off = (slices[i].position_in_ct - first - places[i] * along).norm();
-        if (off > 5 * kEven_mm)
+        if (off > std::max(kEvenPlace_mm, kEvenShare * usual))
             return DicomRefusal{
                 fmt::format("{} lies {:.3f} mm off the straight line of the other slices", slices[i].file, off),
                 "Export the series again."};

@@ -1,35 +1,160 @@
+// The skin of every head of a folder, as `planlight prepare` takes it: verdict, how it was checked, a picture sheet, and how far it
+// lies off the skin that rays find; beside it the plain way (threshold, largest piece, fill). Compared with EXPECTED.tsv where the
+// folder has one. measure_heads FOLDER [PICTURES] [--only WORD]
 #include <fmt/format.h>
+
+#include <algorithm>
 #include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+
 #include "planning_io/files/image_file.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
-#include "segmentation/segment_skin.h"
+#include "segmentation/outside_air.h"
 #include "segmentation/skin_judgement.h"
-#include "segmentation/skin_layers.h"
+#include "segmentation/skin_threshold.h"
+#include "tests/segmentation/distance_to_mesh.h"
 #include "tests/segmentation/head_sheet.h"
-using namespace planlight;
+#include "tests/segmentation/ray_skin.h"
+
+namespace planlight::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Row {
+    std::string verdict = "refuse", why;
+    double ml = NAN, off_percent = NAN, plain_off_percent = NAN, seconds = 0;
+    SkinJudgement judged;
+    SkinMask mask;
+};
+
+/// The triangles that have a corner on a lid or an end of the volume.
+TriangleMesh not_skin(const TriangleMesh& skin) {
+    TriangleMesh lids;
+    lids.vertices_in_ct = skin.vertices_in_ct;
+    for (const auto& t : skin.triangles)
+        if (std::any_of(t.begin(), t.end(), [&](std::int32_t c) { return skin.flags[static_cast<std::size_t>(c)] != kSkin; }))
+            lids.triangles.push_back(t);
+    return lids;
+}
+
+/// Share of the rays' points further than 2 mm from the surface, per cent. What lies behind a lid (nostril, ear) is flagged as no
+/// skin and not counted.
+double off_percent(const std::vector<Eigen::Vector3d>& points, const TriangleMesh& skin) {
+    if (points.empty() || skin.triangles.empty()) return NAN;
+    const DistanceToMesh distance(skin), from_lid(not_skin(skin));
+    std::size_t off = 0, of = 0;
+    for (const auto& p : points) {
+        const double mm = distance(p);
+        if (mm > 0.5 && from_lid(p) < mm + 0.5) continue;
+        ++of;
+        off += mm > 2;
+    }
+    return of > 0 ? 100.0 * static_cast<double>(off) / static_cast<double>(of) : NAN;
+}
+
+/// Threshold, largest piece, fill.
+double plain_off_percent(Volume volume, const std::vector<Eigen::Vector3d>& points) {
+    try {
+        SkinMask mask;
+        mask.threshold = skin_threshold(volume);
+        mask.body.resize(volume.values.size());
+        for (std::size_t v = 0; v < mask.body.size(); ++v) mask.body[v] = static_cast<double>(volume.values[v]) >= mask.threshold;
+        const VoxelGrid grid = grid_of(volume);
+        mask.body = outside_air(largest_piece(std::move(mask.body), grid).mask, grid);
+        for (auto& v : mask.body) v = !v;
+        volume.modality.clear();
+        return off_percent(points, triangulate_skin(volume, mask));
+    } catch (const Error&) {
+        return NAN;
+    }
+}
+
+std::string verdict_of(const SkinJudgement& judged) {
+    const auto is_cut = [](const SkinDoubt& d) { return d.finding.starts_with("The volume ends"); };
+    const auto cuts = std::count_if(judged.doubts.begin(), judged.doubts.end(), is_cut);
+    if (static_cast<std::size_t>(cuts) < judged.doubts.size()) return "warn";
+    return cuts > 0 ? "skin+cut" : "skin";
+}
+
+Row measure(const fs::path& path, const fs::path& pictures) {
+    Row row;
+    try {
+        const Volume volume = read_volume(path, {}, SliceGaps::resampled);
+        const auto began = std::chrono::steady_clock::now();
+        row.mask = segment_skin(volume);
+        const TriangleMesh skin = triangulate_skin(volume, row.mask);
+        row.judged = judge_skin(volume, row.mask, skin);
+        row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
+        row.ml = row.mask.volume_ml;
+        if (!pictures.empty()) write_png(head_sheet(volume, skin), pictures / (path.filename().string() + ".png"));
+        refuse_implausible(row.judged);
+        row.verdict = verdict_of(row.judged);
+        for (const SkinDoubt& d : row.judged.doubts) row.why += (row.why.empty() ? "" : "; ") + d.finding;
+        const auto points = ray_skin(volume);
+        row.off_percent = off_percent(points, skin);
+        row.plain_off_percent = plain_off_percent(volume, points);
+    } catch (const Error& error) {
+        row.why = error.what();
+    }
+    return row;
+}
+
+std::map<std::string, std::string> expected_in(const fs::path& folder) {
+    std::map<std::string, std::string> expected;
+    std::ifstream file(folder / "EXPECTED.tsv");
+    for (std::string line; std::getline(file, line);) {
+        std::istringstream fields(line);
+        std::string name, verdict;
+        if (std::getline(fields, name, '\t') && std::getline(fields, verdict, '\t')) expected[name] = verdict;
+    }
+    return expected;
+}
+
+/// A warning does for a cut and for a refusal expected as one ("warn"); a refusal is right where "warn" was expected.
+bool is_right(const std::string& verdict, const std::string& expected) {
+    if (expected == "refuse") return verdict == "refuse";
+    if (expected == "warn") return verdict != "skin";
+    if (expected == "skin+cut") return verdict == "skin+cut" || verdict == "warn";
+    return verdict != "refuse";
+}
+
+}  // namespace
+}  // namespace planlight::test
+
 int main(int argc, char** argv) {
-    for (int a = 1; a < argc; ++a) {
-        std::string path = argv[a], name = std::filesystem::path(path).filename().string();
-        try {
-            Volume volume = read_volume(path);
-            auto t0 = std::chrono::steady_clock::now();
-            SkinMask m = segment_skin(volume);
-            auto t1 = std::chrono::steady_clock::now();
-            TriangleMesh skin = triangulate_skin(volume, m);
-            auto t2 = std::chrono::steady_clock::now();
-            SkinJudgement j = judge_skin(volume, m, skin);
-            auto t3 = std::chrono::steady_clock::now();
-            size_t n[3] = {0,0,0}; for (auto f : skin.flags) n[f]++;
-            fmt::print("{} thr {:.4g} vol {:.0f} removed {} {:.1f} smooth {} blank {} bright {:.2f} unsure {:.3f} tris {} skin {} seal {} cut {} time {:.2f} {:.2f} {:.2f}\n", name, m.threshold_said, m.volume_ml, m.pieces_removed, m.removed_ml, m.smoothings, m.blank ? *m.blank : -1.F, m.brightness_ratio, m.unsure_share, skin.triangles.size(), n[0], n[1], n[2], std::chrono::duration<double>(t1 - t0).count(), std::chrono::duration<double>(t2 - t1).count(), std::chrono::duration<double>(t3 - t2).count());
-            fmt::print("   ball {:.0f} layered {:.2f} scalp {:.1f} nose {:.1f} blur {:.1f} gap {:.1f} sigma {:.2f} brightbone {}\n", j.ball_radius_mm, j.layered_share, j.scalp_mm, j.nose_mm, j.edge_blur_mm, j.gap_cm2, j.sigma_mm, j.bright_bone);
-            SkinLayers l = layers_under(volume, m, skin, j.ball_centre_in_ct); fmt::print("   faint {:.2f} dip {:.2f} blank air {}\n", l.faint_share, l.dip, l.air_is_blank);
-            for (auto& c : j.cut_sides) fmt::print("   cut {} {:.0f} {}\n", c.name, c.area_cm2, c.usual);
-            for (auto& w : m.warnings) fmt::print("    mask: {}\n", w);
-            for (auto& w : j.doubts) fmt::print("    doubt: {}\n", w.finding);
-            for (auto& w : j.refusals) fmt::print("    REFUSED: {}\n", w.finding);
-            write_png(test::head_sheet(volume, skin), "/tmp/skin/out/" + name + ".png");
-        } catch (const Error& e) { fmt::print("== {} ERROR {}\n", name, e.what()); } 
+    using namespace planlight::test;
+    if (argc < 2) {
+        fmt::print(stderr, "measure_heads FOLDER [PICTURES] [--only WORD]\n");
+        return 2;
+    }
+    namespace fs = std::filesystem;
+    const fs::path folder = argv[1], pictures = argc > 2 && argv[2][0] != '-' ? argv[2] : "";
+    const std::string only = std::string(argv[argc - 2]) == "--only" ? argv[argc - 1] : "";
+    if (!pictures.empty()) fs::create_directories(pictures);
+    const auto expected = expected_in(folder);
+    std::vector<fs::path> heads;
+    for (const auto& entry : fs::directory_iterator(folder))
+        if (entry.path().extension() != ".tsv" && entry.path().filename().string().find(only) != std::string::npos) heads.push_back(entry.path());
+    std::sort(heads.begin(), heads.end());
+    int wrong = 0;
+    fmt::print("head\tverdict\texpected\tml\tthreshold\tball mm\tlayered\tnose mm\tblur mm\tunsure\tsigma mm\toff > 2 mm %\tplain off %\ts\twhy\n");
+    for (const auto& head : heads) {
+        const std::string name = head.filename().string();
+        const Row row = measure(head, pictures);
+        const auto known = expected.find(name);
+        const bool right = known == expected.end() || is_right(row.verdict, known->second);
+        wrong += !right;
+        fmt::print("{}\t{}{}\t{}\t{:.0f}\t{:.4g}\t{:.0f}\t{:.2f}\t{:.0f}\t{:.1f}\t{:.3f}\t{:.2f}\t{:.2f}\t{:.2f}\t{:.1f}\t{}\n", name, row.verdict,
+                   right ? "" : " WRONG", known == expected.end() ? "-" : known->second, row.ml, row.mask.threshold_said,
+                   row.judged.ball_radius_mm, row.judged.layered_share, row.judged.nose_mm, row.judged.edge_blur_mm, row.mask.unsure_share,
+                   row.judged.sigma_mm, row.off_percent, row.plain_off_percent, row.seconds, row.why);
         std::fflush(stdout);
     }
+    fmt::print("{} heads, {} not as expected\n", heads.size(), wrong);
+    return wrong == 0 ? 0 : 6;
 }
