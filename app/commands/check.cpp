@@ -102,7 +102,7 @@ int run_check(const CheckOptions& options) {
     write_safely(file, log.dump(2) + "\n");
     Json result = entry;
     result["reason"] = check.reason;
-    result["rig"] = json_of(scan.rig);
+    result["rig"] = rig_state_json(scan.rig);
     result["trends"] = Json::array();
     for (const DriftTrend& trend : trends) {
         result["trends"].push_back(

@@ -112,7 +112,7 @@ int run_register(const RegisterOptions& options) {
             {"scale_sigma", result.scale_sigma},
             {"skin_movement_mm", result.skin_movement_mm},
             {"skin_offset_mm", result.skin_offset_mm},
-            {"rig", result.rig ? nlohmann::json(json_of(*result.rig)) : nlohmann::json()},
+            {"rig", result.rig ? nlohmann::json(rig_state_json(*result.rig)) : nlohmann::json()},
             {"items", items},
             {"seconds", {{"initial", result.initial_match_s}, {"fine", result.refine_s}}}};
         std::cout << out.dump(2) << '\n';

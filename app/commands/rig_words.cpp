@@ -17,7 +17,7 @@ const char* words_of(const RigState& state, const DeviceFinding& device) {
 
 }  // namespace
 
-nlohmann::ordered_json json_of(const RigState& state) {
+nlohmann::ordered_json rig_state_json(const RigState& state) {
     nlohmann::ordered_json devices;
     for (std::size_t d = 0; d < kRigDevices; ++d) {
         const DeviceFinding& device = state.devices[d];

@@ -8,6 +8,6 @@ namespace planlight {
 
 /// What a scan found of the rig, for `--json`: verdict, sentence, remedy, hidden_light_mm, and of every device what is
 /// known.
-nlohmann::ordered_json json_of(const RigState& state);
+nlohmann::ordered_json rig_state_json(const RigState& state);
 
 }  // namespace planlight

@@ -200,7 +200,7 @@ int run_scan(const ScanOptions& options) {
             {"epipolar_rms_px", or_null(scan.raw.epipolar_rms_px)},
             {"projector_offset_px", {scan.raw.projector_offset_px.x(), scan.raw.projector_offset_px.y()}},
             {"projector", projector_of(scan)},
-            {"rig", json_of(scan.rig)},
+            {"rig", rig_state_json(scan.rig)},
             {"movement", json_of(movement)},
             {"seconds",
              {{"sequence", scan.sequence_s},
