@@ -11,6 +11,7 @@
 #include "app/live/live_window.h"
 #include "app/prepare_case.h"
 #include "app/report/preparation_report.h"
+#include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
 
 namespace planlight {
@@ -28,7 +29,14 @@ struct PrepareOptions {
     bool replace = false, preview = false, json = false;
 };
 
+/// Before the work, not after it.
+void check_out(const PrepareOptions& options) {
+    if (options.replace || !std::filesystem::exists(options.out / "case.json")) return;
+    throw InputError(options.out, "is a case already", "Name a new folder, or replace this case with --replace.");
+}
+
 int run_prepare(const PrepareOptions& options) {
+    check_out(options);
     ProgressBar bar;
     bar.show("volume", 0);
     Volume volume = read_volume(options.volume, options.series_uid);
@@ -85,9 +93,7 @@ Run add_prepare(CLI::App& app) {
                             "prepare Cranium.inv3 --plan frontal_defect.mrk.json --out case");
     sub->add_option("volume", o.volume, "DICOM folder or file, NIfTI, NRRD, MetaImage, or InVesalius project (.inv3)")
         ->required();
-    sub->add_option(
-           "--plan", o.plan,
-           "Plan file, or a folder of them: .mrk.json, .fcsv, RTSTRUCT, tables, lines (see planning_io/README.md)")
+    sub->add_option("--plan", o.plan, "Plan file, or a folder of them: .mrk.json, .fcsv, RTSTRUCT, tables, lines")
         ->required();
     plan_frame_options(sub, o.frame, o.accept_frame);
     sub->add_option("--surface", o.surface,
@@ -97,7 +103,7 @@ Run add_prepare(CLI::App& app) {
         ->check(CLI::IsMember({"LPS", "RAS"}));
     sub->add_option("--segment", o.segment, "Which segment or ROI of a DICOM SEG or RTSTRUCT, by its name");
     sub->add_option("--out", o.out, "Case folder to write")->required();
-    sub->add_option("--series", o.series_uid, "UID or number of the DICOM series, where the folder holds several");
+    series_option(sub, o.series_uid);
     sub->add_flag("--anonymous", o.anonymous, "Leave UIDs and file names of the volume out of the case folder");
     sub->add_option("--threshold", o.threshold, "Skin threshold, HU (default: found from the histogram)");
     sub->add_option("--voxel-mm", o.voxel_mm, "Edge of the LUT's cubic voxels")

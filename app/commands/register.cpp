@@ -5,9 +5,11 @@
 #include <nlohmann/json.hpp>
 
 #include "app/case_model.h"
+#include "app/commands/cloud_unit.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/report/registration_certificate.h"
+#include "app/site_settings.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/case/registration_file.h"
 #include "planning_io/case/slicer_transform.h"
@@ -37,13 +39,10 @@ const char* name_of(Verdict verdict) {
     return verdict == Verdict::yes ? "yes" : verdict == Verdict::ask ? "ask" : "no";
 }
 
-double unit_in_mm(const std::string& unit) {
-    return unit == "m" ? 1000 : unit == "cm" ? 10 : unit == "um" ? 1e-3 : unit == "inch" ? 25.4 : 1;
-}
-
 /// The cloud as the matching wants it: mm, with normals towards the devices.
 PointCloud cloud_of(const RegisterOptions& options) {
     PointCloud cloud = read_cloud(options.cloud, {unit_in_mm(options.unit), options.in_rig});
+    check_unit(cloud, options.unit, options.cloud);
     if (!cloud.normals_in_rig.empty()) return cloud;
     if (options.viewpoint_in_rig.empty())
         throw InputError(
@@ -114,15 +113,17 @@ int run_register(const RegisterOptions& options) {
             fmt::print("{}: residual {:.2f} mm rms, {:.0f} % of {} points on the skin, runner-up {:.2f} times worse.\n",
                        name_of(result.verdict), result.residual_rms_mm, 100 * result.inlier_fraction, result.points,
                        result.runner_up_ratio);
+        const SiteSettings site = read_site_settings();
         for (const auto& item : items)
-            fmt::print("  {}: within {:.1f} mm (95 %)\n", item["name"].get<std::string>(),
-                       item["predicted_95_mm"].get<double>());
+            fmt::print("  {}: within {} (95 %)\n", item["name"].get<std::string>(),
+                       length_text(item["predicted_95_mm"].get<double>(), site));
         for (const auto& reason : result.reasons) fmt::print("  {}\n", reason);
     }
     if (result.verdict == Verdict::no)
         throw CheckFailedError(
             "the patient was not found: " + fmt::format("{}", fmt::join(result.reasons, "; ")),
-            "Scan again from a side that shows more of the head, and check that this is the patient of the case.");
+            "Scan again from a side that shows more of the head, and check that this is the patient of the case." +
+                (cloud ? hint_of_unit(*cloud, options.unit) : std::string()));
     return 0;
 }
 

@@ -47,6 +47,7 @@ struct SceneModel {
     /// Per vertex of the skin, how far off it may be (95 %), mm; null: the skin has its own colour.
     std::shared_ptr<const std::vector<float>> skin_error_mm;
     double warn_above_mm = 1, stop_above_mm = 2;  ///< its colours: green, amber above, red above
+    bool on_paper = false;                        ///< white behind everything, larger words: for a page to print
 };
 
 /// What the 3-D view shows of a match.

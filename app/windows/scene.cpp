@@ -171,6 +171,7 @@ Scene::~Scene() = default;
 
 bool Scene::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale) {
     Parts& parts = *parts_;
+    if (scene.on_paper) parts.renderer->SetBackground(1, 1, 1);
     const bool changed = static_cast<int>(parts.take_skin_and_markers(scene)) |
                          static_cast<int>(parts.take_cloud(scene)) | static_cast<int>(parts.take_lines(scene));
     if (!changed && same_view(view, parts.shown_view) && width == parts.width && height == parts.height) return false;

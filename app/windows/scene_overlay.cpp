@@ -40,6 +40,11 @@ struct Text {
         property->SetVerticalJustificationToCentered();
         renderer.AddActor2D(actor);
     }
+    /// Dark words for a page; they are light from the start.
+    void set_on_paper() {
+        actor->GetTextProperty()->SetColor(0.1, 0.13, 0.17);
+        actor->GetTextProperty()->SetBackgroundColor(1, 1, 1);
+    }
     void place(const std::string& text, double x, double y, int pixels) {
         actor->SetInput(text.c_str());
         actor->GetTextProperty()->SetFontSize(pixels);
@@ -159,6 +164,12 @@ SceneOverlay::~SceneOverlay() = default;
 
 void SceneOverlay::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale) {
     scale = std::max(scale, 0.85);  // smaller letters are not readable
+    if (scene.on_paper) {
+        scale *= 1.6;  // the picture is shown at half its size and less
+        for (Text& letter : parts_->letters) letter.set_on_paper();
+        for (Text& value : parts_->values) value.set_on_paper();
+        parts_->title.set_on_paper();
+    }
     parts_->boxes.clear();
     for (Text& letter : parts_->letters) letter.actor->SetVisibility(!scene.of_scan);
     parts_->letters_at_edges(view, width, height, scale);

@@ -116,8 +116,7 @@ void write_folder_safely(const fs::path& folder, bool replace, const std::functi
     const bool there = fs::exists(target), empty = there && fs::is_directory(target) && fs::is_empty(target);
     if (there && !fs::is_directory(target)) throw InputError(target, "is a file, not a folder", "Name another folder.");
     if (there && !empty && !replace)
-        throw InputError(target, "exists already and is not empty",
-                         "Name a new folder, remove this one, or give --replace if the command has it.");
+        throw InputError(target, "exists already and is not empty", "Name a new folder, or remove this one.");
     RemoveFolder temporary{make_temporary_beside(target, true)};
     fill(temporary.path);
     sync(temporary.path, target);

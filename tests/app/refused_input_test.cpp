@@ -105,7 +105,7 @@ TEST_F(CommandsTest, WrongUsageGivesExitTwo) {
 
 TEST_F(CommandsTest, EveryCommandExplainsItselfWithAnExample) {
     for (const char* name : {"demo", "prepare", "plan", "patterns", "scan", "register", "track", "project", "session",
-                             "review", "simulate", "board", "calibrate", "check"}) {
+                             "review", "simulate", "board", "calibrate", "check", "projector", "merge"}) {
         const auto run = run_planlight(std::string(name) + " --help", root());
         EXPECT_EQ(run.exit_code, 0) << name;
         EXPECT_NE(run.out.find("Example:"), std::string::npos) << name;
