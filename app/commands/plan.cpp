@@ -175,8 +175,8 @@ int run_plan(const PlanOptions& options) {
         std::cout << result.dump(2) << '\n';
         return 0;
     }
-    fmt::print("{} plan items{}:\n{}", read.plan.size(), options.out.empty() ? "" : " in " + options.out.string(),
-               list.lines);
+    fmt::print("{} plan item{}{}:\n{}", read.plan.size(), read.plan.size() == 1 ? "" : "s",
+               options.out.empty() ? "" : " in " + options.out.string(), list.lines);
     return 0;
 }
 

@@ -147,8 +147,8 @@ std::string html_page(const std::string& title, const std::string& body, const R
             about += fmt::format("<div><span>{}</span>{}</div>", html_escaped(name), html_escaped(value));
     };
     for (const auto& [name, value] : facts) add(name, value);
-    add("Printed by", operator_name());
-    add("On", now());
+    add("Operator", operator_name());
+    add("Printed", now());
     return fmt::format(
         "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>{}</title><style>{}</style></head>"
         "<body><main><h1>{}</h1><div class=\"facts\">{}</div>{}<footer>Planlight {}. For research; not a medical "

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -95,6 +96,33 @@ TEST_F(CommandsTest, ARigFileWithNonsenseIsRefused) {
     for (auto& [path, value] : sheared.items())
         if (value.is_number_float() && path.find("from_rig") != std::string::npos) value = value.get<double>() * 1.5;
     refused("a rotation that is none", sheared.unflatten());
+}
+
+TEST_F(CommandsTest, LandmarksWithoutTheirSpaceAreAdvisedNothingThatRegisterDoesNotHave) {
+    prepared();
+    std::ofstream(root() / "bare.csv") << "name,ct_x,ct_y,ct_z,rig_x,rig_y,rig_z\nnose,1,2,3,4,5,6\n";
+    const auto run = run_planlight("register case --pairs bare.csv --out never.json", root());
+    expect_one_clear_sentence(run, 3, "does not say its coordinate system");
+    EXPECT_EQ(run.err.find("--frame"), std::string::npos) << run.err;
+}
+
+TEST_F(CommandsTest, ACloudInAnotherUnitIsToldAsThat) {
+    prepared();
+    std::ofstream cloud(root() / "metres.ply");
+    cloud << "ply\nformat ascii 1.0\nelement vertex 2000\nproperty float x\nproperty float y\nproperty float "
+             "z\nend_header\n";
+    for (int i = 0; i < 2000; ++i) cloud << 0.1 * std::cos(i) << ' ' << 0.1 * std::sin(i) << ' ' << 0.00005 * i << '\n';
+    cloud.close();
+    const auto run =
+        run_planlight("register case --cloud metres.ply --in-rig --viewpoint 0 0 0 --out never.json", root());
+    expect_one_clear_sentence(run, 3, "mm across if its numbers are mm");
+    EXPECT_NE(run.err.find("--unit m,"), std::string::npos) << run.err;
+}
+
+TEST_F(CommandsTest, ACaseIsReplacedOnlyWhenThatIsSaid) {
+    prepared();
+    expect_one_clear_sentence(run_planlight("prepare " + patient() + " --plan " + plan() + " --out case", root()), 3,
+                              "--replace");
 }
 
 TEST_F(CommandsTest, WrongUsageGivesExitTwo) {

@@ -24,16 +24,16 @@ std::size_t end_of_literal(const std::string& source, std::size_t at) {
     return at;
 }
 
-/// The arguments of the call whose bracket opens at `open`.
-std::vector<std::string> arguments(const std::string& source, std::size_t open) {
+/// The arguments of the call whose bracket opens at `open`; `close` becomes the place of the bracket that ends it.
+std::vector<std::string> arguments(const std::string& source, std::size_t open, std::size_t& close) {
     std::vector<std::string> found(1);
     int depth = 0;
-    for (std::size_t i = open + 1; i < source.size(); ++i) {
-        const char c = source[i];
+    for (close = open + 1; close < source.size(); ++close) {
+        const char c = source[close];
         if (c == '"') {
-            const std::size_t end = end_of_literal(source, i);
-            found.back() += source.substr(i, end - i + 1);
-            i = end;
+            const std::size_t end = end_of_literal(source, close);
+            found.back() += source.substr(close, end - close + 1);
+            close = end;
             continue;
         }
         if (c == '(' || c == '{' || c == '[') ++depth;
@@ -77,15 +77,18 @@ std::string words(const std::string& expression, const std::string& source) {
             text += plain(expression.substr(i + 1, end - i - 1));
             between = false;
             i = end;
-        } else if (expression.compare(i, 12, "fmt::format(") == 0) {
-            i += 11;
+        } else if (expression.compare(i, 12, "fmt::format(") == 0) {  // its first argument has the words
+            std::size_t close = 0;
+            text += (between ? "…" : "") + words(arguments(expression, i + 11, close).front(), source);
+            between = false;
+            i = close;
         } else if (expression.compare(i, 12, "std::string(") == 0) {
             i += 11;
         } else if (std::isalnum(static_cast<unsigned char>(expression[i]))) {
             between = true;
         }
     }
-    return text.empty() || (between && expression.find("format(") == std::string::npos) ? text + "…" : text;
+    return text.empty() || between ? text + "…" : text;
 }
 
 }  // namespace
@@ -105,7 +108,8 @@ std::vector<SourceRefusal> refusals_in_sources(const fs::path& root) {
             const auto at = static_cast<std::size_t>(it->position());
             if (at >= 4 && source.substr(at - 4, 4).find("::") != std::string::npos) continue;  // another library's
             const std::string kind = (*it)[1];
-            const auto given = arguments(source, at + static_cast<std::size_t>(it->length()) - 1);
+            std::size_t close = 0;
+            const auto given = arguments(source, at + static_cast<std::size_t>(it->length()) - 1, close);
             const std::size_t problem = kind == "CheckFailedError" ? 0 : 1;
             if (given.size() < problem + 2) continue;
             SourceRefusal refusal;
