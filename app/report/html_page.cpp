@@ -27,7 +27,7 @@ th:first-child,td:first-child{text-align:left}th{color:#5a6673;font-weight:500}
 .verdict{border:2px solid;border-radius:8px;padding:10px 16px;font-size:18px;margin:14px 0;break-inside:avoid}
 .grid{display:grid;grid-template-columns:1fr 1fr;gap:16px}
 figure{margin:0;border:1px solid #d5dbe2;border-radius:6px;overflow:hidden;display:flex;flex-direction:column;break-inside:avoid}
-figure.wide{grid-column:1/-1}
+figure.wide{grid-column:1/-1}figure.wide img{max-height:460px}
 figure img{width:100%;flex:1;object-fit:contain;display:block;background:#fff}figcaption{padding:8px 12px;font-size:14px}
 figcaption b{display:block}
 footer{margin-top:28px;padding-top:8px;border-top:1px solid #d5dbe2;color:#5a6673;font-size:13px}

@@ -157,7 +157,7 @@ std::string section(const LatencyResult& r) {
         "light, {} a refresh late; {} frames lost, {} doubled.</p>",
         html_escaped(meaning_of(r)),
         figure(histogram(r), "Delays of the flashes",
-               "Bright: changes within an exposure. Dull: changes between two exposures, spread over the time between "
+               "Dark: changes within an exposure. Pale: changes between two exposures, spread over the time between "
                "them."),
         r.code_agreement, r.runner_up_agreement, r.changes, r.unseen, r.late, r.frames.lost, r.frames.doubled);
 }
