@@ -7,6 +7,8 @@
 #include <limits>
 #include <memory>
 
+#include "app/belonging.h"
+
 namespace planlight {
 namespace {
 
@@ -40,12 +42,13 @@ std::vector<PlanRow> rows_of(const Plan& plan, const PlanDrawing& drawing) {
 OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing) {
     OperatorModel model;
     const Plan& plan = the_case.plan;
-    model.case_title = "Case " + the_case.code;
+    model.case_title = title_of(the_case);
     const auto counted = [](std::size_t count, const char* one, const char* many) {
         return fmt::format("{} {}", count, count == 1 ? one : many);
     };
     model.case_subtitle =
-        fmt::format("{} \u00b7 {}, {}, {}", the_case.created.substr(0, 10),
+        fmt::format("Case {} \u00b7 {}{} \u00b7 {}, {}, {}", the_case.code, the_case.created.substr(0, 10),
+                    the_case.names.series_date.empty() ? "" : " of a scan of " + the_case.names.series_date,
                     counted(plan.osteotomy_lines.size() + plan.cut_planes.size(), "cutting line", "cutting lines"),
                     counted(plan.boreholes.size(), "borehole", "boreholes"),
                     counted(plan.trajectories.size(), "trajectory", "trajectories"));
@@ -64,7 +67,7 @@ std::vector<double> predicted_errors_mm(const Plan& plan, const RegistrationResu
     std::vector<double> errors;
     const auto add = [&](const std::vector<Eigen::Vector3d>& points_in_ct) {
         double worst = 0;
-        for (const auto& p : points_in_ct) worst = std::max(worst, predicted_error(found.covariance, p).bound_95_mm);
+        for (const auto& p : points_in_ct) worst = std::max(worst, predicted_light_mm(found, p));
         errors.push_back(worst);
     };
     for (const auto& line : plan.osteotomy_lines) add(line.points_in_ct);
@@ -79,8 +82,10 @@ std::shared_ptr<const std::vector<float>> predicted_on_skin_mm(const TriangleMes
                                                                const RegistrationResult& found) {
     auto errors = std::make_shared<std::vector<float>>();
     errors->reserve(skin.vertices_in_ct.size());
+    const double hidden_mm =
+        found.rig ? found.rig->hidden_light_mm : 0;  // over the scanned skin: at each vertex it would take a second
     for (const auto& p : skin.vertices_in_ct)
-        errors->push_back(static_cast<float>(predicted_error(found.covariance, p).bound_95_mm));
+        errors->push_back(static_cast<float>(std::hypot(predicted_error(found.covariance, p).bound_95_mm, hidden_mm)));
     return errors;
 }
 

@@ -11,8 +11,10 @@
 #include <ctime>
 #include <exception>
 #include <new>
+#include <system_error>
 #include <utility>
 
+#include "planning_io/files/memory_need.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -130,11 +132,23 @@ std::string today() {
     return text;
 }
 
+namespace {
+
+void say(const std::string& line) {
+    add_to_log(line);
+    fmt::print(stderr, "planlight: {}\n", line);
+}
+
+int explain_short_memory() {
+    say(fmt::format("there is not enough memory: this needs more than the {} MiB that it had. Close other programs, or use "
+                    "larger voxels.",
+                    most_memory_used_bytes() >> 20));
+    return static_cast<int>(ExitCode::disk);
+}
+
+}  // namespace
+
 int run_and_explain(const std::function<int()>& command) {
-    const auto say = [](const std::string& line) {
-        add_to_log(line);
-        fmt::print(stderr, "planlight: {}\n", line);
-    };
     auto code = static_cast<int>(ExitCode::our_fault);
     try {
         code = command();
@@ -142,7 +156,12 @@ int run_and_explain(const std::function<int()>& command) {
         say(fmt::format("{}. {}", error.what(), error.remedy));
         code = static_cast<int>(error.exit_code);
     } catch (const std::bad_alloc&) {
-        say("there is not enough memory. Close other programs, or use larger voxels.");
+        code = explain_short_memory();
+    } catch (const std::system_error& fault) {  // a thread that finds no room
+        if (fault.code() == std::errc::resource_unavailable_try_again || fault.code() == std::errc::not_enough_memory)
+            code = explain_short_memory();
+        else
+            say(fmt::format("a fault of ours: {}. Please report it with the command that you gave.", fault.what()));
     } catch (const std::exception& fault) {
         say(fmt::format("a fault of ours: {}. Please report it with the command that you gave.", fault.what()));
     }

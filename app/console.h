@@ -50,8 +50,8 @@ void warn(const std::string& text);
 /// The present moment, UTC, ISO 8601.
 std::string today();
 
-/// Runs a command: every Error becomes one sentence with its remedy on stderr, and its exit code; anything else is a
-/// fault of ours (70).
+/// Runs a command: every Error becomes one sentence with its remedy on stderr, and its exit code; memory that is short
+/// is exit 7 with what was had; anything else is a fault of ours (70).
 int run_and_explain(const std::function<int()>& command);
 
 }  // namespace planlight

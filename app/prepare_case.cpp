@@ -4,43 +4,95 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cmath>
 #include <ctime>
 
+#include "planning_io/files/memory_need.h"
+#include "planning_io/plan/plan_file.h"
 #include "planning_io/surface/mesh_file.h"
+#include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
 #include "projection/check_plan.h"
 
 namespace planlight {
 namespace {
 
+// What a preparation has at its fullest, at least: measured, rounded down, so that what would do is never refused.
+constexpr double kBytesOfVoxel = 12, kBytesOfTableVoxel = 4, kTableShare = 0.5, kBytesAnyway = 100e6;
+
 /// Runs one step, with its name in the progress, and gives its time.
-double timed(const std::string& name, const std::function<void(const std::string&, double)>& progress,
+double timed(const std::string& name, const PreparationWatcher& watcher,
              const std::function<void(const std::function<void(double)>&)>& step) {
     const auto began = std::chrono::steady_clock::now();
     step([&](double share) {
-        if (progress) progress(name, share);
+        if (watcher.progress) watcher.progress(name, share);
     });
-    if (progress) progress(name, 1);
+    if (watcher.progress) watcher.progress(name, 1);
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
 }
 
-/// The LUT, what belongs to the volume, and the plan checked: of a case that has its skin.
-void finish(Preparation& done, const Volume& volume, const Plan& plan, const LutSettings& lut,
-            const std::string& created, const std::function<void(const std::string&, double)>& progress) {
+/// Refuses a plan that does not fit. What is doubtful about the skin comes first: it may be the one to be mistrusted.
+void refuse_misfit(const PlanVerdict& of_plan, const SkinJudgement& skin) {
+    try {
+        refuse_stopped_plan(of_plan);
+    } catch (const InputError& error) {
+        if (skin.doubts.empty()) throw;
+        std::string doubts;
+        for (const SkinDoubt& doubt : skin.doubts) doubts += (doubts.empty() ? "" : "; ") + doubt.finding;
+        throw InputError({}, "The skin itself is doubtful, mistrust it first (" + doubts + "). " + error.what(),
+                         skin.doubts.front().remedy + " " + error.remedy);
+    }
+}
+
+/// Keeps a warning and tells it at once: a later step may fail.
+void add_warnings(const std::vector<std::string>& more, const PreparationWatcher& watcher, Case& the_case) {
+    for (const auto& warning : more) {
+        the_case.warnings.push_back(warning);
+        if (watcher.warned) watcher.warned(warning);
+    }
+}
+
+void tell_of_volume(const Volume& volume, const Plan& plan, const std::string& created, const CaseNames& names,
+                    Preparation& done) {
     Case& the_case = done.prepared;
-    done.lut_s =
-        timed("table", progress, [&](const auto& share) { the_case.lut = build_skin_lut(the_case.skin, lut, share); });
+    done.volume = {volume.modality, volume.is_hu, volume.size, volume.spacing_mm()};
     the_case.volume_hash = hash_of(volume);
+    the_case.plan_hash = hash_of(plan);
+    the_case.code = code_of(the_case.volume_hash, the_case.plan_hash);
+    the_case.names = names;
+    the_case.names.series = fit_to_be_a_name(volume.series_description);
+    the_case.names.series_date = volume.series_date;
     the_case.frame_of_reference_uid = volume.frame_of_reference_uid;
-    the_case.lut.volume_hash = the_case.volume_hash;
-    the_case.lut.mesh_hash = hash_of(the_case.skin);
-    the_case.code = the_case.volume_hash.substr(0, 8);
     the_case.created = created;
     the_case.source = volume.source;
     the_case.plan = plan;
-    const PlanVerdict of_plan = check_plan(plan, SkinSurface(the_case.skin), box_of(volume));
-    refuse_stopped_plan(of_plan);
-    the_case.warnings.insert(the_case.warnings.end(), of_plan.warnings.begin(), of_plan.warnings.end());
+}
+
+/// Is this the skin of a head? A phantom is not asked. Refuses what is not, warns of what is doubtful.
+void judge(const Volume& volume, const SkinSettings& skin, const PreparationWatcher& watcher, Preparation& done) {
+    Case& the_case = done.prepared;
+    if (skin.phantom) {
+        the_case.skin_edge_sigma_mm = skin_edge_sigma_mm(volume, done.mask, the_case.skin);
+        add_warnings({"taken as a phantom: it was not asked whether this is the skin of a head"}, watcher, the_case);
+        return;
+    }
+    done.judgement = judge_skin(volume, done.mask, the_case.skin);
+    refuse_implausible(done.judgement);
+    the_case.skin_edge_sigma_mm = done.judgement.sigma_mm;
+    for (const SkinDoubt& doubt : done.judgement.doubts)
+        add_warnings({doubt.finding + ". " + doubt.remedy}, watcher, the_case);
+}
+
+/// The LUT, and the plan checked: of a case that has its skin.
+void finish(Preparation& done, const Volume& volume, const LutSettings& lut, const PreparationWatcher& watcher) {
+    Case& the_case = done.prepared;
+    const PlanVerdict of_plan = check_plan(the_case.plan, SkinSurface(the_case.skin), box_of(volume));
+    add_warnings(of_plan.warnings, watcher, the_case);
+    refuse_misfit(of_plan, done.judgement);
+    done.lut_s =
+        timed("table", watcher, [&](const auto& share) { the_case.lut = build_skin_lut(the_case.skin, lut, share); });
+    the_case.lut.volume_hash = the_case.volume_hash;
+    the_case.lut.mesh_hash = hash_of(the_case.skin);
 }
 
 }  // namespace
@@ -49,39 +101,52 @@ std::string iso_date_now() {
     return fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(std::time(nullptr)));
 }
 
+void check_memory_to_prepare(const Volume& volume, const LutSettings& lut) {
+    double body_mm3 = 1;  // the table reaches over the volume at most, with its margin
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        body_mm3 *= volume.size[axis] * volume.spacing_mm()[static_cast<Eigen::Index>(axis)];
+    const double table = kTableShare * body_mm3 / std::pow(lut.voxel_mm, 3) * kBytesOfTableVoxel;
+    const double need = kBytesOfVoxel * static_cast<double>(volume.values.size()) + table + kBytesAnyway;
+    check_memory("Preparing this volume", static_cast<std::uint64_t>(need),
+                 "Close other programs, give a larger --voxel-mm, or resample the volume to larger voxels.");
+}
+
 Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSettings& skin, const LutSettings& lut,
-                         const std::string& created, const std::function<void(const std::string&, double)>& progress) {
+                         const std::string& created, const PreparationWatcher& watcher, const CaseNames& names) {
     Preparation done;
     Case& the_case = done.prepared;
-    SkinMask mask;
-    done.segment_s = timed("skin", progress, [&](const auto& share) { mask = segment_skin(volume, skin, share); });
-    done.triangulate_s = timed("surface", progress,
-                               [&](const auto& share) { the_case.skin = triangulate_skin(volume, mask, skin, share); });
-    the_case.skin_edge_sigma_mm = skin_edge_sigma_mm(volume, mask, the_case.skin);
-    done.threshold = mask.threshold;
-    done.brightness_ratio = mask.bias.ratio();
+    tell_of_volume(volume, plan, created, names, done);
+    add_warnings(volume.notes, watcher, the_case);
+    done.segment_s = timed("skin", watcher, [&](const auto& share) { done.mask = segment_skin(volume, skin, share); });
+    const SkinMask& mask = done.mask;
+    done.threshold_given = skin.threshold != 0;
+    done.threshold = the_case.skin_threshold = mask.threshold_said;
+    done.brightness_ratio = mask.brightness_ratio;
     done.body_ml = mask.volume_ml;
     done.removed_ml = mask.removed_ml;
     done.pieces_removed = mask.pieces_removed;
-    the_case.skin_threshold = mask.threshold;
-    the_case.warnings = volume.notes;
-    the_case.warnings.insert(the_case.warnings.end(), mask.warnings.begin(), mask.warnings.end());
+    add_warnings(mask.warnings, watcher, the_case);
     if (volume.modality == "CT" && !volume.is_hu)
-        the_case.warnings.push_back(fmt::format(
-            "the values of this CT are not HU; the skin threshold {:.0f} was {}: look at the skin before you use it",
-            mask.threshold, skin.threshold == 0 ? "found from their histogram" : "given"));
-    finish(done, volume, plan, lut, created, progress);
+        add_warnings({fmt::format("the values of this CT are not HU; the skin threshold {:.0f} was {}: look at the "
+                                  "skin before you use it",
+                                  done.threshold, done.threshold_given ? "given" : "found from their histogram")},
+                     watcher, the_case);
+    done.triangulate_s = timed("surface", watcher,
+                               [&](const auto& share) { the_case.skin = triangulate_skin(volume, mask, skin, share); });
+    judge(volume, skin, watcher, done);
+    finish(done, volume, lut, watcher);
     return done;
 }
 
 Preparation prepare_case_on(const Volume& volume, const SurfaceFile& surface, const Plan& plan, const LutSettings& lut,
-                            const std::string& created,
-                            const std::function<void(const std::string&, double)>& progress) {
+                            const std::string& created, const PreparationWatcher& watcher, const CaseNames& names) {
     Preparation done;
     done.on_given_surface = true;
     done.prepared.skin = surface.mesh;
-    done.prepared.warnings = surface.notes;
-    finish(done, volume, plan, lut, created, progress);
+    tell_of_volume(volume, plan, created, names, done);
+    add_warnings(volume.notes, watcher, done.prepared);
+    add_warnings(surface.notes, watcher, done.prepared);
+    finish(done, volume, lut, watcher);
     return done;
 }
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/belonging.h"
 #include "planning_io/types/error.h"
 #include "registration/scan/decode/merge_exposures.h"
 #include "registration/tracking/markers_in_scan.h"
@@ -25,13 +26,14 @@ Session::Session(const Case& the_case, const CaseDrawing& drawing, const RigCali
     : case_(the_case),
       skin_(drawing.skin),
       drawing_(drawing.drawing),
+      calibrated_(rig),
       rig_(rig),
       projector_(projector),
       cameras_(cameras),
       clock_(clock),
       settings_(std::move(settings)),
       tracker_(rig_, settings_.tracking),
-      renderer_(drawing.skin, rig_.projector) {
+      renderer_(std::make_unique<DrawingRenderer>(drawing.skin, rig_.projector)) {
     projector_.go_dark();
 }
 
@@ -40,6 +42,7 @@ Session::~Session() {
 }
 
 void Session::go_dark() noexcept {
+    lit_since_ = Instant::max();
     overlay_.reset();
     projector_.go_dark();
 }
@@ -48,6 +51,8 @@ const ScanResult& Session::scan(const std::function<void(int, int)>& progress) {
     go_dark();
     registration_.reset();
     scanned_.reset();
+    rig_state_.reset();
+    use_rig(calibrated_);
     StripeSettings stripes;
     stripes.width = projector_.width();
     stripes.height = projector_.height();
@@ -69,15 +74,43 @@ const ScanResult& Session::scan(const std::function<void(int, int)>& progress) {
     add_darker_captures(projector_, cameras_, clock_, exposures, progress);
     // What moved since the first capture must not be joined to it.
     if (exposures.size() > 1 && moved_at_the_end_mm() > settings_.max_motion_in_scan_mm) exposures.resize(1);
-    scanned_ = scan_from_exposures(exposures, rig_, settings_.scan);
+    scanned_ = scan_from_exposures(exposures, calibrated_, settings_.scan);
     capture_ = std::move(exposures.front());
+    take_rig(*capture_);
     return *scanned_;
 }
 
+void Session::use_rig(const RigCalibration& rig) {
+    overlay_.reset();
+    rig_ = rig;
+    tracker_ = PatientTracker(rig_, settings_.tracking);
+    renderer_ = std::make_unique<DrawingRenderer>(skin_, rig_.projector);
+}
+
+/// From here on everything is done with the rig as the scan found it, or nothing is done.
+void Session::take_rig(const ScanCapture& capture) {
+    rig_state_ = named_rig_state(*scanned_, calibrated_, capture);
+    if (rig_state_->verdict == RigState::Verdict::not_trusted) {
+        scanned_.reset();
+        throw CheckFailedError("the rig cannot be trusted: " + rig_state_->sentence, rig_state_->remedy);
+    }
+    use_rig(rig_state_->rig);
+    take_reference(capture);
+}
+
 /// The markers of the white picture, the first of the scan: `patient` equals `rig` there.
-void Session::take_reference(const ScanCapture& capture) {
+std::size_t Session::reference_markers(const ScanCapture& capture) {
     const StereoFrame white{capture.left.front(), capture.right.front(), capture.began, Instant{}, 0};
-    const auto found = tracker_.set_reference(white).size();
+    return tracker_.set_reference(white).size();
+}
+
+/// Cameras that moved pair no markers: then the scan says where they stand.
+void Session::take_reference(const ScanCapture& capture) {
+    std::size_t found = reference_markers(capture);
+    if (static_cast<int>(found) < settings_.min_reference_markers && !rig_state_) {
+        use_rig(scan_from_capture(capture, calibrated_, settings_.scan).rig.rig);
+        found = reference_markers(capture);
+    }
     if (static_cast<int>(found) < settings_.min_reference_markers)
         throw CheckFailedError(fmt::format("only {} markers were found by both cameras; {} are needed", found,
                                            settings_.min_reference_markers),
@@ -108,6 +141,7 @@ const RegistrationResult& Session::find_patient(const std::vector<PointPair>& la
     confirmed_ = false;
     registration_ = register_with_landmarks(scanned_->clean.kept, case_.lut, landmarks, settings);
     registration_->moved_in_scan_mm = motion_in_scan_mm_;
+    take_case_and_rig(case_, rig_state_, *registration_);
     if (registration_->verdict != Verdict::no) draw_beside_markers();
     start_overlay();
     return *registration_;
@@ -132,7 +166,7 @@ void Session::start_overlay() {
     keep_dark.clear();
     for (const auto& marker : tracker_.markers()) keep_dark.push_back(marker.centre_in_patient);
     overlay_ =
-        std::make_unique<OverlayLoop>(projector_, clock_, renderer_, drawing_, *registration_, settings_.overlay);
+        std::make_unique<OverlayLoop>(projector_, clock_, *renderer_, drawing_, *registration_, settings_.overlay);
     if (confirmed_) overlay_->set_operator_confirmed(true);
 }
 
@@ -148,7 +182,23 @@ Session::Update Session::update() {
     const auto drawing_began = std::chrono::steady_clock::now();
     update.overlay = overlay_->step(update.pose);
     update.times.draw_s = elapsed_s(drawing_began);
+    const auto checking_began = std::chrono::steady_clock::now();
+    update.light = look_at_light(update);
+    update.times.check_s = elapsed_s(checking_began);
+    if (!update.overlay.lit)
+        lit_since_ = Instant::max();
+    else if (lit_since_ == Instant::max())
+        lit_since_ = update.overlay.lit_from;
     return update;
+}
+
+/// CHECK: the frame was exposed under the light of the updates before; was there light for all of the exposure?
+std::optional<LightCheck> Session::look_at_light(const Update& update) {
+    if (settings_.check_light_every <= 0 || ++updates_ % settings_.check_light_every != 0) return std::nullopt;
+    const Instant half = update.frame.exposure / 2;
+    if (!update.pose.rig_from_patient || update.frame.at - half < lit_since_) return std::nullopt;
+    return check_light(drawing_, skin_, rig_, *update.pose.rig_from_patient * registration_->patient_from_ct,
+                       update.frame, settings_.check_light);
 }
 
 }  // namespace planlight

@@ -9,6 +9,7 @@
 #include "planning_io/case/case_folder.h"
 #include "planning_io/types/registration_result.h"
 #include "planning_io/types/rig_calibration.h"
+#include "projection/check_light.h"
 #include "projection/overlay_loop.h"
 #include "registration/matching/register_with_landmarks.h"
 #include "registration/scan/scan_surface.h"
@@ -22,6 +23,8 @@ struct SessionSettings {
     TrackingSettings tracking;
     OverlaySettings overlay;
     DrawingSettings drawing;
+    CheckLightSettings check_light;
+    int check_light_every = 3;            ///< updates; 0: the light is not measured
     double max_motion_in_scan_mm = 0.15;  ///< of any marker between two moments of a scan; above: the scan is repeated
     int max_scans = 3;                    ///< so often at most, then refused
     int min_reference_markers = 5;        ///< found in both pictures at the scan
@@ -41,8 +44,8 @@ struct CaseDrawing {
 
 /// The times of one tracked update: the product's own work.
 struct UpdateTimes {
-    double track_s = 0, draw_s = 0;
-    double total_s() const { return track_s + draw_s; }
+    double track_s = 0, draw_s = 0, check_s = 0;
+    double total_s() const { return track_s + draw_s + check_s; }
 };
 
 /// One session with one patient: scan, find, follow, draw (Hoppe 2001, 2.2). Devices and clock are real, recorded or
@@ -56,7 +59,8 @@ public:
     /// SCAN: shows the stripes, makes the cloud, takes the markers of the first picture as reference. Repeats it when
     /// the patient moved (the markers are looked at in every picture that is even light when summed with its inverse,
     /// and once more under white light at the end). Throws CheckFailedError when the patient did not lie still in
-    /// `max_scans` scans, or too few markers were found.
+    /// `max_scans` scans, too few markers were found, or the rig moved so that it cannot be trusted. Cloud, poses and
+    /// light are made with the rig as this scan finds it.
     const ScanResult& scan(const std::function<void(int, int)>& progress = {});
 
     /// MATCH: T_ini from the last scan; landmarks check it, and help where it is refused (`register_with_landmarks`).
@@ -74,18 +78,23 @@ public:
         TrackedPose pose;
         OverlayStep overlay;
         UpdateTimes times;
+        /// The light of the picture before, as this frame shows it; empty where it was not looked at, or not lit for
+        /// the whole exposure.
+        std::optional<LightCheck> light;
     };
     Update update();
 
     /// Dark now, and no more light until the next `update`.
     void go_dark() noexcept;
 
+    /// The rig as the last scan found it, and as it was calibrated before the first.
     const RigCalibration& rig() const { return rig_; }
+    const RigState* rig_state() const { return rig_state_ ? &*rig_state_ : nullptr; }
     const ScanCapture* capture() const { return capture_ ? &*capture_ : nullptr; }
     const ScanResult* scanned() const { return scanned_ ? &*scanned_ : nullptr; }
     const RegistrationResult* registration() const { return registration_ ? &*registration_ : nullptr; }
     const PatientTracker& tracker() const { return tracker_; }
-    const DrawingRenderer& renderer() const { return renderer_; }
+    const DrawingRenderer& renderer() const { return *renderer_; }
     /// The plan as this session draws it: labels lie beside the markers, so that none is cut by the darkness round
     /// them.
     const PlanDrawing& drawing() const { return drawing_; }
@@ -94,25 +103,33 @@ public:
     int scans_repeated() const { return scans_repeated_; }  ///< in the last `scan`, because the patient moved
 
 private:
+    void use_rig(const RigCalibration& rig);
+    std::size_t reference_markers(const ScanCapture& capture);
     void take_reference(const ScanCapture& capture);
+    void take_rig(const ScanCapture& capture);
     double moved_at_the_end_mm();
     void draw_beside_markers();
     void start_overlay();
+    std::optional<LightCheck> look_at_light(const Update& update);
 
     const Case& case_;
     const SkinSurface& skin_;
     PlanDrawing drawing_;
-    RigCalibration rig_;
+    const RigCalibration calibrated_;  ///< rig.json
+    RigCalibration rig_;               ///< as the last scan found it: cloud, poses and light are made with it
+    std::optional<RigState> rig_state_;
     Projector& projector_;
     StereoCamera& cameras_;
     const Clock& clock_;
     SessionSettings settings_;
     PatientTracker tracker_;
-    DrawingRenderer renderer_;
+    std::unique_ptr<DrawingRenderer> renderer_;
     std::optional<ScanCapture> capture_;
     std::optional<ScanResult> scanned_;
     std::optional<RegistrationResult> registration_;
     std::unique_ptr<OverlayLoop> overlay_;
+    Instant lit_since_ = Instant::max();  ///< light without a break; max: it is dark
+    int updates_ = 0;
     bool confirmed_ = false;  ///< the last match, by the operator
     double motion_in_scan_mm_ = 0;
     int scans_repeated_ = 0;

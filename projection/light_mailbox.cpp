@@ -35,7 +35,7 @@ struct LightMailbox::Shared {
     std::atomic<std::uint32_t> state{static_cast<std::uint32_t>(State::starting)};
     std::int32_t width = 0, height = 0;
     char problem[600] = {}, remedy[300] = {};
-    std::atomic<std::int64_t> lease_until_ns{0}, done_at_ns{0}, alive_at_ns{0};
+    std::atomic<std::int64_t> lease_until_ns{0}, done_at_ns{0}, alive_at_ns{0}, busy_since_ns{0};
     std::atomic<std::uint64_t> done{0};
     std::atomic<std::uint32_t> middle{0};  ///< the slot that neither side owns, and whether it is fresh
     Slot slots[3];
@@ -117,6 +117,10 @@ void LightMailbox::say_alive(Instant at) {
     shared_->alive_at_ns.store(at.count(), std::memory_order_release);
 }
 
+void LightMailbox::say_busy(Instant since) {
+    shared_->busy_since_ns.store(since.count(), std::memory_order_release);
+}
+
 LightMailbox::State LightMailbox::state() const {
     return static_cast<State>(shared_->state.load(std::memory_order_acquire));
 }
@@ -137,6 +141,9 @@ std::uint64_t LightMailbox::done() const {
 }
 Instant LightMailbox::done_at() const {
     return Instant(shared_->done_at_ns.load(std::memory_order_acquire));
+}
+Instant LightMailbox::busy_since() const {
+    return Instant(shared_->busy_since_ns.load(std::memory_order_acquire));
 }
 Instant LightMailbox::alive_at() const {
     return Instant(shared_->alive_at_ns.load(std::memory_order_acquire));

@@ -50,6 +50,7 @@ public:
     void say_failed(const std::string& problem, const std::string& remedy);
     void say_done(std::uint64_t number, Instant at);
     void say_alive(Instant at);
+    void say_busy(Instant since);  ///< an order is being carried out since then; zero: none is
 
     // ---- what the program reads of it ----
 
@@ -61,6 +62,7 @@ public:
     std::uint64_t done() const;  ///< number of the last order that is on the display
     Instant done_at() const;
     Instant alive_at() const;
+    Instant busy_since() const;  ///< zero: with nothing
 
 private:
     struct Shared;

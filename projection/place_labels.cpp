@@ -55,8 +55,8 @@ int count_overlaps(const SkinSurface& skin, const TextFrame& f, const TextBlock&
 void add_wrapped(const std::u32string& part, double text_height_mm, std::vector<std::u32string>& lines) {
     std::u32string rest = part;
     while (!rest.empty()) {
-        std::size_t fits = rest.size();
-        while (fits > 1 && text_width(rest.substr(0, fits)) * text_height_mm > kMaxWidth_mm) --fits;
+        std::size_t fits = 1;
+        while (fits < rest.size() && text_width(rest.substr(0, fits + 1)) * text_height_mm <= kMaxWidth_mm) ++fits;
         if (fits < rest.size()) {
             const auto blank = rest.rfind(U' ', fits);
             if (blank != std::u32string::npos && blank > 0) fits = blank;
@@ -176,7 +176,12 @@ std::int64_t OccupiedSkin::key(const Eigen::Vector3i& cell) {
 }
 
 void OccupiedSkin::add(const Vector3d& p_in_ct) {
-    cells_[key((p_in_ct / kCell_mm).array().floor().cast<int>())].push_back(p_in_ct);
+    auto& cell = cells_[key((p_in_ct / kCell_mm).array().floor().cast<int>())];
+    // Where a crowded plan is drawn over itself a cell would grow without end, and each look into it with it.
+    constexpr double kSame_mm = 0.2;
+    for (const Vector3d& q : cell)
+        if ((q - p_in_ct).squaredNorm() < kSame_mm * kSame_mm) return;
+    cell.push_back(p_in_ct);
 }
 
 bool OccupiedSkin::within(const Vector3d& p_in_ct, double distance_mm) const {

@@ -132,7 +132,9 @@ void ProjectorProcess::check_locked() {
         process_ = -1;
         fail("projector process: it was ended from outside, or crashed", kRemedy);
     }
-    if (clock_.now() - mailbox_.alive_at() > settings_.silence_allowed)
+    const Instant busy_since = mailbox_.busy_since();
+    if (clock_.now() - mailbox_.alive_at() > settings_.silence_allowed ||
+        (busy_since.count() > 0 && clock_.now() - busy_since > settings_.work_allowed))
         fail("projector process: it does not answer any more", kRemedy);
 }
 

@@ -17,6 +17,8 @@ struct ProjectorProcessSettings {
     Instant light_delay = std::chrono::milliseconds(25);       ///< from the swap to light on the skin
     Instant lease = std::chrono::milliseconds(200);            ///< the light outlives the last `renew` by this at most
     Instant silence_allowed = std::chrono::milliseconds(200);  ///< of the projector process; then it is ended
+    /// For one order to come to the display, or one look at the window system; then it is ended as well.
+    Instant work_allowed = std::chrono::milliseconds(700);
     Instant start_allowed = std::chrono::seconds(10);
 };
 

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <thread>
 
 #include "planning_io/types/error.h"
 #include "projection/projector_process.h"
@@ -37,13 +38,30 @@ bool wait_for_bell(int bell) {
     return (waiting.revents & POLLIN) != 0 && read(bell, bytes, sizeof bytes) > 0;
 }
 
+/// Says every few milliseconds that this process runs: it is neither stopped nor starved.
+class Pulse {
+public:
+    explicit Pulse(LightMailbox& mailbox)
+        : thread_([&mailbox](const std::stop_token& stop) {
+              while (!stop.stop_requested()) {
+                  mailbox.say_alive(SteadyClock().now());
+                  std::this_thread::sleep_for(std::chrono::milliseconds(10));
+              }
+          }) {
+        mailbox.say_alive(SteadyClock().now());
+    }
+
+private:
+    std::jthread thread_;
+};
+
 void follow(ProjectorWindow& window, LightMailbox& mailbox, int bell) {
     const SteadyClock clock;
+    const Pulse pulse(mailbox);
     LightMailbox::Order order;
-    mailbox.say_alive(clock.now());
     mailbox.say_ready(window.width(), window.height());
     do {
-        mailbox.say_alive(clock.now());
+        mailbox.say_busy(clock.now());
         if (mailbox.take(order)) {
             if (order.picture.empty())
                 window.go_dark();
@@ -52,6 +70,7 @@ void follow(ProjectorWindow& window, LightMailbox& mailbox, int bell) {
             mailbox.say_done(order.number, clock.now());
         }
         window.refresh();
+        mailbox.say_busy({});
     } while (wait_for_bell(bell));
 }
 

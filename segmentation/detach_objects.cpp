@@ -17,13 +17,13 @@ constexpr double kEarReach_mm = 40;  // from the thick head along the piece; an 
 constexpr double kSpeck_ml = 0.05;
 constexpr int kLevels = 4;  // thresholds tried to make a contact let go
 
-enum State : std::uint8_t { kAir = 0, kBody = 1, kHanging = 2, kInPiece = 3, kGone = 4 };
+enum State : std::uint8_t { kAir = 0, kBody = 1, kHanging = 2, kInPiece = 3, kGone = 4, kKept = 5 };
 
 /// How far the piece reaches from the body, along itself, mm (Dijkstra over face neighbours, stopped beyond the ear's
 /// reach). Face steps overestimate diagonals by up to sqrt(3); steps are scaled by 0.7 for the mean. Negative: no
 /// contact.
 double reach_mm(const Mask& state, const VoxelGrid& grid, const std::vector<std::size_t>& piece,
-                std::vector<float>& distance) {
+                std::vector<float>& distance, double scale) {
     using Entry = std::pair<float, std::size_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     constexpr float kUnseen = 1e9F;
@@ -36,7 +36,7 @@ double reach_mm(const Mask& state, const VoxelGrid& grid, const std::vector<std:
             }
         });
     double reach = queue.empty() ? -1 : 0;
-    const auto step = static_cast<float>(0.7 * grid.spacing_mm.mean());
+    const auto step = static_cast<float>(scale * grid.spacing_mm.mean());
     while (!queue.empty()) {
         const auto [far, v] = queue.top();
         queue.pop();
@@ -53,13 +53,13 @@ double reach_mm(const Mask& state, const VoxelGrid& grid, const std::vector<std:
 }
 
 /// Body plus the voxels of `piece` near its kept part: gives back the fringe that a raised threshold took.
-void take_back_fringe(Mask& state, const VoxelGrid& grid, std::vector<std::size_t> front, int steps) {
+void take_back_fringe(Mask& state, const VoxelGrid& grid, std::vector<std::size_t> front, int steps, State to) {
     for (int s = 0; s < steps; ++s) {
         std::vector<std::size_t> next;
         for (const std::size_t v : front)
             for_face_neighbours(grid, v, [&](std::size_t n) {
                 if (state[n] != kHanging) return;
-                state[n] = kBody;
+                state[n] = to;
                 next.push_back(n);
             });
         front = std::move(next);
@@ -68,12 +68,13 @@ void take_back_fringe(Mask& state, const VoxelGrid& grid, std::vector<std::size_
 
 class Pieces {
 public:
-    Pieces(Mask& state, const std::vector<float>& values, double threshold, double soft, const VoxelGrid& grid)
+    Pieces(Mask& state, const std::vector<float>& values, double threshold, double soft, const VoxelGrid& grid, Contact contact)
         : state_(state),
           values_(values),
           threshold_(threshold),
           soft_(soft),
           grid_(grid),
+          kept_as_(contact == Contact::with_core ? kKept : kBody),
           distance_(state.size(), 0.0F) {}
 
     /// Judges every hanging piece; `state` becomes body or gone.
@@ -89,9 +90,9 @@ public:
 
 private:
     void judge(std::vector<std::size_t> piece, int level) {
-        const double reach = reach_mm(state_, grid_, piece, distance_);
+        const double reach = reach_mm(state_, grid_, piece, distance_, kept_as_ == kKept ? 0.9 : 0.7);
         if (reach >= 0 && reach <= kEarReach_mm) {
-            for (const std::size_t v : piece) state_[v] = kBody;
+            for (const std::size_t v : piece) state_[v] = kept_as_;
             return;
         }
         if (reach < 0 || level == kLevels) {
@@ -112,12 +113,12 @@ private:
             flood(state_, grid_, {v}, kHanging, kInPiece, &part);
             judge(part, level);
             for (const std::size_t p : part)
-                if (state_[p] == kBody) kept.push_back(p);
+                if (state_[p] == kept_as_) kept.push_back(p);
         }
         if (level != 1) return;
         for (const std::size_t v : piece)
             if (state_[v] == kGone && values_[v] < cut) state_[v] = kHanging;
-        take_back_fringe(state_, grid_, std::move(kept), 2);
+        take_back_fringe(state_, grid_, std::move(kept), 2, kept_as_);
         for (const std::size_t v : piece)
             if (state_[v] == kHanging) state_[v] = kGone;
     }
@@ -126,6 +127,7 @@ private:
     const std::vector<float>& values_;
     double threshold_, soft_;
     const VoxelGrid& grid_;
+    State kept_as_;
     std::vector<float> distance_;
 };
 
@@ -152,7 +154,7 @@ void count_removed(const Mask& dense, const VoxelGrid& grid, DetachedBody& resul
 }  // namespace
 
 DetachedBody detach_objects(const Mask& dense, const std::vector<float>& values, double threshold,
-                            const VoxelGrid& grid, double detach_radius_mm) {
+                            const VoxelGrid& grid, double detach_radius_mm, Contact contact) {
     DetachedBody result;
     Mask filled = outside_air(dense, grid);
     for (auto& v : filled) v = !v;
@@ -173,9 +175,9 @@ DetachedBody detach_objects(const Mask& dense, const std::vector<float>& values,
     for (auto& v : state)
         if (v == kInPiece) v = kHanging;  // near, but across a gap
 
-    Pieces pieces(state, values, threshold, median_value(values, core.mask), grid);
+    Pieces pieces(state, values, threshold, median_value(values, core.mask), grid, contact);
     pieces.judge();
-    for (auto& v : state) v = v == kBody;
+    for (auto& v : state) v = v == kBody || v == kKept;
     result.body = std::move(state);
     count_removed(dense, grid, result);
     if (pieces.torn_ml >= kSpeck_ml)

@@ -6,7 +6,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
+#include "planning_io/types/statistics.h"
 #include "segmentation/volume_sample.h"
 
 namespace planlight {
@@ -15,7 +17,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kStep_mm = 0.25;
-constexpr int kSide = 16;                           // samples on each side of the vertex: 4 mm
+constexpr int kSide = 32;          // samples on each side of the vertex: 8 mm
+constexpr double kDrop = 0.85;     // of a crest: below it the profile has left it
+constexpr double kPlateau = 0.1;   // of the steepest rise: slower than that for 1 mm, the tissue is reached
 using Profile = std::array<double, 2 * kSide + 1>;  // from the inside out
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -23,40 +27,94 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 double mean(const Profile& profile, double from_mm, double to_mm) {
     double sum = 0;
     int count = 0;
-    for (int s = static_cast<int>(std::lround(from_mm / kStep_mm));
-         s <= static_cast<int>(std::lround(to_mm / kStep_mm)); ++s, ++count)
+    for (int s = static_cast<int>(std::lround(from_mm / kStep_mm)); s <= static_cast<int>(std::lround(to_mm / kStep_mm));
+         ++s, ++count)
         sum += profile[static_cast<std::size_t>(s + kSide)];
     return sum / count;
 }
 
+/// The first crest or plateau of the profile, walking inwards from `from` (an index).
+double first_crest(const Profile& profile, int from, double air) {
+    constexpr int kMillimetre = static_cast<int>(1 / kStep_mm);
+    double crest = -std::numeric_limits<double>::infinity(), steepest = 0;
+    for (int s = from; s >= 0; --s) {
+        const double here = profile[static_cast<std::size_t>(s)];
+        if (!std::isfinite(here)) break;
+        if (here < air + kDrop * (crest - air)) break;
+        crest = std::max(crest, here);
+        if (s + kMillimetre >= static_cast<int>(profile.size())) continue;
+        const double rise = here - profile[static_cast<std::size_t>(s + kMillimetre)];
+        if (!std::isfinite(rise)) continue;
+        steepest = std::max(steepest, rise);
+        if (steepest > 0 && rise < kPlateau * steepest && from - s > kMillimetre) break;
+    }
+    return crest;
+}
+
 /// Where the profile falls to half way, nearest to its middle; mm outwards.
 double half_way(const Profile& profile, double threshold, double reach_mm) {
-    const double air = mean(profile, 2, 4), tissue = mean(profile, -2.5, -1), half = (air + tissue) / 2;
-    if (!(air < threshold) || !(tissue > threshold)) return kUnknown;  // a fold: skin again outside
+    const double air = std::min(mean(profile, 2, 4), mean(profile, 3, 5));
+    if (!(air < threshold)) return kUnknown;  // a fold: skin again outside
+    const double crest = first_crest(profile, kSide, air), half = (air + crest) / 2;
+    if (!(crest > threshold)) return kUnknown;
     double found = kUnknown;
     for (std::size_t s = 0; s + 1 < profile.size(); ++s) {
         if (!(profile[s] >= half) || !(profile[s + 1] < half)) continue;
-        const double at =
-            (static_cast<double>(s) + (profile[s] - half) / (profile[s] - profile[s + 1]) - kSide) * kStep_mm;
+        const double at = (static_cast<double>(s) + (profile[s] - half) / (profile[s] - profile[s + 1]) - kSide) * kStep_mm;
         if (std::abs(at) <= reach_mm && !(std::abs(at) >= std::abs(found))) found = at;
     }
     return found;
 }
 
+/// For each vertex those it shares a triangle with, one after the other; `first[v]` to `first[v + 1]`.
+struct Neighbours {
+    std::vector<std::size_t> first;
+    std::vector<std::int32_t> of;
+};
+
+Neighbours neighbours_of(const TriangleMesh& mesh) {
+    Neighbours next;
+    next.first.assign(mesh.vertices_in_ct.size() + 1, 0);
+    for (const auto& t : mesh.triangles)
+        for (const auto c : t) ++next.first[static_cast<std::size_t>(c) + 1];
+    std::partial_sum(next.first.begin(), next.first.end(), next.first.begin());
+    next.of.resize(next.first.back());
+    std::vector<std::size_t> at(next.first.begin(), next.first.end() - 1);
+    for (const auto& t : mesh.triangles)  // of a closed mesh each neighbour once: the corner that follows
+        for (std::size_t c = 0; c < 3; ++c) next.of[at[static_cast<std::size_t>(t[c])]++] = t[(c + 1) % 3];
+    return next;
+}
+
+/// A move further than this from the middle of those round it is noise, or another edge.
+constexpr double kAlone_mm = 0.7;
+
+void forget_lonely(std::vector<double>& moves_mm, const Neighbours& next) {
+    const std::vector<double> given = moves_mm;
+    tbb::parallel_for(std::size_t{0}, given.size(), [&](std::size_t v) {
+        if (std::isnan(given[v])) return;
+        std::vector<double> round;
+        for (std::size_t n = next.first[v]; n < next.first[v + 1]; ++n) {
+            const auto other = static_cast<std::size_t>(next.of[n]);
+            for (std::size_t m = next.first[other]; m < next.first[other + 1]; ++m)
+                if (const double move = given[static_cast<std::size_t>(next.of[m])]; !std::isnan(move)) round.push_back(move);
+        }
+        if (round.size() < 6 || std::abs(given[v] - median(std::move(round))) > kAlone_mm) moves_mm[v] = kUnknown;
+    });
+}
+
 /// Each move becomes the mean of its own and its neighbours'; those unknown take part once a neighbour is known.
-void smooth(std::vector<double>& moves_mm, const TriangleMesh& mesh, int rounds) {
+void smooth(std::vector<double>& moves_mm, const Neighbours& next, int rounds) {
+    std::vector<double> smoothed(moves_mm.size());
     for (int round = 0; round < rounds; ++round) {
-        std::vector<double> sum(moves_mm.size(), 0), count(moves_mm.size(), 0);
-        const auto add = [&](std::int32_t to, std::int32_t from) {
-            const double move = moves_mm[static_cast<std::size_t>(from)];
-            if (std::isnan(move)) return;
-            sum[static_cast<std::size_t>(to)] += move;
-            count[static_cast<std::size_t>(to)] += 1;
-        };
-        for (const auto& t : mesh.triangles)
-            for (std::size_t c = 0; c < 3; ++c) add(t[c], t[c]), add(t[c], t[(c + 1) % 3]);
-        for (std::size_t v = 0; v < moves_mm.size(); ++v)
-            if (count[v] > 0) moves_mm[v] = sum[v] / count[v];
+        tbb::parallel_for(std::size_t{0}, moves_mm.size(), [&](std::size_t v) {
+            double sum = std::isnan(moves_mm[v]) ? 0 : moves_mm[v], count = !std::isnan(moves_mm[v]);
+            for (std::size_t n = next.first[v]; n < next.first[v + 1]; ++n) {
+                const double move = moves_mm[static_cast<std::size_t>(next.of[n])];
+                if (!std::isnan(move)) sum += move, count += 1;
+            }
+            smoothed[v] = count > 0 ? sum / count : kUnknown;
+        });
+        std::swap(moves_mm, smoothed);
     }
 }
 
@@ -76,7 +134,9 @@ std::size_t move_to_edges(TriangleMesh& mesh, const Volume& volume, double thres
         moves_mm[v] = half_way(profile, threshold, settings.reach_mm);
     });
     const auto found = std::count_if(moves_mm.begin(), moves_mm.end(), [](double move) { return !std::isnan(move); });
-    smooth(moves_mm, mesh, settings.smoothing_rounds);
+    const Neighbours next = neighbours_of(mesh);
+    forget_lonely(moves_mm, next);
+    smooth(moves_mm, next, settings.smoothing_rounds);
     for (std::size_t v = 0; v < moves_mm.size(); ++v)
         if (is_skin(v) && !std::isnan(moves_mm[v])) mesh.vertices_in_ct[v] += moves_mm[v] * mesh.normals_in_ct[v];
     return static_cast<std::size_t>(found);

@@ -5,6 +5,7 @@
 #include "planning_io/types/error.h"
 #include "segmentation/detach_objects.h"
 #include "segmentation/outside_air.h"
+#include "segmentation/segment_mr_skin.h"
 #include "segmentation/skin_threshold.h"
 
 namespace planlight {
@@ -27,20 +28,6 @@ void check(const Volume& volume, const SkinSettings& settings) {
         throw InputError({}, "a radius of the skin settings is negative", "Give radii of 0 mm or more.");
 }
 
-void warn_of_cut_sides(const Mask& body, const VoxelGrid& grid, std::vector<std::string>& warnings) {
-    std::size_t at_side = 0;
-    const std::size_t ni = grid.row(), nj = static_cast<std::size_t>(grid.size[1]);
-    for (std::size_t v = 0; v < body.size(); ++v) {
-        const std::size_t i = v % ni, j = v / ni % nj;
-        at_side += body[v] && (i == 0 || j == 0 || i + 1 == ni || j + 1 == nj);
-    }
-    const double area_cm2 =
-        static_cast<double>(at_side) * grid.spacing_mm.prod() / grid.spacing_mm.head<2>().mean() / 100;
-    if (area_cm2 > 1)
-        warnings.push_back(
-            fmt::format("The head is cut by the sides of the volume over about {:.0f} square cm.", area_cm2));
-}
-
 }  // namespace
 
 SkinMask segment_skin(const Volume& volume, const SkinSettings& settings, const std::function<void(double)>& progress) {
@@ -48,17 +35,10 @@ SkinMask segment_skin(const Volume& volume, const SkinSettings& settings, const 
         if (progress) progress(done);
     };
     check(volume, settings);
-    if (volume.modality == "MR" && settings.threshold == 0) {  // a given threshold is one on the scanner's own values
-        const BiasField bias = fit_bias(volume);
-        Volume even = without_bias(volume, bias);
-        even.modality.clear();
-        SkinMask result = segment_skin(even, settings, progress);
-        result.bias = bias;
-        return result;
-    }
+    if (volume.modality == "MR") return segment_mr_skin(volume, settings, progress);
     const VoxelGrid grid = grid_of(volume);
     SkinMask result;
-    result.threshold = settings.threshold != 0 ? settings.threshold : skin_threshold(volume);
+    result.threshold = result.threshold_said = settings.threshold != 0 ? settings.threshold : skin_threshold(volume);
     Mask dense(grid.count());
     for (std::size_t i = 0; i < dense.size(); ++i) dense[i] = volume.values[i] >= static_cast<float>(result.threshold);
     report(0.1);
@@ -78,7 +58,6 @@ SkinMask segment_skin(const Volume& volume, const SkinSettings& settings, const 
     result.pieces_removed = detached.pieces_removed;
     result.removed_ml = detached.removed_ml;
     result.warnings = std::move(detached.warnings);
-    warn_of_cut_sides(result.body, grid, result.warnings);
     report(1);
     return result;
 }

@@ -60,6 +60,7 @@ std::uint8_t flag_of_edge(const Volume& volume, const SkinMask& mask, const Eige
         for (int axis = 0; axis < 3; ++axis)
             if (v[axis] < 0 || v[axis] >= volume.size[static_cast<std::size_t>(axis)]) return kCutPlane;
         const std::size_t index = volume.index(v.x(), v.y(), v.z());
+        if (!mask.body[index] && std::isnan(volume.values[index])) return kCutPlane;  // nothing was measured there
         if ((mask.body[index] != 0) != (volume.values[index] >= static_cast<float>(mask.threshold))) flag = kSeal;
     }
     return flag;

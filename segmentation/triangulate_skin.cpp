@@ -161,9 +161,8 @@ TriangleMesh triangulate_skin(const Volume& given, const SkinMask& mask, const S
     };
     if (mask.body.size() != given.values.size())
         throw InputError({}, "The skin mask is not that of the volume.", "Segment this volume again.");
-    const bool biased = mask.bias.ratio() > 1;
-    const Volume even = biased ? without_bias(given, mask.bias) : Volume();
-    const Volume& volume = biased ? even : given;
+    const Volume leveled = mask.levels.empty() ? Volume() : skin_values(given, mask);
+    const Volume& volume = mask.levels.empty() ? given : leveled;
     SkinField field = skin_field(volume, mask);
     TriangleMesh mesh = largest_shell(contour(field));
     if (mesh.triangles.empty()) throw InputError({}, "The mask holds no body.", "Segment the volume again.");

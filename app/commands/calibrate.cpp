@@ -9,6 +9,7 @@
 #include "app/console.h"
 #include "app/report/calibration_report.h"
 #include "planning_io/case/board_captures.h"
+#include "planning_io/case/missing_pictures.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
@@ -48,12 +49,30 @@ struct Observed {
     DeviceSerials serials;
 };
 
+/// All pictures that are missing, of all poses, before the first is read.
+void check_all_there(const std::vector<Path>& folders, const Path& captures) {
+    std::vector<std::string> missing;
+    for (const Path& pose : folders) {
+        const auto settings = pose_settings(pose);
+        if (!settings) continue;
+        const auto here = missing_pictures(pose, names_of(calibration_light(*settings, pose), pose));
+        missing.insert(missing.end(), here.begin(), here.end());
+    }
+    if (missing.empty()) return;
+    throw InputError(captures,
+                     fmt::format("{} missing: {}",
+                                 missing.size() == 1 ? "a picture is" : fmt::format("{} pictures are", missing.size()),
+                                 listed(missing)),
+                     "Capture these poses again, the whole sequence, or take their folders away.");
+}
+
 /// One pose after the other, so that only one pose's pictures are in memory.
 Observed observe_captures(const CalibrateOptions& options, const BoardSpec& board) {
     Observed observed;
     observed.serials = {options.serial_left, options.serial_right, options.serial_projector};
     ProgressBar bar;
     const auto folders = pose_folders(options.captures);
+    check_all_there(folders, options.captures);
     for (std::size_t i = 0; i < folders.size(); ++i) {
         const auto settings = pose_settings(folders[i]);
         std::optional<StripeSettings> stripes;

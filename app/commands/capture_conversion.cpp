@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "planning_io/case/missing_pictures.h"
 #include "planning_io/types/error.h"
 #include "registration/scan/decode/gray_code.h"
 
@@ -12,30 +14,47 @@ namespace {
 
 using Kind = StripePattern::Kind;
 
-bool is_there(const CaptureFolder& folder, const std::string& name) {
-    return std::find(folder.names.begin(), folder.names.end(), name) != folder.names.end();
+bool is_in(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// What of the Gray code was captured: all but, maybe, the finest bits of a direction. Refused where a coarser one is
-/// missing: nothing can be read without it.
+bool is_there(const CaptureFolder& folder, const std::string& name) {
+    return is_in(folder.names, name);
+}
+
+/// What of the sequence was captured and can be used: all but, maybe, the fringes, the finest bits of a direction, all
+/// rows. Refused where named bits count on one that is not there: all of them at once.
 std::vector<StripePattern> gray_code_there(const std::vector<StripePattern>& wanted, const CaptureFolder& folder,
                                            const std::filesystem::path& named) {
-    std::vector<StripePattern> there;
+    CaptureFolder whole = folder;
+    whole.names.clear();
+    std::vector<std::string> missing;
     for (const StripePattern& pattern : wanted) {
-        if (pattern.kind == Kind::phase) continue;
-        if (is_there(folder, pattern.name)) there.push_back(pattern);
-        const bool bit = pattern.kind == Kind::gray_bit || pattern.kind == Kind::gray_bit_inverse;
-        const bool finer_is_there = std::any_of(wanted.begin(), wanted.end(), [&](const StripePattern& other) {
-            const bool other_bit = other.kind == Kind::gray_bit || other.kind == Kind::gray_bit_inverse;
-            return other_bit && other.along_rows == pattern.along_rows && other.index >= pattern.index &&
-                   is_there(folder, other.name);
-        });
-        if (!is_there(folder, pattern.name) && (!bit || finer_is_there || pattern.index < 2))
-            throw InputError(
-                named, fmt::format("the picture of pattern \"{}\" is missing", pattern.name),
-                "Capture the whole sequence that `planlight patterns` writes; only fringes and the finest bits of the "
-                "Gray code may be missing.");
+        whole.names.push_back(pattern.name);
+        if (!is_there(folder, pattern.name)) missing.push_back(pattern.name);
     }
+    const UsableNames usable = usable_without(whole, missing);
+    std::vector<std::string> useless;  // named, and no more to be read than what is missing
+    for (const StripePattern& pattern : wanted)
+        if (pattern.kind != Kind::phase && is_there(folder, pattern.name) && !is_in(usable.names, pattern.name))
+            useless.push_back(pattern.name);
+    if (usable.names.empty())
+        throw InputError(
+            named,
+            fmt::format("{} missing: {}",
+                        missing.size() == 1 ? "the picture of a pattern is" : "the pictures of patterns are",
+                        listed(missing)),
+            "Capture the whole sequence that `planlight patterns` writes; only fringes, the finest bits of the Gray "
+            "code "
+            "and all rows may be missing.");
+    if (!useless.empty())
+        throw InputError(
+            named, fmt::format("{} missing, and these cannot be used without: {}", listed(missing), listed(useless)),
+            "Capture the whole sequence, or leave these out of \"names\" in capture.json as well: the cloud is then "
+            "coarser.");
+    std::vector<StripePattern> there;
+    for (const StripePattern& pattern : wanted)
+        if (pattern.kind != Kind::phase && is_in(usable.names, pattern.name)) there.push_back(pattern);
     return there;
 }
 
@@ -51,6 +70,8 @@ StripeSettings stripes_of(const CaptureFolder& folder) {
     stripes.order_steps = folder.order_steps;
     stripes.rows = folder.rows;
     stripes.inverse = folder.inverse;
+    stripes.begins_at_column = folder.begins_at_column;
+    stripes.begins_at_row = folder.begins_at_row;
     return stripes;
 }
 
@@ -65,7 +86,7 @@ std::vector<StripePattern> patterns_of(const StripeSettings& stripes, const std:
     }
 }
 
-ScanCapture scan_capture_from(const CaptureFolder& folder, const std::filesystem::path& named) {
+ScanCapture scan_capture_from(CaptureFolder folder, const std::filesystem::path& named) {
     ScanCapture capture;
     capture.stripes = stripes_of(folder);
     capture.check_sequence = folder.check_sequence;
@@ -76,12 +97,16 @@ ScanCapture scan_capture_from(const CaptureFolder& folder, const std::filesystem
     if (!whole && !capture.stripes.order_periods_px.empty())
         throw InputError(named, "a picture of the fringes of several frequencies is missing",
                          "Capture the whole sequence that `planlight patterns --set multi-frequency` writes.");
-    if (!whole) capture.partial = patterns = gray_code_there(patterns, folder, named);
+    if (!whole) {
+        capture.partial = patterns = gray_code_there(patterns, folder, named);
+        capture.stripes.rows =
+            std::any_of(patterns.begin(), patterns.end(), [](const auto& p) { return p.along_rows; });
+    }
     for (const auto& pattern : patterns) {
         const auto found = std::find(folder.names.begin(), folder.names.end(), pattern.name);
         const auto index = static_cast<std::size_t>(found - folder.names.begin());
-        capture.left.push_back(folder.left.at(index));
-        if (!folder.right.empty()) capture.right.push_back(folder.right.at(index));
+        capture.left.push_back(std::move(folder.left.at(index)));
+        if (!folder.right.empty()) capture.right.push_back(std::move(folder.right.at(index)));
     }
     capture.began = folder.began;
     capture.ended = folder.ended;
@@ -113,6 +138,8 @@ CaptureFolder capture_folder_from(const ScanCapture& capture) {
     folder.order_steps = capture.stripes.order_steps;
     folder.rows = capture.stripes.rows;
     folder.inverse = capture.stripes.inverse;
+    folder.begins_at_column = capture.stripes.begins_at_column;
+    folder.begins_at_row = capture.stripes.begins_at_row;
     folder.check_sequence = capture.check_sequence;
     for (const auto& pattern : stripe_sequence(capture.stripes)) folder.names.push_back(pattern.name);
     folder.left = capture.left;

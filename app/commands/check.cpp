@@ -10,6 +10,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/device_check.h"
+#include "app/commands/rig_words.h"
 #include "app/console.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/files/safe_write.h"
@@ -79,7 +80,8 @@ int run_check(const CheckOptions& options) {
         file += "-checks.json";
     }
     Json log = read_log(file);
-    const DriftCheck check = check_drift(scan_from_capture(capture, rig), rig);
+    const ScanResult scan = scan_from_capture(capture, rig);
+    const DriftCheck check = check_drift(scan, rig);
     const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
     const auto if_placed = [&](double value) { return check.projector_rms_px == 0 ? Json() : Json(value); };
     const Json entry = {{"at_unix_s", now},
@@ -100,6 +102,7 @@ int run_check(const CheckOptions& options) {
     write_safely(file, log.dump(2) + "\n");
     Json result = entry;
     result["reason"] = check.reason;
+    result["rig"] = json_of(scan.rig);
     result["trends"] = Json::array();
     for (const DriftTrend& trend : trends) {
         result["trends"].push_back(

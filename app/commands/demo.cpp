@@ -48,7 +48,7 @@ int run_demo(const DemoOptions& options) {
                           : import_plan(options.plan, plan_settings(options.frame, options.accept_frame,
                                                                     volume.frame_of_reference_uid))
                                 .plan;
-    const Preparation prepared = prepare_case(volume, plan, {}, {}, iso_date_now(), bar.callback());
+    const Preparation prepared = prepare_case(volume, plan, {}, {}, iso_date_now(), {bar.callback(), {}});
     std::filesystem::create_directories(options.out);
     write_case(prepared.prepared, options.out / "case", true);
     const CaseDrawing drawing(prepared.prepared);

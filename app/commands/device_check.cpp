@@ -28,8 +28,8 @@ void check_size(const Device& device, int width, int height, const RigCalibratio
 
 }  // namespace
 
-CaptureFolder read_capture_of(const RigCalibration& rig, const std::filesystem::path& folder) {
-    CaptureFolder capture = read_capture(folder);
+CaptureFolder read_capture_of(const RigCalibration& rig, const std::filesystem::path& folder, const ReadCapture& how) {
+    CaptureFolder capture = read_capture(folder, how);
     for (const Device& device : kDevices) {
         const std::string &here = capture.serials.*device.serial, &calibrated = rig.serials.*device.serial;
         if (here.empty() || calibrated.empty() || here == calibrated) continue;

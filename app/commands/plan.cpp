@@ -30,7 +30,7 @@ struct PlanOptions {
 
 /// What the plan is checked against: nothing, a volume, or a case.
 struct Patient {
-    std::string code, frame_of_reference_uid;
+    std::string code, volume_hash, frame_of_reference_uid;
     std::optional<SkinSurface> skin;
     std::optional<VolumeBox> box;
     bool known = false;
@@ -42,18 +42,20 @@ Patient read_patient(const PlanOptions& options) {
         Case prepared = read_case(options.case_folder);
         patient.known = true;
         patient.code = prepared.code;
+        patient.volume_hash = prepared.volume_hash;
         patient.frame_of_reference_uid = prepared.frame_of_reference_uid;
         patient.skin.emplace(std::move(prepared.skin));
     }
     if (!options.volume.empty()) {
         const Volume volume = read_volume(options.volume, options.series_uid);
-        const std::string code = hash_of(volume).substr(0, 8);
-        if (patient.known && patient.code != code)
+        const std::string hash = hash_of(volume);
+        if (patient.known && patient.volume_hash != hash)
             throw InputError(options.volume,
-                             "is not the volume of this case (" + code + ", the case is " + patient.code + ")",
+                             "is not the volume of this case (" + hash.substr(0, 8) + ", that of the case is " +
+                                 patient.volume_hash.substr(0, 8) + ")",
                              "Name the volume that the case was prepared from.");
+        if (!patient.known) patient.code = hash.substr(0, 8);
         patient.known = true;
-        patient.code = code;
         patient.frame_of_reference_uid = volume.frame_of_reference_uid;
         patient.box = box_of(volume);
     }

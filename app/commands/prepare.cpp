@@ -11,7 +11,7 @@
 #include "app/live/live_window.h"
 #include "app/prepare_case.h"
 #include "app/report/preparation_report.h"
-#include "planning_io/types/error.h"
+#include "planning_io/plan/plan_file.h"
 #include "planning_io/volume/read_volume.h"
 
 namespace planlight {
@@ -25,62 +25,97 @@ struct PrepareOptions {
     std::string surface_frame, segment;
     double threshold = 0;  ///< HU; 0 = found from the histogram
     double voxel_mm = 1;
+    CaseNames names;         ///< the series' are the volume's
     bool anonymous = false;  ///< no UID and no file name of the volume in the case folder
+    bool resample = false;   ///< slices with uneven steps onto an even grid
+    bool phantom = false;    ///< not a head: a phantom, a dry skull or a plate, to commission a room
     bool replace = false, preview = false, json = false;
 };
 
-/// Before the work, not after it.
-void check_out(const PrepareOptions& options) {
-    if (options.replace || !std::filesystem::exists(options.out / "case.json")) return;
-    throw InputError(options.out, "is a case already", "Name a new folder, or replace this case with --replace.");
+/// All that is read before anything is computed.
+struct Inputs {
+    Volume volume;
+    PlanImport plan;
+    std::optional<SurfaceFile> surface;
+};
+
+Inputs read_inputs(const PrepareOptions& options) {
+    Inputs in;
+    in.volume =
+        read_volume(options.volume, options.series_uid, options.resample ? SliceGaps::resampled : SliceGaps::refused);
+    const std::string& frame_uid = in.volume.frame_of_reference_uid;
+    in.plan = import_plan(options.plan, plan_settings(options.frame, options.accept_frame, frame_uid));
+    if (!options.surface.empty()) {
+        in.surface = read_surface(
+            options.surface, {plan_settings(options.surface_frame, options.accept_frame, frame_uid), options.segment});
+        check_surface_fits(in.surface->mesh, in.volume, options.surface);
+    }
+    if (options.anonymous) make_anonymous(in.volume);
+    return in;
+}
+
+/// The plan's name is its file's where none is given; an anonymous case does not take over the names of files.
+CaseNames names_of(const PrepareOptions& options) {
+    CaseNames names = options.names;
+    if (names.plan.empty() && !options.anonymous) names.plan = fit_to_be_a_name(plan_name_of(options.plan));
+    return names;
+}
+
+Preparation prepare(const Inputs& in, const PrepareOptions& options, ProgressBar& bar) {
+    SkinSettings skin;
+    skin.threshold = options.threshold;
+    skin.phantom = options.phantom;
+    LutSettings lut;
+    lut.voxel_mm = options.voxel_mm;
+    check_memory_to_prepare(in.volume, lut);
+    const auto told = [&bar](const std::string& warning) { bar.note("warning: " + warning); };
+    for (const auto& note : in.plan.notes) told(note);
+    const PreparationWatcher watcher{bar.callback(), told};
+    Preparation done =
+        in.surface
+            ? prepare_case_on(in.volume, *in.surface, in.plan.plan, lut, iso_date_now(), watcher, names_of(options))
+            : prepare_case(in.volume, in.plan.plan, skin, lut, iso_date_now(), watcher, names_of(options));
+    done.prepared.warnings.insert(done.prepared.warnings.end(), in.plan.notes.begin(), in.plan.notes.end());
+    return done;
+}
+
+PreparationReport report_of(const Inputs& in, const Preparation& done, const PlanDrawing& drawing, ProgressBar& bar) {
+    bar.show("report", 0);
+    const PreparationPictures pictures = preparation_pictures(in.volume, done.prepared, drawing);
+    if (!pictures.no_views.empty()) bar.note("warning: " + pictures.no_views);
+    PreparationReport report = preparation_report(done, drawing, find_removed_pieces(in.volume, done.mask), pictures);
+    bar.show("report", 1);
+    return report;
+}
+
+void print_summary(const Preparation& done, const PrepareOptions& options) {
+    const Case& c = done.prepared;
+    fmt::print("{}\nCase {} in {}: {}, {} triangles, LUT {} x {} x {} voxels of {:.2f} mm, {} plan items.\n",
+               title_of(c), c.code, options.out.string(),
+               done.on_given_surface ? "on the surface given" : fmt::format("skin at {:.0f}", done.threshold),
+               c.skin.triangles.size(), c.lut.size[0], c.lut.size[1], c.lut.size[2], c.lut.voxel_mm, c.plan.size());
+    fmt::print("Report: {}\n", (options.out / "report.html").string());
 }
 
 int run_prepare(const PrepareOptions& options) {
-    check_out(options);
+    check_case_names(options.names);
+    check_case_place(options.out, options.replace);
     ProgressBar bar;
     bar.show("volume", 0);
-    Volume volume = read_volume(options.volume, options.series_uid);
-    const PlanImport plan =
-        import_plan(options.plan, plan_settings(options.frame, options.accept_frame, volume.frame_of_reference_uid));
-    std::optional<SurfaceFile> surface;
-    if (!options.surface.empty()) {
-        surface = read_surface(
-            options.surface, {plan_settings(options.surface_frame, options.accept_frame, volume.frame_of_reference_uid),
-                              options.segment});
-        check_surface_fits(surface->mesh, volume, options.surface);
-    }
-    if (options.anonymous) make_anonymous(volume);
+    const Inputs in = read_inputs(options);
     bar.show("volume", 1);
-    SkinSettings skin;
-    skin.threshold = options.threshold;
-    LutSettings lut;
-    lut.voxel_mm = options.voxel_mm;
-    Preparation done = surface ? prepare_case_on(volume, *surface, plan.plan, lut, iso_date_now(), bar.callback())
-                               : prepare_case(volume, plan.plan, skin, lut, iso_date_now(), bar.callback());
-    done.prepared.warnings.insert(done.prepared.warnings.end(), plan.notes.begin(), plan.notes.end());
+    const Preparation done = prepare(in, options, bar);
+    const CaseDrawing drawing(done.prepared);
+    const PreparationReport report = report_of(in, done, drawing.drawing, bar);
     bar.show("case folder", 0);
-    write_case(done.prepared, options.out, options.replace);
+    write_case(done.prepared, options.out, options.replace,
+               [&](const Path& into) { write_preparation_report(report, into); });
     bar.show("case folder", 1);
-    const Case& the_case = done.prepared;
-    const CaseDrawing drawing(the_case);
-    bar.show("report", 0);
-    std::string no_views;
-    write_preparation_report(options.out, done, drawing.drawing,
-                             preparation_pictures(volume, the_case, drawing.drawing, no_views));
-    bar.show("report", 1);
-    if (!no_views.empty()) warn(no_views);
-    for (const auto& warning : the_case.warnings) warn(warning);
-    if (options.json) {
-        std::cout << preparation_json(done, drawing.drawing);
-    } else {
-        fmt::print("Case {} in {}: {}, {} triangles, LUT {} x {} x {} voxels of {:.2f} mm, {} plan items.\n",
-                   the_case.code, options.out.string(),
-                   surface ? "on the surface given" : fmt::format("skin at {:.0f}", done.threshold),
-                   the_case.skin.triangles.size(), the_case.lut.size[0], the_case.lut.size[1], the_case.lut.size[2],
-                   the_case.lut.voxel_mm, the_case.plan.size());
-        fmt::print("Report: {}\n", (options.out / "report.html").string());
-    }
-    if (options.preview) show_model(model_of_case(the_case, drawing));
+    if (options.json)
+        std::cout << report.json;
+    else
+        print_summary(done, options);
+    if (options.preview) show_model(model_of_case(done.prepared, drawing));
     return 0;
 }
 
@@ -91,7 +126,8 @@ Run add_prepare(CLI::App& app) {
     PrepareOptions& o = *options;
     auto* sub = add_command(app, "prepare", "CT or MR volume and plan -> case folder (skin, LUT, plan, checksums)",
                             "prepare Cranium.inv3 --plan frontal_defect.mrk.json --out case");
-    sub->add_option("volume", o.volume, "DICOM folder or file, NIfTI, NRRD, MetaImage, or InVesalius project (.inv3)")
+    sub->add_option("volume", o.volume,
+                    "DICOM folder or file, NIfTI, FreeSurfer MGZ, NRRD, MetaImage, or InVesalius project (.inv3)")
         ->required();
     sub->add_option("--plan", o.plan, "Plan file, or a folder of them: .mrk.json, .fcsv, RTSTRUCT, tables, lines")
         ->required();
@@ -104,8 +140,18 @@ Run add_prepare(CLI::App& app) {
     sub->add_option("--segment", o.segment, "Which segment or ROI of a DICOM SEG or RTSTRUCT, by its name");
     sub->add_option("--out", o.out, "Case folder to write")->required();
     series_option(sub, o.series_uid);
-    sub->add_flag("--anonymous", o.anonymous, "Leave UIDs and file names of the volume out of the case folder");
+    sub->add_option("--title", o.names.title, "What the case is called, in every window and on every page");
+    auto* patient =
+        sub->add_option("--patient", o.names.patient, "The patient's initials or code, as your site sets them");
+    sub->add_option("--plan-name", o.names.plan, "What the plan is called (default: its file's name)");
+    sub->add_option("--plan-version", o.names.plan_version, "Which version of the plan it is");
+    sub->add_flag("--anonymous", o.anonymous,
+                  "Leave UIDs, dates, descriptions and names of files and series out of the case folder")
+        ->excludes(patient);
     sub->add_option("--threshold", o.threshold, "Skin threshold, HU (default: found from the histogram)");
+    sub->add_flag("--resample", o.resample,
+                  "Lay DICOM slices with uneven steps onto an even grid, between the cuts where they lie");
+    sub->add_flag("--phantom", o.phantom, "Take a phantom, a dry skull or a plate: do not ask whether it is a head");
     sub->add_option("--voxel-mm", o.voxel_mm, "Edge of the LUT's cubic voxels")
         ->capture_default_str()
         ->check(CLI::Range(0.25, 10.0));

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "app/belonging.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/console.h"
@@ -50,19 +51,38 @@ void check_verdict(const RegistrationResult& registration, const ProjectOptions&
                                : "Scan again.");
 }
 
+/// Files of other cases, rigs and scans are refused; what they do not say is said.
+void check_belonging(const ProjectOptions& options, const Case& the_case, const RigCalibration& rig,
+                     const RegistrationResult& registration) {
+    std::vector<std::string> unknown;
+    check_case(registration, the_case, options.registration, unknown);
+    check_rig(registration, rig, options.registration, options.rig, unknown);
+    if (!options.poses.empty())
+        check_poses(read_poses_origin(options.poses), registration, rig, options.poses, unknown);
+    for (const std::string& what : unknown) warn(what);
+}
+
 int run_project(const ProjectOptions& options) {
     const Case the_case = read_case(options.case_folder);
-    const RigCalibration rig = read_rig(options.rig);
+    const RigCalibration calibrated = read_rig(options.rig);
     const RegistrationResult registration = read_registration(options.registration);
+    check_belonging(options, the_case, calibrated, registration);
     check_verdict(registration, options);
+    const RigCalibration rig = rig_of_light(registration, calibrated, options.confirmed);
     const RigidTransform rig_from_patient = pose_to_draw(options);
     const CaseDrawing drawing(the_case, drawing_settings(read_site_settings()));
     const DrawingRenderer renderer(drawing.skin, rig.projector);
     const RgbImage picture = renderer.render(drawing.drawing, rig_from_patient * registration.patient_from_ct,
                                              rig_from_patient);  // T_global
-    write_png(picture, options.out);
     const auto lit = std::count_if(picture.pixels.begin(), picture.pixels.end(),
                                    [](const Rgb& p) { return p[0] + p[1] + p[2] > 0; });
+    if (lit == 0)
+        throw CheckFailedError(
+            "nothing of the plan lies in the projector's light at this pose",
+            "Turn the patient or the rig so that the plan's side of the head is lit, and scan again.");
+    if (registration.rig && registration.rig->moved())
+        warn(fmt::format("{}. {}", registration.rig->sentence, registration.rig->remedy));
+    write_png(picture, options.out);
     nlohmann::json items = nlohmann::json::array();
     for (const auto& item : drawing.drawing.items) {
         items.push_back({{"name", item.name},
@@ -72,10 +92,16 @@ int run_project(const ProjectOptions& options) {
         for (const auto& warning : item.warnings) warn(warning);
     }
     if (options.json)
-        std::cout << nlohmann::json{{"picture", options.out.string()}, {"lit_pixels", lit}, {"items", items}}.dump(2)
+        std::cout << nlohmann::json{{"case", the_case.code},
+                                    {"title", title_of(the_case)},
+                                    {"picture", options.out.string()},
+                                    {"lit_pixels", lit},
+                                    {"items", items}}
+                         .dump(2)
                   << '\n';
     else
-        fmt::print("{} items in {} ({} lit pixels).\n", items.size(), options.out.string(), lit);
+        fmt::print("{}\n{} items in {} ({} lit pixels).\n", title_of(the_case), items.size(), options.out.string(),
+                   lit);
     return 0;
 }
 

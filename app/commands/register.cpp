@@ -4,13 +4,16 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "app/belonging.h"
 #include "app/case_model.h"
 #include "app/commands/cloud_unit.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/rig_words.h"
 #include "app/report/registration_certificate.h"
 #include "app/site_settings.h"
 #include "planning_io/case/case_folder.h"
+#include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/registration_file.h"
 #include "planning_io/case/slicer_transform.h"
 #include "planning_io/plan/point_pairs_file.h"
@@ -40,9 +43,11 @@ const char* name_of(Verdict verdict) {
 }
 
 /// The cloud as the matching wants it: mm, with normals towards the devices.
-PointCloud cloud_of(const RegisterOptions& options) {
-    PointCloud cloud = read_cloud(options.cloud, {unit_in_mm(options.unit), options.in_rig});
+PointCloud cloud_of(const RegisterOptions& options, std::optional<RigState>& rig) {
+    std::vector<std::string> comments;
+    PointCloud cloud = read_cloud(options.cloud, {unit_in_mm(options.unit), options.in_rig}, &comments);
     check_unit(cloud, options.unit, options.cloud);
+    rig = rig_state_in(comments, options.cloud);
     if (!cloud.normals_in_rig.empty()) return cloud;
     if (options.viewpoint_in_rig.empty())
         throw InputError(
@@ -51,8 +56,8 @@ PointCloud cloud_of(const RegisterOptions& options) {
     return with_normals(cloud, Eigen::Vector3d(options.viewpoint_in_rig.data()));
 }
 
-RegistrationResult match(const RegisterOptions& options, const Case& the_case,
-                         std::shared_ptr<const PointCloud>& cloud) {
+RegistrationResult match(const RegisterOptions& options, const Case& the_case, std::shared_ptr<const PointCloud>& cloud,
+                         std::optional<RigState>& rig) {
     if (options.cloud.empty() && options.pairs.empty())
         throw Error(ExitCode::usage, "neither --cloud nor --pairs is given", "Give the scan, landmarks, or both.");
     const std::vector<PointPair> pairs =
@@ -62,14 +67,16 @@ RegistrationResult match(const RegisterOptions& options, const Case& the_case,
     settings.initial.seed = options.seed;
     if (options.icp == "closest-point") settings.icp.mode = IcpSettings::Mode::closest_point;
     if (!options.viewpoint_in_rig.empty()) settings.viewpoint_in_rig = Eigen::Vector3d(options.viewpoint_in_rig.data());
-    cloud = std::make_shared<PointCloud>(cloud_of(options));
+    cloud = std::make_shared<PointCloud>(cloud_of(options, rig));
     return register_with_landmarks(*cloud, the_case.lut, pairs, settings);
 }
 
 int run_register(const RegisterOptions& options) {
     const Case the_case = read_case(options.case_folder);
     std::shared_ptr<const PointCloud> cloud;
-    const RegistrationResult result = match(options, the_case, cloud);
+    std::optional<RigState> rig;
+    RegistrationResult result = match(options, the_case, cloud, rig);
+    take_case_and_rig(the_case, rig, result);
     write_registration(result, options.out);
     if (!options.slicer_transform.empty() && result.verdict != Verdict::no)
         write_slicer_transform(result.patient_from_ct, options.slicer_transform);
@@ -85,6 +92,8 @@ int run_register(const RegisterOptions& options) {
         nlohmann::json matrix = nlohmann::json::array();
         for (int r = 0; r < 4; ++r) matrix.push_back({m(r, 0), m(r, 1), m(r, 2), m(r, 3)});
         const nlohmann::json out = {
+            {"case", the_case.code},
+            {"title", title_of(the_case)},
             {"verdict", name_of(result.verdict)},
             {"reasons", result.reasons},
             {"patient_from_ct", matrix},
@@ -102,10 +111,12 @@ int run_register(const RegisterOptions& options) {
             {"scale_sigma", result.scale_sigma},
             {"skin_movement_mm", result.skin_movement_mm},
             {"skin_offset_mm", result.skin_offset_mm},
+            {"rig", result.rig ? nlohmann::json(json_of(*result.rig)) : nlohmann::json()},
             {"items", items},
             {"seconds", {{"initial", result.initial_match_s}, {"fine", result.refine_s}}}};
         std::cout << out.dump(2) << '\n';
     } else {
+        fmt::print("{}\n", title_of(the_case));
         if (options.cloud.empty())
             fmt::print("{}: {} landmarks, {:.2f} mm rms.\n", name_of(result.verdict), result.points,
                        result.residual_rms_mm);
@@ -119,11 +130,14 @@ int run_register(const RegisterOptions& options) {
                        length_text(item["predicted_95_mm"].get<double>(), site));
         for (const auto& reason : result.reasons) fmt::print("  {}\n", reason);
     }
+    const bool bad_rig = result.rig && result.rig->verdict == RigState::Verdict::not_trusted;
     if (result.verdict == Verdict::no)
         throw CheckFailedError(
-            "the patient was not found: " + fmt::format("{}", fmt::join(result.reasons, "; ")),
-            "Scan again from a side that shows more of the head, and check that this is the patient of the case." +
-                (cloud ? hint_of_unit(*cloud, options.unit) : std::string()));
+            fmt::format("{}: {}", bad_rig ? "the match may not be used" : "the patient was not found",
+                        fmt::join(result.reasons, "; ")),
+            bad_rig ? result.rig->remedy
+                    : std::string("Scan again from a side that shows more of the head, and check that this is the patient of the "
+                      "case.") + (cloud ? hint_of_unit(*cloud, options.unit) : std::string()));
     return 0;
 }
 

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "app/belonging.h"
 #include "app/case_model.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
@@ -12,6 +13,7 @@
 #include "app/site_settings.h"
 #include "app/windows/scene_view.h"
 #include "planning_io/case/case_folder.h"
+#include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/registration_file.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/plan/point_pairs_file.h"
@@ -47,6 +49,19 @@ std::shared_ptr<const PointCloud> cloud_of(const ReviewOptions& options) {
     return std::make_shared<PointCloud>(read_cloud(options.cloud, {1, true}));
 }
 
+/// The cloud of another scan would be shown where this match has it.
+void check_cloud(const RegistrationResult& found, const ReviewOptions& options) {
+    std::vector<std::string> comments;
+    read_cloud(options.cloud, {1, true}, &comments);
+    const auto rig = rig_state_in(comments, options.cloud);
+    if (rig && found.rig && !found.rig->capture_hash.empty() && rig->capture_hash != found.rig->capture_hash)
+        throw InputError(options.cloud,
+                         "is the scan of capture " + rig->capture_hash.substr(0, 8) + ", and " +
+                             options.registration.string() + " is the match of capture " +
+                             found.rig->capture_hash.substr(0, 8),
+                         "Name the cloud that was matched.");
+}
+
 /// The window until landmarks are used or it is closed; what was clicked is kept either way.
 int run_landmarks(const ReviewOptions& options, const CaseDrawing& drawing, const PointCloud& cloud,
                   OperatorModel model) {
@@ -80,6 +95,10 @@ int run_review(const ReviewOptions& options) {
     std::optional<RegistrationResult> found;
     if (!options.registration.empty()) {
         found = read_registration(options.registration);
+        std::vector<std::string> unknown;
+        check_case(*found, the_case, options.registration, unknown);
+        if (!options.cloud.empty()) check_cloud(*found, options);
+        for (const std::string& what : unknown) warn(what);
         show_match(the_case, *found, cloud, model);
         set_status(*found, model);
     }
@@ -94,6 +113,7 @@ int run_review(const ReviewOptions& options) {
                          {"warnings", item.warnings}});
     if (options.json)
         std::cout << nlohmann::json{{"case", the_case.code},
+                                    {"title", title_of(the_case)},
                                     {"created", the_case.created},
                                     {"items", items},
                                     {"warnings", the_case.warnings},
@@ -106,6 +126,7 @@ int run_review(const ReviewOptions& options) {
         return 0;
     }
     if (options.json) return 0;
+    fmt::print("{}\n", title_of(the_case));
     for (const auto& warning : the_case.warnings) warn(warning);
     if (const auto report = options.case_folder / "report.html"; std::filesystem::exists(report))
         fmt::print("Report: {}\n", report.string());

@@ -4,11 +4,14 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "app/belonging.h"
 #include "app/commands/capture_conversion.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/device_check.h"
+#include "app/commands/rig_words.h"
 #include "app/console.h"
+#include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
@@ -26,7 +29,7 @@ struct ScanOptions {
     Path surface_out;               ///< the same points with triangles; empty: not wanted
     std::vector<Path> exposures;    ///< further captures of the same pose
     double max_movement_mm = 0.15;  ///< of the patient during the scan
-    bool accept_movement = false, json = false;
+    bool accept_movement = false, allow_missing = false, json = false;
 };
 
 nlohmann::json counts(const DecodedView& view) {
@@ -55,33 +58,41 @@ nlohmann::json projector_of(const ScanResult& scan) {
 }
 
 void warn_of(const ScanResult& scan, const RigCalibration& rig) {
+    if (scan.left.row.empty() && scan.right.width <= 1)
+        warn(
+            "one camera and the projector's columns alone: each point is where a line of sight meets a plane of light, "
+            "and nothing "
+            "checks it; a wrong rig file or light that came another way shows in nothing");
     if (scan.code_step_px > 0)
         warn(fmt::format(
             "the light was read to {:g} projector pixels only: the fringes, or the finest bits that count them, are "
             "not in the capture or not resolved by the cameras; the cloud is coarser",
             scan.code_step_px));
-    constexpr double kMoved_mm = 1, kTurned = 0.0035;  // 0.2 degrees
-    if (scan.resection_used && (scan.resection->moved_mm > kMoved_mm || scan.resection->turned > kTurned))
-        warn(fmt::format(
-            "the projector was found {:.1f} mm and {:.2f} degrees from where {} has it; `planlight check` tells more",
-            scan.resection->moved_mm, scan.resection->turned * 180 / std::numbers::pi,
-            rig.made_on.empty() ? "the rig file" : "the calibration of " + rig.made_on));
-    if (scan.code_step_px > 0) return;  // cells are no measure of the cameras
+    if (scan.rig.moved()) warn(fmt::format("{}. {}", scan.rig.sentence, scan.rig.remedy));
+    if (scan.code_step_px > 0 || scan.rig.moved()) return;  // cells are no measure of the cameras
     const DriftCheck drift = check_drift(scan, rig);
     if (drift.verdict == DriftCheck::Verdict::cameras_moved)
         warn(fmt::format("{}; the cloud may be off by millimetres and nothing in it shows where. {}", drift.reason,
                          drift.remedy));
 }
 
+/// By rig.json, as `check` says it.
+double epipolar_of(const ScanResult& scan) {
+    return scan.rig.moved() ? scan.epipolar_as_calibrated_px : usual_epipolar_px(scan.raw);
+}
+
 std::string said_of_cameras(const ScanResult& scan) {
-    const double off_px = usual_epipolar_px(scan.raw);
+    const double off_px = epipolar_of(scan);
     return off_px > 0 ? fmt::format("; epipolar error {:.2f} px", off_px) : std::string();
 }
 
 nlohmann::json json_of(const ScanMovement& movement) {
     if (movement.by == ScanMovement::By::nothing) return nullptr;
     return {{"by", movement.by == ScanMovement::By::markers ? "markers" : "pictures"},
-            {"moved_mm", movement.moved_mm},
+            {"moved_mm", movement.way_mm()},
+            {"seen_mm", movement.moved_mm},
+            {"unseen_mm",
+             movement.by == ScanMovement::By::pictures ? nlohmann::json(movement.unseen_mm()) : nlohmann::json()},
             {"turned_deg", movement.turned * 180 / std::numbers::pi},
             {"from", movement.from},
             {"to", movement.to},
@@ -94,24 +105,26 @@ void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
         warn("whether the patient moved during the scan is not known: too little is seen under even light");
         return;
     }
-    // Pictures show about half of a way (scan_movement.h).
+    if (movement.way_mm() <= options.max_movement_mm) {
+        if (movement.unseen_mm() > options.max_movement_mm)
+            warn(
+                fmt::format("whether the patient moved during the scan is known to {:.1f} mm only: the skin shows "
+                            "little that could be "
+                            "seen to move (markers would show it)",
+                            movement.unseen_mm()));
+        return;
+    }
     const bool by_markers = movement.by == ScanMovement::By::markers;
-    if (movement.moved_mm <= (by_markers ? 1 : 0.5) * options.max_movement_mm) return;
-    const std::string problem =
-        fmt::format("the patient moved {:.2f} mm during the scan (between {} and {}, by {}); {:g} mm is the limit{}",
-                    movement.moved_mm, movement.from, movement.to,
-                    by_markers ? "the markers" : "the skin in the pictures, which show about half of it",
-                    options.max_movement_mm, said_of_gamma(movement.camera_gamma));
+    const std::string problem = fmt::format(
+        "the patient moved {}{:.2f} mm during the scan (between {} and {}, by {}); {:.2f} mm is the limit{}",
+        by_markers ? "" : "about ", movement.way_mm(), movement.from, movement.to,
+        by_markers ? "the markers"
+                   : fmt::format("the skin in the pictures: {:.2f} mm across the line of sight, twice that in all",
+                                 movement.moved_mm),
+        options.max_movement_mm, said_of_gamma(movement.camera_gamma));
     if (!options.accept_movement)
         throw CheckFailedError(problem, "Scan again, or take the cloud as it is with --accept-movement.");
     warn(problem);
-}
-
-/// One camera needs both directions: nothing else says whether a pixel was read right.
-void check_directions(const ScanCapture& capture, const RigCalibration& rig, const Path& folder) {
-    if (capture.stripes.rows || (!capture.right.empty() && present(rig.right_camera))) return;
-    throw InputError(folder, "codes the projector's columns only, and there is one camera",
-                     "Capture a sequence that codes columns and rows, or with both cameras of a calibrated rig.");
 }
 
 /// Where most of what was read lies off the rays of the rig file, the rest lies on them by chance.
@@ -138,10 +151,12 @@ int run_scan(const ScanOptions& options) {
     std::vector<ScanCapture> captures;
     std::vector<Path> folders{options.capture};
     folders.insert(folders.end(), options.exposures.begin(), options.exposures.end());
+    ProgressBar bar;
+    const ReadCapture how{options.allow_missing, [&](double share) { bar.show("pictures", share); },
+                          [](const std::string& what) { warn(what); }};
     for (const Path& folder : folders) {
-        captures.push_back(scan_capture_from(read_capture_of(rig, folder), folder));
+        captures.push_back(scan_capture_from(read_capture_of(rig, folder, how), folder));
         check_sizes(captures.back(), rig, folder);
-        check_directions(captures.back(), rig, folder);
         if (captures.back().stripes.rows != captures.front().stripes.rows ||
             captures.back().right.empty() != captures.front().right.empty())
             throw InputError(folder, "has other directions or cameras than the first capture",
@@ -151,14 +166,15 @@ int run_scan(const ScanOptions& options) {
     const ScanResult scan = scan_from_exposures(captures, rig);
     judge_fit(scan, rig);
     warn_of(scan, rig);
-    const ScanMovement movement = movement_in_scan(capture, rig, scan.clean.kept);
+    const ScanMovement movement = movement_in_scan(capture, scan.rig.rig.whole() ? scan.rig.rig : rig, scan.clean.kept);
     judge_movement(movement, options);
-    write_cloud(scan.clean.kept, options.out);
-    if (!options.raw_out.empty()) write_cloud(scan.raw.cloud, options.raw_out);
+    const std::vector<std::string> names = comments_of(named_rig_state(scan, rig, capture));
+    write_cloud(scan.clean.kept, options.out, {}, names);
+    if (!options.raw_out.empty()) write_cloud(scan.raw.cloud, options.raw_out, {}, names);
     std::vector<std::array<std::int32_t, 3>> triangles;
     if (!options.surface_out.empty()) {
         triangles = surface_triangles(scan.clean.kept);
-        write_cloud(scan.clean.kept, options.surface_out, triangles);
+        write_cloud(scan.clean.kept, options.surface_out, triangles, names);
     }
     if (options.json) {
         const nlohmann::json result = {
@@ -180,10 +196,11 @@ int run_scan(const ScanOptions& options) {
               {"thinned", scan.clean.thinned}}},
             {"devices", devices_of(scan, rig)},
             {"code_step_px", scan.code_step_px},
-            {"epipolar_px", or_null(usual_epipolar_px(scan.raw))},
+            {"epipolar_px", or_null(epipolar_of(scan))},
             {"epipolar_rms_px", or_null(scan.raw.epipolar_rms_px)},
             {"projector_offset_px", {scan.raw.projector_offset_px.x(), scan.raw.projector_offset_px.y()}},
             {"projector", projector_of(scan)},
+            {"rig", json_of(scan.rig)},
             {"movement", json_of(movement)},
             {"seconds",
              {{"sequence", scan.sequence_s},
@@ -222,6 +239,8 @@ Run add_scan(CLI::App& app) {
         ->capture_default_str()
         ->check(CLI::Range(0.01, 100.0));
     sub->add_flag("--accept-movement", o.accept_movement, "Write the cloud of a patient who moved; only warn");
+    sub->add_flag("--allow-missing", o.allow_missing,
+                  "Where pictures are missing use what can be read without them, coarser; else that is refused");
     json_flag(sub, o.json);
     return [options] { return run_scan(*options); };
 }

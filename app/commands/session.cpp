@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/live/live_window.h"
@@ -29,6 +31,7 @@ int run_session(const SessionOptions& options) {
     if (hash_of(volume) != the_case.volume_hash)
         throw InputError(options.volume, "this is not the volume that the case was made from",
                          "Give the volume of this case, or prepare a case from this volume.");
+    fmt::print("{}\n", title_of(the_case));
     LiveOptions live;
     live.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     live.seed = options.seed;

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "app/belonging.h"
 #include "app/commands/capture_conversion.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
@@ -11,6 +12,7 @@
 #include "app/console.h"
 #include "planning_io/case/frames_folder.h"
 #include "planning_io/case/poses_file.h"
+#include "planning_io/case/registration_file.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/types/error.h"
 #include "registration/tracking/track_patient.h"
@@ -19,27 +21,61 @@ namespace planlight {
 namespace {
 
 struct TrackOptions {
-    Path frames, rig, capture, out;
+    Path frames, rig, capture, registration, out;
     bool json = false;
 };
 
-StereoFrame reference_frame(const TrackOptions& options, const RigCalibration& rig,
-                            const std::vector<StereoFrame>& frames) {
-    if (options.capture.empty()) return frames.front();
-    const ScanCapture capture = scan_capture_from(read_capture_of(rig, options.capture), options.capture);
-    if (capture.right.empty())
-        throw InputError(options.capture, "has the left camera's pictures only",
-                         "Markers need both cameras: capture with both.");
-    return {capture.left.front(), capture.right.front(), capture.began, Instant{}, 0};
+/// The rig as the scan found it, and the picture that the poses begin at.
+struct Reference {
+    PosesOrigin origin;
+    StereoFrame frame;
+};
+
+void judge_rig(const RigState& state) {
+    if (state.verdict == RigState::Verdict::not_trusted)
+        throw CheckFailedError("the rig cannot be trusted: " + state.sentence, state.remedy);
+    if (state.moved()) warn(fmt::format("{}. {}", state.sentence, state.remedy));
+}
+
+Reference reference_of(const TrackOptions& options, const RigCalibration& rig, const std::vector<StereoFrame>& frames) {
+    Reference reference{{name_of(rig), {}, rig}, frames.front()};
+    std::optional<RigState> found;
+    if (!options.capture.empty()) {
+        const ScanCapture capture = scan_capture_from(read_capture_of(rig, options.capture), options.capture);
+        if (capture.right.empty())
+            throw InputError(options.capture, "has the left camera's pictures only",
+                             "Markers need both cameras: capture with both.");
+        reference.frame = {capture.left.front(), capture.right.front(), capture.began, Instant{}, 0};
+        reference.origin.capture_hash = hash_of(capture);
+        ScanSettings settings;
+        settings.check_sequence = false;  // `scan` has judged it
+        if (options.registration.empty()) found = scan_from_capture(capture, rig, settings).rig;
+    }
+    if (!options.registration.empty()) {
+        std::vector<std::string> unknown;
+        const RegistrationResult match = read_registration(options.registration);
+        check_rig(match, rig, options.registration, options.rig, unknown);
+        for (const std::string& what : unknown) warn(what);
+        if (!options.capture.empty() && match.rig && !match.rig->capture_hash.empty() &&
+            match.rig->capture_hash != reference.origin.capture_hash)
+            throw InputError(options.registration, "is the match of another scan than " + options.capture.string(),
+                             "Name the capture that was scanned and matched.");
+        found = match.rig;
+    }
+    if (!found) return reference;
+    judge_rig(*found);
+    if (found->rig.whole()) reference.origin.rig = found->rig;
+    return reference;
 }
 
 int run_track(const TrackOptions& options) {
     const RigCalibration rig = read_rig(options.rig);
-    PatientTracker tracker(rig);
     const auto frames = read_frames(options.frames);
     if (frames.empty())
         throw InputError(options.frames, "there is no frame in the folder", "Record at least one frame.");
-    const auto markers = tracker.set_reference(reference_frame(options, rig, frames)).size();
+    const Reference reference = reference_of(options, rig, frames);
+    PatientTracker tracker(reference.origin.rig);
+    const auto markers = tracker.set_reference(reference.frame).size();
     if (markers < 3)
         throw CheckFailedError(
             fmt::format("only {} markers were found by both cameras in the reference picture", markers),
@@ -50,7 +86,7 @@ int run_track(const TrackOptions& options) {
         poses.push_back(tracker.update(frame));
         bar.show("track", static_cast<double>(poses.size()) / static_cast<double>(frames.size()));
     }
-    write_poses(poses, options.out);
+    write_poses(poses, options.out, reference.origin);
     const auto found =
         std::count_if(poses.begin(), poses.end(), [](const auto& p) { return p.rig_from_patient.has_value(); });
     double worst_px = 0;
@@ -78,6 +114,8 @@ Run add_track(CLI::App& app) {
     sub->add_option(
         "--capture", o.capture,
         "Capture folder of the scan: its white picture holds the reference markers (default: the first frame)");
+    sub->add_option("--registration", o.registration,
+                    "The match to follow: its rig, as the scan found it, is used (default: found again in --capture)");
     sub->add_option("--out", o.out, "poses.json to write")->required();
     json_flag(sub, o.json);
     return [options] { return run_track(*options); };

@@ -59,7 +59,7 @@ void write_report_html(const std::filesystem::path& file, const Preparation& pre
         "true skin; no real projector or camera was measured.</p>");
     for (const auto* preset : {"modern", "paper"})
         if (const auto s = summarise(rooms, preset); s.rooms > 0) html += preset_section(s);
-    html += preparation_section(prepared) + "<h2>Step by step</h2>" + html_figures(pictures, file);
+    html += preparation_section(prepared) + "<h2>Step by step</h2>" + html_figures(pictures);
     ReportFacts facts = facts_of(prepared.prepared);
     facts.emplace_back("Rig", "simulated rooms, one a seed");
     write_safely(file, html_page("Light on the patient", html, facts));

@@ -193,10 +193,10 @@ void LiveSession::act(const Press& press, Session& session, simulation::Simulate
             return;
         case OperatorAction::track:
             permit_light(press);
+            gate_.restart();
             following_ = true;
             if (!moving_) rig.set_motion({settings_.speed_mm_s, rig.clock().now()});
             moving_ = true;
-            set_steps(5);
             break;
         case OperatorAction::confirm:
             confirm(session);

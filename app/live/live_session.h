@@ -14,6 +14,7 @@
 #include "app/windows/operator_model.h"
 #include "app/windows/operator_window.h"
 #include "planning_io/types/volume.h"
+#include "projection/light_gate.h"
 #include "registration/simulation/simulated_rig.h"
 
 namespace planlight {
@@ -72,7 +73,9 @@ private:
     std::string keep(const RegistrationResult& found, const PointCloud& cloud,
                      const std::vector<PointPair>& landmarks) const;
     void follow(Session& session, simulation::SimulatedRig& rig);
-    void show_update(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update);
+    void show_update(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update,
+                     const LightGate::Ruling& ruling);
+    void stop_light(Session& session, const LightGate::Ruling& ruling);
     void set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details = {});
     void set_steps(int active, StepState state = StepState::active);
     Press next_press(bool wait);
@@ -97,6 +100,8 @@ private:
     std::exception_ptr fault_;
     std::uint64_t darks_ = 0;      ///< DARK presses so far
     std::uint64_t permitted_ = 0;  ///< `darks_` when the light of now was asked for; it is dark where they differ
+    LightGate gate_;               ///< of the session's thread
+    Instant seen_at_{};            ///< of the last frame, on the room's clock
     bool ending_ = false, following_ = false, moving_ = false;
     std::atomic<bool> projecting_{false};
     std::atomic<Instant::rep> alive_at_{0};

@@ -63,7 +63,9 @@ void LiveSession::find_patient(Session& session, const std::vector<PointPair>& l
     const RegistrationResult& found = session.find_patient(landmarks);
     OperatorModel shown = model();
     show_match(case_, found, std::make_shared<PointCloud>(session.scanned()->clean.kept), shown);
+    gate_.new_match();
     shown.confirm = found.verdict == Verdict::ask;
+    shown.confirm_words = "It fits: use it";
     shown.scene.light = nullptr;
     shown.stop = {false, "nothing runs"};
     shown.track = {false, "register first"};
@@ -98,6 +100,10 @@ std::string LiveSession::keep(const RegistrationResult& found, const PointCloud&
 }
 
 void LiveSession::confirm(Session& session) {
+    if (following_) {  // the light was looked at
+        gate_.verify(seen_at_);
+        return;
+    }
     if (session.registration() == nullptr || session.registration()->verdict != Verdict::ask) return;
     session.confirm();
     change_model([](OperatorModel& m) {
@@ -113,12 +119,30 @@ void LiveSession::confirm(Session& session) {
 void LiveSession::follow(Session& session, simulation::SimulatedRig& rig) {
     const auto update = session.update();
     if (!light_permitted()) return;  // DARK was pressed meanwhile; its own turn comes next
+    seen_at_ = update.frame.at;
+    const LightGate::Ruling ruling = gate_.step(seen_at_, update.overlay.lit, update.light);
+    if (ruling.stop) {
+        stop_light(session, ruling);
+        return;
+    }
     projecting_ = update.overlay.lit;
-    show_update(session, rig, update);
+    show_update(session, rig, update, ruling);
+}
+
+void LiveSession::stop_light(Session& session, const LightGate::Ruling& ruling) {
+    following_ = projecting_ = false;
+    session.go_dark();
+    change_model([](OperatorModel& m) {
+        m.scene.light = nullptr;
+        m.confirm = false;
+        m.stop = {false, "nothing runs"};
+    });
+    set_steps(4, StepState::attention);
+    set_status(StatusKind::refused, ruling.headline, ruling.details);
 }
 
 void LiveSession::show_update(const Session& session, const simulation::SimulatedRig& rig,
-                              const Session::Update& update) {
+                              const Session::Update& update, const LightGate::Ruling& ruling) {
     const auto light = true_light_lines(session.drawing(), rig.calibration(), update.overlay, rig);
     Figures figures;
     figures.updates_per_s = 1 / std::max(update.times.total_s(), 1e-6);
@@ -130,7 +154,15 @@ void LiveSession::show_update(const Session& session, const simulation::Simulate
             angle_between(*update.pose.rig_from_patient, RigidTransform::Identity()) * 180 / std::numbers::pi;
     }
     if (!update.overlay.lit) figures.delay_to_light_ms.reset();
+    figures.overlay_error_mm = ruling.off_mm;
+    set_steps(gate_.verified() ? 5 : 4, gate_.verified() ? StepState::active : StepState::attention);
     change_model([&](OperatorModel& m) {
+        m.confirm = update.overlay.lit && ruling.ask_to_verify;
+        m.confirm_words = "The light is right";
+        for (std::size_t i = 0; update.light && i < std::min(m.rows.size(), update.light->items.size()); ++i) {
+            const ItemLight& item = update.light->items[i];
+            m.rows[i].light_off_mm = item.known() ? std::optional(item.off_mm) : std::nullopt;
+        }
         m.figures = figures;
         m.scene.light = light;
         m.left.picture = std::make_shared<GrayImage>(brightened(update.frame.left));
@@ -140,10 +172,8 @@ void LiveSession::show_update(const Session& session, const simulation::Simulate
         m.stop = {true, {}};
     });
     if (update.overlay.lit)
-        set_status(StatusKind::aligned, "The plan is on the skin.",
-                   {fmt::format("Followed by {} markers, residual {:.2f} px.",
-                                std::max(update.pose.markers_left, update.pose.markers_right), update.pose.residual_px),
-                    "The light itself is not measured yet: look at it on landmarks before you use it."});
+        set_status(ruling.trust == LightTrust::aligned ? StatusKind::aligned : StatusKind::check, ruling.headline,
+                   ruling.details);
     else
         set_status(StatusKind::dark, "Dark: " + update.overlay.reason + ".",
                    {"The light comes back by itself when the pose is good."});

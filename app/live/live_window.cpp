@@ -58,6 +58,7 @@ public:
         if (step_ == 0 && model.scan.enabled) return advance(OperatorAction::scan);
         if (step_ == 1 && model.do_register.enabled) return advance(OperatorAction::do_register);
         if (step_ == 2 && model.track.enabled) return advance(OperatorAction::track);
+        if (step_ == 3 && model.confirm) return advance(OperatorAction::confirm);
         return OperatorAction::none;
     }
 

@@ -184,6 +184,15 @@ std::string calibration_summary(const CalibrationReport& report) {
                 : report.rig_file.string() + "; the report: ");
 }
 
+namespace {
+
+/// Of nothing there is no figure: null, not a perfect 0.
+Json if_any(std::size_t count, double value) {
+    return count > 0 ? Json(value) : Json();
+}
+
+}  // namespace
+
 std::string calibration_json(const CalibrationReport& report) {
     const Calibration& c = report.calibration;
     Json json = {{"format", "planlight calibration"},   {"version", 1},
@@ -197,26 +206,28 @@ std::string calibration_json(const CalibrationReport& report) {
         Json device = Json::parse(as_json(*d));
         if (const std::string& serial = serial_of(report.serials, name); !serial.empty()) device["serial"] = serial;
         device["lens_sigmas"] = lens_sigmas(c.bundle, name);
-        device["held_out_rms_px"] = c.held_out.rms_px[i];
-        device["rms_px"] = c.bundle.rms_px[i];
+        device["held_out_rms_px"] = if_any(c.held_out.used[i], c.held_out.rms_px[i]);
+        device["rms_px"] = if_any(c.bundle.used[i], c.bundle.rms_px[i]);
         device["used"] = c.bundle.used[i];
         device["left_out"] = c.bundle.left_out[i];
         json["devices"][kKeys[i]] = device;
     }
     json["board_bend_mm"] = {c.bundle.rig.bend_mm.x(), c.bundle.rig.bend_mm.y(), c.bundle.rig.bend_mm.z()};
     json["lengths"] = {{"count", c.held_out.lengths},
-                       {"rms_mm_at_200", c.held_out.length_rms_mm},
-                       {"mean_mm_at_200", c.held_out.length_mean_mm}};
+                       {"rms_mm_at_200", if_any(c.held_out.lengths, c.held_out.length_rms_mm)},
+                       {"mean_mm_at_200", if_any(c.held_out.lengths, c.held_out.length_mean_mm)}};
+    json["predicted_error"] = nullptr;
     if (c.volume)
-        json["predicted_error"] = {{"median_mm", c.volume->median_mm},
-                                   {"p95_mm", c.volume->p95_mm},
-                                   {"worst_mm", c.volume->worst_mm},
-                                   {"light_p95_mm", c.volume->light_p95_mm}};
+        json["predicted_error"] = {
+            {"median_mm", c.volume->median_mm},
+            {"p95_mm", c.volume->p95_mm},
+            {"worst_mm", c.volume->worst_mm},
+            {"light_p95_mm", c.volume->light_p95_mm > 0 ? Json(c.volume->light_p95_mm) : Json()}};
     json["residuals"] = Json::array();
     for (const PoseResidual& r : c.bundle.residuals)
         json["residuals"].push_back({{"pose", report.poses[r.pose].name},
                                      {"device", kKeys[static_cast<std::size_t>(r.device)]},
-                                     {"rms_px", r.rms_px},
+                                     {"rms_px", if_any(r.used, r.rms_px)},
                                      {"used", r.used},
                                      {"left_out", r.left_out}});
     json["warnings"] = c.warnings;
@@ -260,14 +271,14 @@ void write_calibration_html(const CalibrationReport& report, const std::filesyst
                 "dark blue 0, green {:.3f}, red {:.3f} mm; "
                 "seen from the projector, nearest first.</p>",
                 c.volume->median_mm, c.volume->p95_mm, c.volume->worst_mm, c.volume->light_p95_mm, full / 2, full) +
-            html_figures(pictures, file, 5);
+            html_figures(pictures, 5);
     }
     std::vector<ReportPicture> where;
     for (const DeviceName name : kDevices)
         if (c.device(name))
             where.push_back(
                 {text_of(name), "A colour a pose. Where no board was, the lens is guessed.", coverage(report, name)});
-    body += "<h2>Where the board was</h2>" + html_figures(where, file, 3);
+    body += "<h2>Where the board was</h2>" + html_figures(where, 3);
     ReportFacts facts{{"Rig", report.rig_file.empty() ? "no rig file" : report.rig_file.filename().string()},
                       {"Calibrated", report.made_on}};
     for (const DeviceName name : kDevices)

@@ -1,15 +1,14 @@
 #include "app/report/html_page.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <pwd.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <ctime>
 #include <opencv2/imgcodecs.hpp>
 
 #include "planning_io/case/case_folder.h"
+#include "planning_io/files/image_file.h"
 
 namespace planlight {
 namespace {
@@ -34,11 +33,11 @@ footer{margin-top:28px;padding-top:8px;border-top:1px solid #d5dbe2;color:#5a667
 @page{margin:14mm}
 @media print{main{max-width:none;padding:0}body{font-size:11pt;-webkit-print-color-adjust:exact;print-color-adjust:exact}})";
 
-std::string base64(const std::vector<unsigned char>& bytes) {
+std::string base64(const std::string& bytes) {
     static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string out;
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
-        const auto byte = [&](std::size_t k) { return k < bytes.size() ? bytes[k] : 0u; };
+        const auto byte = [&](std::size_t k) { return k < bytes.size() ? static_cast<unsigned char>(bytes[k]) : 0u; };
         const unsigned bits = byte(i) << 16 | byte(i + 1) << 8 | byte(i + 2);
         out += kDigits[bits >> 18 & 63];
         out += kDigits[bits >> 12 & 63];
@@ -48,19 +47,22 @@ std::string base64(const std::vector<unsigned char>& bytes) {
     return out;
 }
 
-/// As PNG or JPEG, whichever is smaller: drawings are sharp and small as PNG, scenes and photographs as JPEG.
-std::string embedded(const RgbImage& picture) {
+std::string jpeg_bytes(const RgbImage& picture) {
     cv::Mat bgr(picture.height, picture.width, CV_8UC3);
     for (int y = 0; y < picture.height; ++y)
         for (int x = 0; x < picture.width; ++x) {
             const Rgb& c = picture.at(x, y);
             bgr.at<cv::Vec3b>(y, x) = {c[2], c[1], c[0]};
         }
-    std::vector<unsigned char> png, jpeg;
-    cv::imencode(".png", bgr, png, {cv::IMWRITE_PNG_COMPRESSION, 9});
+    std::vector<unsigned char> jpeg;
     cv::imencode(".jpg", bgr, jpeg, {cv::IMWRITE_JPEG_QUALITY, 85});
-    const bool photograph = jpeg.size() < png.size();
-    return (photograph ? "data:image/jpeg;base64," : "data:image/png;base64,") + base64(photograph ? jpeg : png);
+    return {jpeg.begin(), jpeg.end()};
+}
+
+/// Drawings are sharp and small as PNG, scenes and photographs as JPEG: whichever is smaller.
+std::string embedded(const RgbImage& picture) {
+    const std::string png = png_bytes(picture), jpeg = jpeg_bytes(picture);
+    return jpeg.size() < png.size() ? "data:image/jpeg;base64," + base64(jpeg) : "data:image/png;base64," + base64(png);
 }
 
 bool is_wide(const ReportPicture& p) {
@@ -92,18 +94,17 @@ std::string operator_name() {
 
 }  // namespace
 
+std::string embedded_png(const RgbImage& picture) {
+    return "data:image/png;base64," + base64(png_bytes(picture));
+}
+
 ReportFacts facts_of(const Case& the_case) {
-    std::vector<std::string> names;
-    for (const auto& item : the_case.plan.osteotomy_lines) names.push_back(item.name);
-    for (const auto& item : the_case.plan.boreholes) names.push_back(item.name);
-    for (const auto& item : the_case.plan.trajectories) names.push_back(item.name);
-    for (const auto& item : the_case.plan.cut_planes) names.push_back(item.name);
-    constexpr std::size_t kMost = 6;
-    std::string plan = fmt::format(
-        "{}",
-        fmt::join(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, names.size())), ", "));
-    if (names.size() > kMost) plan += fmt::format(" and {} more", names.size() - kMost);
-    return {{"Case", the_case.code + ", prepared " + the_case.created.substr(0, 10)},
+    const CaseNames& names = the_case.names;
+    std::string plan = names.plan + (names.plan_version.empty() ? "" : ", version " + names.plan_version);
+    if (plan.empty()) plan = fmt::format("{} items", the_case.plan.size());
+    return {{"Case", title_of(the_case)},
+            {"Code", the_case.code + ", prepared " + the_case.created.substr(0, 10)},
+            {"Patient", names.patient},
             {"Volume", the_case.source},
             {"Plan", plan}};
 }
@@ -125,7 +126,7 @@ std::string html_escaped(const std::string& text) {
     return out;
 }
 
-std::string html_figures(const std::vector<ReportPicture>& pictures, const std::filesystem::path&, int columns) {
+std::string html_figures(const std::vector<ReportPicture>& pictures, int columns) {
     std::string html =
         columns == 0 || columns == 2
             ? "<div class=\"grid\">"

@@ -3,169 +3,219 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
-#include <numbers>
 
-#include "app/report/slice_picture.h"
-#include "app/windows/scene_view.h"
+#include "app/report/paper_page.h"
+#include "app/report/plan_facts.h"
+#include "app/report/preparation_json.h"
+#include "planning_io/case/case_folder.h"
+#include "planning_io/files/header_text.h"
 #include "planning_io/files/safe_write.h"
-#include "planning_io/plan/plan_file.h"
-#include "planning_io/types/error.h"
 
 namespace planlight {
-
-using Eigen::Vector3d;
-
 namespace {
 
-Vector3d mean_of(const std::vector<Vector3d>& points) {
-    Vector3d sum = Vector3d::Zero();
-    for (const auto& p : points) sum += p;
-    return sum / static_cast<double>(points.size());
+constexpr std::size_t kPiecesListed = 5;
+
+/// A row of a table of two columns; none where there is nothing to say.
+std::string row(const std::string& name, const std::string& value) {
+    return value.empty() ? "" : fmt::format("<tr><td>{}</td><td>{}</td></tr>", name, html_escaped(value));
 }
 
-std::string place_of(SliceKind kind, const Vector3d& p) {
-    if (kind == SliceKind::axial) return fmt::format("{} {:.1f} mm", p.z() < 0 ? "I" : "S", std::abs(p.z()));
-    if (kind == SliceKind::coronal) return fmt::format("{} {:.1f} mm", p.y() < 0 ? "A" : "P", std::abs(p.y()));
-    return fmt::format("{} {:.1f} mm", p.x() < 0 ? "R" : "L", std::abs(p.x()));
+std::string figure(const ReportPicture& p) {
+    return fmt::format("<figure><img alt=\"{}\" src=\"{}\"><figcaption><b>{}</b> {}</figcaption></figure>",
+                       html_escaped(p.title), embedded_png(p.picture), html_escaped(p.title), html_escaped(p.caption));
 }
 
-nlohmann::json items_json(const PlanDrawing& drawing) {
-    nlohmann::json items = nlohmann::json::array();
-    for (const auto& item : drawing.items)
-        items.push_back({{"name", item.name},
-                         {"label", item.label},
-                         {"distance_to_skin_mm", item.distance_to_skin_mm},
-                         {"warnings", item.warnings}});
-    return items;
+std::string figures_in_a_row(const std::vector<ReportPicture>& pictures, int columns) {
+    std::string html = fmt::format("<div class=\"row\" style=\"grid-template-columns:repeat({},1fr)\">", columns);
+    for (const auto& picture : pictures) html += figure(picture);
+    return html + "</div>";
 }
 
-std::string figures_table(const Preparation& done) {
-    const Case& c = done.prepared;
-    const auto row = [](const std::string& name, const std::string& value) {
-        return fmt::format("<tr><td>{}</td><td>{}</td></tr>", name, html_escaped(value));
+std::string warnings_html(const std::vector<std::string>& warnings) {
+    if (warnings.empty())
+        return "<div class=\"verdict good\">&#10003; Prepared without a warning. The pictures below decide whether it "
+               "may be used.</div>";
+    std::string html = fmt::format(
+        "<div class=\"verdict look\">&#9888; Prepared with {}. Look at each before this "
+        "is used.</div><ul>",
+        counted(static_cast<long long>(warnings.size()), "warning"));
+    for (const auto& warning : warnings) html += fmt::format("<li>{}</li>", html_escaped(warning));
+    return html + "</ul>";
+}
+
+std::string contents_of(const Plan& plan) {
+    std::string words;
+    const auto add = [&](std::size_t count, const char* noun, const char* several) {
+        if (count > 0) words += fmt::format("{}{} {}", words.empty() ? "" : ", ", count, count == 1 ? noun : several);
     };
-    std::string skin;
-    if (done.on_given_surface) {
-        skin = row("Surface", "as given, not segmented here");
-    } else {
-        skin = row("Skin threshold", fmt::format("{:.0f}", done.threshold)) +
-               row("Body", fmt::format("{:.0f} ml", done.body_ml)) +
-               row("Taken away (table, head holder, wires)",
-                   fmt::format("{} piece{}, {:.0f} ml", done.pieces_removed, done.pieces_removed == 1 ? "" : "s",
-                               done.removed_ml));
-        if (done.brightness_ratio > 1)
-            skin += row("Brightness across the head, evened out", fmt::format("{:.1f} : 1", done.brightness_ratio));
-        if (c.skin_edge_sigma_mm > 0)
-            skin += row("Skin's edge moved by noise", fmt::format("{:.2f} mm (1 sigma)", c.skin_edge_sigma_mm));
-    }
-    return "<h2>Figures</h2><table>" + row("Case", c.code) + row("Made", c.created) + skin +
-           row(done.on_given_surface ? "Mesh" : "Skin mesh",
-               fmt::format("{} triangles, {} vertices", c.skin.triangles.size(), c.skin.vertices_in_ct.size())) +
-           row("LUT", fmt::format("{} x {} x {} voxels of {:.2f} mm, {} skin voxels", c.lut.size[0], c.lut.size[1],
-                                  c.lut.size[2], c.lut.voxel_mm, c.lut.skin.size())) +
-           row("Time", done.on_given_surface ? fmt::format("LUT {:.2f} s", done.lut_s)
-                                             : fmt::format("skin {:.2f} s, surface {:.2f} s, LUT {:.2f} s",
-                                                           done.segment_s, done.triangulate_s, done.lut_s)) +
-           "</table>";
+    add(plan.osteotomy_lines.size(), "osteotomy line", "osteotomy lines");
+    add(plan.boreholes.size(), "borehole", "boreholes");
+    add(plan.trajectories.size(), "trajectory", "trajectories");
+    add(plan.cut_planes.size(), "cut plane", "cut planes");
+    return words.empty() ? "nothing" : words;
 }
 
-std::string plan_table(const PlanDrawing& drawing) {
-    if (drawing.items.empty()) return "<h2>Plan</h2><p>No items.</p>";
-    std::string html = "<h2>Plan</h2><table><tr><th>Name</th><th>Drawn as</th><th>Farthest point from skin</th></tr>";
-    for (const auto& item : drawing.items)
-        html += fmt::format("<tr><td>{}</td><td>{}</td><td class=\"{}\">{:.1f} mm</td></tr>", html_escaped(item.name),
-                            html_escaped(item.label), item.warnings.empty() ? "" : "no", item.distance_to_skin_mm);
+std::string threshold_of(const Preparation& done) {
+    if (done.on_given_surface) return "none: the surface was given, not segmented here";
+    return fmt::format("{:.0f} {}, {}", done.threshold, done.volume.is_hu ? "HU" : "(stored values, not HU)",
+                       done.threshold_given ? "given by hand" : "found automatically");
+}
+
+std::string series_of(const CaseNames& names) {
+    if (names.series_date.empty()) return names.series;
+    return names.series.empty() ? "of " + names.series_date : names.series + ", " + names.series_date;
+}
+
+std::string identity_html(const Preparation& done) {
+    const Case& c = done.prepared;
+    const VolumeFacts& v = done.volume;
+    const std::string left = row("Patient", c.names.patient.empty() ? "not named" : c.names.patient) +
+                             row("Title", c.names.title) +
+                             row("Plan", c.names.plan.empty() ? "not named" : c.names.plan) +
+                             row("Version of the plan", c.names.plan_version) + row("It holds", contents_of(c.plan)) +
+                             row("Case", c.code) + row("Prepared", c.created);
+    const std::string right =
+        row("Source", c.source) + row("Series", series_of(c.names)) +
+        row("Modality",
+            v.modality.empty() ? "not said" : v.modality + (v.modality == "CT" && !v.is_hu ? ", not in HU" : "")) +
+        row("Voxels", fmt::format("{} x {} x {} of {:.2f} x {:.2f} x {:.2f} mm", v.size[0], v.size[1], v.size[2],
+                                  v.voxel_mm.x(), v.voxel_mm.y(), v.voxel_mm.z())) +
+        row("Skin threshold", threshold_of(done)) +
+        (done.on_given_surface ? "" : row("Body", fmt::format("{:.0f} ml", done.body_ml))) +
+        (done.brightness_ratio > 1 ? row("Evened out", fmt::format("{:.1f} : 1 across the head", done.brightness_ratio))
+                                   : "") +
+        (c.skin_edge_sigma_mm > 0
+             ? row("Noise moves the skin", fmt::format("{:.2f} mm (1 sigma)", c.skin_edge_sigma_mm))
+             : "");
+    return fmt::format("<div class=\"two\"><table>{}</table><table>{}</table></div>", left, right);
+}
+
+std::string slices_html(const PreparationPictures& pictures) {
+    std::string html = "<h2>Through the middle of the head</h2>" + figures_in_a_row(pictures.middle_slices, 3);
+    if (!pictures.plan_slices.empty()) html += "<h2>Through the plan</h2>" + figures_in_a_row(pictures.plan_slices, 3);
+    return html +
+           "<p class=\"muted\">Green: the skin as found. Amber: lids over openings. Grey line: ends of the scan. Pink: "
+           "the plan within 3 mm of the slice. The green line must follow the skin wherever there is skin.</p>";
+}
+
+/// Large things in front of the head were skin more often than they were a table.
+bool may_be_face(const RemovedPiece& piece, const Eigen::Vector3d& middle_in_ct) {
+    const Eigen::Vector3d away = piece.middle_in_ct - middle_in_ct;
+    return piece.ml > 10 && -away.y() > 0.6 * away.norm();
+}
+
+std::string pieces_html(const RemovedPieces& removed) {
+    std::string html = fmt::format(
+        "<div><p><b>{} as dense as skin thrown away, {:.0f} ml in all</b> (table, head "
+        "holder, wires?). Look whether none of it is the patient.</p><table>",
+        counted(static_cast<long long>(removed.pieces.size()), "piece"), removed.ml());
+    for (std::size_t i = 0; i < std::min(kPiecesListed, removed.pieces.size()); ++i) {
+        const RemovedPiece& piece = removed.pieces[i];
+        const Eigen::Vector3d size = piece.high_in_ct - piece.low_in_ct;
+        html += fmt::format("<tr><td>{}</td><td>{:.{}f} ml, {:.0f} x {:.0f} x {:.0f} mm, {}{}</td></tr>", i + 1,
+                            piece.ml, piece.ml < 10 ? 1 : 0, size.x(), size.y(), size.z(),
+                            place_in_words(piece.middle_in_ct, removed.body_middle_in_ct),
+                            may_be_face(piece, removed.body_middle_in_ct)
+                                ? " <span class=\"stop\">&#9888; is this the face?</span>"
+                                : "");
+    }
+    return html + "</table></div>";
+}
+
+/// The view from above and beside it what was thrown away.
+std::string second_row(const PreparationPictures& pictures, const RemovedPieces& removed) {
+    std::string html = "<div class=\"row\" style=\"grid-template-columns:repeat(4,1fr)\">";
+    if (pictures.views.size() > 4) html += figure(pictures.views[4]);
+    for (const auto& picture : removed.pictures)
+        html += figure({"Thrown away", picture.title + ": red", picture.picture});
+    return html + (removed.pieces.empty() ? "<p>Nothing as dense as skin was thrown away.</p>" : pieces_html(removed)) +
+           "</div>";
+}
+
+std::string views_html(const Preparation& done, const PreparationPictures& pictures, const RemovedPieces& removed) {
+    std::string html = "<h2>The skin with the plan, and what was thrown away</h2>";
+    if (pictures.views.size() >= 4)
+        html += figures_in_a_row({pictures.views.begin(), pictures.views.begin() + 4}, 4);
+    else
+        html += fmt::format("<p class=\"look\">{}</p>", html_escaped(pictures.no_views));
+    if (done.on_given_surface)
+        return html + (pictures.views.size() > 4 ? figures_in_a_row({pictures.views[4]}, 4) : "") +
+               "<p>The surface was given: nothing was thrown away here.</p>";
+    return html + second_row(pictures, removed);
+}
+
+std::string number(const std::optional<double>& value, int digits, const char* unit) {
+    return value ? fmt::format("{:.{}f} {}", *value, digits, unit) : std::string("–");
+}
+
+std::string fact_html(const PlanFact& fact) {
+    constexpr double kDegrees = 57.29577951308232;
+    const std::optional<double> tilt = fact.tilt ? std::optional(kDegrees * *fact.tilt) : std::nullopt;
+    const char* gravity = fact.gravity == Gravity::stop ? "stop" : fact.gravity == Gravity::look ? "look" : "";
+    std::string shape = number(fact.depth_mm ? fact.depth_mm : fact.length_mm, 1, "mm");
+    if (fact.diameter_mm) shape += fmt::format(", ⌀ {:g} mm", *fact.diameter_mm);
+    return fmt::format(
+        "<tr><td class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}{}</td><td>{}</td><td class=\"{}\">{}</td></tr>",
+        html_escaped(fact.name.empty() ? "without a name" : fact.name), fact.kind, shape, number(tilt, 0, "°"),
+        fact.inwards_in_ct ? "; " + direction_in_words(*fact.inwards_in_ct) : "", number(fact.over_bone_mm, 1, "mm"),
+        gravity, html_escaped(fact.distance));
+}
+
+std::string plan_html(const std::vector<PlanFact>& facts) {
+    if (facts.empty()) return "<h2>The plan</h2><p>It holds nothing.</p>";
+    std::string html =
+        "<h2>The plan</h2><table><thead><tr><th>Name</th><th>Kind</th><th>Depth or length</th><th>Angle to the skin's "
+        "perpendicular; direction inwards</th><th>Soft tissue</th><th>Its points lie</th></tr></thead>";
+    for (const auto& fact : facts) html += fact_html(fact);
     return html + "</table>";
 }
 
-std::string warnings_section(const std::vector<std::string>& warnings) {
-    if (warnings.empty())
-        return "<div class=\"verdict yes\">&#10003; Prepared without a warning. Look at the pictures before you use "
-               "it.</div>";
-    std::string html = fmt::format("<div class=\"verdict no\">&#9888; Prepared with {} warning{}.</div>",
-                                   warnings.size(), warnings.size() == 1 ? "" : "s");
-    for (const auto& warning : warnings) html += fmt::format("<p class=\"no\">{}</p>", html_escaped(warning));
+std::string figures_html(const Preparation& done) {
+    const Case& c = done.prepared;
+    const std::string times = done.on_given_surface ? fmt::format("table {:.2f} s", done.lut_s)
+                                                    : fmt::format("skin {:.2f} s, surface {:.2f} s, table {:.2f} s",
+                                                                  done.segment_s, done.triangulate_s, done.lut_s);
+    return fmt::format(
+        "<p class=\"muted\">Skin mesh: {} triangles, {} vertices. Table: {} x {} x {} voxels of {:.2f} mm, {} skin "
+        "voxels. "
+        "Times: {}. Volume {}, plan {}.</p>",
+        c.skin.triangles.size(), c.skin.vertices_in_ct.size(), c.lut.size[0], c.lut.size[1], c.lut.size[2],
+        c.lut.voxel_mm, c.lut.skin.size(), times, c.volume_hash, c.plan_hash);
+}
+
+std::string signatures_html() {
+    std::string html;
+    for (const char* who : {"Prepared by", "Skin, plan and patient checked by"})
+        html +=
+            fmt::format("<div class=\"sign\"><span>{}</span><span>Date, time</span><span>Signature</span></div>", who);
     return html;
 }
 
 }  // namespace
 
-Vector3d point_of_interest(const Case& the_case) {
-    if (!the_case.plan.trajectories.empty() && the_case.plan.trajectories.front().target_in_ct.allFinite())
-        return the_case.plan.trajectories.front().target_in_ct;
-    const auto points = points_of(the_case.plan);
-    if (!points.empty() && mean_of(points).allFinite()) return mean_of(points);
-    return the_case.skin.vertices_in_ct.empty() ? Vector3d::Zero() : mean_of(the_case.skin.vertices_in_ct);
-}
-
-std::vector<ReportPicture> preparation_pictures(const Volume& volume, const Case& the_case, const PlanDrawing& drawing,
-                                                std::string& warning) {
-    std::vector<ReportPicture> pictures;
-    const Vector3d at = point_of_interest(the_case);
-    const auto add_slice = [&](const std::string& name, SliceKind kind, const std::string& seen) {
-        pictures.push_back({name, fmt::format("At {}, seen {}.", place_of(kind, at), seen),
-                            slice_picture(volume, the_case.skin, the_case.plan, kind, at)});
-    };
-    add_slice("Axial", SliceKind::axial, "from the feet");
-    add_slice("Coronal", SliceKind::coronal, "from the front");
-    add_slice("Sagittal", SliceKind::sagittal, "from the left");
-    SceneModel scene;
-    scene.skin = std::make_shared<TriangleMesh>(the_case.skin);
-    scene.plan = std::make_shared<PlanDrawing>(drawing);
-    constexpr double kQuarter = std::numbers::pi / 2;
-    try {
-        for (const auto& [name, azimuth] : {std::pair{"From the front", 0.0},
-                                            {"From the right", kQuarter},
-                                            {"From behind", 2 * kQuarter},
-                                            {"From the left", 3 * kQuarter}}) {
-            SceneView view;
-            view.azimuth = azimuth;
-            view.elevation = 0.15;
-            pictures.push_back({name, "", render_scene(scene, view, 560, 460)});
-        }
-    } catch (const DeviceError& error) {
-        warning = fmt::format("the report has no views of the head: {}", error.what());
-    }
-    return pictures;
-}
-
-std::string preparation_json(const Preparation& done, const PlanDrawing& drawing) {
+PreparationReport preparation_report(const Preparation& done, const PlanDrawing& drawing, const RemovedPieces& removed,
+                                     const PreparationPictures& pictures) {
     const Case& c = done.prepared;
-    nlohmann::json result = {
-        {"case", c.code},
-        {"created", c.created},
-        {"surface_given", done.on_given_surface},
-        {"skin", {{"vertices", c.skin.vertices_in_ct.size()}, {"triangles", c.skin.triangles.size()}}},
-        {"lut", {{"size", c.lut.size}, {"voxel_mm", c.lut.voxel_mm}, {"skin_voxels", c.lut.skin.size()}}},
-        {"plan_items", c.plan.size()},
-        {"items", items_json(drawing)},
-        {"seconds", {{"skin", done.segment_s}, {"surface", done.triangulate_s}, {"lut", done.lut_s}}},
-        {"warnings", c.warnings}};
-    if (!done.on_given_surface)
-        result.update({{"threshold", done.threshold},
-                       {"body_ml", done.body_ml},
-                       {"removed_pieces", done.pieces_removed},
-                       {"removed_ml", done.removed_ml},
-                       {"brightness_ratio", done.brightness_ratio},
-                       {"edge_sigma_mm", c.skin_edge_sigma_mm}});
-    return result.dump(2) + "\n";
+    const std::vector<PlanFact> facts = plan_facts(c.plan, drawing, c.lut);
+    const std::string first =
+        fmt::format(
+            "<h1>{}</h1><p class=\"muted\">Report of preparation. Research software, not a medical "
+            "device.</p>",
+            html_escaped(title_of(c))) +
+        warnings_html(c.warnings) + identity_html(done) + slices_html(pictures);
+    const std::string second =
+        views_html(done, pictures, removed) + plan_html(facts) + figures_html(done) + signatures_html();
+    const std::string body =
+        "<section class=\"sheet\">" + first + "</section><section class=\"sheet\">" + second + "</section>";
+    return {paper_page("Preparation: " + title_of(c), body,
+                       fmt::format("{} · case {} · prepared {}", title_of(c), c.code, c.created)),
+            preparation_json(done, drawing, facts, removed)};
 }
 
-void write_preparation_report(const std::filesystem::path& folder, const Preparation& done, const PlanDrawing& drawing,
-                              const std::vector<ReportPicture>& pictures) {
-    const auto file = folder / "report.html";
-    const auto middle = pictures.begin() + std::min<std::ptrdiff_t>(3, static_cast<std::ptrdiff_t>(pictures.size()));
-    const std::vector<ReportPicture> slices(pictures.begin(), middle), heads(middle, pictures.end());
-    const std::string body =
-        fmt::format("<p class=\"muted\">Case {}. For research; not a medical device.</p>",
-                    html_escaped(done.prepared.code)) +
-        warnings_section(done.prepared.warnings) + html_figures(slices, file, 3) +
-        "<p class=\"muted\">Green: skin. Amber: lids over openings. Grey: ends of the scan. Pink: plan within 3 mm "
-        "of the slice.</p>" +
-        (heads.empty() ? "" : html_figures(heads, file, 4)) + plan_table(drawing) + figures_table(done);
-    write_safely(file, html_page("Preparation", body));
-    write_safely(folder / "report.json", preparation_json(done, drawing));
+void write_preparation_report(const PreparationReport& report, const std::filesystem::path& folder) {
+    write_safely(folder / "report.html", report.html);
+    write_safely(folder / "report.json", report.json);
 }
 
 }  // namespace planlight

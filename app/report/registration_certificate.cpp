@@ -7,6 +7,7 @@
 #include "app/case_model.h"
 #include "app/report/html_page.h"
 #include "app/windows/scene_view.h"
+#include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/registration_file.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/point_pairs_file.h"
@@ -73,9 +74,9 @@ void write_certificate_html(const Case& the_case, const CaseDrawing& drawing, co
         pictures.push_back({"How far off the match may be",
                             "95 % bound at every point of the skin; deeper points may be further off.",
                             picture(FitView::predicted_error)});
-        body += html_figures(pictures, file, 2);
+        body += html_figures(pictures, 2);
     }
-    write_safely(file, html_page("Match of case " + the_case.code, body, facts_of(the_case)));
+    write_safely(file, html_page("Match: " + title_of(the_case), body, facts_of(the_case)));
 }
 
 fs::path keep_match(const RegistrationResult& found, const PointCloud* cloud, const std::vector<PointPair>& landmarks,
@@ -86,7 +87,8 @@ fs::path keep_match(const RegistrationResult& found, const PointCloud* cloud, co
         const fs::path wanted = folder / fmt::format("{:04d}", number);
         if (fs::create_directory(wanted)) kept = wanted;  // false: it is there already
     }
-    if (cloud) write_cloud(*cloud, kept / "cloud.ply");
+    if (cloud)
+        write_cloud(*cloud, kept / "cloud.ply", {}, found.rig ? comments_of(*found.rig) : std::vector<std::string>{});
     if (!landmarks.empty()) write_point_pairs(landmarks, kept / "landmarks.csv");
     write_registration(found, kept / "registration.json");
     return kept;

@@ -107,7 +107,7 @@ OperatorAction MiddleView::draw_corner_buttons(const Pen& pen, Box corner, const
     }
     if (!model.fit || !model.confirm) return OperatorAction::none;
     places_["confirm"] = corner;
-    return button(pen, corner, "It fits: use it", {true, {}}) ? OperatorAction::confirm : OperatorAction::none;
+    return button(pen, corner, model.confirm_words, {true, {}}) ? OperatorAction::confirm : OperatorAction::none;
 }
 
 Box MiddleView::place_of(const std::string& button) const {

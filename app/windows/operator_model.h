@@ -35,7 +35,8 @@ struct LightLine {
 /// as in the last frame is not built again.
 struct SceneModel {
     std::shared_ptr<const TriangleMesh> skin;
-    bool of_scan = false;  ///< `skin` is a scan's surface in a frame of its own: cool colour, no letters at the edges
+    bool on_paper = false;  ///< white behind, dark and larger letters: for pages that are printed
+    bool of_scan = false;   ///< `skin` is a scan's surface in a frame of its own: cool colour, no letters at the edges
     std::shared_ptr<const PointCloud> cloud;
     std::shared_ptr<const std::vector<float>> cloud_distance_mm;  ///< per point, to the skin; null: one colour
     RigidTransform ct_from_rig = RigidTransform::Identity();      ///< where the cloud is shown
@@ -47,7 +48,6 @@ struct SceneModel {
     /// Per vertex of the skin, how far off it may be (95 %), mm; null: the skin has its own colour.
     std::shared_ptr<const std::vector<float>> skin_error_mm;
     double warn_above_mm = 1, stop_above_mm = 2;  ///< its colours: green, amber above, red above
-    bool on_paper = false;                        ///< white behind everything, larger words: for a page to print
 };
 
 /// What the 3-D view shows of a match.
@@ -137,7 +137,8 @@ struct OperatorModel {
     Figures figures;
     ButtonState scan, do_register, track, stop;   ///< DARK is always enabled
     std::string use_landmarks = "Use landmarks";  ///< on the button that hands over the landmarks that were clicked
-    bool confirm = false;                         ///< the match needs a person's look: a button says that it fits
+    bool confirm = false;  ///< the match, or its light, needs a person's look: a button says that it is right
+    std::string confirm_words = "It fits: use it";  ///< on that button
 };
 
 /// The scene as that view shows it. Without a match it is the scene as it is.

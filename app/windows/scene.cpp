@@ -78,7 +78,6 @@ struct Scene::Parts {
 
     Parts(vtkRenderWindow& w, const FontFiles& fonts) : window(w), overlay(*renderer, fonts) {
         window.AddRenderer(renderer);
-        renderer->SetBackground(0.055, 0.067, 0.086);
         renderer->SetBackgroundAlpha(1);
         renderer->AutomaticLightCreationOff();
         lights->SetKeyLightIntensity(0.85);
@@ -171,10 +170,13 @@ Scene::~Scene() = default;
 
 bool Scene::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale) {
     Parts& parts = *parts_;
-    if (scene.on_paper) parts.renderer->SetBackground(1, 1, 1);
     const bool changed = static_cast<int>(parts.take_skin_and_markers(scene)) |
                          static_cast<int>(parts.take_cloud(scene)) | static_cast<int>(parts.take_lines(scene));
     if (!changed && same_view(view, parts.shown_view) && width == parts.width && height == parts.height) return false;
+    if (scene.on_paper)
+        parts.renderer->SetBackground(1, 1, 1);
+    else
+        parts.renderer->SetBackground(0.055, 0.067, 0.086);
     parts.shown_view = view;
     parts.width = width;
     parts.height = height;

@@ -32,18 +32,19 @@ struct Text {
         vtkTextProperty* const property = actor->GetTextProperty();
         property->SetFontFamily(VTK_FONT_FILE);
         property->SetFontFile(font.c_str());
-        property->SetColor(0.94, 0.95, 0.97);
+        set_ink(false);
         // Readable over the skin too; a box of its own behind the text would win against it in the depth test.
-        property->SetBackgroundColor(0.055, 0.067, 0.086);
         property->SetBackgroundOpacity(0.7);
         property->SetJustificationToCentered();
         property->SetVerticalJustificationToCentered();
         renderer.AddActor2D(actor);
     }
-    /// Dark words for a page; they are light from the start.
-    void set_on_paper() {
-        actor->GetTextProperty()->SetColor(0.1, 0.13, 0.17);
-        actor->GetTextProperty()->SetBackgroundColor(1, 1, 1);
+    void set_ink(bool on_paper) {
+        vtkTextProperty* const property = actor->GetTextProperty();
+        if (on_paper)
+            property->SetColor(0.08, 0.09, 0.12), property->SetBackgroundColor(1, 1, 1);
+        else
+            property->SetColor(0.94, 0.95, 0.97), property->SetBackgroundColor(0.055, 0.067, 0.086);
     }
     void place(const std::string& text, double x, double y, int pixels) {
         actor->SetInput(text.c_str());
@@ -164,14 +165,14 @@ SceneOverlay::~SceneOverlay() = default;
 
 void SceneOverlay::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale) {
     scale = std::max(scale, 0.85);  // smaller letters are not readable
-    if (scene.on_paper) {
-        scale *= 1.6;  // the picture is shown at half its size and less
-        for (Text& letter : parts_->letters) letter.set_on_paper();
-        for (Text& value : parts_->values) value.set_on_paper();
-        parts_->title.set_on_paper();
-    }
+    if (scene.on_paper) scale *= 1.6;  // the picture is shown at half its size and less
+    for (Text& value : parts_->values) value.set_ink(scene.on_paper);
+    parts_->title.set_ink(scene.on_paper);
     parts_->boxes.clear();
-    for (Text& letter : parts_->letters) letter.actor->SetVisibility(!scene.of_scan);
+    for (Text& letter : parts_->letters) {
+        letter.actor->SetVisibility(!scene.of_scan);
+        letter.set_ink(scene.on_paper);
+    }
     parts_->letters_at_edges(view, width, height, scale);
     parts_->legend(scene, width, scale);
     parts_->boxes.done();

@@ -12,28 +12,35 @@
 namespace planlight {
 namespace {
 
-RgbImage render(const SceneModel& model, const SceneView& view, int width, int height) {
+std::vector<RgbImage> render(const SceneModel& model, const std::vector<SceneView>& views, int width, int height) {
     const FontFiles fonts = find_fonts();
     const auto context = headless_gl(width, height);
     const auto window = render_target(width, height, 4, [] {});
-    RgbImage picture;
+    std::vector<RgbImage> pictures;
     {
         Scene scene(*window, fonts);
-        scene.update(model, view, width, height, std::max(0.6, height / 960.0));
-        vtkObject::GlobalWarningDisplayOff();  // GLEW complains once more at the first rendering
-        window->Render();
-        vtkObject::GlobalWarningDisplayOn();
-        picture = picture_of(*window);
+        for (const SceneView& view : views) {
+            scene.update(model, view, width, height, std::max(0.6, height / 960.0));
+            vtkObject::GlobalWarningDisplayOff();  // GLEW complains once more at the first rendering
+            window->Render();
+            vtkObject::GlobalWarningDisplayOn();
+            pictures.push_back(picture_of(*window));
+        }
     }
     window->Finalize();
-    return picture;
+    return pictures;
 }
 
 }  // namespace
 
-RgbImage render_scene(const SceneModel& scene, const SceneView& view, int width, int height) {
+std::vector<RgbImage> render_views(const SceneModel& scene, const std::vector<SceneView>& views, int width,
+                                   int height) {
     // On a thread of its own: this one may have a window's context, and GLX and EGL do not share a thread.
-    return std::async(std::launch::async, render, std::cref(scene), std::cref(view), width, height).get();
+    return std::async(std::launch::async, render, std::cref(scene), std::cref(views), width, height).get();
+}
+
+RgbImage render_scene(const SceneModel& scene, const SceneView& view, int width, int height) {
+    return render_views(scene, {view}, width, height).front();
 }
 
 SceneView view_of_plan(const PlanDrawing& plan) {

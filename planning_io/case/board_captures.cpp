@@ -1,6 +1,7 @@
 #include "planning_io/case/board_captures.h"
 
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 
@@ -37,13 +38,15 @@ std::vector<GrayImage> read_camera(const fs::path& pose, const char* camera, con
         pictures.push_back(read_needed(find_picture(pose / camera) ? pose / camera : pose / camera / "white"));
         return pictures;
     }
-    for (const std::string& name : names) {
-        pictures.push_back(read_needed(pose / camera / name));
-        if (pictures.back().width != pictures.front().width || pictures.back().height != pictures.front().height)
+    pictures.resize(names.size());
+    tbb::parallel_for(std::size_t{0}, names.size(),
+                      [&](std::size_t i) { pictures[i] = read_needed(pose / camera / names[i]); });
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (pictures[i].width != pictures.front().width || pictures[i].height != pictures.front().height)
             throw InputError(
-                pose / camera / name,
-                fmt::format("is {} x {} pixels, the first picture of this pose is {} x {}", pictures.back().width,
-                            pictures.back().height, pictures.front().width, pictures.front().height),
+                pose / camera / names[i],
+                fmt::format("is {} x {} pixels, the first picture of this pose is {} x {}", pictures[i].width,
+                            pictures[i].height, pictures.front().width, pictures.front().height),
                 "Capture all pictures with the same settings.");
     }
     check_depth(pictures, *find_picture(pose / camera / names.front()));
@@ -72,6 +75,16 @@ std::optional<CaptureFolder> pose_settings(const fs::path& pose) {
     for (const fs::path& file : {pose / "capture.json", pose.parent_path() / "capture.json"})
         if (fs::exists(file)) return read_capture_settings(file);
     return std::nullopt;
+}
+
+std::vector<std::string> missing_pictures(const fs::path& pose, const std::vector<std::string>& names) {
+    std::vector<std::string> missing;
+    for (const std::string camera : {"left", "right"}) {
+        if (!has_camera(pose, camera.c_str())) continue;
+        for (const std::string& name : names)
+            if (!find_picture(pose / camera / name)) missing.push_back((pose.filename() / camera / name).string());
+    }
+    return missing;
 }
 
 PosePictures read_pose(const fs::path& pose, const std::vector<std::string>& names) {

@@ -16,6 +16,9 @@ std::vector<std::filesystem::path> pose_folders(const std::filesystem::path& cap
 /// pictures.
 std::optional<CaptureFolder> pose_settings(const std::filesystem::path& pose);
 
+/// The pictures of coded light that a pose lacks, of either camera that has any: "POSE/left/NAME".
+std::vector<std::string> missing_pictures(const std::filesystem::path& pose, const std::vector<std::string>& names);
+
 /// The pictures of one pose in the order of `names` (of coded light), or one picture of each camera when `names` is
 /// empty.
 struct PosePictures {

@@ -1,5 +1,9 @@
 #include "planning_io/case/case_folder.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <map>
 #include <sstream>
 
@@ -23,15 +27,33 @@ constexpr const char* kSkinMesh = "skin.ply";
 constexpr const char* kLutFile = "skin.lut";
 constexpr const char* kPlanFile = "plan.mrk.json";
 constexpr const char* kChecksums = "checksums.xxh128";  // as `xxh128sum` writes and checks it
+constexpr std::array<const char*, 7> kOurFiles = {kManifest,  kSkinMesh,     kLutFile,     kPlanFile,
+                                                  kChecksums, "report.html", "report.json"};
 constexpr const char* kPrepare = "Prepare the case again, or copy its folder again.";
+
+Json names_json(const CaseNames& names) {
+    return Json{{"title", names.title},   {"patient", names.patient},
+                {"plan", names.plan},     {"plan_version", names.plan_version},
+                {"series", names.series}, {"series_date", names.series_date}};
+}
+
+CaseNames names_of(const JsonValue& json) {
+    const auto text = [&](const char* name) {
+        const auto value = json.find(name);
+        return value ? value->text() : std::string();
+    };
+    return {text("title"), text("patient"), text("plan"), text("plan_version"), text("series"), text("series_date")};
+}
 
 Json manifest_of(const Case& prepared) {
     return Json{{"format", kFormat},
                 {"version", kVersion},
                 {"code", prepared.code},
+                {"names", names_json(prepared.names)},
                 {"created", prepared.created},
                 {"source", prepared.source},
                 {"volume_hash", prepared.volume_hash},
+                {"plan_hash", prepared.plan_hash},
                 {"frame_of_reference_uid", prepared.frame_of_reference_uid},
                 {"mesh_hash", hash_of(prepared.skin)},
                 {"skin_threshold", prepared.skin_threshold},
@@ -65,6 +87,15 @@ public:
         checksums_ = read_checksums(folder / kChecksums);
     }
     fs::path path(const char* name) const { return folder_ / name; }
+    /// The files that have a checksum and are not read here: the report.
+    void verify_others(std::initializer_list<const char*> read) const {
+        for (const auto& [name, checksum] : checksums_) {
+            if (std::find(read.begin(), read.end(), name) != read.end()) continue;
+            if (fs::path(name).filename() != name) throw DamagedFileError(folder_ / kChecksums, "is damaged", kPrepare);
+            if (!fs::exists(folder_ / name)) throw DamagedFileError(folder_ / name, "is missing", kPrepare);
+            verify(name.c_str());
+        }
+    }
     void verify(const char* name) const {
         const auto expected = checksums_.find(name);
         if (expected == checksums_.end() || expected->second != content_hash(read_whole(path(name))))
@@ -83,28 +114,91 @@ void check_same_patient(const Case& prepared, const std::string& mesh_hash, cons
         throw InputError(folder.path(kLutFile), "is the LUT of another case", kPrepare);
 }
 
-}  // namespace
+/// Whether a folder holds a case, whole or damaged, by its manifest.
+bool holds_case(const fs::path& folder) {
+    std::error_code ignored;
+    return fs::is_regular_file(folder / kManifest, ignored) &&
+           read_whole(folder / kManifest).find(kFormat) != std::string::npos;
+}
 
-void write_case(const Case& prepared, const fs::path& folder, bool replace) {
-    if (prepared.lut.volume_hash != prepared.volume_hash || prepared.lut.mesh_hash != hash_of(prepared.skin))
-        throw InputError(folder, "would hold the LUT of another case",
-                         "Build the LUT from this case's volume and skin.");
-    if (replace && fs::exists(folder) && !fs::exists(folder / kManifest))
-        replace = false;  // only a case is ever replaced
-    if (replace && fs::exists(folder / kRegistrationsFolder))
+/// Refuses to replace what cannot be made again: a session's matches, and files that are not the case's.
+void check_nothing_is_lost(const fs::path& folder) {
+    if (fs::exists(folder / kRegistrationsFolder))
         throw InputError(folder,
                          std::string("holds matches that sessions kept (") + kRegistrationsFolder +
                              "), which would be lost with the case that is replaced",
                          "Move that folder away, or name another folder for the new case.");
+    std::string others;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        if (std::find(kOurFiles.begin(), kOurFiles.end(), name) != kOurFiles.end() && entry.is_regular_file()) continue;
+        others += (others.empty() ? "" : ", ") + name;
+    }
+    if (!others.empty())
+        throw InputError(folder, "holds what is not of the case and would be lost with it: " + others,
+                         "Move it away, or name another folder for the new case.");
+}
+
+std::string checksums_in(const fs::path& folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder)) names.push_back(entry.path().filename().string());
+    std::sort(names.begin(), names.end());
+    std::string checksums;
+    for (const auto& name : names) checksums += content_hash(read_whole(folder / name)) + "  " + name + "\n";
+    return checksums;
+}
+
+}  // namespace
+
+CaseName name_of(const Case& prepared) {
+    return {prepared.code, prepared.volume_hash, prepared.lut.mesh_hash};
+}
+
+std::string code_of(const std::string& volume_hash, const std::string& plan_hash) {
+    return volume_hash.substr(0, 8) + "-" + plan_hash.substr(0, 4);
+}
+
+std::string title_of(const Case& the_case) {
+    const CaseNames& names = the_case.names;
+    std::string title = names.title;
+    const auto add = [&](const std::string& more) {
+        if (!more.empty()) title += (title.empty() ? "" : ", ") + more;
+    };
+    add(names.patient);
+    if (title.empty()) title = "Case " + the_case.code;
+    add(names.plan);
+    add(names.plan_version.empty() ? "" : "version " + names.plan_version);
+    return title;
+}
+
+void check_case_place(const fs::path& folder, bool replace) {
+    if (!fs::exists(folder) || (fs::is_directory(folder) && fs::is_empty(folder))) return check_new_folder(folder);
+    if (!fs::is_directory(folder)) throw InputError(folder, "is a file, not a folder", "Name another folder.");
+    if (!holds_case(folder))
+        throw InputError(folder,
+                         replace ? "holds no case: --replace replaces nothing else" : "exists already and is not empty",
+                         "Name a new folder.");
+    if (!replace)
+        throw InputError(folder, "holds a case already",
+                         "Name a new folder, or give --replace to put the new case in its place.");
+    check_nothing_is_lost(folder);
+    check_new_folder(folder);
+}
+
+void write_case(const Case& prepared, const fs::path& folder, bool replace,
+                const std::function<void(const fs::path&)>& add) {
+    if (prepared.lut.volume_hash != prepared.volume_hash || prepared.lut.mesh_hash != hash_of(prepared.skin))
+        throw InputError(folder, "would hold the LUT of another case",
+                         "Build the LUT from this case's volume and skin.");
+    check_case_names(prepared.names);
+    check_case_place(folder, replace);
     write_folder_safely(folder, replace, [&](const fs::path& into) {
         write_safely(into / kManifest, dump(manifest_of(prepared)));
         write_mesh(prepared.skin, into / kSkinMesh);
         write_skin_lut(prepared.lut, into / kLutFile);
         write_plan(prepared.plan, into / kPlanFile);
-        std::string checksums;
-        for (const char* name : {kManifest, kSkinMesh, kLutFile, kPlanFile})
-            checksums += content_hash(read_whole(into / name)) + "  " + name + "\n";
-        write_safely(into / kChecksums, checksums);
+        if (add) add(into);
+        write_safely(into / kChecksums, checksums_in(into));
     });
 }
 
@@ -120,6 +214,8 @@ Case read_case(const fs::path& folder) {
     prepared.created = manifest.at("created").text();
     prepared.source = manifest.at("source").text();
     prepared.volume_hash = manifest.at("volume_hash").text();
+    if (const auto names = manifest.find("names")) prepared.names = names_of(*names);
+    if (const auto hash = manifest.find("plan_hash")) prepared.plan_hash = hash->text();
     if (const auto uid = manifest.find("frame_of_reference_uid")) prepared.frame_of_reference_uid = uid->text();
     prepared.skin_threshold = manifest.at("skin_threshold").number();
     if (const auto sigma = manifest.find("skin_edge_sigma_mm")) prepared.skin_edge_sigma_mm = sigma->number();
@@ -131,6 +227,7 @@ Case read_case(const fs::path& folder) {
     prepared.skin = read_mesh(files.path(kSkinMesh));
     check_same_patient(prepared, manifest.at("mesh_hash").text(), files);
     for (const char* name : {kSkinMesh, kLutFile, kPlanFile}) files.verify(name);
+    files.verify_others({kManifest, kSkinMesh, kLutFile, kPlanFile});
     prepared.plan = read_plan(files.path(kPlanFile));
     return prepared;
 }

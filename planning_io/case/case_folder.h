@@ -1,10 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "planning_io/case/case_names.h"
 #include "planning_io/types/plan.h"
+#include "planning_io/types/registration_result.h"
 #include "planning_io/types/skin_lut.h"
 #include "planning_io/types/triangle_mesh.h"
 
@@ -16,10 +19,12 @@ constexpr const char* kRegistrationsFolder = "registrations";
 /// All that the operating room needs of one patient: case.json (manifest with checksums), skin.ply, skin.lut,
 /// plan.mrk.json.
 struct Case {
-    std::string code;     ///< of the case, made from the volume's hash; never a patient's name
+    std::string code;     ///< `code_of` its volume and plan; never a patient's name
+    CaseNames names;      ///< for people
     std::string created;  ///< ISO 8601
     std::string source;   ///< Volume::source
     std::string volume_hash;
+    std::string plan_hash;               ///< empty in cases of older versions
     std::string frame_of_reference_uid;  ///< Volume::frame_of_reference_uid; empty when the volume has none
     double skin_threshold = 0;           ///< 0 of a surface that somebody else segmented
     double skin_edge_sigma_mm = 0;       ///< how far noise moves the skin along its normal; 0 = not known
@@ -29,13 +34,28 @@ struct Case {
     std::vector<std::string> warnings;  ///< of the preparation, in words
 };
 
-/// Writes the folder so that it is whole or not there: into a temporary folder beside it, synced, then renamed. An
-/// existing case folder is replaced only with `replace`; any other existing folder is refused, and a case that holds
-/// matches kept by sessions (`kRegistrationsFolder`).
-void write_case(const Case& prepared, const std::filesystem::path& folder, bool replace = false);
+/// What other files call this case.
+CaseName name_of(const Case& prepared);
 
-/// Reads and verifies: every file's checksum, and that LUT, mesh and manifest name the same patient. A LUT of another
-/// case is refused with InputError, a damaged file with DamagedFileError.
+/// "1a2b3c4d-9f3e": the volume's first eight digits and the plan's first four.
+std::string code_of(const std::string& volume_hash, const std::string& plan_hash);
+
+/// One line by which people know the case: "E. M., frontal defect, version 2"; with the code where no patient is named.
+std::string title_of(const Case& the_case);
+
+/// Throws what `write_case` would because of what is there already: to be asked before long work.
+void check_case_place(const std::filesystem::path& folder, bool replace);
+
+/// Writes the folder so that it is whole or not there: into a temporary folder beside it, synced, then renamed. `add`
+/// may write further files into that folder first (the report); checksums are made of all. A link is followed. An
+/// existing case is replaced only with `replace`, and only when the folder holds nothing but a case: any other existing
+/// folder is refused, a case with files that are not its own, and one that holds matches kept by sessions
+/// (`kRegistrationsFolder`).
+void write_case(const Case& prepared, const std::filesystem::path& folder, bool replace = false,
+                const std::function<void(const std::filesystem::path& into)>& add = {});
+
+/// Reads and verifies: the checksum of every file that has one, and that LUT, mesh and manifest name the same patient.
+/// A LUT of another case is refused with InputError, a damaged file with DamagedFileError.
 Case read_case(const std::filesystem::path& folder);
 
 }  // namespace planlight

@@ -1,13 +1,26 @@
 #include "planning_io/case/poses_file.h"
 
 #include "planning_io/case/recording_json.h"
+#include "planning_io/case/rig_json.h"
 
 namespace planlight {
 
 namespace fs = std::filesystem;
 using namespace recording;
 
-void write_poses(const std::vector<TrackedPose>& poses, const fs::path& file) {
+namespace {
+
+Json json_of(const PosesOrigin& origin) {
+    return {{"calibrated", json_of(origin.calibrated)},
+            {"capture_hash", origin.capture_hash},
+            {"left_camera", json_of(origin.rig.left_camera)},
+            {"right_camera", json_of(origin.rig.right_camera)}};
+}
+
+}  // namespace
+
+void write_poses(const std::vector<TrackedPose>& poses, const fs::path& file,
+                 const std::optional<PosesOrigin>& origin) {
     Json list = Json::array();
     for (const TrackedPose& pose : poses)
         list.push_back(
@@ -18,13 +31,16 @@ void write_poses(const std::vector<TrackedPose>& poses, const fs::path& file) {
                  {"residual_px", pose.residual_px},
                  {"predicted_error_mm", pose.predicted_error_mm},
                  {"reason", pose.reason}});
-    write_safely(file, dump(Json{{"format", "planlight poses"}, {"version", kVersion}, {"poses", std::move(list)}}));
+    Json json{{"format", "planlight poses"}, {"version", kVersion}};
+    if (origin) json["origin"] = json_of(*origin);
+    json["poses"] = std::move(list);
+    write_safely(file, dump(json));
 }
 
 std::vector<TrackedPose> read_poses(const fs::path& file) {
     const Json json = parse_file(file, "planlight poses");
     const JsonValue root(json, file);
-    root.has_only({"format", "version", "poses"});
+    root.has_only({"format", "version", "origin", "poses"});
     const JsonValue list = root.at("poses");
     std::vector<TrackedPose> poses(list.size());
     for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -43,6 +59,19 @@ std::vector<TrackedPose> read_poses(const fs::path& file) {
             entry.refuse("has neither a pose nor a reason why there is none");
     }
     return poses;
+}
+
+std::optional<PosesOrigin> read_poses_origin(const fs::path& file) {
+    const Json json = parse_file(file, "planlight poses");
+    const auto origin = JsonValue(json, file).find("origin");
+    if (!origin) return std::nullopt;
+    origin->has_only({"calibrated", "capture_hash", "left_camera", "right_camera"});
+    PosesOrigin found;
+    found.calibrated = rig_name_of(origin->at("calibrated"));
+    found.capture_hash = origin->at("capture_hash").text();
+    found.rig.left_camera = camera_model_of(origin->at("left_camera"));
+    found.rig.right_camera = camera_model_of(origin->at("right_camera"));
+    return found;
 }
 
 }  // namespace planlight

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "planning_io/case/recording_json.h"
+#include "planning_io/case/rig_json.h"
+#include "planning_io/files/content_hash.h"
 
 namespace planlight {
 namespace {
@@ -40,35 +42,65 @@ PoseCovariance covariance_of(const JsonValue& json) {
     return covariance;
 }
 
+Json json_of(const CaseName& name) {
+    if (!name.known()) return Json();
+    return {{"code", name.code}, {"volume_hash", name.volume_hash}, {"mesh_hash", name.mesh_hash}};
+}
+
+CaseName case_name_of(const JsonValue& value) {
+    return {value.at("code").text(), value.at("volume_hash").text(), value.at("mesh_hash").text()};
+}
+
+/// Of all that stands in the file but itself: the spaces between the words do not matter.
+std::string checksum_of(Json registration) {
+    registration.erase("checksum");
+    return content_hash(registration.dump());
+}
+
+/// A match whose file nobody vouches for is one that a person has to look at.
+void judge_checksum(const Json& json, const JsonValue& root, const fs::path& file, RegistrationResult& result) {
+    if (const auto checksum = root.find("checksum")) {
+        if (checksum->text() == checksum_of(json)) return;
+        throw DamagedFileError(file, "was changed after `planlight register` wrote it (its checksum differs)",
+                               "Register the patient again, or copy the file again.");
+    }
+    if (result.verdict != Verdict::yes) return;
+    result.verdict = Verdict::ask;
+    result.reasons.push_back("The file has no checksum: nothing says that it is as `planlight register` wrote it.");
+}
+
 }  // namespace
 
 void write_registration(const RegistrationResult& result, const fs::path& file) {
-    write_safely(
-        file, dump(Json{{"format", "planlight registration"},
-                        {"version", kVersion},
-                        {"verdict", kVerdicts[static_cast<std::size_t>(result.verdict)]},
-                        {"reasons", result.reasons},
-                        {"patient_from_ct", to_json(result.patient_from_ct)},
-                        {"residual_rms_mm", result.residual_rms_mm},
-                        {"residual_median_mm", result.residual_median_mm},
-                        {"inlier_fraction", result.inlier_fraction},
-                        {"inlier_distance_mm", result.inlier_distance_mm},
-                        {"points", result.points},
-                        {"runner_up_ratio", std::min(result.runner_up_ratio, std::numeric_limits<double>::max())},
-                        {"agreeing_bases", result.agreeing_bases},
-                        {"weakest_sigma_mm", result.weakest_sigma_mm},
-                        {"mirror_ratio", std::min(result.mirror_ratio, std::numeric_limits<double>::max())},
-                        {"blocked_fraction", result.blocked_fraction ? Json(*result.blocked_fraction) : Json(nullptr)},
-                        {"landmarks_off_mm", result.landmarks_off_mm ? Json(*result.landmarks_off_mm) : Json(nullptr)},
-                        {"moved_in_scan_mm", result.moved_in_scan_mm ? Json(*result.moved_in_scan_mm) : Json(nullptr)},
-                        {"scale", result.scale},
-                        {"scale_sigma", result.scale_sigma},
-                        {"skin_movement_mm", result.skin_movement_mm},
-                        {"skin_offset_mm", result.skin_offset_mm},
-                        {"covariance", json_of(result.covariance)},
-                        {"initial_match_s", result.initial_match_s},
-                        {"refine_s", result.refine_s},
-                        {"initial_patient_from_ct", to_json(result.initial_patient_from_ct)}}));
+    Json json = Json{{"format", "planlight registration"},
+                     {"version", kVersion},
+                     {"verdict", kVerdicts[static_cast<std::size_t>(result.verdict)]},
+                     {"reasons", result.reasons},
+                     {"patient_from_ct", to_json(result.patient_from_ct)},
+                     {"residual_rms_mm", result.residual_rms_mm},
+                     {"residual_median_mm", result.residual_median_mm},
+                     {"inlier_fraction", result.inlier_fraction},
+                     {"inlier_distance_mm", result.inlier_distance_mm},
+                     {"points", result.points},
+                     {"runner_up_ratio", std::min(result.runner_up_ratio, std::numeric_limits<double>::max())},
+                     {"agreeing_bases", result.agreeing_bases},
+                     {"weakest_sigma_mm", result.weakest_sigma_mm},
+                     {"mirror_ratio", std::min(result.mirror_ratio, std::numeric_limits<double>::max())},
+                     {"blocked_fraction", result.blocked_fraction ? Json(*result.blocked_fraction) : Json(nullptr)},
+                     {"landmarks_off_mm", result.landmarks_off_mm ? Json(*result.landmarks_off_mm) : Json(nullptr)},
+                     {"moved_in_scan_mm", result.moved_in_scan_mm ? Json(*result.moved_in_scan_mm) : Json(nullptr)},
+                     {"scale", result.scale},
+                     {"scale_sigma", result.scale_sigma},
+                     {"skin_movement_mm", result.skin_movement_mm},
+                     {"skin_offset_mm", result.skin_offset_mm},
+                     {"covariance", json_of(result.covariance)},
+                     {"initial_match_s", result.initial_match_s},
+                     {"refine_s", result.refine_s},
+                     {"initial_patient_from_ct", to_json(result.initial_patient_from_ct)}};
+    json["case"] = json_of(result.of_case);
+    json["rig"] = result.rig ? json_of(*result.rig) : Json();
+    json["checksum"] = checksum_of(json);
+    write_safely(file, dump(json));
 }
 
 RegistrationResult read_registration(const fs::path& file) {
@@ -105,6 +137,9 @@ RegistrationResult read_registration(const fs::path& file) {
     if (const auto points = root.find("points")) result.points = static_cast<std::size_t>(points->integer(0, kAny));
     if (const auto bases = root.find("agreeing_bases"))
         result.agreeing_bases = static_cast<int>(bases->integer(0, 1000000000));
+    if (const auto name = root.find("case")) result.of_case = case_name_of(*name);
+    if (const auto rig = root.find("rig")) result.rig = rig_state_of(*rig);
+    judge_checksum(json, root, file, result);
     return result;
 }
 

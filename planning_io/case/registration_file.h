@@ -6,7 +6,9 @@
 
 namespace planlight {
 
-/// registration.json, as `register` writes it and `project` reads it.
+/// registration.json, as `register` writes it and `project` reads it: with the names of case, rig and capture, the rig
+/// as the scan found it, and a checksum. Throws DamagedFileError when the checksum is another; without one the verdict
+/// `yes` is read as `ask`.
 void write_registration(const RegistrationResult& result, const std::filesystem::path& file);
 RegistrationResult read_registration(const std::filesystem::path& file);
 

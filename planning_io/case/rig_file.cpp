@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 
-#include "planning_io/files/json_value.h"
+#include "planning_io/case/rig_json.h"
+#include "planning_io/files/content_hash.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
@@ -16,47 +18,6 @@ namespace fs = std::filesystem;
 constexpr const char* kFormat = "planlight rig";
 constexpr int kVersion = 1;
 constexpr const char* kCalibrate = "Calibrate the rig again.";
-
-Json json_of(const CameraModel& d, const std::string& serial = {}) {
-    Json json{{"width", d.width},
-              {"height", d.height},
-              {"focal_x", d.focal_x},
-              {"focal_y", d.focal_y},
-              {"centre_x", d.centre_x},
-              {"centre_y", d.centre_y},
-              {"k1", d.k1},
-              {"k2", d.k2},
-              {"p1", d.p1},
-              {"p2", d.p2},
-              {"k3", d.k3},
-              {"device_from_rig", to_json(d.device_from_rig)}};
-    if (!serial.empty()) json["serial"] = serial;
-    return json;
-}
-
-std::string serial_of(const JsonValue& value) {
-    const auto serial = value.find("serial");
-    return serial ? serial->text() : std::string();
-}
-
-CameraModel device_of(const JsonValue& value) {
-    value.has_only({"width", "height", "focal_x", "focal_y", "centre_x", "centre_y", "k1", "k2", "p1", "p2", "k3",
-                    "device_from_rig", "serial"});
-    CameraModel d;
-    d.width = static_cast<int>(value.at("width").integer(1, 65535));
-    d.height = static_cast<int>(value.at("height").integer(1, 65535));
-    d.focal_x = value.at("focal_x").number();
-    d.focal_y = value.at("focal_y").number();
-    d.centre_x = value.at("centre_x").number(-1e6, 1e6);
-    d.centre_y = value.at("centre_y").number(-1e6, 1e6);
-    d.k1 = value.at("k1").number();
-    d.k2 = value.at("k2").number();
-    d.p1 = value.at("p1").number();
-    d.p2 = value.at("p2").number();
-    d.k3 = value.at("k3").number();
-    d.device_from_rig = value.at("device_from_rig").transform();
-    return d;
-}
 
 void check_device(const CameraModel& d, const std::string& name, const fs::path& file) {
     const auto refuse = [&](const std::string& problem) { throw InputError(file, name + " " + problem, kCalibrate); };
@@ -133,20 +94,45 @@ RigCalibration read_partial_rig(const fs::path& file) {
     check_format(root, kFormat, kVersion, file);
     root.has_only({"format", "version", "made_on", "reprojection_rms_px", "left_camera", "right_camera", "projector"});
     RigCalibration rig;
-    rig.left_camera = device_of(root.at("left_camera"));
+    rig.left_camera = camera_model_of(root.at("left_camera"));
     rig.serials.left_camera = serial_of(root.at("left_camera"));
     if (const auto right = root.find("right_camera")) {
-        rig.right_camera = device_of(*right);
+        rig.right_camera = camera_model_of(*right);
         rig.serials.right_camera = serial_of(*right);
     }
     if (const auto light = root.find("projector")) {
-        rig.projector = device_of(*light);
+        rig.projector = camera_model_of(*light);
         rig.serials.projector = serial_of(*light);
     }
     rig.made_on = root.at("made_on").text();
     rig.reprojection_rms_px = root.at("reprojection_rms_px").number();
     check_rig(rig, file);
     return rig;
+}
+
+std::string hash_of(const RigCalibration& rig) {
+    ContentHash hash;
+    hash.add("planlight rig 1");
+    for (const CameraModel* d : {&rig.left_camera, &rig.right_camera, &rig.projector}) {
+        const std::array<double, 11> numbers{static_cast<double>(d->width),
+                                             static_cast<double>(d->height),
+                                             d->focal_x,
+                                             d->focal_y,
+                                             d->centre_x,
+                                             d->centre_y,
+                                             d->k1,
+                                             d->k2,
+                                             d->p1,
+                                             d->p2,
+                                             d->k3};
+        hash.add_values(numbers.data(), numbers.size());
+        hash.add_values(d->device_from_rig.matrix().data(), 16);
+    }
+    return hash.hex();
+}
+
+RigName name_of(const RigCalibration& rig) {
+    return {hash_of(rig), rig.made_on, rig.serials};
 }
 
 std::string as_json(const CameraModel& device) {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "planning_io/types/rig_calibration.h"
+#include "planning_io/types/rig_state.h"
 
 namespace planlight {
 
@@ -16,6 +17,12 @@ RigCalibration read_rig(const std::filesystem::path& file);
 
 /// As `read_rig`, but the right camera or the projector may be missing in the file (`present` says so).
 RigCalibration read_partial_rig(const std::filesystem::path& file);
+
+/// XXH3-128 over the numbers of all devices, hex: two rig files of one calibration have the same.
+std::string hash_of(const RigCalibration& rig);
+
+/// What other files call this rig.
+RigName name_of(const RigCalibration& rig);
 
 /// One device as rig.json holds it (JSON text).
 std::string as_json(const CameraModel& device);

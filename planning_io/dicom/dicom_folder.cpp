@@ -112,6 +112,12 @@ void add_common(vtkDICOMMetaData* meta, DicomFile& file) {
     }
 }
 
+/// "20010514" as "2001-05-14"; empty where it is no date.
+std::string iso_date(const std::string& text) {
+    if (text.size() != 8 || text.find_first_not_of("0123456789") != std::string::npos) return "";
+    return text.substr(0, 4) + "-" + text.substr(4, 2) + "-" + text.substr(6, 2);
+}
+
 /// False when the header does not even say of which series the file is.
 bool read_header(DicomFile& file, bool& is_directory) {
     file.readable_as = inflated_dicom(file.path);
@@ -129,6 +135,8 @@ bool read_header(DicomFile& file, bool& is_directory) {
     file.description = text_at(meta, DC::SeriesDescription);
     file.number = text_at(meta, DC::SeriesNumber);
     file.rescale_type = text_at(meta, DC::RescaleType);
+    file.date = iso_date(text_at(meta, DC::SeriesDate));
+    if (file.date.empty()) file.date = iso_date(text_at(meta, DC::StudyDate));
     file.localizer = text_at(meta, DC::ImageType).find("LOCALIZER") != std::string::npos;
     const vtkDICOMValue &padding = meta->Get(0, DC::PixelPaddingValue),
                         &limit = meta->Get(0, DC::PixelPaddingRangeLimit);
@@ -148,6 +156,17 @@ bool read_header(DicomFile& file, bool& is_directory) {
         add_common(meta, file);
     }
     return true;
+}
+
+/// The same of a file that may be damaged in any way: what cannot be read at all is somebody's, but not known whose.
+bool read_any_header(DicomFile& file, bool& is_directory) {
+    try {
+        return read_header(file, is_directory);
+    } catch (const DamagedFileError&) {
+        return false;
+    } catch (const std::bad_alloc&) {  // a length that is a lie
+        return false;
+    }
 }
 
 std::vector<fs::path> files_in(const fs::path& folder, int depth) {
@@ -210,6 +229,22 @@ std::string table_of(const std::vector<DicomSeries>& list) {
     return table;
 }
 
+/// Whether a file that does not say of which series it is names this one, or its frame of reference, somewhere in its
+/// first megabyte: then it is a damaged slice of it.
+bool names_series(const fs::path& file, const DicomSeries& series) {
+    std::string bytes(std::size_t{1} << 20, '\0');
+    std::ifstream in(file, std::ios::binary);
+    in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    bytes.resize(static_cast<std::size_t>(in.gcount()));
+    std::vector<std::string> uids{series.uid};
+    for (const auto& slice : series.all_slices())
+        if (!slice.frame_of_reference_uid.empty()) uids.push_back(slice.frame_of_reference_uid);
+    std::sort(uids.begin(), uids.end());
+    uids.erase(std::unique(uids.begin(), uids.end()), uids.end());
+    return std::any_of(uids.begin(), uids.end(),
+                       [&](const std::string& uid) { return bytes.find(uid) != std::string::npos; });
+}
+
 bool holds(const DicomSeries& series, const fs::path& path) {
     std::error_code error;
     return std::any_of(series.files.begin(), series.files.end(),
@@ -248,7 +283,7 @@ DicomFolder find_dicom(const fs::path& folder, int depth) {
         DicomFile file;
         file.path = path;
         bool is_directory = false;
-        if (!read_header(file, is_directory)) {
+        if (!read_any_header(file, is_directory)) {
             if (says_dicom(path)) found.unreadable.push_back(path);
         } else if (!is_directory) {
             auto series = std::find_if(found.series.begin(), found.series.end(),
@@ -273,8 +308,9 @@ DicomSeries choose_series(const DicomFolder& folder, const fs::path& path, const
         std::any_of(chosen.begin(), chosen.end(), [](const auto& s) { return s.slices() >= kFewestSlices; }))
         std::erase_if(chosen,
                       [](const DicomSeries& s) { return s.slices() < kFewestSlices; });  // a few slices are no rival
-    for (const auto& file : folder.unreadable)
-        if (says_folder || !chosen.empty() || fs::equivalent(file, path))
+    for (const auto& file : folder.unreadable)  // of others, a damaged file does not matter
+        if (fs::equivalent(file, path) || (says_folder && chosen.empty()) ||
+            std::any_of(chosen.begin(), chosen.end(), [&](const auto& s) { return names_series(file, s); }))
             throw DamagedFileError(
                 file, "is a DICOM file that is damaged or does not say of which series it is",
                 "Copy or export the series again; if the file is not of the series, move it elsewhere.");

@@ -13,6 +13,7 @@ struct DicomFile {
     std::filesystem::path path;
     std::string readable_as;  ///< where to read it from: `path`, or its inflated copy in memory
     std::string series_uid, modality, description, number, storage_class, rescale_type;
+    std::string date;  ///< of the series, else of the study: ISO 8601; empty when not said
     bool localizer = false;
     bool damaged = false;  ///< the header ends too early or makes no sense
     bool has_padding = false;
@@ -32,7 +33,7 @@ struct DicomSeries {
 
 struct DicomFolder {
     std::vector<DicomSeries> series;
-    std::vector<std::filesystem::path> unreadable;  ///< DICOM files whose header cannot be read
+    std::vector<std::filesystem::path> unreadable;  ///< DICOM files that do not say of which series they are
 };
 
 /// Finds every DICOM object in a folder (ten levels deep, whatever the files are called; DICOMDIR is not needed and not
@@ -44,8 +45,7 @@ DicomFolder find_dicom(const std::filesystem::path& folder, int depth);
 bool is_dicom_directory(const std::filesystem::path& file);
 
 /// The series of that UID or number; else that of `file`; else the only volume. Throws InputError with the list of
-/// series when there is none or more than one, DamagedFileError when a file of the folder cannot be told to be of
-/// another series.
+/// series when there is none or more than one, DamagedFileError when a damaged file of the folder is of the series.
 DicomSeries choose_series(const DicomFolder& folder, const std::filesystem::path& path, const std::string& wanted);
 
 }  // namespace planlight

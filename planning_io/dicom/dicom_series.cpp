@@ -19,6 +19,7 @@
 #include "planning_io/dicom/dicom_folder.h"
 #include "planning_io/dicom/dicom_values.h"
 #include "planning_io/files/header_text.h"
+#include "planning_io/files/memory_need.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/volume_checks.h"
 
@@ -28,7 +29,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kScanDepth = 10;
+constexpr const char* kTooLarge = "Close other programs, or give a series of fewer or smaller slices.";
 constexpr double kTilted = 1e-3;  // radians
+constexpr double kEven_mm = 0.01;
 constexpr const char* kCopyAgain = "Copy or export the series again.";
 
 /// File and frame of each slice of the reader's volume.
@@ -115,6 +118,44 @@ void note_geometry(const DicomSeries& series, Volume& volume) {
         }
 }
 
+/// Slices that lie off their places on an even grid: laid onto one of the smallest step, linear between the cuts where
+/// they really are. A few hundredths of a step are left as they are, and said.
+void lay_on_even_grid(Volume& volume, const std::vector<DicomSlice>& slices) {
+    const double off_mm = unevenness_of(slices);
+    if (off_mm < kEven_mm) return;
+    const std::vector<double> places = places_along_stack(slices);
+    std::vector<double> steps;
+    for (std::size_t i = 1; i < places.size(); ++i) steps.push_back(std::abs(places[i] - places[i - 1]));
+    const auto [least, most] = std::minmax_element(steps.begin(), steps.end());
+    if (*most - *least < 0.05 * *most) {
+        volume.notes.push_back(fmt::format("its slices lie up to {:.2f} mm off an even spacing of {:.2f} mm", off_mm,
+                                           std::abs(places.back()) / static_cast<double>(steps.size())));
+        return;
+    }
+    const double length = std::abs(places.back()), sign = places.back() < 0 ? -1 : 1;
+    const int count = static_cast<int>(std::ceil(length / *least - 1e-6)) + 1;
+    const double step = length / (count - 1);
+    const std::size_t slab = volume.index(0, 0, 1);
+    std::vector<float> laid(slab * static_cast<std::size_t>(count));
+    std::size_t below = 0;
+    for (int k = 0; k < count; ++k) {
+        const double at = step * k;
+        while (below + 2 < places.size() && sign * places[below + 1] <= at) ++below;
+        const auto f = static_cast<float>(
+            std::clamp((at - sign * places[below]) / (sign * (places[below + 1] - places[below])), 0.0, 1.0));
+        const float *low = volume.values.data() + below * slab, *high = low + slab;
+        float* to = laid.data() + static_cast<std::size_t>(k) * slab;
+        for (std::size_t v = 0; v < slab; ++v) to[v] = low[v] + f * (high[v] - low[v]);
+    }
+    volume.values = std::move(laid);
+    volume.ct_from_voxel.linear().col(2) = volume.ct_from_voxel.linear().col(2).normalized() * step;
+    volume.size[2] = count;
+    volume.notes.push_back(
+        fmt::format("its {} slices lie {:.2f} to {:.2f} mm apart; they were laid onto an even grid of {} with steps of "
+                    "{:.2f} mm, linear between the cuts: where they are far apart the skin is coarser",
+                    slices.size(), *least, *most, count, step));
+}
+
 /// What a file is, for people: by its storage class (DICOM PS3.6 A), else by its modality.
 std::string words_of_class(const DicomFile& file) {
     static const std::map<std::string, std::string> kWords = {{"1.1", "a computed radiograph"},
@@ -141,6 +182,16 @@ std::string words_of_class(const DicomFile& file) {
     return fmt::format("of modality \"{}\", storage class {}", file.modality, file.storage_class);
 }
 
+/// The reader's own pictures, mostly of 16 bits, and ours beside them.
+std::uint64_t memory_to_read(const DicomSeries& series) {
+    std::uint64_t pixels = 0;
+    for (const auto& file : series.files)
+        for (const auto& slice : file.slices)
+            pixels += static_cast<std::uint64_t>(std::max(slice.rows, 0)) *
+                      static_cast<std::uint64_t>(std::max(slice.columns, 0));
+    return pixels * (sizeof(std::uint16_t) + sizeof(float));
+}
+
 /// A localizer that a scanner put into the series of the slices is not one of them.
 int leave_localizers_aside(DicomSeries& series) {
     const auto before = series.files.size();
@@ -151,18 +202,26 @@ int leave_localizers_aside(DicomSeries& series) {
 
 }  // namespace
 
-Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
+Volume parse_dicom_series(const fs::path& path, const std::string& wanted, SliceGaps gaps) {
     const bool is_folder = fs::is_directory(path);
     const bool is_index = !is_folder && is_dicom_directory(path);
     const fs::path folder = is_folder ? path : path.has_parent_path() ? path.parent_path() : fs::path(".");
-    DicomSeries series = choose_series(find_dicom(folder, is_folder || is_index ? kScanDepth : 1), path, wanted);
+    const DicomFolder found = find_dicom(folder, is_folder || is_index ? kScanDepth : 1);
+    DicomSeries series = choose_series(found, path, wanted);
     const int localizers = leave_localizers_aside(series);
     for (const auto& file : series.files)
         if (file.damaged) throw DamagedFileError(file.path, "is damaged or cut short in its header", kCopyAgain);
     if (!series.is_volume())
         throw InputError(path, "is no CT or MR volume but " + words_of_class(series.files.front()),
                          "Give a series of CT or MR image objects.");
-    if (const auto fault = fault_of(series.all_slices())) throw InputError(path, fault->problem, fault->remedy);
+    if (const auto fault = fault_of(series.all_slices(), gaps)) {
+        if (!found.unreadable.empty())  // perhaps what is missing
+            throw DamagedFileError(found.unreadable.front(),
+                                   "is a DICOM file that is damaged, and without it the series " + fault->problem,
+                                   kCopyAgain);
+        throw InputError(path, fault->problem, fault->remedy);
+    }
+    check_memory(path.string() + ": reading its pictures", memory_to_read(series), kTooLarge);
 
     vtkNew<vtkStringArray> names;
     for (const auto& file : series.files) names->InsertNextValue(file.readable_as);
@@ -188,12 +247,21 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted) {
     volume.modality = series.modality;
     volume.frame_of_reference_uid = slices[0].frame_of_reference_uid;
     volume.source = fmt::format("DICOM series {}", series.uid);
+    volume.series_description = series.description;
+    volume.series_date = series.files.front().date;
+    if (!found.unreadable.empty())
+        volume.notes.push_back(fmt::format(
+            "left aside: {} that {} damaged and {} not say of which series: if a slice at the end of this one is among "
+            "them, the volume ends before it",
+            counted(static_cast<long long>(found.unreadable.size()), "DICOM file"),
+            found.unreadable.size() == 1 ? "is" : "are", found.unreadable.size() == 1 ? "does" : "do"));
     if (localizers > 0)
         volume.notes.push_back("left aside: " + counted(localizers, "localizer picture") + " of the series");
     note_geometry(series, volume);
     check_against_reader(reader, volume, path);
     copy_stored_values(reader->GetOutput(), volume, path);
     rescale(volume, meaning, series.files.front().rescale_type, slices.front().has_rescale);
+    lay_on_even_grid(volume, slices);
     make_right_handed(volume);
     check_for_skin(volume, path);
     return volume;

@@ -13,6 +13,8 @@ namespace planlight {
 namespace {
 
 constexpr double kEven_mm = 0.01;
+constexpr double kEvenPlace_mm = 0.05, kEvenShare = 0.02;  // of a slice on the even grid: mm, and of the step
+constexpr double kLongestStep_mm = 20;
 constexpr double kSameDirection = 1e-4;
 constexpr double kOrthonormal = 1e-4;
 constexpr const char* kOneSeries = "Export one series of one patient into a folder of its own.";
@@ -105,7 +107,8 @@ std::optional<DicomRefusal> fault_of_pair(const DicomSlice& a, const DicomSlice&
 }
 
 /// Of slices sorted along their normal.
-std::optional<DicomRefusal> fault_of_stack(const std::vector<DicomSlice>& slices, const Eigen::Vector3d& normal) {
+std::optional<DicomRefusal> fault_of_stack(const std::vector<DicomSlice>& slices, const Eigen::Vector3d& normal,
+                                           SliceGaps allowed) {
     std::vector<double> gaps;
     for (std::size_t i = 1; i < slices.size(); ++i)
         gaps.push_back(normal.dot(slices[i].position_in_ct - slices[i - 1].position_in_ct));
@@ -123,21 +126,29 @@ std::optional<DicomRefusal> fault_of_stack(const std::vector<DicomSlice>& slices
                                        slices[i].file, slices[i + 1].file, gaps[i]),
                            "Keep one of them, or name one series.");
         const double steps = std::round(gaps[i] / usual);
-        if (steps >= 2 && std::abs(gaps[i] - steps * usual) < 0.1 * usual)
-            return DicomRefusal{
-                fmt::format("{} missing {}: the gap is {:.3f} mm, elsewhere {:.3f} mm",
-                            counted(static_cast<int>(steps) - 1, "slice") + (steps == 2 ? " is" : " are"), between,
-                            gaps[i], usual),
-                "Export the whole series again."};
-        if (std::abs(gaps[i] - usual) > kEven_mm)
-            return DicomRefusal{fmt::format("the slices are not evenly spaced: {:.3f} mm {}, elsewhere {:.3f} mm",
-                                            gaps[i], between, usual),
-                                "Reconstruct or resample the series with one spacing."};
+        // A whole part of the stack with twice the step is a second spacing, not a row of missing slices.
+        const auto like_this = std::count_if(gaps.begin(), gaps.end(), [&](double g) { return std::abs(g - gaps[i]) < 0.1 * usual; });
+        const bool second_spacing = allowed == SliceGaps::resampled && like_this >= 3;
+        if (steps >= 2 && std::abs(gaps[i] - steps * usual) < 0.1 * usual && !second_spacing)
+            return DicomRefusal{fmt::format("{} missing {}: the gap is {:.3f} mm, elsewhere {:.3f} mm",
+                                            counted(static_cast<int>(steps) - 1, "slice") + (steps == 2 ? " is" : " are"),
+                                            between, gaps[i], usual),
+                                "Export the whole series again."};
+        if (gaps[i] > kLongestStep_mm)
+            return DicomRefusal{fmt::format("the gap {} is {:.1f} mm", between, gaps[i]), "Give a series of thinner slices."};
     }
+    if (const double off = unevenness_of(slices);
+        allowed == SliceGaps::refused && off > std::max(kEvenPlace_mm, kEvenShare * usual))
+        return DicomRefusal{
+            fmt::format("the slices are not evenly spaced: steps of {:.3f} to {:.3f} mm, one lies {:.2f} mm off an even stack",
+                        sorted.front(), sorted.back(), off),
+            "Say --resample to lay them onto an even grid between the cuts where they lie, or reconstruct the series with one "
+            "spacing."};
+    const std::vector<double> places = places_along_stack(slices);
     const Eigen::Vector3d first = slices.front().position_in_ct;
-    const Eigen::Vector3d step = (slices.back().position_in_ct - first) / static_cast<double>(slices.size() - 1);
+    const Eigen::Vector3d along = (slices.back().position_in_ct - first).normalized(), step = along * usual;
     for (std::size_t i = 0; i < slices.size(); ++i) {
-        const double off = (slices[i].position_in_ct - first - static_cast<double>(i) * step).norm();
+        const double off = (slices[i].position_in_ct - first - places[i] * along).norm();
         if (off > 5 * kEven_mm)
             return DicomRefusal{
                 fmt::format("{} lies {:.3f} mm off the straight line of the other slices", slices[i].file, off),
@@ -151,7 +162,7 @@ std::optional<DicomRefusal> fault_of_stack(const std::vector<DicomSlice>& slices
 
 }  // namespace
 
-std::optional<DicomRefusal> fault_of(std::vector<DicomSlice> slices) {
+std::optional<DicomRefusal> fault_of(std::vector<DicomSlice> slices, SliceGaps gaps) {
     for (const DicomSlice& s : slices)
         if (const auto fault = fault_of_slice(s)) return fault;
     if (slices.size() < static_cast<std::size_t>(kFewestSlices))
@@ -164,7 +175,22 @@ std::optional<DicomRefusal> fault_of(std::vector<DicomSlice> slices) {
     std::sort(slices.begin(), slices.end(), [&](const DicomSlice& a, const DicomSlice& b) {
         return normal.dot(a.position_in_ct) < normal.dot(b.position_in_ct);
     });
-    return fault_of_stack(slices, normal);
+    return fault_of_stack(slices, normal, gaps);
+}
+
+std::vector<double> places_along_stack(const std::vector<DicomSlice>& slices) {
+    const Eigen::Vector3d first = slices.front().position_in_ct, along = (slices.back().position_in_ct - first).normalized();
+    std::vector<double> places;
+    for (const DicomSlice& s : slices) places.push_back(along.dot(s.position_in_ct - first));
+    return places;
+}
+
+double unevenness_of(const std::vector<DicomSlice>& slices) {
+    const std::vector<double> places = places_along_stack(slices);
+    double worst = 0;
+    for (std::size_t i = 0; i < places.size(); ++i)
+        worst = std::max(worst, std::abs(places[i] - places.back() * static_cast<double>(i) / static_cast<double>(places.size() - 1)));
+    return worst;
 }
 
 Eigen::Affine3d ct_from_voxel_of(const std::vector<DicomSlice>& slices) {

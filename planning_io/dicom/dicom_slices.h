@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "planning_io/dicom/slice_gaps.h"
+
 namespace planlight {
 
 /// What one slice (a file, or one frame of a multi-frame file) says of itself; what it does not say is NaN or empty.
@@ -32,10 +34,17 @@ struct DicomRefusal {
     std::string problem, remedy;
 };
 
-/// Why the slices, in any order, are not one safe volume; empty when they are: evenly spaced to 0.01 mm along their
-/// normal and on one straight line, one orientation (1e-4), one size and spacing, one patient and frame of reference,
+/// Why the slices, in any order, are not one safe volume; empty when they are: evenly spaced along their
+/// normal (each within 0.05 mm, or 2 % of the step, of its place; with `resampled` any steps of 0.5 to 20 mm) and on one
+/// straight line, one orientation (1e-4), one size and spacing, one patient and frame of reference,
 /// at least 16.
-std::optional<DicomRefusal> fault_of(std::vector<DicomSlice> slices);
+std::optional<DicomRefusal> fault_of(std::vector<DicomSlice> slices, SliceGaps gaps = SliceGaps::refused);
+
+/// How far the slices lie along the straight line of their stack, mm from the first, in this order.
+std::vector<double> places_along_stack(const std::vector<DicomSlice>& slices);
+
+/// The furthest that a slice lies from its place on the even grid of `ct_from_voxel_of`, mm.
+double unevenness_of(const std::vector<DicomSlice>& slices);
 
 /// The affine of slices in this order (they have no fault): i along a row, j along a column, k from slice to slice.
 Eigen::Affine3d ct_from_voxel_of(const std::vector<DicomSlice>& slices);

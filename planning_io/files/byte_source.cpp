@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "planning_io/files/memory_need.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -17,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kCopyAgain = "Copy or export the file again.";
+constexpr const char* kTooLarge = "Close other programs, or resample the volume to larger voxels.";
 constexpr std::uint64_t kMostInflation = 1040;  // deflate's limit is 1032 : 1
 constexpr std::size_t kBlock = std::size_t{1} << 18;
 
@@ -67,6 +69,22 @@ struct ByteSource::Inflater {
     bool at_end = false;
     Inflater() { inflateInit2(&stream, 15 + 32); }  // gzip or zlib, told apart by their first bytes
     ~Inflater() { inflateEnd(&stream); }
+    /// Reads on behind what is not used yet; how many bytes there are to unpack.
+    std::size_t fill(std::istream& in) {
+        std::copy(stream.next_in, stream.next_in + stream.avail_in, block.data());
+        in.read(reinterpret_cast<char*>(block.data() + stream.avail_in),
+                static_cast<std::streamsize>(block.size() - stream.avail_in));
+        stream.next_in = block.data();
+        stream.avail_in += static_cast<uInt>(in.gcount());
+        return stream.avail_in;
+    }
+    /// A gzip file may consist of several (RFC 1952, 2.2), as bgzip and pigz write it. What does not begin as one is no
+    /// more of it.
+    bool begin_next_member(std::istream& in) {
+        if (stream.avail_in < 2) fill(in);
+        if (stream.avail_in < 2 || stream.next_in[0] != 0x1f || stream.next_in[1] != 0x8b) return false;
+        return inflateReset(&stream) == Z_OK;
+    }
     Inflater(const Inflater&) = delete;
     Inflater& operator=(const Inflater&) = delete;
 };
@@ -102,16 +120,11 @@ std::size_t ByteSource::some(unsigned char* to, std::size_t bytes) {
     z.avail_out = static_cast<uInt>(std::min(bytes, kBlock));
     const uInt wanted = z.avail_out;
     while (z.avail_out == wanted && !inflater_->at_end) {
-        if (z.avail_in == 0) {
-            in_.read(reinterpret_cast<char*>(inflater_->block.data()), static_cast<std::streamsize>(kBlock));
-            z.next_in = inflater_->block.data();
-            z.avail_in = static_cast<uInt>(in_.gcount());
-            if (z.avail_in == 0)
-                throw DamagedFileError(file_, "is cut short: its packed voxels have no end", kCopyAgain);
-        }
+        if (z.avail_in < 2 && inflater_->fill(in_) == 0)
+            throw DamagedFileError(file_, "is cut short: its packed voxels have no end", kCopyAgain);
         const int code = inflate(&z, Z_NO_FLUSH);
         if (code == Z_STREAM_END)
-            inflater_->at_end = true;
+            inflater_->at_end = !inflater_->begin_next_member(in_);
         else if (code != Z_OK && code != Z_BUF_ERROR)
             throw DamagedFileError(file_, "is damaged: its packed voxels or their checksum are wrong", kCopyAgain);
     }
@@ -163,11 +176,14 @@ std::size_t bytes_of(VoxelType type) {
     return 1;
 }
 
-std::vector<float> read_voxels(ByteSource& source, VoxelType type, bool big_endian, std::size_t count) {
+std::vector<float> read_voxels(ByteSource& source, VoxelType type, bool big_endian, std::size_t count,
+                               std::uint64_t allowed) {
     const std::size_t each = bytes_of(type);
     if (count > source.upper_bound() / each)
         throw DamagedFileError(
             source.file(), fmt::format("is cut short: it cannot hold the {} voxels of its header", count), kCopyAgain);
+    check_memory(fmt::format("{}: reading its {} voxels", source.file().string(), count), count * sizeof(float),
+                 kTooLarge);
     std::vector<float> values;
     values.reserve(count);
     std::vector<unsigned char> block(kBlock);
@@ -177,7 +193,7 @@ std::vector<float> read_voxels(ByteSource& source, VoxelType type, bool big_endi
         source.read(block.data(), now * each);
         append(type, block, now, swap, values);
     }
-    source.finish(4096);
+    source.finish(allowed);
     const auto odd = std::count_if(values.begin(), values.end(), [](float v) { return !std::isfinite(v); });
     if (odd > 0)
         throw DamagedFileError(source.file(), fmt::format("holds {} voxels that are not numbers", odd),

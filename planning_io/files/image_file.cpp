@@ -4,6 +4,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
+#include <algorithm>
 #include <cmath>
 
 #include "planning_io/files/safe_write.h"
@@ -14,13 +15,28 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void write_encoded(const cv::Mat& picture, const fs::path& file) {
+std::vector<unsigned char> encoded(const cv::Mat& picture, const fs::path& file) {
     std::vector<unsigned char> bytes;
     if (picture.empty() || !cv::imencode(".png", picture, bytes, {cv::IMWRITE_PNG_COMPRESSION, 1}))
         throw DiskError(file, "an empty picture cannot be written", "Give a picture with at least one pixel.");
+    return bytes;
+}
+
+void write_encoded(const cv::Mat& picture, const fs::path& file) {
+    const std::vector<unsigned char> bytes = encoded(picture, file);
     write_safely(file, [&](std::ostream& out) {
         out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     });
+}
+
+cv::Mat bgr_of(const RgbImage& picture) {
+    cv::Mat bgr(picture.height, picture.width, CV_8UC3);
+    for (int y = 0; y < picture.height; ++y)
+        for (int x = 0; x < picture.width; ++x) {
+            const Rgb& from = picture.at(x, y);
+            bgr.at<cv::Vec3b>(y, x) = {from[2], from[1], from[0]};
+        }
+    return bgr;
 }
 
 /// A PNG's chunks in order up to IEND; a cut file has none, and the decoder would fill the rest with grey.
@@ -61,24 +77,25 @@ void write_png(const GrayImage& picture, const fs::path& file) {
 }
 
 void write_png(const RgbImage& picture, const fs::path& file) {
-    cv::Mat bgr(picture.height, picture.width, CV_8UC3);
-    for (int y = 0; y < picture.height; ++y)
-        for (int x = 0; x < picture.width; ++x) {
-            const Rgb& from = picture.at(x, y);
-            bgr.at<cv::Vec3b>(y, x) = {from[2], from[1], from[0]};
-        }
-    write_encoded(bgr, file);
+    write_encoded(bgr_of(picture), file);
+}
+
+std::string png_bytes(const RgbImage& picture) {
+    const std::vector<unsigned char> bytes = encoded(bgr_of(picture), "picture");
+    return {bytes.begin(), bytes.end()};
 }
 
 GrayImage read_gray(const fs::path& file) {
     const cv::Mat picture = decode(file);
     GrayImage grey(picture.cols, picture.rows);
+    if (picture.channels() == 1) {
+        for (int y = 0; y < picture.rows; ++y)
+            std::copy_n(picture.ptr<std::uint8_t>(y), picture.cols,
+                        grey.pixels.begin() + static_cast<std::ptrdiff_t>(grey.index(0, y)));
+        return grey;
+    }
     for (int y = 0; y < picture.rows; ++y)
         for (int x = 0; x < picture.cols; ++x) {
-            if (picture.channels() == 1) {
-                grey.at(x, y) = picture.at<std::uint8_t>(y, x);
-                continue;
-            }
             const auto& bgr = picture.at<cv::Vec3b>(y, x);  // ITU-R BT.601 luma
             grey.at(x, y) = static_cast<std::uint8_t>(std::lround(0.299 * bgr[2] + 0.587 * bgr[1] + 0.114 * bgr[0]));
         }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "planning_io/types/image.h"
@@ -10,6 +11,9 @@ namespace planlight {
 /// PNG, written whole or not at all.
 void write_png(const GrayImage& picture, const std::filesystem::path& file);
 void write_png(const RgbImage& picture, const std::filesystem::path& file);
+
+/// The bytes of the same PNG.
+std::string png_bytes(const RgbImage& picture);
 
 /// PNG or TIFF, 8 or 16 bit (of which the upper 8 are kept), grey or colour (converted to grey by luma). Throws
 /// DamagedFileError.

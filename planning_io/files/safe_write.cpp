@@ -80,6 +80,16 @@ struct RemoveFolder {
     }
 };
 
+/// The folder that is meant: "case/" means "case", a link the folder that it leads to.
+fs::path meant_folder(const fs::path& folder) {
+    fs::path target = folder;
+    if (!target.has_filename()) target = target.parent_path();
+    if (fs::exists(target)) return fs::canonical(target);
+    if (fs::is_symlink(target))
+        throw InputError(target, "is a link to a folder that is not there", "Make that folder, or name another.");
+    return target;
+}
+
 }  // namespace
 
 void write_safely(const fs::path& file_or_link, const std::function<void(std::ostream&)>& write) {
@@ -110,13 +120,17 @@ void check_can_write(const fs::path& file) {
     RemoveUnlessKept{make_temporary_beside(fs::is_symlink(file, ignored) ? fs::weakly_canonical(file, ignored) : file)};
 }
 
+void check_new_folder(const fs::path& folder) {
+    const fs::path target = meant_folder(folder);
+    RemoveFolder{make_temporary_beside(target, true)};
+}
+
 void write_folder_safely(const fs::path& folder, bool replace, const std::function<void(const fs::path&)>& fill) {
-    fs::path target = folder;
-    if (!target.has_filename()) target = target.parent_path();  // "case/" means "case"
+    const fs::path target = meant_folder(folder);
     const bool there = fs::exists(target), empty = there && fs::is_directory(target) && fs::is_empty(target);
     if (there && !fs::is_directory(target)) throw InputError(target, "is a file, not a folder", "Name another folder.");
     if (there && !empty && !replace)
-        throw InputError(target, "exists already and is not empty", "Name a new folder, or remove this one.");
+        throw InputError(target, "exists already and is not empty", "Name a new folder, or empty this one.");
     RemoveFolder temporary{make_temporary_beside(target, true)};
     fill(temporary.path);
     sync(temporary.path, target);

@@ -16,9 +16,12 @@ void write_safely(const std::filesystem::path& file, const std::string& content)
 /// that name): to be asked before long work.
 void check_can_write(const std::filesystem::path& file);
 
+/// The same for `write_folder_safely` into a folder that is new, empty or to be replaced.
+void check_new_folder(const std::filesystem::path& folder);
+
 /// Makes a folder whole or not at all: `fill` writes into a temporary folder beside it, which is then renamed. An
-/// existing empty folder is taken; another existing one is exchanged for the new one in one step if `replace`, else
-/// InputError.
+/// existing empty folder, or a link to one, is taken; another existing one is exchanged for the new one in one step if
+/// `replace`, else InputError.
 void write_folder_safely(const std::filesystem::path& folder, bool replace,
                          const std::function<void(const std::filesystem::path&)>& fill);
 

@@ -1,12 +1,14 @@
 #include "planning_io/files/sandboxed_process.h"
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/mman.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdint>
@@ -14,6 +16,7 @@
 #include <new>
 #include <utility>
 
+#include "planning_io/files/memory_need.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -54,6 +57,7 @@ void limit_this_process(const ChildLimits& limits) {
 [[noreturn]] void be_the_child(Parcel& parcel, const fs::path& file, const ChildLimits& limits,
                                const std::function<void(Parcel&)>& parse) {
     limit_this_process(limits);
+    const std::uint64_t at_first = free_memory_bytes();
     const auto fail = [&](Outcome outcome, const std::string& problem, const std::string& remedy) {
         parcel.empty();
         parcel.put(outcome);
@@ -66,7 +70,10 @@ void limit_this_process(const ChildLimits& limits) {
     } catch (const Error& e) {
         fail(e.exit_code == ExitCode::file_damaged ? Outcome::damaged : Outcome::refused, e.what(), e.remedy);
     } catch (const std::bad_alloc&) {
-        fail(Outcome::refused, file.string() + ": needs more than 4 GiB of memory", limits.when_too_large);
+        fail(Outcome::refused,
+             fmt::format("{}: needs more memory to be read than the {} MiB that it may have", file.string(),
+                         std::min<std::uint64_t>(kMaxMemoryBytes, at_first) >> 20),
+             limits.when_too_large);
     } catch (const std::exception& e) {
         fail(Outcome::damaged, file.string() + ": cannot be read (" + e.what() + ")", kCopyAgain);
     }
@@ -74,9 +81,16 @@ void limit_this_process(const ChildLimits& limits) {
 }
 
 /// Throws what the child's end means, if it did not end well.
-void check_end(int status, const fs::path& file, const ChildLimits& limits) {
+void check_end(int status, const rusage& used, const fs::path& file, const ChildLimits& limits) {
     if (WIFSIGNALED(status)) {
         const int signal = WTERMSIG(status);
+        const auto spent_s = used.ru_utime.tv_sec + used.ru_stime.tv_sec + 1;  // whole seconds, rounded up
+        if (signal == SIGKILL && spent_s < static_cast<long>(limits.processor_s))
+            throw DiskError(file,
+                            fmt::format("the system ended its reading, as it does when memory is short; {} MiB were in "
+                                        "use by then, and more is needed",
+                                        used.ru_maxrss >> 10),
+                            "Close other programs, or give a smaller file.");
         const bool slow = signal == SIGXCPU || signal == SIGKILL || signal == SIGALRM;
         throw DamagedFileError(
             file,
@@ -134,9 +148,10 @@ Parcel parse_in_child(const fs::path& file, const ChildLimits& limits, const std
         throw DiskError(file, "no child process could be started to read it", "Close other programs and try again.");
     if (child == 0) be_the_child(parcel, file, limits, parse);
     int status = 0;
-    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    rusage used{};
+    while (wait4(child, &status, 0, &used) < 0 && errno == EINTR) {
     }
-    check_end(status, file, limits);
+    check_end(status, used, file, limits);
     parcel.begin_reading();
     if (parcel.left() < sizeof(Outcome)) throw DamagedFileError(file, "could not be read to its end", kCopyAgain);
     const auto outcome = parcel.get<Outcome>();

@@ -78,8 +78,8 @@ struct ChildLimits {
 };
 
 /// Runs `parse` in a child process within `limits` and gives what it put into its parcel. An Error thrown there is
-/// thrown here again; more memory than allowed is an InputError of `file`; a crash, an endless loop or any other
-/// exception a DamagedFileError: the child is lost, never the program.
+/// thrown here again; more memory than there is for it is an InputError that says how much; a crash, an endless loop or
+/// any other exception a DamagedFileError: the child is lost, never the program.
 Parcel parse_in_child(const std::filesystem::path& file, const ChildLimits& limits,
                       const std::function<void(Parcel&)>& parse);
 

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "planning_io/files/content_hash.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_import.h"
 #include "planning_io/plan/plan_markup.h"
@@ -45,14 +46,26 @@ Plan read_plan(const fs::path& file_or_folder) {
     return import_plan(file_or_folder).plan;
 }
 
-void write_plan(const Plan& plan, const fs::path& file) {
-    check_plan_numbers(plan, file);
+namespace {
+
+std::string text_of(const Plan& plan) {
     Json markups = Json::array();
     for (const auto& t : plan.trajectories) markups.push_back(markup_of(t));
     for (const auto& b : plan.boreholes) markups.push_back(markup_of(b));
     for (const auto& line : plan.osteotomy_lines) markups.push_back(markup_of(line));
     for (const auto& c : plan.cut_planes) markups.push_back(markup_of(c));
-    write_safely(file, dump(Json{{"@schema", kSchema}, {"markups", std::move(markups)}}));
+    return dump(Json{{"@schema", kSchema}, {"markups", std::move(markups)}});
+}
+
+}  // namespace
+
+void write_plan(const Plan& plan, const fs::path& file) {
+    check_plan_numbers(plan, file);
+    write_safely(file, text_of(plan));
+}
+
+std::string hash_of(const Plan& plan) {
+    return content_hash(text_of(plan));
 }
 
 std::vector<Eigen::Vector3d> points_of(const Plan& plan) {

@@ -8,6 +8,7 @@
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_fcsv.h"
 #include "planning_io/plan/plan_file.h"
+#include "planning_io/plan/plan_limits.h"
 #include "planning_io/plan/plan_markup.h"
 #include "planning_io/plan/plan_rtstruct.h"
 #include "planning_io/plan/plan_shapes.h"
@@ -153,6 +154,7 @@ void append(PlanImport& to, PlanImport more) {
 PlanImport import_plan(const fs::path& file_or_folder, const PlanImportSettings& settings) {
     if (!fs::is_directory(file_or_folder)) {
         PlanImport read = read_one(file_or_folder, settings);
+        check_plan_limits(read.plan, file_or_folder);
         check_extent(read.plan, file_or_folder);
         return read;
     }
@@ -165,6 +167,7 @@ PlanImport import_plan(const fs::path& file_or_folder, const PlanImportSettings&
                          "Save the plan's markups from 3D Slicer (.mrk.json) into this folder.");
     PlanImport all;
     for (const auto& file : files) append(all, read_one(file, settings));
+    check_plan_limits(all.plan, file_or_folder);
     check_extent(all.plan, file_or_folder);
     return all;
 }

@@ -47,6 +47,12 @@ std::string columns_of(const char* type, std::initializer_list<const char*> name
     return lines;
 }
 
+std::string lines_of(const std::vector<std::string>& comments) {
+    std::string lines;
+    for (const std::string& comment : comments) lines += "comment " + comment + "\n";
+    return lines;
+}
+
 std::string faces_in_header(std::size_t count) {
     return "element face " + std::to_string(count) + "\nproperty list uchar int vertex_indices\n";
 }
@@ -131,14 +137,14 @@ TriangleMesh read_mesh(const fs::path& file) {
 }
 
 void write_cloud(const PointCloud& cloud, const fs::path& file,
-                 const std::vector<std::array<std::int32_t, 3>>& triangles) {
+                 const std::vector<std::array<std::int32_t, 3>>& triangles, const std::vector<std::string>& comments) {
     const std::size_t count = cloud.size();
     check_length(cloud.normals_in_rig, count, file, "normals");
     check_length(cloud.sigma_mm, count, file, "sigma");
     check_length(cloud.pixels_in_projector, count, file, "projector pixels");
-    std::string header =
-        "ply\nformat binary_little_endian 1.0\ncomment Planlight scan, mm. FRAME=rig\nelement vertex " +
-        std::to_string(count) + "\n" + columns_of("double", {"x", "y", "z"});
+    std::string header = "ply\nformat binary_little_endian 1.0\ncomment Planlight scan, mm. FRAME=rig\n" +
+                         lines_of(comments) + "element vertex " + std::to_string(count) + "\n" +
+                         columns_of("double", {"x", "y", "z"});
     if (!cloud.normals_in_rig.empty()) header += columns_of("double", {"nx", "ny", "nz"});
     if (!cloud.sigma_mm.empty()) header += columns_of("float", {"sigma"});
     if (!cloud.pixels_in_projector.empty()) header += columns_of("double", {"projector_x", "projector_y"});
@@ -155,8 +161,9 @@ void write_cloud(const PointCloud& cloud, const fs::path& file,
     write_safely(file, rows.header_and_rows(header + "end_header\n"));
 }
 
-PointCloud read_cloud(const fs::path& file, const CloudOrigin& origin) {
+PointCloud read_cloud(const fs::path& file, const CloudOrigin& origin, std::vector<std::string>* comments) {
     const Ply ply = parse_ply(read_whole(file), file);
+    if (comments) *comments = ply.comments;
     if (!origin.in_rig && !ply.says("FRAME=rig"))
         throw InputError(file, "does not say that its points are in the rig's frame",
                          "Add the line \"comment FRAME=rig\" to its header, or say --in-rig, if they are.");

@@ -18,7 +18,8 @@ TriangleMesh read_mesh(const std::filesystem::path& file);
 /// Binary PLY of a scan in rig, with "comment FRAME=rig"; columns x y z nx ny nz sigma projector_x projector_y. With
 /// `triangles` (indices of its points) they are its faces: the scan as a surface, which `read_cloud` takes too.
 void write_cloud(const PointCloud& cloud, const std::filesystem::path& file,
-                 const std::vector<std::array<std::int32_t, 3>>& triangles = {});
+                 const std::vector<std::array<std::int32_t, 3>>& triangles = {},
+                 const std::vector<std::string>& comments = {});
 
 /// What a person says of a cloud that another program wrote.
 struct CloudOrigin {
@@ -26,8 +27,9 @@ struct CloudOrigin {
     bool in_rig = false;  ///< its points are in the rig's frame though it does not say so
 };
 /// Throws InputError for a cloud that is not said to be in the rig's frame, DamagedFileError for a damaged one. Normals
-/// are read where they are (`nx ny nz`); sigma and projector pixels as well.
-PointCloud read_cloud(const std::filesystem::path& file, const CloudOrigin& origin = {});
+/// are read where they are (`nx ny nz`); sigma and projector pixels as well. `comments`: those of its header.
+PointCloud read_cloud(const std::filesystem::path& file, const CloudOrigin& origin = {},
+                      std::vector<std::string>* comments = nullptr);
 
 /// XXH3-128 of vertices and triangles, hex.
 std::string hash_of(const TriangleMesh& mesh);

@@ -116,6 +116,8 @@ void add_element_line(Header& header, std::istringstream& words, const fs::path&
     Element element;
     if (!(words >> element.name >> element.count) || element.count > (std::size_t{1} << 30))
         damaged(file, "has a damaged header");
+    for (const Element& other : header.elements)
+        if (other.name == element.name) damaged(file, "says \"element " + element.name.substr(0, 40) + "\" twice");
     header.elements.push_back(std::move(element));
 }
 
@@ -195,6 +197,14 @@ void read_row(Reader& reader, const Element& element, Ply& ply, const fs::path& 
     }
 }
 
+/// Of text a digit for each number; of a list its count at least.
+std::size_t least_bytes_of_row(const Element& element, Encoding encoding) {
+    std::size_t bytes = 0;
+    for (const Property& p : element.properties)
+        bytes += encoding == Encoding::ascii ? 1 : kBytes[static_cast<std::size_t>(p.count_type.value_or(p.type))];
+    return std::max<std::size_t>(bytes, 1);
+}
+
 }  // namespace
 
 const std::vector<double>* Ply::column(std::string_view name) const {
@@ -215,7 +225,8 @@ Ply parse_ply(std::string_view content, const fs::path& file) {
     Reader reader(content.substr(header.bytes), header.encoding, file);
     for (const Element& element : header.elements) {
         if (element.count > 0 && element.properties.empty()) damaged(file, "has a damaged header");
-        if (element.count > reader.left()) damaged(file, "is cut short");  // every row takes at least a byte
+        if (element.count > 0 && element.count > reader.left() / least_bytes_of_row(element, header.encoding))
+            damaged(file, "is cut short");
         if (element.name == "vertex") {
             ply.vertices = element.count;
             for (const Property& p : element.properties)

@@ -70,7 +70,7 @@ WeldedShape welded(const Shape& shape) {
     result.shape.space = shape.space;
     std::vector<std::int32_t> order(shape.points.size()), now(shape.points.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = static_cast<std::int32_t>(i);
-    const auto point = [&](std::int32_t i) { return shape.points[static_cast<std::size_t>(i)]; };
+    const auto point = [&](std::int32_t i) -> const Vector3d& { return shape.points[static_cast<std::size_t>(i)]; };
     std::stable_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
         return std::lexicographical_compare(point(a).begin(), point(a).end(), point(b).begin(), point(b).end());
     });

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "planning_io/types/pose_covariance.h"
+#include "planning_io/types/rig_state.h"
 #include "planning_io/types/rigid_transform.h"
 
 namespace planlight {
@@ -13,6 +14,13 @@ enum class Verdict {
     yes,  ///< may be used
     ask,  ///< needs a person's look at the overlay on landmarks before it is used
     no,   ///< there is no pose
+};
+
+/// Which case something belongs to.
+struct CaseName {
+    std::string code, volume_hash, mesh_hash;  ///< as in case.json; empty: not known
+    bool known() const { return !volume_hash.empty(); }
+    bool operator==(const CaseName&) const = default;
 };
 
 /// Where the patient lies: the paper's T_ini, with what it was judged by.
@@ -41,6 +49,9 @@ struct RegistrationResult {
     double skin_offset_mm = 0;               ///< of the whole skin; positive outside of the CT's
     double initial_match_s = 0, refine_s = 0;
     RigidTransform initial_patient_from_ct = RigidTransform::Identity();  ///< before the ICP (Fig. 3 left)
+
+    CaseName of_case;             ///< whose table was matched
+    std::optional<RigState> rig;  ///< that the cloud was made with and the light is to be drawn with; empty: not known
 };
 
 }  // namespace planlight

@@ -18,6 +18,8 @@ struct Volume {
     std::string modality;                ///< "CT" or "MR"
     std::string frame_of_reference_uid;  ///< empty when the file has none
     std::string source;  ///< what it was read from, for reports: format, file name; never a patient's name
+    std::string series_description,
+        series_date;  ///< as the scanner has them, the date in ISO 8601; empty when not said
     std::vector<std::string>
         notes;  ///< what was noticed and did not stop the reading, in words; never a name, id or path
 

@@ -8,6 +8,7 @@
 #include "planning_io/types/error.h"
 #include "planning_io/volume/invesalius_project.h"
 #include "planning_io/volume/metaimage_file.h"
+#include "planning_io/volume/mgh_file.h"
 #include "planning_io/volume/nifti_file.h"
 #include "planning_io/volume/nrrd_file.h"
 #include "planning_io/volume/volume_checks.h"
@@ -27,32 +28,35 @@ Volume checked(Volume volume, const fs::path& path) {
     return volume;
 }
 
-Volume parse_volume(const fs::path& path, const std::string& series) {
+Volume parse_volume(const fs::path& path, const std::string& series, SliceGaps gaps) {
     const std::string name = lower_case(path.filename().string());
-    if (fs::is_directory(path)) return parse_dicom_series(path, series);
+    if (fs::is_directory(path)) return parse_dicom_series(path, series, gaps);
     if (name.ends_with(".inv3")) return checked(read_invesalius_volume(path), path);
     if (name.ends_with(".nii") || name.ends_with(".nii.gz")) return checked(parse_nifti(path), path);
+    if (name.ends_with(".mgh") || name.ends_with(".mgz")) return checked(parse_mgh(path), path);
     if (name.ends_with(".nrrd") || name.ends_with(".nhdr")) return checked(parse_nrrd(path), path);
     if (name.ends_with(".mha") || name.ends_with(".mhd")) return checked(parse_metaimage(path), path);
     if (name.ends_with(".hdr") || name.ends_with(".img"))
         throw InputError(path, "is an Analyze file or half of a NIfTI pair, which may not say left from right",
                          "Convert the DICOM series to one .nii.gz, or give the DICOM series.");
-    return parse_dicom_series(path, series);
+    return parse_dicom_series(path, series, gaps);
 }
 
 }  // namespace
 
-Volume read_volume(const fs::path& path, const std::string& series) {
+Volume read_volume(const fs::path& path, const std::string& series, SliceGaps gaps) {
     std::error_code error;
     if (!fs::exists(path, error)) throw InputError(path, "does not exist", "Check the name of the file or folder.");
     if (!fs::is_regular_file(path, error) && !fs::is_directory(path, error))
         throw InputError(path, "is neither a file nor a folder", "Name a file or folder.");
-    return volume_in_child(path, [&] { return parse_volume(path, series); });
+    return volume_in_child(path, [&] { return parse_volume(path, series, gaps); });
 }
 
 void make_anonymous(Volume& volume) {
     volume.source = volume.modality + " volume";
     volume.frame_of_reference_uid.clear();
+    volume.series_description.clear();
+    volume.series_date.clear();
 }
 
 std::string hash_of(const Volume& volume) {

@@ -21,7 +21,9 @@ void put_volume(Parcel& parcel, const Volume& volume) {
     const Eigen::Matrix4d matrix = volume.ct_from_voxel.matrix();
     for (Eigen::Index i = 0; i < 16; ++i) parcel.put(matrix(i));
     parcel.put(volume.is_hu);
-    for (const auto& text : {volume.modality, volume.frame_of_reference_uid, volume.source}) parcel.put(text);
+    for (const auto& text :
+         {volume.modality, volume.frame_of_reference_uid, volume.source, volume.series_description, volume.series_date})
+        parcel.put(text);
     parcel.put(static_cast<std::uint64_t>(volume.notes.size()));
     for (const auto& note : volume.notes) parcel.put(note);
     parcel.put(volume.values);
@@ -37,6 +39,8 @@ Volume get_volume(Parcel& parcel) {
     volume.modality = parcel.get_text();
     volume.frame_of_reference_uid = parcel.get_text();
     volume.source = parcel.get_text();
+    volume.series_description = parcel.get_text();
+    volume.series_date = parcel.get_text();
     const auto notes = parcel.get<std::uint64_t>();
     for (std::uint64_t n = 0; n < notes; ++n) {
         std::string note = parcel.get_text();

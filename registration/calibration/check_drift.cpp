@@ -42,6 +42,17 @@ std::string unfit(const ScanResult& scan, const DriftLimits& limits) {
     return {};
 }
 
+/// What the joint adjustment of the three devices found, in the same words as the scan and the light have it.
+void decide_by_state(DriftCheck& check, const RigState& state) {
+    using Verdict = DriftCheck::Verdict;
+    const auto best = [&](RigDevice device) { return state.devices[static_cast<std::size_t>(device)].best; };
+    const bool cameras = best(RigDevice::left_camera) || best(RigDevice::right_camera);
+    const bool lens = state.devices[static_cast<std::size_t>(RigDevice::projector)].lens;
+    check.verdict = cameras ? Verdict::cameras_moved : lens ? Verdict::lens_changed : Verdict::projector_moved;
+    check.reason = state.sentence;
+    check.remedy = state.remedy;
+}
+
 /// `placed`: the points were enough to place the projector by them. Moved cameras are told first: then they may not be.
 void decide(DriftCheck& check, bool placed, const DriftLimits& limits) {
     using Verdict = DriftCheck::Verdict;
@@ -87,8 +98,7 @@ void decide(DriftCheck& check, bool placed, const DriftLimits& limits) {
         check.reason =
             fmt::format("the projector moved by {:.2f} mm and {:.3f} degrees: light would land {:.2f} mm off",
                         check.moved_mm, check.turned * kDegrees, check.light_off_mm);
-        check.remedy =
-            "Scans place the projector anew by themselves; calibrate the rig again if it was not moved on purpose.";
+        check.remedy = "The light is drawn with the projector where the scan finds it; calibrate the rig again.";
     } else {
         check.verdict = Verdict::good;
         check.reason = "the rig is as it was calibrated";
@@ -133,20 +143,11 @@ const char* text_of(DriftCheck::Verdict verdict) {
     return "cannot tell";
 }
 
-double usual_epipolar_px(const Triangulation& raw) {
-    constexpr double kOneSigma = 0.683;
-    std::vector<double> sizes;
-    for (const auto& point : raw.by_cameras) sizes.push_back(std::abs(point.epipolar_px));
-    if (sizes.empty()) return 0;
-    const auto rank = sizes.begin() + static_cast<std::ptrdiff_t>(kOneSigma * static_cast<double>(sizes.size()));
-    std::nth_element(sizes.begin(), rank, sizes.end());
-    return *rank;
-}
-
 DriftCheck check_drift(const ScanResult& scan, const RigCalibration& rig, const DriftLimits& limits) {
     DriftCheck check;
     check.points = scan.raw.by_cameras.size();
-    check.epipolar_px = usual_epipolar_px(scan.raw);
+    const bool moved = scan.rig.moved();
+    check.epipolar_px = moved ? scan.epipolar_as_calibrated_px : usual_epipolar_px(scan.raw);
     if (scan.resection) {
         check.projector_rms_px = std::numbers::sqrt2 * scan.resection->rms_before_px;  // said per axis there
         check.projector_after_px = std::numbers::sqrt2 * scan.resection->rms_after_px;
@@ -158,10 +159,12 @@ DriftCheck check_drift(const ScanResult& scan, const RigCalibration& rig, const 
         check.light_off_mm = check.projector_rms_px * mm_per_px(scan.raw, rig.projector);
     }
     check.reason = unfit(scan, limits);
-    if (check.reason.empty())
-        decide(check, scan.resection.has_value(), limits);
-    else
+    if (!check.reason.empty())
         check.remedy = "Show the full sequence of `planlight patterns`.";
+    else if (moved && check.points >= limits.min_points)
+        decide_by_state(check, scan.rig);
+    else
+        decide(check, scan.resection.has_value(), limits);
     return check;
 }
 

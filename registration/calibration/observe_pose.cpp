@@ -162,8 +162,7 @@ std::string wrong_in_sequence(std::span<const GrayImage> frames, const StripeSet
 }  // namespace
 
 DecodedView decode_calibration_light(std::span<const GrayImage> frames, const StripeSettings& stripes) {
-    return stripes.phase_steps == 0 ? decode_gray_code(frames, stripes.width, stripes.height)
-                                    : decode_stripes(frames, stripes);
+    return stripes.phase_steps == 0 ? decode_gray_code(frames, stripes) : decode_stripes(frames, stripes);
 }
 
 CameraObservation observe_board(std::span<const GrayImage> frames, const std::optional<StripeSettings>& stripes,

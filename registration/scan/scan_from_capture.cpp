@@ -56,22 +56,23 @@ void refuse_wrong_sequence(const ScanCapture& capture, ScanResult& result) {
             fmt::format("the {} camera's frames do not show the sequence: {} ({:.0f} % of the lit pixels){}", camera,
                         check.problems[0].what, 100 * check.problems[0].share,
                         said_of_gamma(camera_gamma(frames, uniform_light_frames(capture)))),
-            "Scan again; if it comes back, check the delay between projector and cameras and the names of "
-            "the pictures. \"check_sequence\": false in capture.json takes them as they are.");
+            remedy_of(check.problems[0]) + " \"check_sequence\": false in capture.json takes them as they are.");
     };
     judge(result.left_sequence, capture.left, "left");
     judge(result.right_sequence, capture.right, "right");
 }
 
-bool use_resection(const ScanSettings& settings, ScanResult& result, RigCalibration& rig) {
-    if (!settings.use_resection || !result.resection || !result.resection->believable) return false;
-    rig.projector = result.resection->projector;
-    return true;
+/// The light must be read to this many projector pixels to judge a rig by it.
+constexpr double kFineLight_px = 2;
+
+void place_projector(const std::optional<Resection>& resection, RigCalibration& rig) {
+    if (resection && resection->believable) rig.projector = resection->projector;
 }
 
-/// The codes are matched once; where the projector stands is found from a part of the matches, then all are placed.
+/// The codes are matched once; where the devices stand is found from a part of the matches, then all are placed.
 void triangulate_and_resect(const ScanSettings& settings, ScanResult& result, RigCalibration& rig) {
     if (result.left.row.empty() || result.right.row.empty()) {
+        result.rig.sentence = "whether the rig moved is not known: the light codes the projector's columns only";
         result.raw = triangulate(result.left, result.right, rig, settings.triangulation);
         return;
     }
@@ -79,9 +80,24 @@ void triangulate_and_resect(const ScanSettings& settings, ScanResult& result, Ri
     const ViewMatches matches = match_views(result.left, result.right, rig, settings.triangulation);
     TriangulationSettings by_cameras = settings.triangulation;
     by_cameras.one_camera = false;
-    result.resection = resect_projector(
-        triangulate_matches(matches, rig, by_cameras, 1 + matches.both.size() / kEnough), rig, settings.resection);
-    result.resection_used = use_resection(settings, result, rig);
+    const auto resected = [&] {
+        const Triangulation some = triangulate_matches(matches, rig, by_cameras, 1 + matches.both.size() / kEnough);
+        if (result.epipolar_as_calibrated_px == 0) result.epipolar_as_calibrated_px = usual_epipolar_px(some);
+        return resect_projector(some, rig, settings.resection);
+    };
+    const RigidTransform as_calibrated = rig.projector.device_from_rig;
+    result.resection = resected();
+    if (result.code_step_px > kFineLight_px)
+        result.rig.sentence = "whether the rig moved is not known: the light was read too coarsely";
+    else
+        result.rig = find_rig_state(matches, rig, settings.rig);
+    if (settings.use_resection && result.rig.moved()) {
+        rig = result.rig.rig;
+        place_projector(resected(), rig);
+    } else if (settings.use_resection) {
+        place_projector(result.resection, rig);
+    }
+    result.resection_used = rig.projector.device_from_rig.matrix() != as_calibrated.matrix();
     result.raw = triangulate_matches(matches, rig, settings.triangulation);
 }
 
@@ -122,13 +138,16 @@ void decode(const ScanCapture& capture, const RigCalibration& rig, const DecodeS
 RigCalibration triangulate_points(const ScanCapture& capture, const RigCalibration& rig, const ScanSettings& settings,
                                   ScanResult& result) {
     RigCalibration rig_now = rig;
+    result.rig.sentence = "whether the rig moved is not known: it takes both cameras and the projector to tell";
     if (!present(rig.projector)) {
+        result.rig.rig = rig;
         result.raw = triangulate_cameras(result.left, result.right, rig, capture.stripes.width, capture.stripes.height,
                                          settings.triangulation);
         rig_now.projector = rig.left_camera;  // for what asks where the surface is looked at from
         return rig_now;
     }
     triangulate_and_resect(settings, result, rig_now);
+    result.rig.rig = rig_now;
     return rig_now;
 }
 

@@ -11,6 +11,7 @@
 #include "registration/scan/check/check_sequence.h"
 #include "registration/scan/clean/remove_outliers.h"
 #include "registration/scan/decode/decode_stripes.h"
+#include "registration/scan/triangulate/find_rig_state.h"
 #include "registration/scan/triangulate/resect_projector.h"
 #include "registration/scan/triangulate/triangulate.h"
 
@@ -37,8 +38,9 @@ struct ScanSettings {
     TriangulationSettings triangulation;
     OutlierSettings outliers;
     ResectionSettings resection;
-    /// Take the projector from where the scan finds it, if that is believable (`Resection::believable`): without it an
-    /// error of the projector's calibration goes straight into the points that only one camera sees.
+    RigStateSettings rig;
+    /// Take the rig as the scan finds it (`ScanResult::rig`): every device if one moved, and the projector where the
+    /// resection is believable. False: as calibrated, whatever the scan says.
     bool use_resection = true;
     bool check_sequence = true;  ///< refuse a capture in which a frame does not show its own picture
 };
@@ -49,8 +51,13 @@ struct ScanResult {
     SequenceCheck left_sequence, right_sequence;  ///< not checked: too few lit pixels, or not asked for
     Triangulation raw;
     OutlierReport clean;
-    std::optional<Resection> resection;  ///< empty: too few points, or columns only
-    bool resection_used = false;         ///< then `raw` and `clean` are made with `resection->projector`
+    /// The projector against rig.json by the cameras as calibrated; empty: too few points, or columns only.
+    std::optional<Resection> resection;
+    bool resection_used = false;  ///< `rig.rig` has the projector elsewhere than rig.json
+    /// What the scan found of the rig, and the rig that `raw` and `clean` are made with; `calibrated` and `capture_hash` in it
+    /// are the caller's to fill.
+    RigState rig;
+    double epipolar_as_calibrated_px = 0;  ///< `usual_epipolar_px` by rig.json; 0: not known
     /// How finely the light could be read, projector pixels: 0 by the fringes, to fractions of one; else the finest
     /// cell of the Gray code, because there were no fringes, or none that the optics resolved.
     double code_step_px = 0;

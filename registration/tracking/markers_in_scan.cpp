@@ -35,7 +35,7 @@ ScanMovement movement_of_markers(const ScanCapture& capture, const RigCalibratio
     const std::vector<Look> looks = looks_of(capture, tracker);
     movement.moments = static_cast<int>(looks.size());
     movement.markers = static_cast<int>(tracker.markers().size());
-    if (looks.size() < 3) return movement;
+    if (looks.size() < 2) return movement;
     movement.by = ScanMovement::By::markers;
     for (std::size_t i = 0; i < looks.size(); ++i)
         for (std::size_t j = i + 1; j < looks.size(); ++j)

@@ -70,6 +70,11 @@ TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
     const fs::path missing = root / "room" / "captures" / "pose-02" / "right" / "row-phase-3.png";
     fs::rename(missing, root / "kept.png");
     expect_refused(run_planlight("calibrate room/captures" + board + " --out rig.json", root), 3, "row-phase-3");
+    const fs::path other = root / "room" / "captures" / "pose-03" / "left" / "white.png";
+    fs::rename(other, root / "other.png");
+    expect_refused(run_planlight("calibrate room/captures" + board + " --out rig.json", root), 3,
+                   "2 pictures are missing: pose-02/right/row-phase-3, pose-03/left/white");
+    fs::rename(root / "other.png", other);
     std::ofstream(missing, std::ios::binary) << whole(root / "kept.png").substr(0, 5000);
     expect_refused(run_planlight("calibrate room/captures" + board + " --out rig.json", root), 4, "row-phase-3");
     EXPECT_EQ(whole(root / "rig.json"), good);
@@ -88,6 +93,7 @@ TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
     EXPECT_FALSE(of_two.contains("projector"));
     EXPECT_TRUE(of_two.contains("right_camera"));
     EXPECT_FALSE(json::parse(pair.out)["devices"].contains("projector"));
+    EXPECT_TRUE(json::parse(pair.out)["predicted_error"]["light_p95_mm"].is_null()) << "there is no light: no figure of it, not 0";
     EXPECT_NEAR(json::parse(pair.out)["devices"]["left_camera"]["focal_x"].get<double>(),
                 truth["left_camera"]["focal_x"].get<double>(), 10);
 }

@@ -26,12 +26,62 @@ TEST_F(CommandsTest, PrepareEndsWithAReportThatNeedsNothingElse) {
     for (auto at = page.find("data:image/png;base64,"); at != std::string::npos;
          at = page.find("data:image/png;base64,", at + 1))
         ++pictures;
-    EXPECT_EQ(pictures, 7u) << "three slices, the head from four sides";
+    EXPECT_EQ(pictures, 13u)
+        << "slices through the middle and through the plan, the head from four sides and from above, "
+           "what was thrown away from two";
     EXPECT_EQ(page.find("://"), std::string::npos) << "nothing comes from a network";
     const json report = read_json(root() / "case" / "report.json");
     EXPECT_EQ(report["case"], json::parse(prepared().out)["case"]);
     ASSERT_EQ(report["items"].size(), 6u);
     for (const auto& item : report["items"]) EXPECT_LT(item["distance_to_skin_mm"].get<double>(), 10) << item["name"];
+    EXPECT_EQ(report["threshold_unit"], "HU");
+    EXPECT_TRUE(report["threshold_automatic"].get<bool>());
+    // The head holder's plates lie behind this patient, and nothing of the head is among what was thrown away.
+    ASSERT_FALSE(report["removed"].empty());
+    EXPECT_NEAR(report["removed"][0]["ml"].get<double>(), report["removed_ml"].get<double>(), 100);
+    const std::string sums = read_text(root() / "case" / "checksums.xxh128");
+    for (const char* name : {"report.html", "report.json", "case.json", "skin.ply", "skin.lut", "plan.mrk.json"})
+        EXPECT_NE(sums.find(std::string("  ") + name + "\n"), std::string::npos) << name;
+}
+
+TEST_F(CommandsTest, AWarningIsPrintedThoughALaterStepFails) {
+    // The example plan moved up by 25 mm: its skin's warnings are known by the time it is stopped.
+    json plan = json::parse(read_text(CommandsTest::plan()));
+    for (auto& markup : plan["markups"])
+        for (auto& point : markup["controlPoints"]) point["position"][2] = point["position"][2].get<double>() + 300;
+    std::ofstream(root() / "far.mrk.json") << plan;
+    const auto run = run_planlight("prepare " + patient() + " --plan far.mrk.json --out far", root());
+    EXPECT_EQ(run.exit_code, 3) << run.err;
+    EXPECT_NE(run.err.find("does not fit this patient"), std::string::npos) << run.err;
+    const auto warnings = json::parse(prepared().out)["warnings"];
+    ASSERT_FALSE(warnings.empty()) << "the example patient is cut at the upper lip";
+    EXPECT_NE(run.err.find("warning: " + warnings[0].get<std::string>()), std::string::npos) << run.err;
+    EXPECT_FALSE(fs::exists(root() / "far"));
+}
+
+TEST_F(CommandsTest, ACaseIsCalledAsTheSiteCallsIt) {
+    const std::string prepare = "prepare " + patient() + " --plan " + plan() + " --voxel-mm 4 ";
+    const auto run =
+        run_planlight(prepare + "--patient 'E. M.' --plan-name 'frontal defect' --plan-version 2 --out named", root());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    const std::string title = "E. M., frontal defect, version 2";
+    EXPECT_NE(run.out.find(title), std::string::npos) << run.out;
+    EXPECT_NE(read_text(root() / "named" / "report.html").find(title), std::string::npos);
+    const auto review = run_planlight("review named --json", root());
+    EXPECT_EQ(json::parse(review.out)["title"], title) << review.err;
+    expect_one_clear_sentence(run_planlight(prepare + "--out long --title " + std::string(600, 't'), root()), 3,
+                              "600 characters, more than 80");
+    expect_one_clear_sentence(run_planlight(prepare + "--out named", root()), 3, "holds a case already");
+    EXPECT_EQ(run_planlight(prepare + "--anonymous --patient EM --out never", root()).exit_code, 2);
+    EXPECT_FALSE(fs::exists(root() / "never"));
+}
+
+TEST_F(CommandsTest, WhereMemoryIsShortTheNeedIsSaid) {
+    const auto run = run_planlight("prepare " + patient() + " --plan " + plan() + " --voxel-mm 0.25 --out never",
+                                   root(), "ulimit -v 900000; ");
+    EXPECT_TRUE(run.exit_code == 3 || run.exit_code == 7) << run.exit_code << run.err;
+    EXPECT_NE(run.err.find("MiB"), std::string::npos) << run.err;
+    EXPECT_FALSE(fs::exists(root() / "never"));
 }
 
 TEST_F(CommandsTest, TheExamplePlanRaisesNoWarningOnItsPatient) {
@@ -128,7 +178,8 @@ TEST_F(CommandsTest, AnAnonymousCaseHoldsNoNameIdOrPathOfTheSeries) {
     ASSERT_EQ(run.exit_code, 0) << run.err;
     for (const auto& text : identity) {
         EXPECT_FALSE(folder_says(root() / "anonymous_case", text)) << text;
-        const bool is_uid = text == look.uid || text == frame_uid;  // no case holds more than these
+        // No case holds more than the series' UIDs and description; a title for people is given by hand.
+        const bool is_uid = text == look.uid || text == frame_uid || text == look.description;
         EXPECT_EQ(folder_says(root() / "named_case", text), is_uid) << text;
         EXPECT_EQ(run.out.find(text), std::string::npos) << text;
     }

@@ -20,10 +20,10 @@ void expect_refused(const CommandRun& run, int exit_code, const std::string& abo
     EXPECT_NE(run.err.find(about), std::string::npos) << run.err;
 }
 
-CommandRun run_planlight(const std::string& arguments, const std::filesystem::path& folder) {
+CommandRun run_planlight(const std::string& arguments, const std::filesystem::path& folder, const std::string& before) {
     const auto out = folder / ".stdout", err = folder / ".stderr";
-    const std::string line = "cd '" + folder.string() + "' && '" PLANLIGHT_PROGRAM "' " + arguments + " >'" +
-                             out.string() + "' 2>'" + err.string() + "' </dev/null";
+    const std::string line = "cd '" + folder.string() + "' && " + before + "'" PLANLIGHT_PROGRAM "' " + arguments +
+                             " >'" + out.string() + "' 2>'" + err.string() + "' </dev/null";
     const int status = std::system(line.c_str());
     CommandRun run;
     run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);

@@ -11,8 +11,9 @@ struct CommandRun {
     std::string out, err;
 };
 
-/// Runs `planlight ARGUMENTS` (shell words) in `folder`.
-CommandRun run_planlight(const std::string& arguments, const std::filesystem::path& folder);
+/// Runs `planlight ARGUMENTS` (shell words) in `folder`, after `before` (shell commands, such as a limit).
+CommandRun run_planlight(const std::string& arguments, const std::filesystem::path& folder,
+                         const std::string& before = {});
 
 /// The bytes of a file; none when it is not there.
 std::string whole(const std::filesystem::path& file);

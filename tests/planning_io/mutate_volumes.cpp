@@ -130,7 +130,7 @@ void read_one(const Seed& seed, MutationCounts& counts) {
         const auto crash = what.find("made the reader of a volume crash");
         counts.parser_crashes += crash != std::string::npos;
         if (crash != std::string::npos) ++counts.crash_kinds[what.substr(what.find('(', crash))];
-        counts.cut_off += what.find("took longer") != std::string::npos || what.find("4 GiB") != std::string::npos;
+        counts.cut_off += what.find("took longer") != std::string::npos || what.find("MiB") != std::string::npos;
         ++(e.exit_code == ExitCode::input_refused  ? counts.refused
            : e.exit_code == ExitCode::file_damaged ? counts.damaged
                                                    : counts.other_errors);

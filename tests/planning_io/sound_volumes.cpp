@@ -7,6 +7,7 @@
 #include "planning_io/files/safe_write.h"
 #include "tests/planning_io/synthetic_files.h"
 #include "tests/planning_io/volume_cases.h"
+#include "tests/support/test_data.h"
 
 namespace planlight::test {
 namespace {
@@ -207,8 +208,71 @@ void add_folders(std::vector<VolumeCase>& list) {
                     "", true, "CT"});
 }
 
+/// As bgzip and pigz write it: a member for every few bytes, and an empty one at the end.
+std::string gzipped_in_members(const std::string& plain, std::size_t each) {
+    std::string bytes;
+    for (std::size_t at = 0; at < plain.size(); at += each) bytes += gzipped(plain.substr(at, each));
+    return bytes + gzipped("");
+}
+
+/// A folder of a sound series and one file of somebody else's that no program can read.
+VolumeCase beside(const std::string& name, const std::function<std::string()>& broken) {
+    return {"DICOM series beside " + name,
+            "",
+            [=](const fs::path& folder) {
+                write_series(synthetic_series({}), folder);
+                write_safely(folder / "A0001", broken());
+                return folder;
+            },
+            "",
+            true,
+            "CT"};
+}
+
+std::string slice_of_another(const fs::path& scratch) {
+    const auto files = write_series(
+        synthetic_series({}, {.description = "Other", .uid = "1.2.826.0.1.3680043.9.9999.44.1", .number = "8"}),
+        scratch);
+    return read_whole(files.front());
+}
+
+void add_broken_company(std::vector<VolumeCase>& list) {
+    for (const double part : {0.005, 0.02, 0.03, 0.6})
+        list.push_back(beside(fmt::format("another's slice cut to {} of 1000", 1000 * part), [=] {
+            const TemporaryFolder scratch;
+            const std::string whole = slice_of_another(scratch.path());
+            return whole.substr(0, static_cast<std::size_t>(part * static_cast<double>(whole.size())));
+        }));
+    list.push_back(beside("nothing but the mark of DICOM", [] { return std::string(128, '\0') + "DICM"; }));
+    list.push_back(beside("noise after the mark of DICOM", [] {
+        std::string bytes = std::string(128, '\0') + "DICM";
+        for (unsigned i = 0, x = 1; i < 20000; ++i) bytes += static_cast<char>((x = 1664525 * x + 1013904223) >> 24);
+        return bytes;
+    }));
+    list.push_back(beside("a length that is a lie", [] {
+        return std::string(128, '\0') + "DICM" + std::string("\2\0\0\0UL\4\0\xff\xff\xff\x7f", 12) +
+               std::string("\x08\0\x60\0OB\0\0\xf0\xff\xff\xff", 12) + std::string(500, 'x');
+    }));
+    list.push_back(beside("a deflated slice that cannot be inflated", [] {
+        const TemporaryFolder scratch;
+        const SeriesLook look{.uid = "1.2.826.0.1.3680043.9.9999.44.2", .number = "9"};
+        std::string bytes =
+            read_whole(write_series(synthetic_series({}, look), scratch.path(), DicomEncoding::deflated).front());
+        bytes.resize(bytes.size() / 2);
+        return bytes;
+    }));
+}
+
 void add_formats(std::vector<VolumeCase>& list) {
     const Grid grid;
+    list.push_back(file("NIfTI, gzip of many members (bgzip)", "head.nii.gz",
+                        [=] { return gzipped_in_members(nifti_bytes(nifti_header(grid), grid), 65280); }));
+    list.push_back(file("NIfTI, gzip of members of 7 bytes, and zeros after them", "head.nii.gz", [=] {
+        const std::string whole = nifti_bytes(nifti_header(grid), grid);
+        return gzipped_in_members(whole.substr(0, 3500), 7) + gzipped(whole.substr(3500)) + std::string(512, '\0');
+    }));
+    list.push_back(file("NRRD, gzip of many members (bgzip)", "head.nrrd",
+                        [=] { return nrrd_header(grid, "gzip") + gzipped_in_members(int16_bytes(grid), 65280); }));
     const Grid oblique = turned_grid(Eigen::AngleAxisd(0.4, Eigen::Vector3d(1, 2, -1).normalized()).toRotationMatrix());
     Grid left_handed = grid;  // as NIfTI files of radiological order are
     left_handed.ct_from_voxel = grid.ct_from_voxel * Eigen::Translation3d(63, 0, 0) * Eigen::Scaling(-1.0, 1.0, 1.0);
@@ -290,6 +354,7 @@ std::vector<VolumeCase> sound_volumes() {
     add_positions(list);
     add_folders(list);
     add_formats(list);
+    add_broken_company(list);
     return list;
 }
 

@@ -115,8 +115,8 @@ void add_stack(std::vector<VolumeCase>& list) {
         o.number(0x00280010, 32), o.pixels(std::vector<std::int16_t>(32 * 64, 24));
     }));
     list.push_back(slice("two ways of storing", "stored with", [](DicomObject& o) { o.number(0x00280103, 1); }));
-    list.push_back(series("uneven spacing: one slice 0.02 mm off", "not evenly spaced",
-                          [](Objects& o) { put_z(o[9], -46 + 36.02); }));
+    list.push_back(series("uneven spacing: one slice 0.2 mm off", "not evenly spaced",
+                          [](Objects& o) { put_z(o[9], -46 + 36.2); }));
     list.push_back(series("uneven spacing: 4 mm below, 2.5 mm above", "evenly", [](Objects& o) {
         for (int k = 12; k < 24; ++k) put_z(o[static_cast<std::size_t>(k)], -46 + 44 + 2.5 * (k - 11));
     }));
@@ -254,6 +254,28 @@ void add_damage(std::vector<VolumeCase>& list) {
     list.push_back(file("an Analyze header", "Analyze", "head.hdr", [] { return nifti_header({}); }));
     list.push_back(file("NIfTI: cut in its voxels", "cut short", "head.nii",
                         [] { return nifti_bytes(nifti_header({}), {}).substr(0, 100000); }));
+    list.push_back(file("NIfTI: gzip of two members, the second cut", "cut short", "head.nii.gz", [] {
+        const std::string whole = nifti_bytes(nifti_header({}), {});
+        const std::string bytes = gzipped(whole.substr(0, 50000)) + gzipped(whole.substr(50000));
+        return bytes.substr(0, bytes.size() - 20);
+    }));
+    list.push_back(file("NIfTI: gzip of two members, the first with a wrong checksum", "damaged", "head.nii.gz", [] {
+        const std::string whole = nifti_bytes(nifti_header({}), {});
+        std::string first = gzipped(whole.substr(0, 50000));
+        first[first.size() - 6] = static_cast<char>(first[first.size() - 6] ^ 1);
+        return first + gzipped(whole.substr(50000));
+    }));
+    list.push_back({"a slice of the series that is cut behind its series' UID", "is a DICOM file that is damaged",
+                    [](const fs::path& folder) {
+                        const SeriesLook look;
+                        const auto files = write_series(synthetic_series({}, look), folder);
+                        const std::string whole = read_whole(files.front());
+                        std::string cut = whole.substr(0, whole.find(look.uid) + look.uid.size());
+                        for (std::size_t at = 132; at < 140; ++at) cut[at] = 'x';  // nor can its header be read
+                        write_safely(files.front(), cut);
+                        return folder;
+                    },
+                    "", true, "CT"});
     list.push_back(file("NIfTI: gzip with a wrong checksum", "damaged", "head.nii.gz", [] {
         std::string bytes = gzipped(nifti_bytes(nifti_header({}), {}));
         bytes[bytes.size() - 6] = static_cast<char>(bytes[bytes.size() - 6] ^ 1);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <random>
 
 #include "segmentation/segment_skin.h"
@@ -95,42 +94,7 @@ TEST(MrSkinEdge, LiesOnTheEdgeWhereverTheCoilIs) {
     EXPECT_TRUE(skin.thickness_mm.empty());
 }
 
-/// Largest difference of the fitted factor from the coil's, over the head, in logarithms; both without their means.
-double worst_bias(const Volume& volume, const BiasField& bias, double ratio) {
-    Volume ones = volume;
-    std::fill(ones.values.begin(), ones.values.end(), 1.F);
-    ones = without_bias(std::move(ones), bias);
-    std::vector<double> off;
-    for (int k = 0; k < volume.size[2]; k += 4)
-        for (int j = 0; j < volume.size[1]; j += 4)
-            for (int i = 0; i < volume.size[0]; i += 4) {
-                const Vector3d p = volume.ct_from_voxel * Vector3d(i, j, k);
-                if (analytic_head_distance(p) > 0) continue;
-                off.push_back(-std::log(static_cast<double>(ones.at(i, j, k))) + p.y() / 200 * std::log(ratio));
-            }
-    const double middle = std::accumulate(off.begin(), off.end(), 0.0) / static_cast<double>(off.size());
-    double worst = 0;
-    for (const double o : off) worst = std::max(worst, std::abs(o - middle));
-    return worst;
-}
-
-TEST(BiasField, IsFoundWhateverTheTissueAndDoesNotInventOne) {
-    for (const double ratio : {1.0, 3.0})
-        for (const bool layers : {false, true}) {
-            const Volume volume = mr_of_head(ratio, 15, layers);
-            const BiasField bias = fit_bias(volume);
-            // Layers look like a bias that is round: it may be up to a fifth, a threshold is right within a half.
-            // Without layers the worst is the tip of the nose, beyond the range that is kept.
-            EXPECT_LT(worst_bias(volume, bias, ratio), layers ? 0.2 : 0.1) << ratio << layers;
-        }
-    Volume flat;
-    flat.modality = "MR";
-    flat.size = {4, 4, 4};
-    flat.values.assign(64, 7);
-    EXPECT_EQ(fit_bias(flat).ratio(), 1);  // nothing to fit
-}
-
-TEST(BiasField, AHeadThreeTimesAsBrightInFrontIsSegmentedWhole) {
+TEST(SegmentMrSkin, AHeadThreeTimesAsBrightInFrontIsSegmentedWhole) {
     for (const bool layers : {false, true}) {
         Volume volume = mr_of_head(3, 15, layers);
         const SkinMask mask = segment_skin(volume);
@@ -139,7 +103,7 @@ TEST(BiasField, AHeadThreeTimesAsBrightInFrontIsSegmentedWhole) {
         const Errors raw = errors_of(triangulate_skin(volume, segment_skin(volume)));
         RecordProperty(layers ? "layers_rms_um" : "rms_um", static_cast<int>(1000 * even.rms));
         RecordProperty(layers ? "layers_raw_rms_um" : "raw_rms_um", static_cast<int>(1000 * raw.rms));
-        EXPECT_GT(mask.bias.ratio(), 2) << layers;
+        EXPECT_GT(mask.brightness_ratio, 2) << layers;
         EXPECT_LT(even.rms, layers ? 0.17 : 0.13) << layers;  // an eighth of a voxel, a tenth
         EXPECT_LT(std::abs(even.front - even.back), 0.15) << layers;
         EXPECT_GT(raw.rms, 2 * even.rms) << layers << ": the fault is there";

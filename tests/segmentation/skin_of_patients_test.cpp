@@ -220,7 +220,7 @@ TEST(MrHead, HasTheSameSkinWhenACoilMakesOneSideThreeTimesAsBright) {
     ASSERT_EQ(volume.modality, "MR");
     const SkinMask as_it_is = segment_skin(volume);
     const TriangleMesh skin = triangulate_skin(volume, as_it_is);
-    RecordProperty("bias_percent", static_cast<int>(100 * as_it_is.bias.ratio()));
+    RecordProperty("bias_percent", static_cast<int>(100 * as_it_is.brightness_ratio));
     RecordProperty("sigma_um", static_cast<int>(1000 * skin_edge_sigma_mm(volume, as_it_is, skin)));
     for (const int axis : {0, 1, 2}) {
         Volume biased = volume;

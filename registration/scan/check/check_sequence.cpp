@@ -9,6 +9,7 @@
 #include "registration/scan/check/sequence_fringes.h"
 #include "registration/scan/check/sequence_nesting.h"
 #include "registration/scan/check/sequence_samples.h"
+#include "registration/scan/check/stripe_widths.h"
 
 namespace planlight {
 namespace {
@@ -20,9 +21,11 @@ void check_ends(const Samples& s, SequenceCheck& check) {
     check.checked = s.changing >= kEnough;
     constexpr double kMost = 0.05;
     if (check.checked && share_of(s.not_white, s.changing) > kMost)
-        check.problems.push_back({s.white, "white is not the brightest", share_of(s.not_white, s.changing)});
+        check.problems.push_back(
+            {s.white, "white is not the brightest", share_of(s.not_white, s.changing), SequenceProblem::Cause::light});
     if (check.checked && share_of(s.not_black, s.changing) > kMost)
-        check.problems.push_back({s.black, "black is not the darkest", share_of(s.not_black, s.changing)});
+        check.problems.push_back(
+            {s.black, "black is not the darkest", share_of(s.not_black, s.changing), SequenceProblem::Cause::light});
 }
 
 /// Marks the pixels whose neighbours in all four directions have the same difference of two frames: no edge, no blur.
@@ -56,60 +59,35 @@ void check_pairs(const Samples& s, const Direction& direction, SequenceCheck& ch
             wrong += off > 0.35 * s.contrast[i] + 3 * s.noise_grey;
         }
         constexpr double kMost = 0.02, kMostFarOff = 0.1;
-        if (looked < kEnough || share_of(wrong, looked) <= kMost) {  // fine stripes have no flat places
+        // Fine stripes have no flat places, or only such as look flat from three pixels away.
+        if (k >= direction.wide || looked < kEnough || share_of(wrong, looked) <= kMost) {
             if (s.lit < kEnough || share_of(far_off, s.lit) <= kMostFarOff) continue;
             wrong = far_off, looked = s.lit;
         }
         check.problems.push_back({gray,
                                   fmt::format("{} and its inverse do not complete each other{}{}", s.name(gray),
                                               explain(s, gray), explain(s, inverse)),
-                                  share_of(wrong, looked)});
+                                  share_of(wrong, looked), SequenceProblem::Cause::light});
     }
-}
-
-/// How often a bit changes clearly between pixels and their neighbours to the right and below.
-struct Changes {
-    std::size_t changed = 0, looked = 0;
-    bool resolved = false;  ///< a bit too fine for the optics changes where noise will
-};
-
-Changes changes_of(const Samples& s, const Direction& direction, std::size_t bit) {
-    Changes changes;
-    std::size_t clear = 0;
-    for (std::size_t i = 0; i < s.lit; ++i) {
-        const int here = s.difference(direction, bit, [&](std::size_t frame) { return int{s.here[frame][i]}; });
-        clear += 2 * std::abs(here) > s.contrast[i];
-        for (const std::size_t side : {std::size_t{1}, std::size_t{3}}) {
-            if ((side == 1 ? s.contrast_right : s.contrast_below)[i] < kLit_grey) continue;
-            const int there =
-                s.difference(direction, bit, [&](std::size_t frame) { return int{s.around[frame][side][i]}; });
-            ++changes.looked;
-            changes.changed +=
-                (here > 0) != (there > 0) && std::min(std::abs(here), std::abs(there)) * 4 > s.contrast[i];
-        }
-    }
-    changes.resolved = share_of(clear, s.lit) > 0.6;
-    return changes;
 }
 
 /// Of two bits the finer one changes more often.
-void check_order(const Samples& s, const Direction& direction, SequenceCheck& check) {
-    const std::size_t bits = direction.gray.size();
-    std::vector<Changes> changes;
+void check_order(const Samples& s, const Direction& direction, const std::vector<Changes>& changes,
+                 SequenceCheck& check) {
+    constexpr std::size_t kFewLines =
+        6;  // that far from the finest a bit has too few stripes over the surface to count on
+    const std::size_t bits = std::min(changes.size(), direction.wide);
     double lines = 0;  // the finest bit changes every other half period; the one before half as often, and so on
-    for (std::size_t k = 0; k < bits; ++k) {
-        changes.push_back(changes_of(s, direction, k));
-        lines = std::max(lines, static_cast<double>(changes[k].changed));
-    }
+    for (std::size_t k = 0; k < bits; ++k) lines = std::max(lines, static_cast<double>(changes[k].all()));
     for (std::size_t k = 0; k + 1 < bits; ++k) {
         const double expected = lines / std::pow(2.0, static_cast<double>(bits - 1 - k));
-        // Too few stripes over the surface to count on.
-        if (expected < lines / 32 || expected < 60 || !changes[k + 1].resolved) continue;
-        if (static_cast<double>(changes[k].changed) > 1.25 * static_cast<double>(changes[k + 1].changed))
+        if (k + kFewLines < changes.size() || expected < 60 || !changes[k + 1].clear) continue;
+        if (static_cast<double>(changes[k].all()) > 1.25 * static_cast<double>(changes[k + 1].all()))
             check.problems.push_back(
                 {direction.gray[k],
                  fmt::format("{} has finer stripes than {}", s.name(direction.gray[k]), s.name(direction.gray[k + 1])),
-                 share_of(changes[k].changed, changes[k].looked)});
+                 share_of(changes[k].all(), changes[k].looked[0] + changes[k].looked[1]),
+                 SequenceProblem::Cause::order});
     }
 }
 
@@ -121,18 +99,43 @@ bool judges_itself(const Samples& s) {
 
 }  // namespace
 
+std::string remedy_of(const SequenceProblem& problem) {
+    using Cause = SequenceProblem::Cause;
+    switch (problem.cause) {
+        case Cause::timing:
+            return "Scan again; if it comes back, check the delay between projector and cameras.";
+        case Cause::order:
+            return "Check the names of the pictures: coarsest bit first, columns before rows; else the delay between "
+                   "projector and cameras.";
+        case Cause::light:
+            return "Switch off what changes by itself (the camera's automatic exposure and gain, the projector's "
+                   "dynamic contrast), see "
+                   "that nobody moves lamps; else check the delay between projector and cameras and the names of the "
+                   "pictures.";
+        case Cause::mirrored:
+            return "See that no picture is mirrored and that the bits are not named as their inverses (white where a "
+                   "bit is 1).";
+        case Cause::fringes:
+            return "See that period, number and order of the shifts are those of capture.json; else check the delay "
+                   "between projector and cameras.";
+    }
+    return {};
+}
+
 SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes) {
     return check_sequence(frames, stripes, stripe_sequence(stripes));
 }
 
 SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSettings& stripes,
                              const std::vector<StripePattern>& patterns, bool patchy) {
-    const Samples samples = gather_samples(frames, stripes, patterns);
+    Samples samples = gather_samples(frames, stripes, patterns);
     SequenceCheck check;
     check_ends(samples, check);
     check.checked = check.checked && (samples.lit >= kEnough || !check.problems.empty());
     if (!check.checked || !check.problems.empty()) return check;
-    for (const Direction& direction : samples.directions) {
+    for (Direction& direction : samples.directions) {
+        const std::vector<Changes> changes = changes_of(samples, direction);
+        direction.wide = wide_bits(changes);
         std::vector<std::vector<Fringe>> fringes{fringes_of(samples, direction.phase)};
         for (const auto& phases : direction.further) fringes.push_back(fringes_of(samples, phases));
         check_pairs(samples, direction, check);
@@ -141,7 +144,7 @@ SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSett
             check_fringes(samples, direction.further[k], fringes[k + 1], check);
         check_frequencies(samples, direction, fringes, check);
         check_parity(samples, direction, fringes[0], check);
-        if (!patchy) check_order(samples, direction, check);
+        if (!patchy) check_order(samples, direction, changes, check);
     }
     if (judges_itself(samples)) check_nesting(frames, samples, check);
     return check;

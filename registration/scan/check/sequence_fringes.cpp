@@ -101,7 +101,7 @@ void check_fringes(const Samples& s, const std::vector<std::size_t>& phases, con
     check.problems.push_back(
         {phases[0],
          fmt::format("{} to {} are no fringes in order{}", s.name(phases.front()), s.name(phases.back()), twins),
-         share_of(wrong, s.lit)});
+         share_of(wrong, s.lit), twins.empty() ? SequenceProblem::Cause::fringes : SequenceProblem::Cause::timing});
 }
 
 void check_parity(const Samples& s, const Direction& direction, const std::vector<Fringe>& fringes,
@@ -131,7 +131,7 @@ void check_parity(const Samples& s, const Direction& direction, const std::vecto
         {direction.gray[0],
          fmt::format("the code of {} to {} contradicts {} to {}", s.name(direction.gray.front()),
                      s.name(direction.gray.back()), s.name(direction.phase.front()), s.name(direction.phase.back())),
-         share_of(wrong, looked)});
+         share_of(wrong, looked), SequenceProblem::Cause::fringes});
 }
 
 namespace {
@@ -174,7 +174,7 @@ void check_frequencies(const Samples& s, const Direction& direction, const std::
     check.problems.push_back({direction.phase[0],
                               fmt::format("the fringes from {} to {} do not belong to each other",
                                           s.name(direction.phase.front()), s.name(direction.further.back().back())),
-                              share_of(wrong, looked)});
+                              share_of(wrong, looked), SequenceProblem::Cause::fringes});
 }
 
 }  // namespace planlight::sequence

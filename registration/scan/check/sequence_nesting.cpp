@@ -142,7 +142,7 @@ Seen look(std::span<const GrayImage> frames, const Samples& s, const Direction& 
         for (std::size_t side = 0; side < 2; ++side)
             if (alike(place.here, place.next[side])) look_at_edges(place.here, place.next[side], side, seen);
     }
-    while (seen.resolved < seen.bits && resolved(seen, seen.resolved)) ++seen.resolved;
+    while (seen.resolved < direction.wide && resolved(seen, seen.resolved)) ++seen.resolved;
     for (const Place& place : places)
         for (std::size_t side = 0; side < 2; ++side)
             if (alike(place.here, place.next[side])) look_along(place.here, place.next[side], side, seen);
@@ -160,13 +160,13 @@ void check_edges(const Samples& s, const Direction& direction, const Seen& seen,
             const std::string &coarse = s.name(direction.gray[k]), &fine = s.name(direction.gray[j]);
             if (static_cast<double>(all) >= line && share_of(at.together, all) > kMostTogether)
                 check.problems.push_back({direction.gray[j], fmt::format("{} changes where {} does", fine, coarse),
-                                          share_of(at.together, all)});
+                                          share_of(at.together, all), SequenceProblem::Cause::order});
             else if (static_cast<double>(at.steady) >= line && share_of(at.wrong, at.steady) > kMostWrong)
                 check.problems.push_back({direction.gray[j],
                                           fmt::format("{} is not {} where {} changes, as in a Gray code{}{}", fine,
                                                       j == k + 1 ? "lit" : "dark", coarse,
                                                       explain(s, direction.gray[j]), explain(s, direction.gray[k])),
-                                          share_of(at.wrong, at.steady)});
+                                          share_of(at.wrong, at.steady), SequenceProblem::Cause::order});
         }
 }
 
@@ -174,12 +174,12 @@ void check_edges(const Samples& s, const Direction& direction, const Seen& seen,
 void check_finest_last(const Samples& s, const Direction& direction, const Seen& seen, SequenceCheck& check) {
     constexpr double kMargin = 0.1;
     for (std::size_t k = 0; k + 1 < seen.bits; ++k)
-        for (std::size_t j = k + 1; j < seen.bits && !resolved(seen, k, -kMargin); ++j)
+        for (std::size_t j = k + 1; j < direction.wide && !resolved(seen, k, -kMargin); ++j)
             if (resolved(seen, j, kMargin)) {
                 check.problems.push_back(
                     {direction.gray[k],
                      fmt::format("{} has finer stripes than {}", s.name(direction.gray[k]), s.name(direction.gray[j])),
-                     1 - share_of(seen.clear[k], seen.places)});
+                     1 - share_of(seen.clear[k], seen.places), SequenceProblem::Cause::order});
                 break;
             }
 }
@@ -215,7 +215,7 @@ void check_one_way(const Samples& s, const Direction& direction, const Seen& see
         {direction.gray[0],
          fmt::format("the code of {} to {} turns back on the surface: a coarse one is another picture",
                      s.name(direction.gray.front()), s.name(direction.gray.back())),
-         share_of(against, all)});
+         share_of(against, all), SequenceProblem::Cause::order});
 }
 
 }  // namespace
@@ -240,7 +240,7 @@ void check_nesting(std::span<const GrayImage> frames, const Samples& s, Sequence
         {s.directions[0].gray[0],
          fmt::format("the code is a mirror image: {} or {} is inverted, or the pictures are mirrored",
                      s.name(s.directions[0].gray[0]), s.name(s.directions[1].gray[0])),
-         1});
+         1, SequenceProblem::Cause::mirrored});
 }
 
 }  // namespace planlight::sequence

@@ -24,6 +24,7 @@ inline constexpr std::size_t kEnough = 200;  // pixels, to say anything
 struct Direction {
     std::vector<std::size_t> gray, inverse, phase;
     std::vector<std::vector<std::size_t>> further;  ///< fringes of the further frequencies
+    std::size_t wide = 0;  ///< so many of the coarsest bits have stripes wide enough for the camera (`wide_bits`)
 
     std::vector<std::size_t>& fringes(int frequency) {
         return frequency == 0 ? phase : further[static_cast<std::size_t>(frequency - 1)];

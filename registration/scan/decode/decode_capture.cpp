@@ -28,6 +28,7 @@ GrayFrames sort_gray(const std::vector<GrayImage>& frames, const std::vector<Str
     }
     const auto finish = [&](GrayDirection& direction, int size, bool along_rows) {
         direction.size = size;
+        direction.begins_at = along_rows ? s.begins_at_row : s.begins_at_column;
         const int missing = gray_bits(s, along_rows) - static_cast<int>(direction.bits.size());
         direction.cell_px = std::ldexp(s.phase_period_px / 2, std::max(0, missing));
     };

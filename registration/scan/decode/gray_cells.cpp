@@ -1,14 +1,14 @@
 #include "registration/scan/decode/gray_cells.h"
-#include "planning_io/types/statistics.h"
 
 #include <tbb/parallel_for.h>
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <stdexcept>
+
+#include "planning_io/types/statistics.h"
+#include "registration/scan/decode/smooth_cells.h"
 
 namespace planlight {
 namespace {
@@ -65,8 +65,8 @@ float cell_of(const GrayFrames& frames, const GrayDirection& d, std::size_t bits
     }
     const int number = number_of(gray), other = doubt ? number_of(gray ^ doubt) : number;
     if (std::abs(number - other) > 1) return kNaN;
-    const double middle = ((number + other) / 2.0 + 0.5) * cell_px - 0.5;
-    return middle < d.size - 0.5 ? static_cast<float>(middle) : kNaN;
+    const double middle = ((number + other) / 2.0 + 0.5) * cell_px - 0.5 - d.begins_at;
+    return middle > -0.5 && middle < d.size - 0.5 ? static_cast<float>(middle) : kNaN;
 }
 
 /// Camera pixels a cell, in the middle of the picture's values; 1 where nothing is decoded.
@@ -86,38 +86,6 @@ double cell_in_camera(const std::vector<float>& code, int width, int height, dou
     return cell_px / std::max(median(slopes), 1e-3);
 }
 
-/// The plane through the codes round a pixel, at the pixel; empty where they lie on none.
-std::optional<float> smoothed(const std::vector<float>& code, int width, int height, int x, int y, int reach,
-                              double cell_px) {
-    const double centre =
-        code[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)];
-    const double jump = 4 * cell_px + 4;
-    const int step = std::max(1, reach / 4);
-    Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    int asked = 0;
-    for (int dy = -reach; dy <= reach; dy += step)
-        for (int dx = -reach; dx <= reach; dx += step) {
-            ++asked;
-            if (x + dx < 0 || y + dy < 0 || x + dx >= width || y + dy >= height) continue;
-            const double d = code[static_cast<std::size_t>(y + dy) * static_cast<std::size_t>(width) +
-                                  static_cast<std::size_t>(x + dx)] -
-                             centre;
-            if (!(std::abs(d) <= jump)) continue;
-            const Eigen::Vector3d row(1, dx, dy);
-            A += row * row.transpose();
-            b += row * d;
-        }
-    if (A(0, 0) < 0.4 * asked) return std::nullopt;
-    bool determined = false;
-    Eigen::Matrix3d inverse;
-    A.computeInverseWithCheck(inverse, determined, 1e-9);
-    if (!determined) return std::nullopt;
-    const double off = (inverse * b)(0);
-    if (std::abs(off) > 1.5 * cell_px) return std::nullopt;
-    return static_cast<float>(centre + off);
-}
-
 struct Direction {
     std::vector<float> code;
     double cell_px = 1, sigma_px = 0;
@@ -133,20 +101,16 @@ Direction read_direction(const GrayFrames& frames, const GrayDirection& d, bool 
     read.code.assign(fate.size(), kNaN);
     if (bits == 0) return read;
     std::vector<float> cells(fate.size(), kNaN);
-    for (std::size_t i = 0; i < fate.size(); ++i)
-        if (fate[i] == Fate::lit) cells[i] = cell_of(frames, d, bits, read.cell_px, i, settings);
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, fate.size(), 4096),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                          for (std::size_t i = range.begin(); i < range.end(); ++i)
+                              if (fate[i] == Fate::lit) cells[i] = cell_of(frames, d, bits, read.cell_px, i, settings);
+                      });
     const double across = cell_in_camera(cells, width, height, read.cell_px, along_rows);
     const int reach = std::clamp(static_cast<int>(std::ceil(1.5 * across)), 1, 12);
     // Of an even spread over a cell, by the cells that take part.
     read.sigma_px = 0.29 * read.cell_px / std::sqrt(std::max(1.0, (2 * reach + 1) / across));
-    tbb::parallel_for(0, height, [&](int y) {
-        for (int x = 0; x < width; ++x) {
-            const std::size_t i =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-            if (std::isnan(cells[i])) continue;
-            if (const auto code = smoothed(cells, width, height, x, y, reach, read.cell_px)) read.code[i] = *code;
-        }
-    });
+    smooth_cells(cells, width, height, reach, static_cast<float>(read.cell_px), read.code);
     return read;
 }
 

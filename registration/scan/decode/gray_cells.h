@@ -11,6 +11,7 @@ namespace planlight {
 struct GrayDirection {
     int size = 0;        ///< of the projector along it, pixels
     double cell_px = 1;  ///< of the finest bit that was captured, projector pixels
+    int begins_at = 0;   ///< the code's number at the first pixel
     std::vector<const GrayImage*> bits,
         inverses;  ///< equally many; inverses empty: a bit is decided by the mean of white and black
 };

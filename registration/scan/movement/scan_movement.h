@@ -10,19 +10,27 @@ namespace planlight {
 /// How far the patient moved between the pictures of one scan.
 struct ScanMovement {
     enum class By { nothing, markers, pictures } by = By::nothing;  ///< nothing: not known, and the next two are 0
-    double moved_mm =
-        0;  ///< greatest way between two moments: of a marker, or of most of the lit skin across the line of sight
-    double turned = 0;     ///< radians, between those moments; by markers only
+    double moved_mm = 0;  ///< greatest way between two moments: of a marker, or of most of the lit skin across the line
+                          ///< of sight (by pictures: without what scatter makes)
+    double sigma_mm = 0;  ///< of `moved_mm` between two moments, one standard deviation; by pictures only
+    double turned = 0;    ///< radians, between those moments; by markers only
     std::string from, to;  ///< names of the pictures at those moments
     int moments = 0;       ///< looked at
     int markers = 0;
     double camera_gamma = 1;  ///< what was taken out of the pictures; by pictures only
+
+    /// The way that is compared with a limit, mm: pictures show about half of it (one to three quarters), markers all.
+    double way_mm() const { return by == By::pictures ? 2 * moved_mm : moved_mm; }
+    /// A way that would not be seen for the scatter of the measurement (two sigma), mm.
+    double unseen_mm() const { return by == By::pictures ? 4 * sigma_mm : 0; }
 };
 
-/// From the skin itself, without markers: every even picture of the left camera (`uniform_light_frames`) is laid on the
-/// first by an affine map of least squares over the lit pixels (Lucas & Kanade 1981, one map for all). `mm_per_px`: of
+/// From the skin itself, without markers: every even picture of the left camera (`uniform_light_frames`), and of a code
+/// without inverses what is lit in each bit, is laid on the first by an affine map (`affine_movement`). `mm_per_px`: of
 /// the skin in the left picture. It sees what moves across the line of sight: of a head's way a third to three
-/// quarters. `by` is `nothing` with under three moments or too little that could move in the picture.
+/// quarters. What is saturated in any frame, and its surroundings, has no say, nor has light that changes smoothly over
+/// the picture: a smooth surface without texture shows no movement, and `sigma_mm` says so. `moved_mm` is without two
+/// of these sigmas. `by` is `nothing` with under two moments or too little that could move in the picture.
 ScanMovement movement_in_pictures(const ScanCapture& capture, double mm_per_px);
 
 /// What a left camera pixel is on the scanned points, mm (median); 0 without points.

@@ -14,7 +14,8 @@ namespace {
 constexpr int kMaxGrayBits = 15;  // the decoder keeps a code in 16 bits
 
 int cells(const StripeSettings& s, bool along_rows) {
-    return static_cast<int>(std::ceil((along_rows ? s.height : s.width) / (s.phase_period_px / 2)));
+    return (along_rows ? s.begins_at_row : s.begins_at_column) +
+           static_cast<int>(std::ceil((along_rows ? s.height : s.width) / (s.phase_period_px / 2)));
 }
 
 std::uint8_t gray_value(const StripeSettings& s, int pixel, int bit, int bits, bool inverse) {

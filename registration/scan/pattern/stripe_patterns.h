@@ -20,6 +20,9 @@ struct StripeSettings {
     /// and there is no Gray code. Empty: Gray code.
     std::vector<double> order_periods_px;
     int order_steps = 5;  ///< shifts of each further fringe
+    /// The code's number at the first column and row of the projector: of captures of others whose Gray code, without
+    /// fringes, is centred in a larger power of two. What is drawn here begins at 0.
+    int begins_at_column = 0, begins_at_row = 0;
 };
 
 /// A third of the pictures and of the time: columns only, each bit without its inverse, five shifts (they cancel the

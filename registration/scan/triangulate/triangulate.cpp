@@ -1,5 +1,8 @@
 #include "registration/scan/triangulate/triangulate.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <stdexcept>
 
 #include "registration/scan/triangulate/triangulate_matches.h"
@@ -25,6 +28,16 @@ Triangulation triangulate(const DecodedView& left, const DecodedView& right, con
     check_views(left, right, rig);
     if (left.row.empty()) return triangulate_columns(left, right, rig, settings);
     return triangulate_matches(match_views(left, right, rig, settings), rig, settings);
+}
+
+double usual_epipolar_px(const Triangulation& raw) {
+    constexpr double kOneSigma = 0.683;
+    std::vector<double> sizes;
+    for (const auto& point : raw.by_cameras) sizes.push_back(std::abs(point.epipolar_px));
+    if (sizes.empty()) return 0;
+    const auto rank = sizes.begin() + static_cast<std::ptrdiff_t>(kOneSigma * static_cast<double>(sizes.size()));
+    std::nth_element(sizes.begin(), rank, sizes.end());
+    return *rank;
 }
 
 }  // namespace planlight

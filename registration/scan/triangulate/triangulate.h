@@ -56,4 +56,10 @@ struct Triangulation {
 Triangulation triangulate(const DecodedView& left, const DecodedView& right, const RigCalibration& rig,
                           const TriangulationSettings& settings = {});
 
+/// What 68.3 % of the points that both cameras placed stay within of their epipolar line, left camera pixels: of normal
+/// noise its rms. A handful of wrong partners, 50 px off, makes a rms (`Triangulation::epipolar_rms_px`) of 0.44 px in
+/// a room where 68.3 % have 0.08, and this none. 0: not known, for no point was placed across these lines (columns
+/// only, one camera).
+double usual_epipolar_px(const Triangulation& raw);
+
 }  // namespace planlight

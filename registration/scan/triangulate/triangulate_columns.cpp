@@ -10,6 +10,7 @@ namespace planlight {
 namespace {
 
 constexpr int kMaxIterations = 12;
+constexpr double kMaxSigma_mm = 5;  // a worse point says nothing about where the skin is
 
 /// The distance along a line of sight at which the projector lights it with `column`; empty when none is found in the
 /// working volume. Newton's method from the middle of the volume (the column is a smooth, monotone function of depth).
@@ -99,11 +100,40 @@ void place(const DecodedView& right, const Eigen::Vector2d& pixel, const Corresp
     if (at) outcome.pixel_in_projector = {local.code.x(), at->y()};
 }
 
+/// One camera: where its line of sight meets the plane of light of the column. Nothing checks it but that it meets the
+/// plane on the projector's picture; near an edge blur shifts the code straight into depth.
+void place_on_plane(const Eigen::Vector2d& pixel, const Correspondence& local, const RigCalibration& rig,
+                    const TriangulationSettings& settings, PointOutcome& outcome) {
+    constexpr double kRim_px = 3;
+    outcome.kind = PointOutcome::Kind::ragged;
+    if (!local.whole || local.code.x() < kRim_px || local.code.x() > rig.projector.width - 1 - kRim_px) return;
+    outcome.kind = PointOutcome::Kind::disagree;
+    const auto sight = ray_through(rig.left_camera, pixel);
+    if (!sight) return;
+    const double middle =
+        (rig.projector.centre_in_rig() - sight->origin).norm() * 0.5 + 0.5 * std::min(settings.far_mm, 1500.0);
+    const auto depth = depth_of_column(*sight, local.code.x(), rig.projector, middle);
+    if (!depth) return;
+    outcome.p_in_rig = sight->origin + *depth * sight->direction;
+    Eigen::Matrix<double, 2, 3> by_point;
+    const auto lit = project(rig.projector, outcome.p_in_rig, by_point);
+    if (!lit || lit->y() < -kRim_px || lit->y() > rig.projector.height - 1 + kRim_px) return;
+    const double sigma_px = std::hypot(settings.projector_sigma_px, settings.camera_sigma_px, local.sigma_px);
+    outcome.sigma_mm = sigma_px / std::abs(by_point.row(0).dot(sight->direction));
+    outcome.pixel_in_projector = {local.code.x(), lit->y()};
+    outcome.seen = Triangulation::Seen::left_only;
+    if (!(outcome.sigma_mm < kMaxSigma_mm)) return;
+    outcome.kind = in_volume(rig.projector, outcome.p_in_rig, settings) ? PointOutcome::Kind::point
+                                                                        : PointOutcome::Kind::outside_volume;
+}
+
 }  // namespace
 
 Triangulation triangulate_columns(const DecodedView& left, const DecodedView& right, const RigCalibration& rig,
                                   const TriangulationSettings& settings) {
     Triangulation result;
+    const bool one_camera = right.column.size() <= 1;
+    if (one_camera && !settings.one_camera) return result;
     result.stride = stride_for(left.decoded, settings);
     const auto [step_x, step_y] = result.stride;
     const int columns = (left.width + step_x - 1) / step_x, rows = (left.height + step_y - 1) / step_y;
@@ -117,7 +147,10 @@ Triangulation triangulate_columns(const DecodedView& left, const DecodedView& ri
                                            static_cast<std::size_t>(x)];
             if (std::isnan(code)) continue;
             outcome.kind = PointOutcome::Kind::ragged;
-            if (const auto local = correspondence_at(left, x, y))
+            const auto local = correspondence_at(left, x, y);
+            if (local && one_camera)
+                place_on_plane(Eigen::Vector2d(x, y), *local, rig, settings, outcome);
+            else if (local)
                 place(right, Eigen::Vector2d(x, y), *local, rig, settings, outcome);
         }
     });

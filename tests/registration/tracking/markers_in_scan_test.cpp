@@ -10,15 +10,25 @@ namespace {
 
 constexpr int kBits = 5;
 
+/// White, black, the bits without inverses and five shifts of a fringe: what the fast set shows.
+std::vector<StripePattern> fast_columns() {
+    std::vector<StripePattern> patterns;
+    for (const StripePattern& pattern : gray_columns(kBits))
+        if (pattern.kind != StripePattern::Kind::gray_bit_inverse) patterns.push_back(pattern);
+    for (int step = 0; step < 5; ++step)
+        patterns.push_back({StripePattern::Kind::phase, false, step, "column-phase-" + std::to_string(step)});
+    return patterns;
+}
+
 /// A Gray code of columns on a head whose pose is `at(share)` when a share of the pictures is taken; stripes as seen
 /// from the left camera and the right one, hard over the markers too.
 ScanCapture capture_of(const RigCalibration& rig, const std::function<RigidTransform(double)>& at,
-                       bool with_stickers = true) {
+                       bool with_stickers = true, const std::vector<StripePattern>& patterns = gray_columns(kBits)) {
     ScanCapture capture;
     capture.stripes.width = 800;
     capture.stripes.height = 600;
     capture.stripes.rows = false;
-    capture.partial = gray_columns(kBits);
+    capture.partial = patterns;
     std::mt19937 random(3);
     for (std::size_t k = 0; k < capture.partial.size(); ++k) {
         const double share = static_cast<double>(k) / static_cast<double>(capture.partial.size() - 1);
@@ -30,10 +40,14 @@ ScanCapture capture_of(const RigCalibration& rig, const std::function<RigidTrans
             const auto kind = capture.partial[k].kind;
             for (int y = 0; y < picture.height; ++y)
                 for (int x = 0; x < picture.width; ++x) {
-                    bool light = kind == StripePattern::Kind::white;
-                    const int stripe = (x * 32 / picture.width) >> (kBits - 1 - capture.partial[k].index);
-                    if (k >= 2) light = (stripe % 2 == 0) == (kind == StripePattern::Kind::gray_bit);
-                    if (!light) striped.at(x, y) = static_cast<std::uint8_t>(picture.at(x, y) / 8);
+                    double light = kind == StripePattern::Kind::white ? 1 : 0;
+                    if (kind == StripePattern::Kind::phase) {
+                        light = 0.5 + 0.5 * std::cos(2 * M_PI * (x / 24.0 - capture.partial[k].index / 5.0));
+                    } else if (k >= 2) {
+                        const int stripe = (x * 32 / picture.width) >> (kBits - 1 - capture.partial[k].index);
+                        light = (stripe % 2 == 0) == (kind == StripePattern::Kind::gray_bit) ? 1 : 0;
+                    }
+                    striped.at(x, y) = static_cast<std::uint8_t>(picture.at(x, y) * (1 + 7 * light) / 8);
                 }
             return striped;
         };
@@ -59,6 +73,24 @@ TEST(MarkersInScan, AHeadAtRestAndOneThatMoves) {
         EXPECT_NEAR(movement.moved_mm, 0.27, 0.06) << way.transpose();
         EXPECT_EQ(movement.from, "white");
     }
+}
+
+// Even light at both ends of the sequence, and none between: what moved from one to the other is measured.
+TEST(MarkersInScan, OfTheFastSetAreMeasuredAtItsEnds) {
+    const RigCalibration rig = paper_rig();
+    const auto fast = [&](double way_mm) {
+        return movement_of_markers(
+            capture_of(
+                rig, [&](double share) { return RigidTransform(Eigen::Translation3d(share * way_mm, 0, 0)); }, true,
+                fast_columns()),
+            rig);
+    };
+    const ScanMovement rest = fast(0), moved = fast(0.4);
+    ASSERT_EQ(rest.by, ScanMovement::By::markers);
+    EXPECT_EQ(rest.markers, 6);
+    EXPECT_EQ(rest.moments, 2);
+    EXPECT_LT(rest.moved_mm, 0.06);
+    EXPECT_NEAR(moved.moved_mm, 0.4 * (9 - 0.5) / 11, 0.08) << "white and black are at 0.5, the fringes about 9 of 11";
 }
 
 TEST(MarkersInScan, ATurnIsAMovement) {

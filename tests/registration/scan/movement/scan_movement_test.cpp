@@ -121,17 +121,65 @@ TEST(ScanMovement, ALampThatFadesIsNoMovement) {
     EXPECT_LT(seen(capture_of([](double) { return Eigen::Vector2d(0, 0); }, 0.9)).moved_mm, 0.03);
 }
 
-TEST(ScanMovement, IsNotKnownWithoutLightOrInverses) {
+TEST(ScanMovement, IsNotKnownWithoutLight) {
     ScanCapture dark = capture_of([](double) { return Eigen::Vector2d(0, 0); });
     for (GrayImage& frame : dark.left) frame = GrayImage(kWidth, kHeight, 3);
     EXPECT_EQ(seen(dark).by, ScanMovement::By::nothing);
-    ScanCapture single = capture_of([](double) { return Eigen::Vector2d(0, 0); });
-    for (std::size_t k = single.partial.size(); k-- > 0;)
-        if (single.partial[k].kind == StripePattern::Kind::gray_bit_inverse) {
-            single.partial.erase(single.partial.begin() + static_cast<std::ptrdiff_t>(k));
-            single.left.erase(single.left.begin() + static_cast<std::ptrdiff_t>(k));
+}
+
+ScanCapture without_inverses(ScanCapture capture) {
+    for (std::size_t k = capture.partial.size(); k-- > 0;)
+        if (capture.partial[k].kind == StripePattern::Kind::gray_bit_inverse) {
+            capture.partial.erase(capture.partial.begin() + static_cast<std::ptrdiff_t>(k));
+            capture.left.erase(capture.left.begin() + static_cast<std::ptrdiff_t>(k));
         }
-    EXPECT_EQ(seen(single).by, ScanMovement::By::nothing);
+    return capture;
+}
+
+// What is lit in a coarse bit shows the same skin as white does.
+TEST(ScanMovement, OfACodeWithoutInversesIsMeasuredWhereItsBitsAreLit) {
+    const ScanMovement still = seen(without_inverses(capture_of([](double) { return Eigen::Vector2d(0, 0); })));
+    EXPECT_EQ(still.by, ScanMovement::By::pictures);
+    EXPECT_GE(still.moments, 4);
+    EXPECT_LT(still.moved_mm, 0.03);
+    const ScanMovement moved = seen(without_inverses(
+        capture_of([](double share) -> Eigen::Vector2d { return share * Eigen::Vector2d(0.8, -0.6); })));
+    EXPECT_GT(moved.moved_mm, 0.2) << "of 0.42 mm; the last bits are too fine to be looked at";
+    EXPECT_LT(moved.moved_mm, 0.45);
+}
+
+/// A wall without a spot, brighter than the camera can show in its middle, with a glint: `at` pixels of the camera's
+/// own noise.
+ScanCapture blown_out(double top_grey) {
+    ScanCapture capture = capture_of([](double) { return Eigen::Vector2d(0, 0); });
+    std::mt19937 random(11);
+    std::normal_distribution<double> noise(0, 2);
+    for (std::size_t k = 0; k < capture.partial.size(); ++k) {
+        const auto& pattern = capture.partial[k];
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                double lit = pattern.kind == StripePattern::Kind::white ? 1 : 0;
+                if (k >= 2)
+                    lit = ((x >> (kBits - pattern.index)) % 2 == 0) == (pattern.kind == StripePattern::Kind::gray_bit);
+                const double u = (x - 150) / 200.0, v = (y - 100) / 200.0,
+                             glint = std::exp(-((x - 210) * (x - 210) + (y - 60) * (y - 60)) / 200.0);
+                const double light = 9 + lit * (top_grey * (1 - 0.5 * (u * u + v * v)) + 300 * glint);
+                capture.left[k].at(x, y) =
+                    static_cast<std::uint8_t>(std::clamp(std::lround(light + noise(random)), 0L, 255L));
+            }
+    }
+    return capture;
+}
+
+// A still wall, clipped by the camera: where noise decides whether a pixel is clipped, those that are not are too dark
+// by chance, and on a smooth slope of light that looks like a way of millimetres.
+TEST(ScanMovement, ASaturatedWallAtRestHasNotMoved) {
+    for (const double top_grey : {200.0, 235.0, 250.0, 280.0, 330.0}) {
+        const ScanMovement movement = seen(blown_out(top_grey));
+        EXPECT_LT(movement.way_mm(), 0.05) << top_grey;
+        if (movement.by == ScanMovement::By::pictures)
+            EXPECT_GT(movement.unseen_mm(), 0.1) << top_grey << ": it could move unseen, and that is said";
+    }
 }
 
 TEST(ScanMovement, EvenPicturesHoldNoStripes) {

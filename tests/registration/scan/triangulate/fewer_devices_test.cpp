@@ -106,6 +106,25 @@ TEST(FewerDevices, OneCameraAndTheProjectorPlaceTheBall) {
         << "it is the same whether the rig or the capture lacks the right camera";
 }
 
+// Planes of light: 0.02 px of code, as above, and nothing that averages over two directions.
+TEST(FewerDevices, OneCameraAndPlanesOfLightPlaceTheBall) {
+    ScanCapture columns = ball().capture;
+    columns.stripes.rows = false;
+    columns.right.clear();
+    columns.left.resize(stripe_sequence(columns.stripes).size());
+    const ScanResult scan = scan_from_capture(columns, ball().rig);
+    EXPECT_GT(scan.clean.kept.size(), 20000u);
+    EXPECT_EQ(scan.raw.three_view, 0u);
+    const Off off = off_the_sphere(scan.clean.kept);
+    EXPECT_LT(std::abs(off.mean), 0.03);
+    EXPECT_LT(off.rms, 0.06);
+    // A rig whose projector stands elsewhere by half its picture: the light would come from beside it, and that is
+    // seen.
+    RigCalibration wrong = ball().rig;
+    wrong.projector.centre_y += 500;
+    EXPECT_LT(scan_from_capture(columns, wrong).raw.cloud.size(), scan.raw.cloud.size() / 2);
+}
+
 TEST(FewerDevices, TwoCamerasDoWithoutKnowingTheProjector) {
     RigCalibration rig = ball().rig;
     rig.projector = {};

@@ -1,0 +1,170 @@
+#include "app/belonging.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "planning_io/case/rig_file.h"
+#include "planning_io/files/content_hash.h"
+#include "planning_io/plan/plan_file.h"
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kMaxHidden_mm = 1;  // at a point of the plan, without a person's look
+
+std::string begin_of(const std::string& hash) {
+    return hash.substr(0, 8);
+}
+
+std::string words_of(const CaseName& name) {
+    return fmt::format("case {} (volume {}, skin {})", name.code, begin_of(name.volume_hash), begin_of(name.mesh_hash));
+}
+
+std::string words_of(const RigName& name) {
+    std::string text = fmt::format("rig {} (calibrated {}", begin_of(name.hash),
+                                   name.made_on.empty() ? "on a day not said" : name.made_on);
+    for (const auto& [what, serial] :
+         {std::pair{"left camera", &name.serials.left_camera}, std::pair{"right camera", &name.serials.right_camera},
+          std::pair{"projector", &name.serials.projector}})
+        if (!serial->empty()) text += fmt::format(", {} {}", what, *serial);
+    return text + ")";
+}
+
+/// Two findings of the same capture may differ by their last digits.
+bool same(const CameraModel& a, const CameraModel& b) {
+    constexpr double kAngle = 5e-5, kShift_mm = 0.1, kFocal = 2e-4;
+    return angle_between(a.device_from_rig, b.device_from_rig) < kAngle &&
+           (a.centre_in_rig() - b.centre_in_rig()).norm() < kShift_mm && std::abs(a.focal_x / b.focal_x - 1) < kFocal;
+}
+
+}  // namespace
+
+std::string hash_of(const ScanCapture& capture) {
+    ContentHash hash;
+    hash.add("planlight capture 1");
+    const std::array<std::int32_t, 3> light{capture.stripes.width, capture.stripes.height, capture.stripes.phase_steps};
+    hash.add_values(light.data(), light.size());
+    for (const auto* frames : {&capture.left, &capture.right})
+        for (const GrayImage& frame : *frames) {
+            const std::array<std::int32_t, 2> size{frame.width, frame.height};
+            hash.add_values(size.data(), size.size());
+            hash.add_bytes(frame.pixels.data(), frame.pixels.size());
+        }
+    return hash.hex();
+}
+
+RigState named_rig_state(const ScanResult& scan, const RigCalibration& calibrated, const ScanCapture& capture) {
+    RigState state = scan.rig;
+    state.calibrated = name_of(calibrated);
+    state.capture_hash = hash_of(capture);
+    return state;
+}
+
+void take_case_and_rig(const Case& the_case, const std::optional<RigState>& rig, RegistrationResult& match) {
+    match.of_case = name_of(the_case);
+    match.rig = rig;
+    if (!rig || match.verdict == Verdict::no) return;
+    if (rig->verdict == RigState::Verdict::not_trusted) {
+        match.verdict = Verdict::no;
+        match.reasons.insert(match.reasons.begin(),
+                             fmt::format("The rig cannot be trusted: {}. {}", rig->sentence, rig->remedy));
+        return;
+    }
+    const auto ask = [&](const std::string& reason) {
+        match.verdict = Verdict::ask;
+        match.reasons.push_back(reason);
+    };
+    if (rig->verdict == RigState::Verdict::unknown) {
+        std::string reason = rig->sentence.empty() ? "whether the rig moved is not known" : rig->sentence;
+        reason.front() = 'W';
+        ask(reason + ".");
+        return;
+    }
+    double hidden_mm = 0;
+    for (const auto& p_in_ct : points_of(the_case.plan))
+        hidden_mm = std::max(hidden_mm, hidden_light_mm(*rig, match.patient_from_ct * p_in_ct));
+    if (hidden_mm > kMaxHidden_mm)
+        ask(fmt::format(
+            "The rig moved in a way that one scan cannot tell ({}): at a point of the plan it may hide {:.1f} mm.",
+            rig->sentence, hidden_mm));
+}
+
+double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct) {
+    const double hidden_mm = found.rig ? hidden_light_mm(*found.rig, found.patient_from_ct * p_in_ct) : 0;
+    return std::hypot(predicted_error(found.covariance, p_in_ct).bound_95_mm, hidden_mm);
+}
+
+void check_case(const RegistrationResult& match, const Case& the_case, const fs::path& file,
+                std::vector<std::string>& unknown) {
+    const CaseName here = name_of(the_case);
+    if (!match.of_case.known()) {
+        unknown.push_back(fmt::format("{} does not say of which case it is; it is taken for one of {}", file.string(),
+                                      words_of(here)));
+    } else if (match.of_case.volume_hash != here.volume_hash || match.of_case.mesh_hash != here.mesh_hash) {
+        throw InputError(file, fmt::format("is a match of {}, and this is {}", words_of(match.of_case), words_of(here)),
+                         "Name the case that was matched, or register the patient on this one.");
+    }
+}
+
+void check_rig(const RegistrationResult& match, const RigCalibration& rig, const fs::path& file,
+               const fs::path& rig_file, std::vector<std::string>& unknown) {
+    const RigName here = name_of(rig);
+    if (!match.rig || !match.rig->calibrated.known()) {
+        unknown.push_back(fmt::format("{} does not say with which rig its cloud was made", file.string()));
+    } else if (match.rig->calibrated.hash != here.hash) {
+        throw InputError(file,
+                         fmt::format("is of a scan with {}, and {} is {}", words_of(match.rig->calibrated),
+                                     rig_file.string(), words_of(here)),
+                         "Name the rig.json that the scan was made with, or scan and register again with this one.");
+    }
+}
+
+void check_poses(const std::optional<PosesOrigin>& origin, const RegistrationResult& match, const RigCalibration& rig,
+                 const fs::path& file, std::vector<std::string>& unknown) {
+    if (!origin) {
+        unknown.push_back(
+            fmt::format("{} does not say with which rig and from which scan its poses are", file.string()));
+        return;
+    }
+    const RigName here = name_of(rig);
+    if (origin->calibrated.hash != here.hash)
+        throw InputError(file,
+                         fmt::format("holds poses of {}, and this is {}", words_of(origin->calibrated), words_of(here)),
+                         "Track the frames with this rig.json.");
+    if (origin->capture_hash.empty())
+        unknown.push_back(
+            fmt::format("the poses of {} begin at its first frame, not at a scan: they are right only if the patient "
+                        "had not moved since the scan",
+                        file.string()));
+    if (!match.rig) return;
+    if (!origin->capture_hash.empty() && !match.rig->capture_hash.empty() &&
+        origin->capture_hash != match.rig->capture_hash)
+        throw InputError(
+            file,
+            fmt::format("holds poses from the scan of capture {}, and the match is of the scan of capture {}",
+                        begin_of(origin->capture_hash), begin_of(match.rig->capture_hash)),
+            "Track the frames with --capture of the scan that was matched.");
+    if (!same(origin->rig.left_camera, match.rig->rig.left_camera) ||
+        !same(origin->rig.right_camera, match.rig->rig.right_camera))
+        throw InputError(file, "was tracked with cameras that stand elsewhere than the scan found them",
+                         "Track the frames with --capture or --registration of the scan that was matched.");
+}
+
+RigCalibration rig_of_light(const RegistrationResult& match, const RigCalibration& rig, bool confirmed) {
+    if (match.rig && match.rig->verdict == RigState::Verdict::not_trusted)
+        throw CheckFailedError("the rig cannot be trusted: " + match.rig->sentence, match.rig->remedy);
+    if ((!match.rig || !match.rig->checked()) && !confirmed)
+        throw CheckFailedError(
+            "nothing says whether the rig is as it was calibrated: the match is not of a scan that could check it",
+            "Look at the light on landmarks and give --confirmed, or match a cloud of `planlight scan` (columns "
+            "and rows, both cameras).");
+    return match.rig && match.rig->rig.whole() ? match.rig->rig : rig;
+}
+
+}  // namespace planlight

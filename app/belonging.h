@@ -1,0 +1,43 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning_io/case/case_folder.h"
+#include "planning_io/case/poses_file.h"
+#include "planning_io/types/registration_result.h"
+#include "registration/scan/scan_surface.h"
+
+// Files that belong together say so by hashes; joined wrongly they are refused (InputError, exit 3) with both names.
+namespace planlight {
+
+/// XXH3-128 over the light's settings and every pixel of a capture, hex.
+std::string hash_of(const ScanCapture& capture);
+
+/// The rig that this scan found, with the names of rig.json and of its capture.
+RigState named_rig_state(const ScanResult& scan, const RigCalibration& calibrated, const ScanCapture& capture);
+
+/// Puts case and rig into a match, and lowers its verdict by what the scan found of the rig: `no` where it is not to be
+/// trusted, `ask` where it could not be checked or hides more than a millimetre of light at a point of the plan. `rig`
+/// empty: the cloud of another scanner, of which nothing is known.
+void take_case_and_rig(const Case& the_case, const std::optional<RigState>& rig, RegistrationResult& match);
+
+/// How far off light may be at one point, 95 %, mm: by the registration, and by what the scan could not tell of the
+/// rig.
+double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct);
+
+/// Warnings for what is not known are added to `unknown`.
+void check_case(const RegistrationResult& match, const Case& the_case, const std::filesystem::path& file,
+                std::vector<std::string>& unknown);
+void check_rig(const RegistrationResult& match, const RigCalibration& rig, const std::filesystem::path& file,
+               const std::filesystem::path& rig_file, std::vector<std::string>& unknown);
+void check_poses(const std::optional<PosesOrigin>& origin, const RegistrationResult& match, const RigCalibration& rig,
+                 const std::filesystem::path& file, std::vector<std::string>& unknown);
+
+/// The rig that the light of a match is to be drawn with: as the scan found it. Throws CheckFailedError where it may
+/// not be trusted, or where nothing is known of it and `confirmed` is not said.
+RigCalibration rig_of_light(const RegistrationResult& match, const RigCalibration& rig, bool confirmed);
+
+}  // namespace planlight

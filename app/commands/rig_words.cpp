@@ -1,0 +1,36 @@
+#include "app/commands/rig_words.h"
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+namespace planlight {
+namespace {
+
+constexpr std::array kKeys{"left_camera", "right_camera", "projector"};  // by RigDevice
+
+const char* words_of(const RigState& state, const DeviceFinding& device) {
+    if (state.verdict == RigState::Verdict::unknown) return "not known";
+    if (device.moved) return device.lens ? "lens changed" : "moved";
+    return device.maybe ? "perhaps moved" : "as calibrated";
+}
+
+}  // namespace
+
+nlohmann::ordered_json json_of(const RigState& state) {
+    nlohmann::ordered_json devices;
+    for (std::size_t d = 0; d < kRigDevices; ++d) {
+        const DeviceFinding& device = state.devices[d];
+        devices[kKeys[d]] = {{"known", words_of(state, device)},
+                             {"moved_mm", device.moved_mm},
+                             {"turned_deg", device.turned * 180 / std::numbers::pi},
+                             {"focal_change_percent", 100 * device.focal_change}};
+    }
+    return {{"verdict", text_of(state.verdict)},
+            {"sentence", state.sentence},
+            {"remedy", state.remedy},
+            {"hidden_light_mm", state.hidden_light_mm},
+            {"devices", devices}};
+}
+
+}  // namespace planlight

@@ -1,0 +1,49 @@
+#include "app/report/paper_page.h"
+
+#include <fmt/format.h>
+
+#include "app/report/html_page.h"
+
+namespace planlight {
+namespace {
+
+/// A sheet's content is 184 mm wide and at most 250 mm high: what A4 and Letter both hold within margins of 12 mm.
+constexpr const char* kStyle = R"(
+@page{margin:11mm 12mm 12mm}
+*{box-sizing:border-box}
+body{margin:0;background:#e9ebee;color:#15181d;font:9.5pt/1.35 Inter,"DejaVu Sans",sans-serif;
+overflow-wrap:anywhere;-webkit-print-color-adjust:exact;print-color-adjust:exact}
+main{width:184mm;margin:0 auto}
+.sheet{background:#fff}
+@media screen{.sheet{margin:6mm -13mm;padding:12mm 13mm;box-shadow:0 1px 5px #0003}.foot{display:none}}
+@media print{body{background:#fff}.sheet+.sheet{break-before:page}.foot{position:fixed;bottom:-7mm;left:0;right:0;
+text-align:center;font-size:7.5pt;color:#5b6470}}
+h1{font-size:17pt;line-height:1.2;margin:0}
+h2{font-size:11pt;margin:3.5mm 0 1mm;break-after:avoid}
+p{margin:.8mm 0}.muted{color:#5b6470;font-size:8pt}
+table{border-collapse:collapse;width:100%}
+td,th{padding:.5mm 2mm .5mm 0;border-bottom:.2mm solid #d5d9df;text-align:left;vertical-align:top}
+th{color:#5b6470;font-weight:500;font-size:8pt}tr{break-inside:avoid}
+td.name{width:36%}
+.two{display:grid;grid-template-columns:1fr 1fr;gap:0 6mm}
+.two td:first-child{color:#5b6470;width:34%}
+.verdict{border:.5mm solid;border-radius:1.5mm;padding:1.5mm 3mm;font-weight:600;margin:2.5mm 0 1.5mm;break-inside:avoid}
+.good{color:#14663a}.look{color:#8a5300}.stop{color:#a3121f;font-weight:600}
+ul{margin:1mm 0;padding-left:5mm}li{margin:.4mm 0}
+.row{display:grid;gap:2mm;margin:1mm 0}
+figure{margin:0;break-inside:avoid}
+figure img{width:100%;display:block;border:.2mm solid #c3c8d0}
+figcaption{font-size:7.5pt;line-height:1.25;padding-top:.6mm;color:#353b45}
+.sign{display:grid;grid-template-columns:5fr 3fr 6fr;gap:0 6mm;margin-top:9mm;break-inside:avoid}
+.sign span{border-top:.25mm solid #15181d;font-size:7.5pt;color:#5b6470;padding-top:.5mm})";
+
+}  // namespace
+
+std::string paper_page(const std::string& title, const std::string& body, const std::string& foot) {
+    return fmt::format(
+        "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>{}</title><style>{}</style></head>"
+        "<body><main>{}</main><div class=\"foot\">{}</div></body></html>\n",
+        html_escaped(title), kStyle, body, html_escaped(foot));
+}
+
+}  // namespace planlight

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning_io/types/plan.h"
+#include "planning_io/types/skin_lut.h"
+#include "projection/draw_plan.h"
+
+namespace planlight {
+
+/// How much a distance to the skin matters.
+enum class Gravity { none, look, stop };
+
+/// What the one who signs must know of a plan item. Lengths in mm, angles in radians; empty where the item has none.
+struct PlanFact {
+    std::string kind;  ///< "closed line", "borehole" ...
+    std::string name;
+    std::optional<double> length_mm;  ///< of a line along the skin
+    std::optional<double> depth_mm;   ///< of a way or a hole
+    std::optional<double> diameter_mm;
+    std::optional<double> tilt;                    ///< between the way in and the skin's perpendicular
+    std::optional<Eigen::Vector3d> inwards_in_ct;  ///< unit, of a way or a hole with an axis
+    std::optional<double> over_bone_mm;            ///< soft tissue between skin and bone there
+    double to_skin_mm = 0;
+    Gravity gravity = Gravity::none;
+    std::string distance;  ///< in words that match its gravity
+};
+
+/// One for each item of the drawing, in its order (`draw_plan`).
+std::vector<PlanFact> plan_facts(const Plan& plan, const PlanDrawing& drawing, const SkinLut& lut);
+
+/// A distance to the skin in words, and how grave it is: "on the skin" up to 0.5 mm, "look" from 2 mm, "stop" where it
+/// is not drawn (three times `max_distance_to_skin_mm`).
+std::string distance_in_words(double mm, const DrawingSettings& settings = {});
+Gravity gravity_of(double mm, const DrawingSettings& settings = {});
+
+/// "12° to the left, 30° down" of a unit direction: out of the sagittal and out of the axial plane.
+std::string direction_in_words(const Eigen::Vector3d& inwards_in_ct);
+
+}  // namespace planlight

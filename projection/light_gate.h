@@ -1,0 +1,68 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning_io/types/time.h"
+#include "projection/check_light.h"
+
+namespace planlight {
+
+struct LightGateSettings {
+    double warn_mm = 1;                              ///< 95 % of the light lies within this of the plan, else amber
+    double stop_mm = 2;                              ///< and within this, else dark
+    double least_seen_share = 0.3;                   ///< of the stretches that the cameras should see
+    int least_seen = 5;                              ///< stretches: fewer are no measurement
+    int green_after = 3;                             ///< good measurements in a row
+    int dark_after = 2;                              ///< bad ones in a row
+    Instant fresh = std::chrono::seconds(1);         ///< an older measurement is none
+    Instant verified_for = std::chrono::minutes(5);  ///< of light that was interrupted; then a person looks again
+};
+
+/// Whether the plan on the skin may be trusted.
+enum class LightTrust {
+    dark,     ///< no light, or light that must go out
+    look,     ///< light that a person must look at: not verified, not measured, or beside its place
+    aligned,  ///< measured where it belongs, and verified by a person
+};
+
+/// The colour of the banner is a measurement: what CHECK saw and what a person said decide whether the light is
+/// trusted.
+///
+/// Verified by a press, for one match; asked again after a new match and after darkness of more than `verified_for`.
+/// Time is handed in.
+class LightGate {
+public:
+    explicit LightGate(const LightGateSettings& settings = {}) : settings_(settings) {}
+
+    struct Ruling {
+        LightTrust trust = LightTrust::dark;
+        std::string headline;  ///< empty where it is dark for a reason of the caller's
+        std::vector<std::string> details;
+        bool ask_to_verify = false;
+        bool stop = false;                       ///< the light must go out now, and stays out until `restart`
+        std::optional<double> off_mm, sigma_mm;  ///< of the light, as last measured
+    };
+
+    /// One update: whether light is on the skin, and what CHECK saw of it, if it looked.
+    Ruling step(Instant at, bool lit, const std::optional<LightCheck>& check);
+
+    /// A person has looked at the light on landmarks and says that it is right.
+    void verify(Instant at);
+    bool verified() const { return verified_; }
+    void new_match();  ///< nothing is verified or measured any more
+    void restart();    ///< light is asked for again after a stop; what was verified still is
+
+private:
+    void take(Instant at, const LightCheck& check);
+    Ruling rule(Instant at) const;
+
+    LightGateSettings settings_;
+    bool verified_ = false, stopped_ = false;
+    int good_ = 0, bad_ = 0;
+    std::optional<LightCheck> last_;
+    Instant measured_at_{}, lit_at_{};
+};
+
+}  // namespace planlight

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "planning_io/types/image.h"
+
+// How the lit surface of one picture lies in another, by an affine map. Private to registration/scan.
+namespace planlight::affine_movement {
+
+/// Which frames make a picture of the surface, and where they do.
+struct Moment {
+    std::vector<std::size_t> frames;  ///< their sum is even light, or what `also_black` says
+    bool lit_only = false;  ///< a bit without its inverse: only where it is lit, together with the black picture
+};
+
+/// A camera's frames as light. `light`: of every grey value.
+struct Pictures {
+    const std::vector<GrayImage>& frames;
+    std::size_t white = 0, black = 1;
+    std::array<float, 256> light;
+
+    /// The 3 x 3 mean of twice the even light at a pixel off the rim.
+    float even_at(const Moment& moment, int x, int y) const;
+};
+
+inline constexpr int kAffine = 6, kNumbers = 13;  ///< of a fit: the map, then how the light changed
+
+using Affine = Eigen::Matrix<double, kAffine, 1>;
+
+/// Where the surface of one moment lies on that of the first: x' = x + (m0 + m1 u + m2 v, m3 + m4 u + m5 v), pixels.
+struct Laid {
+    Affine map = Affine::Zero();
+    /// By the scatter of what is left over between patches of the picture, so that what goes together in a patch (a
+    /// stripe that is left, a glint, clipped light) is not taken for many measurements.
+    Eigen::Matrix<double, kAffine, kAffine> covariance = Eigen::Matrix<double, kAffine, kAffine>::Zero();
+    bool determined = false;
+};
+
+/// The pixels at which a movement of the lit surface shows: lit, far from all that is saturated in any frame, no edge
+/// of the head.
+class Surface {
+public:
+    Surface(const Pictures& pictures, const Moment& first, const std::vector<Moment>& moments);
+
+    bool enough() const { return pixels_.size() >= kLeastPixels; }
+
+    /// Least squares over the pixels (Lucas & Kanade 1981, one map for all), with light that may be brighter or darker,
+    /// smoothly over the picture (a quadratic of the place), and another even light of the room.
+    Laid lay(const Moment& later) const;
+
+    /// How far 95 % of the surface lies apart under two maps, and the standard deviation of that; pixels.
+    struct Way {
+        double px = 0, sigma_px = 0;
+    };
+    Way between(const Laid& a, const Laid& b) const;
+
+private:
+    static constexpr std::size_t kLeastPixels = 2000, kMostPixels = 150000;
+    using Row = Eigen::Matrix<double, kNumbers, 1>;
+    struct Pixel {
+        int x, y, patch;
+        float first, dx, dy, light;  ///< even light of the first moment, its slope, white less black
+    };
+    Row by_numbers(const Pixel& p) const;
+    void choose(const std::vector<std::uint8_t>& spoilt, const Moment& first);
+    bool is_lit(const Pixel& p, const Moment& moment) const;
+
+    const Pictures& pictures_;
+    std::vector<Pixel> pixels_;
+    Eigen::Vector2d centre_ = Eigen::Vector2d::Zero();
+    double scale_ = 1;  ///< half the size of what is lit, pixels
+    int patches_ = 0;
+};
+
+}  // namespace planlight::affine_movement

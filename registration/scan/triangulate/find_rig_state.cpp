@@ -1,0 +1,187 @@
+#include "registration/scan/triangulate/find_rig_state.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "registration/scan/triangulate/rig_doubts.h"
+#include "registration/scan/triangulate/rig_explanations.h"
+
+namespace planlight {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr std::size_t kPlacesOfDoubt = 80;
+
+bool contains(const std::vector<RigDevice>& devices, RigDevice device) {
+    return std::find(devices.begin(), devices.end(), device) != devices.end();
+}
+
+/// Places spread evenly over the matches, with a start for their points by the two cameras.
+std::vector<SeenPlace> places_of(const ViewMatches& matches, const RigCalibration& rig, std::size_t wanted) {
+    std::vector<SeenPlace> places;
+    const std::size_t every = 1 + matches.both.size() / wanted;
+    for (std::size_t i = every / 2; i < matches.both.size(); i += every) {
+        const ViewMatch& m = matches.both[i];
+        if (!m.whole) continue;
+        const auto a = ray_through(rig.left_camera, m.pixel), b = ray_through(rig.right_camera, m.right);
+        if (!a || !b) continue;
+        // Midpoint method (Hartley & Zisserman, 12.2).
+        const Eigen::Vector3d between = b->origin - a->origin;
+        const double c = a->direction.dot(b->direction), u = a->direction.dot(between), v = b->direction.dot(between);
+        if (!(1 - c * c > 1e-6)) continue;
+        const double s = (u - c * v) / (1 - c * c), t = (c * u - v) / (1 - c * c);
+        if (!(s > 0) || !(t > 0)) continue;
+        const Eigen::Vector3d p = 0.5 * (a->origin + s * a->direction + b->origin + t * b->direction);
+        places.push_back({{m.pixel, m.right, m.code}, p});
+    }
+    return places;
+}
+
+std::vector<RigDevice> devices_of(const Explanation& e) {
+    return e.moved.empty() ? e.lens : e.moved;
+}
+
+std::string names_of(const std::vector<RigDevice>& devices) {
+    std::string text;
+    for (const RigDevice device : devices)
+        text += fmt::format("{}the {}", text.empty() ? "" : " and ", text_of(device));
+    return text;
+}
+
+/// "the projector moved", "the left camera moved or its lens was changed (focus, zoom or shift)".
+std::string words_of(const std::vector<RigDevice>& devices, bool moved, bool lens) {
+    constexpr const char* kLens = "lens was changed (focus, zoom or shift)";
+    if (!moved) return fmt::format("{}'s {}", names_of(devices), kLens);
+    return names_of(devices) + (lens ? fmt::format(" moved or its {}", kLens) : std::string(" moved"));
+}
+
+/// Explanations that blame the same devices are one: "the projector moved, or the left camera moved".
+std::string words_of(const std::vector<const Explanation*>& possible) {
+    std::vector<std::vector<RigDevice>> blamed;
+    std::string text;
+    for (const Explanation* e : possible) {
+        const auto devices = devices_of(*e);
+        if (std::find(blamed.begin(), blamed.end(), devices) != blamed.end()) continue;
+        blamed.push_back(devices);
+        bool moved = false, lens = false;
+        for (const Explanation* other : possible)
+            if (devices_of(*other) == devices) moved |= !other->moved.empty(), lens |= !other->lens.empty();
+        const bool simple = moved && !e->moved.empty() && e->lens.empty() && devices.size() > 1;
+        text += (text.empty() ? "" : ", or ") + words_of(devices, moved, lens && !simple);
+    }
+    return text;
+}
+
+void find_devices(const RigCalibration& before, const std::vector<const Explanation*>& possible, RigState& state) {
+    for (std::size_t d = 0; d < kRigDevices; ++d) {
+        const auto device = static_cast<RigDevice>(d);
+        DeviceFinding& finding = state.devices[d];
+        const CameraModel &a = device_of(before, device), &b = device_of(state.rig, device);
+        finding.moved_mm = (a.centre_in_rig() - b.centre_in_rig()).norm();
+        finding.turned = angle_between(a.device_from_rig, b.device_from_rig);
+        finding.focal_change = b.focal_x / a.focal_x - 1;
+        std::size_t blamed = 0;
+        for (const Explanation* e : possible) blamed += contains(e->moved, device) || contains(e->lens, device);
+        finding.moved = blamed == possible.size() && blamed > 0;
+        finding.maybe = blamed > 0 && !finding.moved;
+        if (possible.empty()) continue;
+        finding.best = contains(possible.front()->moved, device) || contains(possible.front()->lens, device);
+        finding.lens = contains(possible.front()->lens, device);
+    }
+}
+
+std::string size_of(const Explanation& best, const RigState& state) {
+    std::string text;
+    for (std::size_t d = 0; d < kRigDevices; ++d) {
+        const auto device = static_cast<RigDevice>(d);
+        const DeviceFinding& f = state.devices[d];
+        if (contains(best.moved, device))
+            text += fmt::format("{}{:.2f} mm and {:.3f} degrees", text.empty() ? "" : "; ", f.moved_mm,
+                                f.turned * kDegrees);
+        if (contains(best.lens, device))
+            text += fmt::format("{}{:+.2f} % of its focal length", text.empty() ? "" : "; ", 100 * f.focal_change);
+    }
+    return text;
+}
+
+void judge(const Explanation& best, const std::vector<const Explanation*>& possible, const RigStateSettings& settings,
+           RigState& state) {
+    const bool fits = best.usual <= settings.max_usual_residual;
+    const std::string since =
+        state.rig.made_on.empty() ? "since the calibration" : "since the calibration of " + state.rig.made_on;
+    state.verdict = fits && state.hidden_light_mm <= settings.max_hidden_mm ? RigState::Verdict::corrected
+                                                                            : RigState::Verdict::not_trusted;
+    state.sentence = fmt::format("{} {} (by {})", words_of(possible), since, size_of(best, state));
+    const auto others = [&](const Explanation* e) { return devices_of(*e) != devices_of(best); };
+    if (std::any_of(possible.begin(), possible.end(), others)) state.sentence += "; one scan cannot tell which";
+    state.sentence +=
+        fits ? fmt::format("; light may be off by up to {:.2f} mm without a sign of it", state.hidden_light_mm)
+             : "; the devices fit each other from no place";
+    state.remedy =
+        state.verdict == RigState::Verdict::corrected
+            ? "The cloud is made, the patient followed and the light drawn with the rig as it stands now; calibrate it "
+              "again as soon as there is time."
+            : "No light is drawn with it: calibrate the rig again.";
+}
+
+/// The rig by the explanation that costs least, and what the others that cost little more would do to the light.
+void take_moved(const RigCalibration& rig, const RigFits& fits, const std::vector<SeenPlace>& some,
+                const RigStateSettings& settings, RigState& state) {
+    const Explanation& best = fits.others.front();
+    std::vector<const Explanation*> possible;
+    state.rig = changed(rig, best.numbers);
+    state.doubts = own_doubts(best, state.rig, some);
+    for (const Explanation& other : fits.others) {
+        if (other.chi_square > best.chi_square + fits.noise * settings.doubt_chi_square) break;
+        possible.push_back(&other);
+        if (&other == &best) continue;
+        RigDoubt doubt = doubt_between(state.rig, changed(rig, other.numbers), some);
+        doubt.what = words_of({&other});
+        doubt.chi_square = other.chi_square - best.chi_square;
+        state.doubts.push_back(doubt);
+    }
+    find_devices(rig, possible, state);
+    state.hidden_light_mm = hidden_over(state, some);
+    judge(best, possible, settings, state);
+}
+
+void take_as_calibrated(const RigFits& fits, const std::vector<SeenPlace>& some, const RigStateSettings& settings,
+                        RigState& state) {
+    state.doubts = own_doubts(fits.as_calibrated, state.rig, some);
+    state.hidden_light_mm = hidden_over(state, some);
+    if (fits.as_calibrated.usual <= settings.max_usual_residual) {
+        state.verdict = RigState::Verdict::as_calibrated;
+        state.sentence = "the rig is as it was calibrated";
+        return;
+    }
+    state.verdict = RigState::Verdict::not_trusted;
+    state.sentence = "the devices fit each other from no place: another rig, or a lens or a distortion that is wrong";
+    state.remedy = "Use the rig.json of this rig, or calibrate it again.";
+}
+
+}  // namespace
+
+RigState find_rig_state(const ViewMatches& matches, const RigCalibration& rig, const RigStateSettings& settings) {
+    RigState state;
+    state.rig = rig;
+    const std::vector<SeenPlace> places = places_of(matches, rig, settings.places);
+    if (places.size() < settings.min_places) {
+        state.sentence = "whether the rig moved is not known: too little is seen by both cameras under the light";
+        return state;
+    }
+    std::vector<SeenPlace> some;
+    for (std::size_t i = 0; i < places.size(); i += 1 + places.size() / kPlacesOfDoubt) some.push_back(places[i]);
+    const RigFits fits = fit_explanations(places, rig, settings);
+    if (!fits.others.empty() &&
+        fits.as_calibrated.chi_square - fits.others.front().chi_square > fits.noise * settings.moved_chi_square)
+        take_moved(rig, fits, some, settings, state);
+    else
+        take_as_calibrated(fits, some, settings, state);
+    return state;
+}
+
+}  // namespace planlight

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "segmentation/voxel_morphology.h"
+
+namespace planlight {
+
+/// A volume seen coarsely: cubic voxels along the axes of ct (i to the patient's left, j to the back, k to the head), each
+/// the mean of eight places, so that size, turn and noise of the scanner's own voxels matter little to what is judged on it.
+struct HeadSurvey {
+    VoxelGrid grid;
+    Eigen::Vector3d first_in_ct = Eigen::Vector3d::Zero();  ///< centre of voxel (0,0,0), mm
+    std::vector<float> values;                              ///< 0 where nothing was measured
+    Mask measured;                                          ///< 1 where the volume reaches
+    Mask rim;                                               ///< 1 along the twelve edges of the volume's own box
+
+    double step_mm() const { return grid.spacing_mm.x(); }
+    std::size_t index(int i, int j, int k) const {
+        return static_cast<std::size_t>(k) * grid.slab() + static_cast<std::size_t>(j) * grid.row() + static_cast<std::size_t>(i);
+    }
+    Eigen::Vector3d place_of(std::size_t index) const;  ///< centre of a voxel in ct
+};
+
+struct SurveySettings {
+    double step_mm = 2;
+    std::size_t most_voxels = 4'000'000;  ///< a larger space has a larger step
+};
+
+/// Values that are not finite count as not measured.
+HeadSurvey survey_of(const Volume& volume, const SurveySettings& settings = {});
+
+/// Each value the mean of its neighbourhood (weights 1 2 1 along each axis), of measured voxels only.
+std::vector<float> smoothed(const HeadSurvey& survey, const std::vector<float>& values);
+
+/// Distance of each voxel's centre from the nearest voxel where `mask` is `target`, mm; exact, at most `longest_mm`.
+std::vector<float> distance_from(const Mask& mask, std::uint8_t target, const VoxelGrid& grid, double longest_mm);
+
+}  // namespace planlight

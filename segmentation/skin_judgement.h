@@ -1,0 +1,49 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "planning_io/types/triangle_mesh.h"
+#include "planning_io/types/volume.h"
+#include "segmentation/segment_skin.h"
+
+namespace planlight {
+
+/// Where the volume ends within the head: no skin to scan, to match or to draw on (`kCutPlane`).
+struct CutSide {
+    std::string name;      ///< "crown", "neck", "chin", "face", "back", "left side", "right side"
+    double area_cm2 = 0;
+    bool usual = false;    ///< a neck's: every head scan ends there
+};
+
+/// A finding that a person must hear, with its figure and what to do.
+struct SkinDoubt {
+    std::string finding;  ///< one sentence
+    std::string remedy;   ///< one sentence in the imperative
+};
+
+/// Whether a skin is that of a head, and how it was asked. Lengths mm; a figure that could not be taken is not a number.
+struct SkinJudgement {
+    std::vector<CutSide> cut_sides;
+    double ball_radius_mm = 0;      ///< of the largest ball within the upper head: an adult's skull 65 to 80, a newborn's 45
+    Eigen::Vector3d ball_centre_in_ct = Eigen::Vector3d::Zero();
+    double layered_share = 0;       ///< of the vault, where bone lies under the skin, between scalp and brain
+    double scalp_mm = 0;            ///< median soft tissue over the bone of the vault
+    double nose_mm = 0;             ///< how far the nose stands out before the cheeks
+    double edge_blur_mm = 0;        ///< median way from 20 to 80 % of the step from air to skin
+    double gap_cm2 = 0;             ///< of skin under which air is again (a mask, a cushion, a cloth)
+    double sigma_mm = 0;            ///< `skin_edge_sigma_mm`, or more where the edge is blurred
+    bool bright_bone = false;       ///< bone shines like a CT's in a volume that is not in HU
+    std::vector<SkinDoubt> doubts;  ///< accepted with these
+    std::vector<SkinDoubt> refusals;
+};
+
+/// Asks a skin whether it is that of a head: size (the largest ball in it), layers (scalp over bone over brain: a stripped
+/// brain, a bottle and a phantom have none), face (a nose), ends, sharpness, things that lie on it. No name and no word of
+/// a header is asked.
+SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin);
+
+/// Throws InputError with the first refusal, if there is one.
+void refuse_implausible(const SkinJudgement& judgement);
+
+}  // namespace planlight

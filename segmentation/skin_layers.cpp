@@ -1,0 +1,192 @@
+#include "segmentation/skin_layers.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "planning_io/types/statistics.h"
+#include "segmentation/volume_sample.h"
+
+namespace planlight {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kStep_mm = 0.5;
+constexpr int kOut = 16, kIn = 100;        // samples before and under the skin: 8 and 50 mm
+constexpr std::size_t kMostSamples = 12000;
+constexpr double kBone_hu = 300, kAir_hu = -500;
+constexpr double kBoneFrom_mm = 2, kBoneTo_mm = 16;  // under the skin
+constexpr double kBrainFrom_mm = 22, kBrainTo_mm = 45;
+constexpr double kDark = 0.55;             // of the brain: bone with what thick voxels add to it
+constexpr double kBright = 1.6;            // of the brain: bone in a CT that is not in HU
+constexpr double kThinMatter_mm = 3.5, kGap_mm = 3;
+
+/// Values from 8 mm before the skin (index 0) to 50 mm under it.
+using Profile = std::vector<float>;
+
+struct Sample {
+    std::size_t vertex = 0;
+    bool vault = false, beside = false;  ///< beside: where ears are
+    Profile values;
+    double at(double depth_mm) const {
+        const auto index = std::lround(depth_mm / kStep_mm) + kOut;
+        return index < 0 || index >= static_cast<long>(values.size()) ? NAN : static_cast<double>(values[static_cast<std::size_t>(index)]);
+    }
+};
+
+double median_between(const Sample& s, double from_mm, double to_mm) {
+    std::vector<double> values;
+    for (double d = from_mm; d <= to_mm; d += kStep_mm)
+        if (const double v = s.at(d); std::isfinite(v)) values.push_back(v);
+    return values.empty() ? NAN : median(std::move(values));
+}
+
+std::vector<Sample> samples_of(const Volume& values, const TriangleMesh& skin, const Vector3d& centre) {
+    std::vector<std::size_t> vertices;
+    for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v)
+        if (skin.flags.empty() || skin.flags[v] == kSkin) vertices.push_back(v);
+    const std::size_t stride = std::max<std::size_t>(1, vertices.size() / kMostSamples);
+    std::vector<Sample> samples((vertices.size() + stride - 1) / stride);
+    const Eigen::Affine3d voxel_from_ct = values.ct_from_voxel.inverse();
+    tbb::parallel_for(std::size_t{0}, samples.size(), [&](std::size_t n) {
+        Sample& s = samples[n];
+        s.vertex = vertices[n * stride];
+        const Vector3d& p = skin.vertices_in_ct[s.vertex];
+        const Vector3d away = (p - centre).normalized();
+        // Above the skull's middle, not the face, and where the surface looks outwards (not behind an ear).
+        s.beside = std::abs(away.x()) > 0.75;
+        s.vault = away.z() > 0.2 && skin.normals_in_ct[s.vertex].dot(away) > 0.7;
+        const Vector3d inwards = voxel_from_ct.linear() * (-kStep_mm * skin.normals_in_ct[s.vertex]), at = voxel_from_ct * p;
+        for (int i = -kOut; i <= kIn; ++i)
+            s.values.push_back(static_cast<float>(value_at(values, at + i * inwards).value_or(NAN)));
+    });
+    return samples;
+}
+
+/// Way from 80 to 20 % of the step from the air before the skin to the first 4 mm under it; not a number without a step.
+double blur_of(const Sample& s) {
+    const double air = median_between(s, -6, -3);
+    double crest = -INFINITY;
+    for (double d = 0; d <= 5; d += kStep_mm)
+        if (s.at(d) > crest) crest = s.at(d);
+    if (!(crest > air)) return NAN;
+    double high = NAN, low = NAN;
+    for (double d = 5; d >= -6; d -= kStep_mm) {
+        const double share = (s.at(d) - air) / (crest - air);
+        if (share >= 0.8) high = d;
+        if (std::isnan(low) && !std::isnan(high) && share < 0.2) low = d;
+    }
+    return high - low;
+}
+
+bool stands_off(const Sample& s, double air, double matter) {
+    double thick = 0, gap = 0;
+    for (double d = 0.5; d <= 14; d += kStep_mm) {
+        const double v = s.at(d);
+        if (v > matter && gap == 0) thick += kStep_mm;
+        if (v < air) gap += kStep_mm;
+        if (thick > kThinMatter_mm) return false;
+        if (gap > kGap_mm) return thick > 0;
+    }
+    return false;
+}
+
+/// The bone's depth under the vault's skin in HU; not a number where there is none, or no soft tissue under it.
+double bone_in_hu(const Sample& s) {
+    for (double d = 0; d <= 25; d += kStep_mm)
+        if (s.at(d) > kBone_hu) {
+            for (double under = d; under <= d + 25; under += kStep_mm)
+                if (s.at(under) < 150 && s.at(under) > -200) return d;
+            return NAN;
+        }
+    return NAN;
+}
+
+/// Whether the values 5 to 8 mm before the skin are one and the same nearly everywhere.
+bool is_blank(const std::vector<Sample>& samples) {
+    std::vector<float> before;
+    for (const Sample& s : samples)
+        for (double d = -8; d <= -5; d += kStep_mm)
+            if (std::isfinite(s.at(d))) before.push_back(static_cast<float>(s.at(d)));
+    if (before.empty()) return false;
+    return quantile(before, 0.05) == quantile(before, 0.7);
+}
+
+struct Layer {
+    bool dark = false, bright = false, faint = false;
+    double depth_mm = NAN, level = NAN;
+};
+
+/// The layer of bone between scalp and brain, of values whose air is 0: darker than both, or (`bright`) brighter than both.
+Layer bone_of(const Sample& s, double brain) {
+    Layer layer;
+    double least = INFINITY, most = -INFINITY, least_at = 0, most_at = 0;
+    for (double d = kBoneFrom_mm; d <= kBoneTo_mm; d += kStep_mm) {
+        const double v = s.at(d);
+        if (v < least) least = v, least_at = d;
+        if (v > most) most = v, most_at = d;
+    }
+    double over = -INFINITY, under = -INFINITY, over_bright = INFINITY;
+    for (double d = 0; d < least_at; d += kStep_mm) over = std::max(over, s.at(d));
+    for (double d = least_at; d <= least_at + 14; d += kStep_mm) under = std::max(under, s.at(d));
+    for (double d = 1; d < most_at; d += kStep_mm) over_bright = std::min(over_bright, s.at(d));
+    layer.level = least / brain;
+    layer.dark = least < kDark * brain && over > 1.4 * least && under > 1.4 * least && under > 0.5 * brain;
+    layer.faint = least < 0.85 * std::min(over, under);
+    layer.bright = most > kBright * brain && over_bright < 0.75 * most && median_between(s, most_at + 8, most_at + 20) < 0.75 * most;
+    layer.depth_mm = layer.dark ? least_at : most_at;
+    return layer;
+}
+
+}  // namespace
+
+SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin, const Vector3d& centre_in_ct) {
+    const Volume leveled = mask.levels.empty() ? Volume() : skin_values(volume, mask);
+    const Volume& values = mask.levels.empty() ? volume : leveled;
+    const std::vector<Sample> samples = samples_of(values, skin, centre_in_ct);
+    SkinLayers layers;
+    std::vector<double> brains, blurs, depths, levels;
+    for (const Sample& s : samples) {
+        if (const double blur = blur_of(s); std::isfinite(blur)) blurs.push_back(blur);
+        if (const double brain = median_between(s, kBrainFrom_mm, kBrainTo_mm); s.vault && std::isfinite(brain)) brains.push_back(brain);
+    }
+    layers.edge_blur_mm = median(std::move(blurs));
+    const double brain = brains.empty() ? NAN : median(std::move(brains));
+    const double air = volume.is_hu ? kAir_hu : 0.5 * mask.threshold, matter = volume.is_hu ? kAir_hu : mask.threshold;
+    double vault = 0, layered = 0, bright = 0, faint = 0, off = 0;
+    for (const Sample& s : samples) {
+        off += !s.beside && stands_off(s, air, matter);
+        if (!s.vault) continue;
+        ++vault;
+        if (volume.is_hu) {
+            const double depth = bone_in_hu(s);
+            layered += std::isfinite(depth);
+            if (std::isfinite(depth)) depths.push_back(depth);
+            continue;
+        }
+        const Layer layer = bone_of(s, brain);
+        layered += layer.dark;
+        bright += layer.bright;
+        faint += layer.faint;
+        if (std::isfinite(layer.level)) levels.push_back(layer.level);
+        if (layer.dark || layer.bright) depths.push_back(layer.depth_mm);
+    }
+    layers.bright_bone = bright > 0.5 * vault && layered < 0.3 * vault;
+    layers.layered_share = vault < 50 ? NAN : (layers.bright_bone ? bright : layered) / vault;
+    layers.faint_share = vault < 50 ? NAN : faint / vault;
+    layers.air_is_blank = is_blank(samples);
+    layers.scalp_mm = depths.empty() ? NAN : median(std::move(depths));
+    layers.dip = levels.empty() ? NAN : median(std::move(levels));
+    double area_cm2 = 0;
+    for (const auto& t : skin.triangles) {
+        const auto& a = skin.vertices_in_ct[static_cast<std::size_t>(t[0])];
+        area_cm2 += (skin.vertices_in_ct[static_cast<std::size_t>(t[1])] - a)
+                        .cross(skin.vertices_in_ct[static_cast<std::size_t>(t[2])] - a).norm() / 200;
+    }
+    layers.gap_cm2 = samples.empty() || !volume.is_hu ? 0 : area_cm2 * off / static_cast<double>(samples.size());
+    return layers;
+}
+
+}  // namespace planlight

@@ -1,0 +1,108 @@
+#include "app/belonging.h"
+
+#include <gtest/gtest.h>
+
+#include "planning_io/case/rig_file.h"
+#include "planning_io/types/error.h"
+#include "tests/planning_io/example_rig.h"
+
+namespace planlight {
+namespace {
+
+Case a_case() {
+    Case made;
+    made.code = "c0ffee";
+    made.volume_hash = "0123456789";
+    made.lut.mesh_hash = "9876543210";
+    made.plan.boreholes.push_back({});
+    made.plan.boreholes.front().position_in_ct = {0, 0, 700};
+    return made;
+}
+
+RigState a_state(RigState::Verdict verdict) {
+    RigState state;
+    state.verdict = verdict;
+    state.sentence = "the projector moved";
+    state.remedy = "Calibrate the rig again.";
+    state.rig = test::example_rig();
+    state.calibrated = name_of(state.rig);
+    state.capture_hash = "a capture";
+    return state;
+}
+
+RegistrationResult match_with(const std::optional<RigState>& rig) {
+    RegistrationResult match;
+    match.verdict = Verdict::yes;
+    take_case_and_rig(a_case(), rig, match);
+    return match;
+}
+
+/// The left camera turned by so much sideways against what is used.
+RigDoubt turned(double radians) {
+    RigDoubt doubt;
+    for (auto& by : doubt.by) by.setZero();
+    doubt.by[0][1] = radians;
+    return doubt;
+}
+
+TEST(RigOfAMatch, DecidesWhetherItMayBeUsed) {
+    using V = RigState::Verdict;
+    EXPECT_EQ(match_with(a_state(V::as_calibrated)).verdict, Verdict::yes);
+    EXPECT_EQ(match_with(a_state(V::corrected)).verdict, Verdict::yes);
+    EXPECT_EQ(match_with(a_state(V::unknown)).verdict, Verdict::ask);
+    const RegistrationResult refused = match_with(a_state(V::not_trusted));
+    EXPECT_EQ(refused.verdict, Verdict::no);
+    EXPECT_NE(refused.reasons.front().find("the projector moved"), std::string::npos);
+    EXPECT_EQ(match_with(std::nullopt).verdict, Verdict::yes) << "the cloud of another scanner";
+}
+
+/// A camera turned by 0.2 degrees moves a point 700 mm away and seen from 300 mm apart by 5 mm in depth.
+TEST(RigOfAMatch, AsksWhereAPlanPointMayBeOffAndSaysItInTheBound) {
+    RigState state = a_state(RigState::Verdict::corrected);
+    state.doubts = {turned(0.0035)};
+    const RegistrationResult match = match_with(state);
+    EXPECT_EQ(match.verdict, Verdict::ask);
+    EXPECT_GT(predicted_light_mm(match, {0, 0, 700}), 1);
+    state.doubts = {turned(0.0001)};
+    EXPECT_EQ(match_with(state).verdict, Verdict::yes);
+    EXPECT_LT(predicted_light_mm(match_with(state), {0, 0, 700}), 0.5);
+}
+
+TEST(RigOfAMatch, LightIsDrawnWithTheRigThatWasFoundOrNotAtAll) {
+    RigState state = a_state(RigState::Verdict::corrected);
+    state.rig.projector.centre_x += 5;
+    const RigCalibration calibrated = test::example_rig();
+    EXPECT_EQ(rig_of_light(match_with(state), calibrated, false).projector.centre_x, calibrated.projector.centre_x + 5);
+    state.verdict = RigState::Verdict::not_trusted;
+    EXPECT_THROW(rig_of_light(match_with(state), calibrated, true), CheckFailedError) << "also on a person's word";
+    EXPECT_THROW(rig_of_light(match_with(std::nullopt), calibrated, false), CheckFailedError);
+    EXPECT_NO_THROW(rig_of_light(match_with(std::nullopt), calibrated, true));
+}
+
+TEST(Belonging, AnotherRigCaseOrScanIsRefusedAndWhatIsNotSaidIsSaid) {
+    const RegistrationResult match = match_with(a_state(RigState::Verdict::corrected));
+    std::vector<std::string> unknown;
+    EXPECT_NO_THROW(check_case(match, a_case(), "m", unknown));
+    EXPECT_NO_THROW(check_rig(match, test::example_rig(), "m", "r", unknown));
+    EXPECT_TRUE(unknown.empty());
+    Case other = a_case();
+    other.volume_hash = "another";
+    EXPECT_THROW(check_case(match, other, "m", unknown), InputError);
+    RigCalibration moved = test::example_rig();
+    moved.left_camera.focal_x += 1e-9;
+    EXPECT_THROW(check_rig(match, moved, "m", "r", unknown), InputError);
+    PosesOrigin poses{match.rig->calibrated, "a capture", match.rig->rig};
+    EXPECT_NO_THROW(check_poses(poses, match, test::example_rig(), "p", unknown));
+    EXPECT_TRUE(unknown.empty());
+    poses.rig.left_camera = changed(poses.rig.left_camera, DeviceChange::Unit(1) * 1e-3);
+    EXPECT_THROW(check_poses(poses, match, test::example_rig(), "p", unknown), InputError);
+    poses = {match.rig->calibrated, "another capture", match.rig->rig};
+    EXPECT_THROW(check_poses(poses, match, test::example_rig(), "p", unknown), InputError);
+    check_poses(std::nullopt, match, test::example_rig(), "p", unknown);
+    check_rig(RegistrationResult{}, test::example_rig(), "m", "r", unknown);
+    check_case(RegistrationResult{}, a_case(), "m", unknown);
+    EXPECT_EQ(unknown.size(), 3u);
+}
+
+}  // namespace
+}  // namespace planlight

@@ -1,0 +1,203 @@
+// A rig that moved, and files that do not belong together, through the commands.
+#include <fmt/format.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "planning_io/case/rig_file.h"
+#include "planning_io/files/image_file.h"
+#include "planning_io/files/safe_write.h"
+#include "tests/app/on_example_patient.h"
+
+namespace planlight::test {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+class MovedRig : public CommandsTest {
+protected:
+    /// rig.json as it would be if this device had been bumped since it was written.
+    static void write_bumped(RigDevice device, const Eigen::Vector3d& turn_deg, const Eigen::Vector3d& shift_mm,
+                             const std::string& name) {
+        RigCalibration rig = read_rig(root() / "room" / "rig.json");
+        DeviceChange change = DeviceChange::Zero();
+        change.head<3>() = turn_deg * M_PI / 180;
+        change.segment<3>(3) = shift_mm;
+        CameraModel& model = device_of(rig, device);
+        model = changed(model, change);
+        write_rig(rig, root() / name);
+    }
+
+    static CommandRun run(const std::string& arguments) { return run_planlight(arguments, root()); }
+
+    /// The chain on the room's capture with this rig.json; the last that was run. What the light is goes to NAME.png.
+    static CommandRun chain(const std::string& rig, const std::string& name) {
+        fs::remove(root() / (name + ".png"));
+        CommandRun step = run("scan room/capture --rig " + rig + " --out " + name + ".ply");
+        if (step.exit_code == 0) step = run("register case --cloud " + name + ".ply --out " + name + ".json");
+        if (step.exit_code == 0)
+            step = run("project case --rig " + rig + " --registration " + name + ".json --out " + name + ".png");
+        return step;
+    }
+
+    /// Middle of all light, projector pixels.
+    static Eigen::Vector2d middle_of(const fs::path& picture) {
+        const GrayImage light = read_gray(picture);
+        Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+        double weight = 0;
+        for (int y = 0; y < light.height; ++y)
+            for (int x = 0; x < light.width; ++x) {
+                sum += light.at(x, y) * Eigen::Vector2d(x, y);
+                weight += light.at(x, y);
+            }
+        return sum / weight;
+    }
+};
+
+/// The projector's pixels are what lights the skin: whatever rig.json says, the same pixels must be lit. A tenth of a
+/// degree is 4 of them, 1.6 mm.
+TEST_F(MovedRig, LightOfABumpedProjectorFallsWhereItFellBefore) {
+    prepared();
+    simulated();
+    const auto good = chain("room/rig.json", "good");
+    ASSERT_EQ(good.exit_code, 0) << good.err;
+    const Eigen::Vector2d wanted = middle_of(root() / "good.png");
+    int number = 0;
+    for (const auto& [turn, shift] : {std::pair{Eigen::Vector3d(0.1, 0, 0), Eigen::Vector3d(0, 0, 0)},
+                                      std::pair{Eigen::Vector3d(0.15, -0.2, 0.3), Eigen::Vector3d(0, 0, 0)},
+                                      std::pair{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0.5, 1, 0)}}) {
+        const std::string name = fmt::format("bumped{}", ++number);
+        write_bumped(RigDevice::projector, turn, shift, name + "-rig.json");
+        const auto lit = chain(name + "-rig.json", name);
+        ASSERT_EQ(lit.exit_code, 0) << lit.err;
+        EXPECT_NE(lit.err.find("the projector moved"), std::string::npos) << lit.err;
+        EXPECT_LT((middle_of(root() / (name + ".png")) - wanted).norm(), 0.5) << "0.2 mm on the skin";
+        const auto check = run("check room/capture --rig " + name + "-rig.json");
+        EXPECT_EQ(check.exit_code, 6);
+        EXPECT_NE(check.err.find("the projector moved"), std::string::npos) << check.err;
+        EXPECT_NE(check.err.find("light drawn with the rig as it stands now"), std::string::npos) << check.err;
+    }
+}
+
+TEST_F(MovedRig, LightOfABumpedCameraFallsWhereItFellBeforeOrThereIsNone) {
+    prepared();
+    simulated();
+    ASSERT_EQ(chain("room/rig.json", "good").exit_code, 0);
+    const Eigen::Vector2d wanted = middle_of(root() / "good.png");
+    int number = 0;
+    for (const Eigen::Vector3d& turn : {Eigen::Vector3d(0.1, 0, 0), Eigen::Vector3d(0, 0.05, 0),
+                                        Eigen::Vector3d(0, 0.3, 0), Eigen::Vector3d(0, -1, 0)}) {
+        const std::string name = fmt::format("camera{}", ++number);
+        write_bumped(RigDevice::left_camera, turn, {0, 0, 0}, name + "-rig.json");
+        const auto lit = chain(name + "-rig.json", name);
+        if (lit.exit_code == 6) {
+            EXPECT_FALSE(fs::exists(root() / (name + ".png")));
+            EXPECT_NE(lit.err.find("alibrate the rig again"), std::string::npos) << lit.err;
+            continue;
+        }
+        ASSERT_EQ(lit.exit_code, 0) << lit.err;
+        EXPECT_LT((middle_of(root() / (name + ".png")) - wanted).norm(), 1)
+            << "0.4 mm on the skin: " << turn.transpose();
+    }
+}
+
+TEST_F(MovedRig, PosesAreMeasuredWithTheRigThatTheScanFound) {
+    prepared();
+    simulated();
+    write_bumped(RigDevice::right_camera, {0.2, 0.05, 0}, {0, 0, 0}, "right-rig.json");
+    ASSERT_EQ(chain("right-rig.json", "right").exit_code, 0);
+    ASSERT_EQ(chain("room/rig.json", "good").exit_code, 0);
+    const auto good = run("track room/frames --rig room/rig.json --capture room/capture --out good-poses.json");
+    ASSERT_EQ(good.exit_code, 0) << good.err;
+    const auto draw = [&](const std::string& rig, const std::string& match, const std::string& poses,
+                          const std::string& out) {
+        return run("project case --rig " + rig + " --registration " + match + " --poses " + poses + " --out " + out);
+    };
+    ASSERT_EQ(draw("room/rig.json", "good.json", "good-poses.json", "good-moved.png").exit_code, 0);
+    for (const std::string by : {"--capture room/capture", "--capture room/capture --registration right.json"}) {
+        const auto track = run("track room/frames --rig right-rig.json " + by + " --out right-poses.json");
+        ASSERT_EQ(track.exit_code, 0) << track.err;
+        const auto lit = draw("right-rig.json", "right.json", "right-poses.json", "right-moved.png");
+        ASSERT_EQ(lit.exit_code, 0) << lit.err;
+        EXPECT_LT((middle_of(root() / "right-moved.png") - middle_of(root() / "good-moved.png")).norm(), 1);
+    }
+}
+
+TEST_F(MovedRig, FilesOfOthersAreRefusedWithBothNames) {
+    prepared();
+    simulated();
+    ASSERT_EQ(chain("room/rig.json", "good").exit_code, 0);
+    ASSERT_EQ(run("simulate " + patient() + " --plan " + plan() + " --preset paper --seed 5 --frames 1 --out room2")
+                  .exit_code,
+              0);
+    ASSERT_EQ(
+        run("prepare " + patient() + " --plan " + plan() + " --threshold -200 --voxel-mm 2 --out case2").exit_code, 0);
+    const auto project = [&](const std::string& arguments) {
+        fs::remove(root() / "never.png");
+        const auto done = run("project " + arguments + " --out never.png");
+        EXPECT_FALSE(fs::exists(root() / "never.png")) << arguments;
+        return done;
+    };
+    expect_one_clear_sentence(project("case --rig room2/rig.json --registration good.json"), 3,
+                              "calibrated 2024-01-01) and");
+    expect_one_clear_sentence(project("case2 --rig room/rig.json --registration good.json"), 3, "is a match of case");
+    ASSERT_EQ(run("track room2/frames --rig room2/rig.json --capture room2/capture --out poses2.json").exit_code, 0);
+    expect_one_clear_sentence(project("case --rig room/rig.json --registration good.json --poses poses2.json"), 3,
+                              "poses of rig");
+    const auto other = run("track room/frames --rig room/rig.json --out first-frame.json");
+    ASSERT_EQ(other.exit_code, 0) << other.err;
+    const auto drawn =
+        run("project case --rig room/rig.json --registration good.json --poses first-frame.json --out lit.png");
+    EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+    EXPECT_NE(drawn.err.find("begin at its first frame"), std::string::npos) << drawn.err;
+    expect_one_clear_sentence(run("review case2 --registration good.json --picture never.png"), 3,
+                              "is a match of case");
+}
+
+TEST_F(MovedRig, AnEditedMatchAndLightThatFallsNowhereAreRefused) {
+    prepared();
+    simulated();
+    ASSERT_EQ(chain("room/rig.json", "good").exit_code, 0);
+    std::string text = read_text(root() / "good.json");
+    text.replace(text.find("\"residual_rms_mm\": 0."), 21, "\"residual_rms_mm\": 1.");
+    std::ofstream(root() / "edited.json") << text;
+    expect_one_clear_sentence(run("project case --rig room/rig.json --registration edited.json --out never.png"), 4,
+                              "checksum");
+    json poses = {{"format", "planlight poses"}, {"version", 1}};
+    poses["poses"] = json::array({{{"at_ns", 0},
+                                   {"rig_from_patient", {1, 0, 0, 900, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}},
+                                   {"markers_left", 5},
+                                   {"markers_right", 5},
+                                   {"residual_px", 0.1},
+                                   {"predicted_error_mm", 0.1},
+                                   {"reason", ""}}});
+    std::ofstream(root() / "away.json") << poses;
+    const auto dark =
+        run("project case --rig room/rig.json --registration good.json --poses away.json --out never.png");
+    EXPECT_EQ(dark.exit_code, 6) << dark.err;
+    EXPECT_NE(dark.err.find("nothing of the plan lies in the projector's light"), std::string::npos) << dark.err;
+    EXPECT_FALSE(fs::exists(root() / "never.png"));
+}
+
+/// A cloud without names is the cloud of another scanner: it is matched, and drawn only on a person's word.
+TEST_F(MovedRig, ACloudWithoutARigIsMatchedAndDrawnOnlyOnAPersonsWord) {
+    prepared();
+    simulated();
+    ASSERT_EQ(chain("room/rig.json", "good").exit_code, 0);
+    std::string text = read_text(root() / "good.ply");
+    for (std::size_t at; (at = text.find("comment PLANLIGHT-RIG")) != std::string::npos;)
+        text.erase(at, text.find('\n', at) + 1 - at);
+    std::ofstream(root() / "nameless.ply", std::ios::binary) << text;
+    const auto match = run("register case --cloud nameless.ply --out nameless.json --json");
+    ASSERT_EQ(match.exit_code, 0) << match.err;
+    EXPECT_EQ(json::parse(match.out)["verdict"], "yes");
+    const std::string project = "project case --rig room/rig.json --registration nameless.json --out nameless.png";
+    EXPECT_EQ(run(project).exit_code, 6);
+    const auto drawn = run(project + " --confirmed");
+    EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+    EXPECT_NE(drawn.err.find("does not say with which rig"), std::string::npos) << drawn.err;
+}
+
+}  // namespace
+}  // namespace planlight::test
