@@ -140,9 +140,10 @@ void say(const std::string& line) {
 }
 
 int explain_short_memory() {
-    say(fmt::format("there is not enough memory: this needs more than the {} MiB that it had. Close other programs, or use "
-                    "larger voxels.",
-                    most_memory_used_bytes() >> 20));
+    say(fmt::format(
+        "there is not enough memory: this needs more than the {} MiB that it had. Close other programs, or use "
+        "larger voxels.",
+        most_memory_used_bytes() >> 20));
     return static_cast<int>(ExitCode::disk);
 }
 

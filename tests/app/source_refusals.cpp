@@ -117,6 +117,7 @@ std::vector<SourceRefusal> refusals_in_sources(const fs::path& root) {
             refusal.line = static_cast<int>(std::count(source.begin(), source.begin() + it->position(), '\n')) + 1;
             refusal.kind = kind;
             refusal.problem = words(given[problem], source);
+            if (kind == "DeviceError") refusal.problem = words(given[0], source) + ": " + refusal.problem;
             refusal.remedy = words(given[problem + 1], source);
             found.push_back(std::move(refusal));
         }
