@@ -61,7 +61,9 @@ int main(int argc, char** argv) {
         "app/guide/refusals.md`. "
         "\"…\" stands for what is only known when it happens: a\nfile, a name, a number. [When it says "
         "no](6-when-it-says-no.md) explains "
-        "the common ones.\n");
+        "the common ones; what a check words by itself (calibration, the state of the rig, the sequence of frames, the "
+        "skin, a projector) stands "
+        "on the page of its room.\n");
     for (const auto& [number, topic] : topics) {
         fmt::print("\n## {}\n| it says | do |\n|---|---|\n", topic.first);
         for (const auto& [problem, remedy] : topic.second) fmt::print("| {} | {} |\n", cell(problem), cell(remedy));
