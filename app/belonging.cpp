@@ -149,11 +149,12 @@ void check_poses(const std::optional<PosesOrigin>& origin, const RegistrationRes
             file,
             fmt::format("holds poses from the scan of capture {}, and the match is of the scan of capture {}",
                         begin_of(origin->capture_hash), begin_of(match.rig->capture_hash)),
-            "Track the frames with --capture of the scan that was matched.");
+            "Track the frames with `planlight track --capture` of the scan that was matched.");
     if (!same(origin->rig.left_camera, match.rig->rig.left_camera) ||
         !same(origin->rig.right_camera, match.rig->rig.right_camera))
         throw InputError(file, "was tracked with cameras that stand elsewhere than the scan found them",
-                         "Track the frames with --capture or --registration of the scan that was matched.");
+                         "Track the frames with `planlight track --capture` or `track --registration` of the scan that "
+                         "was matched.");
 }
 
 RigCalibration rig_of_light(const RegistrationResult& match, const RigCalibration& rig, bool confirmed) {

@@ -1,44 +1,109 @@
 #include "app/console.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <chrono>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <exception>
 #include <new>
 #include <system_error>
+#include <utility>
 
 #include "planning_io/files/memory_need.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
+namespace {
 
-ProgressBar::ProgressBar() : terminal_(isatty(STDERR_FILENO) == 1) {}
+/// What all of the program writes by.
+struct Console {
+    ConsoleSettings settings;
+    std::FILE* log = nullptr;
+    ProgressBar* open_bar = nullptr;  ///< its line on the terminal is not ended
+};
+
+Console& console() {
+    static Console the_console;
+    return the_console;
+}
+
+/// Standard output leads nowhere from here on.
+void silence_results() {
+    std::fflush(stdout);
+    const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
+    if (nowhere < 0) return;
+    ::dup2(nowhere, STDOUT_FILENO);
+    ::close(nowhere);
+}
+
+void add_to_log(const std::string& line) {
+    if (!console().log) return;
+    fmt::print(console().log, "{} {}\n", today(), line);
+    std::fflush(console().log);
+}
+
+}  // namespace
+
+void set_up_console(const ConsoleSettings& settings, bool result_wanted) {
+    console().settings = settings;
+    if (!settings.log_file.empty()) {
+        console().log = std::fopen(settings.log_file.c_str(), "ae");
+        if (!console().log)
+            throw DiskError(settings.log_file, fmt::format("cannot be written ({})", std::strerror(errno)),
+                            "Name another file with --log-file.");
+    }
+    if (settings.quiet && !result_wanted) silence_results();
+}
+
+void log_line(const std::string& line) {
+    add_to_log(line);
+    if (console().settings.verbose) fmt::print(stderr, "{}\n", line);
+}
+
+ProgressBar::ProgressBar() : terminal_(isatty(STDERR_FILENO) == 1 && !console().settings.quiet) {}
 
 ProgressBar::~ProgressBar() {
-    end_line();
+    end_step();
 }
 
 void ProgressBar::show(const std::string& step, double share) {
-    if (!terminal_) return;
-    if (step != step_) end_line();
     const int percent = static_cast<int>(100 * std::clamp(share, 0.0, 1.0));
-    if (step == step_ && percent == percent_) return;
-    step_ = step;
+    if (step != step_) {
+        if (percent == 100 && step == done_) return;
+        end_step();
+        step_ = step;
+        began_ = std::chrono::steady_clock::now();
+    } else if (percent == percent_) {
+        return;
+    }
     percent_ = percent;
-    constexpr int kWidth = 40;
-    const int done = kWidth * percent / 100;
-    fmt::print(stderr, "\r{:<18} [{}{}] {:3d} %", step, std::string(static_cast<std::size_t>(done), '#'),
-               std::string(static_cast<std::size_t>(kWidth - done), ' '), percent);
-    std::fflush(stderr);
+    if (terminal_) draw(percent);
+    if (percent == 100) end_step();
 }
 
-void ProgressBar::end_line() {
-    if (terminal_ && !step_.empty()) fmt::print(stderr, "\n");
-    step_.clear();
+void ProgressBar::draw(int percent) {
+    constexpr int kWidth = 40;
+    const int done = kWidth * percent / 100;
+    fmt::print(stderr, "\r{:<18} [{}{}] {:3d} %", step_, std::string(static_cast<std::size_t>(done), '#'),
+               std::string(static_cast<std::size_t>(kWidth - done), ' '), percent);
+    std::fflush(stderr);
+    drawn_ = true;
+    console().open_bar = this;
+}
+
+void ProgressBar::end_step() {
+    if (drawn_) fmt::print(stderr, "\n");
+    drawn_ = false;
+    if (console().open_bar == this) console().open_bar = nullptr;
+    if (!step_.empty())
+        log_line(fmt::format("{}: {:.2f} s", step_,
+                             std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count()));
+    done_ = std::exchange(step_, {});
     percent_ = -1;
 }
 
@@ -47,11 +112,14 @@ std::function<void(const std::string&, double)> ProgressBar::callback() {
 }
 
 void ProgressBar::note(const std::string& line) {
-    end_line();
-    fmt::print(stderr, "{}\n", line);
+    end_step();
+    add_to_log(line);
+    if (!console().settings.quiet) fmt::print(stderr, "{}\n", line);
 }
 
 void warn(const std::string& text) {
+    if (console().open_bar) fmt::print(stderr, "\n");
+    add_to_log("warning: " + text);
     fmt::print(stderr, "warning: {}\n", text);
 }
 
@@ -66,35 +134,40 @@ std::string today() {
 
 namespace {
 
+void say(const std::string& line) {
+    add_to_log(line);
+    fmt::print(stderr, "planlight: {}\n", line);
+}
+
 int explain_short_memory() {
-    fmt::print(
-        stderr,
-        "planlight: there is not enough memory: this needs more than the {} MiB that it had. Close other programs, or "
-        "use larger voxels.\n",
-        most_memory_used_bytes() >> 20);
+    say(fmt::format(
+        "there is not enough memory: this needs more than the {} MiB that it had. Close other programs, or use "
+        "larger voxels.",
+        most_memory_used_bytes() >> 20));
     return static_cast<int>(ExitCode::disk);
 }
 
 }  // namespace
 
 int run_and_explain(const std::function<int()>& command) {
+    auto code = static_cast<int>(ExitCode::our_fault);
     try {
-        return command();
+        code = command();
     } catch (const Error& error) {
-        fmt::print(stderr, "planlight: {}. {}\n", error.what(), error.remedy);
-        return static_cast<int>(error.exit_code);
+        say(fmt::format("{}. {}", error.what(), error.remedy));
+        code = static_cast<int>(error.exit_code);
     } catch (const std::bad_alloc&) {
-        return explain_short_memory();
+        code = explain_short_memory();
     } catch (const std::system_error& fault) {  // a thread that finds no room
         if (fault.code() == std::errc::resource_unavailable_try_again || fault.code() == std::errc::not_enough_memory)
-            return explain_short_memory();
-        fmt::print(stderr, "planlight: a fault of ours: {}. Please report it with the command that you gave.\n",
-                   fault.what());
+            code = explain_short_memory();
+        else
+            say(fmt::format("a fault of ours: {}. Please report it with the command that you gave.", fault.what()));
     } catch (const std::exception& fault) {
-        fmt::print(stderr, "planlight: a fault of ours: {}. Please report it with the command that you gave.\n",
-                   fault.what());
+        say(fmt::format("a fault of ours: {}. Please report it with the command that you gave.", fault.what()));
     }
-    return static_cast<int>(ExitCode::our_fault);
+    add_to_log(fmt::format("exit {}", code));
+    return code;
 }
 
 }  // namespace planlight

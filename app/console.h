@@ -1,15 +1,34 @@
 #pragma once
 
+#include <chrono>
+#include <filesystem>
 #include <functional>
 #include <string>
 
 namespace planlight {
 
-/// A progress bar on stderr, one line per step; silent when stderr is no terminal.
+/// How much is said, and where else (--quiet, --verbose, --log-file of every command).
+struct ConsoleSettings {
+    bool quiet = false;    ///< only warnings, errors, and what --json prints
+    bool verbose = false;  ///< every step on a line of its own with its time, also where stderr is no terminal
+    std::filesystem::path log_file;  ///< what happened is added there, a line each with its time; empty: none
+};
+
+/// Takes effect for the rest of the program's life. `result_wanted`: what is written to standard output is kept though
+/// the console is quiet. Throws DiskError when the log cannot be written.
+void set_up_console(const ConsoleSettings& settings, bool result_wanted);
+
+/// A line for the log file and, if `verbose`, for stderr.
+void log_line(const std::string& line);
+
+/// A progress bar on stderr, one line per step; silent when stderr is no terminal. A step that is done ends its line,
+/// so that what is printed next begins a new one.
 class ProgressBar {
 public:
     ProgressBar();
     ~ProgressBar();
+    ProgressBar(const ProgressBar&) = delete;
+    ProgressBar& operator=(const ProgressBar&) = delete;
     /// Step by name, share 0..1. A new name ends the line of the one before.
     void show(const std::string& step, double share);
     std::function<void(const std::string&, double)> callback();
@@ -17,10 +36,12 @@ public:
     void note(const std::string& line);
 
 private:
-    void end_line();
-    bool terminal_;
-    std::string step_;
+    void draw(int percent);
+    void end_step();
+    bool terminal_, drawn_ = false;
+    std::string step_, done_;  ///< under way; the last that was done
     int percent_ = -1;
+    std::chrono::steady_clock::time_point began_;
 };
 
 /// One line on stderr that begins with "warning: ".

@@ -1,7 +1,12 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
 
 #include "app/commands/commands.h"
+#include "app/commands/usage_problem.h"
 #include "app/console.h"
+#include "app/site_settings.h"
 #include "planning_io/types/error.h"
 
 namespace {
@@ -12,7 +17,7 @@ using namespace planlight;
 constexpr Run (*kCommands[])(CLI::App&) = {
     add_demo,   add_prepare,  add_plan,  add_patterns, add_board,     add_calibrate,        add_check,
     add_scan,   add_register, add_track, add_project,  add_projector, add_projector_window, add_session,
-    add_review, add_simulate,
+    add_review, add_simulate, add_merge,
 };
 
 constexpr const char* kExitCodes =
@@ -20,22 +25,47 @@ constexpr const char* kExitCodes =
     "disk,\n"
     "70 a fault of ours.";
 
+void console_options(CLI::App* command, ConsoleSettings& console) {
+    auto* quiet = command->add_flag("--quiet", console.quiet, "Say warnings and errors only (and what --json prints)");
+    command->add_flag("--verbose", console.verbose, "Say every step with the time it took")->excludes(quiet);
+    command->add_option("--log-file", console.log_file,
+                        "Add what happens to this file, a line each with its time (UTC)");
+    for (const char* name : {"--quiet", "--verbose", "--log-file"}) command->get_option(name)->group("What is said");
+}
+
+int run_command(const CLI::App& command, const Run& run, const ConsoleSettings& console, const std::string& line) {
+    const auto* json = command.get_option_no_throw("--json");
+    set_up_console(console, json && json->count() > 0);
+    log_line(fmt::format("planlight {} ({})", PLANLIGHT_VERSION, line));
+    if (const SiteSettings site = read_site_settings(); !site.read_from.empty())
+        log_line("settings of this site: " + site.read_from.string());
+    return run();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     CLI::App app{"Planlight shows a surgical plan as light on the patient.\n", "planlight"};
     app.footer(std::string("planlight COMMAND --help shows a command's options and an example.\n") + kExitCodes);
     app.require_subcommand(1);
-    app.set_version_flag("--version", "planlight 0.1.0");
-    Run chosen;
+    app.set_version_flag("--version", "planlight " PLANLIGHT_VERSION);
+    ConsoleSettings console;
+    std::function<int()> chosen;
+    const std::string line = fmt::format("{}", fmt::join(argv + 1, argv + argc, " "));
     for (const auto add : kCommands) {
         Run run = add(app);
-        app.get_subcommands({}).back()->callback([&chosen, run = std::move(run)] { chosen = run; });
+        CLI::App* command = app.get_subcommands({}).back();
+        console_options(command, console);
+        command->callback([&, command, run = std::move(run)] {
+            chosen = [&, command, run] { return run_command(*command, run, console, line); };
+        });
     }
     try {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::usage);
+        if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+        fmt::print(stderr, "{}\n", usage_problem(app, error));
+        return static_cast<int>(ExitCode::usage);
     }
     return run_and_explain(chosen);
 }

@@ -18,8 +18,8 @@ double elapsed_s(std::chrono::steady_clock::time_point since) {
 
 }  // namespace
 
-CaseDrawing::CaseDrawing(const Case& the_case, const DrawingSettings& settings)
-    : skin(the_case.skin), drawing(draw_plan(the_case.plan, skin, settings)) {}
+CaseDrawing::CaseDrawing(const Case& the_case, const DrawingSettings& how)
+    : skin(the_case.skin), settings(how), drawing(draw_plan(the_case.plan, skin, settings)) {}
 
 Session::Session(const Case& the_case, const CaseDrawing& drawing, const RigCalibration& rig, Projector& projector,
                  StereoCamera& cameras, const Clock& clock, SessionSettings settings)

@@ -37,6 +37,7 @@ struct SessionSettings {
 /// The drawing machinery of one case: made once, used by every picture.
 struct CaseDrawing {
     SkinSurface skin;
+    DrawingSettings settings;
     PlanDrawing drawing;  ///< as it is before any marker is known; a session moves the labels off its markers
     explicit CaseDrawing(const Case& the_case, const DrawingSettings& settings = {});
 };

@@ -219,7 +219,7 @@ void refuse_stopped_plan(const PlanVerdict& verdict) {
     throw InputError(
         {}, "The plan does not fit this patient: " + said,
         "Check that it was made on this CT, its coordinate system and its units; a plan on bone is projected on the "
-        "bone (--surface).");
+        "bone (`planlight prepare --surface`).");
 }
 
 }  // namespace planlight

@@ -18,9 +18,8 @@ struct Session {
     Session() {
         glfwSetErrorCallback([](int, const char* text) { stored_error() = text; });
         if (glfwInit() != GLFW_TRUE)
-            throw DeviceError(
-                "display", "no window can be opened (" + last_window_error() + ")",
-                "start the program in a desktop session, or set DISPLAY; commands with --headless need none");
+            throw DeviceError("Display", "no window can be opened (" + last_window_error() + ")",
+                              "Start the program in a desktop session, or set DISPLAY.");
     }
     Session(const Session&) = delete;
     Session& operator=(const Session&) = delete;

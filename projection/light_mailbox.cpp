@@ -45,7 +45,7 @@ static_assert(std::atomic<std::int64_t>::is_always_lock_free && std::atomic<std:
 
 LightMailbox::LightMailbox() : descriptor_(memfd_create("planlight-light", MFD_CLOEXEC)) {
     if (descriptor_ < 0 || ftruncate(descriptor_, sizeof(Shared)) != 0)
-        throw DeviceError("projector process", "there is no memory for its pictures", "Close other programs.");
+        throw DeviceError("Projector process", "there is no memory for its pictures", "Close other programs.");
     map();
     new (shared_) Shared;  // a fresh memory file is all zero: the slots need no touch
 }
@@ -62,7 +62,7 @@ LightMailbox::~LightMailbox() {
 void LightMailbox::map() {
     void* const memory = mmap(nullptr, sizeof(Shared), PROT_READ | PROT_WRITE, MAP_SHARED, descriptor_, 0);
     if (memory == MAP_FAILED)
-        throw DeviceError("projector process", "there is no memory for its pictures", "Close other programs.");
+        throw DeviceError("Projector process", "there is no memory for its pictures", "Close other programs.");
     shared_ = static_cast<Shared*>(memory);
 }
 

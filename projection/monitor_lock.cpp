@@ -60,10 +60,10 @@ MonitorLock::MonitorLock(const std::string& monitor) : socket_(socket(AF_UNIX, S
     if (socket_ >= 0) close(socket_);
     socket_ = -1;
     if (reason != EADDRINUSE)
-        throw DeviceError("projector window", std::string("the monitor cannot be reserved: ") + std::strerror(reason),
+        throw DeviceError("Projector window", std::string("the monitor cannot be reserved: ") + std::strerror(reason),
                           "Restart the computer, or report this.");
     const pid_t holder = holder_of(address, length);
-    throw DeviceError("projector window",
+    throw DeviceError("Projector window",
                       "the light of monitor " + monitor + " is in the hands of another Planlight already" +
                           (holder > 0 ? " (process " + std::to_string(holder) + ")" : ""),
                       "End that session first: two programs must never light one patient.");

@@ -37,7 +37,7 @@ pid_t spawn(const std::filesystem::path& program, const std::string& monitor, in
     close(bell_copy);
     close(mailbox_copy);
     if (failed != 0)
-        throw DeviceError("projector process", std::string("it cannot be started: ") + std::strerror(failed),
+        throw DeviceError("Projector process", std::string("it cannot be started: ") + std::strerror(failed),
                           "Check the installation, and free memory.");
     return process;
 }
@@ -63,7 +63,7 @@ ProjectorProcess::~ProjectorProcess() {
 void ProjectorProcess::start(const std::string& monitor) {
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
-        throw DeviceError("projector process", std::strerror(errno), "Close other programs and try again.");
+        throw DeviceError("Projector process", std::strerror(errno), "Close other programs and try again.");
     bell_ = ends[0];
     try {
         process_ = spawn(settings_.program, monitor, ends[1], mailbox_.descriptor());
@@ -80,11 +80,11 @@ void ProjectorProcess::wait_until_ready() {
     while (mailbox_.state() == LightMailbox::State::starting) {
         if (waitpid(process_, nullptr, WNOHANG) == process_) {
             process_ = -1;
-            throw DeviceError("projector process", "it ended while it started",
+            throw DeviceError("Projector process", "it ended while it started",
                               "Update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1.");
         }
         if (clock_.now() > until)
-            throw DeviceError("projector process", "its window did not open in time",
+            throw DeviceError("Projector process", "its window did not open in time",
                               "Update the graphics driver, or set LIBGL_ALWAYS_SOFTWARE=1.");
         std::this_thread::sleep_for(kPoll);
     }
@@ -152,7 +152,7 @@ Instant ProjectorProcess::show(const RgbImage& picture, Instant valid_until) {
     if (picture.width != width_ || picture.height != height_) {
         mailbox_.order({}, {});
         wake();
-        throw DeviceError("projector window",
+        throw DeviceError("Projector window",
                           "a picture of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
                               " does not fit the monitor's " + std::to_string(width_) + "x" + std::to_string(height_),
                           "Calibrate the rig at the projector's own resolution, or set the monitor to it.");

@@ -59,14 +59,14 @@ std::size_t choose(const std::vector<Monitor>& monitors, const std::string& want
     for (std::size_t i = 0; found == monitors.end() && i < monitors.size(); ++i)
         if (std::to_string(i) == wanted) found = monitors.begin() + static_cast<std::ptrdiff_t>(i);
     if (found == monitors.end())
-        throw DeviceError("projector window", "there is no monitor \"" + wanted + "\"; there is: " + names_of(monitors),
-                          "connect the projector, or name one of these");
+        throw DeviceError("Projector window", "there is no monitor \"" + wanted + "\"; there is: " + names_of(monitors),
+                          "Connect the projector, or name one of these.");
     if (!allow_only_monitor && (found->primary || monitors.size() == 1))
-        throw DeviceError("projector window",
+        throw DeviceError("Projector window",
                           "monitor " + found->name +
                               (monitors.size() == 1 ? " is the only one" : " is the primary one") +
                               ": the light would cover the operator's screen; there is: " + names_of(monitors),
-                          "choose the projector's monitor, or make the operator's screen the primary one");
+                          "Choose the projector's monitor, or make the operator's screen the primary one.");
     return static_cast<std::size_t>(found - monitors.begin());
 }
 
@@ -87,8 +87,8 @@ GLFWwindow* hidden_window(const Monitor& monitor) {
     glfwWindowHint(GLFW_ALPHA_BITS, 0);
     GLFWwindow* const window = glfwCreateWindow(monitor.width, monitor.height, "Planlight projector", nullptr, nullptr);
     if (window == nullptr)
-        throw DeviceError("projector window", "it could not be opened (" + last_window_error() + ")",
-                          "install an OpenGL 3.3 driver, or set LIBGL_ALWAYS_SOFTWARE=1");
+        throw DeviceError("Projector window", "it could not be opened (" + last_window_error() + ")",
+                          "Install an OpenGL 3.3 driver, or set LIBGL_ALWAYS_SOFTWARE=1.");
     glfwSetInputMode(window, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
     return window;
 }
@@ -196,8 +196,8 @@ struct ProjectorWindow::Parts {
         picture->go_dark();
         glfwHideWindow(window);
         glfwPollEvents();
-        throw DeviceError("projector window", problem,
-                          "connect the projector, check the monitor arrangement, and open the projector again");
+        throw DeviceError("Projector window", problem,
+                          "Connect the projector, check the monitor arrangement, and open the projector again.");
     }
 
     void check_place() {
@@ -227,10 +227,10 @@ void ProjectorWindow::go_dark() noexcept {
 Instant ProjectorWindow::show(const RgbImage& picture, Instant valid_until) {
     if (picture.width != width() || picture.height != height()) {
         go_dark();
-        throw DeviceError("projector window",
+        throw DeviceError("Projector window",
                           "a picture of " + std::to_string(picture.width) + "x" + std::to_string(picture.height) +
                               " does not fit the monitor's " + std::to_string(width()) + "x" + std::to_string(height()),
-                          "calibrate the rig at the projector's own resolution, or set the monitor to it");
+                          "Calibrate the rig at the projector's own resolution, or set the monitor to it.");
     }
     parts_->check_place();
     if (parts_->clock.now() >= valid_until)

@@ -160,7 +160,7 @@ DrawingRenderer::DrawingRenderer(const SkinSurface& skin, const CameraModel& pro
     : parts_(std::make_unique<Parts>(skin, projector)) {
     if (projector.width <= 0 || projector.height <= 0 || !(projector.focal_x > 0) || !(projector.focal_y > 0))
         throw InputError("", "the projector's calibration has no picture size or focal length",
-                         "calibrate the rig again");
+                         "Calibrate the rig again.");
 }
 DrawingRenderer::~DrawingRenderer() = default;
 
@@ -195,7 +195,7 @@ RenderCounts DrawingRenderer::render_into(RgbImage& picture, const PlanDrawing& 
     for (const Stroke& stroke : drawing.strokes) {
         if (settings.only_item >= 0 && stroke.item != settings.only_item) continue;
         if (stroke.normals_in_ct.size() != stroke.points_in_ct.size())
-            throw InputError("", "a stroke of the drawing has not one normal per point", "draw the plan again");
+            throw InputError("", "a stroke of the drawing has not one normal per point", "Draw the plan again.");
         if (stroke.points_in_ct.size() < 2 || !(stroke.width_mm > 0)) continue;
         parts.light_points(stroke, settings, counts);
         parts.add_ribbon(stroke);

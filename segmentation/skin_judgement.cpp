@@ -29,7 +29,7 @@ constexpr double kUnsure_doubted = 0.1, kUnsure_refused = 0.3;
 constexpr double kGap_cm2 = 15, kLeastCut_cm2 = 1;
 
 const char* const kGiveHead =
-    "Give the CT or MR series of the whole head as the scanner made it; for a phantom or a dry skull say --phantom.";
+    "Give the CT or MR series of the whole head as the scanner made it; for a phantom or a dry skull use `planlight prepare --phantom`.";
 const char* const kLook = "Look at the skin in the report before you use it.";
 
 double area_of(const TriangleMesh& mesh, const std::array<std::int32_t, 3>& t, Vector3d* normal) {
@@ -181,7 +181,7 @@ void judge_edges(const SkinMask& mask, SkinJudgement& r) {
                                   "there the surface is not the skin", r.gap_cm2), kLook);
     const std::string unsure = fmt::format("{:.0f} % of the outline moves by more than 3 mm when the threshold is taken at 0.7 or 1.5 "
                                            "times what was found ({:.3g})", 100 * mask.unsure_share, mask.threshold_said);
-    const std::string tries = fmt::format("Try --threshold {:.3g} and --threshold {:.3g}, and compare the pictures of the report.",
+    const std::string tries = fmt::format("Try `planlight prepare --threshold {:.3g}` and {:.3g}, and compare the pictures of the report.",
                                           0.7 * mask.threshold_said, 1.5 * mask.threshold_said);
     if (mask.unsure_share > kUnsure_refused)
         add(r.refusals, "The skin cannot be told from what surrounds it: " + unsure, tries);

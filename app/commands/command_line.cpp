@@ -20,6 +20,10 @@ CLI::Option* preset_option(CLI::App* command, std::string& preset) {
         ->capture_default_str();
 }
 
+void series_option(CLI::App* command, std::string& series_uid) {
+    command->add_option("--series", series_uid, "UID or number of the DICOM series, where the folder holds several");
+}
+
 void plan_frame_options(CLI::App* command, std::string& frame, std::string& accept_frame) {
     command->add_option("--frame", frame, "Coordinate system of plan files that do not say their own")
         ->check(CLI::IsMember({"LPS", "RAS"}));

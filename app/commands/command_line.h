@@ -18,6 +18,9 @@ void json_flag(CLI::App* command, bool& json);
 /// --preset: the simulated room.
 CLI::Option* preset_option(CLI::App* command, std::string& preset);
 
+/// --series, of a folder that holds several.
+void series_option(CLI::App* command, std::string& series_uid);
+
 /// --frame and --accept-frame, of plan files that do not say their coordinate system.
 void plan_frame_options(CLI::App* command, std::string& frame, std::string& accept_frame);
 

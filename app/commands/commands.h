@@ -28,5 +28,6 @@ Run add_projector_window(CLI::App& app);
 Run add_session(CLI::App& app);
 Run add_review(CLI::App& app);
 Run add_simulate(CLI::App& app);
+Run add_merge(CLI::App& app);
 
 }  // namespace planlight

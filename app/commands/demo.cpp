@@ -5,6 +5,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/example_plan.h"
+#include "app/commands/plan_options.h"
 #include "app/console.h"
 #include "app/evaluation/chain_pictures.h"
 #include "app/evaluation/chain_report.h"
@@ -20,6 +21,7 @@ namespace {
 struct DemoOptions {
     Path volume = "/usr/share/doc/invesalius-examples/examples/Cranium.inv3";
     Path plan, out = "planlight-demo";
+    std::string series_uid, frame, accept_frame;  ///< of the volume; of a plan that does not say its coordinate system
     std::string preset = "both";
     unsigned seed = 1;
     int seeds = 1, jobs = 1;
@@ -33,28 +35,19 @@ std::vector<simulation::Preset> presets_of(const DemoOptions& options) {
     return {Preset::paper, Preset::modern};
 }
 
-void print_summary(const PresetSummary& s) {
-    fmt::print("\n{} room: {} of {} patients found, {} refused, {:.0f} updates a second{}\n", s.preset, s.matched_right,
-               s.rooms, s.refused, s.updates_per_s, s.reached() ? "" : "   (a goal was missed)");
-    fmt::print("  {:<36}{:>9}{:>9}{:>9}\n", "", "median", "95 %", "worst");
-    for (const auto& r : s.rows)
-        fmt::print("  {:<36}{:>9.3f}{:>9.3f}{:>9.3f} {:<4}{}\n", r.name, r.found.median, r.found.p95, r.found.worst,
-                   r.unit,
-                   r.goal.empty() ? ""
-                   : r.reached    ? "  reached: " + r.goal
-                                  : "  MISSED: " + r.goal);
-    for (const auto& refusal : s.refusals) fmt::print("  refused: {}\n", refusal);
-}
-
 int run_demo(const DemoOptions& options) {
     if (!std::filesystem::exists(options.volume))
         throw InputError(options.volume, "the patient is not there",
                          "Install the package invesalius-examples, or give --volume.");
     ProgressBar bar;
-    const Plan plan = options.plan.empty() ? example_plan() : read_plan(options.plan);
     bar.show("volume", 0);
-    const Volume volume = read_volume(options.volume);
+    const Volume volume = read_volume(options.volume, options.series_uid);
     bar.show("volume", 1);
+    const Plan plan = options.plan.empty()
+                          ? example_plan()
+                          : import_plan(options.plan, plan_settings(options.frame, options.accept_frame,
+                                                                    volume.frame_of_reference_uid))
+                                .plan;
     const Preparation prepared = prepare_case(volume, plan, {}, {}, iso_date_now(), {bar.callback(), {}});
     std::filesystem::create_directories(options.out);
     write_case(prepared.prepared, options.out / "case", true);
@@ -89,7 +82,7 @@ int run_demo(const DemoOptions& options) {
     write_report_html(options.out / "report.html", prepared, rooms, pictures.pictures());
     if (options.json) std::cout << json;
     for (const auto* preset : {"paper", "modern"})
-        if (const auto s = summarise(rooms, preset); s.rooms > 0 && !options.json) print_summary(s);
+        if (const auto s = summarise(rooms, preset); s.rooms > 0 && !options.json) fmt::print("{}", summary_text(s));
     if (!options.json) fmt::print("\nReport: {}\n", (options.out / "report.html").string());
     if (!options.headless && display_is_there()) {
         LiveOptions live;
@@ -110,7 +103,9 @@ Run add_demo(CLI::App& app) {
         add_command(app, "demo", "The whole chain on the example patient, with a report of how true the light was",
                     "demo --headless --seed 3 --out demo-3");
     sub->add_option("--volume", o.volume, "Patient")->capture_default_str();
+    series_option(sub, o.series_uid);
     sub->add_option("--plan", o.plan, "Plan (default: the example plan)");
+    plan_frame_options(sub, o.frame, o.accept_frame);
     sub->add_option("--preset", o.preset, "modern, paper or both")
         ->check(CLI::IsMember({"modern", "paper", "both"}))
         ->capture_default_str();

@@ -11,11 +11,10 @@ Plan example_plan() {
     namespace fs = std::filesystem;
     const fs::path name = "frontal_defect.mrk.json";
     std::error_code ignored;
-    const fs::path installed =
+    const fs::path file =
         fs::read_symlink("/proc/self/exe", ignored).parent_path().parent_path() / "share" / "planlight" / name;
-    for (const fs::path& file : {fs::path(PLANLIGHT_EXAMPLE_FOLDER) / name, installed})
-        if (fs::exists(file)) return read_plan(file);
-    throw InputError(installed, "the example plan is not there", "Give a plan with --plan.");
+    if (fs::exists(file)) return read_plan(file);
+    throw InputError(file, "the example plan is not there", "Give a plan with --plan.");
 }
 
 }  // namespace planlight

@@ -8,6 +8,7 @@
 #include "app/commands/plan_options.h"
 #include "app/console.h"
 #include "app/prepare_case.h"
+#include "app/site_settings.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/plan/plan_rtstruct.h"
@@ -76,7 +77,8 @@ void check_in_box(const Plan& plan, const VolumeBox& box) {
 /// The items as a list, with where each lies on the head when the skin is known.
 class Listing {
 public:
-    explicit Listing(const Patient& patient) : skin_(patient.skin ? &*patient.skin : nullptr) {
+    Listing(const Patient& patient, SiteSettings units)
+        : site(std::move(units)), skin_(patient.skin ? &*patient.skin : nullptr) {
         if (skin_) mid_plane_ = find_mid_plane(*skin_);
     }
     void add(const char* kind, const std::string& name, const std::string& what, const Eigen::Vector3d& at) {
@@ -85,16 +87,18 @@ public:
         if (skin_) {
             const double far = (skin_->nearest(at).p_in_ct - at).norm();
             item["to_skin_mm"] = far;
-            where = fmt::format(", {:.1f} mm from the skin", far);
+            where = ", " + length_text(far, site) + " from the skin";
         }
         if (mid_plane_) {
             const double left = mid_plane_->left_mm(at);
             item["left_of_middle_mm"] = left;
-            where += fmt::format(", {:.0f} mm {} of the middle", std::abs(left), left > 0 ? "left" : "right");
+            where +=
+                fmt::format(", {} {} of the middle", length_text(std::abs(left), site), left > 0 ? "left" : "right");
         }
         items.push_back(std::move(item));
         lines += fmt::format("  {:<14} {:<24} {}{}\n", kind, name, what, where);
     }
+    const SiteSettings site;  ///< the unit of the lines
     nlohmann::json items = nlohmann::json::array();
     std::string lines;
 
@@ -110,7 +114,8 @@ void list_plan(Listing& list, const Plan& plan) {
             way += (o.points_in_ct[i] - o.points_in_ct[i - 1]).norm();
         if (o.closed) way += (o.points_in_ct.front() - o.points_in_ct.back()).norm();
         list.add("osteotomy line", o.name,
-                 fmt::format("{}, {} points, {:.1f} mm", o.closed ? "closed" : "open", o.points_in_ct.size(), way),
+                 fmt::format("{}, {} points, {}", o.closed ? "closed" : "open", o.points_in_ct.size(),
+                             length_text(way, list.site)),
                  o.points_in_ct.front());
     }
     for (const auto& b : plan.boreholes)
@@ -118,7 +123,7 @@ void list_plan(Listing& list, const Plan& plan) {
                  b.position_in_ct);
     for (const auto& t : plan.trajectories)
         list.add("trajectory", t.name,
-                 fmt::format("{:.1f} mm{}", t.length_mm(),
+                 fmt::format("{}{}", length_text(t.length_mm(), list.site),
                              t.diameter_mm > 0 ? fmt::format(", diameter {:g} mm", t.diameter_mm) : ""),
                  t.entry_in_ct);
     for (const auto& c : plan.cut_planes)
@@ -157,7 +162,7 @@ int run_plan(const PlanOptions& options) {
         check_in_box(read.plan, *patient.box);
     }
     if (!options.out.empty()) write(read, patient, options);
-    Listing list(patient);
+    Listing list(patient, options.json ? SiteSettings{} : read_site_settings());
     list_plan(list, read.plan);
     if (options.json) {
         nlohmann::json result{{"items", list.items},
@@ -172,8 +177,8 @@ int run_plan(const PlanOptions& options) {
         std::cout << result.dump(2) << '\n';
         return 0;
     }
-    fmt::print("{} plan items{}:\n{}", read.plan.size(), options.out.empty() ? "" : " in " + options.out.string(),
-               list.lines);
+    fmt::print("{} plan item{}{}:\n{}", read.plan.size(), read.plan.size() == 1 ? "" : "s",
+               options.out.empty() ? "" : " in " + options.out.string(), list.lines);
     return 0;
 }
 
@@ -190,7 +195,7 @@ Run add_plan(CLI::App& app) {
         ->required();
     sub->add_option("--case", o.case_folder, "Check against this case's skin");
     sub->add_option("--volume", o.volume, "Check against this volume's box and frame of reference");
-    sub->add_option("--series", o.series_uid, "UID of the DICOM series, where the folder holds several");
+    series_option(sub, o.series_uid);
     plan_frame_options(sub, o.frame, o.accept_frame);
     sub->add_option("--out", o.out, "Write the whole plan: .mrk.json, .vtp, or .dcm (RTSTRUCT)");
     json_flag(sub, o.json);

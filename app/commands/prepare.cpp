@@ -137,9 +137,7 @@ Run add_prepare(CLI::App& app) {
     sub->add_option("volume", o.volume,
                     "DICOM folder or file, NIfTI, FreeSurfer MGZ, NRRD, MetaImage, or InVesalius project (.inv3)")
         ->required();
-    sub->add_option(
-           "--plan", o.plan,
-           "Plan file, or a folder of them: .mrk.json, .fcsv, RTSTRUCT, tables, lines (see planning_io/README.md)")
+    sub->add_option("--plan", o.plan, "Plan file, or a folder of them: .mrk.json, .fcsv, RTSTRUCT, tables, lines")
         ->required();
     plan_frame_options(sub, o.frame, o.accept_frame);
     sub->add_option("--surface", o.surface,
@@ -149,7 +147,7 @@ Run add_prepare(CLI::App& app) {
         ->check(CLI::IsMember({"LPS", "RAS"}));
     sub->add_option("--segment", o.segment, "Which segment or ROI of a DICOM SEG or RTSTRUCT, by its name");
     sub->add_option("--out", o.out, "Case folder to write")->required();
-    sub->add_option("--series", o.series_uid, "UID or number of the DICOM series, where the folder holds several");
+    series_option(sub, o.series_uid);
     sub->add_option("--title", o.names.title, "What the case is called, in every window and on every page");
     auto* patient =
         sub->add_option("--patient", o.names.patient, "The patient's initials or code, as your site sets them");

@@ -9,6 +9,7 @@
 #include "app/commands/commands.h"
 #include "app/console.h"
 #include "app/session.h"
+#include "app/site_settings.h"
 #include "planning_io/case/poses_file.h"
 #include "planning_io/case/registration_file.h"
 #include "planning_io/case/rig_file.h"
@@ -69,7 +70,7 @@ int run_project(const ProjectOptions& options) {
     check_verdict(registration, options);
     const RigCalibration rig = rig_of_light(registration, calibrated, options.confirmed);
     const RigidTransform rig_from_patient = pose_to_draw(options);
-    const CaseDrawing drawing(the_case);
+    const CaseDrawing drawing(the_case, drawing_settings(read_site_settings()));
     const DrawingRenderer renderer(drawing.skin, rig.projector);
     const RgbImage picture = renderer.render(drawing.drawing, rig_from_patient * registration.patient_from_ct,
                                              rig_from_patient);  // T_global

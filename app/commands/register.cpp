@@ -6,10 +6,12 @@
 
 #include "app/belonging.h"
 #include "app/case_model.h"
+#include "app/commands/cloud_unit.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/rig_words.h"
 #include "app/report/registration_certificate.h"
+#include "app/site_settings.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/registration_file.h"
@@ -40,14 +42,11 @@ const char* name_of(Verdict verdict) {
     return verdict == Verdict::yes ? "yes" : verdict == Verdict::ask ? "ask" : "no";
 }
 
-double unit_in_mm(const std::string& unit) {
-    return unit == "m" ? 1000 : unit == "cm" ? 10 : unit == "um" ? 1e-3 : unit == "inch" ? 25.4 : 1;
-}
-
 /// The cloud as the matching wants it: mm, with normals towards the devices.
 PointCloud cloud_of(const RegisterOptions& options, std::optional<RigState>& rig) {
     std::vector<std::string> comments;
     PointCloud cloud = read_cloud(options.cloud, {unit_in_mm(options.unit), options.in_rig}, &comments);
+    check_unit(cloud, options.unit, options.cloud);
     rig = rig_state_in(comments, options.cloud);
     if (!cloud.normals_in_rig.empty()) return cloud;
     if (options.viewpoint_in_rig.empty())
@@ -125,9 +124,10 @@ int run_register(const RegisterOptions& options) {
             fmt::print("{}: residual {:.2f} mm rms, {:.0f} % of {} points on the skin, runner-up {:.2f} times worse.\n",
                        name_of(result.verdict), result.residual_rms_mm, 100 * result.inlier_fraction, result.points,
                        result.runner_up_ratio);
+        const SiteSettings site = read_site_settings();
         for (const auto& item : items)
-            fmt::print("  {}: within {:.1f} mm (95 %)\n", item["name"].get<std::string>(),
-                       item["predicted_95_mm"].get<double>());
+            fmt::print("  {}: within {} (95 %)\n", item["name"].get<std::string>(),
+                       length_text(item["predicted_95_mm"].get<double>(), site));
         for (const auto& reason : result.reasons) fmt::print("  {}\n", reason);
     }
     const bool bad_rig = result.rig && result.rig->verdict == RigState::Verdict::not_trusted;
@@ -135,9 +135,12 @@ int run_register(const RegisterOptions& options) {
         throw CheckFailedError(
             fmt::format("{}: {}", bad_rig ? "the match may not be used" : "the patient was not found",
                         fmt::join(result.reasons, "; ")),
-            bad_rig ? result.rig->remedy
-                    : "Scan again from a side that shows more of the head, and check that this is the patient of the "
-                      "case.");
+            bad_rig
+                ? result.rig->remedy
+                : std::string(
+                      "Scan again from a side that shows more of the head, and check that this is the patient of the "
+                      "case.") +
+                      (cloud ? hint_of_unit(*cloud, options.unit) : std::string()));
     return 0;
 }
 

@@ -10,6 +10,7 @@
 #include "app/console.h"
 #include "app/live/clickable_scan.h"
 #include "app/live/live_window.h"
+#include "app/site_settings.h"
 #include "app/windows/scene_view.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/case/cloud_rig.h"
@@ -88,7 +89,7 @@ int run_landmarks(const ReviewOptions& options, const CaseDrawing& drawing, cons
 
 int run_review(const ReviewOptions& options) {
     const Case the_case = read_case(options.case_folder);
-    const CaseDrawing drawing(the_case);
+    const CaseDrawing drawing(the_case, drawing_settings(read_site_settings()));
     OperatorModel model = model_of_case(the_case, drawing);
     const std::shared_ptr<const PointCloud> cloud = cloud_of(options);
     std::optional<RegistrationResult> found;

@@ -3,6 +3,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/live/live_window.h"
+#include "app/site_settings.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
@@ -13,6 +14,7 @@ namespace {
 struct SessionOptions {
     Path case_folder, volume;
     Path keep;  ///< folder for every match; empty: CASE/registrations
+    std::string series_uid;
     std::string preset = "paper", projector_monitor, operator_monitor;
     unsigned seed = 1;
     double speed_mm_s = 20;
@@ -25,7 +27,7 @@ struct SessionOptions {
 
 int run_session(const SessionOptions& options) {
     const Case the_case = read_case(options.case_folder);
-    const Volume volume = read_volume(options.volume);
+    const Volume volume = read_volume(options.volume, options.series_uid);
     if (hash_of(volume) != the_case.volume_hash)
         throw InputError(options.volume, "this is not the volume that the case was made from",
                          "Give the volume of this case, or prepare a case from this volume.");
@@ -34,15 +36,16 @@ int run_session(const SessionOptions& options) {
     live.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     live.seed = options.seed;
     live.speed_mm_s = options.speed_mm_s;
-    live.projector_monitor = options.projector_monitor;
-    live.operator_monitor = options.operator_monitor;
+    const SiteSettings site = read_site_settings();
+    live.projector_monitor = options.projector_monitor.empty() ? site.projector_monitor : options.projector_monitor;
+    live.operator_monitor = options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor;
     if (!options.projector_file.empty()) live.projector = read_projector_file(options.projector_file);
     if (options.light_delay_ms >= 0) live.projector.light_delay = from_seconds(options.light_delay_ms / 1e3);
     live.autoplay = options.autoplay;
     live.end_after_s = options.end_after_s;
     live.screenshots = options.screenshots;
     live.keep_matches_in = options.keep.empty() ? options.case_folder / kRegistrationsFolder : options.keep;
-    return run_live(volume, the_case, CaseDrawing(the_case), live);
+    return run_live(volume, the_case, CaseDrawing(the_case, drawing_settings(site)), live);
 }
 
 }  // namespace
@@ -55,6 +58,7 @@ Run add_session(CLI::App& app) {
                             "session case --volume Cranium.inv3 --projector HDMI-2");
     sub->add_option("case", o.case_folder, "Case folder")->required();
     sub->add_option("--volume", o.volume, "The simulated patient: the volume that the case was made from")->required();
+    series_option(sub, o.series_uid);
     sub->add_option("--keep", o.keep, "Folder that keeps every match and its scan (default: CASE/registrations)");
     preset_option(sub, o.preset);
     sub->add_option(

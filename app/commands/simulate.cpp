@@ -6,6 +6,7 @@
 #include "app/commands/capture_conversion.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/plan_options.h"
 #include "app/commands/simulate_options.h"
 #include "app/console.h"
 #include "planning_io/case/frames_folder.h"
@@ -34,8 +35,12 @@ int run_simulate(const SimulateOptions& options) {
     if (!options.board.empty()) return run_simulate_board(options);
     if (options.volume.empty())
         throw InputError({}, "neither a patient nor a board is given", "Name a volume, or a board with --board.");
-    const Volume volume = read_volume(options.volume);
-    const Plan plan = options.plan.empty() ? Plan{} : read_plan(options.plan);
+    const Volume volume = read_volume(options.volume, options.series_uid);
+    const Plan plan = options.plan.empty()
+                          ? Plan{}
+                          : import_plan(options.plan, plan_settings(options.frame, options.accept_frame,
+                                                                    volume.frame_of_reference_uid))
+                                .plan;
     simulation::RoomSettings room;
     room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     room.seed = options.seed;
@@ -88,6 +93,8 @@ Run add_simulate(CLI::App& app) {
                     "Instead of a patient a calibration board, as for `calibrate`; writes captures/ and truth.json");
     sub->add_option("--poses", o.poses, "Of the board")->capture_default_str()->check(CLI::Range(1, 1000));
     sub->add_option("--plan", o.plan, "Plan, so that markers keep clear of it");
+    series_option(sub, o.series_uid);
+    plan_frame_options(sub, o.frame, o.accept_frame);
     preset_option(sub, o.preset);
     sub->add_option("--seed", o.seed, "Of everything random")->capture_default_str();
     sub->add_option("--frames", o.frames, "Tracking frames after the scan")

@@ -8,7 +8,8 @@ namespace planlight {
 
 struct SimulateOptions {
     std::filesystem::path volume, plan, out;
-    std::string board;  ///< captures of a calibration board instead of a patient
+    std::string series_uid, frame, accept_frame;  ///< of the volume; of a plan that does not say its coordinate system
+    std::string board;                            ///< captures of a calibration board instead of a patient
     int poses = 15;
     std::string preset = "modern";
     unsigned seed = 1;

@@ -13,7 +13,7 @@ namespace planlight {
 namespace {
 
 constexpr Rgb kSeen{60, 220, 120};
-constexpr int kSceneWidth = 1280, kSceneHeight = 960;
+constexpr int kSceneWidth = 960, kSceneHeight = 720;
 /// Updates after the start of a stage at which its picture is taken: the light must have reached the skin.
 constexpr int kSettled = 6;
 
@@ -70,6 +70,7 @@ RgbImage code_map(const DecodedView& view) {
 
 ChainPictures::ChainPictures(const Case& the_case, const CaseDrawing& drawing) : case_(the_case), drawing_(drawing) {
     SceneModel scene;
+    scene.on_paper = true;
     scene.skin = std::make_shared<TriangleMesh>(the_case.skin);
     scene.plan = std::make_shared<PlanDrawing>(drawing.drawing);
     add("Skin and plan", "The outer skin from the CT with the plan drawn in the skin's own metric.",
@@ -106,6 +107,7 @@ void ChainPictures::take_match(const Session& session) {
     const ScanResult& scan = *session.scanned();
     const SceneView view = view_of_plan(drawing_.drawing);
     SceneModel scene;
+    scene.on_paper = true;
     scene.ct_from_rig = found.patient_from_ct.inverse();
     scene.cloud = std::make_shared<PointCloud>(scan.raw.cloud);
     scene.cloud_distance_mm = distances_to_skin_mm(*scene.cloud, scene.ct_from_rig, case_.lut);
@@ -152,6 +154,7 @@ void ChainPictures::take_light(const Session& session, const simulation::Simulat
         add("Projector picture", "What the second window shows: the plan bent so that it lies true on the skin.",
             update.overlay.picture);
     SceneModel scene;
+    scene.on_paper = true;
     scene.skin = std::make_shared<TriangleMesh>(case_.skin);
     scene.plan = std::make_shared<PlanDrawing>(session.drawing());
     scene.light = true_light_lines(session.drawing(), rig.calibration(), update.overlay, rig);

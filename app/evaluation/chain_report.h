@@ -22,6 +22,7 @@ struct ReportRow {
 struct PresetSummary {
     std::string preset;
     std::size_t rooms = 0, matched_right = 0, refused = 0;
+    std::size_t said_yes = 0, said_ask = 0;  ///< verdicts of the match: used at once; only after a person has looked
     std::vector<std::string> refusals;
     std::vector<ReportRow> rows;
     int dark_updates = 0, updates = 0;
@@ -32,9 +33,18 @@ struct PresetSummary {
 
 PresetSummary summarise(const std::vector<ChainFigures>& rooms, const std::string& preset);
 
-/// report.json: the summary of every preset, and every room by itself. Returns the text that was written.
+/// A few lines and a table, for a terminal.
+std::string summary_text(const PresetSummary& summary);
+
+/// report.json: the summary of every preset, and every room by itself, with histograms of its errors so that reports
+/// can be joined. Returns the text that was written.
 std::string write_report_json(const std::filesystem::path& file, const Preparation& prepared,
                               const std::vector<ChainFigures>& rooms);
+
+/// The reports of several runs with other seeds as one, written to `file`. Throws InputError for reports of two cases
+/// or programs, for a room that is in two of them, and for a report that cannot be joined. Returns the summaries.
+std::vector<PresetSummary> merge_reports(const std::vector<std::filesystem::path>& reports,
+                                         const std::filesystem::path& file);
 
 /// report.html: one self-contained page with the figures and the pictures.
 void write_report_html(const std::filesystem::path& file, const Preparation& prepared,

@@ -12,10 +12,11 @@ namespace {
 std::string preset_section(const PresetSummary& s) {
     const char* mark = s.reached() ? "yes" : "no";
     std::string html = fmt::format(
-        "<h2>{} room</h2><div class=\"verdict {}\">{} {} of {} patients found from a random pose, {} refused; "
-        "{:.0f} updates a second.</div>",
+        "<h2>{} room</h2><div class=\"verdict {}\">{} {} of {} patients found from a random pose ({} by the program "
+        "alone, {} "
+        "after a person's look), {} refused.</div>",
         s.preset == "paper" ? "The paper's" : "The modern", mark, s.reached() ? "&#10003;" : "&#10007;",
-        s.matched_right, s.rooms, s.refused, s.updates_per_s);
+        s.matched_right, s.rooms, s.said_yes, s.said_ask, s.refused);
     html +=
         "<table><tr><th>Error against the simulator's truth</th><th>median</th><th>95 "
         "%</th><th>worst</th><th>count</th>"
@@ -52,15 +53,16 @@ std::string preparation_section(const Preparation& p) {
 
 void write_report_html(const std::filesystem::path& file, const Preparation& prepared,
                        const std::vector<ChainFigures>& rooms, const std::vector<ReportPicture>& pictures) {
-    std::string html = fmt::format(
-        "<p class=\"muted\">Case {}. All errors are those of a simulated operating "
-        "room with its own optics and the CT field as the true skin; no real projector or camera was measured. "
-        "For research; not a medical device.</p>",
-        html_escaped(prepared.prepared.code));
+    std::string html(
+        "<p class=\"muted\">All errors are those of a simulated operating room with its own optics and the CT field as "
+        "the "
+        "true skin; no real projector or camera was measured.</p>");
     for (const auto* preset : {"modern", "paper"})
         if (const auto s = summarise(rooms, preset); s.rooms > 0) html += preset_section(s);
     html += preparation_section(prepared) + "<h2>Step by step</h2>" + html_figures(pictures);
-    write_safely(file, html_page("Light on the patient", html));
+    ReportFacts facts = facts_of(prepared.prepared);
+    facts.emplace_back("Rig", "simulated rooms, one a seed");
+    write_safely(file, html_page("Light on the patient", html, facts));
 }
 
 }  // namespace planlight

@@ -29,7 +29,7 @@ public:
     void wait_until(Instant at) {
         do {
             if (asked_to_end)
-                throw DeviceError("projector window", "the showing was ended", "Start it again for a whole recording.");
+                throw DeviceError("Projector window", "the showing was ended", "Start it again for a whole recording.");
             window_.refresh();
             std::this_thread::sleep_for(
                 std::clamp(at - clock_.now(), Instant{}, Instant(std::chrono::milliseconds(5))));

@@ -49,7 +49,7 @@ Rgb heat(double share) {
 RgbImage coverage(const CalibrationReport& report, DeviceName name) {
     const CameraModel& d = *report.calibration.device(name);
     const double shrink = 640.0 / d.width;
-    RgbImage picture(640, std::max(1, static_cast<int>(d.height * shrink)), {17, 22, 29});
+    RgbImage picture(640, std::max(1, static_cast<int>(d.height * shrink)), {255, 255, 255});
     const auto dot = [&](const Eigen::Vector2d& p, Rgb colour) {
         const int x = static_cast<int>(p.x() * shrink), y = static_cast<int>(p.y() * shrink);
         const int r = name == DeviceName::projector ? 1 : 2;
@@ -126,7 +126,7 @@ std::vector<RgbImage> volume_pictures(const VolumeError& volume, double full_sca
     const auto& [across, down, deep] = volume.grid;
     std::vector<RgbImage> pictures;
     for (int z = 0; z < deep; ++z) {
-        RgbImage picture(across * kCell, down * kCell, {40, 44, 50});
+        RgbImage picture(across * kCell, down * kCell, {225, 228, 232});
         for (int y = 0; y < picture.height; ++y)
             for (int x = 0; x < picture.width; ++x) {
                 const auto i = static_cast<std::size_t>((z * down + y / kCell) * across + x / kCell);
@@ -279,7 +279,12 @@ void write_calibration_html(const CalibrationReport& report, const std::filesyst
             where.push_back(
                 {text_of(name), "A colour a pose. Where no board was, the lens is guessed.", coverage(report, name)});
     body += "<h2>Where the board was</h2>" + html_figures(where, 3);
-    write_safely(file, html_page("Calibration", body));
+    ReportFacts facts{{"Rig", report.rig_file.empty() ? "no rig file" : report.rig_file.filename().string()},
+                      {"Calibrated", report.made_on}};
+    for (const DeviceName name : kDevices)
+        if (const std::string& serial = serial_of(report.serials, name); !serial.empty())
+            facts.emplace_back(text_of(name), "serial " + serial);
+    write_safely(file, html_page("Calibration", body, facts));
 }
 
 }  // namespace planlight

@@ -13,7 +13,7 @@
 namespace planlight {
 namespace {
 
-constexpr const char *kSeen = "#36d68a", *kFit = "#6aa8ff", *kWarn = "#ffb454";
+constexpr const char *kSeen = "#0b8a4c", *kFit = "#1f6feb", *kWarn = "#b45f06";
 
 std::string figure(const std::string& svg, const std::string& title, const std::string& caption) {
     return fmt::format("<figure>{}<figcaption><b>{}</b>{}</figcaption></figure>", svg, html_escaped(title),
@@ -73,10 +73,10 @@ std::string section(const ResponseResult& r) {
 }
 
 std::string colour_of(const std::string& name) {
-    if (name == "red") return "#ff6b5e";
+    if (name == "red") return "#c0392b";
     if (name == "green") return kSeen;
     if (name == "blue") return kFit;
-    return name == "black" ? "#b7c1cd" : "#ffffff";
+    return name == "black" ? "#1b232c" : "#8a94a0";
 }
 
 std::string section(const CycleResult& r) {
@@ -140,10 +140,10 @@ std::string histogram(const LatencyResult& r) {
                    1140, 340);
     for (int b = 0; b < kBars; ++b) {
         const auto i = static_cast<std::size_t>(b);
-        chart.bar(1e3 * (low + b * width), 1e3 * (low + (b + 1) * width), all[i], "#2f5d4a");
+        chart.bar(1e3 * (low + b * width), 1e3 * (low + (b + 1) * width), all[i], "#a9d8bf");
         chart.bar(1e3 * (low + b * width), 1e3 * (low + (b + 1) * width), exact[i], kSeen);
     }
-    chart.mark(1e3 * r.median_s, fmt::format("median {:.1f} ms", 1e3 * r.median_s), "#ffffff", 0);
+    chart.mark(1e3 * r.median_s, fmt::format("median {:.1f} ms", 1e3 * r.median_s), "#1b232c", 0);
     if (r.promise)
         chart.mark(1e3 * r.promise->delay_s, fmt::format("promised {:.1f} ms", 1e3 * r.promise->delay_s), kWarn, 1);
     chart.mark(1e3 * r.light_delay_s, fmt::format("delay to set {:.0f} ms", 1e3 * r.light_delay_s), kFit, 2);
@@ -157,7 +157,7 @@ std::string section(const LatencyResult& r) {
         "light, {} a refresh late; {} frames lost, {} doubled.</p>",
         html_escaped(meaning_of(r)),
         figure(histogram(r), "Delays of the flashes",
-               "Bright: changes within an exposure. Dull: changes between two exposures, spread over the time between "
+               "Dark: changes within an exposure. Pale: changes between two exposures, spread over the time between "
                "them."),
         r.code_agreement, r.runner_up_agreement, r.changes, r.unseen, r.late, r.frames.lost, r.frames.doubled);
 }
@@ -174,12 +174,11 @@ std::string section_or_refusal(const std::optional<Result>& result, const char* 
 
 void write_projector_html(const ProjectorReport& report, const std::filesystem::path& file) {
     const auto findings = findings_of(report);
-    std::string about = report.made_on + ", " + report.source;
-    if (report.width > 0) about += fmt::format(", {} x {}", report.width, report.height);
-    about += ", serial " + (report.serial.empty() ? "not given" : report.serial);
-    if (!report.monitor.empty()) about += ", monitor " + report.monitor;
-    std::string body =
-        fmt::format("<p class=\"muted\">{}. For research; not a medical device.</p>", html_escaped(about));
+    ReportFacts facts{{"Measured", report.made_on}, {"From", report.source}};
+    if (report.width > 0) facts.emplace_back("Picture", fmt::format("{} x {}", report.width, report.height));
+    facts.emplace_back("Serial", report.serial.empty() ? "not given" : report.serial);
+    facts.emplace_back("Monitor", report.monitor);
+    std::string body;
     body += findings.empty()
                 ? "<div class=\"verdict yes\">&#10003; Nothing that a scan or the light would suffer from.</div>"
                 : fmt::format("<div class=\"verdict no\">&#9888; {} thing{} to set right.</div>", findings.size(),
@@ -191,7 +190,7 @@ void write_projector_html(const ProjectorReport& report, const std::filesystem::
     }
     body += section_or_refusal(report.latency, "Latency") + section_or_refusal(report.response, "Response") +
             section_or_refusal(report.cycle, "Colour cycle");
-    write_safely(file, html_page("Projector", body));
+    write_safely(file, html_page("Projector", body, facts));
 }
 
 }  // namespace planlight

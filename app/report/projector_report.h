@@ -25,7 +25,7 @@ std::vector<LightFinding> findings_of(const ProjectorReport& report);
 /// A few lines for the terminal.
 std::string projector_summary(const ProjectorReport& report);
 
-/// projector.json (planning_io/README.md).
+/// projector.json (planning_io/FORMATS.md).
 std::string projector_json(const ProjectorReport& report);
 
 /// One page: verdict, the measured curve, the trace of each colour, the histogram of the delays.

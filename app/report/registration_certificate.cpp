@@ -49,6 +49,7 @@ void write_certificate_html(const Case& the_case, const CaseDrawing& drawing, co
     constexpr int kWidth = 960, kHeight = 720;
     OperatorModel model = model_of_case(the_case, drawing);
     show_match(the_case, found, cloud, model);
+    model.scene.on_paper = true;
     std::string body = verdict_html(found);
     for (const std::string& line : evidence_of(found)) body += fmt::format("<p>{}</p>", html_escaped(line));
     if (found.verdict != Verdict::no) {
@@ -75,7 +76,7 @@ void write_certificate_html(const Case& the_case, const CaseDrawing& drawing, co
                             picture(FitView::predicted_error)});
         body += html_figures(pictures, 2);
     }
-    write_safely(file, html_page("Match: " + title_of(the_case), body));
+    write_safely(file, html_page("Match: " + title_of(the_case), body, facts_of(the_case)));
 }
 
 fs::path keep_match(const RegistrationResult& found, const PointCloud* cloud, const std::vector<PointPair>& landmarks,

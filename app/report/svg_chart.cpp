@@ -68,24 +68,24 @@ void SvgChart::mark(double x, const std::string& words, const std::string& colou
 
 std::string SvgChart::text() const {
     std::string svg = fmt::format(
-        "<svg viewBox=\"0 0 {0} {1}\" width=\"100%\" role=\"img\" style=\"background:#11161d;font:14px Inter,'DejaVu "
+        "<svg viewBox=\"0 0 {0} {1}\" width=\"100%\" role=\"img\" style=\"background:#fff;font:14px Inter,'DejaVu "
         "Sans',sans-serif\">",
         width_, height_);
     const double step_x = round_step(x_.to - x_.from, x_.ticks), step_y = round_step(y_.to - y_.from, y_.ticks);
     for (double x = std::ceil(x_.from / step_x - 1e-9) * step_x; x <= x_.to + 1e-9 * step_x; x += step_x)
         svg += fmt::format(
-            "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.1f}\" y2=\"{2:.1f}\" stroke=\"#232b36\"/>"
-            "<text x=\"{0:.1f}\" y=\"{3:.1f}\" fill=\"#b7c1cd\" text-anchor=\"middle\">{4:g}</text>",
+            "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.1f}\" y2=\"{2:.1f}\" stroke=\"#d5dbe2\"/>"
+            "<text x=\"{0:.1f}\" y=\"{3:.1f}\" fill=\"#44505c\" text-anchor=\"middle\">{4:g}</text>",
             px(x), py(y_.from), py(y_.to), height_ - kBottom + 18, std::abs(x) < 1e-9 * step_x ? 0.0 : x);
     for (double y = std::ceil(y_.from / step_y - 1e-9) * step_y; y <= y_.to + 1e-9 * step_y; y += step_y)
         svg += fmt::format(
-            "<line x1=\"{1:.1f}\" x2=\"{2:.1f}\" y1=\"{0:.1f}\" y2=\"{0:.1f}\" stroke=\"#232b36\"/>"
-            "<text x=\"{3:.1f}\" y=\"{4:.1f}\" fill=\"#b7c1cd\" text-anchor=\"end\">{5:g}</text>",
+            "<line x1=\"{1:.1f}\" x2=\"{2:.1f}\" y1=\"{0:.1f}\" y2=\"{0:.1f}\" stroke=\"#d5dbe2\"/>"
+            "<text x=\"{3:.1f}\" y=\"{4:.1f}\" fill=\"#44505c\" text-anchor=\"end\">{5:g}</text>",
             py(y), kLeft, width_ - kRight, kLeft - 7, py(y) + 5, std::abs(y) < 1e-9 * step_y ? 0.0 : y);
-    svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" fill=\"#dfe5ec\" text-anchor=\"middle\">{}</text>",
+    svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" fill=\"#1b232c\" text-anchor=\"middle\">{}</text>",
                        (kLeft + width_ - kRight) / 2, height_ - 8, html_escaped(x_.label));
     svg += fmt::format(
-        "<text transform=\"translate(16 {:.1f}) rotate(-90)\" fill=\"#dfe5ec\" text-anchor=\"middle\">{}</text>",
+        "<text transform=\"translate(16 {:.1f}) rotate(-90)\" fill=\"#1b232c\" text-anchor=\"middle\">{}</text>",
         (kTop + height_ - kBottom) / 2.0, html_escaped(y_.label));
     return svg + drawn_ + "</svg>";
 }

@@ -26,7 +26,7 @@ ImFont* add(ImFontAtlas& atlas, const std::filesystem::path& file, const std::fi
     config.PixelSnapH = true;
     ImFont* const font = atlas.AddFontFromFileTTF(file.c_str(), pixels, &config, ranges);
     if (font == nullptr)
-        throw DeviceError("font " + file.string(), "it cannot be read", "install the package fonts-inter again");
+        throw DeviceError("Font " + file.string(), "it cannot be read", "Install the package fonts-inter again.");
     if (!symbols.empty() && ranges == kText) {
         config.MergeMode = true;
         atlas.AddFontFromFileTTF(symbols.c_str(), pixels, &config, ranges);
@@ -47,8 +47,8 @@ FontFiles find_fonts() {
         return {kInter / "Inter-Regular.otf", kInter / "Inter-Bold.otf", symbols};
     if (!symbols.empty() && fs::exists(kDejaVu / "DejaVuSans-Bold.ttf"))
         return {symbols, kDejaVu / "DejaVuSans-Bold.ttf", symbols};
-    throw DeviceError("font", "neither Inter nor DejaVu Sans is installed",
-                      "install a font: apt-get install fonts-inter fonts-dejavu-core");
+    throw DeviceError("Font", "neither Inter nor DejaVu Sans is installed",
+                      "Install a font: apt-get install fonts-inter fonts-dejavu-core.");
 }
 
 FontSet load_fonts(ImFontAtlas& atlas, const FontFiles& files, float scale) {

@@ -12,8 +12,8 @@ namespace {
 
 void check(bool worked, const std::string& step) {
     if (!worked)
-        throw DeviceError("picture without display", step + " failed",
-                          "install the package libgl1-mesa-dri, which draws without any graphics card");
+        throw DeviceError("Picture without display", step + " failed",
+                          "Install the package libgl1-mesa-dri, which draws without any graphics card.");
 }
 
 struct Context {

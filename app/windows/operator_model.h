@@ -35,7 +35,7 @@ struct LightLine {
 /// as in the last frame is not built again.
 struct SceneModel {
     std::shared_ptr<const TriangleMesh> skin;
-    bool on_paper = false;  ///< white behind and dark letters, for pages that are printed
+    bool on_paper = false;  ///< white behind, dark and larger letters: for pages that are printed
     bool of_scan = false;   ///< `skin` is a scan's surface in a frame of its own: cool colour, no letters at the edges
     std::shared_ptr<const PointCloud> cloud;
     std::shared_ptr<const std::vector<float>> cloud_distance_mm;  ///< per point, to the skin; null: one colour

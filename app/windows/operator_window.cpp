@@ -32,8 +32,8 @@ Monitor monitor_for(const OperatorWindowSettings& settings) {
                              : monitors[i].primary)
             return monitors[i];
     if (settings.monitor || monitors.empty())
-        throw DeviceError("operator window", "there is no monitor \"" + settings.monitor.value_or("primary") + "\"",
-                          "name one of those that xrandr lists");
+        throw DeviceError("Operator window", "there is no monitor \"" + settings.monitor.value_or("primary") + "\"",
+                          "Name one of those that `planlight projector --identify` shows.");
     return monitors.front();
 }
 
@@ -52,8 +52,8 @@ GLFWwindow* open_window(const OperatorWindowSettings& settings) {
         settings.fill_monitor ? monitor.height : std::max(std::min(settings.height, monitor.height), kLeastHeight);
     GLFWwindow* const window = glfwCreateWindow(width, height, settings.title.c_str(), nullptr, nullptr);
     if (window == nullptr)
-        throw DeviceError("operator window", "it could not be opened (" + last_window_error() + ")",
-                          "install an OpenGL 3.3 driver, or set LIBGL_ALWAYS_SOFTWARE=1");
+        throw DeviceError("Operator window", "it could not be opened (" + last_window_error() + ")",
+                          "Install an OpenGL 3.3 driver, or set LIBGL_ALWAYS_SOFTWARE=1.");
     glfwSetWindowPos(window, monitor.x + std::max(0, (monitor.width - width) / 2),
                      monitor.y + std::max(0, (monitor.height - height) / 2));
     glfwShowWindow(window);

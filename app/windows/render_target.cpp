@@ -44,7 +44,7 @@ vtkSmartPointer<vtkGenericOpenGLRenderWindow> render_target(int width, int heigh
     vtkObject::GlobalWarningDisplayOn();
     if (!usable)
         throw DeviceError("3-D view", "VTK cannot use the graphics driver",
-                          "install an OpenGL 3.3 driver, or set LIBGL_ALWAYS_SOFTWARE=1");
+                          "Install an OpenGL 3.3 driver, or set LIBGL_ALWAYS_SOFTWARE=1.");
     window->SetFrameBlitModeToNoBlit();
     return window;
 }

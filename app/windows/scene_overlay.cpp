@@ -164,7 +164,10 @@ SceneOverlay::SceneOverlay(vtkRenderer& renderer, const FontFiles& fonts) : part
 SceneOverlay::~SceneOverlay() = default;
 
 void SceneOverlay::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale) {
-    scale = std::max(scale, 0.85);  // smaller letters are not readable
+    scale = std::max(scale, 0.85);     // smaller letters are not readable
+    if (scene.on_paper) scale *= 1.6;  // the picture is shown at half its size and less
+    for (Text& value : parts_->values) value.set_ink(scene.on_paper);
+    parts_->title.set_ink(scene.on_paper);
     parts_->boxes.clear();
     for (Text& letter : parts_->letters) {
         letter.actor->SetVisibility(!scene.of_scan);

@@ -90,7 +90,7 @@ bool leave_out_missing(const std::vector<std::string>& left, const std::vector<s
                          usable.names.empty()
                              ? "Capture the sequence again, or copy the whole of it."
                              : "Copy or capture them again; to use the rest, as coarse as it is, leave all these names "
-                               "out of \"names\" in capture.json, or use --allow-missing.");
+                               "out of \"names\" in capture.json, or use `planlight scan --allow-missing`.");
     if (how.warn) how.warn(problem + "; " + rest + ", and are left out");
     capture.names = usable.names;
     capture.rows = usable.rows;

@@ -65,7 +65,7 @@ void write_light_file(const LightFile& light, const fs::path& folder) {
                               {"exposure_ns", frame.exposure.count()}});
     write_safely(folder / "light.json", dump(Json{{"format", "planlight light"},
                                                   {"version", kVersion},
-                                                  {"deformable_ns", light.settle.count()},
+                                                  {"settle_ns", light.settle.count()},
                                                   {"orders", std::move(orders)},
                                                   {"frames", std::move(frames)}}));
 }
@@ -75,9 +75,9 @@ LightFile read_light_file(const fs::path& folder) {
     const Json json = parse_json(read_whole(file), file);
     const JsonValue root(json, file);
     check_format(root, "planlight light", kVersion, file);
-    root.has_only({"format", "version", "deformable_ns", "orders", "frames"});
+    root.has_only({"format", "version", "settle_ns", "orders", "frames"});
     LightFile light;
-    if (const auto settle = root.find("deformable_ns")) light.settle = Instant(settle->integer(0, kDay_ns));
+    if (const auto settle = root.find("settle_ns")) light.settle = Instant(settle->integer(0, kDay_ns));
     const JsonValue orders = root.at("orders"), frames = root.at("frames");
     for (std::size_t i = 0; i < orders.size(); ++i) {
         light.orders.push_back(order_of(orders[i]));

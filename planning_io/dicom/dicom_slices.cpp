@@ -127,23 +127,28 @@ std::optional<DicomRefusal> fault_of_stack(const std::vector<DicomSlice>& slices
                            "Keep one of them, or name one series.");
         const double steps = std::round(gaps[i] / usual);
         // A whole part of the stack with twice the step is a second spacing, not a row of missing slices.
-        const auto like_this = std::count_if(gaps.begin(), gaps.end(), [&](double g) { return std::abs(g - gaps[i]) < 0.1 * usual; });
+        const auto like_this =
+            std::count_if(gaps.begin(), gaps.end(), [&](double g) { return std::abs(g - gaps[i]) < 0.1 * usual; });
         const bool second_spacing = allowed == SliceGaps::resampled && like_this >= 3;
         if (steps >= 2 && std::abs(gaps[i] - steps * usual) < 0.1 * usual && !second_spacing)
-            return DicomRefusal{fmt::format("{} missing {}: the gap is {:.3f} mm, elsewhere {:.3f} mm",
-                                            counted(static_cast<int>(steps) - 1, "slice") + (steps == 2 ? " is" : " are"),
-                                            between, gaps[i], usual),
-                                "Export the whole series again."};
+            return DicomRefusal{
+                fmt::format("{} missing {}: the gap is {:.3f} mm, elsewhere {:.3f} mm",
+                            counted(static_cast<int>(steps) - 1, "slice") + (steps == 2 ? " is" : " are"), between,
+                            gaps[i], usual),
+                "Export the whole series again."};
         if (gaps[i] > kLongestStep_mm)
-            return DicomRefusal{fmt::format("the gap {} is {:.1f} mm", between, gaps[i]), "Give a series of thinner slices."};
+            return DicomRefusal{fmt::format("the gap {} is {:.1f} mm", between, gaps[i]),
+                                "Give a series of thinner slices."};
     }
     if (const double off = unevenness_of(slices);
         allowed == SliceGaps::refused && off > std::max(kEvenPlace_mm, kEvenShare * usual))
         return DicomRefusal{
-            fmt::format("the slices are not evenly spaced: steps of {:.3f} to {:.3f} mm, one lies {:.2f} mm off an even stack",
-                        sorted.front(), sorted.back(), off),
-            "Say --resample to lay them onto an even grid between the cuts where they lie, or reconstruct the series with one "
-            "spacing."};
+            fmt::format(
+                "the slices are not evenly spaced: steps of {:.3f} to {:.3f} mm, one lies {:.2f} mm off an even stack",
+                sorted.front(), sorted.back(), off),
+            "Lay them onto an even grid between the cuts where they lie (`planlight prepare --resample`), or "
+            "reconstruct the "
+            "series with one spacing."};
     const std::vector<double> places = places_along_stack(slices);
     const Eigen::Vector3d first = slices.front().position_in_ct;
     const Eigen::Vector3d along = (slices.back().position_in_ct - first).normalized(), step = along * usual;
@@ -179,7 +184,8 @@ std::optional<DicomRefusal> fault_of(std::vector<DicomSlice> slices, SliceGaps g
 }
 
 std::vector<double> places_along_stack(const std::vector<DicomSlice>& slices) {
-    const Eigen::Vector3d first = slices.front().position_in_ct, along = (slices.back().position_in_ct - first).normalized();
+    const Eigen::Vector3d first = slices.front().position_in_ct,
+                          along = (slices.back().position_in_ct - first).normalized();
     std::vector<double> places;
     for (const DicomSlice& s : slices) places.push_back(along.dot(s.position_in_ct - first));
     return places;
@@ -189,7 +195,8 @@ double unevenness_of(const std::vector<DicomSlice>& slices) {
     const std::vector<double> places = places_along_stack(slices);
     double worst = 0;
     for (std::size_t i = 0; i < places.size(); ++i)
-        worst = std::max(worst, std::abs(places[i] - places.back() * static_cast<double>(i) / static_cast<double>(places.size() - 1)));
+        worst = std::max(worst, std::abs(places[i] - places.back() * static_cast<double>(i) /
+                                                         static_cast<double>(places.size() - 1)));
     return worst;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "planning_io/files/nearest_word.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -17,36 +18,13 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxBytes = std::size_t{64} << 20;
 constexpr int kMaxDepth = 32;
-constexpr const char* kCorrect = "Correct the file; its format stands in planning_io/README.md.";
+constexpr const char* kCorrect = "Correct the file; its format stands in planning_io/FORMATS.md.";
 
 template <std::size_t N>
 std::array<double, N> numbers(const JsonValue& value) {
     if (value.size() != N) value.refuse("must be " + std::to_string(N) + " numbers");
     std::array<double, N> result{};
     for (std::size_t i = 0; i < N; ++i) result[i] = value[i].number();
-    return result;
-}
-
-/// How many letters must be put in, taken out or exchanged to make one word of the other (Levenshtein).
-std::size_t letters_apart(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = std::exchange(row[0], i + 1);
-        for (std::size_t k = 0; k < b.size(); ++k) {
-            const std::size_t exchanged = diagonal + (a[i] == b[k] ? 0 : 1);
-            diagonal = row[k + 1];
-            row[k + 1] = std::min({exchanged, diagonal + 1, row[k] + 1});
-        }
-    }
-    return row.back();
-}
-
-/// Upper case and "-" or " " for "_" are no other word.
-std::string plain(std::string_view word) {
-    std::string result(word);
-    for (char& c : result)
-        c = c == '-' || c == ' ' ? '_' : static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
     return result;
 }
 
@@ -93,13 +71,10 @@ void JsonValue::has_only(std::initializer_list<const char*> known) const {
         const std::string& name = entry.key();
         const auto is_name = [&](const char* other) { return name == other; };
         if (is_name("notes") || name.starts_with("x_") || std::any_of(known.begin(), known.end(), is_name)) continue;
-        const auto apart = [&](const char* other) { return letters_apart(plain(name), plain(other)); };
-        const char* nearest =
-            *std::min_element(known.begin(), known.end(), [&](auto* a, auto* b) { return apart(a) < apart(b); });
-        const bool alike = 3 * apart(nearest) <= std::max<std::size_t>(3, std::string_view(nearest).size());
+        const auto nearest = nearest_word(name, {known.begin(), known.end()});
         refuse("has a name that means nothing here, \"" + name + "\"" +
-                   (alike ? std::string("; is \"") + nearest + "\" meant?" : std::string()),
-               "Correct the name (planning_io/README.md lists them); notes of your own may stand under \"notes\" or "
+                   (nearest ? "; is \"" + *nearest + "\" meant?" : std::string()),
+               "Correct the name (planning_io/FORMATS.md lists them); notes of your own may stand under \"notes\" or "
                "under names "
                "that begin with x_.");
     }

@@ -33,15 +33,17 @@ std::optional<Space> space_marked(std::string_view header, const fs::path& file)
 }
 
 Space settled_space(std::optional<Space> file_says, std::optional<Space> person_says, const fs::path& file,
-                    std::string_view how_to_say) {
+                    std::string_view how_to_say, std::string_view option) {
+    const std::string by(option);
     if (!file_says && !person_says)
-        throw InputError(file, "does not say its coordinate system",
-                         std::string(how_to_say) + ", or say it with --frame LPS or --frame RAS.");
+        throw InputError(
+            file, "does not say its coordinate system",
+            std::string(how_to_say) + (by.empty() ? "." : ", or say it with " + by + " LPS or " + by + " RAS."));
     if (file_says && person_says && *file_says != *person_says)
         throw InputError(file,
-                         std::string("says that it is in ") + (*file_says == Space::lps ? "LPS" : "RAS") +
-                             ", --frame says otherwise",
-                         "Leave --frame out, or export the file again.");
+                         std::string("says that it is in ") + (*file_says == Space::lps ? "LPS" : "RAS") + ", " + by +
+                             " says otherwise",
+                         "Leave " + by + " out, or export the file again.");
     return file_says ? *file_says : *person_says;
 }
 

@@ -74,8 +74,8 @@ std::vector<PointPair> read_point_pairs(const std::filesystem::path& file) {
         for (std::size_t i = 0; i < 6; ++i) v[i] = number(fields[i + 1], number_of_line, file);
         pairs.push_back({fields[0], {v[0], v[1], v[2]}, {v[3], v[4], v[5]}});
     }
-    const Space of_ct =
-        settled_space(space, std::nullopt, file, "Write the line \"# SPACE=LPS\" or \"# SPACE=RAS\" at its beginning.");
+    const Space of_ct = settled_space(space, std::nullopt, file,
+                                      "Write the line \"# SPACE=LPS\" or \"# SPACE=RAS\" at its beginning", "");
     for (PointPair& pair : pairs) pair.in_ct = to_ct(pair.in_ct, of_ct);
     return pairs;
 }

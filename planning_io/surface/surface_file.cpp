@@ -222,8 +222,9 @@ SurfaceFile read_surface(const fs::path& file, const SurfaceSettings& settings) 
     } else {
         if (!settings.segment.empty()) throw InputError(file, "holds no named segments", "Leave --segment out.");
         const WeldedShape read = welded(read_shape(file));
-        const Space space = settled_space(read.shape.space, settings.said.space, file,
-                                          "Export the surface with its space (3D Slicer does: SPACE=LPS)");
+        const Space space =
+            settled_space(read.shape.space, settings.said.space, file,
+                          "Export the surface with its space (3D Slicer does: SPACE=LPS)", "--surface-frame");
         surface.degenerate = read.degenerate;
         surface.mesh = used_part(read.shape, space, surface.degenerate);
     }

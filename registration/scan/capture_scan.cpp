@@ -19,17 +19,17 @@ void check_frame(const StereoFrame& frame, const StereoFrame& first, Instant lit
     constexpr Instant kRounding = 2us;
     const Instant opened = frame.at - frame.exposure / 2, closed = frame.at + frame.exposure / 2;
     if (opened + kRounding < lit_from)
-        throw DeviceError("stereo camera",
+        throw DeviceError("Stereo camera",
                           fmt::format("the frame for \"{}\" was exposed {:.1f} ms before the picture was lit", name,
                                       1e3 * seconds(lit_from - opened)),
                           "Check the camera's time stamps against the session's clock.");
     if (closed > valid_until)
-        throw DeviceError("stereo camera",
+        throw DeviceError("Stereo camera",
                           fmt::format("the frame for \"{}\" was exposed after the picture had expired", name),
                           "Check the camera's frame rate and connection, then scan again.");
     const auto same = [](const GrayImage& a, const GrayImage& b) { return a.width == b.width && a.height == b.height; };
     if (frame.left.empty() || frame.right.empty() || !same(frame.left, first.left) || !same(frame.right, first.right))
-        throw DeviceError("stereo camera",
+        throw DeviceError("Stereo camera",
                           fmt::format("the frame for \"{}\" is empty or has another size than the first", name),
                           "Check both cameras' connections and settings, then scan again.");
 }

@@ -1,3 +1,4 @@
+#include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -97,6 +98,33 @@ TEST_F(CommandsTest, ARigFileWithNonsenseIsRefused) {
     refused("a rotation that is none", sheared.unflatten());
 }
 
+TEST_F(CommandsTest, LandmarksWithoutTheirSpaceAreAdvisedNothingThatRegisterDoesNotHave) {
+    prepared();
+    std::ofstream(root() / "bare.csv") << "name,ct_x,ct_y,ct_z,rig_x,rig_y,rig_z\nnose,1,2,3,4,5,6\n";
+    const auto run = run_planlight("register case --pairs bare.csv --out never.json", root());
+    expect_one_clear_sentence(run, 3, "does not say its coordinate system");
+    EXPECT_EQ(run.err.find("--frame"), std::string::npos) << run.err;
+}
+
+TEST_F(CommandsTest, ACloudInAnotherUnitIsToldAsThat) {
+    prepared();
+    std::ofstream cloud(root() / "metres.ply");
+    cloud << "ply\nformat ascii 1.0\nelement vertex 2000\nproperty float x\nproperty float y\nproperty float "
+             "z\nend_header\n";
+    for (int i = 0; i < 2000; ++i) cloud << 0.1 * std::cos(i) << ' ' << 0.1 * std::sin(i) << ' ' << 0.00005 * i << '\n';
+    cloud.close();
+    const auto run =
+        run_planlight("register case --cloud metres.ply --in-rig --viewpoint 0 0 0 --out never.json", root());
+    expect_one_clear_sentence(run, 3, "mm across if its numbers are mm");
+    EXPECT_NE(run.err.find("--unit m,"), std::string::npos) << run.err;
+}
+
+TEST_F(CommandsTest, ACaseIsReplacedOnlyWhenThatIsSaid) {
+    prepared();
+    expect_one_clear_sentence(run_planlight("prepare " + patient() + " --plan " + plan() + " --out case", root()), 3,
+                              "--replace");
+}
+
 TEST_F(CommandsTest, WrongUsageGivesExitTwo) {
     EXPECT_EQ(run_planlight("prepare", root()).exit_code, 2);
     EXPECT_EQ(run_planlight("nonsense", root()).exit_code, 2);
@@ -105,7 +133,7 @@ TEST_F(CommandsTest, WrongUsageGivesExitTwo) {
 
 TEST_F(CommandsTest, EveryCommandExplainsItselfWithAnExample) {
     for (const char* name : {"demo", "prepare", "plan", "patterns", "scan", "register", "track", "project", "session",
-                             "review", "simulate", "board", "calibrate", "check"}) {
+                             "review", "simulate", "board", "calibrate", "check", "projector", "merge"}) {
         const auto run = run_planlight(std::string(name) + " --help", root());
         EXPECT_EQ(run.exit_code, 0) << name;
         EXPECT_NE(run.out.find("Example:"), std::string::npos) << name;

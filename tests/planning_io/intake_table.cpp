@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <map>
+#include <regex>
 #include <set>
 #include <vector>
 
@@ -144,8 +146,17 @@ void print(const std::string& title, const std::vector<Row>& rows) {
     const auto accepted = std::count_if(rows.begin(), rows.end(), [](const Row& r) { return r.accepted; });
     fmt::print("\n## {}: {} accepted, {} refused\n\n| what | | sentence |\n|---|---|---|\n", title, accepted,
                rows.size() - static_cast<std::size_t>(accepted));
-    for (const Row& row : rows)
-        fmt::print("| {} | {} | {} |\n", row.what, row.accepted ? "accepted" : "refused", row.sentence);
+    std::vector<std::pair<Row, int>> groups;
+    std::map<std::string, std::size_t> place;  // by the sentence without its numbers
+    for (const Row& row : rows) {
+        const auto [at, is_new] =
+            place.emplace((row.accepted ? "+" : "-") + std::regex_replace(row.sentence, std::regex("[0-9.]+"), "#"), groups.size());
+        if (is_new) groups.emplace_back(row, 0);
+        ++groups[at->second].second;
+    }
+    for (const auto& [row, count] : groups)
+        fmt::print("| {}{} | {} | {} |\n", row.what, count > 1 ? fmt::format(" and {} alike", count - 1) : "",
+                   row.accepted ? "accepted" : "refused", row.sentence);
 }
 
 std::vector<Row> synthetic(const std::vector<VolumeCase>& cases) {
@@ -171,7 +182,7 @@ public files, kept outside of this repository: `ct` from Slicer/Slicer (Testing/
 files is given alone), `plans` from Slicer, SlicerMorph, afids, SlicerRt, dicompyler-core and pydicom, `scans` from Rvcg, VTKData and
 OpenGR (point clouds: none is a volume). The synthetic volumes are those of the tests; a sound one is also compared with its phantom
 there, value by value. Axes: the way i, j and k run, to the (L)eft, (P)osterior, (S)uperior and so on. A plan whose file does not say its
-frame stands twice: as it is, and with `--frame RAS`.
+frame stands twice: as it is, and with `--frame RAS`. What differs in numbers only is one line.
 )";
 
 }  // namespace

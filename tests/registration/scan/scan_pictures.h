@@ -7,7 +7,7 @@
 
 namespace planlight::scan_rooms {
 
-/// The pictures of registration/scan/README.md: patterns.png, camera_and_code.png, cloud_error.png (against the truth),
+/// The pictures of registration/scan/ACCURACY.md: patterns.png, camera_and_code.png, cloud_error.png (against the truth),
 /// volume_sigma.png (what the calibration leaves, over the working volume).
 void write_scan_pictures(const simulation::SimulatedRig& room, const ScanCapture& capture, const ScanResult& scan,
                          const std::filesystem::path& folder);

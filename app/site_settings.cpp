@@ -1,0 +1,80 @@
+#include "app/site_settings.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+#include <map>
+
+#include "planning_io/files/json_value.h"
+#include "planning_io/files/safe_write.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Unit {
+    double mm;
+    int decimals;
+};
+const std::map<std::string, Unit> kUnits{{"mm", {1, 1}}, {"cm", {10, 2}}, {"inch", {25.4, 3}}};
+
+/// Away from the surgeon, in ct (LPS): where the letters' tops point.
+const std::map<std::string, Eigen::Vector3d> kSides{
+    {"feet", {0, 0, 1}}, {"head", {0, 0, -1}}, {"left", {-1, 0, 0}}, {"right", {1, 0, 0}}};
+
+template <class Value>
+std::string one_of(const JsonValue& value, const std::map<std::string, Value>& known) {
+    const std::string word = value.text();
+    if (known.contains(word)) return word;
+    std::string words;
+    for (const auto& entry : known) words += (words.empty() ? "\"" : ", \"") + entry.first + "\"";
+    value.refuse("is \"" + word + "\"", "Write one of: " + words + ".");
+}
+
+const char* set(const char* variable) {
+    const char* value = std::getenv(variable);
+    return value && *value ? value : nullptr;
+}
+
+}  // namespace
+
+fs::path site_settings_file() {
+    const fs::path name = fs::path("planlight") / "config.json";
+    if (const char* folder = set("XDG_CONFIG_HOME")) return folder / name;
+    if (const char* home = set("HOME")) return fs::path(home) / ".config" / name;
+    return {};
+}
+
+SiteSettings read_site_settings() {
+    SiteSettings site;
+    const fs::path file = site_settings_file();
+    std::error_code ignored;
+    if (file.empty() || !fs::exists(file, ignored)) return site;
+    const Json json = parse_json(read_whole(file), file);
+    const JsonValue root(json, file);
+    check_format(root, "planlight config", 1, file);
+    root.has_only({"format", "version", "units", "surgeon_side", "monitors"});
+    if (const auto units = root.find("units")) site.units = one_of(*units, kUnits);
+    if (const auto side = root.find("surgeon_side")) site.surgeon_side = one_of(*side, kSides);
+    if (const auto monitors = root.find("monitors")) {
+        monitors->has_only({"operator", "projector"});
+        if (const auto name = monitors->find("operator")) site.operator_monitor = name->text();
+        if (const auto name = monitors->find("projector")) site.projector_monitor = name->text();
+    }
+    site.read_from = file;
+    return site;
+}
+
+DrawingSettings drawing_settings(const SiteSettings& site) {
+    DrawingSettings settings;
+    settings.up_in_ct = kSides.at(site.surgeon_side);
+    return settings;
+}
+
+std::string length_text(double mm, const SiteSettings& site) {
+    const Unit& unit = kUnits.at(site.units);
+    return fmt::format("{:.{}f} {}", mm / unit.mm, unit.decimals, site.units);
+}
+
+}  // namespace planlight

@@ -1,0 +1,124 @@
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/run_command.h"
+
+namespace planlight::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of its own, which is also the home of settings.
+class CommandLineTest : public testing::Test {
+protected:
+    CommandLineTest() : folder_(fs::temp_directory_path() / ("planlight-line-" + std::to_string(::getpid()))) {
+        fs::remove_all(folder_);
+        fs::create_directories(folder_);
+        ::setenv("XDG_CONFIG_HOME", (folder_ / "settings").c_str(), 1);
+    }
+    ~CommandLineTest() override { fs::remove_all(folder_); }
+    CommandRun run(const std::string& arguments) const { return run_planlight(arguments, folder_); }
+    /// The same with a terminal for standard output and error, both in `out`.
+    CommandRun run_on_a_terminal(const std::string& arguments) const {
+        const std::string line = "cd '" + folder_.string() + "' && script -qec \"'" PLANLIGHT_PROGRAM "' " + arguments +
+                                 "\" /dev/null > .terminal < /dev/null";
+        CommandRun run;
+        run.exit_code = std::system(line.c_str());
+        run.out = whole(folder_ / ".terminal");
+        return run;
+    }
+    void write_settings(const std::string& text) const {
+        fs::create_directories(folder_ / "settings/planlight");
+        std::ofstream(folder_ / "settings/planlight/config.json") << text;
+    }
+    fs::path folder_;
+};
+
+TEST_F(CommandLineTest, AMistypedOptionIsToldTheNearestOne) {
+    expect_refused(run("register --hlep"), 2, "--help");
+    expect_refused(run("register case --clod cloud.ply --out r.json"), 2, "Is --cloud meant?");
+    expect_refused(run("--hlep"), 2, "Is --help meant?");
+    expect_refused(run("patterns --out p --phase_steps 8"), 2, "Is --phase-steps meant?");
+}
+
+TEST_F(CommandLineTest, AMistypedCommandIsToldTheNearestOne) {
+    expect_refused(run("regsiter case"), 2, "Is register meant?");
+    expect_refused(run("Demo"), 2, "Is demo meant?");
+    const auto nothing_like_it = run("foo");  // no command is near: all of them are said
+    for (const char* command : {"\"foo\" is no command", "demo", "prepare", "simulate"})
+        expect_refused(nothing_like_it, 2, command);
+}
+
+TEST_F(CommandLineTest, TheHelpThatIsAdvisedIsThatOfTheCommand) {
+    expect_refused(run("register"), 2, "Run `planlight register --help`.");
+    expect_refused(run("patterns --width many --out p"), 2, "Run `planlight patterns --help`.");
+    expect_refused(run("patterns --set slow --out p"), 2, "Run `planlight patterns --help`.");
+    expect_refused(run(""), 2, "Run `planlight --help`.");
+    expect_refused(run("board one two"), 2, "one argument too many");
+}
+
+TEST_F(CommandLineTest, AResultBeginsOnItsOwnLineAfterTheBar) {
+    const auto done = run_on_a_terminal("patterns --width 64 --height 64 --out p");
+    EXPECT_EQ(done.exit_code, 0) << done.out;
+    const auto bar = done.out.rfind("100 %"), result = done.out.find("patterns of 64 x 64");
+    ASSERT_NE(bar, std::string::npos) << done.out;
+    ASSERT_NE(result, std::string::npos) << done.out;
+    EXPECT_NE(done.out.substr(bar, result - bar).find('\n'), std::string::npos) << done.out;
+}
+
+TEST_F(CommandLineTest, QuietSaysNothingButWhatJsonPrints) {
+    const auto quiet = run("board --quiet");
+    EXPECT_EQ(quiet.exit_code, 0);
+    EXPECT_EQ(quiet.out + quiet.err, "");
+    EXPECT_TRUE(fs::exists(folder_ / "board.pdf"));
+    EXPECT_EQ(nlohmann::json::parse(run("board --quiet --json").out)["png"], "board.png");
+    expect_refused(run("board --quiet --board nonsense"), 3, "nonsense");  // a refusal is said all the same
+}
+
+TEST_F(CommandLineTest, VerboseSaysEveryStepWithItsTime) {
+    const auto talkative = run("patterns --width 64 --height 64 --out p --verbose");
+    EXPECT_NE(talkative.err.find("patterns: 0."), std::string::npos) << talkative.err;
+    EXPECT_EQ(run("board --quiet --verbose").exit_code, 2);
+}
+
+TEST_F(CommandLineTest, TheLogFileKeepsCommandStepsRefusalAndExitCode) {
+    ASSERT_EQ(run("patterns --width 64 --height 64 --out p --log-file log.txt").exit_code, 0);
+    ASSERT_EQ(run("patterns --width 64 --height 64 --out p --log-file log.txt").exit_code, 3);  // p is there already
+    const std::string log = whole(folder_ / "log.txt");
+    for (const char* kept : {"patterns --width 64", "patterns: 0.", "exit 0", "exists already", "exit 3"})
+        EXPECT_NE(log.find(kept), std::string::npos) << kept << " not in:\n" << log;
+    expect_refused(run("board --log-file nowhere/log.txt"), 7, "nowhere/log.txt");
+}
+
+TEST_F(CommandLineTest, SettingsOfTheSiteAreReadAndSaid) {
+    write_settings(R"({"format": "planlight config", "version": 1, "units": "cm", "surgeon_side": "head",
+                       "monitors": {"operator": "DP-1"}, "notes": "theatre 2"})");
+    const auto with = run("board --verbose");
+    EXPECT_EQ(with.exit_code, 0) << with.err;
+    EXPECT_NE(with.err.find("config.json"), std::string::npos) << with.err;
+}
+
+TEST_F(CommandLineTest, SettingsThatAreNoneAreRefusedByName) {
+    write_settings(R"({"format": "planlight config", "version": 1, "unit": "cm"})");
+    expect_refused(run("board"), 3, "is \"units\" meant?");
+    write_settings(R"({"format": "planlight config", "version": 1, "surgeon_side": "top"})");
+    expect_refused(run("board"), 3, "\"feet\"");
+    write_settings(R"({"format": "planlight config", "version": 1, "monitors": {"operater": "DP-1"}})");
+    expect_refused(run("board"), 3, "operater");
+    write_settings("{");
+    expect_refused(run("board"), 4, "config.json");
+}
+
+TEST_F(CommandLineTest, HelpNeedsNoSoundSettings) {
+    write_settings("{");
+    EXPECT_EQ(run("--help").exit_code, 0);
+    EXPECT_EQ(run("register --help").exit_code, 0);
+    EXPECT_EQ(run("--version").out, "planlight " PLANLIGHT_VERSION "\n");
+}
+
+}  // namespace
+}  // namespace planlight::test
