@@ -13,11 +13,13 @@
 #include "planning_io/case/case_folder.h"
 #include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/registration_file.h"
+#include "planning_io/case/rig_file.h"
 #include "planning_io/case/slicer_transform.h"
 #include "planning_io/plan/point_pairs_file.h"
 #include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
 #include "registration/matching/cloud_normals.h"
+#include "registration/matching/cloud_region.h"
 #include "registration/matching/register_with_landmarks.h"
 
 namespace planlight {
@@ -31,6 +33,8 @@ struct RegisterOptions {
     std::string unit = "mm";
     bool in_rig = false;
     std::vector<double> viewpoint_in_rig;  ///< 3 numbers, mm; empty: not said
+    std::vector<double> region_px;         ///< x y of the corners, left camera; empty: all of the scan
+    Path rig;                              ///< whose left camera saw the region
     std::string icp = "signed-distance";
     unsigned seed = 1;
     bool json = false;
@@ -57,6 +61,21 @@ PointCloud cloud_of(const RegisterOptions& options, std::optional<RigState>& rig
     return with_normals(cloud, Eigen::Vector3d(options.viewpoint_in_rig.data()));
 }
 
+/// What lies within the outline that the operator drew on the left camera's picture.
+PointCloud in_region(const PointCloud& cloud, const RegisterOptions& options) {
+    if (options.region_px.size() < 4 || options.region_px.size() % 2 != 0)
+        throw Error(ExitCode::usage, fmt::format("--region has {} numbers", options.region_px.size()),
+                    "Give x and y of two opposite corners, or of three and more corners of an outline.");
+    std::vector<Eigen::Vector2d> outline;
+    for (std::size_t i = 0; i + 1 < options.region_px.size(); i += 2)
+        outline.emplace_back(options.region_px[i], options.region_px[i + 1]);
+    PointCloud part = within_outline(cloud, read_rig(options.rig).left_camera, std::move(outline));
+    if (part.empty())
+        throw InputError(options.cloud, "has no point within the region",
+                         "Give pixels of the left camera, as in the pictures of the capture, and the rig of the scan.");
+    return part;
+}
+
 RegistrationResult match(const RegisterOptions& options, const Case& the_case, std::shared_ptr<const PointCloud>& cloud,
                          std::optional<RigState>& rig) {
     if (options.cloud.empty() && options.pairs.empty())
@@ -69,6 +88,7 @@ RegistrationResult match(const RegisterOptions& options, const Case& the_case, s
     if (options.icp == "closest-point") settings.icp.mode = IcpSettings::Mode::closest_point;
     if (!options.viewpoint_in_rig.empty()) settings.viewpoint_in_rig = Eigen::Vector3d(options.viewpoint_in_rig.data());
     cloud = std::make_shared<PointCloud>(cloud_of(options, rig));
+    if (!options.region_px.empty()) cloud = std::make_shared<PointCloud>(in_region(*cloud, options));
     return register_with_landmarks(*cloud, the_case.lut, pairs, settings);
 }
 
@@ -107,6 +127,7 @@ int run_register(const RegisterOptions& options) {
             {"weakest_sigma_mm", result.weakest_sigma_mm},
             {"mirror_ratio", result.mirror_ratio},
             {"blocked_fraction", result.blocked_fraction ? nlohmann::json(*result.blocked_fraction) : nlohmann::json()},
+            {"skin_fraction", result.skin_fraction ? nlohmann::json(*result.skin_fraction) : nlohmann::json()},
             {"landmarks_off_mm", result.landmarks_off_mm ? nlohmann::json(*result.landmarks_off_mm) : nlohmann::json()},
             {"scale", result.scale},
             {"scale_sigma", result.scale_sigma},
@@ -161,6 +182,13 @@ Run add_register(CLI::App& app) {
            "without normals needs it")
         ->expected(3)
         ->needs(cloud);
+    auto* region =
+        sub->add_option("--region", o.region_px,
+                        "Only what lies within this outline on the left camera's picture, pixels: x y of two opposite "
+                        "corners, or of three and more corners (a lasso): where cloth and hands hide too much")
+            ->expected(4, 10000)
+            ->needs(cloud);
+    region->needs(sub->add_option("--rig", o.rig, "rig.json of the scan, for --region"));
     sub->add_option(
         "--pairs", o.pairs,
         "Landmarks (.csv: name, ct and rig coordinates; `review --landmarks` clicks them): they check the cloud's "
