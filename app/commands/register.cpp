@@ -62,14 +62,18 @@ PointCloud cloud_of(const RegisterOptions& options, std::optional<RigState>& rig
 }
 
 /// What lies within the outline that the operator drew on the left camera's picture.
-PointCloud in_region(const PointCloud& cloud, const RegisterOptions& options) {
+PointCloud in_region(const PointCloud& cloud, const RegisterOptions& options, const std::optional<RigState>& rig) {
     if (options.region_px.size() < 4 || options.region_px.size() % 2 != 0)
         throw Error(ExitCode::usage, fmt::format("--region has {} numbers", options.region_px.size()),
                     "Give x and y of two opposite corners, or of three and more corners of an outline.");
     std::vector<Eigen::Vector2d> outline;
     for (std::size_t i = 0; i + 1 < options.region_px.size(); i += 2)
         outline.emplace_back(options.region_px[i], options.region_px[i + 1]);
-    PointCloud part = within_outline(cloud, read_rig(options.rig).left_camera, std::move(outline));
+    if (!rig && options.rig.empty())
+        throw Error(ExitCode::usage, "--region is given, and the cloud does not say which rig saw it",
+                    "Name the rig of the scan with --rig rig.json.");
+    const CameraModel camera = options.rig.empty() ? rig->rig.left_camera : read_rig(options.rig).left_camera;
+    PointCloud part = within_outline(cloud, camera, std::move(outline));
     if (part.empty())
         throw InputError(options.cloud, "has no point within the region",
                          "Give pixels of the left camera, as in the pictures of the capture, and the rig of the scan.");
@@ -88,7 +92,9 @@ RegistrationResult match(const RegisterOptions& options, const Case& the_case, s
     if (options.icp == "closest-point") settings.icp.mode = IcpSettings::Mode::closest_point;
     if (!options.viewpoint_in_rig.empty()) settings.viewpoint_in_rig = Eigen::Vector3d(options.viewpoint_in_rig.data());
     cloud = std::make_shared<PointCloud>(cloud_of(options, rig));
-    if (!options.region_px.empty()) cloud = std::make_shared<PointCloud>(in_region(*cloud, options));
+    if (!options.region_px.empty()) cloud = std::make_shared<PointCloud>(in_region(*cloud, options, rig));
+    if (rig && !settings.viewpoint_in_rig && rig->rig.projector.width > 0)
+        settings.viewpoint_in_rig = rig->rig.projector.centre_in_rig();  // it lit all points
     return register_with_landmarks(*cloud, the_case.lut, pairs, settings);
 }
 
@@ -188,7 +194,8 @@ Run add_register(CLI::App& app) {
                         "corners, or of three and more corners (a lasso): where cloth and hands hide too much")
             ->expected(4, 10000)
             ->needs(cloud);
-    region->needs(sub->add_option("--rig", o.rig, "rig.json of the scan, for --region"));
+    sub->add_option("--rig", o.rig, "rig.json of the scan, for --region where the cloud does not carry its rig")
+        ->needs(region);
     sub->add_option(
         "--pairs", o.pairs,
         "Landmarks (.csv: name, ct and rig coordinates; `review --landmarks` clicks them): they check the cloud's "
