@@ -14,10 +14,15 @@ struct DressedSurface::Things {
     RTCDevice device = rtcNewDevice(nullptr);
     RTCScene scene = rtcNewScene(device);
     Vector3f low, high;
+    std::vector<Vector3f> corner_normals;
 
     explicit Things(ThingsMesh given) : mesh(std::move(given)) {
         low = high = mesh.vertices_in_ct.front();
         for (const Vector3f& p : mesh.vertices_in_ct) low = low.cwiseMin(p), high = high.cwiseMax(p);
+        corner_normals.assign(mesh.vertices_in_ct.size(), Vector3f::Zero());
+        for (const auto& t : mesh.triangles)
+            for (const std::uint32_t corner : t) corner_normals[corner] += flat_normal(t);
+        for (Vector3f& n : corner_normals) n.normalize();
         rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
         RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
         auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
@@ -40,10 +45,18 @@ struct DressedSurface::Things {
     Things(const Things&) = delete;
     Things& operator=(const Things&) = delete;
 
-    Vector3d normal(std::uint32_t triangle) const {
-        const auto& t = mesh.triangles[triangle];
+    /// Twice its area long.
+    Vector3f flat_normal(const std::array<std::uint32_t, 3>& t) const {
         const Vector3f &a = mesh.vertices_in_ct[t[0]], &b = mesh.vertices_in_ct[t[1]], &c = mesh.vertices_in_ct[t[2]];
-        return (b - a).cross(c - a).cast<double>().normalized();
+        return (b - a).cross(c - a);
+    }
+    /// Smooth over the corners, but for metal, which has edges.
+    Vector3d normal(std::uint32_t triangle, float u, float v) const {
+        const auto& t = mesh.triangles[triangle];
+        if (mesh.made_of[triangle] == Material::metal) return flat_normal(t).cast<double>().normalized();
+        return ((1 - u - v) * corner_normals[t[0]] + u * corner_normals[t[1]] + v * corner_normals[t[2]])
+            .cast<double>()
+            .normalized();
     }
 };
 
@@ -78,7 +91,7 @@ std::optional<Surface::Hit> DressedSurface::first_hit(const Vector3d& origin, co
     rtcIntersect1(things_->scene, &context, &ray);
     if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return hit;
     const double t = static_cast<double>(ray.ray.tfar);
-    Vector3d normal = things_->normal(ray.hit.primID);
+    Vector3d normal = things_->normal(ray.hit.primID, ray.hit.u, ray.hit.v);
     if (normal.dot(direction) > 0) normal = -normal;  // cloth has two sides
     return Hit{origin + t * direction, normal, t, things_->mesh.made_of[ray.hit.primID]};
 }
