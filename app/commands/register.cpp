@@ -15,11 +15,13 @@
 #include "planning_io/case/case_folder.h"
 #include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/registration_file.h"
+#include "planning_io/case/rig_file.h"
 #include "planning_io/case/slicer_transform.h"
 #include "planning_io/plan/point_pairs_file.h"
 #include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
 #include "registration/matching/cloud_normals.h"
+#include "registration/matching/cloud_region.h"
 #include "registration/matching/register_with_landmarks.h"
 
 namespace planlight {
@@ -33,6 +35,8 @@ struct RegisterOptions {
     std::string unit = "mm";
     bool in_rig = false;
     std::vector<double> viewpoint_in_rig;  ///< 3 numbers, mm; empty: not said
+    std::vector<double> region_px;         ///< x y of the corners, left camera; empty: all of the scan
+    Path rig;                              ///< whose left camera saw the region
     std::string icp = "signed-distance";
     unsigned seed = 1;
     bool json = false;
@@ -56,6 +60,25 @@ PointCloud cloud_of(const RegisterOptions& options, std::optional<RigState>& rig
     return with_normals(cloud, Eigen::Vector3d(options.viewpoint_in_rig.data()));
 }
 
+/// What lies within the outline that the operator drew on the left camera's picture.
+PointCloud in_region(const PointCloud& cloud, const RegisterOptions& options, const std::optional<RigState>& rig) {
+    if (options.region_px.size() < 4 || options.region_px.size() % 2 != 0)
+        throw Error(ExitCode::usage, fmt::format("--region has {} numbers", options.region_px.size()),
+                    "Give x and y of two opposite corners, or of three and more corners of an outline.");
+    std::vector<Eigen::Vector2d> outline;
+    for (std::size_t i = 0; i + 1 < options.region_px.size(); i += 2)
+        outline.emplace_back(options.region_px[i], options.region_px[i + 1]);
+    if (!rig && options.rig.empty())
+        throw Error(ExitCode::usage, "--region is given, and the cloud does not say which rig saw it",
+                    "Name the rig of the scan with --rig rig.json.");
+    const CameraModel camera = options.rig.empty() ? rig->rig.left_camera : read_rig(options.rig).left_camera;
+    PointCloud part = within_outline(cloud, camera, std::move(outline));
+    if (part.empty())
+        throw InputError(options.cloud, "has no point within the region",
+                         "Give pixels of the left camera, as in the pictures of the capture, and the rig of the scan.");
+    return part;
+}
+
 RegistrationResult match(const RegisterOptions& options, const Case& the_case, std::shared_ptr<const PointCloud>& cloud,
                          std::optional<RigState>& rig) {
     if (options.cloud.empty() && options.pairs.empty())
@@ -68,6 +91,9 @@ RegistrationResult match(const RegisterOptions& options, const Case& the_case, s
     if (options.icp == "closest-point") settings.icp.mode = IcpSettings::Mode::closest_point;
     if (!options.viewpoint_in_rig.empty()) settings.viewpoint_in_rig = Eigen::Vector3d(options.viewpoint_in_rig.data());
     cloud = std::make_shared<PointCloud>(cloud_of(options, rig));
+    if (!options.region_px.empty()) cloud = std::make_shared<PointCloud>(in_region(*cloud, options, rig));
+    if (rig && !settings.viewpoint_in_rig && rig->rig.projector.width > 0)
+        settings.viewpoint_in_rig = rig->rig.projector.centre_in_rig();  // it lit all points
     return register_with_landmarks(*cloud, the_case.lut, pairs, settings);
 }
 
@@ -106,6 +132,7 @@ int run_register(const RegisterOptions& options) {
             {"weakest_sigma_mm", result.weakest_sigma_mm},
             {"mirror_ratio", result.mirror_ratio},
             {"blocked_fraction", result.blocked_fraction ? nlohmann::json(*result.blocked_fraction) : nlohmann::json()},
+            {"skin_fraction", result.skin_fraction ? nlohmann::json(*result.skin_fraction) : nlohmann::json()},
             {"landmarks_off_mm", result.landmarks_off_mm ? nlohmann::json(*result.landmarks_off_mm) : nlohmann::json()},
             {"scale", result.scale},
             {"scale_sigma", result.scale_sigma},
@@ -164,6 +191,14 @@ Run add_register(CLI::App& app) {
            "without normals needs it")
         ->expected(3)
         ->needs(cloud);
+    auto* region =
+        sub->add_option("--region", o.region_px,
+                        "Only what lies within this outline on the left camera's picture, pixels: x y of two opposite "
+                        "corners, or of three and more corners (a lasso): where cloth and hands hide too much")
+            ->expected(4, 10000)
+            ->needs(cloud);
+    sub->add_option("--rig", o.rig, "rig.json of the scan, for --region where the cloud does not carry its rig")
+        ->needs(region);
     sub->add_option(
         "--pairs", o.pairs,
         "Landmarks (.csv: name, ct and rig coordinates; `review --landmarks` clicks them): they check the cloud's "

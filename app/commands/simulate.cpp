@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -19,6 +20,23 @@
 
 namespace planlight {
 namespace {
+
+const std::vector<std::string> kThings{"drape-behind", "drape-hole", "hair", "hand", "tube", "retractor"};
+
+simulation::ThingsSettings things_of(const SimulateOptions& options) {
+    const auto asked = [&](const std::string& name) {
+        return std::find(options.with.begin(), options.with.end(), name) != options.with.end();
+    };
+    simulation::ThingsSettings things;
+    things.drape_behind = asked("drape-behind");
+    things.drape_hole = asked("drape-hole");
+    things.hair = asked("hair");
+    things.hand = asked("hand");
+    things.tube = asked("tube");
+    things.retractor = asked("retractor");
+    things.hole_mm = options.hole_mm;
+    return things;
+}
 
 std::vector<StereoFrame> record_frames(simulation::SimulatedRig& rig, const SimulateOptions& options,
                                        ProgressBar& bar) {
@@ -44,6 +62,8 @@ int run_simulate(const SimulateOptions& options) {
     simulation::RoomSettings room;
     room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     room.seed = options.seed;
+    room.things = things_of(options);
+    room.wet = options.wet;
     simulation::SimulatedRig rig(volume, points_of(plan), room);
     std::filesystem::create_directories(options.out);
     write_rig(rig.calibration(), options.out / "rig.json");
@@ -103,6 +123,17 @@ Run add_simulate(CLI::App& app) {
     sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head in the tracking frames")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 500.0));
+    sub->add_option("--with", o.with,
+                    "What else is in the room: drape-behind (a sheet on the table), drape-hole (laid over the head), "
+                    "hair, hand, tube, retractor; several with commas")
+        ->delimiter(',')
+        ->check(CLI::IsMember(kThings));
+    sub->add_option("--hole-mm", o.hole_mm, "Width of the hole of drape-hole")
+        ->capture_default_str()
+        ->check(CLI::Range(40.0, 300.0));
+    sub->add_option("--wet", o.wet, "Wet skin: 0 dry to 1, with the highlights of a film of water")
+        ->capture_default_str()
+        ->check(CLI::Range(0.0, 1.0));
     sub->add_option("--out", o.out, "Folder to write: rig.json, capture/, frames/, truth.json")->required();
     json_flag(sub, o.json);
     return [options] { return run_simulate(*options); };

@@ -15,6 +15,9 @@ struct SimulateOptions {
     unsigned seed = 1;
     int frames = 20;
     double speed_mm_s = 20;
+    std::vector<std::string> with;  ///< drapes, hair, hand, instruments: names of kThings
+    double hole_mm = 130;           ///< of the drape with a hole
+    double wet = 0;                 ///< skin, 0 to 1
     bool json = false;
 };
 int run_simulate_board(const SimulateOptions& options);  ///< with `board` given

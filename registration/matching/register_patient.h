@@ -3,11 +3,24 @@
 #include <optional>
 
 #include "planning_io/types/registration_result.h"
+#include "registration/matching/find_skin.h"
 #include "registration/matching/initial_match.h"
 #include "registration/matching/refine_icp.h"
 #include "registration/matching/refine_pose_deformable.h"
 
 namespace planlight {
+
+/// When the skin that was found among cloth may be used. Stricter than for a scan of skin alone: the part was chosen
+/// because it fits.
+struct AmongClothLimits {
+    double bare_fraction = 0.85;                          ///< of the scan on the skin: there is no cloth to look for
+    double max_inside = 0.03, far_too_much_inside = 0.1;  ///< of the scan, in the body; above: ask, no
+    double far_too_little_skin = 0.03;                    ///< of the scan, on the skin; below: no
+    double min_rival_ratio = 1.3;                         ///< of what is explained, to the next pose; below: ask
+    double min_runner_up_ratio = 1.3, min_mirror_ratio = 1.25;  ///< of the skin alone; below: ask
+    double min_inlier_fraction = 0.8;                           ///< of the skin alone; below: ask
+    double far_too_much_scale = 0.04;                           ///< of the skin alone, and 2 of its sigmas; above: no
+};
 
 struct RegistrationSettings {
     InitialMatchSettings initial;
@@ -18,8 +31,9 @@ struct RegistrationSettings {
     double min_extent_mm = 60;          ///< second largest extent of the cloud
     double min_runner_up_ratio = 1.15;  ///< below: ask; below 1.05: no
     double inlier_distance_mm = 1.5;
-    double min_inlier_fraction = 0.7;  ///< below: ask; below 0.5: no
-    double max_residual_rms_mm = 1.0;  ///< of the inliers; above: no
+    double min_inlier_fraction = 0.7;       ///< below: ask; below 0.5: no
+    double doubtful_inlier_fraction = 0.8;  ///< below, with another pose and the mirror image near: no
+    double max_residual_rms_mm = 1.0;       ///< of the inliers; above: no
     int min_agreeing_bases = 2;
     double max_weakest_sigma_mm = 1;   ///< above: ask
     double max_skin_offset_mm = 1.5;   ///< of the whole skin; above: ask
@@ -30,7 +44,11 @@ struct RegistrationSettings {
     /// every point must be free in the CT too.
     std::optional<Eigen::Vector3d> viewpoint_in_rig;
     double max_blocked = 0.1, far_too_many_blocked = 0.3;  ///< share of the ways that are not; above: ask, no
-    double max_scale_error = 0.015;  ///< of the scan against the CT, and 1.5 of its sigmas; above: ask
+    bool look_among_cloth = true;  ///< where the whole scan is not sure and much of it lies off the skin
+    FindSkinSettings find_skin;
+    AmongClothLimits among_cloth;
+    double far_too_much_scale = 0.06;  ///< of the scan against the CT, and 2 of its sigmas; above: no
+    double max_scale_error = 0.015;    ///< of the scan against the CT, and 1.5 of its sigmas; above: ask
 };
 
 /// Finds the patient without help: initial match, ICP, verdict with evidence. `patient` equals `rig` at the scan

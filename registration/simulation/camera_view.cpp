@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "registration/simulation/blur.h"
+#include "registration/simulation/room_things.h"
 
 namespace planlight::simulation {
 
@@ -28,7 +29,7 @@ CameraView::Traced CameraView::trace(const Scene& scene, const Vector2d& pixel) 
     Vector3d n = hit->normal_in_ct;
     const double away = n.dot(way);
     if (away > -0.02) n = (n - (away + 0.02) * way).normalized();  // smooth normals may tip over the horizon
-    const Look look = scene.look.at(p);
+    const Look look = hit->made_of == Material::none ? scene.look.at(p) : look_of(hit->made_of, p);
     result.material = look.material;
     result.depth_mm = static_cast<float>(hit->distance_mm);
     result.ambient = static_cast<float>(look.albedo * (0.65 - 0.35 * n.dot(way)));

@@ -7,6 +7,7 @@
 
 #include "planning_io/types/error.h"
 #include "registration/simulation/camera_view.h"
+#include "registration/simulation/dressed_surface.h"
 #include "registration/simulation/hash.h"
 #include "registration/simulation/head_motion.h"
 #include "registration/simulation/head_pose.h"
@@ -59,6 +60,7 @@ struct SimulatedRig::Room final : Projector, StereoCamera, Clock {
 
     RoomSettings settings;
     TrueSurface skin;
+    DressedSurface dressed{skin};
     RigLayout rig;
     RigCalibration calibration;
     SkinLook look;
@@ -88,6 +90,11 @@ SimulatedRig::Room::Room(const Volume& volume, const std::vector<Vector3d>& keep
     look.stickers =
         place_stickers(skin, region, keep_clear_in_ct, rig.left_camera.seen_from(to_ct),
                        rig.right_camera.seen_from(to_ct), rig.projector.seen_from(to_ct), settings.markers, random);
+    look.wet = settings.wet;
+    if (settings.things.any()) {
+        random = random_for(6);
+        dressed.lay(lay_things(skin, region.centre_in_ct, rig.projector.seen_from(to_ct).eye, settings.things, random));
+    }
     for (const Sticker& sticker : look.stickers) markers_in_ct.push_back(sticker.centre_in_ct);
     schedule = LightSchedule(rig.projector.columns, rig.projector.rows, settings.projector_delay, settings.light,
                              mixed(static_cast<std::uint64_t>(settings.seed) + 9000));
@@ -136,7 +143,8 @@ void SimulatedRig::Room::look_at_head(Instant at) {
     const RigidTransform room_from_ct = history.room_from_ct(at);
     if (seen_room_from_ct && *seen_room_from_ct == room_from_ct.matrix()) return;
     const RigidTransform to_ct = room_from_ct.inverse();
-    Scene scene{skin, look, rig.left_camera.seen_from(to_ct), rig.projector.seen_from(to_ct), rig.working_distance_mm};
+    Scene scene{dressed, look, rig.left_camera.seen_from(to_ct), rig.projector.seen_from(to_ct),
+                rig.working_distance_mm};
     left_view.look(scene);
     scene.camera = rig.right_camera.seen_from(to_ct);
     right_view.look(scene);
@@ -239,8 +247,8 @@ std::vector<double> SimulatedRig::scan_errors_mm(const std::vector<Vector3d>& po
 
 std::optional<SimulatedRig::Lit> SimulatedRig::true_light(const Vector2d& pixel_in_projector, Instant at) const {
     const Optics projector = room_->rig.projector.seen_from(room_->ct_from_room(at));
-    const auto hit = room_->skin.first_hit(projector.eye, projector.direction_of(pixel_in_projector));
-    if (!hit) return std::nullopt;
+    const auto hit = room_->dressed.first_hit(projector.eye, projector.direction_of(pixel_in_projector));
+    if (!hit || hit->made_of != Material::none) return std::nullopt;
     return Lit{hit->p_in_ct, hit->normal_in_ct};
 }
 
@@ -248,13 +256,13 @@ std::optional<SimulatedRig::Sight> SimulatedRig::true_sight(Camera camera, const
     const RigidTransform to_ct = room_->ct_from_room(at);
     const RigLayout& rig = room_->rig;
     const Optics eye = (camera == Camera::left ? rig.left_camera : rig.right_camera).seen_from(to_ct);
-    const auto hit = room_->skin.first_hit(eye.eye, eye.direction_of(pixel));
-    if (!hit) return std::nullopt;
+    const auto hit = room_->dressed.first_hit(eye.eye, eye.direction_of(pixel));
+    if (!hit || hit->made_of != Material::none) return std::nullopt;
     Sight sight{hit->p_in_ct, hit->normal_in_ct, std::nullopt};
     const Optics lamp = rig.projector.seen_from(to_ct);
     if (hit->normal_in_ct.dot(lamp.eye - hit->p_in_ct) <= 0 || lamp.depth(hit->p_in_ct) <= 0) return sight;
     const Vector2d lit_by = lamp.pixel_of(hit->p_in_ct);
-    if (in_picture(lamp, lit_by) && !room_->skin.in_shadow(hit->p_in_ct, hit->normal_in_ct, lamp.eye))
+    if (in_picture(lamp, lit_by) && !room_->dressed.in_shadow(hit->p_in_ct, hit->normal_in_ct, lamp.eye))
         sight.lit_by = lit_by;
     return sight;
 }
@@ -263,7 +271,7 @@ bool SimulatedRig::truly_seen(Camera camera, const Lit& skin, Instant at) const 
     const RigLayout& rig = room_->rig;
     const Optics eye = (camera == Camera::left ? rig.left_camera : rig.right_camera).seen_from(room_->ct_from_room(at));
     return eye.depth(skin.p_in_ct) > 0 && in_picture(eye, eye.pixel_of(skin.p_in_ct)) &&
-           !room_->skin.in_shadow(skin.p_in_ct, skin.normal_in_ct, eye.eye);
+           !room_->dressed.in_shadow(skin.p_in_ct, skin.normal_in_ct, eye.eye);
 }
 
 const std::vector<Vector3d>& SimulatedRig::true_markers_in_ct() const {

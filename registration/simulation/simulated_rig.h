@@ -12,6 +12,7 @@
 #include "registration/devices/projector.h"
 #include "registration/devices/stereo_camera.h"
 #include "registration/simulation/light.h"
+#include "registration/simulation/room_things.h"
 
 namespace planlight::simulation {
 
@@ -38,6 +39,8 @@ struct RoomSettings {
     Instant projector_delay = std::chrono::milliseconds(25);
     bool noise = true;
     LightSettings light;
+    ThingsSettings things;  ///< drapes, hair, hands and instruments, at rest with the head; none by default
+    double wet = 0;         ///< 0 dry to 1 dripping: how strong and how wide the highlights on the skin are
 };
 
 /// The simulated operating room: a true head (the CT field), a true projector, two true cameras and a clock of its own.

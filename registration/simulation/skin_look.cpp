@@ -42,7 +42,8 @@ Look SkinLook::skin(const Vector3d& p) const {
     const double patches = value_noise(p / 11, seed_), mottle = value_noise(p / 3.1, seed_ + 1);
     const double pores = value_noise(p / 0.9, seed_ + 2);
     const double shade = 1 + 0.06 * patches + 0.03 * mottle + 0.035 * std::min(0.0, pores + 0.2);
-    return {Material::skin, kSkinAlbedo * shade, 0.03 + 0.008 * patches, 0.3};
+    const double film = wet > 0 ? wet * std::clamp(0.6 + value_noise(p / 17, seed_ + 4), 0.0, 1.0) : 0;
+    return {Material::skin, kSkinAlbedo * shade * (1 - 0.15 * film), 0.03 + 0.008 * patches + 0.25 * film, 0.3};
 }
 
 Look SkinLook::at(const Vector3d& p) const {

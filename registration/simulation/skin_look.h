@@ -24,6 +24,7 @@ public:
     explicit SkinLook(unsigned seed) : seed_(seed) {}
     Look at(const Eigen::Vector3d& p_in_ct) const override;
     std::vector<Sticker> stickers;
+    double wet = 0;  ///< 0 dry to 1: the highlights of a film of water, in patches
 
 private:
     Look skin(const Eigen::Vector3d& p_in_ct) const;

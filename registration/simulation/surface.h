@@ -6,6 +6,8 @@
 
 namespace planlight::simulation {
 
+enum class Material : std::uint8_t { none, skin, paper, ink, blood, cloth, glove, plastic, metal, hair };
+
 /// What stands in front of the rig, in its own frame (`ct` for a head, `board` for a board; below always called ct).
 class Surface {
 public:
@@ -14,6 +16,7 @@ public:
     struct Hit {
         Eigen::Vector3d p_in_ct, normal_in_ct;
         double distance_mm = 0;
+        Material made_of = Material::none;  ///< of a thing that lies on the object; none: the object itself
     };
     /// The first skin along a ray (`direction` of unit length).
     virtual std::optional<Hit> first_hit(const Eigen::Vector3d& origin_in_ct,
@@ -28,8 +31,6 @@ public:
     /// Middle of the box round the object.
     Eigen::Vector3d middle_in_ct() const { return (low_in_ct() + high_in_ct()) / 2; }
 };
-
-enum class Material : std::uint8_t { none, skin, paper, ink, blood };
 
 /// How a point of the object reflects.
 struct Look {

@@ -42,6 +42,17 @@ json rig_json(const RigCalibration& rig) {
             {"reprojection_rms_px", rig.reprojection_rms_px}};
 }
 
+json things_json(const ThingsSettings& s) {
+    json names = json::array();
+    if (s.drape_behind) names.push_back("drape-behind");
+    if (s.drape_hole) names.push_back("drape-hole");
+    if (s.hair) names.push_back("hair");
+    if (s.hand) names.push_back("hand");
+    if (s.tube) names.push_back("tube");
+    if (s.retractor) names.push_back("retractor");
+    return names;
+}
+
 }  // namespace
 
 std::string rig_as_json(const RigCalibration& rig) {
@@ -62,6 +73,8 @@ std::string as_json(const TruthNumbers& truth) {
                        {"skin_threshold_hu", s.skin_threshold_hu},
                        {"ambient", s.ambient},
                        {"noise", s.noise},
+                       {"things", things_json(s.things)},
+                       {"wet", s.wet},
                        {"calibration_error", s.calibration_error},
                        {"projector_delay_s", seconds(s.projector_delay)},
                        {"speed_mm_s", s.motion.speed_mm_s},

@@ -190,6 +190,8 @@ std::vector<TrialHead> trial_heads(const TrialHeadFiles& files) {
         const TriangleMesh mesh = read_mannequin(files.mannequin);
         heads.push_back({"mannequin", build_skin_lut(mesh), TrialSurface(mesh)});
     }
+    for (const auto& file : files.volumes)
+        if (there(file)) heads.push_back(head_of_volume(file.filename().string(), read_volume(file)));
     heads.push_back({"analytic head", build_skin_lut(analytic_head_mesh(2)), TrialSurface(analytic_head_mesh(1.5))});
     heads.push_back(synthetic_head("long head", kLongHead, 6, -185));
     heads.push_back(synthetic_head("round head", kRoundHead, 9, -185));

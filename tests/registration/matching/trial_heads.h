@@ -19,9 +19,10 @@ struct TrialHead {
 
 /// Where the heads are that do not come with a package. Those not given or not there are left out.
 struct TrialHeadFiles {
-    std::filesystem::path ch2;        ///< ch2.nii.gz of Debian's mricron-data: an MR head
-    std::filesystem::path mannequin;  ///< dummyhead.mesh.ply of R's Rvcg, mm; x left, y up, z to the front
-    std::filesystem::path ct_head;    ///< the DICOM folder of 3D Slicer's CTHeadAxialDicom
+    std::filesystem::path ch2;                   ///< ch2.nii.gz of Debian's mricron-data: an MR head
+    std::filesystem::path mannequin;             ///< dummyhead.mesh.ply of R's Rvcg, mm; x left, y up, z to the front
+    std::filesystem::path ct_head;               ///< the DICOM folder of 3D Slicer's CTHeadAxialDicom
+    std::vector<std::filesystem::path> volumes;  ///< any others, named by their files
 };
 
 /// The example patient (if installed), those of the files, and four analytic heads: the one of tests/support, a long

@@ -23,13 +23,16 @@ TrialOptions trial_options(int argc, char** argv, unsigned default_trials) {
     int numbers = 0;
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
-        if (const auto at = paths.find(word); at != paths.end() && i + 1 < argc) {
+        if (word == "--volume" && i + 1 < argc) {
+            options.files.volumes.emplace_back(argv[++i]);
+        } else if (const auto at = paths.find(word); at != paths.end() && i + 1 < argc) {
             *at->second = argv[++i];
         } else if (numbers < 2 && !word.empty() && word.find_first_not_of("0123456789") == std::string::npos) {
             (numbers++ == 0 ? options.trials : options.seed) = static_cast<unsigned>(std::stoul(word));
         } else {
             fmt::print(stderr,
-                       "usage: {} [TRIALS [SEED]] [--ch2 FILE] [--mannequin FILE] [--ct-head FOLDER] [--log FILE] "
+                       "usage: {} [TRIALS [SEED]] [--ch2 FILE] [--mannequin FILE] [--ct-head FOLDER] [--volume "
+                       "FILE]... [--log FILE] "
                        "[--picture FILE]\n",
                        argv[0]);
             std::exit(2);

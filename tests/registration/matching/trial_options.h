@@ -7,7 +7,7 @@
 namespace planlight::test {
 
 /// The command line of the measuring programs: [TRIALS [SEED]] [--ch2 FILE] [--mannequin FILE] [--ct-head FOLDER]
-/// [--log FILE]
+/// [--volume FILE]... [--log FILE]
 /// [--picture FILE]. The mannequin and the CT head are also looked for among the third-party data. Exits with 2 and the
 /// usage on anything else.
 struct TrialOptions {
