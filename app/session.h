@@ -39,6 +39,13 @@ struct CaseDrawing {
     SkinSurface skin;
     PlanDrawing drawing;  ///< as it is before any marker is known; a session moves the labels off its markers
     explicit CaseDrawing(const Case& the_case, const DrawingSettings& settings = {});
+    /// On the skin as the scan found it; `planned` is the case's own. Warns of what the scan did not see.
+    CaseDrawing(const Case& the_case, const CaseDrawing& planned, const SkinDisplacement& found,
+                const DrawingSettings& settings = {});
+
+private:
+    CaseDrawing(const Case& the_case, const CaseDrawing& planned, const SkinDisplacementField& found,
+                const DrawingSettings& settings);
 };
 
 /// The times of one tracked update: the product's own work.
@@ -94,9 +101,9 @@ public:
     const RegistrationResult* registration() const { return registration_ ? &*registration_ : nullptr; }
     const PatientTracker& tracker() const { return tracker_; }
     const DrawingRenderer& renderer() const { return *renderer_; }
-    /// The plan as this session draws it: labels lie beside the markers, so that none is cut by the darkness round
-    /// them.
-    const PlanDrawing& drawing() const { return drawing_; }
+    /// The plan as this session draws it, on the skin as the scan found it: labels lie beside the markers, so that none
+    /// is cut by the darkness round them.
+    const PlanDrawing& drawing() const { return now_ ? now_->drawing : planned_.drawing; }
     const RenderSettings& render_settings() const { return settings_.overlay.render; }
     double motion_in_scan_mm() const { return motion_in_scan_mm_; }
     int scans_repeated() const { return scans_repeated_; }  ///< in the last `scan`, because the patient moved
@@ -107,13 +114,13 @@ private:
     void take_reference(const ScanCapture& capture);
     void take_rig(const ScanCapture& capture);
     double moved_at_the_end_mm();
-    void draw_beside_markers();
+    void draw_on_skin_as_found();
     void start_overlay();
     std::optional<LightCheck> look_at_light(const Update& update);
 
     const Case& case_;
-    const SkinSurface& skin_;
-    PlanDrawing drawing_;
+    const CaseDrawing& planned_;
+    std::optional<CaseDrawing> now_;   ///< on the skin as the last match found it
     const RigCalibration calibrated_;  ///< rig.json
     RigCalibration rig_;               ///< as the last scan found it: cloud, poses and light are made with it
     std::optional<RigState> rig_state_;

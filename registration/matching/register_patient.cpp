@@ -8,6 +8,7 @@
 
 #include "registration/matching/free_space.h"
 #include "registration/matching/match_evidence.h"
+#include "registration/matching/measure_displacement.h"
 
 namespace planlight {
 namespace {
@@ -137,6 +138,7 @@ FineMatch match_finely(const PointCloud& cloud, const SkinLut& lut, const RigidT
     result.skin_offset_mm = settled.offset_mm;
     result.refine_s = seconds_since(start);
     result.patient_from_ct = icp.ct_from_rig.inverse();
+    result.skin = measure_displacement(cloud, lut, icp.ct_from_rig);
 
     FineMatch fine{lay_on_skin(cloud, lut, icp.ct_from_rig, settings.inlier_distance_mm,
                                settings.moved_skin ? settled.offset_mm : 0),
