@@ -22,10 +22,10 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 // What a good calibration (0.1 px rms over all devices) leaves, one sigma each; measured on the simulated rooms
 // (README, measure_tracking). Larger where the calibration says it is worse.
 constexpr double kUsualRms_px = 0.1;
-constexpr double kDirection_px = 0.05, kRoll_rad = 1e-4, kAside_px = 0.05, kDepth_mm = 0.06;
-constexpr double kFocal = 2.2e-4;       // with the distance that makes up for it
-constexpr double kPrincipal_px = 0.17;  // with the turn that makes up for it
-constexpr double kCorner_px = 0.055;    // distortion, in the picture's corner
+constexpr double kDirection_px = 0.045, kRoll_rad = 1e-4, kAside_px = 0.045, kDepth_mm = 0.055;
+constexpr double kFocal = 2e-4;       // with the distance that makes up for it
+constexpr double kPrincipal_px = 0.12;  // with the turn that makes up for it
+constexpr double kCorner_px = 0.05;    // distortion, in the picture's corner
 constexpr int kWays = 10;
 
 RigidTransform turned(const RigidTransform& device_from_rig, const Vector3d& radians) {
@@ -119,7 +119,7 @@ Reference reference_of(const RigCalibration& rig, const PatientMarker& marker) {
 /// Of the centre in this frame against the reference: what a tilted disc's centre is off under perspective is the same
 /// as long as the head has not turned.
 double noise_px(const MarkerObservation& seen, double turned_rad) {
-    constexpr double kOtherTilt_rad = 0.5;
+    constexpr double kOtherTilt_rad = 0.8;
     const double steady = std::min(seen.steady_px, seen.sigma_px), changed = std::min(1., turned_rad / kOtherTilt_rad);
     return std::sqrt(seen.sigma_px * seen.sigma_px - steady * steady * (1 - changed * changed));
 }
