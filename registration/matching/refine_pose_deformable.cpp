@@ -131,7 +131,7 @@ struct Plausible {
 };
 
 /// How much of a patch's own it has: 1 near the skin, more the farther it lies off, so that what moved as a piece (a
-/// jaw, a drape's edge) does not pull the pose. Scaled by the median, so that skin which moved as a whole is not left
+/// jaw, a drape's edge) does not pull the pose. Scaled by the median, so that skin which moved by much is not left
 /// out.
 VectorXd own_parts(const VectorXd& residual_mm) {
     constexpr double kLeastScale_mm = 0.3, kMedians = 1.5, kLeastWeight = 0.02, kBeyond = 20;
@@ -188,8 +188,9 @@ struct Problem {
             for (Eigen::Index j = 0; j < n; ++j)
                 squared_mm2(i, j) = (p.x_in_ct - patches[static_cast<std::size_t>(j)].x_in_ct).squaredNorm();
         }
-        own = own_parts(residual_mm.array() - median(std::vector<double>(residual_mm.data(), residual_mm.data() + n)))
-                  .cwiseProduct(soft.cwiseAbs2());
+        // From the skin's own offset, so that skin which moved as a whole is not left out.
+        const double middle_mm = median(std::vector<double>(residual_mm.data(), residual_mm.data() + n));
+        own = own_parts(residual_mm.array() - middle_mm).cwiseProduct(soft.cwiseAbs2());
     }
     MatrixXd alike(double correlation_mm) const {
         return soft.asDiagonal() * (-squared_mm2.array() / (2 * correlation_mm * correlation_mm)).exp().matrix() *
