@@ -6,6 +6,7 @@
 
 #include "app/belonging.h"
 #include "planning_io/types/error.h"
+#include "projection/skin_now.h"
 #include "registration/scan/decode/merge_exposures.h"
 #include "registration/tracking/markers_in_scan.h"
 
@@ -21,11 +22,25 @@ double elapsed_s(std::chrono::steady_clock::time_point since) {
 CaseDrawing::CaseDrawing(const Case& the_case, const DrawingSettings& how)
     : skin(the_case.skin), settings(how), drawing(draw_plan(the_case.plan, skin, settings)) {}
 
+CaseDrawing::CaseDrawing(const Case& the_case, const CaseDrawing& planned, const SkinDisplacement& found)
+    : CaseDrawing(the_case, planned, found, planned.settings) {}
+
+CaseDrawing::CaseDrawing(const Case& the_case, const CaseDrawing& planned, const SkinDisplacement& found,
+                         const DrawingSettings& how)
+    : CaseDrawing(the_case, planned, SkinDisplacementField(found), how) {}
+
+CaseDrawing::CaseDrawing(const Case& the_case, const CaseDrawing& planned, const SkinDisplacementField& found,
+                         const DrawingSettings& how)
+    : skin(skin_as_scanned(planned.skin.mesh(), found)),
+      settings(how),
+      drawing(draw_plan(the_case.plan, planned.skin, skin, settings)) {
+    warn_of_unscanned(found, drawing);
+}
+
 Session::Session(const Case& the_case, const CaseDrawing& drawing, const RigCalibration& rig, Projector& projector,
                  StereoCamera& cameras, const Clock& clock, SessionSettings settings)
     : case_(the_case),
-      skin_(drawing.skin),
-      drawing_(drawing.drawing),
+      planned_(drawing),
       calibrated_(rig),
       rig_(rig),
       projector_(projector),
@@ -84,7 +99,8 @@ void Session::use_rig(const RigCalibration& rig) {
     overlay_.reset();
     rig_ = rig;
     tracker_ = PatientTracker(rig_, settings_.tracking);
-    renderer_ = std::make_unique<DrawingRenderer>(skin_, rig_.projector);
+    now_.reset();
+    renderer_ = std::make_unique<DrawingRenderer>(planned_.skin, rig_.projector);
 }
 
 /// From here on everything is done with the rig as the scan found it, or nothing is done.
@@ -139,10 +155,11 @@ const RegistrationResult& Session::find_patient(const std::vector<PointPair>& la
     RegistrationSettings settings = settings_.registration;
     settings.viewpoint_in_rig = rig_.projector.centre_in_rig();
     confirmed_ = false;
+    overlay_.reset();
     registration_ = register_with_landmarks(scanned_->clean.kept, case_.lut, landmarks, settings);
     registration_->moved_in_scan_mm = motion_in_scan_mm_;
     take_case_and_rig(case_, rig_state_, *registration_);
-    if (registration_->verdict != Verdict::no) draw_beside_markers();
+    if (registration_->verdict != Verdict::no) draw_on_skin_as_found();
     start_overlay();
     return *registration_;
 }
@@ -152,13 +169,14 @@ void Session::confirm() {
     if (overlay_) overlay_->set_operator_confirmed(true);
 }
 
-void Session::draw_beside_markers() {
-    overlay_.reset();
-    DrawingSettings drawing = settings_.drawing;
+/// On the skin as the scan found it, with the labels beside the markers.
+void Session::draw_on_skin_as_found() {
+    DrawingSettings drawing = planned_.settings;
     const RigidTransform ct_from_patient = registration_->patient_from_ct.inverse();
     for (const auto& marker : tracker_.markers())
         drawing.keep_clear_in_ct.push_back(ct_from_patient * marker.centre_in_patient);
-    drawing_ = draw_plan(case_.plan, skin_, drawing);
+    now_.emplace(case_, planned_, registration_->skin, drawing);
+    renderer_ = std::make_unique<DrawingRenderer>(now_->skin, rig_.projector);
 }
 
 void Session::start_overlay() {
@@ -166,7 +184,7 @@ void Session::start_overlay() {
     keep_dark.clear();
     for (const auto& marker : tracker_.markers()) keep_dark.push_back(marker.centre_in_patient);
     overlay_ =
-        std::make_unique<OverlayLoop>(projector_, clock_, *renderer_, drawing_, *registration_, settings_.overlay);
+        std::make_unique<OverlayLoop>(projector_, clock_, *renderer_, drawing(), *registration_, settings_.overlay);
     if (confirmed_) overlay_->set_operator_confirmed(true);
 }
 
@@ -197,8 +215,9 @@ std::optional<LightCheck> Session::look_at_light(const Update& update) {
     if (settings_.check_light_every <= 0 || ++updates_ % settings_.check_light_every != 0) return std::nullopt;
     const Instant half = update.frame.exposure / 2;
     if (!update.pose.rig_from_patient || update.frame.at - half < lit_since_) return std::nullopt;
-    return check_light(drawing_, skin_, rig_, *update.pose.rig_from_patient * registration_->patient_from_ct,
-                       update.frame, settings_.check_light);
+    return check_light(drawing(), now_ ? now_->skin : planned_.skin, rig_,
+                       *update.pose.rig_from_patient * registration_->patient_from_ct, update.frame,
+                       settings_.check_light);
 }
 
 }  // namespace planlight

@@ -22,7 +22,6 @@ struct SessionSettings {
     RegistrationSettings registration;
     TrackingSettings tracking;
     OverlaySettings overlay;
-    DrawingSettings drawing;
     CheckLightSettings check_light;
     int check_light_every = 3;            ///< updates; 0: the light is not measured
     double max_motion_in_scan_mm = 0.15;  ///< of any marker between two moments of a scan; above: the scan is repeated
@@ -40,6 +39,15 @@ struct CaseDrawing {
     DrawingSettings settings;
     PlanDrawing drawing;  ///< as it is before any marker is known; a session moves the labels off its markers
     explicit CaseDrawing(const Case& the_case, const DrawingSettings& settings = {});
+    /// On the skin as the scan found it; `planned` is the case's own. Warns of what the scan did not see.
+    CaseDrawing(const Case& the_case, const CaseDrawing& planned, const SkinDisplacement& found);
+    /// The same, drawn otherwise.
+    CaseDrawing(const Case& the_case, const CaseDrawing& planned, const SkinDisplacement& found,
+                const DrawingSettings& how);
+
+private:
+    CaseDrawing(const Case& the_case, const CaseDrawing& planned, const SkinDisplacementField& found,
+                const DrawingSettings& how);
 };
 
 /// The times of one tracked update: the product's own work.
@@ -95,9 +103,9 @@ public:
     const RegistrationResult* registration() const { return registration_ ? &*registration_ : nullptr; }
     const PatientTracker& tracker() const { return tracker_; }
     const DrawingRenderer& renderer() const { return *renderer_; }
-    /// The plan as this session draws it: labels lie beside the markers, so that none is cut by the darkness round
-    /// them.
-    const PlanDrawing& drawing() const { return drawing_; }
+    /// The plan as this session draws it, on the skin as the scan found it: labels lie beside the markers, so that none
+    /// is cut by the darkness round them.
+    const PlanDrawing& drawing() const { return now_ ? now_->drawing : planned_.drawing; }
     const RenderSettings& render_settings() const { return settings_.overlay.render; }
     double motion_in_scan_mm() const { return motion_in_scan_mm_; }
     int scans_repeated() const { return scans_repeated_; }  ///< in the last `scan`, because the patient moved
@@ -108,13 +116,13 @@ private:
     void take_reference(const ScanCapture& capture);
     void take_rig(const ScanCapture& capture);
     double moved_at_the_end_mm();
-    void draw_beside_markers();
+    void draw_on_skin_as_found();
     void start_overlay();
     std::optional<LightCheck> look_at_light(const Update& update);
 
     const Case& case_;
-    const SkinSurface& skin_;
-    PlanDrawing drawing_;
+    const CaseDrawing& planned_;
+    std::optional<CaseDrawing> now_;   ///< on the skin as the last match found it
     const RigCalibration calibrated_;  ///< rig.json
     RigCalibration rig_;               ///< as the last scan found it: cloud, poses and light are made with it
     std::optional<RigState> rig_state_;

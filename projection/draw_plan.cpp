@@ -52,7 +52,8 @@ Point on_skin_along(const SkinSurface& skin, const Vector3d& p, const Vector3d& 
 
 class Drawer {
 public:
-    Drawer(const SkinSurface& skin, const DrawingSettings& settings) : skin_(skin), settings_(settings) {}
+    Drawer(const SkinSurface& ct_skin, const SkinSurface& skin_now, const DrawingSettings& settings)
+        : ct_skin_(ct_skin), skin_(skin_now), settings_(settings) {}
 
     void draw(const OsteotomyLine& line);
     void draw(const Borehole& hole);
@@ -75,7 +76,8 @@ private:
     void wish(int item_index, std::vector<Point> anchors, double keep_off_mm, std::optional<Vector3d> away_from = {});
     void wish_along(int item_index, const SkinLine& line);
 
-    const SkinSurface& skin_;
+    const SkinSurface& ct_skin_;  ///< on which was planned
+    const SkinSurface& skin_;     ///< as it is now: what is drawn on
     const DrawingSettings& settings_;
     std::vector<LabelWish> wishes_;
 };
@@ -140,12 +142,13 @@ void Drawer::draw(const OsteotomyLine& line) {
     double far_mm = 0;
     if (finite(line))
         for (const Vector3d& p : line.points_in_ct) {
-            on_skin.push_back(skin_.nearest(p));
-            far_mm = std::max(far_mm, (on_skin.back().p_in_ct - p).norm());
+            const Point planned = ct_skin_.nearest(p);
+            far_mm = std::max(far_mm, (planned.p_in_ct - p).norm());
+            on_skin.push_back(skin_.same_place(ct_skin_, planned));
         }
     const int i =
         begin(StrokeKind::osteotomy_line, line.name, on_skin.empty() ? Vector3d::Zero() : on_skin.front().p_in_ct,
-              far_mm, faults(line, skin_, settings_));
+              far_mm, faults(line, ct_skin_, settings_));
     if (on_skin.size() < 2 || too_far(item(i))) return;
     const SkinLine way = join(skin_, on_skin, line.closed, settings_.max_segment_mm);
     if (way.points.size() < 2) return;
@@ -158,15 +161,15 @@ void Drawer::draw(const OsteotomyLine& line) {
 
 void Drawer::draw(const Borehole& hole) {
     if (!finite(hole)) {
-        begin(StrokeKind::borehole, hole.name, Vector3d::Zero(), 0, faults(hole, skin_, settings_));
+        begin(StrokeKind::borehole, hole.name, Vector3d::Zero(), 0, faults(hole, ct_skin_, settings_));
         return;
     }
-    const Point nearest = skin_.nearest(hole.position_in_ct);
+    const Point nearest = ct_skin_.nearest(hole.position_in_ct);
     const Point at = hole.axis_in_ct && hole.axis_in_ct->norm() > 0.5
                          ? on_skin_along(skin_, hole.position_in_ct, hole.axis_in_ct->normalized())
-                         : nearest;
+                         : skin_.same_place(ct_skin_, nearest);
     const int i = begin(StrokeKind::borehole, hole.name, at.p_in_ct, (nearest.p_in_ct - hole.position_in_ct).norm(),
-                        faults(hole, skin_, settings_));
+                        faults(hole, ct_skin_, settings_));
     if (too_far(item(i))) return;
     const Rgb colour = chosen(hole.colour, kBoreholeCyan);
     const double radius_mm = std::max(hole.diameter_mm / 2, 0.0);
@@ -185,16 +188,16 @@ void Drawer::draw(const Borehole& hole) {
 
 void Drawer::draw(const Trajectory& t) {
     if (!finite(t)) {
-        begin(StrokeKind::trajectory, t.name, Vector3d::Zero(), 0, faults(t, skin_, settings_));
+        begin(StrokeKind::trajectory, t.name, Vector3d::Zero(), 0, faults(t, ct_skin_, settings_));
         return;
     }
-    const Point nearest = skin_.nearest(t.entry_in_ct);
+    const Point nearest = ct_skin_.nearest(t.entry_in_ct);
     const bool has_way = t.length_mm() > 1e-6;
     const Vector3d inwards =
         has_way ? Vector3d((t.target_in_ct - t.entry_in_ct) / t.length_mm()) : Vector3d(-nearest.normal_in_ct);
     const Point at = on_skin_along(skin_, t.entry_in_ct, inwards);
     const int i = begin(StrokeKind::trajectory, t.name, at.p_in_ct, (nearest.p_in_ct - t.entry_in_ct).norm(),
-                        faults(t, skin_, settings_));
+                        faults(t, ct_skin_, settings_));
     if (too_far(item(i))) return;
     item(i).label = fmt::format("{}{}  {} mm", t.name, t.diameter_mm > 0 ? fmt::format("  ⌀{}", mm(t.diameter_mm)) : "",
                                 mm(t.length_mm()));
@@ -215,7 +218,7 @@ void Drawer::draw(const Trajectory& t) {
 }
 
 void Drawer::draw(const CutPlane& plane) {
-    const auto warnings = faults(plane, skin_, settings_);
+    const auto warnings = faults(plane, ct_skin_, settings_);
     const bool drawable = finite(plane) && std::abs(plane.normal_in_ct.norm() - 1) < 1e-3 &&
                           std::abs(plane.first_axis_in_ct.norm() - 1) < 1e-3 &&
                           std::abs(plane.normal_in_ct.dot(plane.first_axis_in_ct)) < 1e-3;
@@ -264,7 +267,12 @@ void Drawer::draw_labels() {
 }  // namespace
 
 PlanDrawing draw_plan(const Plan& plan, const SkinSurface& skin, const DrawingSettings& settings) {
-    Drawer drawer(skin, settings);
+    return draw_plan(plan, skin, skin, settings);
+}
+
+PlanDrawing draw_plan(const Plan& plan, const SkinSurface& ct_skin, const SkinSurface& skin_now,
+                      const DrawingSettings& settings) {
+    Drawer drawer(ct_skin, skin_now, settings);
     for (const auto& line : plan.osteotomy_lines) drawer.draw(line);
     for (const auto& hole : plan.boreholes) drawer.draw(hole);
     for (const auto& trajectory : plan.trajectories) drawer.draw(trajectory);

@@ -59,4 +59,11 @@ struct DrawingSettings {
 /// than three times `max_distance_to_skin_mm` from the skin, has no strokes, and a warning.
 PlanDrawing draw_plan(const Plan& plan, const SkinSurface& skin, const DrawingSettings& settings = {});
 
+/// The same on the skin as it is now (`skin_as_scanned` of `ct_skin`). What is fixed to the bone stays where it was
+/// planned and is drawn where it meets the skin now: holes and trajectories along their axes, cut planes in their
+/// planes. What is planned on the skin is carried with it: points of lines, holes without an axis. Distances and
+/// warnings are those of the CT.
+PlanDrawing draw_plan(const Plan& plan, const SkinSurface& ct_skin, const SkinSurface& skin_now,
+                      const DrawingSettings& settings = {});
+
 }  // namespace planlight

@@ -1,5 +1,7 @@
 #include "projection/render_drawing.h"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -17,6 +19,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kMin_width_px = 1.5;
+constexpr double kBroken_mm = 1.3;     // dashes and gaps of a circle that is lit in part
 constexpr double kSmooth_turn = 0.85;  // cosine: a sharper turn is drawn as a corner
 
 /// A stroke's point as the projector sees it.
@@ -66,7 +69,9 @@ struct DrawingRenderer::Parts {
     void light_points(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts);
     LitPoint light_point(const Vector3d& p_in_ct, const Vector3d& normal_in_ct, double steepest_cosine,
                          RenderCounts& counts) const;
-    void add_ribbon(const Stroke& stroke);
+    void add_ribbon(const Stroke& stroke, bool broken);
+    /// True when the stroke is a circle that is lit in part; `counts` is told.
+    bool is_partly_lit_ring(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts) const;
     /// The two edge points of the ribbon at one end of a segment.
     std::array<Vector2d, 2> edges(const Stroke& stroke, std::size_t at, const Vector3d& own, const Vector3d* other,
                                   double outwards) const;
@@ -137,15 +142,17 @@ std::array<Vector2d, 2> DrawingRenderer::Parts::edges(const Stroke& stroke, std:
     return {centre + half, centre - half};
 }
 
-void DrawingRenderer::Parts::add_ribbon(const Stroke& stroke) {
+void DrawingRenderer::Parts::add_ribbon(const Stroke& stroke, bool broken) {
     const std::size_t count = points.size(), segments = stroke.closed ? count : count - 1;
     const auto direction = [&](std::size_t segment) {
         return Vector3d(
             (stroke.points_in_ct[(segment + 1) % count] - stroke.points_in_ct[segment % count]).normalized());
     };
+    const double segment_mm = (stroke.points_in_ct[1] - stroke.points_in_ct[0]).norm();
     for (std::size_t i = 0; i < segments; ++i) {
         const std::size_t j = (i + 1) % count;
         if (!points[i].lit || !points[j].lit) continue;
+        if (broken && static_cast<int>(static_cast<double>(i) * segment_mm / kBroken_mm) % 2 != 0) continue;
         const Vector3d own = direction(i);
         if (!own.allFinite() || own.isZero()) continue;
         const Vector3d before = i > 0 || stroke.closed ? direction(i + count - 1) : own;
@@ -154,6 +161,33 @@ void DrawingRenderer::Parts::add_ribbon(const Stroke& stroke) {
         const auto end = edges(stroke, j, own, i + 1 < segments || stroke.closed ? &after : nullptr, 1);
         raster.add_quad({start[0], end[0], end[1], start[1]});
     }
+}
+
+bool DrawingRenderer::Parts::is_partly_lit_ring(const Stroke& stroke, const RenderSettings& settings,
+                                                RenderCounts& counts) const {
+    const bool is_ring =
+        stroke.closed && (stroke.kind == StrokeKind::borehole || stroke.kind == StrokeKind::trajectory);
+    if (!is_ring) return false;
+    const auto lit = std::count_if(points.begin(), points.end(), [](const LitPoint& p) { return p.lit; });
+    const double share = static_cast<double>(lit) / static_cast<double>(points.size());
+    if (share >= settings.whole_ring) return false;
+    counts.partly_lit.push_back({stroke.item, share});
+    return true;
+}
+
+std::vector<std::string> sentences(const std::vector<PartlyLitRing>& rings, const PlanDrawing& drawing) {
+    std::vector<std::string> said;
+    for (const PartlyLitRing& ring : rings) {
+        const bool named = ring.item >= 0 && static_cast<std::size_t>(ring.item) < drawing.items.size();
+        const std::string name = named ? drawing.items[static_cast<std::size_t>(ring.item)].name : "a circle";
+        said.push_back(
+            ring.lit_share > 0
+                ? fmt::format("{}: only {:.0f} % of its rim can be lit from here; it is drawn broken. Turn the "
+                              "patient or the projector.",
+                              name, 100 * ring.lit_share)
+                : fmt::format("{}: no light reaches it from here. Turn the patient or the projector.", name));
+    }
+    return said;
 }
 
 DrawingRenderer::DrawingRenderer(const SkinSurface& skin, const CameraModel& projector)
@@ -198,7 +232,7 @@ RenderCounts DrawingRenderer::render_into(RgbImage& picture, const PlanDrawing& 
             throw InputError("", "a stroke of the drawing has not one normal per point", "Draw the plan again.");
         if (stroke.points_in_ct.size() < 2 || !(stroke.width_mm > 0)) continue;
         parts.light_points(stroke, settings, counts);
-        parts.add_ribbon(stroke);
+        parts.add_ribbon(stroke, parts.is_partly_lit_ring(stroke, settings, counts));
         parts.raster.flush(dimmed(stroke.colour, settings.brightness), picture);
     }
     darken_markers(parts.projector, rig_from_patient, settings, picture);

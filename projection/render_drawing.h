@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "planning_io/types/rig_calibration.h"
@@ -14,7 +15,14 @@ struct RenderSettings {
     double halo_mm = 1.2;                               ///< darkness kept round the markers' stickers
     std::vector<Eigen::Vector3d> keep_dark_in_patient;  ///< marker centres that no light may touch
     double keep_dark_radius_mm = 9;
-    int only_item = -1;  ///< draw one item alone (for measuring); -1 draws all
+    double whole_ring = 0.85;  ///< circles of which less of the rim can be lit are drawn broken
+    int only_item = -1;        ///< draw one item alone (for measuring); -1 draws all
+};
+
+/// A circle of which only a part can be lit: an arc of it looks like a circle elsewhere. It is drawn broken.
+struct PartlyLitRing {
+    int item = -1;         ///< index into PlanDrawing::items
+    double lit_share = 0;  ///< of its rim
 };
 
 /// What became of the drawing's points in one picture.
@@ -24,7 +32,11 @@ struct RenderCounts {
     std::size_t too_steep = 0;  ///< the light would graze the skin, or it faces away
     std::size_t hidden = 0;     ///< other skin stands in the light's way
     std::size_t outside = 0;    ///< out of the projector's picture
+    std::vector<PartlyLitRing> partly_lit;
 };
+
+/// One sentence for every circle of which only a part can be lit.
+std::vector<std::string> sentences(const std::vector<PartlyLitRing>& rings, const PlanDrawing& drawing);
 
 /// Renders drawings for the projector's view: true occlusion by the skin, lens distortion, anti-aliased strokes.
 /// Holds the depth mesh, so that a picture a frame costs only the strokes. Keeps a reference to `skin`. May be called

@@ -64,17 +64,23 @@ struct SkinSurface::Parts {
 
     const Vector3d& vertex(std::int32_t i) const { return mesh.vertices_in_ct[static_cast<std::size_t>(i)]; }
 
-    /// The smooth normal: the vertices' normals by barycentric coordinates.
-    Vector3d normal_at(int triangle, const Vector3d& p) const {
+    /// The shares of the triangle's second and third corner in a point of it.
+    std::optional<Eigen::Vector2d> shares(int triangle, const Vector3d& p) const {
         const auto& v = mesh.triangles[static_cast<std::size_t>(triangle)];
         const Vector3d ab = vertex(v[1]) - vertex(v[0]), ac = vertex(v[2]) - vertex(v[0]), ap = p - vertex(v[0]);
         const Vector3d area = ab.cross(ac);
         const double whole = area.squaredNorm();
-        if (!(whole > 0)) return mesh.normals_in_ct[static_cast<std::size_t>(v[0])];
+        if (!(whole > 0)) return std::nullopt;
         const double b = std::clamp(ap.cross(ac).dot(area) / whole, 0.0, 1.0);
-        const double c = std::clamp(ab.cross(ap).dot(area) / whole, 0.0, 1.0 - b);
+        return Eigen::Vector2d(b, std::clamp(ab.cross(ap).dot(area) / whole, 0.0, 1.0 - b));
+    }
+    /// The smooth normal: the vertices' normals by barycentric coordinates.
+    Vector3d normal_at(int triangle, const Vector3d& p) const {
+        const auto& v = mesh.triangles[static_cast<std::size_t>(triangle)];
         const auto n = [&](std::size_t i) { return mesh.normals_in_ct[static_cast<std::size_t>(v[i])]; };
-        return ((1 - b - c) * n(0) + b * n(1) + c * n(2)).normalized();
+        const auto share = shares(triangle, p);
+        if (!share) return n(0);
+        return ((1 - share->sum()) * n(0) + share->x() * n(1) + share->y() * n(2)).normalized();
     }
     Point point(const Vector3d& p, int triangle) const { return {p, normal_at(triangle, p), triangle}; }
     int index(Triangles::const_iterator i) const { return static_cast<int>(i - triangles.cbegin()); }
@@ -145,6 +151,16 @@ std::optional<SkinSurface::Point> SkinSurface::walk(const Point& start, const Ve
     auto way = walk_way(start, tangent_in_ct, std::max(1e-9, tangent_in_ct.norm()));
     if (!way) return std::nullopt;
     return way->points.back();
+}
+
+SkinSurface::Point SkinSurface::same_place(const SkinSurface& other, const Point& point) const {
+    if (&other == this) return point;
+    if (point.triangle < 0 || other.mesh().triangles.size() != mesh().triangles.size()) return nearest(point.p_in_ct);
+    const auto& v = parts_->mesh.triangles[static_cast<std::size_t>(point.triangle)];
+    const Eigen::Vector2d share = other.parts_->shares(point.triangle, point.p_in_ct).value_or(Eigen::Vector2d::Zero());
+    const Vector3d p =
+        (1 - share.sum()) * parts_->vertex(v[0]) + share.x() * parts_->vertex(v[1]) + share.y() * parts_->vertex(v[2]);
+    return parts_->point(p, point.triangle);
 }
 
 bool SkinSurface::real_skin(const Point& point) const {

@@ -42,6 +42,10 @@ public:
     };
     std::optional<Way> walk_way(const Point& start, const Eigen::Vector3d& tangent_in_ct, double max_segment_mm) const;
 
+    /// The place of `point`, which lies on `other`, on this surface: in the same triangle at the same share of its
+    /// corners. `other` has the same triangles (one of the two was moved).
+    Point same_place(const SkinSurface& other, const Point& point) const;
+
     /// False on lids over openings and on the end of the volume.
     bool real_skin(const Point& point) const;
 

@@ -70,10 +70,12 @@ int run_project(const ProjectOptions& options) {
     check_verdict(registration, options);
     const RigCalibration rig = rig_of_light(registration, calibrated, options.confirmed);
     const RigidTransform rig_from_patient = pose_to_draw(options);
-    const CaseDrawing drawing(the_case, drawing_settings(read_site_settings()));
+    const CaseDrawing planned(the_case, drawing_settings(read_site_settings()));
+    const CaseDrawing drawing(the_case, planned, registration.skin);  // on the skin as the scan found it
     const DrawingRenderer renderer(drawing.skin, rig.projector);
-    const RgbImage picture = renderer.render(drawing.drawing, rig_from_patient * registration.patient_from_ct,
-                                             rig_from_patient);  // T_global
+    RgbImage picture;
+    const RenderCounts light = renderer.render_into(
+        picture, drawing.drawing, rig_from_patient * registration.patient_from_ct, rig_from_patient);  // T_global
     const auto lit = std::count_if(picture.pixels.begin(), picture.pixels.end(),
                                    [](const Rgb& p) { return p[0] + p[1] + p[2] > 0; });
     if (lit == 0)
@@ -91,6 +93,14 @@ int run_project(const ProjectOptions& options) {
                          {"warnings", item.warnings}});
         for (const auto& warning : item.warnings) warn(warning);
     }
+    if (!registration.skin.known())
+        warn(
+            "the registration does not say where the scan found the skin: drawn on the CT's own. Where the light falls "
+            "at a "
+            "slant it lies aside by as much as the skin has moved. Register a scan with this version.");
+    for (const PartlyLitRing& ring : light.partly_lit)
+        if (ring.item >= 0) items[static_cast<std::size_t>(ring.item)]["lit_share_of_circle"] = ring.lit_share;
+    for (const auto& sentence : sentences(light.partly_lit, drawing.drawing)) warn(sentence);
     if (options.json)
         std::cout << nlohmann::json{{"case", the_case.code},
                                     {"title", title_of(the_case)},

@@ -17,7 +17,8 @@ using Eigen::Vector3d;
 /// The true skin points that one stroke lights, with the brightness of their pixels as weight.
 struct Light {
     std::vector<Vector3d> points_in_ct, normals_in_ct;
-    std::vector<double> weights;
+    std::vector<double> weights, incidences_deg;
+    bool whole = true;
 
     bool empty() const { return points_in_ct.empty(); }
     Vector3d mean() const {
@@ -38,8 +39,12 @@ Light light_of(const Stroke& stroke, const simulation::SimulatedRig& rig, const 
     alone.strokes.front().colour = {255, 255, 255};
     render.only_item = -1;
     render.brightness = 1;
-    const RgbImage image = renderer.render(alone, picture.rig_from_ct, picture.rig_from_patient, render);
+    RgbImage image;
     Light light;
+    light.whole =
+        renderer.render_into(image, alone, picture.rig_from_ct, picture.rig_from_patient, render).partly_lit.empty();
+    const Vector3d eye_in_ct =
+        rig.true_rig_from_ct(picture.lit_at).inverse() * rig.true_rig().projector.centre_in_rig();
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
             const auto value = image.at(x, y)[1];
@@ -49,6 +54,8 @@ Light light_of(const Stroke& stroke, const simulation::SimulatedRig& rig, const 
             light.points_in_ct.push_back(lit->p_in_ct);
             light.normals_in_ct.push_back(lit->normal_in_ct);
             light.weights.push_back(value / 255.0);
+            const double cosine = (eye_in_ct - lit->p_in_ct).normalized().dot(lit->normal_in_ct);
+            light.incidences_deg.push_back(std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi);
         }
     return light;
 }
@@ -93,17 +100,35 @@ struct WantedLine {
     }
 };
 
-void measure_line(const Light& light, const WantedLine& wanted, OverlayErrors& errors) {
+/// `sideways_mm(p, normal)` and `place(p)`: how far beside the line, and where along it.
+template <class FootOf>
+void measure_line(const Light& light, StrokeKind kind, const FootOf& foot_of, OverlayErrors& errors) {
     constexpr double kBin_mm = 2, kFullWeight = 2;
-    std::map<int, std::pair<double, double>> bins;  // sum of weighted sideways, sum of weights
+    struct Bin {
+        double sideways = 0, incidence = 0, weight = 0;
+    };
+    std::map<int, Bin> bins;
     for (std::size_t i = 0; i < light.weights.size(); ++i) {
-        const auto foot = wanted.foot_of(light.points_in_ct[i], light.normals_in_ct[i]);
-        auto& bin = bins[static_cast<int>(foot.arc_mm / kBin_mm)];
-        bin.first += light.weights[i] * foot.sideways_mm;
-        bin.second += light.weights[i];
+        const WantedLine::Foot foot = foot_of(light.points_in_ct[i], light.normals_in_ct[i]);
+        Bin& bin = bins[static_cast<int>(std::floor(foot.arc_mm / kBin_mm))];
+        bin.sideways += light.weights[i] * foot.sideways_mm;
+        bin.incidence += light.weights[i] * light.incidences_deg[i];
+        bin.weight += light.weights[i];
     }
-    for (const auto& [place, bin] : bins)
-        if (bin.second >= kFullWeight) errors.position_mm.push_back(std::abs(bin.first / bin.second));
+    for (const auto& [place, bin] : bins) {
+        if (bin.weight < kFullWeight) continue;
+        errors.position_mm.push_back(std::abs(bin.sideways / bin.weight));
+        errors.places.push_back({kind, bin.incidence / bin.weight, errors.position_mm.back(), 0, true});
+    }
+}
+
+/// How far a point of the skin lies beside a cut plane, along the skin; the way along it is across the plane's first
+/// axis and normal both, whichever is longer: good enough for bins.
+WantedLine::Foot beside_plane(const CutPlane& plane, const Vector3d& p, const Vector3d& normal) {
+    const Vector3d q = p - plane.origin_in_ct, along = plane.normal_in_ct.cross(normal);
+    const double across = std::max(0.1, along.norm());  // the plane cuts the skin at this sine
+    const Vector3d second = plane.normal_in_ct.cross(plane.first_axis_in_ct);
+    return {std::atan2(second.dot(q), plane.first_axis_in_ct.dot(q)) * q.norm(), plane.normal_in_ct.dot(q) / across};
 }
 
 /// Centre and radius of a lit ring, by a least-squares circle in its mean tangent plane (Kasa 1976).
@@ -133,17 +158,35 @@ std::optional<Ring> fit_ring(const Light& light) {
     return Ring{mean + cx * e1 + cy * e2, std::sqrt(std::max(0.0, s.z() + cx * cx + cy * cy))};
 }
 
-void measure_ring(const Light& light, const Vector3d& planned, double diameter_mm, bool shapes,
-                  const simulation::SimulatedRig& rig, OverlayErrors& errors) {
+/// Where a planned axis passes through the true skin nearest to the planned point; else the skin point nearest to it.
+Vector3d wanted_place(const Vector3d& planned, const std::optional<Vector3d>& axis,
+                      const simulation::SimulatedRig& rig) {
+    const Vector3d nearest = rig.nearest_true_skin(planned);
+    if (!axis || !(axis->norm() > 0.5)) return nearest;
+    constexpr double kBefore_mm = 15;
+    const Vector3d inwards = axis->normalized();
+    const auto hit = rig.true_skin_along(planned - kBefore_mm * inwards, inwards);
+    return hit && (hit->p_in_ct - planned).norm() < 3 * (nearest - planned).norm() + 1 ? hit->p_in_ct : nearest;
+}
+
+void measure_ring(const Light& light, StrokeKind kind, const Vector3d& wanted_in_ct, double diameter_mm, bool shapes,
+                  OverlayErrors& errors) {
     const auto ring = fit_ring(light);
     if (!ring) return;
     Vector3d normal = Vector3d::Zero();
-    for (const auto& n : light.normals_in_ct) normal += n;
+    double incidence_deg = 0;
+    for (std::size_t i = 0; i < light.weights.size(); ++i) {
+        normal += light.normals_in_ct[i];
+        incidence_deg += light.incidences_deg[i] / static_cast<double>(light.weights.size());
+    }
     normal.normalize();
-    const Vector3d off = ring->centre_in_ct - rig.nearest_true_skin(planned);
-    errors.position_mm.push_back((off - off.dot(normal) * normal).norm());
-    if (shapes && diameter_mm > 0)
-        errors.diameter_percent.push_back(std::abs(200 * ring->radius_mm / diameter_mm - 100));
+    const Vector3d off = ring->centre_in_ct - wanted_in_ct;
+    const double off_mm = (off - off.dot(normal) * normal).norm();
+    const double larger_percent = diameter_mm > 0 ? 200 * ring->radius_mm / diameter_mm - 100 : 0;
+    errors.places.push_back({kind, incidence_deg, off_mm, larger_percent, light.whole});
+    if (!light.whole) return;  // drawn as what it is: no circle
+    errors.position_mm.push_back(off_mm);
+    if (shapes && diameter_mm > 0) errors.diameter_percent.push_back(std::abs(larger_percent));
 }
 
 /// The direction of a lit straight stroke: the longest principal axis.
@@ -187,6 +230,7 @@ void OverlayErrors::append(const OverlayErrors& more) {
     diameter_percent.insert(diameter_percent.end(), more.diameter_percent.begin(), more.diameter_percent.end());
     tick_mm.insert(tick_mm.end(), more.tick_mm.begin(), more.tick_mm.end());
     angle_deg.insert(angle_deg.end(), more.angle_deg.begin(), more.angle_deg.end());
+    places.insert(places.end(), more.places.begin(), more.places.end());
     unseen_strokes += more.unseen_strokes;
 }
 
@@ -215,18 +259,28 @@ OverlayErrors measure_overlay(const simulation::SimulatedRig& rig, const Plan& p
             if (stroke.kind == StrokeKind::tick) {
                 ticks.push_back(light);
             } else if (stroke.kind == StrokeKind::osteotomy_line && line) {
-                measure_line(light, *line, errors);
+                measure_line(
+                    light, stroke.kind, [&](auto& p, auto& n) { return line->foot_of(p, n); }, errors);
+            } else if (stroke.kind == StrokeKind::cut_plane) {
+                const auto plane = named(plan.cut_planes, item.name);
+                if (plane == plan.cut_planes.end()) continue;
+                measure_line(
+                    light, stroke.kind, [&](auto& p, auto& n) { return beside_plane(*plane, p, n); }, errors);
             } else if (stroke.kind == StrokeKind::borehole) {
                 const auto hole = named(plan.boreholes, item.name);
                 if (hole == plan.boreholes.end()) continue;
                 if (stroke.closed)
-                    measure_ring(light, hole->position_in_ct, hole->diameter_mm, shapes, rig, errors);
+                    measure_ring(light, stroke.kind, wanted_place(hole->position_in_ct, hole->axis_in_ct, rig),
+                                 hole->diameter_mm, shapes, errors);
                 else if (shapes)
                     arms.push_back(direction_of(light));
             } else if (stroke.kind == StrokeKind::trajectory && stroke.closed) {
                 const auto trajectory = named(plan.trajectories, item.name);
                 if (trajectory != plan.trajectories.end())
-                    measure_ring(light, trajectory->entry_in_ct, 0, shapes, rig, errors);
+                    measure_ring(
+                        light, stroke.kind,
+                        wanted_place(trajectory->entry_in_ct, trajectory->target_in_ct - trajectory->entry_in_ct, rig),
+                        trajectory->diameter_mm >= 6 ? trajectory->diameter_mm : 0, shapes, errors);
             }
         }
         if (line) measure_ticks(ticks, *line, kTickEvery_mm, errors);

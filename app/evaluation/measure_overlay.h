@@ -16,7 +16,16 @@ struct OverlayErrors {
     std::vector<double> diameter_percent;  ///< of borehole circles
     std::vector<double> tick_mm;           ///< of the 10 mm between neighbouring ticks, along the line
     std::vector<double> angle_deg;         ///< of the right angle of the boreholes' crosses
-    std::size_t unseen_strokes = 0;        ///< strokes of which no light fell on the patient (hidden, too steep)
+    /// The same by place, for whoever sorts them by how steeply the light falls.
+    struct Place {
+        StrokeKind kind = StrokeKind::osteotomy_line;
+        double incidence_deg = 0;  ///< between the true skin's normal and the way back to the projector
+        double position_mm = 0;
+        double diameter_percent = 0;  ///< signed; 0 of lines, and of circles whose diameter is not planned
+        bool whole = true;            ///< false: a circle that the product itself draws as one lit in part
+    };
+    std::vector<Place> places;
+    std::size_t unseen_strokes = 0;  ///< strokes of which no light fell on the patient (hidden, too steep)
 
     void append(const OverlayErrors& more);
 };

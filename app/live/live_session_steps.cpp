@@ -72,6 +72,8 @@ void LiveSession::find_patient(Session& session, const std::vector<PointPair>& l
     if (found.verdict != Verdict::no) {
         shown.scene.markers = markers_in_ct(session.tracker(), shown.scene.ct_from_rig);
         shown.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
+        for (const DrawnItem& item : session.drawing().items)
+            shown.evidence.insert(shown.evidence.end(), item.warnings.begin(), item.warnings.end());
         shown.track = {found.verdict == Verdict::yes, found.verdict == Verdict::yes ? "" : "look at the fit first"};
     }
     shown.evidence.push_back(keep(found, session.scanned()->clean.kept, landmarks));
@@ -171,9 +173,11 @@ void LiveSession::show_update(const Session& session, const simulation::Simulate
         m.right.found = found_markers(session.tracker().seen_right());
         m.stop = {true, {}};
     });
+    std::vector<std::string> details = sentences(update.overlay.counts.partly_lit, session.drawing());
+    details.insert(details.end(), ruling.details.begin(), ruling.details.end());
     if (update.overlay.lit)
         set_status(ruling.trust == LightTrust::aligned ? StatusKind::aligned : StatusKind::check, ruling.headline,
-                   ruling.details);
+                   details);
     else
         set_status(StatusKind::dark, "Dark: " + update.overlay.reason + ".",
                    {"The light comes back by itself when the pose is good."});

@@ -30,6 +30,7 @@ void write_poses(const std::vector<TrackedPose>& poses, const fs::path& file,
                  {"markers_right", pose.markers_right},
                  {"residual_px", pose.residual_px},
                  {"predicted_error_mm", pose.predicted_error_mm},
+                 {"bound_95_mm", pose.bound_95_mm},
                  {"reason", pose.reason}});
     Json json{{"format", "planlight poses"}, {"version", kVersion}};
     if (origin) json["origin"] = json_of(*origin);
@@ -46,7 +47,7 @@ std::vector<TrackedPose> read_poses(const fs::path& file) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
         const JsonValue entry = list[i];
         entry.has_only({"at_ns", "rig_from_patient", "markers_left", "markers_right", "residual_px",
-                        "predicted_error_mm", "reason"});
+                        "predicted_error_mm", "bound_95_mm", "reason"});
         TrackedPose& pose = poses[i];
         pose.at = instant_of(entry.at("at_ns"));
         if (const auto transform = entry.find("rig_from_patient")) pose.rig_from_patient = transform->transform();
@@ -54,6 +55,7 @@ std::vector<TrackedPose> read_poses(const fs::path& file) {
         pose.markers_right = static_cast<int>(entry.at("markers_right").integer(0, 10000));
         if (const auto residual = entry.find("residual_px")) pose.residual_px = residual->number();
         if (const auto error = entry.find("predicted_error_mm")) pose.predicted_error_mm = error->number();
+        if (const auto bound = entry.find("bound_95_mm")) pose.bound_95_mm = bound->number();
         if (const auto reason = entry.find("reason")) pose.reason = reason->text();
         if (!pose.rig_from_patient && pose.reason.empty())
             entry.refuse("has neither a pose nor a reason why there is none");

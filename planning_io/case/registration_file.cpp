@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "planning_io/case/recording_json.h"
 #include "planning_io/case/rig_json.h"
@@ -69,6 +70,49 @@ void judge_checksum(const Json& json, const JsonValue& root, const fs::path& fil
     result.reasons.push_back("The file has no checksum: nothing says that it is as `planlight register` wrote it.");
 }
 
+double rounded(double value, double step) {
+    return std::round(value / step) * step;
+}
+
+/// Null where nothing is known of it. Places to 0.01 mm, distances to 0.0001 mm: finer than they are.
+Json json_of(const SkinDisplacement& skin) {
+    if (!skin.known()) return Json();
+    Json places = Json::array();
+    for (const auto& place : skin.places) {
+        const Eigen::Vector3d& p = place.p_in_ct;
+        places.push_back({rounded(p.x(), 0.01), rounded(p.y(), 0.01), rounded(p.z(), 0.01), rounded(place.mm, 1e-4),
+                          std::max(1e-4, rounded(place.sigma_mm, 1e-4))});
+    }
+    return {{"apart_mm", skin.apart_mm},
+            {"offset_mm", skin.offset_mm},
+            {"spread_mm", skin.spread_mm},
+            {"alike_over_mm", skin.alike_over_mm},
+            {"places", places}};
+}
+
+SkinDisplacement skin_of(const JsonValue& json) {
+    constexpr double kLeast_mm = 1e-5, kFar_mm = 1e5, kMost_mm = 50;
+    SkinDisplacement skin;
+    skin.apart_mm = json.at("apart_mm").number(0.1, 100);
+    skin.offset_mm = json.at("offset_mm").number(-kMost_mm, kMost_mm);
+    skin.spread_mm = json.at("spread_mm").number(kLeast_mm, kMost_mm);
+    skin.alike_over_mm = json.at("alike_over_mm").number(0.1, 1000);
+    const JsonValue places = json.at("places");
+    if (places.size() > 200000) places.refuse("holds more places than any scan has");
+    skin.places.reserve(places.size());
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const JsonValue row = places[i];
+        if (row.size() != 5) row.refuse("is not five numbers: x, y, z in ct, the displacement and its sigma, mm");
+        SkinDisplacement::Place place;
+        for (std::size_t k = 0; k < 3; ++k)
+            place.p_in_ct[static_cast<Eigen::Index>(k)] = row[k].number(-kFar_mm, kFar_mm);
+        place.mm = row[3].number(-kMost_mm, kMost_mm);
+        place.sigma_mm = row[4].number(kLeast_mm, kMost_mm);
+        skin.places.push_back(place);
+    }
+    return skin;
+}
+
 }  // namespace
 
 void write_registration(const RegistrationResult& result, const fs::path& file) {
@@ -96,7 +140,8 @@ void write_registration(const RegistrationResult& result, const fs::path& file) 
                      {"covariance", json_of(result.covariance)},
                      {"initial_match_s", result.initial_match_s},
                      {"refine_s", result.refine_s},
-                     {"initial_patient_from_ct", to_json(result.initial_patient_from_ct)}};
+                     {"initial_patient_from_ct", to_json(result.initial_patient_from_ct)},
+                     {"skin_displacement", json_of(result.skin)}};
     json["case"] = json_of(result.of_case);
     json["rig"] = result.rig ? json_of(*result.rig) : Json();
     json["checksum"] = checksum_of(json);
@@ -131,6 +176,7 @@ RegistrationResult read_registration(const fs::path& file) {
     result.scale_sigma = number("scale_sigma");
     result.skin_movement_mm = number("skin_movement_mm");
     result.skin_offset_mm = number("skin_offset_mm");
+    if (const auto skin = root.find("skin_displacement")) result.skin = skin_of(*skin);
     if (const auto covariance = root.find("covariance")) result.covariance = covariance_of(*covariance);
     result.initial_match_s = number("initial_match_s");
     result.refine_s = number("refine_s");

@@ -7,6 +7,7 @@
 #include "planning_io/types/pose_covariance.h"
 #include "planning_io/types/rig_state.h"
 #include "planning_io/types/rigid_transform.h"
+#include "planning_io/types/skin_displacement.h"
 
 namespace planlight {
 
@@ -50,6 +51,7 @@ struct RegistrationResult {
     double skin_offset_mm = 0;               ///< of the whole skin; positive outside of the CT's
     double initial_match_s = 0, refine_s = 0;
     RigidTransform initial_patient_from_ct = RigidTransform::Identity();  ///< before the ICP (Fig. 3 left)
+    SkinDisplacement skin;  ///< where the scan found the skin at this pose; not known where only landmarks were matched
 
     CaseName of_case;             ///< whose table was matched
     std::optional<RigState> rig;  ///< that the cloud was made with and the light is to be drawn with; empty: not known

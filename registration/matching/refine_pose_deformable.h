@@ -9,10 +9,14 @@ namespace planlight {
 
 struct DeformableSettings {
     int max_patches = 240;       ///< the scan is gathered into at most about this many patches of equal size
+    int steps = 3;               ///< each from where the one before led
     double offset_prior_mm = 1;  ///< how far the whole skin may lie outside or inside of the CT's, one sigma
-    double caution = 3;          ///< on the variance: no skin is quite a Gaussian field of one length
-    double pulled_share = 0.8;   ///< of the movement seen: how far skin may be pulled along unseen, one sigma
-    double offset_share = 0.3;   ///< the same, of the offset
+    /// How uneven that may be over the directions the skin faces, one sigma, as a share of it: another threshold moves
+    /// skin by the width of its edge, and a CT is blurred more along its slices than in them.
+    double uneven_share = 0.7;
+    double caution = 3;         ///< on the variance: no skin is quite a Gaussian field of one length
+    double pulled_share = 0.8;  ///< of the movement seen: how far skin may be pulled along unseen, one sigma
+    double offset_share = 0.3;  ///< the same, of the offset
     /// Skin is taken to move in proportion to its thickness over the bone and this much, where the table knows the
     /// thickness; infinite: alike everywhere.
     double thickness_floor_mm = 5;
@@ -38,11 +42,12 @@ struct DeformablePose {
 /// The last step of the fine match: from a pose that is right to about a millimetre.
 ///
 /// Skin moves between CT and operation by a field along its normal that is alike over some length (a Gaussian process),
-/// by an offset of the whole (another threshold, swelling all over), and by a part of each patch's own. Pose and offset
-/// are found by generalised least squares under that field. How far the skin moved and over what length it is alike is
-/// not assumed: the residuals of the patches tell it by restricted maximum likelihood (Patterson & Thompson 1971),
-/// which does not count what the pose has taken up; all plausible fields are averaged by their likelihood. The usual
-/// sigma^2 (J^T J)^-1 takes the residuals of neighbours for independent, and is over-confident by an order.
+/// by an offset of the whole (another threshold, swelling all over; a threshold moves skin more where the voxels are
+/// long), and by a part of each patch's own. Pose and offset are found by generalised least squares under that field.
+/// How far the skin moved and over what length it is alike is not assumed: the residuals of the patches tell it by
+/// restricted maximum likelihood (Patterson & Thompson 1971), which does not count what the pose has taken up; all
+/// plausible fields are averaged by their likelihood. The usual sigma^2 (J^T J)^-1 takes the residuals of neighbours
+/// for independent, and is over-confident by an order.
 ///
 /// What no residual can show is added: skin that is pulled along as a whole, in proportion to the movement and the
 /// offset that are seen. The shares were set on three models of movement; the bound is measured on others

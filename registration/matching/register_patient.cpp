@@ -10,6 +10,7 @@
 #include "registration/matching/find_skin.h"
 #include "registration/matching/free_space.h"
 #include "registration/matching/judge_match.h"
+#include "registration/matching/measure_displacement.h"
 
 namespace planlight {
 namespace {
@@ -64,6 +65,7 @@ FineMatch match_finely(const PointCloud& cloud, const PointCloud& seen, const Sk
     result.skin_offset_mm = settled.offset_mm;
     result.refine_s = seconds_since(start);
     result.patient_from_ct = icp.ct_from_rig.inverse();
+    result.skin = measure_displacement(cloud, lut, icp.ct_from_rig);
 
     FineMatch fine{lay_on_skin(cloud, lut, icp.ct_from_rig, settings.inlier_distance_mm,
                                settings.moved_skin ? settled.offset_mm : 0),

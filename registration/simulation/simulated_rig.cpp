@@ -252,6 +252,13 @@ std::optional<SimulatedRig::Lit> SimulatedRig::true_light(const Vector2d& pixel_
     return Lit{hit->p_in_ct, hit->normal_in_ct};
 }
 
+std::optional<SimulatedRig::Lit> SimulatedRig::true_skin_along(const Vector3d& origin_in_ct,
+                                                               const Vector3d& direction) const {
+    const auto hit = room_->skin.first_hit(origin_in_ct, direction);
+    if (!hit) return std::nullopt;
+    return Lit{hit->p_in_ct, hit->normal_in_ct};
+}
+
 std::optional<SimulatedRig::Sight> SimulatedRig::true_sight(Camera camera, const Vector2d& pixel, Instant at) const {
     const RigidTransform to_ct = room_->ct_from_room(at);
     const RigLayout& rig = room_->rig;

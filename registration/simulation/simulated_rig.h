@@ -93,6 +93,9 @@ public:
     };
     std::optional<Lit> true_light(const Eigen::Vector2d& pixel_in_projector, Instant at) const;
 
+    /// The first true skin along a ray in ct (`direction` of unit length). Empty when it misses the head.
+    std::optional<Lit> true_skin_along(const Eigen::Vector3d& origin_in_ct, const Eigen::Vector3d& direction) const;
+
     enum class Camera { left, right };
     /// What a camera pixel (sub-pixel) looks at when the head is where it was at `at`: the first true skin, ct, mm, and
     /// the projector pixel whose light falls there; empty where none does (shadow, turned away, beside the panel).

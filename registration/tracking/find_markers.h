@@ -19,6 +19,7 @@ struct MarkerObservation {
     double radius_px = 0;   ///< mean of the half axes
     double axis_ratio = 1;  ///< small / large half axis
     double sigma_px = 0;    ///< one standard deviation of the centre
+    double steady_px = 0;   ///< the part of `sigma_px` that is the same in every picture while the head does not turn
     double contrast = 0;    ///< grey values across the edge
 };
 

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <set>
 
+#include "registration/tracking/pose_uncertainty.h"
+
 namespace planlight {
 namespace {
 
@@ -64,19 +66,6 @@ RigidTransform moved(const RigidTransform& rig_from_patient, const Vector6& twis
                      const Eigen::Vector3d& pivot_in_rig) {
     return Eigen::Translation3d(pivot_in_rig) * transform_from_twist(twist) * Eigen::Translation3d(-pivot_in_rig) *
            rig_from_patient;
-}
-
-/// One sigma of the centroid: of the measured pose, and of the reference markers' own places (averaged over them).
-double centroid_error_mm(const Matrix6& N, const std::vector<PatientMarker>& markers,
-                         const std::vector<Sighting>& sightings, double inflation) {
-    const Matrix6 covariance = N.inverse();
-    std::set<int> seen;
-    double reference = 0;
-    for (const Sighting& s : sightings)
-        if (seen.insert(s.marker).second)
-            reference += 3 * std::pow(markers[static_cast<std::size_t>(s.marker)].sigma_mm, 2);
-    const double count = static_cast<double>(seen.size());
-    return std::sqrt(inflation * covariance.bottomRightCorner<3, 3>().trace() + reference / (count * count));
 }
 
 std::vector<Sighting> without(const std::vector<Sighting>& sightings, int marker) {
@@ -169,9 +158,6 @@ std::optional<PoseFit> fit_pose(const RigCalibration& rig, const std::vector<Pat
     PoseFit fit{pose};
     fit.residual_px = std::sqrt(now->squared_px / static_cast<double>(sightings.size()));
     fit.chi_square = now->chi_square;
-    fit.error_mm =
-        centroid_error_mm(now->N, markers, sightings, std::max(1.0, reduced_chi_square(fit, sightings.size())));
-    if (!std::isfinite(fit.error_mm)) return std::nullopt;
     return fit;
 }
 
@@ -191,7 +177,7 @@ CheckedPose fit_pose_checked(const RigCalibration& rig, const std::vector<Patien
             result.reason = fmt::format("{} markers, each seen by one camera only: nothing to check the pose by", seen);
             return result;
         }
-        const auto fit = fit_pose(rig, markers, sightings, start);
+        auto fit = fit_pose(rig, markers, sightings, start);
         if (!fit) {
             result.reason = "the markers seen do not determine a pose";
             return result;
@@ -218,7 +204,11 @@ CheckedPose fit_pose_checked(const RigCalibration& rig, const std::vector<Patien
                                         fit->residual_px, settings.max_residual_px);
             return result;
         }
-        if (fit->error_mm > settings.max_predicted_error_mm) {
+        const PoseUncertainty uncertain = pose_uncertainty(rig, markers, sightings, fit->rig_from_patient);
+        const double inflation = std::sqrt(std::max(1.0, reduced_chi_square(*fit, sightings.size())));
+        fit->error_mm = inflation * uncertain.sigma_mm;
+        fit->bound_95_mm = inflation * uncertain.bound_95_mm;
+        if (!(fit->error_mm <= settings.max_predicted_error_mm)) {
             result.reason =
                 fmt::format("the markers seen leave the pose uncertain by {:.2f} mm; at most {:.2f} is allowed",
                             fit->error_mm, settings.max_predicted_error_mm);

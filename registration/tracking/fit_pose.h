@@ -21,7 +21,8 @@ struct PoseFit {
     RigidTransform rig_from_patient = RigidTransform::Identity();
     double residual_px = 0;  ///< rms distance in the picture
     double chi_square = 0;   ///< by the sightings' sigmas
-    double error_mm = 0;     ///< one sigma of the place of the markers' centroid (3-D), by the covariance
+    /// Of the place of the markers' middle, in space (`pose_uncertainty`); `fit_pose_checked` alone works them out.
+    double error_mm = 0, bound_95_mm = 0;
 };
 
 /// How far a sighting's centre may be off, pixels: its own sigma and what calibration leaves.

@@ -107,14 +107,16 @@ double noise_inside(const GrayImage& picture, const Ellipse& disc) {
     return count > 0 ? std::sqrt(sum / (6 * count)) : 0;
 }
 
-/// One standard deviation of the centre: the noise over the slope of the edge, averaged round it, and the shift of a
-/// tilted circle's centre under perspective (r^2 sin cos / depth, for a disc of 4 mm radius at 0.9 m).
-double centre_sigma_px(double radius_px, double axis_ratio, double noise, double contrast) {
+/// The shift of a tilted circle's centre under perspective (r^2 sin cos / depth, for a disc of 4 mm radius at 0.9 m).
+double perspective_px(double radius_px, double axis_ratio) {
+    return 4 / 900. * radius_px * axis_ratio * std::sqrt(1 - axis_ratio * axis_ratio);
+}
+
+/// One standard deviation of the centre by the noise over the slope of the edge, averaged round it.
+double noise_sigma_px(double radius_px, double axis_ratio, double noise, double contrast) {
     constexpr double kEdgeWidthPx = 2;  // contrast / slope of an edge blurred by 0.8 px
     const double edge_sigma_px = kEdgeWidthPx * std::max(0.5, noise) / contrast;
-    const double from_noise = 1.2 * edge_sigma_px / std::sqrt(std::numbers::pi * radius_px * axis_ratio);
-    const double from_perspective = 4 / 900. * radius_px * axis_ratio * std::sqrt(1 - axis_ratio * axis_ratio);
-    return std::hypot(from_noise, from_perspective, 0.004);
+    return std::hypot(1.2 * edge_sigma_px / std::sqrt(std::numbers::pi * radius_px * axis_ratio), 0.004);
 }
 
 /// Grey values from the disc to its ring, when both look like a marker's all round; empty otherwise.
@@ -169,8 +171,10 @@ std::optional<MarkerObservation> measure_disc(const GrayImage& picture, const El
     if (!contrast) return std::nullopt;
     const Eigen::Vector2d fitted = fit->half_axes();
     const double ratio = fitted.y() / fitted.x();
-    const double sigma = centre_sigma_px(fitted.mean(), ratio, noise_inside(picture, *fit), *contrast);
-    return MarkerObservation{fit->centre, fitted.mean(), ratio, sigma, *contrast};
+    const double steady = perspective_px(fitted.mean(), ratio);
+    const double sigma =
+        std::hypot(noise_sigma_px(fitted.mean(), ratio, noise_inside(picture, *fit), *contrast), steady);
+    return MarkerObservation{fit->centre, fitted.mean(), ratio, sigma, steady, *contrast};
 }
 
 }  // namespace planlight

@@ -27,6 +27,13 @@ double expected_radius_px(const CameraModel& camera, const Eigen::Vector3d& p_in
     return 0.9 * 0.5 * design.disc_diameter_mm * camera.focal_x / (camera.device_from_rig * p_in_rig).z();
 }
 
+/// How much of a pair's sigma is noise: the rest is the same in every later picture, and no error against the
+/// reference.
+double share_of_noise(const MarkerObservation& left, const MarkerObservation& right) {
+    const double steady = std::hypot(left.steady_px, right.steady_px), all = std::hypot(left.sigma_px, right.sigma_px);
+    return all > steady ? std::sqrt(1 - steady * steady / (all * all)) : 1;
+}
+
 /// Of several measurements of one disc for different markers the nearest to its marker's predicted place stays.
 std::vector<Sighting> one_disc_one_marker(std::vector<std::pair<double, Sighting>> found) {
     std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -60,7 +67,9 @@ const std::vector<PatientMarker>& PatientTracker::set_reference(const StereoFram
     const auto possible = possible_pairs(rig_, left, right, settings_.design, settings_.max_epipolar_px);
     const auto pairs = consistent_pairs(possible, static_cast<int>(left.size()), static_cast<int>(right.size()));
     std::vector<PatientMarker> markers;
-    for (const MarkerPair& p : pairs) markers.push_back({p.centre_in_rig, p.sigma_mm});
+    for (const MarkerPair& p : pairs)
+        markers.push_back({p.centre_in_rig, p.sigma_mm * share_of_noise(left[static_cast<std::size_t>(p.left)],
+                                                                        right[static_cast<std::size_t>(p.right)])});
     set_reference(markers);
     for (const auto& m : left) seen_left_.push_back({m, -1});
     for (const auto& m : right) seen_right_.push_back({m, -1});
@@ -134,7 +143,60 @@ PatientTracker::Attempt PatientTracker::follow(const StereoFrame& frame) {
         }
     }
     attempt.checked = fit_pose_checked(rig_, markers_, sightings, expected, settings_);
+    if (attempt.checked.fit) look_again(frame, attempt);
     return attempt;
+}
+
+/// What was not found where it was expected may stand where the pose now says: after a jump along one camera's line of
+/// sight that camera finds everything and the other nothing. Twice, for the first markers of the other camera make the
+/// pose a better one to look by.
+void PatientTracker::look_again(const StereoFrame& frame, Attempt& attempt) const {
+    constexpr double kLeast_px = 4, kMost_px = 15;
+    for (int round = 0; round < 2; ++round) {
+        std::vector<Sighting> sightings = attempt.checked.used;
+        const RigidTransform pose = attempt.checked.fit->rig_from_patient;
+        const auto known = [&](int marker, bool left) {
+            const auto same = [&](const Sighting& s) { return s.marker == marker && s.left == left; };
+            const auto doubted = [&](const MarkerDoubt& d) { return d.marker == marker; };
+            return std::any_of(sightings.begin(), sightings.end(), same) ||
+                   std::any_of(attempt.checked.doubts.begin(), attempt.checked.doubts.end(), doubted);
+        };
+        std::vector<Sighting> more;
+        for (const bool is_left : {true, false}) {
+            const CameraModel& camera = is_left ? rig_.left_camera : rig_.right_camera;
+            const std::vector<double>& radius = is_left ? radius_left_px_ : radius_right_px_;
+            for (std::size_t k = 0; k < markers_.size(); ++k) {
+                if (known(static_cast<int>(k), is_left)) continue;
+                const Eigen::Vector3d p = pose * markers_[k].centre_in_patient;
+                const auto pixel = project(camera, p);
+                if (!pixel || !in_picture(camera, *pixel)) continue;
+                const double px_per_mm = camera.focal_x / (camera.device_from_rig * p).z();
+                const double reach_px =
+                    std::clamp(2 * attempt.checked.fit->bound_95_mm * px_per_mm, kLeast_px, kMost_px);
+                const double r = radius[k] > 0 ? radius[k] : expected_radius_px(camera, p, settings_.design);
+                const auto seen =
+                    measure_marker(is_left ? frame.left : frame.right, *pixel, r, reach_px, settings_.markers);
+                if (seen) more.push_back({static_cast<int>(k), is_left, *seen});
+            }
+        }
+        if (more.empty()) return;
+        sightings.insert(sightings.end(), more.begin(), more.end());
+        CheckedPose better = fit_pose_checked(rig_, markers_, sightings, pose, settings_);
+        if (!better.fit || better.used.size() <= attempt.checked.used.size()) return;
+        better.doubts.insert(better.doubts.end(), attempt.checked.doubts.begin(), attempt.checked.doubts.end());
+        attempt.checked = std::move(better);
+        for (const Sighting& s : more) (s.left ? attempt.left : attempt.right).push_back({s.seen, s.marker});
+    }
+}
+
+/// A pose from one camera alone is weak along its line of sight: before it is accepted both pictures are searched
+/// whole, and from time to time again as long as it stays so.
+bool PatientTracker::worth_a_search(const Attempt& followed) const {
+    constexpr int kEvery = 8;
+    const auto by_left = std::count_if(followed.checked.used.begin(), followed.checked.used.end(),
+                                       [](const Sighting& s) { return s.left; });
+    const bool one_camera = by_left == 0 || by_left == static_cast<std::ptrdiff_t>(followed.checked.used.size());
+    return one_camera && followed_by_one_ % kEvery == 0;
 }
 
 PatientTracker::Attempt PatientTracker::search(const StereoFrame& frame) {
@@ -176,8 +238,14 @@ TrackedPose PatientTracker::update(const StereoFrame& frame) {
     }
     Attempt attempt;
     if (last_) attempt = follow(frame);
-    const bool followed = attempt.checked.fit.has_value();
-    if (!followed) attempt = search(frame);
+    bool followed = attempt.checked.fit.has_value();
+    if (!followed) {
+        attempt = search(frame);
+    } else if (worth_a_search(attempt)) {
+        Attempt whole = search(frame);
+        if (whole.checked.fit && whole.checked.fit->bound_95_mm < attempt.checked.fit->bound_95_mm)
+            attempt = std::move(whole), followed = false;
+    }
     note_seen(attempt);
     if (!attempt.checked.fit) {
         pose.reason = attempt.checked.reason;
@@ -189,7 +257,9 @@ TrackedPose PatientTracker::update(const StereoFrame& frame) {
     pose.rig_from_patient = last_known_ = fit.rig_from_patient;
     pose.residual_px = fit.residual_px;
     pose.predicted_error_mm = fit.error_mm;
+    pose.bound_95_mm = fit.bound_95_mm;
     for (const Sighting& s : attempt.checked.used) ++(s.left ? pose.markers_left : pose.markers_right);
+    followed_by_one_ = pose.markers_left == 0 || pose.markers_right == 0 ? followed_by_one_ + 1 : 0;
     before_last_ = followed ? last_ : std::nullopt;
     last_ = pose;
     return pose;

@@ -64,6 +64,8 @@ private:
     struct Attempt;
     Attempt follow(const StereoFrame& frame);
     Attempt search(const StereoFrame& frame);
+    void look_again(const StereoFrame& frame, Attempt& attempt) const;
+    bool worth_a_search(const Attempt& followed) const;
     RigidTransform predicted_pose(Instant at) const;
     Eigen::Vector3d centroid() const;
     void note_seen(const Attempt& attempt);
@@ -75,6 +77,7 @@ private:
     std::vector<MarkerDoubt> doubts_;
     std::vector<double> radius_left_px_, radius_right_px_;  ///< per marker, as last seen; 0 when never
     std::optional<TrackedPose> last_, before_last_;
+    int followed_by_one_ = 0;  ///< frames since both cameras were last searched whole for want of one of them
     std::optional<RigidTransform> last_known_;  ///< survives a loss, to choose between ambiguous arrangements
 };
 

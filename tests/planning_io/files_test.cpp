@@ -285,6 +285,9 @@ TEST(Recordings, CaptureFramesRegistrationAndPosesReadBack) {
     result.runner_up_ratio = std::numeric_limits<double>::infinity();
     result.landmarks_off_mm = 2.5;
     result.moved_in_scan_mm = 0.07;  // and the viewpoint was not said
+    result.skin.apart_mm = 4, result.skin.alike_over_mm = 25;
+    result.skin.offset_mm = -0.35, result.skin.spread_mm = 0.08;
+    result.skin.places = {{{10.126, -20, 30}, -0.31254, 0.02}, {{14, -20, 30.5}, -0.4, 0.05}};
     write_registration(result, folder.path() / "registration.json");
     const auto result_back = read_registration(folder.path() / "registration.json");
     EXPECT_EQ(result_back.verdict, Verdict::ask);
@@ -298,14 +301,22 @@ TEST(Recordings, CaptureFramesRegistrationAndPosesReadBack) {
     EXPECT_EQ(result_back.landmarks_off_mm, 2.5);
     EXPECT_EQ(result_back.moved_in_scan_mm, 0.07);
     EXPECT_FALSE(result_back.blocked_fraction);
+    ASSERT_EQ(result_back.skin.places.size(), 2u);
+    EXPECT_EQ(result_back.skin.offset_mm, -0.35);
+    EXPECT_EQ(result_back.skin.alike_over_mm, 25);
+    EXPECT_LT((result_back.skin.places[0].p_in_ct - result.skin.places[0].p_in_ct).norm(), 0.01);
+    EXPECT_NEAR(result_back.skin.places[0].mm, -0.31254, 1e-4);
+    EXPECT_EQ(result_back.skin.places[1].sigma_mm, 0.05);
 
     std::vector<TrackedPose> poses(2);
     poses[0].rig_from_patient = result.patient_from_ct;
     poses[0].at = Instant(5);
+    poses[0].predicted_error_mm = 0.1, poses[0].bound_95_mm = 0.17;
     poses[1].reason = "fewer than 3 markers in the left picture";
     write_poses(poses, folder.path() / "poses.json");
     const auto poses_back = read_poses(folder.path() / "poses.json");
     EXPECT_EQ(poses_back[0].rig_from_patient->matrix(), result.patient_from_ct.matrix());
+    EXPECT_EQ(poses_back[0].bound_95_mm, 0.17);
     EXPECT_FALSE(poses_back[1].rig_from_patient);
     EXPECT_EQ(poses_back[1].reason, poses[1].reason);
 }

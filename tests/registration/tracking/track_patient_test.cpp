@@ -149,6 +149,50 @@ TEST_P(BothOptics, FindsTheHeadAgainAfterAJump) {
     ASSERT_TRUE(next.rig_from_patient) << next.reason;
 }
 
+// Along one camera's line of sight its markers stay where they were, and the other camera's go out of its windows: a
+// pose from the one alone would do, and be a millimetre off in depth.
+TEST_P(BothOptics, AfterAJumpAlongOneSightTheOtherCameraIsSearchedToo) {
+    for (const bool left : {true, false})
+        for (const double jump_mm : {-60., -40., 45., 70.}) {
+            Tracked t(rig());
+            const CameraModel& camera = left ? t.rig.left_camera : t.rig.right_camera;
+            const Eigen::Vector3d sight = (head_centre() - camera.centre_in_rig()).normalized();
+            RigidTransform jump = RigidTransform::Identity();
+            jump.translation() = jump_mm * sight;
+            const TrackedPose pose = t.see(stickers_in_rig(jump));
+            ASSERT_TRUE(pose.rig_from_patient) << pose.reason;
+            EXPECT_GE(pose.markers_left, 5) << jump_mm;
+            EXPECT_GE(pose.markers_right, 5) << jump_mm;
+            EXPECT_LT(error_mm(*pose.rig_from_patient, jump), 0.4) << jump_mm;
+        }
+}
+
+TEST(PatientTracker, APoseFromOneCameraSaysHowWeakItIs) {
+    Tracked t(paper_rig());
+    int within = 0;
+    constexpr int kFrames = 12;
+    double both_mm = 0;
+    for (int k = 0; k < kFrames; ++k) {
+        const RigidTransform truth = swaying(0.1 * k);
+        std::mt19937 random(static_cast<unsigned>(k));
+        StereoFrame frame = render_frame(t.rig, stickers_in_rig(truth), {}, milliseconds(17 * (k + 1)), random);
+        const TrackedPose by_both = t.tracker.update(frame);
+        ASSERT_TRUE(by_both.rig_from_patient);
+        both_mm += by_both.bound_95_mm / kFrames;
+        std::fill(frame.right.pixels.begin(), frame.right.pixels.end(), std::uint8_t{12});
+        frame.at += milliseconds(3);
+        const TrackedPose pose = t.tracker.update(frame);
+        ASSERT_TRUE(pose.rig_from_patient) << pose.reason;
+        EXPECT_EQ(pose.markers_right, 0);
+        EXPECT_GT(pose.bound_95_mm, 3 * by_both.bound_95_mm);
+        Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+        for (const auto& m : t.tracker.markers()) middle += m.centre_in_patient / 6.;
+        within += (*pose.rig_from_patient * middle - truth * middle).norm() < pose.bound_95_mm;
+    }
+    EXPECT_GE(within, kFrames - 2);
+    EXPECT_LT(both_mm, 0.1);
+}
+
 TEST(PatientTracker, FindsTheHeadAfterALongLossAnywhereInView) {
     Tracked t(paper_rig());
     std::mt19937 random(11);

@@ -1,0 +1,15 @@
+#pragma once
+
+#include "planning_io/types/skin_displacement.h"
+#include "projection/draw_plan.h"
+
+namespace planlight {
+
+/// The CT's skin moved along its normals to where the scan found it. Triangles, and so the places on them, are the
+/// same. Where nothing is known it is the CT's skin.
+SkinSurface skin_as_scanned(const TriangleMesh& ct_skin, const SkinDisplacementField& field);
+
+/// Warns of every item of which a tenth or more lies where the scan saw no skin: there the light may be aside.
+void warn_of_unscanned(const SkinDisplacementField& field, PlanDrawing& drawing);
+
+}  // namespace planlight

@@ -1,0 +1,166 @@
+#include "projection/skin_now.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "projection/render_drawing.h"
+#include "tests/projection/shapes.h"
+
+namespace planlight {
+namespace {
+
+using Eigen::Vector3d;
+using test::ball;
+using test::on_ball;
+
+constexpr double kRadius_mm = test::kBallRadius_mm;
+
+/// The ball's side towards +x was scanned, `mm(p)` off the CT's.
+template <class Mm>
+SkinDisplacementField scanned(const Mm& mm) {
+    SkinDisplacement d;
+    d.apart_mm = 4, d.offset_mm = -0.5, d.spread_mm = 0.3, d.alike_over_mm = 25;
+    for (double longitude = -1; longitude <= 1; longitude += 0.05)
+        for (double latitude = -1; latitude <= 1; latitude += 0.05) {
+            const Vector3d p = on_ball(longitude, latitude);
+            d.places.push_back({p, mm(p), 0.01});
+        }
+    return SkinDisplacementField(d);
+}
+
+DrawingSettings without_labels() {
+    DrawingSettings settings;
+    settings.labels = false;
+    return settings;
+}
+
+TEST(SkinNow, LiesWhereTheScanFoundIt) {
+    const SkinSurface now = skin_as_scanned(ball().mesh(), scanned([](auto&) { return -0.5; }));
+    for (const double a : {-0.7, 0.0, 0.6})
+        EXPECT_NEAR(now.nearest(on_ball(a, 0.2)).p_in_ct.norm(), kRadius_mm - 0.5, 0.03);  // facets of the ball
+    const SkinSurface same = skin_as_scanned(ball().mesh(), SkinDisplacementField(SkinDisplacement()));
+    EXPECT_EQ(same.mesh().vertices_in_ct, ball().mesh().vertices_in_ct);
+}
+
+// Skin 2 mm deeper, an axis that leans by 45 degrees: the place on the skin moves aside by 2 mm. The nearest point
+// would not.
+TEST(SkinNow, AHoleStaysOnItsAxis) {
+    const SkinSurface now = skin_as_scanned(ball().mesh(), scanned([](auto&) { return -2.; }));
+    const Vector3d p = on_ball(0, 0);
+    const Vector3d axis = (-p.normalized() + Vector3d::UnitZ()).normalized();
+    Plan plan;
+    plan.boreholes.push_back({"B", p, axis, 7, 0, {}});
+    plan.trajectories.push_back({"T", p, p + 30 * axis, 0, {}});
+    const PlanDrawing drawing = draw_plan(plan, ball(), now, without_labels());
+    for (const DrawnItem& item : drawing.items) {
+        const Vector3d off = item.anchor_in_ct - p;
+        EXPECT_NEAR((off - off.dot(axis) * axis).norm(), 0, 1e-6) << item.name;
+        EXPECT_NEAR(item.anchor_in_ct.norm(), kRadius_mm - 2, 0.05) << item.name;
+        EXPECT_NEAR(item.anchor_in_ct.z(), 2, 0.1) << item.name;
+        EXPECT_TRUE(item.warnings.empty() || item.warnings[0].find("diameter") == std::string::npos);
+    }
+}
+
+TEST(SkinNow, ALineIsCarriedWithTheSkinItWasPlannedOn) {
+    // Planned 8 mm under the skin, as on the bone: its place is on the CT's skin over it, and goes in with that.
+    const auto slope = [](const Vector3d& p) { return -0.5 + 0.02 * p.y(); };
+    const SkinSurface now = skin_as_scanned(ball().mesh(), scanned(slope));
+    Plan plan;
+    plan.osteotomy_lines.push_back({"O", {on_ball(-0.2, 0) * 0.9, on_ball(0.2, 0) * 0.9}, false, {}});
+    const PlanDrawing drawing = draw_plan(plan, ball(), now, without_labels());
+    ASSERT_FALSE(drawing.strokes.empty());
+    const Vector3d first = drawing.strokes[0].points_in_ct.front();
+    const Vector3d planned = draw_plan(plan, ball(), without_labels()).strokes[0].points_in_ct.front();
+    EXPECT_LT(first.cross(planned.normalized()).norm(), 0.02) << "straight over or under the place on the CT's skin";
+    EXPECT_NEAR(first.norm() - planned.norm(), slope(planned), 0.02);
+    EXPECT_NEAR(drawing.items[0].distance_to_skin_mm, 8, 0.05) << "of the CT's skin, not of this one";
+}
+
+TEST(SkinNow, ACutPlaneStaysInItsPlane) {
+    const SkinSurface now = skin_as_scanned(ball().mesh(), scanned([](auto&) { return -2.; }));
+    Plan plan;
+    const Vector3d normal = Vector3d(1, 0, 2).normalized();
+    plan.cut_planes.push_back({"C", on_ball(0, 0), normal, Vector3d::UnitY(), 60, 60, {}});
+    const PlanDrawing drawing = draw_plan(plan, ball(), now, without_labels());
+    ASSERT_FALSE(drawing.strokes.empty());
+    for (const Vector3d& p : drawing.strokes[0].points_in_ct) {
+        EXPECT_NEAR(normal.dot(p - on_ball(0, 0)), 0, 0.02);
+        EXPECT_NEAR(p.norm(), kRadius_mm - 2, 0.06);
+    }
+}
+
+TEST(SkinNow, WhatTheScanDidNotSeeIsSaid) {
+    const auto field = scanned([](auto&) { return -0.5; });
+    const SkinSurface now = skin_as_scanned(ball().mesh(), field);
+    Plan plan;
+    plan.boreholes.push_back({"seen", on_ball(0, 0), {}, 7, 5, {}});
+    plan.boreholes.push_back({"unseen", on_ball(2.5, 0), {}, 7, 5, {}});
+    PlanDrawing drawing = draw_plan(plan, ball(), now, without_labels());
+    warn_of_unscanned(field, drawing);
+    EXPECT_TRUE(drawing.items[0].warnings.empty());
+    ASSERT_EQ(drawing.items[1].warnings.size(), 1u);
+    EXPECT_NE(drawing.items[1].warnings[0].find("unseen: 100 % of it lies where the scan saw no skin"),
+              std::string::npos)
+        << drawing.items[1].warnings[0];
+    EXPECT_NEAR(drawing.items[1].anchor_in_ct.norm(), kRadius_mm - 0.5, 0.05) << "the offset is taken there";
+}
+
+/// How many separate pieces of light lie round the ring, and how much of it is lit.
+struct RingLight {
+    int pieces = 0;
+    double share = 0;
+};
+RingLight light_round(const RgbImage& picture, const CameraModel& projector, const Stroke& ring) {
+    std::vector<bool> lit;
+    for (const Vector3d& p : ring.points_in_ct) {
+        const auto pixel = project(projector, p);
+        const int x = pixel ? static_cast<int>(std::lround(pixel->x())) : -1,
+                  y = pixel ? static_cast<int>(std::lround(pixel->y())) : -1;
+        lit.push_back(pixel && x >= 0 && y >= 0 && x < picture.width && y < picture.height &&
+                      picture.at(x, y)[1] > 100);
+    }
+    RingLight light;
+    for (std::size_t i = 0; i < lit.size(); ++i) {
+        light.pieces += lit[i] && !lit[(i + 1) % lit.size()];
+        light.share += lit[i] / static_cast<double>(lit.size());
+    }
+    return light;
+}
+
+// At 72 degrees of slope a circle of 14 mm reaches from 67 to 77: beyond 75 nothing is drawn.
+TEST(SkinNow, ACircleThatCanBeLitInPartOnlyIsDrawnBrokenAndSaid) {
+    const CameraModel projector =
+        test::projector_looking_at(Vector3d::Zero(), Vector3d::UnitX(), 560, Vector3d::UnitZ());
+    const DrawingRenderer renderer(ball(), projector);
+    for (const bool steep : {false, true}) {
+        Plan plan;
+        const double slope = steep ? 72 * M_PI / 180 : 40 * M_PI / 180;
+        const double longitude = slope - std::asin(std::sin(slope) * kRadius_mm / 560.);  // the light is not parallel
+        plan.boreholes.push_back({"B1", on_ball(longitude, 0), {}, 14, 5, {}});
+        PlanDrawing drawing = draw_plan(plan, ball(), without_labels());
+        std::erase_if(drawing.strokes, [](const Stroke& s) { return !s.closed; });
+        RgbImage picture;
+        const RenderCounts counts = renderer.render_into(picture, drawing, RigidTransform::Identity());
+        const RingLight light = light_round(picture, projector, drawing.strokes[0]);
+        if (!steep) {
+            EXPECT_TRUE(counts.partly_lit.empty());
+            EXPECT_EQ(light.pieces, 0) << "one closed ring";
+            EXPECT_NEAR(light.share, 1, 1e-9);
+            continue;
+        }
+        ASSERT_EQ(counts.partly_lit.size(), 1u);
+        EXPECT_EQ(counts.partly_lit[0].item, 0);
+        EXPECT_GT(counts.partly_lit[0].lit_share, 0.2);
+        EXPECT_LT(counts.partly_lit[0].lit_share, 0.85);
+        EXPECT_GT(light.pieces, 3) << "dashes";
+        const auto said = sentences(counts.partly_lit, drawing);
+        ASSERT_EQ(said.size(), 1u);
+        EXPECT_EQ(said[0].rfind("B1: only ", 0), 0u) << said[0];
+        test::keep_picture(picture, "broken_circle");
+    }
+}
+
+}  // namespace
+}  // namespace planlight

@@ -1,0 +1,297 @@
+// How true is the uncertainty that a tracked pose states? Random rigs of both rooms with calibrations as wrong as good
+// ones are; markers on a head that has moved; discs measured with the noise that the product states; markers covered
+// for one camera or both. The error of the place of the markers' middle against the stated 95 % bound. measure_tracking
+// [FRAMES [FIRST_SEED]]   (default 10000 a room, seed 1; about 10 s). Then the same on rendered pictures of the example
+// patient through the tracker itself: measure_tracking rendered [FRAMES [FIRST_SEED]] (300; minutes).
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <cstdlib>
+#include <map>
+#include <numbers>
+#include <random>
+#include <string>
+
+#include "planning_io/types/statistics.h"
+#include "planning_io/volume/read_volume.h"
+#include "registration/simulation/rig_layout.h"
+#include "registration/tracking/ellipse.h"
+#include "registration/tracking/fit_pose.h"
+#include "registration/tracking/pair_markers.h"
+#include "registration/tracking/track_patient.h"
+#include "tests/support/test_data.h"
+
+namespace planlight::test {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using simulation::Optics;
+using simulation::Preset;
+
+std::string name_of(Preset preset) {
+    return preset == Preset::paper ? "paper" : "modern";
+}
+
+/// Errors of one kind of frame, with their stated sigma and bound.
+struct Figures {
+    std::vector<double> error_mm, bound_mm, of_sigma;
+    int within = 0, refused = 0;
+    void add(double error, double sigma, double bound) {
+        error_mm.push_back(error);
+        bound_mm.push_back(bound);
+        of_sigma.push_back(error / sigma);
+        within += error <= bound;
+    }
+};
+
+void print(const std::string& title, const std::map<std::string, Figures>& kinds) {
+    fmt::print("\n{}\n{:<52} {:>6} {:>7} {:>7} {:>24} {:>16} {:>9}\n", title, "", "frames", "refused", "within",
+               "error mm: median, 95 %, worst", "bound: median", "rms/sigma");
+    Figures all;
+    const auto line = [](const std::string& name, const Figures& f) {
+        double squares = 0;
+        for (const double r : f.of_sigma) squares += r * r / static_cast<double>(f.of_sigma.size());
+        const auto n = f.error_mm.size();
+        fmt::print("{:<52} {:>6} {:>7} {:>5.1f} % {:>12.3f} {:>7.3f} {:>7.3f} {:>16.3f} {:>9.2f}\n", name, n, f.refused,
+                   n ? 100. * f.within / static_cast<double>(n) : 0., median(f.error_mm), quantile(f.error_mm, 0.95),
+                   quantile(f.error_mm, 1), median(f.bound_mm), std::sqrt(squares));
+    };
+    for (const auto& [name, f] : kinds) {
+        line(name, f);
+        all.refused += f.refused, all.within += f.within;
+        all.error_mm.insert(all.error_mm.end(), f.error_mm.begin(), f.error_mm.end());
+        all.bound_mm.insert(all.bound_mm.end(), f.bound_mm.begin(), f.bound_mm.end());
+        all.of_sigma.insert(all.of_sigma.end(), f.of_sigma.begin(), f.of_sigma.end());
+    }
+    line("all", all);
+}
+
+struct Sticker {
+    Vector3d centre, normal;
+};
+
+/// Stickers on a ball of 80 mm before the rig's working point, at least 28 mm apart.
+std::vector<Sticker> stickers(int count, std::mt19937& random) {
+    std::normal_distribution<double> unit;
+    std::vector<Sticker> placed;
+    for (int tries = 0; static_cast<int>(placed.size()) < count && tries < 10000; ++tries) {
+        const Vector3d n = Vector3d(0.5 * unit(random), 0.5 * unit(random), -1).normalized();
+        const Sticker s{Vector3d(0, 0, 60) + 80 * n, n};
+        bool apart = true;
+        for (const Sticker& other : placed) apart = apart && (other.centre - s.centre).norm() > 28;
+        if (apart) placed.push_back(s);
+    }
+    return placed;
+}
+
+/// A disc of 4 mm radius as `find_markers` measures it: the ellipse's centre, with the noise that it states.
+std::optional<MarkerObservation> measured(const Optics& camera, const Sticker& s, double contrast,
+                                          std::mt19937& random) {
+    const Vector3d back = (camera.eye - s.centre).normalized();
+    const double ratio = back.dot(s.normal);
+    if (ratio < 0.45) return std::nullopt;
+    std::vector<Vector2d> rim;
+    const Vector3d a = s.normal.unitOrthogonal(), b = s.normal.cross(a);
+    for (int i = 0; i < 32; ++i) {
+        const double angle = 2 * std::numbers::pi * i / 32;
+        rim.push_back(camera.pixel_of(s.centre + 4 * (std::cos(angle) * a + std::sin(angle) * b)));
+    }
+    std::vector<bool> used;
+    const auto ellipse = fit_ellipse_to_points(rim, used);
+    if (!ellipse) return std::nullopt;
+    const Vector2d pixel = ellipse->centre;
+    if (pixel.minCoeff() < 20 || pixel.x() > camera.columns - 20 || pixel.y() > camera.rows - 20) return std::nullopt;
+    MarkerObservation seen;
+    seen.radius_px = ellipse->half_axes().mean();
+    seen.axis_ratio = ratio;
+    seen.contrast = contrast;
+    const double noise =
+        std::hypot(1.2 * 2 * 2 / contrast / std::sqrt(std::numbers::pi * seen.radius_px * ratio), 0.004);
+    seen.steady_px = 4 / 900. * seen.radius_px * ratio * std::sqrt(1 - ratio * ratio);
+    seen.sigma_px = std::hypot(noise, seen.steady_px);
+    std::normal_distribution<double> unit(0, noise);
+    seen.pixel = pixel + Vector2d(unit(random), unit(random));
+    return seen;
+}
+
+/// One rig, one patient, one reference; frames of it are drawn one by one.
+struct Room {
+    simulation::RigLayout rig;
+    RigCalibration calibration;
+    std::vector<Sticker> in_room;          ///< those that both cameras saw
+    std::vector<PatientMarker> reference;  ///< the same
+    Vector3d middle_in_patient = Vector3d::Zero();
+    double contrast = 100;
+
+    Room(Preset preset, std::mt19937& random) : rig(simulation::build_rig(preset, random)) {
+        calibration = simulation::calibrated(rig, 1, random);
+        contrast = std::uniform_real_distribution<double>(40, 150)(random);
+        const int count = 4 + static_cast<int>(random() % 6);
+        for (const Sticker& s : stickers(count, random)) {
+            const auto l = measured(rig.left_camera, s, contrast, random),
+                       r = measured(rig.right_camera, s, contrast, random);
+            if (!l || !r) continue;
+            const auto marker = triangulate_marker(calibration, *l, *r);
+            if (!marker) continue;
+            const double steady = std::hypot(l->steady_px, r->steady_px), all = std::hypot(l->sigma_px, r->sigma_px);
+            in_room.push_back(s);
+            reference.push_back(
+                {marker->point_in_rig, marker->sigma_mm * std::sqrt(1 - steady * steady / (all * all))});
+            middle_in_patient += marker->point_in_rig;
+        }
+        middle_in_patient /= std::max(1., static_cast<double>(reference.size()));
+    }
+};
+
+struct Frame {
+    std::vector<Sighting> sightings;
+    RigidTransform truth;
+    std::string kind;
+};
+
+Frame frame_of(const Room& room, std::mt19937& random) {
+    std::normal_distribution<double> unit;
+    std::uniform_real_distribution<double> share(0, 1);
+    Frame frame;
+    const double far = share(random), mm = far < 0.25 ? 0 : far < 0.6 ? 15 : 60, degrees = mm * 0.35;
+    RigidTransform moved = RigidTransform::Identity();
+    const Vector3d axis = Vector3d(unit(random), unit(random), unit(random)).normalized();
+    moved.linear() = Eigen::AngleAxisd(degrees * share(random) * std::numbers::pi / 180, axis).toRotationMatrix();
+    const Vector3d way =
+        mm * std::cbrt(share(random)) * Vector3d(unit(random), unit(random), unit(random)).normalized();
+    const Vector3d neck(0, 0, 60);
+    moved.translation() = neck + way - moved.linear() * neck;
+    const RigidTransform rig_from_room = room.rig.room_from_rig.inverse();
+    frame.truth = rig_from_room * moved * room.rig.room_from_rig;
+
+    const double pattern = share(random);
+    const bool left_too = pattern < 0.7 || pattern > 0.85, right_too = pattern < 0.85;  // a third by one camera alone
+    const double covered_by_both = share(random) < 0.5 ? 0 : share(random),
+                 covered = share(random) < 0.6 ? 0 : 0.5 * share(random);
+    int left = 0, right = 0;
+    for (std::size_t k = 0; k < room.in_room.size(); ++k) {
+        if (share(random) < covered_by_both) continue;
+        const Sticker s{moved * room.in_room[k].centre, moved.linear() * room.in_room[k].normal};
+        for (const bool is_left : {true, false}) {
+            if (!(is_left ? left_too : right_too) || share(random) < covered) continue;
+            const auto seen =
+                measured(is_left ? room.rig.left_camera : room.rig.right_camera, s, room.contrast, random);
+            if (seen) frame.sightings.push_back({static_cast<int>(k), is_left, *seen}), ++(is_left ? left : right);
+        }
+    }
+    const int seen = distinct_markers(frame.sightings);
+    frame.kind = fmt::format("{}, {}, {}", left && right ? "both cameras" : "one camera  ",
+                             seen < 4   ? "3 markers  "
+                             : seen < 6 ? "4, 5 markers"
+                                        : "6 to 9 markers",
+                             mm < 1    ? "at the reference"
+                             : mm < 20 ? "to 15 mm and 5 deg off"
+                                       : "to 60 mm and 21 deg off");
+    return frame;
+}
+
+void measure_geometry(Preset preset, int frames, unsigned seed) {
+    constexpr int kFramesOfARoom = 10;
+    std::mt19937 random(seed);
+    std::map<std::string, Figures> kinds;
+    for (int drawn = 0; drawn < frames;) {
+        const Room room(preset, random);
+        if (room.reference.size() < 3) continue;
+        for (int i = 0; i < kFramesOfARoom; ++i) {
+            const Frame frame = frame_of(room, random);
+            if (distinct_markers(frame.sightings) < 3) continue;
+            ++drawn;
+            const CheckedPose pose =
+                fit_pose_checked(room.calibration, room.reference, frame.sightings, frame.truth, TrackingSettings{});
+            Figures& of = kinds[frame.kind];
+            if (!pose.fit) {
+                ++of.refused;
+                continue;
+            }
+            const Vector3d off =
+                pose.fit->rig_from_patient * room.middle_in_patient - frame.truth * room.middle_in_patient;
+            of.add(off.norm(), pose.fit->error_mm, pose.fit->bound_95_mm);
+        }
+    }
+    print(fmt::format("{} room, discs by their geometry", name_of(preset)), kinds);
+}
+
+/// One frame of the tracker in the simulated room of the example patient.
+void measure_rendered(Preset preset, int frames, unsigned seed, const Volume& volume) {
+    constexpr int kFramesOfARoom = 25;
+    std::map<std::string, Figures> kinds;
+    for (int done = 0; done < frames; ++seed) {
+        simulation::RoomSettings settings;
+        settings.preset = preset;
+        settings.seed = seed;
+        simulation::SimulatedRig rig(volume, {}, settings);
+        std::mt19937 random(seed);
+        std::uniform_real_distribution<double> share(0, 1);
+        const auto grab = [&] { return rig.cameras().grab(rig.clock().now(), std::chrono::seconds(1)); };
+        PatientTracker tracker(rig.calibration());
+        const StereoFrame first = grab();
+        if (tracker.set_reference(first).size() < 4) continue;
+        const RigidTransform ct_from_rig = rig.true_rig_from_ct(first.at).inverse();
+        Vector3d middle = Vector3d::Zero();
+        for (const auto& m : tracker.markers())
+            middle += m.centre_in_patient / static_cast<double>(tracker.markers().size());
+        const double speed = std::array{0., 20., 100.}[seed % 3];
+        rig.set_motion({speed, rig.clock().now()});
+        for (int i = 0; i < kFramesOfARoom && done < frames; ++i, ++done) {
+            if (share(random) < 0.3)
+                rig.wait(std::chrono::milliseconds(static_cast<int>(700 * share(random))));  // a jump
+            std::vector<int> covered;
+            for (int k = 0; k < static_cast<int>(rig.true_markers_in_ct().size()); ++k)
+                if (share(random) < 0.2) covered.push_back(k);
+            rig.cover_markers(covered);
+            StereoFrame frame = grab();
+            const bool one = share(random) < 0.25;
+            if (one) std::fill(frame.right.pixels.begin(), frame.right.pixels.end(), std::uint8_t{12});
+            const TrackedPose pose = tracker.update(frame);
+            const int least = std::min(pose.markers_left, pose.markers_right),
+                      most = std::max(pose.markers_left, pose.markers_right);
+            const std::string kind = fmt::format("{:>3.0f} mm/s, {}", speed,
+                                                 !pose.rig_from_patient ? "no pose"
+                                                 : least == 0           ? "one camera"
+                                                 : most < 5             ? "both, 3 and 4 markers"
+                                                                        : "both, 5 markers and more");
+            Figures& of = kinds[kind];
+            if (!pose.rig_from_patient) {
+                ++of.refused;
+                continue;
+            }
+            const RigidTransform truth = rig.true_rig_from_ct(frame.at) * ct_from_rig;
+            of.add((*pose.rig_from_patient * middle - truth * middle).norm(), pose.predicted_error_mm,
+                   pose.bound_95_mm);
+        }
+    }
+    print(fmt::format("{} room, rendered pictures of the example patient", name_of(preset)), kinds);
+}
+
+int run(int argc, char** argv) {
+    const bool rendered = argc > 1 && std::string(argv[1]) == "rendered";
+    const int at = rendered ? 2 : 1, frames = argc > at ? std::atoi(argv[at]) : rendered ? 300 : 10000;
+    const unsigned seed = argc > at + 1 ? static_cast<unsigned>(std::atoi(argv[at + 1])) : 1;
+    if (rendered && !example_patient()) {
+        fmt::print("the package invesalius-examples is not installed\n");
+        return 1;
+    }
+    std::optional<Volume> volume;
+    if (rendered) volume = read_volume(*example_patient());
+    for (const Preset preset : {Preset::paper, Preset::modern}) {
+        if (rendered)
+            measure_rendered(preset, frames, seed, *volume);
+        else
+            measure_geometry(preset, frames, seed);
+    }
+    return 0;
+}
+
+}  // namespace
+}  // namespace planlight::test
+
+int main(int argc, char** argv) {
+    return planlight::test::run(argc, argv);
+}
