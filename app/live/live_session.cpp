@@ -153,7 +153,6 @@ void LiveSession::run(const Volume& volume, const LiveSettings& settings) {
     simulation::SimulatedRig rig(volume, points_of(case_.plan), room);
     LightTap tap(rig.projector(), *this);
     SessionSettings session_settings;
-    session_settings.drawing = drawing_.settings;
     session_settings.while_computing = [&rig] { rig.wait(std::chrono::milliseconds(10)); };
     Session session(case_, drawing_, rig.calibration(), tap, rig.cameras(), rig.clock(), session_settings);
     set_steps(2);
