@@ -71,17 +71,25 @@ void check_pairs(const Samples& s, const Direction& direction, SequenceCheck& ch
     }
 }
 
-/// Of two bits the finer one changes more often.
+/// Of two bits the finer one changes more often, where it changes on enough lines to count on.
 void check_order(const Samples& s, const Direction& direction, const std::vector<Changes>& changes,
-                 SequenceCheck& check) {
-    constexpr std::size_t kFewLines =
-        6;  // that far from the finest a bit has too few stripes over the surface to count on
+                 const GrayImage& picture, SequenceCheck& check) {
+    constexpr double kFewestLines = 4;  // over the picture
     const std::size_t bits = std::min(changes.size(), direction.wide);
-    double lines = 0;  // the finest bit changes every other half period; the one before half as often, and so on
-    for (std::size_t k = 0; k < bits; ++k) lines = std::max(lines, static_cast<double>(changes[k].all()));
+    double most = 0,
+           share = 0;  // the finest bit changes every other half period; the one before half as often, and so on
+    int side_px = 0;
+    for (std::size_t k = 0; k < bits; ++k) {
+        most = std::max(most, static_cast<double>(changes[k].all()));
+        if (changes[k].share() <= share) continue;
+        share = changes[k].share();
+        const bool across = share_of(changes[k].changed[0], changes[k].looked[0]) >=
+                            share_of(changes[k].changed[1], changes[k].looked[1]);
+        side_px = across ? picture.width : picture.height;
+    }
     for (std::size_t k = 0; k + 1 < bits; ++k) {
-        const double expected = lines / std::pow(2.0, static_cast<double>(bits - 1 - k));
-        if (k + kFewLines < changes.size() || expected < 60 || !changes[k + 1].clear) continue;
+        const double part = std::pow(2.0, -static_cast<double>(bits - 1 - k));
+        if (part * share / kFlat_px * side_px < kFewestLines || part * most < 60 || !changes[k + 1].clear) continue;
         if (static_cast<double>(changes[k].all()) > 1.25 * static_cast<double>(changes[k + 1].all()))
             check.problems.push_back(
                 {direction.gray[k],
@@ -144,7 +152,7 @@ SequenceCheck check_sequence(std::span<const GrayImage> frames, const StripeSett
             check_fringes(samples, direction.further[k], fringes[k + 1], check);
         check_frequencies(samples, direction, fringes, check);
         check_parity(samples, direction, fringes[0], check);
-        if (!patchy) check_order(samples, direction, changes, check);
+        if (!patchy) check_order(samples, direction, changes, frames[0], check);
     }
     if (judges_itself(samples)) check_nesting(frames, samples, check);
     return check;

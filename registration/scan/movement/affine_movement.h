@@ -26,7 +26,7 @@ struct Pictures {
     float even_at(const Moment& moment, int x, int y) const;
 };
 
-inline constexpr int kAffine = 6, kNumbers = 13;  ///< of a fit: the map, then how the light changed
+inline constexpr int kAffine = 6, kNumbers = 15;  ///< of a fit: the map, then how the light changed
 
 using Affine = Eigen::Matrix<double, kAffine, 1>;
 
@@ -48,7 +48,8 @@ public:
     bool enough() const { return pixels_.size() >= kLeastPixels; }
 
     /// Least squares over the pixels (Lucas & Kanade 1981, one map for all), with light that may be brighter or darker,
-    /// smoothly over the picture (a quadratic of the place), and another even light of the room.
+    /// smoothly over the picture (a quadratic of the place) and with the brightness (a cubic: what an inexact exponent
+    /// of the camera leaves where stripes end), and another even light of the room.
     Laid lay(const Moment& later) const;
 
     /// How far 95 % of the surface lies apart under two maps, and the standard deviation of that; pixels.

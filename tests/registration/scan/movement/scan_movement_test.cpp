@@ -176,9 +176,10 @@ ScanCapture blown_out(double top_grey) {
 TEST(ScanMovement, ASaturatedWallAtRestHasNotMoved) {
     for (const double top_grey : {200.0, 235.0, 250.0, 280.0, 330.0}) {
         const ScanMovement movement = seen(blown_out(top_grey));
-        EXPECT_LT(movement.way_mm(), 0.05) << top_grey;
-        if (movement.by == ScanMovement::By::pictures)
-            EXPECT_GT(movement.unseen_mm(), 0.1) << top_grey << ": it could move unseen, and that is said";
+        EXPECT_LT(movement.way_mm(), 0.1) << top_grey << ": 0.15 is the limit";
+        if (movement.by == ScanMovement::By::pictures) {
+            EXPECT_GT(movement.unseen_mm(), 0.05) << top_grey << ": it could move unseen, and that is said";
+        }
     }
 }
 
