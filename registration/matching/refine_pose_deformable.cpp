@@ -266,7 +266,7 @@ double median_size(const VectorXd& values) {
 /// Whether the patches would lie much farther from the skin after the step than before it.
 bool leaves_the_skin(const Problem& problem, const Vector6d& step, const Vector3d& offset_mm) {
     constexpr double kMuch = 2, kAlways_mm = 0.2;
-    const VectorXd after_mm = problem.residual_mm + problem.J * step - problem.offsets * offset_mm;
+    const VectorXd after_mm = problem.residual_mm + problem.J * step - problem.offsets.col(0) * offset_mm[0];
     return median_size(after_mm) > kMuch * median_size(problem.residual_mm) + kAlways_mm;
 }
 
@@ -340,6 +340,13 @@ DeformablePose one_step(const PointCloud& cloud, const SkinLut& lut, const Rigid
     return result;
 }
 
+/// How far the scan lies from the skin at this pose, offset taken out: the median.
+double off_skin_mm(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig, double offset_mm) {
+    std::vector<double> off;
+    for (const Patch& p : points_on_skin(cloud, lut, ct_from_rig)) off.push_back(std::abs(p.distance_mm - offset_mm));
+    return median(std::move(off));
+}
+
 }  // namespace
 
 DeformablePose refine_pose_deformable(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
@@ -347,6 +354,16 @@ DeformablePose refine_pose_deformable(const PointCloud& cloud, const SkinLut& lu
     DeformablePose result = one_step(cloud, lut, ct_from_rig, settings);
     // What lies off the skin is judged anew where the step led.
     for (int step = 1; step < settings.steps; ++step) result = one_step(cloud, lut, result.ct_from_rig, settings);
+    // Steps that each leave the skin a little are not taken either.
+    constexpr double kMuch = 1.3, kAlways_mm = 0.15;
+    if (off_skin_mm(cloud, lut, result.ct_from_rig, result.offset_mm) >
+        kMuch * off_skin_mm(cloud, lut, ct_from_rig, 0) + kAlways_mm) {
+        const Vector3d shift = result.ct_from_rig * (ct_from_rig.inverse() * result.covariance.centre_in_ct) -
+                               result.covariance.centre_in_ct;
+        result.covariance.of_turn_and_shift.bottomRightCorner<3, 3>() += shift * shift.transpose();
+        result.ct_from_rig = ct_from_rig;
+        result.offset_mm = 0;
+    }
     return result;
 }
 
