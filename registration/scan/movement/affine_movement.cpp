@@ -123,10 +123,9 @@ void Surface::choose(const std::vector<std::uint8_t>& spoilt, const Moment& firs
 }
 
 Surface::Row Surface::by_numbers(const Pixel& p) const {
-    const double u = (p.x - centre_.x()) / scale_, v = (p.y - centre_.y()) / scale_, light = p.light;
+    const double u = (p.x - centre_.x()) / scale_, v = (p.y - centre_.y()) / scale_;
     Row J;
-    J << p.dx, p.dx * u, p.dx * v, p.dy, p.dy * u, p.dy * v, -light, -light * u, -light * v, -light * u * u,
-        -light * u * v, -light * v * v, -1, -light * light, -light * light * light;
+    J << p.dx, p.dx * u, p.dx * v, p.dy, p.dy * u, p.dy * v, -p.light;
     return J;
 }
 

@@ -26,7 +26,7 @@ struct Pictures {
     float even_at(const Moment& moment, int x, int y) const;
 };
 
-inline constexpr int kAffine = 6, kNumbers = 15;  ///< of a fit: the map, then how the light changed
+inline constexpr int kAffine = 6, kNumbers = 7;  ///< of a fit: the map, then how the light changed
 
 using Affine = Eigen::Matrix<double, kAffine, 1>;
 
@@ -47,9 +47,10 @@ public:
 
     bool enough() const { return pixels_.size() >= kLeastPixels; }
 
-    /// Least squares over the pixels (Lucas & Kanade 1981, one map for all), with light that may be brighter or darker,
-    /// smoothly over the picture (a quadratic of the place) and with the brightness (a cubic: what an inexact exponent
-    /// of the camera leaves where stripes end), and another even light of the room.
+    /// Least squares over the pixels (Lucas & Kanade 1981, one map for all), with projector and room as bright as they
+    /// are now. More freedom for the light (smoothly over the picture, by the brightness) leaves a surface without
+    /// texture nothing but its rim to be measured by, where stripes are dense and a camera's curve leaves most: worse,
+    /// not better.
     Laid lay(const Moment& later) const;
 
     /// How far 95 % of the surface lies apart under two maps, and the standard deviation of that; pixels.

@@ -28,9 +28,9 @@ struct ScanMovement {
 /// From the skin itself, without markers: every even picture of the left camera (`uniform_light_frames`), and of a code
 /// without inverses what is lit in each bit, is laid on the first by an affine map (`affine_movement`). `mm_per_px`: of
 /// the skin in the left picture. It sees what moves across the line of sight: of a head's way a third to three
-/// quarters. What is saturated in any frame, and its surroundings, has no say, nor has light that changes smoothly over
-/// the picture: a smooth surface without texture shows no movement, and `sigma_mm` says so. `moved_mm` is without two
-/// of these sigmas. `by` is `nothing` with under two moments or too little that could move in the picture.
+/// quarters. What is saturated in any frame, and its surroundings, has no say. `sigma_mm` is what the measurement
+/// itself scatters, and `moved_mm` is without two of these sigmas. `by` is `nothing` with under two moments or too
+/// little that could move in the picture.
 ScanMovement movement_in_pictures(const ScanCapture& capture, double mm_per_px);
 
 /// What a left camera pixel is on the scanned points, mm (median); 0 without points.
