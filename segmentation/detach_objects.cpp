@@ -68,7 +68,8 @@ void take_back_fringe(Mask& state, const VoxelGrid& grid, std::vector<std::size_
 
 class Pieces {
 public:
-    Pieces(Mask& state, const std::vector<float>& values, double threshold, double soft, const VoxelGrid& grid, Contact contact)
+    Pieces(Mask& state, const std::vector<float>& values, double threshold, double soft, const VoxelGrid& grid,
+           Contact contact)
         : state_(state),
           values_(values),
           threshold_(threshold),

@@ -14,8 +14,8 @@ struct DetachedBody {
     std::vector<std::string> warnings;
 };
 
-/// What a hanging piece must touch to stay: the head and all pieces that stayed, or only the thick head itself. (A strip along the
-/// head, broken in parts by higher thresholds, would hold on part by part.)
+/// What a hanging piece must touch to stay: the head and all pieces that stayed, or only the thick head itself. (A
+/// strip along the head, broken in parts by higher thresholds, would hold on part by part.)
 enum class Contact { with_body, with_core };
 
 /// Keeps the head of all that is denser than air, and cuts off what merely touches it.

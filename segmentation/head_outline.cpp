@@ -11,9 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kBlock_mm = 20;         // of the level map
+constexpr double kBlock_mm = 20;  // of the level map
 constexpr double kAirFrom_mm = 6, kAirTo_mm = 24;
-constexpr double kShell_mm = 6;          // under the outline, for the tissue near by
+constexpr double kShell_mm = 6;  // under the outline, for the tissue near by
 constexpr std::size_t kLeastSamples = 60;
 constexpr int kRounds = 3;
 
@@ -28,9 +28,11 @@ Spread spread_of(std::vector<float> values) {
     return s;
 }
 
-/// Where the two classes part, on the root of the values above the least (noise and tissue differ by factors, not by steps).
+/// Where the two classes part, on the root of the values above the least (noise and tissue differ by factors, not by
+/// steps).
 double first_threshold(const std::vector<float>& measured) {
-    const double low = static_cast<double>(quantile(measured, 0.001)), high = static_cast<double>(quantile(measured, 0.995));
+    const double low = static_cast<double>(quantile(measured, 0.001)),
+                 high = static_cast<double>(quantile(measured, 0.995));
     if (!(high > low)) return high;
     constexpr int kBins = 256;
     std::vector<double> bins(kBins, 0);
@@ -40,7 +42,8 @@ double first_threshold(const std::vector<float>& measured) {
     }
     double all = 0, moment = 0, below = 0, below_moment = 0, best = -1;
     int level = 0;
-    for (int b = 0; b < kBins; ++b) all += bins[static_cast<std::size_t>(b)], moment += b * bins[static_cast<std::size_t>(b)];
+    for (int b = 0; b < kBins; ++b)
+        all += bins[static_cast<std::size_t>(b)], moment += b * bins[static_cast<std::size_t>(b)];
     for (int b = 0; b + 1 < kBins; ++b) {
         below += bins[static_cast<std::size_t>(b)];
         below_moment += b * bins[static_cast<std::size_t>(b)];
@@ -83,7 +86,8 @@ struct Field {
 };
 
 Field field_of(const HeadSurvey& survey, const LevelMap& map, const std::vector<float>& sure) {
-    Volume places;  // the map's own interpolation, at the survey's voxels: (0 - air) / (skin - air) and (1 - air) / (skin - air)
+    Volume places;  // the map's own interpolation, at the survey's voxels: (0 - air) / (skin - air) and (1 - air) /
+                    // (skin - air)
     places.size = survey.grid.size;
     places.ct_from_voxel.linear() = Eigen::Matrix3d::Identity() * survey.step_mm();
     places.ct_from_voxel.translation() = survey.first_in_ct;
@@ -109,10 +113,11 @@ Field field_of(const HeadSurvey& survey, const LevelMap& map, const std::vector<
     return field;
 }
 
-constexpr double kHalo_mm = 8;  // how far from sure air something dim may still be the blur, halo or ghost before the skin
+constexpr double kHalo_mm =
+    8;  // how far from sure air something dim may still be the blur, halo or ghost before the skin
 
-/// What air reaches: through what is surely air, and from there through what is dim, but not deep: dim muscle at the end of a
-/// coil is no way in.
+/// What air reaches: through what is surely air, and from there through what is dim, but not deep: dim muscle at the
+/// end of a coil is no way in.
 Mask reached_by_air(const HeadSurvey& survey, const Mask& dense, const Mask& not_air, double seal_radius_mm) {
     Mask outside = sealed_outside(survey, dense, seal_radius_mm);
     const Mask sure = sealed_outside(survey, not_air, seal_radius_mm);
@@ -167,7 +172,8 @@ std::size_t node_of(const LevelMap& map, const HeadSurvey& survey, std::size_t v
     for (int a = 0; a < 3; ++a)
         node[static_cast<std::size_t>(a)] = static_cast<std::size_t>(
             std::clamp<long>(std::lround(at[a]), 0, map.size[static_cast<std::size_t>(a)] - 1));
-    return (node[2] * static_cast<std::size_t>(map.size[1]) + node[1]) * static_cast<std::size_t>(map.size[0]) + node[0];
+    return (node[2] * static_cast<std::size_t>(map.size[1]) + node[1]) * static_cast<std::size_t>(map.size[0]) +
+           node[0];
 }
 
 /// Fills nodes that are not a number with the mean of their neighbours that are, until none is left.
@@ -210,7 +216,8 @@ void smooth_nodes(std::vector<float>& nodes, const std::array<int, 3>& size) {
 std::vector<float> learn(const HeadSurvey& survey, const std::vector<float>& values, const OutlineSettings& settings,
                          HeadOutline& outline) {
     const Mask& head = outline.head;
-    const auto away = distance_from(head, 1, survey.grid, kAirTo_mm + 10), depth = distance_from(head, 0, survey.grid, kShell_mm + 10);
+    const auto away = distance_from(head, 1, survey.grid, kAirTo_mm + 10),
+               depth = distance_from(head, 0, survey.grid, kShell_mm + 10);
     LevelMap& map = outline.levels = map_over(survey);
     std::vector<std::vector<float>> air(map.air.size()), shell(map.air.size());
     std::vector<float> all_air, all_tissue;
@@ -235,7 +242,8 @@ std::vector<float> learn(const HeadSurvey& survey, const std::vector<float>& val
         if (air[n].size() >= kLeastSamples) {
             const Spread here = spread_of(std::move(air[n]));
             // Where the head was missed so far, its tissue would pass for air.
-            const double least = outline.air, most = std::max(outline.air + 3 * outline.air_sigma, outline.air + 0.15 * contrast);
+            const double least = outline.air,
+                         most = std::max(outline.air + 3 * outline.air_sigma, outline.air + 0.15 * contrast);
             map.air[n] = static_cast<float>(std::clamp(here.middle, std::min(least, here.middle), most));
             noise[n] = static_cast<float>(std::min(here.sigma, std::max(2.5 * outline.air_sigma, 0.02 * contrast)));
         }
@@ -249,12 +257,14 @@ std::vector<float> learn(const HeadSurvey& survey, const std::vector<float>& val
     smooth_nodes(tissue, map.size);
     std::vector<float> sure(map.skin.size());
     for (std::size_t n = 0; n < map.skin.size(); ++n) {
-        sure[n] = map.air[n] + static_cast<float>(std::max(settings.least_noises * static_cast<double>(noise[n]), 0.02 * contrast));
+        sure[n] = map.air[n] +
+                  static_cast<float>(std::max(settings.least_noises * static_cast<double>(noise[n]), 0.02 * contrast));
         const double near_contrast = std::max(static_cast<double>(tissue[n] - map.air[n]), 0.1 * contrast);
-        const double above = std::max(settings.share_of_tissue * near_contrast, settings.least_noises * static_cast<double>(noise[n]));
-        map.skin[n] = settings.threshold != 0
-                          ? std::max(static_cast<float>(settings.threshold), map.air[n] + 1e-3F * static_cast<float>(contrast))
-                          : map.air[n] + static_cast<float>(std::min(above, 0.5 * near_contrast));
+        const double above =
+            std::max(settings.share_of_tissue * near_contrast, settings.least_noises * static_cast<double>(noise[n]));
+        map.skin[n] = settings.threshold != 0 ? std::max(static_cast<float>(settings.threshold),
+                                                         map.air[n] + 1e-3F * static_cast<float>(contrast))
+                                              : map.air[n] + static_cast<float>(std::min(above, 0.5 * near_contrast));
     }
     return sure;
 }
@@ -304,7 +314,8 @@ HeadOutline outline_of(const HeadSurvey& survey, const OutlineSettings& settings
     }
     outline.head = head_at(survey, values, field, 1, settings, &outline.gone);
     outline.volume_ml = ml_of(outline.head, survey.grid);
-    const Mask lower = head_at(survey, values, field, 0.7, settings), higher = head_at(survey, values, field, 1.5, settings);
+    const Mask lower = head_at(survey, values, field, 0.7, settings),
+               higher = head_at(survey, values, field, 1.5, settings);
     outline.lower_ml = ml_of(lower, survey.grid);
     outline.higher_ml = ml_of(higher, survey.grid);
     outline.unsure_share = share_apart(lower, higher, survey, 3);

@@ -38,12 +38,17 @@ struct Sampler {
             low[a] = static_cast<std::size_t>(floor);
             high[a] = static_cast<std::size_t>(std::min(floor + 1, last));
         }
-        const std::size_t row = static_cast<std::size_t>(volume.size[0]), slab = row * static_cast<std::size_t>(volume.size[1]);
-        const auto at = [&](std::size_t i, std::size_t j, std::size_t k) { return volume.values[k * slab + j * row + i]; };
+        const std::size_t row = static_cast<std::size_t>(volume.size[0]),
+                          slab = row * static_cast<std::size_t>(volume.size[1]);
+        const auto at = [&](std::size_t i, std::size_t j, std::size_t k) {
+            return volume.values[k * slab + j * row + i];
+        };
         const auto along = [&](std::size_t j, std::size_t k) {
             return at(low[0], j, k) + f[0] * (at(high[0], j, k) - at(low[0], j, k));
         };
-        const auto plane = [&](std::size_t k) { return along(low[1], k) + f[1] * (along(high[1], k) - along(low[1], k)); };
+        const auto plane = [&](std::size_t k) {
+            return along(low[1], k) + f[1] * (along(high[1], k) - along(low[1], k));
+        };
         return plane(low[2]) + f[2] * (plane(high[2]) - plane(low[2]));
     }
 };
@@ -141,7 +146,8 @@ std::vector<float> distance_from(const Mask& mask, std::uint8_t target, const Vo
             std::vector<float> from;
             const auto value = [&](int i) { return squared[lines[l] + static_cast<std::size_t>(i) * stride]; };
             const auto crossing = [&](int a, int b) {
-                return ((value(b) - value(a)) / (step * step) + static_cast<float>(b * b - a * a)) / static_cast<float>(2 * (b - a));
+                return ((value(b) - value(a)) / (step * step) + static_cast<float>(b * b - a * a)) /
+                       static_cast<float>(2 * (b - a));
             };
             for (int i = 0; i < n; ++i) {
                 if (!(value(i) < most)) continue;

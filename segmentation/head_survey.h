@@ -7,8 +7,9 @@
 
 namespace planlight {
 
-/// A volume seen coarsely: cubic voxels along the axes of ct (i to the patient's left, j to the back, k to the head), each
-/// the mean of eight places, so that size, turn and noise of the scanner's own voxels matter little to what is judged on it.
+/// A volume seen coarsely: cubic voxels along the axes of ct (i to the patient's left, j to the back, k to the head),
+/// each the mean of eight places, so that size, turn and noise of the scanner's own voxels matter little to what is
+/// judged on it.
 struct HeadSurvey {
     VoxelGrid grid;
     Eigen::Vector3d first_in_ct = Eigen::Vector3d::Zero();  ///< centre of voxel (0,0,0), mm
@@ -18,7 +19,8 @@ struct HeadSurvey {
 
     double step_mm() const { return grid.spacing_mm.x(); }
     std::size_t index(int i, int j, int k) const {
-        return static_cast<std::size_t>(k) * grid.slab() + static_cast<std::size_t>(j) * grid.row() + static_cast<std::size_t>(i);
+        return static_cast<std::size_t>(k) * grid.slab() + static_cast<std::size_t>(j) * grid.row() +
+               static_cast<std::size_t>(i);
     }
     Eigen::Vector3d place_of(std::size_t index) const;  ///< centre of a voxel in ct
 };

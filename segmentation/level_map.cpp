@@ -20,15 +20,18 @@ struct Corners {
         float f[3];
         for (int a = 0; a < 3; ++a) {
             const int last = map.size[static_cast<std::size_t>(a)] - 1;
-            const double at = std::clamp((at_in_ct[a] - map.first_in_ct[a]) / map.step_mm, 0.0, static_cast<double>(last));
+            const double at =
+                std::clamp((at_in_ct[a] - map.first_in_ct[a]) / map.step_mm, 0.0, static_cast<double>(last));
             const int floor = std::min(static_cast<int>(at), std::max(0, last - 1));
             f[a] = static_cast<float>(at - floor);
             low[a] = static_cast<std::size_t>(floor);
             high[a] = static_cast<std::size_t>(std::min(floor + 1, last));
         }
         for (unsigned c = 0; c < 8; ++c) {
-            node[c] = ((c & 4 ? high[2] : low[2]) * static_cast<std::size_t>(map.size[1]) + (c & 2 ? high[1] : low[1])) *
-                          static_cast<std::size_t>(map.size[0]) + (c & 1 ? high[0] : low[0]);
+            node[c] =
+                ((c & 4 ? high[2] : low[2]) * static_cast<std::size_t>(map.size[1]) + (c & 2 ? high[1] : low[1])) *
+                    static_cast<std::size_t>(map.size[0]) +
+                (c & 1 ? high[0] : low[0]);
             weight[c] = (c & 1 ? f[0] : 1 - f[0]) * (c & 2 ? f[1] : 1 - f[1]) * (c & 4 ? f[2] : 1 - f[2]);
         }
     }

@@ -7,8 +7,9 @@
 
 namespace planlight {
 
-/// What is air and what is skin at a place of an MR, in its own unit: both change over a head with the coils' brightness, with
-/// noise, ghosts and the wings of bright fat. On a coarse grid along the axes of ct, linear between its nodes.
+/// What is air and what is skin at a place of an MR, in its own unit: both change over a head with the coils'
+/// brightness, with noise, ghosts and the wings of bright fat. On a coarse grid along the axes of ct, linear between
+/// its nodes.
 struct LevelMap {
     Eigen::Vector3d first_in_ct = Eigen::Vector3d::Zero();  ///< node (0,0,0), mm
     double step_mm = 1;

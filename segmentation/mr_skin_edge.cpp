@@ -17,9 +17,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kStep_mm = 0.25;
-constexpr int kSide = 32;          // samples on each side of the vertex: 8 mm
-constexpr double kDrop = 0.85;     // of a crest: below it the profile has left it
-constexpr double kPlateau = 0.1;   // of the steepest rise: slower than that for 1 mm, the tissue is reached
+constexpr int kSide = 32;         // samples on each side of the vertex: 8 mm
+constexpr double kDrop = 0.85;    // of a crest: below it the profile has left it
+constexpr double kPlateau = 0.1;  // of the steepest rise: slower than that for 1 mm, the tissue is reached
 using Profile = std::array<double, 2 * kSide + 1>;  // from the inside out
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -27,8 +27,8 @@ constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 double mean(const Profile& profile, double from_mm, double to_mm) {
     double sum = 0;
     int count = 0;
-    for (int s = static_cast<int>(std::lround(from_mm / kStep_mm)); s <= static_cast<int>(std::lround(to_mm / kStep_mm));
-         ++s, ++count)
+    for (int s = static_cast<int>(std::lround(from_mm / kStep_mm));
+         s <= static_cast<int>(std::lround(to_mm / kStep_mm)); ++s, ++count)
         sum += profile[static_cast<std::size_t>(s + kSide)];
     return sum / count;
 }
@@ -60,7 +60,8 @@ double half_way(const Profile& profile, double threshold, double reach_mm) {
     double found = kUnknown;
     for (std::size_t s = 0; s + 1 < profile.size(); ++s) {
         if (!(profile[s] >= half) || !(profile[s + 1] < half)) continue;
-        const double at = (static_cast<double>(s) + (profile[s] - half) / (profile[s] - profile[s + 1]) - kSide) * kStep_mm;
+        const double at =
+            (static_cast<double>(s) + (profile[s] - half) / (profile[s] - profile[s + 1]) - kSide) * kStep_mm;
         if (std::abs(at) <= reach_mm && !(std::abs(at) >= std::abs(found))) found = at;
     }
     return found;
@@ -96,7 +97,8 @@ void forget_lonely(std::vector<double>& moves_mm, const Neighbours& next) {
         for (std::size_t n = next.first[v]; n < next.first[v + 1]; ++n) {
             const auto other = static_cast<std::size_t>(next.of[n]);
             for (std::size_t m = next.first[other]; m < next.first[other + 1]; ++m)
-                if (const double move = given[static_cast<std::size_t>(next.of[m])]; !std::isnan(move)) round.push_back(move);
+                if (const double move = given[static_cast<std::size_t>(next.of[m])]; !std::isnan(move))
+                    round.push_back(move);
         }
         if (round.size() < 6 || std::abs(given[v] - median(std::move(round))) > kAlone_mm) moves_mm[v] = kUnknown;
     });

@@ -6,17 +6,19 @@
 namespace planlight {
 
 struct EdgeSettings {
-    double reach_mm = 3;        ///< an edge further than this from the vertex is another one
-    int smoothing_rounds = 8;   ///< of the moves, over neighbours: the noise of a profile is not the skin's
+    double reach_mm = 3;       ///< an edge further than this from the vertex is another one
+    int smoothing_rounds = 8;  ///< of the moves, over neighbours: the noise of a profile is not the skin's
 };
 
-/// Moves the skin's vertices along their normals to where the volume's own profile is half way between the air outside and
-/// the first crest of the tissue beneath (the search along rays of BET2's outer skin, from outside; Jenkinson et al. 2005).
-/// The coils of an MR scanner make one side of a head several times as bright as the other; one threshold for all lies
-/// outside the edge there and inside it here. Lids and cut planes stay. Values that are not finite are never used.
+/// Moves the skin's vertices along their normals to where the volume's own profile is half way between the air outside
+/// and the first crest of the tissue beneath (the search along rays of BET2's outer skin, from outside; Jenkinson et
+/// al. 2005). The coils of an MR scanner make one side of a head several times as bright as the other; one threshold
+/// for all lies outside the edge there and inside it here. Lids and cut planes stay. Values that are not finite are
+/// never used.
 ///
-/// `values` are `skin_values`, `threshold` what made the mesh. Returns how many vertices had an edge; the others move with
-/// their neighbours.
-std::size_t move_to_edges(TriangleMesh& mesh, const Volume& values, double threshold, const EdgeSettings& settings = {});
+/// `values` are `skin_values`, `threshold` what made the mesh. Returns how many vertices had an edge; the others move
+/// with their neighbours.
+std::size_t move_to_edges(TriangleMesh& mesh, const Volume& values, double threshold,
+                          const EdgeSettings& settings = {});
 
 }  // namespace planlight

@@ -21,7 +21,7 @@ constexpr double kBandSteps = 3;       // of the survey, inwards from its outlin
 constexpr double kOuterBandSteps = 2;  // and outwards
 constexpr double kSmoothing_mm = 1.2;  // standard deviation of one smoothing, at most
 constexpr int kMostSmoothings = 3;
-constexpr double kLoudAir = 0.6;       // of the threshold: air that is louder is smoothed
+constexpr double kLoudAir = 0.6;  // of the threshold: air that is louder is smoothed
 constexpr double kLeastBody_ml = 50;
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -29,8 +29,8 @@ constexpr double kLeastBody_ml = 50;
                      "Check that the series shows the head with air round it, or give another threshold.");
 }
 
-/// One smoothing by w, 1 - 2w, w along each axis, where `w` keeps it within kSmoothing_mm also across thick slices; only where
-/// the map asks for more than `done` of them.
+/// One smoothing by w, 1 - 2w, w along each axis, where `w` keeps it within kSmoothing_mm also across thick slices;
+/// only where the map asks for more than `done` of them.
 void smooth_once(Volume& volume, const LevelMap& map, int done) {
     const std::vector<float> before = volume.values;
     std::vector<float> next(volume.values.size());
@@ -54,11 +54,13 @@ void smooth_once(Volume& volume, const LevelMap& map, int done) {
     tbb::parallel_for(0, volume.size[2], [&](int k) {
         for (int j = 0; j < volume.size[1]; ++j)
             for (int from = 0; from < volume.size[0]; from += kEvery) {
-                const float asked = value_at(map, map.smoothings, volume.ct_from_voxel * Vector3d(from + 0.5 * kEvery, j, k)),
+                const float asked = value_at(map, map.smoothings,
+                                             volume.ct_from_voxel * Vector3d(from + 0.5 * kEvery, j, k)),
                             share = std::clamp(asked - static_cast<float>(done), 0.0F, 1.0F);
                 for (int i = from; i < std::min(from + kEvery, volume.size[0]); ++i) {
                     const std::size_t v = volume.index(i, j, k);
-                    volume.values[v] = share >= 1 ? volume.values[v] : before[v] + share * (volume.values[v] - before[v]);
+                    volume.values[v] =
+                        share >= 1 ? volume.values[v] : before[v] + share * (volume.values[v] - before[v]);
                 }
             }
     });
@@ -92,9 +94,9 @@ Mask places_of(const Volume& volume, const HeadSurvey& survey, const HeadOutline
                                                                 survey.grid.size[static_cast<std::size_t>(a)] - 1);
                 const std::size_t near = survey.index(s[0], s[1], s[2]);
                 const double d = static_cast<double>(distance[near]);
-                places[volume.index(i, j, k)] = d <= -band_mm                           ? kInside
+                places[volume.index(i, j, k)] = d <= -band_mm                             ? kInside
                                                 : d > outer_mm || outline.gone[near] != 0 ? kOutside
-                                                                                        : kBand;
+                                                                                          : kBand;
             }
     });
     return places;
@@ -106,12 +108,16 @@ std::vector<std::uint8_t> loud_nodes(const Volume& leveled, const Mask& places, 
     for (std::size_t v = 0; v < places.size(); v += 3) {
         if (places[v] != kOutside || !std::isfinite(leveled.values[v])) continue;
         const auto row = static_cast<std::size_t>(leveled.size[0]), columns = static_cast<std::size_t>(leveled.size[1]);
-        const Vector3d at = (leveled.ct_from_voxel * Vector3d(static_cast<double>(v % row), static_cast<double>(v / row % columns),
-                                                              static_cast<double>(v / row / columns)) - map.first_in_ct) / map.step_mm;
+        const Vector3d at =
+            (leveled.ct_from_voxel * Vector3d(static_cast<double>(v % row), static_cast<double>(v / row % columns),
+                                              static_cast<double>(v / row / columns)) -
+             map.first_in_ct) /
+            map.step_mm;
         std::size_t node = 0;
         for (int a = 2; a >= 0; --a)
             node = node * static_cast<std::size_t>(map.size[static_cast<std::size_t>(a)]) +
-                   static_cast<std::size_t>(std::clamp<long>(std::lround(at[a]), 0, map.size[static_cast<std::size_t>(a)] - 1));
+                   static_cast<std::size_t>(
+                       std::clamp<long>(std::lround(at[a]), 0, map.size[static_cast<std::size_t>(a)] - 1));
         air[node].push_back(leveled.values[v]);
     }
     std::vector<std::uint8_t> loud(map.air.size(), 0);
@@ -161,7 +167,8 @@ Volume skin_values(const Volume& volume, const SkinMask& mask) {
     return leveled;
 }
 
-SkinMask segment_mr_skin(const Volume& volume, const SkinSettings& settings, const std::function<void(double)>& progress) {
+SkinMask segment_mr_skin(const Volume& volume, const SkinSettings& settings,
+                         const std::function<void(double)>& progress) {
     const auto report = [&](double done) {
         if (progress) progress(done);
     };
@@ -174,7 +181,8 @@ SkinMask segment_mr_skin(const Volume& volume, const SkinSettings& settings, con
     HeadOutline outline = outline_of(survey, of_outline);
     SkinMask result;
     Volume leveled = volume;
-    if (const auto blank = blank_value(volume); blank && outline.volume_ml > 0 && is_not_air(*blank, survey, outline.head)) {
+    if (const auto blank = blank_value(volume);
+        blank && outline.volume_ml > 0 && is_not_air(*blank, survey, outline.head)) {
         result.blank = blank;
         forget_blank(leveled, *blank);
         survey = survey_of(leveled);
@@ -182,7 +190,8 @@ SkinMask segment_mr_skin(const Volume& volume, const SkinSettings& settings, con
     }
     if (outline.volume_ml <= 0 || outline.levels.empty()) refuse("nothing thick stands out against the air");
     if (outline.volume_ml < kLeastBody_ml)
-        refuse(fmt::format("the largest piece denser than {:.3g} has {:.1f} ml", middle_threshold(outline.levels), outline.volume_ml));
+        refuse(fmt::format("the largest piece denser than {:.3g} has {:.1f} ml", middle_threshold(outline.levels),
+                           outline.volume_ml));
     report(0.5);
 
     result.levels = outline.levels;

@@ -19,7 +19,7 @@ struct SkinSettings {
     double detach_radius_mm = 2.5;  ///< bridges thinner than twice this to the table or head holder are cut
     double max_edge_mm = 2;         ///< of the finished mesh
     double max_decimation_error_mm = 0.15;
-    bool phantom = false;  ///< a phantom, a dry skull or a plate: the result is not asked whether it is a head
+    bool phantom = false;         ///< a phantom, a dry skull or a plate: the result is not asked whether it is a head
     ThicknessSettings thickness;  ///< of the soft tissue over the bone
 };
 
@@ -29,10 +29,10 @@ struct SkinMask {
     double threshold = 0;       ///< used; of an MR in units of `levels`: 1
     double threshold_said = 0;  ///< the same in the volume's own unit (of an MR the middle of its levels), for people
     LevelMap levels;            ///< of an MR: air and skin from place to place; else empty
-    /// Of an MR: the value that stands for "nothing was measured here" (blanked corners, a blanked face), where it is not
-    /// what air shows; in `skin_values` such places are not a number.
+    /// Of an MR: the value that stands for "nothing was measured here" (blanked corners, a blanked face), where it is
+    /// not what air shows; in `skin_values` such places are not a number.
     std::optional<float> blank;
-    int smoothings = 0;  ///< of an MR: how often its noise was smoothed away before its levels were asked
+    int smoothings = 0;           ///< of an MR: how often its noise was smoothed away before its levels were asked
     double brightness_ratio = 1;  ///< of an MR: the tissue under the skin, brightest place to darkest
     /// Of an MR: share of the outline that moves by over 3 mm between 0.7 and 1.5 times the threshold.
     double unsure_share = 0;
@@ -53,7 +53,8 @@ SkinMask segment_skin(const Volume& volume, const SkinSettings& settings = {},
 TriangleMesh triangulate_skin(const Volume& volume, const SkinMask& mask, const SkinSettings& settings = {},
                               const std::function<void(double)>& progress = {});
 
-/// What the skin's crossing is sought on: the volume itself, or of an MR its values in levels, smoothed as the mask says.
+/// What the skin's crossing is sought on: the volume itself, or of an MR its values in levels, smoothed as the mask
+/// says.
 Volume skin_values(const Volume& volume, const SkinMask& mask);
 
 /// How far noise moves the skin along its normal, mm (1 sigma): the deviation of a voxel within the body (by second

@@ -11,9 +11,9 @@ namespace planlight {
 
 /// Where the volume ends within the head: no skin to scan, to match or to draw on (`kCutPlane`).
 struct CutSide {
-    std::string name;      ///< "crown", "neck", "chin", "face", "back", "left side", "right side"
+    std::string name;  ///< "crown", "neck", "chin", "face", "back", "left side", "right side"
     double area_cm2 = 0;
-    bool usual = false;    ///< a neck's: every head scan ends there
+    bool usual = false;  ///< a neck's: every head scan ends there
 };
 
 /// A finding that a person must hear, with its figure and what to do.
@@ -22,10 +22,12 @@ struct SkinDoubt {
     std::string remedy;   ///< one sentence in the imperative
 };
 
-/// Whether a skin is that of a head, and how it was asked. Lengths mm; a figure that could not be taken is not a number.
+/// Whether a skin is that of a head, and how it was asked. Lengths mm; a figure that could not be taken is not a
+/// number.
 struct SkinJudgement {
     std::vector<CutSide> cut_sides;
-    double ball_radius_mm = 0;      ///< of the largest ball within the upper head: an adult's skull 65 to 80, a newborn's 45
+    double ball_radius_mm =
+        0;  ///< of the largest ball within the upper head: an adult's skull 65 to 80, a newborn's 45
     Eigen::Vector3d ball_centre_in_ct = Eigen::Vector3d::Zero();
     double layered_share = 0;       ///< of the vault, where bone lies under the skin, between scalp and brain
     double scalp_mm = 0;            ///< median soft tissue over the bone of the vault
@@ -38,9 +40,9 @@ struct SkinJudgement {
     std::vector<SkinDoubt> refusals;
 };
 
-/// Asks a skin whether it is that of a head: size (the largest ball in it), layers (scalp over bone over brain: a stripped
-/// brain, a bottle and a phantom have none), face (a nose), ends, sharpness, things that lie on it. No name and no word of
-/// a header is asked.
+/// Asks a skin whether it is that of a head: size (the largest ball in it), layers (scalp over bone over brain: a
+/// stripped brain, a bottle and a phantom have none), face (a nose), ends, sharpness, things that lie on it. No name
+/// and no word of a header is asked.
 SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin);
 
 /// Throws InputError with the first refusal, if there is one.

@@ -14,13 +14,13 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kStep_mm = 0.5;
-constexpr int kOut = 16, kIn = 100;        // samples before and under the skin: 8 and 50 mm
+constexpr int kOut = 16, kIn = 100;  // samples before and under the skin: 8 and 50 mm
 constexpr std::size_t kMostSamples = 12000;
 constexpr double kBone_hu = 300, kAir_hu = -500;
 constexpr double kBoneFrom_mm = 2, kBoneTo_mm = 16;  // under the skin
 constexpr double kBrainFrom_mm = 22, kBrainTo_mm = 45;
-constexpr double kDark = 0.55;             // of the brain: bone with what thick voxels add to it
-constexpr double kBright = 1.6;            // of the brain: bone in a CT that is not in HU
+constexpr double kDark = 0.55;   // of the brain: bone with what thick voxels add to it
+constexpr double kBright = 1.6;  // of the brain: bone in a CT that is not in HU
 constexpr double kThinMatter_mm = 3.5, kGap_mm = 3;
 
 /// Values from 8 mm before the skin (index 0) to 50 mm under it.
@@ -32,7 +32,9 @@ struct Sample {
     Profile values;
     double at(double depth_mm) const {
         const auto index = std::lround(depth_mm / kStep_mm) + kOut;
-        return index < 0 || index >= static_cast<long>(values.size()) ? NAN : static_cast<double>(values[static_cast<std::size_t>(index)]);
+        return index < 0 || index >= static_cast<long>(values.size())
+                   ? NAN
+                   : static_cast<double>(values[static_cast<std::size_t>(index)]);
     }
 };
 
@@ -58,14 +60,16 @@ std::vector<Sample> samples_of(const Volume& values, const TriangleMesh& skin, c
         // Above the skull's middle, not the face, and where the surface looks outwards (not behind an ear).
         s.beside = std::abs(away.x()) > 0.75;
         s.vault = away.z() > 0.2 && skin.normals_in_ct[s.vertex].dot(away) > 0.7;
-        const Vector3d inwards = voxel_from_ct.linear() * (-kStep_mm * skin.normals_in_ct[s.vertex]), at = voxel_from_ct * p;
+        const Vector3d inwards = voxel_from_ct.linear() * (-kStep_mm * skin.normals_in_ct[s.vertex]),
+                       at = voxel_from_ct * p;
         for (int i = -kOut; i <= kIn; ++i)
             s.values.push_back(static_cast<float>(value_at(values, at + i * inwards).value_or(NAN)));
     });
     return samples;
 }
 
-/// Way from 80 to 20 % of the step from the air before the skin to the first 4 mm under it; not a number without a step.
+/// Way from 80 to 20 % of the step from the air before the skin to the first 4 mm under it; not a number without a
+/// step.
 double blur_of(const Sample& s) {
     const double air = median_between(s, -6, -3);
     double crest = -INFINITY;
@@ -119,7 +123,8 @@ struct Layer {
     double depth_mm = NAN, level = NAN;
 };
 
-/// The layer of bone between scalp and brain, of values whose air is 0: darker than both, or (`bright`) brighter than both.
+/// The layer of bone between scalp and brain, of values whose air is 0: darker than both, or (`bright`) brighter than
+/// both.
 Layer bone_of(const Sample& s, double brain) {
     Layer layer;
     std::vector<double> over, under;  // the brightest so far, and within 14 mm further on
@@ -145,14 +150,16 @@ Layer bone_of(const Sample& s, double brain) {
     layer.level = least / brain;
     layer.dark = least < kDark * brain && ratio < 0.7 && under[dip] > 0.5 * brain;
     layer.faint = ratio < 0.85;
-    layer.bright = most > kBright * brain && over_bright < 0.75 * most && median_between(s, most_at + 8, most_at + 20) < 0.75 * most;
+    layer.bright = most > kBright * brain && over_bright < 0.75 * most &&
+                   median_between(s, most_at + 8, most_at + 20) < 0.75 * most;
     layer.depth_mm = layer.dark ? least_at : most_at;
     return layer;
 }
 
 }  // namespace
 
-SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin, const Vector3d& centre_in_ct) {
+SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin,
+                        const Vector3d& centre_in_ct) {
     const Volume leveled = mask.levels.empty() ? Volume() : skin_values(volume, mask);
     const Volume& values = mask.levels.empty() ? volume : leveled;
     const std::vector<Sample> samples = samples_of(values, skin, centre_in_ct);
@@ -160,7 +167,8 @@ SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const Triang
     std::vector<double> brains, blurs, depths, levels;
     for (const Sample& s : samples) {
         if (const double blur = blur_of(s); std::isfinite(blur)) blurs.push_back(blur);
-        if (const double brain = median_between(s, kBrainFrom_mm, kBrainTo_mm); s.vault && std::isfinite(brain)) brains.push_back(brain);
+        if (const double brain = median_between(s, kBrainFrom_mm, kBrainTo_mm); s.vault && std::isfinite(brain))
+            brains.push_back(brain);
     }
     layers.edge_blur_mm = median(std::move(blurs));
     const double brain = brains.empty() ? NAN : median(std::move(brains));
@@ -193,7 +201,9 @@ SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const Triang
     for (const auto& t : skin.triangles) {
         const auto& a = skin.vertices_in_ct[static_cast<std::size_t>(t[0])];
         area_cm2 += (skin.vertices_in_ct[static_cast<std::size_t>(t[1])] - a)
-                        .cross(skin.vertices_in_ct[static_cast<std::size_t>(t[2])] - a).norm() / 200;
+                        .cross(skin.vertices_in_ct[static_cast<std::size_t>(t[2])] - a)
+                        .norm() /
+                    200;
     }
     layers.gap_cm2 = samples.empty() || !volume.is_hu ? 0 : area_cm2 * off / static_cast<double>(samples.size());
     return layers;

@@ -39,20 +39,25 @@ void draw_view(RgbImage& sheet, int x0, int y0, const TriangleMesh& skin, const 
         for (std::size_t c = 0; c < 3; ++c) {
             const auto v = static_cast<std::size_t>(t[c]);
             const Vector3d at = skin.vertices_in_ct[v] - frame.middle;
-            p[c] = {kTile / 2.0 + at.dot(view.right) / frame.mm_per_pixel, kTile / 2.0 + at.dot(view.down) / frame.mm_per_pixel,
-                    at.dot(view.forward)};
+            p[c] = {kTile / 2.0 + at.dot(view.right) / frame.mm_per_pixel,
+                    kTile / 2.0 + at.dot(view.down) / frame.mm_per_pixel, at.dot(view.forward)};
             if (!skin.flags.empty()) flag = std::max(flag, skin.flags[v]);
         }
-        const Vector3d normal = (skin.vertices_in_ct[static_cast<std::size_t>(t[1])] - skin.vertices_in_ct[static_cast<std::size_t>(t[0])])
-                                    .cross(skin.vertices_in_ct[static_cast<std::size_t>(t[2])] - skin.vertices_in_ct[static_cast<std::size_t>(t[0])])
-                                    .normalized();
-        const double light = std::max(0.0, -normal.dot(view.forward) * 0.8 - 0.25 * normal.dot(view.down) + 0.15 * normal.dot(view.right));
+        const Vector3d normal =
+            (skin.vertices_in_ct[static_cast<std::size_t>(t[1])] - skin.vertices_in_ct[static_cast<std::size_t>(t[0])])
+                .cross(skin.vertices_in_ct[static_cast<std::size_t>(t[2])] -
+                       skin.vertices_in_ct[static_cast<std::size_t>(t[0])])
+                .normalized();
+        const double light = std::max(
+            0.0, -normal.dot(view.forward) * 0.8 - 0.25 * normal.dot(view.down) + 0.15 * normal.dot(view.right));
         const double area = (p[1] - p[0]).x() * (p[2] - p[0]).y() - (p[1] - p[0]).y() * (p[2] - p[0]).x();
         if (std::abs(area) < 1e-9) continue;
         const auto low = [&](int a) { return std::min({p[0][a], p[1][a], p[2][a]}); };
         const auto high = [&](int a) { return std::max({p[0][a], p[1][a], p[2][a]}); };
-        for (int y = std::max(0, static_cast<int>(std::ceil(low(1)))); y <= std::min(kTile - 1, static_cast<int>(high(1))); ++y)
-            for (int x = std::max(0, static_cast<int>(std::ceil(low(0)))); x <= std::min(kTile - 1, static_cast<int>(high(0))); ++x) {
+        for (int y = std::max(0, static_cast<int>(std::ceil(low(1))));
+             y <= std::min(kTile - 1, static_cast<int>(high(1))); ++y)
+            for (int x = std::max(0, static_cast<int>(std::ceil(low(0))));
+                 x <= std::min(kTile - 1, static_cast<int>(high(0))); ++x) {
                 const double b = ((x - p[0].x()) * (p[2] - p[0]).y() - (y - p[0].y()) * (p[2] - p[0]).x()) / area;
                 const double c = ((p[1] - p[0]).x() * (y - p[0].y()) - (p[1] - p[0]).y() * (x - p[0].x())) / area;
                 if (b < -1e-9 || c < -1e-9 || b + c > 1 + 1e-9) continue;
@@ -65,14 +70,16 @@ void draw_view(RgbImage& sheet, int x0, int y0, const TriangleMesh& skin, const 
     }
 }
 
-void draw_slice(RgbImage& sheet, int x0, int y0, const Volume& volume, const TriangleMesh& skin, const View& view, const Frame& frame,
-                double black, double white) {
+void draw_slice(RgbImage& sheet, int x0, int y0, const Volume& volume, const TriangleMesh& skin, const View& view,
+                const Frame& frame, double black, double white) {
     const Eigen::Affine3d voxel_from_ct = volume.ct_from_voxel.inverse();
     for (int y = 0; y < kTile; ++y)
         for (int x = 0; x < kTile; ++x) {
-            const Vector3d at = frame.middle + frame.mm_per_pixel * ((x - kTile / 2.0) * view.right + (y - kTile / 2.0) * view.down);
+            const Vector3d at =
+                frame.middle + frame.mm_per_pixel * ((x - kTile / 2.0) * view.right + (y - kTile / 2.0) * view.down);
             const double value = value_at(volume, voxel_from_ct * at).value_or(NAN);
-            const double grey = std::isfinite(value) ? 255 * std::sqrt(std::clamp((value - black) / (white - black), 0.0, 1.0)) : 30;
+            const double grey =
+                std::isfinite(value) ? 255 * std::sqrt(std::clamp((value - black) / (white - black), 0.0, 1.0)) : 30;
             const auto g = static_cast<std::uint8_t>(grey);
             sheet.pixels[sheet.index(x0 + x, y0 + y)] = {g, g, std::isfinite(value) ? g : std::uint8_t{60}};
         }
@@ -102,7 +109,8 @@ std::pair<double, double> window_of(const Volume& volume) {
     std::sort(sample.begin(), sample.end());
     if (sample.empty()) return {0, 1};
     if (volume.is_hu) return {-1024, 1000};
-    const double low = static_cast<double>(sample[sample.size() / 500]), high = static_cast<double>(sample[sample.size() * 199 / 200]);
+    const double low = static_cast<double>(sample[sample.size() / 500]),
+                 high = static_cast<double>(sample[sample.size() * 199 / 200]);
     return {low, high > low ? high : low + 1};
 }
 
@@ -115,7 +123,8 @@ RgbImage head_sheet(const Volume& volume, const TriangleMesh& skin) {
     for (const auto& p : skin.vertices_in_ct) low = low.cwiseMin(p), high = high.cwiseMax(p);
     Frame frame{(low + high) / 2, (high - low).maxCoeff() / (kTile - 12)};
     const Vector3d left(1, 0, 0), back(0, 1, 0), up(0, 0, 1);
-    const View views[] = {{left, -up, back}, {back, -up, -left}, {-back, -up, left}, {-left, -up, -back}, {left, back, -up}};
+    const View views[] = {
+        {left, -up, back}, {back, -up, -left}, {-back, -up, left}, {-left, -up, -back}, {left, back, -up}};
     for (int v = 0; v < 5; ++v) draw_view(sheet, v * kTile, 0, skin, views[v], frame);
     const auto [black, white] = window_of(volume);
     const View sagittal{back, -up, left}, coronal{left, -up, back}, axial{left, back, up};
@@ -124,7 +133,8 @@ RgbImage head_sheet(const Volume& volume, const TriangleMesh& skin) {
     draw_slice(sheet, kTile, kTile, volume, skin, sagittal, at({32, 0, 0}), black, white);
     draw_slice(sheet, 2 * kTile, kTile, volume, skin, coronal, at({0, 0, 0}), black, white);
     draw_slice(sheet, 3 * kTile, kTile, volume, skin, axial, at({0, 0, 0}), black, white);
-    draw_slice(sheet, 4 * kTile, kTile, volume, skin, axial, at({0, 0, high.z() - 70 - frame.middle.z()}), black, white);
+    draw_slice(sheet, 4 * kTile, kTile, volume, skin, axial, at({0, 0, high.z() - 70 - frame.middle.z()}), black,
+               white);
     return sheet;
 }
 

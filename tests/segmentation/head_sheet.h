@@ -6,8 +6,9 @@
 
 namespace planlight::test {
 
-/// The skin from the front, both sides, behind and above (lids blue, ends of the volume red), and below the middle slices
-/// of the volume with the skin's line: sagittal, sagittal through an eye, coronal, axial at two heights. Drawn without OpenGL.
+/// The skin from the front, both sides, behind and above (lids blue, ends of the volume red), and below the middle
+/// slices of the volume with the skin's line: sagittal, sagittal through an eye, coronal, axial at two heights. Drawn
+/// without OpenGL.
 RgbImage head_sheet(const Volume& volume, const TriangleMesh& skin);
 
 }  // namespace planlight::test

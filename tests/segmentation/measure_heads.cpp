@@ -1,6 +1,6 @@
-// The skin of every head of a folder, as `planlight prepare` takes it: verdict, how it was checked, a picture sheet, and how far it
-// lies off the skin that rays find; beside it the plain way (threshold, largest piece, fill). Compared with EXPECTED.tsv where the
-// folder has one. measure_heads FOLDER [PICTURES] [--only WORD]
+// The skin of every head of a folder, as `planlight prepare` takes it: verdict, how it was checked, a picture sheet,
+// and how far it lies off the skin that rays find; beside it the plain way (threshold, largest piece, fill). Compared
+// with EXPECTED.tsv where the folder has one. measure_heads FOLDER [PICTURES] [--only WORD]
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,13 +37,14 @@ TriangleMesh not_skin(const TriangleMesh& skin) {
     TriangleMesh lids;
     lids.vertices_in_ct = skin.vertices_in_ct;
     for (const auto& t : skin.triangles)
-        if (std::any_of(t.begin(), t.end(), [&](std::int32_t c) { return skin.flags[static_cast<std::size_t>(c)] != kSkin; }))
+        if (std::any_of(t.begin(), t.end(),
+                        [&](std::int32_t c) { return skin.flags[static_cast<std::size_t>(c)] != kSkin; }))
             lids.triangles.push_back(t);
     return lids;
 }
 
-/// Share of the rays' points further than 2 mm from the surface, per cent. What lies behind a lid (nostril, ear) is flagged as no
-/// skin and not counted.
+/// Share of the rays' points further than 2 mm from the surface, per cent. What lies behind a lid (nostril, ear) is
+/// flagged as no skin and not counted.
 double off_percent(const std::vector<Eigen::Vector3d>& points, const TriangleMesh& skin) {
     if (points.empty() || skin.triangles.empty()) return NAN;
     const DistanceToMesh distance(skin), from_lid(not_skin(skin));
@@ -63,7 +64,8 @@ double plain_off_percent(Volume volume, const std::vector<Eigen::Vector3d>& poin
         SkinMask mask;
         mask.threshold = skin_threshold(volume);
         mask.body.resize(volume.values.size());
-        for (std::size_t v = 0; v < mask.body.size(); ++v) mask.body[v] = static_cast<double>(volume.values[v]) >= mask.threshold;
+        for (std::size_t v = 0; v < mask.body.size(); ++v)
+            mask.body[v] = static_cast<double>(volume.values[v]) >= mask.threshold;
         const VoxelGrid grid = grid_of(volume);
         mask.body = outside_air(largest_piece(std::move(mask.body), grid).mask, grid);
         for (auto& v : mask.body) v = !v;
@@ -139,20 +141,26 @@ int main(int argc, char** argv) {
     const auto expected = expected_in(folder);
     std::vector<fs::path> heads;
     for (const auto& entry : fs::directory_iterator(folder))
-        if (entry.path().extension() != ".tsv" && entry.path().filename().string().find(only) != std::string::npos) heads.push_back(entry.path());
+        if (entry.path().extension() != ".tsv" && entry.path().filename().string().find(only) != std::string::npos)
+            heads.push_back(entry.path());
     std::sort(heads.begin(), heads.end());
     int wrong = 0;
-    fmt::print("head\tverdict\texpected\tml\tthreshold\tball mm\tlayered\tnose mm\tblur mm\tunsure\tsigma mm\toff > 2 mm %\tplain off %\ts\twhy\n");
+    fmt::print(
+        "head\tverdict\texpected\tml\tthreshold\tball mm\tlayered\tnose mm\tblur mm\tunsure\tsigma mm\toff > 2 mm "
+        "%\tplain off %\ts\twhy\n");
     for (const auto& head : heads) {
         const std::string name = head.filename().string();
         const Row row = measure(head, pictures);
         const auto known = expected.find(name);
         const bool right = known == expected.end() || is_right(row.verdict, known->second);
         wrong += !right;
-        fmt::print("{}\t{}{}\t{}\t{:.0f}\t{:.4g}\t{:.0f}\t{:.2f}\t{:.0f}\t{:.1f}\t{:.3f}\t{:.2f}\t{:.2f}\t{:.2f}\t{:.1f}\t{}\n", name, row.verdict,
-                   right ? "" : " WRONG", known == expected.end() ? "-" : known->second, row.ml, row.mask.threshold_said,
-                   row.judged.ball_radius_mm, row.judged.layered_share, row.judged.nose_mm, row.judged.edge_blur_mm, row.mask.unsure_share,
-                   row.judged.sigma_mm, row.off_percent, row.plain_off_percent, row.seconds, row.why);
+        fmt::print(
+            "{}\t{}{}\t{}\t{:.0f}\t{:.4g}\t{:.0f}\t{:.2f}\t{:.0f}\t{:.1f}\t{:.3f}\t{:.2f}\t{:.2f}\t{:.2f}\t{:.1f}\t{}"
+            "\n",
+            name, row.verdict, right ? "" : " WRONG", known == expected.end() ? "-" : known->second, row.ml,
+            row.mask.threshold_said, row.judged.ball_radius_mm, row.judged.layered_share, row.judged.nose_mm,
+            row.judged.edge_blur_mm, row.mask.unsure_share, row.judged.sigma_mm, row.off_percent, row.plain_off_percent,
+            row.seconds, row.why);
         std::fflush(stdout);
     }
     fmt::print("{} heads, {} not as expected\n", heads.size(), wrong);

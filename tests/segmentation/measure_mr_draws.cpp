@@ -1,6 +1,7 @@
-// Heads made from the CT of the example patient with the contrast and the faults of an MR: right, warned, refused, wrong.
-// measure_mr_draws FIRST_SEED COUNT [LEAST_VOXEL_MM [PICTURES]]. Wrong: accepted (with a warning or not) with more than 1 % of the true skin
-// further than 2 mm from ours, on draws whose fat shift and steps do not move the skin themselves.
+// Heads made from the CT of the example patient with the contrast and the faults of an MR: right, warned, refused,
+// wrong. measure_mr_draws FIRST_SEED COUNT [LEAST_VOXEL_MM [PICTURES]]. Wrong: accepted (with a warning or not) with
+// more than 1 % of the true skin further than 2 mm from ours, on draws whose fat shift and steps do not move the skin
+// themselves.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +23,8 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "measure_mr_draws FIRST_SEED COUNT [LEAST_VOXEL_MM]; needs Debian's invesalius-examples\n");
         return 2;
     }
-    const auto first = static_cast<std::uint32_t>(std::atoi(argv[1])), count = static_cast<std::uint32_t>(std::atoi(argv[2]));
+    const auto first = static_cast<std::uint32_t>(std::atoi(argv[1])),
+               count = static_cast<std::uint32_t>(std::atoi(argv[2]));
     const double least_mm = argc > 3 ? std::atof(argv[3]) : 0.8;
     const Volume ct = read_volume(*example_patient());
     const SkinMask body = segment_skin(ct);
@@ -40,7 +42,8 @@ int main(int argc, char** argv) {
             refuse_implausible(judged);
             TriangleMesh lids = skin;  // flagged as no skin: what lies behind is not counted
             std::erase_if(lids.triangles, [&](const auto& t) {
-                return std::all_of(t.begin(), t.end(), [&](auto c) { return skin.flags[static_cast<std::size_t>(c)] == kSkin; });
+                return std::all_of(t.begin(), t.end(),
+                                   [&](auto c) { return skin.flags[static_cast<std::size_t>(c)] == kSkin; });
             });
             const DistanceToMesh distance(skin), from_lid(lids);
             std::vector<double> mm;
@@ -51,8 +54,11 @@ int main(int argc, char** argv) {
             }
             std::sort(mm.begin(), mm.end());
             p95 = mm[mm.size() * 95 / 100];
-            off = 100.0 * static_cast<double>(mm.end() - std::upper_bound(mm.begin(), mm.end(), 2.0)) / static_cast<double>(mm.size());
-            const bool doubted = std::any_of(judged.doubts.begin(), judged.doubts.end(), [](const SkinDoubt& d) { return !d.finding.starts_with("The volume ends"); });
+            off = 100.0 * static_cast<double>(mm.end() - std::upper_bound(mm.begin(), mm.end(), 2.0)) /
+                  static_cast<double>(mm.size());
+            const bool doubted = std::any_of(judged.doubts.begin(), judged.doubts.end(), [](const SkinDoubt& d) {
+                return !d.finding.starts_with("The volume ends");
+            });
             verdict = off > 1 ? (doubted ? "warned" : "WRONG") : "right";
             for (const SkinDoubt& d : judged.doubts) why += d.finding.substr(0, 60) + "; ";
         } catch (const Error& error) {

@@ -17,12 +17,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Signal of fat, of muscle and skin, of brain, of fluid, of bone; the fluid is unknown to a CT, its share is the bones' rims'.
+/// Signal of fat, of muscle and skin, of brain, of fluid, of bone; the fluid is unknown to a CT, its share is the
+/// bones' rims'.
 struct Contrast {
     const char* name;
     float fat, soft, bone;
 };
-constexpr std::array<Contrast, 4> kContrasts{{{"T1", 1.0F, 0.45F, 0.06F}, {"T2", 0.7F, 0.4F, 0.04F}, {"FLAIR", 0.8F, 0.45F, 0.05F}, {"PD", 0.8F, 0.7F, 0.08F}}};
+constexpr std::array<Contrast, 4> kContrasts{
+    {{"T1", 1.0F, 0.45F, 0.06F}, {"T2", 0.7F, 0.4F, 0.04F}, {"FLAIR", 0.8F, 0.45F, 0.05F}, {"PD", 0.8F, 0.7F, 0.08F}}};
 
 /// Fat and all else apart, because the scanner shifts fat.
 struct Signals {
@@ -49,7 +51,8 @@ Signals signals_of(const Volume& ct, const SkinMask& body, const Contrast& contr
         } else if (hu < 130) {
             s.water.values[v] = contrast.soft;
         } else {
-            s.water.values[v] = contrast.soft + (contrast.bone - contrast.soft) * std::clamp((hu - 130) / 200, 0.0F, 1.0F);
+            s.water.values[v] =
+                contrast.soft + (contrast.bone - contrast.soft) * std::clamp((hu - 130) / 200, 0.0F, 1.0F);
         }
     }
     return s;
@@ -65,7 +68,8 @@ float sample(const Volume& volume, const Vector3d& voxel) {
         low[a] = static_cast<std::size_t>(at);
         f[a] = static_cast<float>(at - std::floor(at));
     }
-    const std::size_t row = static_cast<std::size_t>(volume.size[0]), slab = row * static_cast<std::size_t>(volume.size[1]);
+    const std::size_t row = static_cast<std::size_t>(volume.size[0]),
+                      slab = row * static_cast<std::size_t>(volume.size[1]);
     const float* at = volume.values.data() + low[2] * slab + low[1] * row + low[0];
     const auto x = [&](std::size_t o) { return at[o] + f[0] * (at[o + 1] - at[o]); };
     const float front = x(0) + f[1] * (x(row) - x(0)), back = x(slab) + f[1] * (x(slab + row) - x(slab));
@@ -76,7 +80,9 @@ float sample(const Volume& volume, const Vector3d& voxel) {
 
 MrDraw mr_like(const Volume& ct, const SkinMask& body, std::uint32_t seed, double least_mm) {
     std::mt19937 random(seed);
-    const auto uniform = [&](double from, double to) { return std::uniform_real_distribution<double>(from, to)(random); };
+    const auto uniform = [&](double from, double to) {
+        return std::uniform_real_distribution<double>(from, to)(random);
+    };
     const Contrast& contrast = kContrasts[seed % kContrasts.size()];
     const Signals signals = signals_of(ct, body, contrast);
     Vector3d spacing = Vector3d::Constant(uniform(least_mm, 2.0));
@@ -91,8 +97,11 @@ MrDraw mr_like(const Volume& ct, const SkinMask& body, std::uint32_t seed, doubl
     Eigen::AlignedBox3d head;
     for (std::size_t v = 0; v < body.body.size(); v += 3)
         if (body.body[v]) {
-            const auto i = static_cast<int>(v % static_cast<std::size_t>(ct.size[0])), j = static_cast<int>(v / static_cast<std::size_t>(ct.size[0]) % static_cast<std::size_t>(ct.size[1])),
-                       k = static_cast<int>(v / static_cast<std::size_t>(ct.size[0]) / static_cast<std::size_t>(ct.size[1]));
+            const auto i = static_cast<int>(v % static_cast<std::size_t>(ct.size[0])),
+                       j = static_cast<int>(v / static_cast<std::size_t>(ct.size[0]) %
+                                            static_cast<std::size_t>(ct.size[1])),
+                       k = static_cast<int>(v / static_cast<std::size_t>(ct.size[0]) /
+                                            static_cast<std::size_t>(ct.size[1]));
             head.extend(turn.conjugate() * (ct.ct_from_voxel * Vector3d(i, j, k)));
         }
     const double margin_mm = uniform(12, 35);
@@ -102,9 +111,12 @@ MrDraw mr_like(const Volume& ct, const SkinMask& body, std::uint32_t seed, doubl
     mr.ct_from_voxel.linear() = turn.toRotationMatrix() * Eigen::Matrix3d(spacing.asDiagonal());
     mr.ct_from_voxel.translation() = turn * (head.min() - Vector3d::Constant(margin_mm));
     for (int a = 0; a < 3; ++a)
-        mr.size[static_cast<std::size_t>(a)] = std::max(16, static_cast<int>((head.sizes()[a] + 2 * margin_mm) / spacing[a]));
-    const double noise = uniform(0.01, 0.15) * static_cast<double>(contrast.soft), ratio = uniform(1, 3), fat_shift_mm = uniform(0, 1.5), ghost = uniform(0, 0.06), wrap = uniform(0, 0.06);
-    const Vector3d coil = Vector3d(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)).normalized(), middle = turn * head.center();
+        mr.size[static_cast<std::size_t>(a)] =
+            std::max(16, static_cast<int>((head.sizes()[a] + 2 * margin_mm) / spacing[a]));
+    const double noise = uniform(0.01, 0.15) * static_cast<double>(contrast.soft), ratio = uniform(1, 3),
+                 fat_shift_mm = uniform(0, 1.5), ghost = uniform(0, 0.06), wrap = uniform(0, 0.06);
+    const Vector3d coil = Vector3d(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)).normalized(),
+                   middle = turn * head.center();
     const Vector3d readout = turn * Vector3d::UnitX();
     const Eigen::Affine3d ct_voxel = ct.ct_from_voxel.inverse();
     mr.values.assign(mr.index(0, 0, mr.size[2]), 0);
@@ -113,12 +125,15 @@ MrDraw mr_like(const Volume& ct, const SkinMask& body, std::uint32_t seed, doubl
             for (int i = 0; i < mr.size[0]; ++i) {
                 float sum = 0;
                 for (int corner = 0; corner < 8; ++corner) {
-                    const Vector3d aside((corner & 1) ? 0.25 : -0.25, (corner & 2) ? 0.25 : -0.25, ((corner & 4) ? 0.25 : -0.25) * slice_mm / spacing.z());
+                    const Vector3d aside((corner & 1) ? 0.25 : -0.25, (corner & 2) ? 0.25 : -0.25,
+                                         ((corner & 4) ? 0.25 : -0.25) * slice_mm / spacing.z());
                     const Vector3d p = mr.ct_from_voxel * (Vector3d(i, j, k) + aside);
-                    sum += sample(signals.water, ct_voxel * p) + sample(signals.fat, ct_voxel * (p + fat_shift_mm * readout));
+                    sum += sample(signals.water, ct_voxel * p) +
+                           sample(signals.fat, ct_voxel * (p + fat_shift_mm * readout));
                 }
                 const Vector3d p = mr.ct_from_voxel * Vector3d(i, j, k);
-                mr.values[mr.index(i, j, k)] = sum / 8 * static_cast<float>(std::pow(ratio, (p - middle).dot(coil) / 200));
+                mr.values[mr.index(i, j, k)] =
+                    sum / 8 * static_cast<float>(std::pow(ratio, (p - middle).dot(coil) / 200));
             }
     });
     const std::vector<float> clean = mr.values;
@@ -127,13 +142,18 @@ MrDraw mr_like(const Volume& ct, const SkinMask& body, std::uint32_t seed, doubl
     for (int k = 0; k < mr.size[2]; ++k)
         for (int j = 0; j < mr.size[1]; ++j)
             for (int i = 0; i < mr.size[0]; ++i) {
-                const auto other = [&](int to) { return static_cast<double>(clean[mr.index(i, (to % mr.size[1] + mr.size[1]) % mr.size[1], k)]); };
-                double value = static_cast<double>(clean[mr.index(i, j, k)]) + ghost * 0.5 * (other(j + shift) + other(j - shift)) + wrap * other(j + mr.size[1] / 2);
+                const auto other = [&](int to) {
+                    return static_cast<double>(clean[mr.index(i, (to % mr.size[1] + mr.size[1]) % mr.size[1], k)]);
+                };
+                double value = static_cast<double>(clean[mr.index(i, j, k)]) +
+                               ghost * 0.5 * (other(j + shift) + other(j - shift)) + wrap * other(j + mr.size[1] / 2);
                 value = std::hypot(value + normal(random), normal(random));
                 mr.values[mr.index(i, j, k)] = static_cast<float>(1000 * value);
             }
-    draw.said = fmt::format("{} {:.2f} x {:.2f} mm, noise {:.0f} %, coil {:.1f}:1, fat {:.1f} mm, ghost {:.0f} %, wrap {:.0f} %", contrast.name, spacing.x(), spacing.z(),
-                            100 * noise / static_cast<double>(contrast.soft), ratio, fat_shift_mm, 100 * ghost, 100 * wrap);
+    draw.said = fmt::format(
+        "{} {:.2f} x {:.2f} mm, noise {:.0f} %, coil {:.1f}:1, fat {:.1f} mm, ghost {:.0f} %, wrap {:.0f} %",
+        contrast.name, spacing.x(), spacing.z(), 100 * noise / static_cast<double>(contrast.soft), ratio, fat_shift_mm,
+        100 * ghost, 100 * wrap);
     return draw;
 }
 

@@ -19,14 +19,16 @@ constexpr int kLeastAir = 12, kStays = 6, kCrest = 14;  // samples: 6 mm of air,
 constexpr double kDeviations = 8, kLoneliest_mm = 5;
 
 /// The mean of five rays 1.2 mm aside, and of 1.5 mm along.
-std::vector<double> profile_of(const Volume& volume, const Eigen::Affine3d& voxel_from_ct, const Vector3d& from, const Vector3d& along,
-                               const Vector3d& u, const Vector3d& v, int samples) {
+std::vector<double> profile_of(const Volume& volume, const Eigen::Affine3d& voxel_from_ct, const Vector3d& from,
+                               const Vector3d& along, const Vector3d& u, const Vector3d& v, int samples) {
     std::vector<double> raw(static_cast<std::size_t>(samples), NAN);
     for (int s = 0; s < samples; ++s) {
         double sum = 0;
         int count = 0;
-        for (const Vector3d& aside : {Vector3d(Vector3d::Zero()), Vector3d(1.2 * u), Vector3d(-1.2 * u), Vector3d(1.2 * v), Vector3d(-1.2 * v)})
-            if (const auto value = value_at(volume, voxel_from_ct * (from + s * kStep_mm * along + aside)); value && std::isfinite(*value))
+        for (const Vector3d& aside :
+             {Vector3d(Vector3d::Zero()), Vector3d(1.2 * u), Vector3d(-1.2 * u), Vector3d(1.2 * v), Vector3d(-1.2 * v)})
+            if (const auto value = value_at(volume, voxel_from_ct * (from + s * kStep_mm * along + aside));
+                value && std::isfinite(*value))
                 sum += *value, ++count;
         if (count >= 3) raw[static_cast<std::size_t>(s)] = sum / count;
     }
@@ -79,7 +81,8 @@ double contrast_of(const Volume& volume) {
 std::vector<Vector3d> ray_skin(const Volume& volume) {
     Eigen::AlignedBox3d box;
     for (int corner = 0; corner < 8; ++corner)
-        box.extend(volume.ct_from_voxel * Vector3d((corner & 1) * (volume.size[0] - 1), ((corner >> 1) & 1) * (volume.size[1] - 1),
+        box.extend(volume.ct_from_voxel * Vector3d((corner & 1) * (volume.size[0] - 1),
+                                                   ((corner >> 1) & 1) * (volume.size[1] - 1),
                                                    (corner >> 2) * (volume.size[2] - 1)));
     const Eigen::Affine3d voxel_from_ct = volume.ct_from_voxel.inverse();
     const double contrast = contrast_of(volume), half = box.diagonal().norm() / 2;
@@ -94,10 +97,14 @@ std::vector<Vector3d> ray_skin(const Volume& volume) {
         const int n = static_cast<int>(half / kBetween_mm);
         const auto at = [&](int a, int b) { return static_cast<std::size_t>((a + n) * (2 * n + 1) + b + n); };
         std::vector<double> depth(static_cast<std::size_t>((2 * n + 1) * (2 * n + 1)), NAN);
-        const auto start = [&](int a, int b) -> Vector3d { return box.center() + half * side + kBetween_mm * (a * u + b * v); };
+        const auto start = [&](int a, int b) -> Vector3d {
+            return box.center() + half * side + kBetween_mm * (a * u + b * v);
+        };
         tbb::parallel_for(-n, n + 1, [&](int a) {
             for (int b = -n; b <= n; ++b)
-                depth[at(a, b)] = skin_at(profile_of(volume, voxel_from_ct, start(a, b), -side, u, v, static_cast<int>(2 * half / kStep_mm)), contrast);
+                depth[at(a, b)] = skin_at(
+                    profile_of(volume, voxel_from_ct, start(a, b), -side, u, v, static_cast<int>(2 * half / kStep_mm)),
+                    contrast);
         });
         for (int a = -n + 1; a < n; ++a)
             for (int b = -n + 1; b < n; ++b) {

@@ -15,8 +15,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// An MR of 3 mm voxels of what `signal` says at a place (mm, the middle is the origin, the front is at negative y), with Rician noise.
-Volume mr_of(const std::function<double(const Vector3d&)>& signal, const Vector3d& half_mm = {105, 125, 115}, double noise = 12) {
+/// An MR of 3 mm voxels of what `signal` says at a place (mm, the middle is the origin, the front is at negative y),
+/// with Rician noise.
+Volume mr_of(const std::function<double(const Vector3d&)>& signal, const Vector3d& half_mm = {105, 125, 115},
+             double noise = 12) {
     Volume volume;
     volume.modality = "MR";
     volume.ct_from_voxel.linear() *= 3;
@@ -38,7 +40,9 @@ double depth_in_head(const Vector3d& p, bool nose = true) {
     return nose ? std::max(egg, 12 - (p - Vector3d(0, -100, -30)).norm()) : egg;
 }
 
-double layered(double depth) { return depth < 0 ? 0 : depth < 6 ? 900 : depth < 13 ? 40 : 500; }
+double layered(double depth) {
+    return depth < 0 ? 0 : depth < 6 ? 900 : depth < 13 ? 40 : 500;
+}
 
 struct Judged {
     SkinJudgement skin;
@@ -68,24 +72,26 @@ TEST(JudgeSkin, RefusesABrainWithoutScalp) {
 }
 
 TEST(JudgeSkin, RefusesABottleAndASmallAnimal) {
-    EXPECT_TRUE(judged(mr_of([](const Vector3d& p) { return std::hypot(p.x(), p.y()) < 70 && std::abs(p.z()) < 90 ? 800.0 : 0.0; })).refused);
+    EXPECT_TRUE(judged(mr_of([](const Vector3d& p) {
+                    return std::hypot(p.x(), p.y()) < 70 && std::abs(p.z()) < 90 ? 800.0 : 0.0;
+                })).refused);
     const Judged small = judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p * 2.5)); }));
     ASSERT_TRUE(small.refused);
     EXPECT_NE(small.skin.refusals.front().finding.find("no human head"), std::string::npos);
 }
 
 TEST(JudgeSkin, SaysThatTheFaceWasTakenAway) {
-    const Judged head = judged(mr_of([](const Vector3d& p) {
-        return p.z() < 0 && p.y() < -70 ? 0 : layered(depth_in_head(p, false));
-    }));
+    const Judged head = judged(
+        mr_of([](const Vector3d& p) { return p.z() < 0 && p.y() < -70 ? 0 : layered(depth_in_head(p, false)); }));
     EXPECT_FALSE(head.refused);
-    EXPECT_TRUE(std::any_of(head.skin.doubts.begin(), head.skin.doubts.end(),
-                            [](const SkinDoubt& d) { return d.finding.find("face is not there") != std::string::npos; }));
+    EXPECT_TRUE(std::any_of(head.skin.doubts.begin(), head.skin.doubts.end(), [](const SkinDoubt& d) {
+        return d.finding.find("face is not there") != std::string::npos;
+    }));
 }
 
 TEST(JudgeSkin, SaysWhichSidesAreCutOffWithTheirArea) {
     // The volume ends 60 mm to the left of the middle and 60 mm above it.
-    Volume whole = mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); }), part = whole;
+    Volume whole = mr_of([](const Vector3d&p) { return layered(depth_in_head(p)); }), part = whole;
     part.size = {56, whole.size[1], 59};
     part.values.clear();
     for (int k = 0; k < part.size[2]; ++k)
@@ -94,18 +100,22 @@ TEST(JudgeSkin, SaysWhichSidesAreCutOffWithTheirArea) {
     const Judged head = judged(part);
     std::map<std::string, double> cm2;
     for (const CutSide& side : head.skin.cut_sides) cm2[side.name] = side.area_cm2;
-    const auto ellipse_cm2 = [](double a, double b, double share) { return 3.1416 * a * b * (1 - share * share) / 100; };
+    const auto ellipse_cm2 = [](double a, double b, double share) {
+        return 3.1416 * a * b * (1 - share * share) / 100;
+    };
     EXPECT_NEAR(cm2["left side"], ellipse_cm2(92, 85, 61.5 / 75) * 0.85, 30);  // part of it is above the crown's cut
     EXPECT_NEAR(cm2["crown"], ellipse_cm2(75, 92, 60.5 / 85) * 0.9, 25);
 }
 
 TEST(SegmentMrSkin, NoisyDarkBoneAndASpeckOfHolesDoNotOpenTheHead) {
     // Holes of 8 mm through the scalp, noise of a quarter of the brain.
-    const Volume volume = mr_of([](const Vector3d& p) {
-        const bool hole = std::hypot(p.x() - 30, p.y() - 20) < 4 && p.z() > 0;
-        const double depth = depth_in_head(p);
-        return hole && depth < 13 ? 40.0 * (depth > 0) : layered(depth);
-    }, {105, 125, 115}, 60);
+    const Volume volume = mr_of(
+        [](const Vector3d& p) {
+            const bool hole = std::hypot(p.x() - 30, p.y() - 20) < 4 && p.z() > 0;
+            const double depth = depth_in_head(p);
+            return hole && depth < 13 ? 40.0 * (depth > 0) : layered(depth);
+        },
+        {105, 125, 115}, 60);
     const SkinMask mask = segment_skin(volume);
     EXPECT_NEAR(mask.volume_ml, 4.0 / 3 * 3.1416 * 7.5 * 9.2 * 8.5, 100);
 }
