@@ -29,9 +29,9 @@ std::string html_escaped(const std::string& text);
 /// The picture as the address of an <img>: PNG inside the page.
 std::string embedded_png(const RgbImage& picture);
 
-/// The pictures as figures in rows of `columns` (0: two), inside the page as PNG or, where that is smaller, JPEG. With two
-/// columns a picture more than twice as wide as high has a row of its own, and so has the last of an odd number: no place
-/// stays empty.
+/// The pictures as figures in rows of `columns` (0: two), inside the page as PNG or, where that is smaller, JPEG. With
+/// two columns a picture more than twice as wide as high has a row of its own, and so has the last of an odd number: no
+/// place stays empty.
 std::string html_figures(const std::vector<ReportPicture>& pictures, int columns = 0);
 
 /// One self-contained page, black on white for screen and paper, no network. `body` is what stands under the heading.

@@ -35,9 +35,8 @@ struct DicomRefusal {
 };
 
 /// Why the slices, in any order, are not one safe volume; empty when they are: evenly spaced along their
-/// normal (each within 0.05 mm, or 2 % of the step, of its place; with `resampled` any steps of 0.5 to 20 mm) and on one
-/// straight line, one orientation (1e-4), one size and spacing, one patient and frame of reference,
-/// at least 16.
+/// normal (each within 0.05 mm, or 2 % of the step, of its place; with `resampled` any steps of 0.5 to 20 mm) and on
+/// one straight line, one orientation (1e-4), one size and spacing, one patient and frame of reference, at least 16.
 std::optional<DicomRefusal> fault_of(std::vector<DicomSlice> slices, SliceGaps gaps = SliceGaps::refused);
 
 /// How far the slices lie along the straight line of their stack, mm from the first, in this order.

@@ -41,8 +41,8 @@ private:
 enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 std::size_t bytes_of(VoxelType type);
 
-/// `count` voxels as floats, to the end of the source; `allowed` bytes may follow. Throws DamagedFileError for too few or too
-/// many, or for a voxel that is not a number.
+/// `count` voxels as floats, to the end of the source; `allowed` bytes may follow. Throws DamagedFileError for too few
+/// or too many, or for a voxel that is not a number.
 std::vector<float> read_voxels(ByteSource& source, VoxelType type, bool big_endian, std::size_t count,
                                std::uint64_t allowed = 4096);
 

@@ -35,7 +35,8 @@ struct RegistrationResult {
     double inlier_fraction = 0;     ///< of all points, nearer than `inlier_distance_mm` to the skin
     double inlier_distance_mm = 0;
     std::size_t points = 0;
-    std::optional<double> skin_fraction;  ///< of the scan, found as skin among cloth and matched alone; empty: not looked for
+    std::optional<double>
+        skin_fraction;            ///< of the scan, found as skin among cloth and matched alone; empty: not looked for
     double runner_up_ratio = 0;   ///< cost of the best distinct other pose / cost of this one; > 1 is good
     int agreeing_bases = 0;       ///< independent contact triplets that led to this pose
     double weakest_sigma_mm = 0;  ///< how far the patient could slide along the least determined way

@@ -49,21 +49,28 @@ std::array<int, 3> size_of(const Header& header) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         size[axis] = header.at<std::int32_t>(4, axis);
         if (size[axis] < 1 || size[axis] > 100'000)
-            throw DamagedFileError(header.file(), fmt::format("has {} voxels along axis {}", size[axis], axis + 1), kCopyAgain);
+            throw DamagedFileError(header.file(), fmt::format("has {} voxels along axis {}", size[axis], axis + 1),
+                                   kCopyAgain);
     }
     if (const int frames = header.at<std::int32_t>(16); frames != 1)
-        throw InputError(header.file(), fmt::format("holds {} volumes", frames), "Save the one to use as a file of its own.");
+        throw InputError(header.file(), fmt::format("holds {} volumes", frames),
+                         "Save the one to use as a file of its own.");
     return size;
 }
 
 VoxelType voxel_type(const Header& header) {
     switch (const int code = header.at<std::int32_t>(20)) {
-        case 0: return VoxelType::uint8;
-        case 1: return VoxelType::int32;
-        case 3: return VoxelType::float32;
-        case 4: return VoxelType::int16;
+        case 0:
+            return VoxelType::uint8;
+        case 1:
+            return VoxelType::int32;
+        case 3:
+            return VoxelType::float32;
+        case 4:
+            return VoxelType::int16;
         default:
-            throw InputError(header.file(), fmt::format("has voxels of type {}, which is not one grey value each", code),
+            throw InputError(header.file(),
+                             fmt::format("has voxels of type {}, which is not one grey value each", code),
                              "Save it with 16 bit integers or floats.");
     }
 }
@@ -71,7 +78,8 @@ VoxelType voxel_type(const Header& header) {
 /// RAS from voxel: the directions of the axes times their spacing, and the place of the middle voxel.
 Eigen::Affine3d ras_from_voxel(const Header& header, const std::array<int, 3>& size) {
     if (header.at<std::int16_t>(28) <= 0)
-        throw InputError(header.file(), "does not say its frame (its \"good RAS\" is 0)", "Convert the DICOM series again.");
+        throw InputError(header.file(), "does not say its frame (its \"good RAS\" is 0)",
+                         "Convert the DICOM series again.");
     Eigen::Affine3d affine = Eigen::Affine3d::Identity();
     for (int axis = 0; axis < 3; ++axis)
         for (int row = 0; row < 3; ++row)
@@ -79,7 +87,8 @@ Eigen::Affine3d ras_from_voxel(const Header& header, const std::array<int, 3>& s
                                 static_cast<double>(header.at<float>(30, static_cast<std::size_t>(axis)));
     const Eigen::Vector3d middle(size[0] / 2.0, size[1] / 2.0, size[2] / 2.0);
     for (int row = 0; row < 3; ++row)
-        affine(row, 3) = static_cast<double>(header.at<float>(78, static_cast<std::size_t>(row))) - affine.linear().row(row).dot(middle);
+        affine(row, 3) = static_cast<double>(header.at<float>(78, static_cast<std::size_t>(row))) -
+                         affine.linear().row(row).dot(middle);
     if (!affine.matrix().allFinite())
         throw InputError(header.file(), "has a frame with a value that is not a number", kCopyAgain);
     return affine;

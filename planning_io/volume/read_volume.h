@@ -8,8 +8,8 @@
 
 namespace planlight {
 
-/// Reads a CT or MR volume: a folder (or any file) of a DICOM series, NIfTI-1 (.nii, .nii.gz), FreeSurfer (.mgh, .mgz), NRRD (.nrrd, .nhdr),
-/// MetaImage
+/// Reads a CT or MR volume: a folder (or any file) of a DICOM series, NIfTI-1 (.nii, .nii.gz), FreeSurfer (.mgh, .mgz),
+/// NRRD (.nrrd, .nhdr), MetaImage
 /// (.mha, .mhd) or an InVesalius project (.inv3). `series`: UID or number of the DICOM series, where the folder holds
 /// several volumes. `gaps`: what to do with DICOM slices that are not evenly spaced.
 ///

@@ -102,8 +102,8 @@ Eigen::Matrix<double, 12, 1> smallest_vector(const Eigen::MatrixXd& rows) {
     return Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 12, 12>>(square).eigenvectors().col(0);
 }
 
-/// RQ decomposition of a 3x3 matrix of positive determinant into K (upper triangular, positive diagonal, K(2,2) = 1) and a
-/// rotation R (Hartley & Zisserman, A4.1.1).
+/// RQ decomposition of a 3x3 matrix of positive determinant into K (upper triangular, positive diagonal, K(2,2) = 1)
+/// and a rotation R (Hartley & Zisserman, A4.1.1).
 void rq_decomposition(const Matrix3d& m, Matrix3d& K, Matrix3d& R) {
     cv::Matx33d matrix, upper, rotation;
     cv::eigen2cv(m, matrix);

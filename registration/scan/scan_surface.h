@@ -54,8 +54,8 @@ struct ScanResult {
     /// The projector against rig.json by the cameras as calibrated; empty: too few points, or columns only.
     std::optional<Resection> resection;
     bool resection_used = false;  ///< `rig.rig` has the projector elsewhere than rig.json
-    /// What the scan found of the rig, and the rig that `raw` and `clean` are made with; `calibrated` and `capture_hash` in it
-    /// are the caller's to fill.
+    /// What the scan found of the rig, and the rig that `raw` and `clean` are made with; `calibrated` and
+    /// `capture_hash` in it are the caller's to fill.
     RigState rig;
     double epipolar_as_calibrated_px = 0;  ///< `usual_epipolar_px` by rig.json; 0: not known
     /// How finely the light could be read, projector pixels: 0 by the fringes, to fractions of one; else the finest

@@ -23,9 +23,9 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 // (README, measure_tracking). Larger where the calibration says it is worse.
 constexpr double kUsualRms_px = 0.1;
 constexpr double kDirection_px = 0.045, kRoll_rad = 1e-4, kAside_px = 0.045, kDepth_mm = 0.055;
-constexpr double kFocal = 2e-4;       // with the distance that makes up for it
+constexpr double kFocal = 2e-4;         // with the distance that makes up for it
 constexpr double kPrincipal_px = 0.12;  // with the turn that makes up for it
-constexpr double kCorner_px = 0.05;    // distortion, in the picture's corner
+constexpr double kCorner_px = 0.05;     // distortion, in the picture's corner
 constexpr int kWays = 10;
 
 RigidTransform turned(const RigidTransform& device_from_rig, const Vector3d& radians) {

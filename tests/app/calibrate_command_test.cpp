@@ -93,7 +93,8 @@ TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
     EXPECT_FALSE(of_two.contains("projector"));
     EXPECT_TRUE(of_two.contains("right_camera"));
     EXPECT_FALSE(json::parse(pair.out)["devices"].contains("projector"));
-    EXPECT_TRUE(json::parse(pair.out)["predicted_error"]["light_p95_mm"].is_null()) << "there is no light: no figure of it, not 0";
+    EXPECT_TRUE(json::parse(pair.out)["predicted_error"]["light_p95_mm"].is_null())
+        << "there is no light: no figure of it, not 0";
     EXPECT_NEAR(json::parse(pair.out)["devices"]["left_camera"]["focal_x"].get<double>(),
                 truth["left_camera"]["focal_x"].get<double>(), 10);
 }

@@ -149,8 +149,8 @@ void print(const std::string& title, const std::vector<Row>& rows) {
     std::vector<std::pair<Row, int>> groups;
     std::map<std::string, std::size_t> place;  // by the sentence without its numbers
     for (const Row& row : rows) {
-        const auto [at, is_new] =
-            place.emplace((row.accepted ? "+" : "-") + std::regex_replace(row.sentence, std::regex("[0-9.]+"), "#"), groups.size());
+        const auto [at, is_new] = place.emplace(
+            (row.accepted ? "+" : "-") + std::regex_replace(row.sentence, std::regex("[0-9.]+"), "#"), groups.size());
         if (is_new) groups.emplace_back(row, 0);
         ++groups[at->second].second;
     }
