@@ -94,7 +94,8 @@ std::string identity_html(const Preparation& done) {
             v.modality.empty() ? "not said" : v.modality + (v.modality == "CT" && !v.is_hu ? ", not in HU" : "")) +
         row("Voxels", fmt::format("{} x {} x {} of {:.2f} x {:.2f} x {:.2f} mm", v.size[0], v.size[1], v.size[2],
                                   v.voxel_mm.x(), v.voxel_mm.y(), v.voxel_mm.z())) +
-        row("Skin threshold", threshold_of(done)) + row("Cut off by the volume", cut_sides_of(done.judgement)) +
+        (done.on_given_surface ? "" : row("Skin threshold", threshold_of(done))) +
+        row("Cut off by the volume", cut_sides_of(done.judgement)) +
         (done.on_given_surface ? "" : row("Body", fmt::format("{:.0f} ml", done.body_ml))) +
         (done.brightness_ratio > 1 ? row("Evened out", fmt::format("{:.1f} : 1 across the head", done.brightness_ratio))
                                    : "") +

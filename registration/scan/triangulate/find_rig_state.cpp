@@ -128,6 +128,21 @@ void judge(const Explanation& best, const std::vector<const Explanation*>& possi
             : "No light is drawn with it: calibrate the rig again.";
 }
 
+/// Whether no device stands or sees so differently that it cannot have been moved by accident.
+bool is_a_bump(const RigCalibration& before, const RigState& state) {
+    constexpr double kTurned = 0.1, kMoved_mm = 50, kFocal = 0.15, kCentreByWidth = 0.05;
+    for (std::size_t d = 0; d < kRigDevices; ++d) {
+        const auto device = static_cast<RigDevice>(d);
+        const DeviceFinding& f = state.devices[d];
+        const CameraModel &a = device_of(before, device), &b = device_of(state.rig, device);
+        const double centre_px = std::hypot(b.centre_x - a.centre_x, b.centre_y - a.centre_y);
+        if (f.turned > kTurned || f.moved_mm > kMoved_mm || std::abs(f.focal_change) > kFocal ||
+            centre_px > kCentreByWidth * a.width)
+            return false;
+    }
+    return true;
+}
+
 /// The rig by the explanation that costs least, and what the others that cost little more would do to the light.
 void take_moved(const RigCalibration& rig, const RigFits& fits, const std::vector<SeenPlace>& some,
                 const RigStateSettings& settings, RigState& state) {
@@ -147,6 +162,10 @@ void take_moved(const RigCalibration& rig, const RigFits& fits, const std::vecto
     find_devices(rig, possible, state);
     state.hidden_light_mm = hidden_over(state, some);
     judge(best, possible, settings, state);
+    if (state.verdict != RigState::Verdict::corrected || is_a_bump(rig, state)) return;
+    state.verdict = RigState::Verdict::not_trusted;
+    state.sentence += "; that is more than a bump: another rig, or a code that begins elsewhere";
+    state.remedy = "Use the rig.json of this rig, say in capture.json where its code begins, or calibrate it again.";
 }
 
 void take_as_calibrated(const RigFits& fits, const std::vector<SeenPlace>& some, const RigStateSettings& settings,

@@ -46,7 +46,7 @@ TEST(RegisterPatient, FindsAFaceAmongEveryKindOfCloth) {
         const DrapedScene scene = draped_scene(head(), scene_of(draping.name, 5));
         const RegistrationResult result = register_patient(scene.scan.cloud, head_lut());
         EXPECT_EQ(result.verdict, Verdict::yes) << draping.name;
-        EXPECT_LT(pose_error(result.patient_from_ct, scene.scan).target_mm, 1) << draping.name;
+        EXPECT_LT(pose_error(result.patient_from_ct, scene.scan).target_mm, 2) << draping.name;
     }
 }
 
