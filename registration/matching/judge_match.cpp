@@ -96,6 +96,11 @@ void judge_found_skin(const RegistrationSettings& settings, const FoundSkin& fou
     judgement.ask_if(inside > limits.max_inside && inside <= limits.far_too_much_inside, within);
     judgement.no_if(found.skin_fraction < limits.far_too_little_skin,
                     fmt::format("only {:.0f} % of the scan is skin", 100 * found.skin_fraction));
+    judgement.ask_if(
+        found.goes_on_fraction > limits.max_goes_on && result.residual_rms_mm > limits.max_rms_goes_on_mm,
+        fmt::format("the surface goes on smoothly, off the skin, over {:.0f} % of what lies on it: another "
+                    "patient, or cloth close to the skin",
+                    100 * found.goes_on_fraction));
     const std::string rival =
         fmt::format("another pose explains nearly as much of the scan (ratio {:.2f})", found.rival_ratio);
     judgement.no_if(found.rival_ratio > 0 && found.rival_ratio < 1.05, rival);
@@ -106,10 +111,13 @@ void judge_found_skin(const RegistrationSettings& settings, const FoundSkin& fou
     judgement.ask_if(
         result.mirror_ratio >= settings.min_mirror_ratio && result.mirror_ratio < limits.min_mirror_ratio,
         fmt::format("the mirror image of the skin between cloth fits too (ratio {:.2f})", result.mirror_ratio));
+    judgement.ask_if(
+        result.residual_rms_mm > limits.max_residual_rms_mm,
+        fmt::format("what looks like skin between cloth lies {:.2f} mm (rms) from it", result.residual_rms_mm));
     const double on = fine.fit.inlier_fraction();
     const std::string off = fmt::format("only {:.0f} % of what looks like skin lies on it", 100 * on);
-    judgement.no_if(on < settings.min_inlier_fraction, off);
-    judgement.ask_if(on >= settings.min_inlier_fraction && on < limits.min_inlier_fraction, off);
+    judgement.no_if(on < limits.far_too_few_inliers, off);
+    judgement.ask_if(on >= limits.far_too_few_inliers && on < limits.min_inlier_fraction, off);
     judgement.no_if(std::abs(result.scale - 1) > std::max(limits.far_too_much_scale, 2 * result.scale_sigma),
                     fmt::format("what looks like skin between cloth is that of a head {:.0f} % {}: another patient",
                                 100 * std::abs(1 / result.scale - 1), result.scale < 1 ? "larger" : "smaller"));
