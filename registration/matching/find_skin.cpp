@@ -318,6 +318,36 @@ std::vector<char> skin_cells(const CloudPieces& pieces, const Scan& scan, const 
     return kept;
 }
 
+/// The cells that go on smoothly from the skin found, near the skin of the CT and facing as it does, against those of
+/// the skin.
+double goes_on(const CloudPieces& pieces, const Scan& scan, const RigidTransform& ct_from_rig,
+               const std::vector<char>& skin) {
+    constexpr double kBeside_mm = 10;
+    std::vector<char> beside(pieces.cells.size(), 0);
+    for (std::size_t i = 0; i < scan.cells.size(); ++i) {
+        const auto c = static_cast<std::size_t>(scan.of_pieces[i]);
+        double mm;
+        Vector3d gradient;
+        if (skin[c] || !scan.field.sample(ct_from_rig * scan.cells[i].position, mm, gradient)) continue;
+        beside[c] = std::abs(mm) < kBeside_mm && lying_of(scan, scan.cells[i], ct_from_rig).place != Place::beyond &&
+                    gradient.dot(ct_from_rig.linear() * scan.cells[i].normal) > kFacing * gradient.norm();
+    }
+    std::vector<int> front;
+    for (std::size_t c = 0; c < skin.size(); ++c)
+        if (skin[c]) front.push_back(static_cast<int>(c));
+    const auto count = static_cast<double>(front.size());
+    for (std::size_t i = 0; i < front.size(); ++i) {
+        const CloudCell& cell = pieces.cells[static_cast<std::size_t>(front[i])];
+        for (const int next : cell.touching) {
+            const auto n = static_cast<std::size_t>(next);
+            if (!beside[n] || pieces.cells[n].piece != cell.piece) continue;
+            beside[n] = 0;
+            front.push_back(next);
+        }
+    }
+    return count == 0 ? 0 : (static_cast<double>(front.size()) - count) / count;
+}
+
 FoundSkin evidence(const PointCloud& cloud, const CloudPieces& pieces, const Scan& scan, const Known& known) {
     FoundSkin found;
     const Pose& best = known.poses.front();
@@ -326,6 +356,7 @@ FoundSkin evidence(const PointCloud& cloud, const CloudPieces& pieces, const Sca
     found.rival_ratio = known.ratio();
     found.places_agreeing = best.agreeing;
     const std::vector<char> kept = skin_cells(pieces, scan, best.ct_from_rig);
+    found.goes_on_fraction = goes_on(pieces, scan, best.ct_from_rig, kept);
     found.is_skin.assign(cloud.size(), 0);
     for (std::size_t i = 0; i < cloud.size(); ++i)
         if (pieces.cell_of_point[i] >= 0) found.is_skin[i] = kept[static_cast<std::size_t>(pieces.cell_of_point[i])];

@@ -29,6 +29,10 @@ struct FoundSkin {
     double rival_ratio = 0;  ///< of the best pose to the next distinct one, both as `explained`; 0: there is no other
     double inside_fraction = 0;  ///< of all cells that are no strays
     double skin_fraction = 0;    ///< of all cells that are no strays
+    /// Of the skin found: how much goes on smoothly beyond it, beside the skin of the CT and as it faces, but off it.
+    /// Cloth begins with a step or a crease; where it is much, the skin is another patient's, or cloth lies close on
+    /// it.
+    double goes_on_fraction = 0;
     int places_agreeing = 0, places_tried = 0;
 };
 

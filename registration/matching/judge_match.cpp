@@ -25,6 +25,10 @@ void judge_fit(const RegistrationSettings& settings, const CloudOnSkin& fit, boo
     const bool enough = enough_on_skin(fit, place_known);
     judgement.no_if(!enough, on_skin);
     judgement.ask_if(enough && share < settings.min_inlier_fraction, on_skin);
+    judgement.ask_if(
+        enough && fit.inlier_rms_mm > settings.loose_residual_rms_mm && share < settings.loose_inlier_fraction,
+        fmt::format("the scan lies only loosely on the skin: {:.0f} % of it, {:.2f} mm (rms) off", 100 * share,
+                    fit.inlier_rms_mm));
     judgement.no_if(fit.inlier_rms_mm > settings.max_residual_rms_mm,
                     fmt::format("the scan lies {:.2f} mm (rms) from the skin; at most {:.2f} mm is good enough",
                                 fit.inlier_rms_mm, settings.max_residual_rms_mm));
@@ -96,6 +100,11 @@ void judge_found_skin(const RegistrationSettings& settings, const FoundSkin& fou
     judgement.ask_if(inside > limits.max_inside && inside <= limits.far_too_much_inside, within);
     judgement.no_if(found.skin_fraction < limits.far_too_little_skin,
                     fmt::format("only {:.0f} % of the scan is skin", 100 * found.skin_fraction));
+    judgement.ask_if(
+        found.goes_on_fraction > limits.max_goes_on && result.residual_rms_mm > limits.max_rms_goes_on_mm,
+        fmt::format("the surface goes on smoothly, off the skin, over {:.0f} % of what lies on it: another "
+                    "patient, or cloth close to the skin",
+                    100 * found.goes_on_fraction));
     const std::string rival =
         fmt::format("another pose explains nearly as much of the scan (ratio {:.2f})", found.rival_ratio);
     judgement.no_if(found.rival_ratio > 0 && found.rival_ratio < 1.05, rival);
@@ -106,10 +115,13 @@ void judge_found_skin(const RegistrationSettings& settings, const FoundSkin& fou
     judgement.ask_if(
         result.mirror_ratio >= settings.min_mirror_ratio && result.mirror_ratio < limits.min_mirror_ratio,
         fmt::format("the mirror image of the skin between cloth fits too (ratio {:.2f})", result.mirror_ratio));
+    judgement.ask_if(
+        result.residual_rms_mm > limits.max_residual_rms_mm,
+        fmt::format("what looks like skin between cloth lies {:.2f} mm (rms) from it", result.residual_rms_mm));
     const double on = fine.fit.inlier_fraction();
     const std::string off = fmt::format("only {:.0f} % of what looks like skin lies on it", 100 * on);
-    judgement.no_if(on < settings.min_inlier_fraction, off);
-    judgement.ask_if(on >= settings.min_inlier_fraction && on < limits.min_inlier_fraction, off);
+    judgement.no_if(on < limits.far_too_few_inliers, off);
+    judgement.ask_if(on >= limits.far_too_few_inliers && on < limits.min_inlier_fraction, off);
     judgement.no_if(std::abs(result.scale - 1) > std::max(limits.far_too_much_scale, 2 * result.scale_sigma),
                     fmt::format("what looks like skin between cloth is that of a head {:.0f} % {}: another patient",
                                 100 * std::abs(1 / result.scale - 1), result.scale < 1 ? "larger" : "smaller"));

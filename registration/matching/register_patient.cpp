@@ -124,8 +124,8 @@ Attempt match_alone(const PointCloud& cloud, const PointCloud& seen, const SkinL
     judge_fit(settings, attempt.fine.fit, result.runner_up_ratio >= 1.3 && result.agreeing_bases >= 2, judgement);
     judge_uniqueness(settings, result, judgement);
     judgement.no_if(result.runner_up_ratio < settings.min_runner_up_ratio &&
-                        attempt.fine.fit.inlier_fraction() < settings.doubtful_inlier_fraction &&
-                        result.mirror_ratio > 0 && result.mirror_ratio < settings.min_mirror_ratio,
+                        attempt.fine.fit.inlier_fraction() < settings.min_inlier_fraction && result.mirror_ratio > 0 &&
+                        result.mirror_ratio < settings.min_mirror_ratio,
                     "poorly on the skin, and other poses fit nearly as well: three weak signs together");
     judge_fine_match(settings, attempt.fine, result, judgement);
     return attempt;

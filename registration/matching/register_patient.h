@@ -16,10 +16,13 @@ struct AmongClothLimits {
     double bare_fraction = 0.85;                          ///< of the scan on the skin: there is no cloth to look for
     double max_inside = 0.03, far_too_much_inside = 0.1;  ///< of the scan, in the body; above: ask, no
     double far_too_little_skin = 0.03;                    ///< of the scan, on the skin; below: no
-    double min_rival_ratio = 1.3;                         ///< of what is explained, to the next pose; below: ask
+    /// What was chosen because it fits must fit closely: rms of the skin alone; above: ask, the lower one where much of
+    /// it goes on smoothly, off the skin.
+    double max_residual_rms_mm = 0.7, max_goes_on = 0.15, max_rms_goes_on_mm = 0.5;
+    double min_rival_ratio = 1.3;                               ///< of what is explained, to the next pose; below: ask
     double min_runner_up_ratio = 1.3, min_mirror_ratio = 1.25;  ///< of the skin alone; below: ask
-    double min_inlier_fraction = 0.8;                           ///< of the skin alone; below: ask
-    double far_too_much_scale = 0.04;                           ///< of the skin alone, and 2 of its sigmas; above: no
+    double min_inlier_fraction = 0.85, far_too_few_inliers = 0.7;  ///< of the skin alone; below: ask, no
+    double far_too_much_scale = 0.04;  ///< of the skin alone, and 2 of its sigmas; above: no
 };
 
 struct RegistrationSettings {
@@ -31,9 +34,10 @@ struct RegistrationSettings {
     double min_extent_mm = 60;          ///< second largest extent of the cloud
     double min_runner_up_ratio = 1.15;  ///< below: ask; below 1.05: no
     double inlier_distance_mm = 1.5;
-    double min_inlier_fraction = 0.7;       ///< below: ask; below 0.5: no
-    double doubtful_inlier_fraction = 0.8;  ///< below, with another pose and the mirror image near: no
-    double max_residual_rms_mm = 1.0;       ///< of the inliers; above: no
+    double min_inlier_fraction = 0.8;  ///< of what is no stray; below: ask; below 0.5: no
+    double max_residual_rms_mm = 1.0;  ///< of the inliers; above: no
+    /// Points anywhere within 1.5 mm have an rms of 0.87 mm: a fit as loose as that, of not nearly all: ask.
+    double loose_residual_rms_mm = 0.75, loose_inlier_fraction = 0.9;
     int min_agreeing_bases = 2;
     double max_weakest_sigma_mm = 1;   ///< above: ask
     double max_skin_offset_mm = 1.5;   ///< of the whole skin; above: ask

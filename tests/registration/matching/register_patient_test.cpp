@@ -35,7 +35,7 @@ TEST(RegisterPatient, AWideScanIsAcceptedAndRight) {
         EXPECT_EQ(result.verdict, Verdict::yes) << told(result);
         EXPECT_TRUE(result.reasons.empty());
         EXPECT_LT(target_error_mm(result.patient_from_ct.inverse(), rig_from_ct.inverse(), cloud), 0.15);
-        EXPECT_GT(result.inlier_fraction, 0.81) << "strays are 0.15";
+        EXPECT_GT(result.inlier_fraction, 0.97);  // strays are no evidence
         EXPECT_NEAR(result.scale, 1, 0.005);
         EXPECT_GT(result.mirror_ratio, 1.15);
     }
