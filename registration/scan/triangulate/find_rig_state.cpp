@@ -130,7 +130,7 @@ void judge(const Explanation& best, const std::vector<const Explanation*>& possi
 
 /// Whether no device stands or sees so differently that it cannot have been moved by accident.
 bool is_a_bump(const RigCalibration& before, const RigState& state) {
-    constexpr double kTurned = 0.1, kMoved_mm = 50, kFocal = 0.15, kCentreByWidth = 0.05;
+    constexpr double kTurned = 0.05, kMoved_mm = 50, kFocal = 0.15, kCentreByWidth = 0.05;
     for (std::size_t d = 0; d < kRigDevices; ++d) {
         const auto device = static_cast<RigDevice>(d);
         const DeviceFinding& f = state.devices[d];

@@ -46,7 +46,8 @@ TEST(CodeBeginning, IsTakenOffWhereItIsSaid) {
     // Taken for one that begins at 0 the same pictures fit no rig that was bumped: no light is drawn.
     ScanCapture wrong = shot().capture;
     wrong.stripes.begins_at_column = wrong.stripes.begins_at_row = 0;
-    EXPECT_EQ(scan_from_capture(wrong, rig_of(shot().room)).rig.verdict, RigState::Verdict::not_trusted);
+    const RigState taken = scan_from_capture(wrong, rig_of(shot().room)).rig;
+    EXPECT_EQ(taken.verdict, RigState::Verdict::not_trusted) << taken.sentence;
 }
 
 TEST(CodeBeginning, IsTakenOffForACalibrationAsWell) {
