@@ -7,6 +7,7 @@
 
 namespace planlight::simulation {
 
+/// All that the simulator knows and the product must not.
 struct TruthNumbers {
     RoomSettings settings;
     Instant at{};
