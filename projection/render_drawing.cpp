@@ -73,8 +73,8 @@ struct DrawingRenderer::Parts {
     /// True when the stroke is a circle that is lit in part; `counts` is told.
     bool is_partly_lit_ring(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts) const;
     /// The two edge points of the ribbon at one end of a segment.
-    std::array<Vector2d, 2> edges(const Stroke& stroke, std::size_t at, const Vector3d& direction, const Vector3d* other,
-                                  double outwards) const;
+    std::array<Vector2d, 2> edges(const Stroke& stroke, std::size_t at, const Vector3d& direction,
+                                  const Vector3d* other, double outwards) const;
 
     const SkinSurface& skin;
     CameraModel projector;
