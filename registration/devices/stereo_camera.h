@@ -13,6 +13,12 @@ public:
 
     /// The first frame whose exposure begins at or after `not_before`. Throws DeviceError after `patience` without one.
     virtual StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) = 0;
+
+    /// The newest frame whose exposure begins at or after `not_before`, which may lie in the past; waits for one where
+    /// there is none. Throws DeviceError after `patience` without one.
+    virtual StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) {
+        return grab(not_before, patience);
+    }
 };
 
 }  // namespace planlight

@@ -1,0 +1,70 @@
+#include "registration/devices/camera.h"
+
+#include <utility>
+
+namespace planlight {
+
+void FrameBell::ring() {
+    {
+        const std::lock_guard lock(mutex);
+        ++rings;
+    }
+    rung.notify_all();
+}
+
+void FrameQueue::push(CameraFrame frame) {
+    {
+        const std::lock_guard lock(mutex_);
+        ++counts_.received;
+        if (frames_.size() == kMost) {
+            frames_.pop_front();
+            ++counts_.dropped;
+        }
+        frames_.push_back(std::move(frame));
+    }
+    bell_.ring();
+}
+
+void FrameQueue::count_incomplete() {
+    const std::lock_guard lock(mutex_);
+    ++counts_.incomplete;
+}
+
+void FrameQueue::count_jump() {
+    const std::lock_guard lock(mutex_);
+    ++counts_.clock_jumps;
+}
+
+void FrameQueue::fail(CameraFault fault) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (!fault_) ++counts_.lost_connections;
+        fault_ = std::move(fault);
+        frames_.clear();
+    }
+    bell_.ring();
+}
+
+void FrameQueue::recovered() {
+    const std::lock_guard lock(mutex_);
+    fault_.reset();
+}
+
+std::vector<CameraFrame> FrameQueue::take_all() {
+    const std::lock_guard lock(mutex_);
+    std::vector<CameraFrame> taken(std::make_move_iterator(frames_.begin()), std::make_move_iterator(frames_.end()));
+    frames_.clear();
+    return taken;
+}
+
+std::optional<CameraFault> FrameQueue::fault() const {
+    const std::lock_guard lock(mutex_);
+    return fault_;
+}
+
+CameraCounts FrameQueue::counts() const {
+    const std::lock_guard lock(mutex_);
+    return counts_;
+}
+
+}  // namespace planlight

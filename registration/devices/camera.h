@@ -1,0 +1,78 @@
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planning_io/types/image.h"
+#include "planning_io/types/time.h"
+
+namespace planlight {
+
+/// What one camera saw in one exposure.
+struct CameraFrame {
+    GrayImage picture;
+    Instant at{};        ///< mid-exposure, on the session's clock
+    Instant exposure{};  ///< how long the shutter was open
+    Instant at_sigma{};  ///< one standard deviation of `at`
+};
+
+/// Why there are no frames, with its remedy.
+struct CameraFault {
+    std::string problem, remedy;
+};
+
+/// Counts since the camera was opened.
+struct CameraCounts {
+    std::size_t received = 0, incomplete = 0, dropped = 0;  ///< dropped: nobody took them before newer ones came
+    std::size_t clock_jumps = 0, lost_connections = 0;
+};
+
+/// Wakes whoever waits for the frames of several cameras.
+struct FrameBell {
+    std::mutex mutex;
+    std::condition_variable rung;
+    std::uint64_t rings = 0;
+    void ring();
+};
+
+/// The newest frames of one camera, handed from its own thread to who wants them: when it is full the oldest goes, so
+/// that no picture of long ago is ever taken for a live one.
+class FrameQueue {
+public:
+    static constexpr std::size_t kMost = 4;
+
+    explicit FrameQueue(FrameBell& bell) : bell_(bell) {}
+    void push(CameraFrame frame);
+    void count_incomplete();
+    void count_jump();
+    /// From now on `fault` says why nothing comes; frames that wait are thrown away.
+    void fail(CameraFault fault);
+    void recovered();
+
+    std::vector<CameraFrame> take_all();
+    std::optional<CameraFault> fault() const;
+    CameraCounts counts() const;
+
+private:
+    FrameBell& bell_;
+    mutable std::mutex mutex_;
+    std::deque<CameraFrame> frames_;
+    std::optional<CameraFault> fault_;
+    CameraCounts counts_;
+};
+
+/// A camera that runs by itself from its making to its end.
+class Camera {
+public:
+    virtual ~Camera() = default;
+    virtual const std::string& name() const = 0;  ///< for a person: "left camera (serial 1234)"
+    virtual FrameQueue& frames() = 0;
+};
+
+}  // namespace planlight

@@ -1,0 +1,287 @@
+#include "registration/devices/genicam_camera.h"
+
+#include <arv.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "planning_io/types/error.h"
+#include "registration/devices/mono_pixels.h"
+
+namespace planlight {
+namespace {
+
+constexpr int kBuffers = 6;  // on their way; more would only hide that nobody takes the frames
+constexpr Instant kPatience = std::chrono::milliseconds(100);
+
+struct Unref {
+    void operator()(void* object) const {
+        if (object) g_object_unref(object);
+    }
+};
+using CameraPointer = std::unique_ptr<ArvCamera, Unref>;
+using StreamPointer = std::unique_ptr<ArvStream, Unref>;
+
+/// The error of a call into Aravis.
+class Failure {
+public:
+    ~Failure() { g_clear_error(&error_); }
+    GError** slot() {
+        g_clear_error(&error_);
+        return &error_;
+    }
+    bool happened() const { return error_ != nullptr; }
+    std::string text() const { return error_ ? error_->message : "unknown"; }
+
+private:
+    GError* error_ = nullptr;
+};
+
+std::string text_or_empty(const char* text) {
+    return text ? text : "";
+}
+
+}  // namespace
+
+struct GenicamCamera::Device {
+    CameraPointer camera;
+    StreamPointer stream;
+    std::atomic<bool> lost{false};
+};
+
+std::vector<FoundCamera> list_genicam_cameras() {
+    arv_update_device_list();
+    std::vector<FoundCamera> found;
+    for (unsigned i = 0; i < arv_get_n_devices(); ++i)
+        found.push_back({text_or_empty(arv_get_device_id(i)), text_or_empty(arv_get_device_serial_nbr(i)),
+                         text_or_empty(arv_get_device_vendor(i)), text_or_empty(arv_get_device_model(i)),
+                         text_or_empty(arv_get_device_address(i)), text_or_empty(arv_get_device_protocol(i))});
+    return found;
+}
+
+GenicamCamera::GenicamCamera(GenicamSettings settings, FrameBell& bell, const Clock& clock)
+    : settings_(std::move(settings)), clock_(clock), frames_(bell), name_(settings_.name), device_(new Device) {
+    open();
+    configure();
+    start();
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+GenicamCamera::~GenicamCamera() {
+    thread_.request_stop();
+    thread_.join();
+    if (device_->camera) arv_camera_stop_acquisition(device_->camera.get(), Failure().slot());
+}
+
+void GenicamCamera::open() {
+    std::string id = settings_.device;
+    for (const FoundCamera& found : list_genicam_cameras())
+        if (found.serial == settings_.device) id = found.id;
+    Failure failure;
+    device_->camera.reset(arv_camera_new(id.c_str(), failure.slot()));
+    if (!device_->camera)
+        throw DeviceError(name_, fmt::format("\"{}\" does not answer ({})", settings_.device, failure.text()),
+                          "Look at its cable and power, end other programs that use it, and see `planlight devices`.");
+    serial_ = text_or_empty(arv_camera_get_device_serial_number(device_->camera.get(), failure.slot()));
+    name_ = fmt::format("{} (serial {})", settings_.name, serial_.empty() ? settings_.device : serial_);
+}
+
+void GenicamCamera::configure() {
+    ArvCamera* camera = device_->camera.get();
+    Failure failure;
+    notes_.clear();
+    const auto refuse = [&](const std::string& what) {
+        throw DeviceError(name_, fmt::format("does not take {} ({})", what, failure.text()),
+                          "Give what `planlight devices` lists for it.");
+    };
+    arv_camera_stop_acquisition(camera, failure.slot());  // of a program that ended badly
+    arv_camera_set_acquisition_mode(camera, ARV_ACQUISITION_MODE_CONTINUOUS, failure.slot());
+    if (failure.happened()) refuse("continuous acquisition");
+    const std::string format = settings_.pixel_format.empty() ? "Mono8" : settings_.pixel_format;
+    arv_camera_set_pixel_format_from_string(camera, format.c_str(), failure.slot());
+    if (failure.happened()) refuse("the pixel format " + format);
+    if (settings_.region) {
+        const auto [x, y, width, height] = *settings_.region;
+        arv_camera_set_region(camera, x, y, width, height, failure.slot());
+        if (failure.happened()) refuse(fmt::format("the region {} {} {} {}", x, y, width, height));
+    }
+    // What a camera does by itself changes pictures between two of a scan.
+    if (arv_camera_is_exposure_auto_available(camera, failure.slot()))
+        arv_camera_set_exposure_time_auto(camera, ARV_AUTO_OFF, failure.slot());
+    if (arv_camera_is_gain_auto_available(camera, failure.slot())) arv_camera_set_gain_auto(camera, ARV_AUTO_OFF, failure.slot());
+    if (arv_camera_is_black_level_auto_available(camera, failure.slot()))
+        arv_camera_set_black_level_auto(camera, ARV_AUTO_OFF, failure.slot());
+    for (const char* name : {"GammaEnable", "GammaEnabled", "SharpnessEnable", "SharpnessEnabled", "LUTEnable"}) {
+        if (!arv_camera_is_feature_available(camera, name, failure.slot())) continue;
+        arv_camera_set_boolean(camera, name, false, failure.slot());
+        if (arv_camera_get_boolean(camera, name, failure.slot()))
+            notes_.push_back(fmt::format("{} cannot be switched off", name));
+    }
+    if (arv_camera_is_feature_available(camera, "Gamma", failure.slot())) {
+        arv_camera_set_float(camera, "Gamma", 1, failure.slot());
+        const double gamma = arv_camera_get_float(camera, "Gamma", failure.slot());
+        if (!failure.happened() && std::abs(gamma - 1) > 0.01) notes_.push_back(fmt::format("its gamma stays at {:.2f}", gamma));
+    }
+    if (arv_camera_is_exposure_auto_available(camera, failure.slot()) &&
+        arv_camera_get_exposure_time_auto(camera, failure.slot()) != ARV_AUTO_OFF)
+        notes_.push_back("its automatic exposure cannot be switched off");
+    if (arv_camera_is_gain_auto_available(camera, failure.slot()) && arv_camera_get_gain_auto(camera, failure.slot()) != ARV_AUTO_OFF)
+        notes_.push_back("its automatic gain cannot be switched off");
+    if (settings_.exposure_ms) {
+        arv_camera_set_exposure_time(camera, 1e3 * *settings_.exposure_ms, failure.slot());
+        if (failure.happened()) refuse(fmt::format("an exposure of {} ms", *settings_.exposure_ms));
+    }
+    if (settings_.gain) {
+        arv_camera_set_gain(camera, *settings_.gain, failure.slot());
+        if (failure.happened()) refuse(fmt::format("a gain of {}", *settings_.gain));
+    }
+    if (settings_.trigger == GenicamSettings::Trigger::none) {
+        arv_camera_clear_triggers(camera, failure.slot());
+        if (settings_.frames_hz) {
+            arv_camera_set_frame_rate(camera, *settings_.frames_hz, failure.slot());
+            if (failure.happened()) refuse(fmt::format("{} frames a second", *settings_.frames_hz));
+        }
+    } else {
+        const std::string source =
+            settings_.trigger == GenicamSettings::Trigger::software ? "Software" : settings_.line;
+        arv_camera_set_trigger(camera, source.c_str(), failure.slot());
+        if (failure.happened()) refuse("the trigger " + source);
+    }
+    const double exposure_us = arv_camera_get_exposure_time(camera, failure.slot());
+    if (failure.happened() || !(exposure_us > 0)) refuse("a question for its exposure");
+    exposure_ = from_seconds(exposure_us / 1e6);
+    if (settings_.exposure_ms && std::abs(exposure_us / (1e3 * *settings_.exposure_ms) - 1) > 0.02)
+        notes_.push_back(
+            fmt::format("its exposure is {:.3f} ms, {:.3f} was asked for", exposure_us / 1e3, *settings_.exposure_ms));
+    gain_ = arv_camera_is_gain_available(camera, failure.slot()) ? arv_camera_get_gain(camera, failure.slot()) : 0;
+    int x = 0, y = 0;
+    arv_camera_get_region(camera, &x, &y, &width_, &height_, failure.slot());
+    if (failure.happened()) refuse("a question for its region");
+}
+
+void GenicamCamera::start() {
+    ArvCamera* camera = device_->camera.get();
+    Failure failure;
+    const unsigned payload = arv_camera_get_payload(camera, failure.slot());
+    transfer_ = from_seconds(settings_.transfer_ms ? *settings_.transfer_ms / 1e3 : payload / 125e6);
+    device_->stream.reset(arv_camera_create_stream(camera, nullptr, nullptr, failure.slot()));
+    if (!device_->stream)
+        throw DeviceError(name_, fmt::format("its stream cannot be opened ({})", failure.text()),
+                          "Look at the firewall and the network's packet size.");
+    for (int i = 0; i < kBuffers; ++i) arv_stream_push_buffer(device_->stream.get(), arv_buffer_new(payload, nullptr));
+    device_->lost = false;
+    g_signal_connect(arv_camera_get_device(camera), "control-lost",
+                     G_CALLBACK(+[](ArvDevice*, gpointer lost) { *static_cast<std::atomic<bool>*>(lost) = true; }),
+                     &device_->lost);
+    arv_camera_start_acquisition(camera, failure.slot());
+    if (failure.happened())
+        throw DeviceError(name_, fmt::format("it does not start ({})", failure.text()), "Switch it off and on again.");
+    device_clock_ = DeviceClock();
+    last_by_device_ = Instant(-1);
+    heard_at_ = looked_at_ = clock_.now();
+}
+
+/// One frame, or none within a moment. False when the camera is lost.
+bool GenicamCamera::receive() {
+    ArvBuffer* buffer =
+        arv_stream_timeout_pop_buffer(device_->stream.get(), static_cast<guint64>(kPatience.count() / 1000));
+    const Instant arrived = clock_.now();
+    const bool there = !device_->lost && arrived - heard_at_ < settings_.silence_allowed;
+    if (!buffer) return there;
+    struct Back {
+        ArvStream* stream;
+        ArvBuffer* buffer;
+        ~Back() { arv_stream_push_buffer(stream, buffer); }
+    } back{device_->stream.get(), buffer};
+    if (arv_buffer_get_status(buffer) != ARV_BUFFER_STATUS_SUCCESS) {
+        frames_.count_incomplete();
+        return there;
+    }
+    const Instant by_device(static_cast<Instant::rep>(arv_buffer_get_timestamp(buffer)));
+    if (by_device == last_by_device_) return there;  // the same exposure twice
+    last_by_device_ = by_device;
+    heard_at_ = arrived;
+    if (!device_clock_.add(by_device, arrived)) frames_.count_jump();
+    std::size_t size = 0;
+    const auto* data = static_cast<const std::uint8_t*>(arv_buffer_get_data(buffer, &size));
+    CameraFrame frame;
+    frame.exposure = exposure_;
+    frame.at = device_clock_.on_session_clock(by_device) - transfer_ - exposure_ / 2;
+    frame.at_sigma = device_clock_.uncertainty();
+    const auto picture = mono_picture({data, size}, arv_buffer_get_image_width(buffer),
+                                      arv_buffer_get_image_height(buffer), arv_buffer_get_image_pixel_format(buffer));
+    if (!picture) {
+        frames_.fail({fmt::format("it sends pictures of format {:#x}, which are not grey ones",
+                                  arv_buffer_get_image_pixel_format(buffer)),
+                      "Set \"pixel_format\" to Mono8, Mono10, Mono12 or Mono16."});
+        return true;
+    }
+    frame.picture = *picture;
+    frames_.push(std::move(frame));
+    return true;
+}
+
+/// Whether exposure and gain are still what they were at the start; asked now and then.
+bool GenicamCamera::still_as_set() {
+    const Instant now = clock_.now();
+    if (now - looked_at_ < settings_.look_every) return true;
+    looked_at_ = now;
+    Failure failure;
+    const double exposure_us = arv_camera_get_exposure_time(device_->camera.get(), failure.slot());
+    if (failure.happened()) return true;  // a lost camera tells by itself
+    if (std::abs(exposure_us / 1e6 / seconds(exposure_) - 1) > 0.02) {
+        frames_.fail({fmt::format("its exposure was changed from {:.2f} to {:.2f} ms by somebody else",
+                                  1e3 * seconds(exposure_), exposure_us / 1e3),
+                      "End the other program that uses this camera; it is set again by itself."});
+        return false;
+    }
+    return true;
+}
+
+void GenicamCamera::reopen(const std::stop_token& stop) {
+    device_->stream.reset();
+    device_->camera.reset();
+    for (;;) {
+        for (int i = 0; i < 10; ++i) {
+            if (stop.stop_requested()) return;
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        }
+        try {
+            open();
+            configure();
+            start();
+            frames_.recovered();
+            return;
+        } catch (const DeviceError& error) {
+            device_->stream.reset();
+            device_->camera.reset();
+            frames_.fail({error.what(), error.remedy});
+        }
+    }
+}
+
+void GenicamCamera::run(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+        const bool there = receive();
+        if (there && still_as_set()) continue;
+        if (!there)
+            frames_.fail(
+                {fmt::format("nothing came from it for {} ms",
+                             std::chrono::duration_cast<std::chrono::milliseconds>(settings_.silence_allowed).count()),
+                 "Look at its cable and its power. It is looked for every second."});
+        reopen(stop);
+    }
+}
+
+void GenicamCamera::trigger() {
+    Failure failure;
+    arv_camera_software_trigger(device_->camera.get(), failure.slot());
+    if (failure.happened())
+        throw DeviceError(name_, fmt::format("its software trigger does not work ({})", failure.text()),
+                          "Let it run free, or trigger it by a line.");
+}
+
+}  // namespace planlight

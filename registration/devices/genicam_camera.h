@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "registration/devices/camera.h"
+#include "registration/devices/device_clock.h"
+
+namespace planlight {
+
+/// A GenICam camera that answers on the network or on USB.
+struct FoundCamera {
+    std::string id, serial, vendor, model, address, protocol;
+};
+
+/// All that answer now; takes about a second.
+std::vector<FoundCamera> list_genicam_cameras();
+
+/// How a GenICam camera is run. What is not said stays as the camera has it.
+struct GenicamSettings {
+    std::string name = "camera";  ///< for messages: "left camera"
+    std::string device;           ///< serial, identifier or network address
+    enum class Trigger { none, software, line } trigger = Trigger::none;
+    std::string line = "Line0";  ///< of the hardware trigger
+    std::string pixel_format;    ///< "Mono8", "Mono10", "Mono12", "Mono16" or packed; empty: Mono8
+    std::optional<double> exposure_ms, gain, frames_hz;
+    std::optional<std::array<int, 4>> region;  ///< x, y, width, height
+    /// From the end of the exposure to the arrival of the quickest frame; empty: the payload over a gigabit.
+    std::optional<double> transfer_ms;
+    Instant silence_allowed = std::chrono::milliseconds(500);  ///< without a frame; then it is lost
+    Instant look_every = std::chrono::seconds(1);              ///< whether exposure and gain are still what they were
+};
+
+/// A GigE Vision or USB3 Vision camera by Aravis, running by itself: what it does on its own (automatic exposure and
+/// gain, gamma, sharpening) is switched off and read back; a frame with lost packets is no frame; a camera that is lost
+/// is a fault that `FrameQueue` tells, and is looked for until it is back.
+class GenicamCamera final : public Camera {
+public:
+    /// Throws DeviceError when there is no such camera, it is in use, or it does not take the settings.
+    GenicamCamera(GenicamSettings settings, FrameBell& bell, const Clock& clock);
+    ~GenicamCamera() override;
+    GenicamCamera(const GenicamCamera&) = delete;
+    GenicamCamera& operator=(const GenicamCamera&) = delete;
+
+    const std::string& name() const override { return name_; }
+    FrameQueue& frames() override { return frames_; }
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    const std::string& serial() const { return serial_; }
+    /// What it does by itself and could not be told not to, a sentence each.
+    const std::vector<std::string>& notes() const { return notes_; }
+    /// Fires the software trigger.
+    void trigger();
+
+private:
+    struct Device;
+    void open();
+    void configure();
+    void start();
+    void run(const std::stop_token& stop);
+    bool receive();
+    bool still_as_set();
+    void reopen(const std::stop_token& stop);
+
+    GenicamSettings settings_;
+    const Clock& clock_;
+    FrameQueue frames_;
+    std::string name_, serial_;
+    std::vector<std::string> notes_;
+    std::unique_ptr<Device> device_;
+    DeviceClock device_clock_;
+    int width_ = 0, height_ = 0;
+    Instant exposure_{}, transfer_{}, heard_at_{}, looked_at_{}, last_by_device_{-1};
+    double gain_ = 0;
+    std::jthread thread_;
+};
+
+}  // namespace planlight

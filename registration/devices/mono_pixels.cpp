@@ -1,0 +1,70 @@
+#include "registration/devices/mono_pixels.h"
+
+#include <cstring>
+
+namespace planlight {
+namespace {
+
+// Pixel Format Naming Convention 2.4, table of 32-bit values.
+constexpr std::uint32_t kMono8 = 0x01080001, kMono10 = 0x01100003, kMono12 = 0x01100005, kMono14 = 0x01100025,
+                        kMono16 = 0x01100007, kMono10Packed = 0x010C0004, kMono12Packed = 0x010C0006,
+                        kMono10p = 0x010A0046, kMono12p = 0x010C0047;
+
+int bits_of_two_bytes(std::uint32_t format) {
+    switch (format) {
+        case kMono10:
+            return 10;
+        case kMono12:
+            return 12;
+        case kMono14:
+            return 14;
+        case kMono16:
+            return 16;
+        default:
+            return 0;
+    }
+}
+
+}  // namespace
+
+std::optional<GrayImage> mono_picture(std::span<const std::uint8_t> data, int width, int height,
+                                      std::uint32_t pixel_format) {
+    if (width <= 0 || height <= 0) return std::nullopt;
+    const auto pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    const auto enough = [&](std::size_t bits) { return data.size() * 8 >= pixels * bits; };
+    GrayImage picture(width, height);
+    auto* out = picture.pixels.data();
+    if (pixel_format == kMono8) {
+        if (!enough(8)) return std::nullopt;
+        std::memcpy(out, data.data(), pixels);
+        return picture;
+    }
+    if (const int bits = bits_of_two_bytes(pixel_format); bits > 0) {
+        if (!enough(16)) return std::nullopt;
+        for (std::size_t i = 0; i < pixels; ++i) {
+            const unsigned value = data[2 * i] | static_cast<unsigned>(data[2 * i + 1]) << 8;
+            out[i] = static_cast<std::uint8_t>(value >> (bits - 8) & 0xFF);
+        }
+        return picture;
+    }
+    if (pixel_format == kMono10Packed || pixel_format == kMono12Packed) {
+        // Two pixels in three bytes; the upper eight bits of each have a byte of their own.
+        if (data.size() < (pixels / 2) * 3 + (pixels % 2) * 2) return std::nullopt;
+        for (std::size_t i = 0; i < pixels; ++i) out[i] = data[i / 2 * 3 + (i % 2) * 2];
+        return picture;
+    }
+    if (pixel_format == kMono10p || pixel_format == kMono12p) {
+        const std::size_t bits = pixel_format == kMono10p ? 10 : 12;  // one after the other, lowest bit first
+        if (!enough(bits)) return std::nullopt;
+        for (std::size_t i = 0; i < pixels; ++i) {
+            const std::size_t upper = i * bits + bits - 8, byte = upper / 8, shift = upper % 8;
+            unsigned value = data[byte];
+            if (shift > 0) value |= static_cast<unsigned>(data[byte + 1]) << 8;
+            out[i] = static_cast<std::uint8_t>(value >> shift & 0xFF);
+        }
+        return picture;
+    }
+    return std::nullopt;
+}
+
+}  // namespace planlight

@@ -1,0 +1,114 @@
+#include "registration/devices/paired_cameras.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+Instant begin_of(const CameraFrame& frame) {
+    return frame.at - frame.exposure / 2;
+}
+
+void append(std::deque<CameraFrame>& to, std::vector<CameraFrame> frames) {
+    for (CameraFrame& frame : frames) to.push_back(std::move(frame));
+    while (to.size() > FrameQueue::kMost) to.pop_front();
+}
+
+}  // namespace
+
+PairedCameras::PairedCameras(std::unique_ptr<Camera> left, std::unique_ptr<Camera> right, FrameBell& bell,
+                             const Clock& clock, const PairSettings& settings)
+    : left_(std::move(left)), right_(std::move(right)), bell_(bell), clock_(clock), settings_(settings) {}
+
+StereoFrame PairedCameras::grab(Instant not_before, std::chrono::milliseconds patience) {
+    return wait_for_pair(not_before, patience, false);
+}
+
+StereoFrame PairedCameras::newest(Instant not_before, std::chrono::milliseconds patience) {
+    return wait_for_pair(not_before, patience, true);
+}
+
+void PairedCameras::collect() {
+    std::vector<CameraFrame> left = left_->frames().take_all(), right = right_->frames().take_all();
+    lefts_seen_ += left.size();
+    rights_seen_ += right.size();
+    append(lefts_, std::move(left));
+    append(rights_, std::move(right));
+}
+
+/// The earliest pair that begins at or after a moment; frames that can no longer have a partner are left behind.
+std::optional<StereoFrame> PairedCameras::next_pair(Instant not_before) {
+    while (!lefts_.empty() && begin_of(lefts_.front()) < not_before) lefts_.pop_front();
+    while (!rights_.empty() && begin_of(rights_.front()) < not_before) rights_.pop_front();
+    while (!lefts_.empty() && !rights_.empty()) {
+        CameraFrame &left = lefts_.front(), &right = rights_.front();
+        const Instant shorter = std::min(left.exposure, right.exposure);
+        const Instant allowed =
+            std::max(settings_.least_apart,
+                     std::min(settings_.most_apart, from_seconds(settings_.apart_of_exposure * seconds(shorter))));
+        counts_.apart = right.at - left.at;
+        if (counts_.apart > allowed) {
+            ++counts_.left_alone;
+            lefts_.pop_front();
+            continue;
+        }
+        if (counts_.apart < -allowed) {
+            ++counts_.right_alone;
+            rights_.pop_front();
+            continue;
+        }
+        StereoFrame pair;
+        pair.at = left.at + counts_.apart / 2;
+        pair.exposure = std::max(left.exposure, right.exposure) + std::max(counts_.apart, -counts_.apart);
+        pair.number = ++counts_.pairs;
+        pair.left = std::move(left.picture);
+        pair.right = std::move(right.picture);
+        lefts_.pop_front();
+        rights_.pop_front();
+        return pair;
+    }
+    return std::nullopt;
+}
+
+void PairedCameras::refuse(std::chrono::milliseconds patience) const {
+    for (const auto& [camera, seen] : {std::pair{left_.get(), lefts_seen_}, std::pair{right_.get(), rights_seen_}})
+        if (seen == 0)
+            throw DeviceError(camera->name(), fmt::format("no whole frame came in {} ms", patience.count()),
+                              "Look at its cable and its power, and whether its trigger runs.");
+    throw DeviceError("cameras",
+                      fmt::format("the two do not expose together: their nearest exposures are {:.1f} ms apart",
+                                  std::abs(1e3 * seconds(counts_.apart))),
+                      "Let one camera trigger the other, or both by one line, and give both the same exposure.");
+}
+
+StereoFrame PairedCameras::wait_for_pair(Instant not_before, std::chrono::milliseconds patience, bool newest) {
+    const Instant until = clock_.now() + patience;
+    lefts_seen_ = rights_seen_ = 0;
+    for (;;) {
+        std::uint64_t rings = 0;
+        {
+            const std::lock_guard lock(bell_.mutex);
+            rings = bell_.rings;
+        }
+        for (Camera* camera : {left_.get(), right_.get()})
+            if (const auto fault = camera->frames().fault())
+                throw DeviceError(camera->name(), fault->problem, fault->remedy);
+        collect();
+        auto pair = next_pair(not_before);
+        if (pair && newest)
+            while (auto later = next_pair(not_before)) pair = std::move(later);
+        if (pair) return std::move(*pair);
+        const Instant now = clock_.now();
+        if (now >= until) refuse(patience);
+        std::unique_lock lock(bell_.mutex);
+        bell_.rung.wait_for(lock, std::min(until - now, Instant(std::chrono::milliseconds(20))),
+                            [&] { return bell_.rings != rings; });
+    }
+}
+
+}  // namespace planlight

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+
+#include "registration/devices/camera.h"
+#include "registration/devices/stereo_camera.h"
+
+namespace planlight {
+
+/// Which exposures of two cameras are one.
+struct PairSettings {
+    double apart_of_exposure = 0.1;                        ///< mid-exposures may be apart by so much of an exposure,
+    Instant most_apart = std::chrono::milliseconds(2);     ///< by this at most,
+    Instant least_apart = std::chrono::microseconds(200);  ///< and by this in any case: clocks are no truer
+};
+
+/// What became of the frames of two cameras.
+struct PairCounts {
+    std::size_t pairs = 0, left_alone = 0, right_alone = 0;
+    Instant apart{};  ///< right less left of the last pair, or of the nearest two that made none
+};
+
+/// Two cameras that run by themselves, as one that exposes both together: frames are paired by their times.
+class PairedCameras final : public StereoCamera {
+public:
+    /// `bell` must be that of both cameras' queues.
+    PairedCameras(std::unique_ptr<Camera> left, std::unique_ptr<Camera> right, FrameBell& bell, const Clock& clock,
+                  const PairSettings& settings = {});
+
+    /// Throws DeviceError, with the camera by name, when a camera failed, sends nothing, or the two do not expose
+    /// together.
+    StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override;
+
+    /// As `grab`, but the newest pair that is there, for following a patient.
+    StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) override;
+
+    const PairCounts& counts() const { return counts_; }
+    Camera& left() { return *left_; }
+    Camera& right() { return *right_; }
+
+private:
+    StereoFrame wait_for_pair(Instant not_before, std::chrono::milliseconds patience, bool newest);
+    void collect();
+    std::optional<StereoFrame> next_pair(Instant not_before);
+    [[noreturn]] void refuse(std::chrono::milliseconds patience) const;
+
+    std::unique_ptr<Camera> left_, right_;
+    FrameBell& bell_;
+    const Clock& clock_;
+    PairSettings settings_;
+    std::deque<CameraFrame> lefts_, rights_;
+    std::size_t lefts_seen_ = 0, rights_seen_ = 0;  ///< in this call
+    PairCounts counts_;
+};
+
+}  // namespace planlight

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "planning_io/types/image.h"
+#include "planning_io/types/time.h"
+
+namespace planlight::simulation {
+
+/// What a served camera is to the network.
+struct ServedCameraSettings {
+    std::string address = "127.0.0.1";  ///< of this machine; each camera needs one of its own
+    std::string serial = "SIM-1";
+    int width = 0, height = 0;
+    Instant exposure = std::chrono::milliseconds(10);
+    double frames_hz = 25;
+    Instant clock_offset{};  ///< of the camera's clock against this machine's monotonic one
+    double clock_drift = 0;  ///< seconds a second by which it runs fast
+};
+
+/// A GigE Vision camera that any program on the network can open: Aravis' fake camera with our pictures.
+class ServedCamera {
+public:
+    /// Throws DeviceError when the address is not this machine's or is in use.
+    explicit ServedCamera(const ServedCameraSettings& settings);
+    ~ServedCamera();
+
+    /// The newest exposure: its picture and when it began, by this machine's monotonic clock. Sent once, to whoever has
+    /// the camera open; thrown away when nobody took it before the next.
+    void offer(GrayImage picture, Instant began);
+
+    /// As if the cable were pulled: nothing is sent from now on.
+    void silence(bool silent);
+    /// As another program would do it.
+    void change_exposure(Instant exposure);
+    /// The camera's clock is set anew.
+    void set_clock_offset(Instant offset);
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace planlight::simulation

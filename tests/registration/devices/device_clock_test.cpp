@@ -1,0 +1,84 @@
+#include "registration/devices/device_clock.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+namespace planlight {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+/// A camera at 25 frames/s whose clock began at another moment and runs fast; frames arrive 8 ms after the device's
+/// time, mostly a little later, now and then much.
+struct Source {
+    std::mt19937 random{1};
+    Instant offset = seconds(1000);
+    double drift = 100e-6;
+    Instant by_device(Instant t) const {
+        return t + offset + Instant(static_cast<Instant::rep>(static_cast<double>(t.count()) * drift));
+    }
+    Instant late() {
+        std::exponential_distribution<double> usual(1 / 0.3e-3), busy(1 / 20e-3);
+        const double hiccup = random() % 20 == 0 ? busy(random) : 0;
+        return milliseconds(8) + from_seconds(usual(random) + hiccup);
+    }
+};
+
+TEST(DeviceClock, FindsOffsetAndDriftUnderArrivalsThatAreLate) {
+    Source source;
+    DeviceClock clock;
+    std::vector<double> off;
+    for (Instant t = seconds(5); t < seconds(125); t += milliseconds(40)) {
+        EXPECT_TRUE(clock.add(source.by_device(t), t + source.late()));
+        const Instant error = clock.on_session_clock(source.by_device(t)) - milliseconds(8) - t;
+        if (t > seconds(15)) off.push_back(std::abs(planlight::seconds(error)));
+    }
+    std::sort(off.begin(), off.end());
+    EXPECT_LT(off[off.size() * 95 / 100], 0.3e-3);
+    EXPECT_LT(off.back(), 0.6e-3);
+    EXPECT_NEAR(clock.drift(), -100e-6, 15e-6) << "the device runs fast";
+    EXPECT_EQ(clock.jumps(), 0u);
+}
+
+TEST(DeviceClock, AClockThatJumpsIsNoticedAndLearntAnew) {
+    for (const Instant jump :
+         {Instant(seconds(-3)), Instant(milliseconds(-50)), Instant(milliseconds(50)), Instant(seconds(600))}) {
+        Source source;
+        DeviceClock clock;
+        Instant t = seconds(5);
+        for (; t < seconds(25); t += milliseconds(40)) clock.add(source.by_device(t), t + source.late());
+        source.offset += jump;
+        const Instant changed = t;
+        for (; t < changed + seconds(2); t += milliseconds(40)) clock.add(source.by_device(t), t + source.late());
+        EXPECT_EQ(clock.jumps(), 1u) << planlight::seconds(jump);
+        EXPECT_LT(std::abs(planlight::seconds(clock.on_session_clock(source.by_device(t)) - milliseconds(8) - t)), 1e-3)
+            << planlight::seconds(jump);
+    }
+}
+
+TEST(DeviceClock, ABusyComputerIsNoJump) {
+    Source source;
+    DeviceClock clock;
+    Instant t = seconds(5);
+    for (; t < seconds(25); t += milliseconds(40)) clock.add(source.by_device(t), t + source.late());
+    EXPECT_TRUE(clock.add(source.by_device(t), t + milliseconds(300)));
+    t += milliseconds(40);
+    EXPECT_TRUE(clock.add(source.by_device(t), t + milliseconds(260)));
+    EXPECT_LT(std::abs(planlight::seconds(clock.on_session_clock(source.by_device(t)) - milliseconds(8) - t)), 0.6e-3);
+    EXPECT_EQ(clock.jumps(), 0u);
+}
+
+TEST(DeviceClock, SaysItsUncertainty) {
+    Source source;
+    DeviceClock clock;
+    clock.add(source.by_device(seconds(5)), seconds(5) + milliseconds(8));
+    clock.add(source.by_device(seconds(7)), seconds(7) + milliseconds(30));
+    EXPECT_GE(clock.uncertainty(), microseconds(500)) << "two seconds on, an unknown drift may have added up";
+}
+
+}  // namespace
+}  // namespace planlight

@@ -1,0 +1,141 @@
+#include "registration/devices/genicam_camera.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "planning_io/types/error.h"
+#include "planning_io/types/steady_clock.h"
+#include "registration/simulation/serve/served_camera.h"
+
+// Over the loopback network, by the same library calls as a camera on a cable.
+namespace planlight {
+namespace {
+
+using simulation::ServedCamera;
+using simulation::ServedCameraSettings;
+using std::chrono::milliseconds;
+
+ServedCameraSettings small_camera() {
+    ServedCameraSettings settings;
+    settings.serial = "T-17";
+    settings.width = 64;
+    settings.height = 48;
+    settings.exposure = milliseconds(8);
+    return settings;
+}
+
+/// Offers a picture every 20 ms whose grey counts up, as long as it lives.
+class Source {
+public:
+    explicit Source(ServedCamera& camera)
+        : thread_([this, &camera](const std::stop_token& stop) {
+              while (!stop.stop_requested()) {
+                  camera.offer(GrayImage(64, 48, ++grey_), clock_.now() - milliseconds(8));
+                  std::this_thread::sleep_for(milliseconds(20));
+              }
+          }) {}
+
+private:
+    SteadyClock clock_;
+    std::atomic<std::uint8_t> grey_{0};
+    std::jthread thread_;
+};
+
+bool within(milliseconds patience, const std::function<bool()>& wanted) {
+    const auto until = std::chrono::steady_clock::now() + patience;
+    while (std::chrono::steady_clock::now() < until) {
+        if (wanted()) return true;
+        std::this_thread::sleep_for(milliseconds(5));
+    }
+    return wanted();
+}
+
+TEST(GenicamCamera, ACameraThatIsNotThereIsSaid) {
+    FrameBell bell;
+    const SteadyClock clock;
+    GenicamSettings settings;
+    settings.name = "left camera";
+    settings.device = "NO-SUCH-SERIAL";
+    try {
+        GenicamCamera(settings, bell, clock);
+        FAIL() << "opened a camera that is not there";
+    } catch (const DeviceError& error) {
+        EXPECT_NE(std::string(error.what()).find("left camera: \"NO-SUCH-SERIAL\" does not answer"), std::string::npos)
+            << error.what();
+    }
+}
+
+TEST(GenicamCamera, PicturesComeWithTheTimeOfTheirExposure) {
+    ServedCameraSettings served = small_camera();
+    served.clock_offset = std::chrono::hours(30);
+    served.clock_drift = 100e-6;
+    ServedCamera camera(served);
+    const Source source(camera);
+    FrameBell bell;
+    const SteadyClock clock;
+    GenicamSettings settings;
+    settings.device = "T-17";
+    settings.transfer_ms = 0;  // no wire between
+    GenicamCamera opened(settings, bell, clock);
+    EXPECT_EQ(opened.serial(), "T-17");
+    EXPECT_EQ(opened.width(), 64);
+    std::vector<CameraFrame> frames;
+    ASSERT_TRUE(within(milliseconds(20000), [&] {
+        for (CameraFrame& frame : opened.frames().take_all()) {
+            EXPECT_LT(clock.now() - frame.at, milliseconds(1000));
+            frames.push_back(std::move(frame));
+        }
+        return frames.size() >= 40;
+    }));
+    for (std::size_t i = 1; i < frames.size(); ++i) {
+        EXPECT_GT(frames[i].at, frames[i - 1].at);
+        EXPECT_NE(frames[i].picture.at(5, 5), frames[i - 1].picture.at(5, 5)) << "no exposure comes twice";
+        EXPECT_EQ(frames[i].exposure, milliseconds(8));
+    }
+}
+
+TEST(GenicamCamera, ASilentCameraIsAFaultAndComesBackByItself) {
+    ServedCamera camera(small_camera());
+    const Source source(camera);
+    FrameBell bell;
+    const SteadyClock clock;
+    GenicamSettings settings;
+    settings.device = "T-17";
+    GenicamCamera opened(settings, bell, clock);
+    ASSERT_TRUE(within(milliseconds(10000), [&] { return !opened.frames().take_all().empty(); }));
+    camera.silence(true);
+    ASSERT_TRUE(within(milliseconds(5000), [&] { return opened.frames().fault().has_value(); }));
+    EXPECT_NE(opened.frames().fault()->problem.find("nothing came from it"), std::string::npos);
+    camera.silence(false);
+    EXPECT_TRUE(
+        within(milliseconds(20000), [&] { return !opened.frames().fault() && !opened.frames().take_all().empty(); }));
+    EXPECT_EQ(opened.frames().counts().lost_connections, 1u);
+}
+
+TEST(GenicamCamera, AnExposureThatSomebodyElseChangedIsAFault) {
+    ServedCamera camera(small_camera());
+    const Source source(camera);
+    FrameBell bell;
+    const SteadyClock clock;
+    GenicamSettings settings;
+    settings.device = "T-17";
+    settings.exposure_ms = 8;
+    GenicamCamera opened(settings, bell, clock);
+    ASSERT_TRUE(within(milliseconds(10000), [&] { return !opened.frames().take_all().empty(); }));
+    camera.change_exposure(milliseconds(4));
+    std::string problem;
+    ASSERT_TRUE(within(milliseconds(10000), [&] {
+        const auto fault = opened.frames().fault();
+        if (fault) problem = fault->problem;
+        return fault.has_value();
+    }));
+    EXPECT_NE(problem.find("its exposure was changed from 8.00 to 4.00 ms"), std::string::npos) << problem;
+    EXPECT_TRUE(within(milliseconds(20000), [&] {
+        return !opened.frames().fault() && !opened.frames().take_all().empty();
+    })) << "it is set again";
+}
+
+}  // namespace
+}  // namespace planlight

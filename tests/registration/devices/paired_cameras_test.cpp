@@ -1,0 +1,119 @@
+#include "registration/devices/paired_cameras.h"
+
+#include <gtest/gtest.h>
+
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// A camera whose frames the test says.
+class ScriptedCamera final : public Camera {
+public:
+    ScriptedCamera(std::string name, FrameBell& bell) : name_(std::move(name)), frames_(bell) {}
+    const std::string& name() const override { return name_; }
+    FrameQueue& frames() override { return frames_; }
+    void expose(double at_ms, std::uint8_t grey, double exposure_ms = 10) {
+        frames_.push({GrayImage(2, 2, grey), from_seconds(at_ms / 1e3), from_seconds(exposure_ms / 1e3), {}});
+    }
+
+private:
+    std::string name_;
+    FrameQueue frames_;
+};
+
+/// Every look at the clock takes a millisecond.
+struct RunningClock final : Clock {
+    mutable Instant t{};
+    Instant now() const override { return t += milliseconds(1); }
+};
+
+struct PairedCamerasTest : ::testing::Test {
+    FrameBell bell;
+    RunningClock clock;
+    ScriptedCamera* left = nullptr;
+    ScriptedCamera* right = nullptr;
+    std::unique_ptr<PairedCameras> cameras;
+    void SetUp() override {
+        auto l = std::make_unique<ScriptedCamera>("left camera", bell),
+             r = std::make_unique<ScriptedCamera>("right camera", bell);
+        left = l.get();
+        right = r.get();
+        cameras = std::make_unique<PairedCameras>(std::move(l), std::move(r), bell, clock);
+    }
+    std::string refusal(milliseconds patience = milliseconds(30)) {
+        try {
+            cameras->grab({}, patience);
+        } catch (const DeviceError& error) {
+            return error.what();
+        }
+        return {};
+    }
+};
+
+TEST_F(PairedCamerasTest, TheFirstPairThatBeginsAfterAMomentIsTakenWhateverComesFirst) {
+    right->expose(100.2, 11);
+    right->expose(140.2, 12);
+    left->expose(100, 1);
+    left->expose(140, 2);
+    const StereoFrame frame = cameras->grab(milliseconds(100), milliseconds(100));
+    EXPECT_EQ(frame.left.at(0, 0), 2);
+    EXPECT_EQ(frame.right.at(0, 0), 12);
+    EXPECT_NEAR(seconds(frame.at), 0.1401, 1e-6);
+    EXPECT_NEAR(seconds(frame.exposure), 0.0102, 1e-6) << "light must be steady for both";
+}
+
+TEST_F(PairedCamerasTest, TheNewestPairIsTakenForFollowing) {
+    for (int i = 0; i < 3; ++i) {
+        left->expose(40 * i, static_cast<std::uint8_t>(i));
+        right->expose(40 * i, static_cast<std::uint8_t>(i));
+    }
+    left->expose(120, 3);  // its partner is still on its way
+    EXPECT_EQ(cameras->newest({}, milliseconds(100)).left.at(0, 0), 2);
+    right->expose(120, 3);
+    EXPECT_EQ(cameras->newest({}, milliseconds(100)).left.at(0, 0), 3);
+}
+
+TEST_F(PairedCamerasTest, AFrameWithoutAPartnerIsLeftOutAndCounted) {
+    left->expose(10, 1);
+    left->expose(90, 3);
+    right->expose(50, 2);
+    right->expose(90, 3);
+    EXPECT_EQ(cameras->grab({}, milliseconds(100)).right.at(0, 0), 3);
+    EXPECT_EQ(cameras->counts().left_alone, 1u);
+    EXPECT_EQ(cameras->counts().right_alone, 1u);
+}
+
+TEST_F(PairedCamerasTest, ExposuresThatAreApartMakeNoPairAndThatIsSaid) {
+    for (int i = 0; i < 4; ++i) {
+        left->expose(40 * i, 1);
+        right->expose(40 * i + 15, 1);
+    }
+    EXPECT_NE(refusal().find("do not expose together"), std::string::npos) << refusal();
+    EXPECT_EQ(cameras->counts().pairs, 0u);
+}
+
+TEST_F(PairedCamerasTest, ACameraThatSendsNothingOrFailedIsNamed) {
+    left->expose(0, 1);
+    EXPECT_NE(refusal().find("right camera: no whole frame came"), std::string::npos);
+    left->frames().fail({"nothing came from it for 500 ms", "Look."});
+    EXPECT_EQ(refusal(), "left camera: nothing came from it for 500 ms");
+    left->frames().recovered();
+    left->expose(40, 7);
+    right->expose(40, 8);
+    EXPECT_EQ(cameras->grab({}, milliseconds(100)).left.at(0, 0), 7) << "nothing else is needed to go on";
+}
+
+TEST_F(PairedCamerasTest, NoOldPictureIsTakenForALiveOne) {
+    for (int i = 0; i < 50; ++i) {
+        left->expose(40 * i, static_cast<std::uint8_t>(i));
+        right->expose(40 * i, static_cast<std::uint8_t>(i));
+    }
+    EXPECT_GE(cameras->grab({}, milliseconds(100)).left.at(0, 0), 46) << "a full queue keeps the newest";
+    EXPECT_EQ(left->frames().counts().dropped, 46u);
+}
+
+}  // namespace
+}  // namespace planlight
