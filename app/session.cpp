@@ -67,6 +67,7 @@ const ScanResult& Session::scan(const std::function<void(int, int)>& progress) {
     registration_.reset();
     scanned_.reset();
     rig_state_.reset();
+    found_delay_ = {};
     use_rig(calibrated_);
     StripeSettings stripes;
     stripes.width = projector_.width();
@@ -186,6 +187,11 @@ void Session::start_overlay() {
     overlay_ =
         std::make_unique<OverlayLoop>(projector_, clock_, *renderer_, drawing(), *registration_, settings_.overlay);
     if (confirmed_) overlay_->set_operator_confirmed(true);
+    overlay_->set_light_delay(settings_.overlay.light_delay + found_delay_);
+    checker_.emplace(drawing(), now_ ? now_->skin : planned_.skin, rig_, settings_.check_light);
+    watch_.emplace(rig_, settings_.light_cause);
+    jumps_.emplace(rig_);
+    shown_.clear();
 }
 
 Session::Update Session::update() {
@@ -202,12 +208,59 @@ Session::Update Session::update() {
     update.times.draw_s = elapsed_s(drawing_began);
     const auto checking_began = std::chrono::steady_clock::now();
     update.light = look_at_light(update);
+    watch_light(update);
     update.times.check_s = elapsed_s(checking_began);
-    if (!update.overlay.lit)
-        lit_since_ = Instant::max();
-    else if (lit_since_ == Instant::max())
-        lit_since_ = update.overlay.lit_from;
+    note_shown(update.overlay);
+    correct_delay(update.causes);
     return update;
+}
+
+void Session::note_shown(const OverlayStep& overlay) {
+    constexpr std::size_t kKept = 12;
+    if (!overlay.lit) {
+        lit_since_ = Instant::max();
+        shown_.clear();
+        return;
+    }
+    if (lit_since_ == Instant::max()) lit_since_ = overlay.lit_from + found_delay_;
+    shown_.push_back({overlay.lit_from + found_delay_, overlay.rig_from_ct});
+    if (shown_.size() > kKept) shown_.erase(shown_.begin());
+}
+
+/// What this frame told, and what is wrong with the light by it and those before.
+void Session::watch_light(Update& update) {
+    LightFacts facts;
+    facts.at = update.frame.at;
+    facts.pose = update.pose.rig_from_patient.has_value();
+    if (facts.pose) facts.rig_from_ct = *update.pose.rig_from_patient * registration_->patient_from_ct;
+    if (update.light) {
+        facts.segments = update.light->segments;
+        facts.expected = update.light->expected;
+        facts.seen = update.light->seen;
+        facts.background = update.light->background;
+    }
+    facts.shown = shown_;
+    if (!tracker_.markers().empty()) {
+        const Eigen::Vector3d at_scan = tracker_.markers().front().centre_in_patient;
+        facts.jump_mm =
+            jumps_->add(tracker_.seen_left(), tracker_.seen_right(), (rig_.left_camera.device_from_rig * at_scan).z());
+    }
+    if (facts.pose && !tracker_.doubts().empty()) {
+        facts.slipped_marker = tracker_.doubts().front().marker;
+        facts.slipped_mm = tracker_.doubts().front().deviation_mm;
+    }
+    update.causes = watch_->add(std::move(facts));
+}
+
+/// A late picture is drawn ahead, within limits; what was seen before is of the light as it was.
+void Session::correct_delay(const std::vector<LightCause>& causes) {
+    if (causes.empty() || causes.front().fault != LightFault::late_picture) return;
+    const Instant more = from_seconds(causes.front().size / 1e3);
+    if (found_delay_ + more > settings_.most_delay_corrected) return;
+    found_delay_ += more;
+    overlay_->set_light_delay(settings_.overlay.light_delay + found_delay_);
+    watch_->forget();
+    shown_.clear();
 }
 
 /// CHECK: the frame was exposed under the light of the updates before; was there light for all of the exposure?
@@ -215,9 +268,7 @@ std::optional<LightCheck> Session::look_at_light(const Update& update) {
     if (settings_.check_light_every <= 0 || ++updates_ % settings_.check_light_every != 0) return std::nullopt;
     const Instant half = update.frame.exposure / 2;
     if (!update.pose.rig_from_patient || update.frame.at - half < lit_since_) return std::nullopt;
-    return check_light(drawing(), now_ ? now_->skin : planned_.skin, rig_,
-                       *update.pose.rig_from_patient * registration_->patient_from_ct, update.frame,
-                       settings_.check_light);
+    return checker_->look(*update.pose.rig_from_patient * registration_->patient_from_ct, update.frame);
 }
 
 }  // namespace planlight

@@ -10,9 +10,11 @@
 #include "planning_io/types/registration_result.h"
 #include "planning_io/types/rig_calibration.h"
 #include "projection/check_light.h"
+#include "projection/light_watch.h"
 #include "projection/overlay_loop.h"
 #include "registration/matching/register_with_landmarks.h"
 #include "registration/scan/scan_surface.h"
+#include "registration/tracking/picture_jumps.h"
 #include "registration/tracking/track_patient.h"
 
 namespace planlight {
@@ -23,7 +25,10 @@ struct SessionSettings {
     TrackingSettings tracking;
     OverlaySettings overlay;
     CheckLightSettings check_light;
-    int check_light_every = 3;            ///< updates; 0: the light is not measured
+    int check_light_every = 3;  ///< updates; 0: the light is not measured
+    LightCauseSettings light_cause;
+    /// Light that comes later than told is drawn ahead by so much at most; 0: it is said only.
+    std::chrono::milliseconds most_delay_corrected{60};
     double max_motion_in_scan_mm = 0.15;  ///< of any marker between two moments of a scan; above: the scan is repeated
     int max_scans = 3;                    ///< so often at most, then refused
     int min_reference_markers = 5;        ///< found in both pictures at the scan
@@ -89,8 +94,12 @@ public:
         /// The light of the picture before, as this frame shows it; empty where it was not looked at, or not lit for
         /// the whole exposure.
         std::optional<LightCheck> light;
+        std::vector<LightCause> causes;  ///< of light that is not where it belongs, likeliest first; empty: none
     };
     Update update();
+
+    /// How much later than told the light of this match was found to be; it is drawn ahead by that.
+    Instant found_delay() const { return found_delay_; }
 
     /// Dark now, and no more light until the next `update`.
     void go_dark() noexcept;
@@ -119,6 +128,9 @@ private:
     void draw_on_skin_as_found();
     void start_overlay();
     std::optional<LightCheck> look_at_light(const Update& update);
+    void watch_light(Update& update);
+    void note_shown(const OverlayStep& overlay);
+    void correct_delay(const std::vector<LightCause>& causes);
 
     const Case& case_;
     const CaseDrawing& planned_;
@@ -136,6 +148,11 @@ private:
     std::optional<ScanResult> scanned_;
     std::optional<RegistrationResult> registration_;
     std::unique_ptr<OverlayLoop> overlay_;
+    std::optional<LightChecker> checker_;
+    std::optional<LightWatch> watch_;
+    std::optional<PictureJumps> jumps_;
+    std::vector<ShownPicture> shown_;
+    Instant found_delay_{};
     Instant lit_since_ = Instant::max();  ///< light without a break; max: it is dark
     int updates_ = 0;
     bool confirmed_ = false;  ///< the last match, by the operator

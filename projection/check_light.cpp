@@ -18,11 +18,19 @@ using Eigen::Vector3d;
 /// them took something else for the light).
 SeenSegment joined(const StrokeSegment& segment, const std::array<CameraLook, 2>& looks,
                    const CheckLightSettings& settings) {
-    SeenSegment result{segment.item, segment.middle().p_in_ct, segment.middle().sideways_in_ct};
+    const StrokePlace& middle = segment.middle();
+    SeenSegment result;
+    result.item = segment.item;
+    result.p_in_ct = middle.p_in_ct;
+    result.sideways_in_ct = middle.sideways_in_ct;
+    result.normal_in_ct = middle.normal_in_ct;
+    result.tick = segment.tick;
     double weight = 0, sum = 0;
     for (std::size_t c = 0; c < 2; ++c) {
+        if (looks[c].asked) result.background += looks[c].background / (looks[0].asked && looks[1].asked ? 2 : 1);
         if (!looks[c].light) continue;
-        result.by_camera[c] = result.seen = true;
+        result.seen = true;
+        result.by_camera_mm[c] = looks[c].light->off_mm;
         const double w = 1 / (std::pow(looks[c].light->sigma_mm, 2) + std::pow(settings.place_sigma_mm, 2));
         weight += w;
         sum += w * looks[c].light->off_mm;
@@ -30,7 +38,7 @@ SeenSegment joined(const StrokeSegment& segment, const std::array<CameraLook, 2>
     if (!result.seen) return result;
     result.off_mm = sum / weight;
     result.sigma_mm = 1 / std::sqrt(weight);
-    if (result.by_camera[0] && result.by_camera[1]) {
+    if (result.by_camera_mm[0] && result.by_camera_mm[1]) {
         const double apart = std::abs(looks[0].light->off_mm - looks[1].light->off_mm);
         const double a = std::abs(looks[0].light->off_mm), b = std::abs(looks[1].light->off_mm);
         if (apart > 1) result.off_mm = looks[a < b ? 0 : 1].light->off_mm;
@@ -73,45 +81,134 @@ void find_shift(const std::vector<const SeenSegment*>& seen, ItemLight& item) {
     item.sigma_mm = std::sqrt(way.dot(inverse * way));
 }
 
+/// Two directions along the skin are told when the sides of what was seen span them.
+bool tells_whole(const std::vector<SeenSegment>& segments) {
+    constexpr double kTold = 0.05;  // of the best told direction's weight
+    constexpr int kLeast = 3;
+    Matrix3d sides = Matrix3d::Zero();
+    int seen = 0;
+    for (const SeenSegment& s : segments) {
+        if (!s.seen) continue;
+        sides += s.sideways_in_ct * s.sideways_in_ct.transpose();
+        ++seen;
+    }
+    const auto axes = Eigen::SelfAdjointEigenSolver<Matrix3d>(sides, Eigen::EigenvaluesOnly).eigenvalues();
+    return seen >= kLeast && axes[1] > kTold * axes[2] && axes[1] > 1;
+}
+
 void sum_up(LightCheck& check) {
-    std::vector<double> sizes, sigmas;
+    std::vector<double> sizes, sigmas, backgrounds;
     for (const SeenSegment& s : check.segments) {
+        if (s.background > 0) backgrounds.push_back(s.background);
+        if (!s.tick || s.seen) ++check.expected;
         if (!s.seen) continue;
         sizes.push_back(std::abs(s.off_mm));
         sigmas.push_back(s.sigma_mm);
     }
-    check.expected = static_cast<int>(check.segments.size());
     check.seen = static_cast<int>(sizes.size());
     check.off_mm = quantile(sizes, 0.95);
     check.median_mm = median(std::move(sizes));
     check.sigma_mm = median(std::move(sigmas));
+    check.background = median(std::move(backgrounds));
+    check.told_whole = tells_whole(check.segments);
 }
 
-}  // namespace
-
-LightCheck check_light(const PlanDrawing& drawing, const SkinSurface& skin, const RigCalibration& rig,
-                       const RigidTransform& rig_from_ct, const StereoFrame& frame,
-                       const CheckLightSettings& settings) {
-    LightCheck check;
-    check.items.resize(drawing.items.size());
-    for (const StrokeSegment& segment : segments_to_look_at(drawing, skin, rig.projector, rig_from_ct, settings)) {
-        const std::array looks{find_light(segment, skin, rig.left_camera, rig_from_ct, frame.left, settings),
-                               find_light(segment, skin, rig.right_camera, rig_from_ct, frame.right, settings)};
-        if (!looks[0].asked && !looks[1].asked) continue;
-        check.segments.push_back(joined(segment, looks, settings));
-    }
+void sum_up_items(LightCheck& check) {
     for (std::size_t i = 0; i < check.items.size(); ++i) {
         std::vector<const SeenSegment*> seen;
         for (const SeenSegment& s : check.segments) {
             if (s.item != static_cast<int>(i)) continue;
-            ++check.items[i].segments;
+            if (!s.tick || s.seen) ++check.items[i].segments;
             if (s.seen) seen.push_back(&s);
         }
         check.items[i].seen = static_cast<int>(seen.size());
         if (!seen.empty()) find_shift(seen, check.items[i]);
     }
+}
+
+/// Who sees a segment: the projector lights all of it, and which cameras see it freely.
+struct Sight {
+    bool known = false, lit = false;
+    std::array<bool, 2> seen{};
+};
+
+}  // namespace
+
+struct LightChecker::Parts {
+    const SkinSurface& skin;
+    const RigCalibration& rig;
+    CheckLightSettings settings;
+    std::size_t items;
+    std::vector<StrokeSegment> segments;
+    std::vector<Sight> sights;
+    std::size_t turn = 0;
+    int frame = 0;
+    std::optional<RigidTransform> last;
+
+    Sight sight_of(const StrokeSegment& segment, const RigidTransform& rig_from_ct) const;
+    void look_around(const RigidTransform& rig_from_ct);
+};
+
+Sight LightChecker::Parts::sight_of(const StrokeSegment& segment, const RigidTransform& rig_from_ct) const {
+    const auto free = [&](const CameraModel& device) {
+        for (const StrokePlace* place : {&segment.places.front(), &segment.middle(), &segment.places.back()})
+            if (!freely_seen(*place, skin, device, rig_from_ct, settings.steepest)) return false;
+        return true;
+    };
+    Sight sight{true, free(rig.projector), {}};
+    if (sight.lit) sight.seen = {free(rig.left_camera), free(rig.right_camera)};
+    return sight;
+}
+
+/// A part of the segments anew each frame; all after the head has gone elsewhere.
+void LightChecker::Parts::look_around(const RigidTransform& rig_from_ct) {
+    constexpr double kElsewhere_mm = 10, kElsewhere = 0.09;  // 5 degrees
+    const bool elsewhere = !last || (last->translation() - rig_from_ct.translation()).norm() > kElsewhere_mm ||
+                           angle_between(*last, rig_from_ct) > kElsewhere;
+    if (elsewhere)
+        for (Sight& sight : sights) sight.known = false;
+    last = rig_from_ct;
+    const int parts = std::max(1, settings.look_again_every);
+    for (std::size_t i = 0; i < segments.size(); ++i)
+        if (!sights[i].known || static_cast<int>(i) % parts == frame % parts)
+            sights[i] = sight_of(segments[i], rig_from_ct);
+    ++frame;
+}
+
+LightChecker::LightChecker(const PlanDrawing& drawing, const SkinSurface& skin, const RigCalibration& rig,
+                           const CheckLightSettings& settings)
+    : parts_(new Parts{skin, rig, settings, drawing.items.size(), segments_of(drawing, settings), {}, 0, 0, {}}) {
+    parts_->sights.resize(parts_->segments.size());
+}
+LightChecker::~LightChecker() = default;
+LightChecker::LightChecker(LightChecker&&) noexcept = default;
+
+LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFrame& frame) {
+    Parts& p = *parts_;
+    LightCheck check;
+    check.items.resize(p.items);
+    p.look_around(rig_from_ct);
+    const auto segments = p.segments.size();
+    const std::size_t most = std::max<std::size_t>(1, p.settings.most_segments);
+    const std::size_t step = std::max<std::size_t>(1, (segments + most - 1) / most);
+    for (std::size_t i = p.turn++ % step; i < segments; i += step) {
+        if (!p.sights[i].lit) continue;
+        const StrokeSegment& segment = p.segments[i];
+        std::array<CameraLook, 2> looks;
+        if (p.sights[i].seen[0]) looks[0] = find_light(segment, p.rig.left_camera, rig_from_ct, frame.left, p.settings);
+        if (p.sights[i].seen[1])
+            looks[1] = find_light(segment, p.rig.right_camera, rig_from_ct, frame.right, p.settings);
+        if (looks[0].asked || looks[1].asked) check.segments.push_back(joined(segment, looks, p.settings));
+    }
+    sum_up_items(check);
     sum_up(check);
     return check;
+}
+
+LightCheck check_light(const PlanDrawing& drawing, const SkinSurface& skin, const RigCalibration& rig,
+                       const RigidTransform& rig_from_ct, const StereoFrame& frame,
+                       const CheckLightSettings& settings) {
+    return LightChecker(drawing, skin, rig, settings).look(rig_from_ct, frame);
 }
 
 }  // namespace planlight

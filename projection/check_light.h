@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,16 +24,21 @@ struct CheckLightSettings {
     double least_px_per_mm = 0.5;  ///< a camera that sees the skin more obliquely or from farther is not asked
     double steepest = 1.2;         ///< radians between the skin's normal and projector or camera
     double place_sigma_mm = 0.1;   ///< of one segment beside its noise: texture, the skin's own shape
+    std::size_t most_segments = 120;  ///< looked at in one frame; of more they take turns
+    int look_again_every = 8;         ///< frames: who sees which segment is asked anew in so many parts
 };
 
 /// Where the light of one stretch of stroke was seen.
 struct SeenSegment {
     int item = -1;
     Eigen::Vector3d p_in_ct, sideways_in_ct;  ///< its middle; unit vector along the skin, square to the stroke
-    bool seen = false;                        ///< light was found; false: none within reach, though it should be seen
-    double off_mm = 0;                        ///< of the light along `sideways_in_ct`
-    double sigma_mm = 0;                      ///< one standard deviation of that
-    std::array<bool, 2> by_camera{};          ///< left, right
+    Eigen::Vector3d normal_in_ct;             ///< of the skin
+    bool tick = false;      ///< an arm of a tick, which tells of the way along its line; counted only where it is seen
+    bool seen = false;      ///< light was found; false: none within reach, though it should be seen
+    double off_mm = 0;      ///< of the light along `sideways_in_ct`
+    double sigma_mm = 0;    ///< one standard deviation of that
+    double background = 0;  ///< grey of the skin beside the stroke, mean of the cameras that looked
+    std::array<std::optional<double>, 2> by_camera_mm;  ///< as the left and the right camera see it
 };
 
 /// Where one item's light lies against the plan.
@@ -52,18 +58,40 @@ struct LightCheck {
     int expected = 0, seen = 0;  ///< segments
     double off_mm = 0;           ///< 95 % of the segments' sides lie within this; 0 when nothing was seen
     double median_mm = 0;
-    double sigma_mm = 0;  ///< of a single segment, median
+    double sigma_mm = 0;    ///< of a single segment, median
+    double background = 0;  ///< grey of the skin beside the strokes, median; 0 when no camera looked
+    /// True where the segments that were seen tell the light's place in two directions along the skin. Straight lines
+    /// side by side do not: along itself such light could lie anywhere.
+    bool told_whole = false;
     double seen_share() const { return expected == 0 ? 0 : static_cast<double>(seen) / expected; }
 };
 
-/// CHECK: the light of a drawing as both cameras see it in one frame, against where it belongs.
+/// CHECK: the light of a drawing as both cameras see it, against where it belongs.
 ///
-/// `drawing` holds the plan on the skin; `rig_from_ct` is where the head was at the frame's exposure, so that a picture
-/// that was late, or drawn for another pose, is seen as light beside the plan. Each stroke (labels are not asked) is
-/// predicted into the cameras; across it, in the tangent plane of the skin, the brightest ridge of the width of a
-/// stroke is looked for in the mean of some millimetres of stroke. Stretches near another stroke are left out: their
-/// light could be that one's. What all parties share cannot be seen: skin that slid over the bone, an error common to
-/// CT and scan.
+/// Each stroke (labels are not asked) is predicted into the cameras; across it, in the tangent plane of the skin, the
+/// brightest ridge of the width of a stroke is looked for in the mean of some millimetres of stroke. Stretches near
+/// another stroke are left out: their light could be that one's. Along a line the arms of its ticks tell. What all
+/// parties share cannot be seen: skin that slid over the bone, markers that moved on the head all together, an error
+/// common to CT and scan.
+///
+/// Keeps references to skin and rig; which segment is seen by whom is kept from frame to frame.
+class LightChecker {
+public:
+    LightChecker(const PlanDrawing& drawing, const SkinSurface& skin, const RigCalibration& rig,
+                 const CheckLightSettings& settings = {});
+    ~LightChecker();
+    LightChecker(LightChecker&&) noexcept;
+
+    /// One frame. `rig_from_ct` is where the head was at its exposure, so that a picture that was late, or drawn for
+    /// another pose, is seen as light beside the plan.
+    LightCheck look(const RigidTransform& rig_from_ct, const StereoFrame& frame);
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+/// One frame by a checker of its own.
 LightCheck check_light(const PlanDrawing& drawing, const SkinSurface& skin, const RigCalibration& rig,
                        const RigidTransform& rig_from_ct, const StereoFrame& frame,
                        const CheckLightSettings& settings = {});

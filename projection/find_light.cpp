@@ -37,18 +37,27 @@ std::vector<double> mean_profile(const StrokeSegment& segment, const CameraModel
                                  const RigidTransform& rig_from_ct, const GrayImage& picture, double search_mm) {
     const int half = static_cast<int>(search_mm / kStep_mm);
     std::vector<double> profile(static_cast<std::size_t>(2 * half + 1), 0);
-    for (const StrokePlace& place : segment.places)
+    for (const StrokePlace& place : segment.places) {
+        // The way across is a parabola in the picture to a thousandth of a pixel: three of its points tell all.
+        const auto at = [&](double mm) {
+            return project(camera, rig_from_ct * (place.p_in_ct + mm * place.sideways_in_ct));
+        };
+        const double end_mm = half * kStep_mm;
+        const auto middle = at(0), first = at(-end_mm), last = at(end_mm);
+        if (!middle || !first || !last) return {};
+        const Vector2d slope = (*last - *first) / 2, bend = (*last + *first) / 2 - *middle;
         for (int k = -half; k <= half; ++k) {
-            const auto pixel = project(camera, rig_from_ct * (place.p_in_ct + k * kStep_mm * place.sideways_in_ct));
-            const auto grey = pixel ? sample(picture, *pixel) : std::nullopt;
+            const double share = static_cast<double>(k) / half;
+            const auto grey = sample(picture, *middle + share * slope + share * share * bend);
             if (!grey) return {};
             profile[static_cast<std::size_t>(k + half)] += *grey / static_cast<double>(segment.places.size());
         }
+    }
     return profile;
 }
 
-/// Without its straight part, which the light of the room leaves.
-void level(std::vector<double>& profile) {
+/// Without its straight part, which the light of the room leaves; gives the grey of that in the middle.
+double level(std::vector<double>& profile) {
     const auto n = static_cast<double>(profile.size());
     const std::size_t part = profile.size() / 4;
     const double first =
@@ -57,6 +66,7 @@ void level(std::vector<double>& profile) {
     const double slope = (last - first) / (n - static_cast<double>(part));
     for (std::size_t k = 0; k < profile.size(); ++k)
         profile[k] -= first + slope * (static_cast<double>(k) - static_cast<double>(part) / 2);
+    return (first + last) / 2;
 }
 
 /// The profile filtered by a ridge of that sigma, less its surroundings (difference of Gaussians), in grey values of a
@@ -115,18 +125,16 @@ std::optional<FoundLight> top_of(const std::vector<double>& response, double sig
 
 }  // namespace
 
-CameraLook find_light(const StrokeSegment& segment, const SkinSurface& skin, const CameraModel& camera,
-                      const RigidTransform& rig_from_ct, const GrayImage& picture, const CheckLightSettings& settings) {
+CameraLook find_light(const StrokeSegment& segment, const CameraModel& camera, const RigidTransform& rig_from_ct,
+                      const GrayImage& picture, const CheckLightSettings& settings) {
     const StrokePlace& middle = segment.middle();
     const double px_per_mm = across_px(middle, camera, rig_from_ct);
     if (px_per_mm < settings.least_px_per_mm || picture.empty()) return {};
-    for (const StrokePlace* place : {&segment.places.front(), &middle, &segment.places.back()})
-        if (!freely_seen(*place, skin, camera, rig_from_ct, settings.steepest)) return {};
     std::vector<double> profile = mean_profile(segment, camera, rig_from_ct, picture, segment.search_mm);
     if (profile.empty()) return {};
-    level(profile);
+    const double background = level(profile);
     const double sigma_mm = std::hypot(middle.width_mm / std::sqrt(12.0), 0.6 / px_per_mm, 0.2);
-    return {true, top_of(matched(profile, sigma_mm), sigma_mm, settings)};
+    return {true, background, top_of(matched(profile, sigma_mm), sigma_mm, settings)};
 }
 
 }  // namespace planlight

@@ -15,14 +15,15 @@ struct FoundLight {
 
 /// Whether a camera can be asked about a segment, and what it saw.
 struct CameraLook {
-    bool asked = false;  ///< the stretch is in the picture, near enough and not too oblique
+    bool asked = false;     ///< the stretch is in the picture, near enough and not too oblique
+    double background = 0;  ///< grey beside the stroke
     std::optional<FoundLight> light;
 };
 
 /// The ridge of light nearest in shape to a stroke's, in the mean profile across the places of the segment: matched
 /// filter with the width of the stroke and of a pixel, its top by a parabola, noise by the median of what the filter
-/// gives beside it.
-CameraLook find_light(const StrokeSegment& segment, const SkinSurface& skin, const CameraModel& camera,
-                      const RigidTransform& rig_from_ct, const GrayImage& picture, const CheckLightSettings& settings);
+/// gives beside it. Whether the camera sees the segment freely is for the caller to know.
+CameraLook find_light(const StrokeSegment& segment, const CameraModel& camera, const RigidTransform& rig_from_ct,
+                      const GrayImage& picture, const CheckLightSettings& settings);
 
 }  // namespace planlight

@@ -60,9 +60,12 @@ struct OverlayLoop::Parts {
     OverlaySettings settings;
     PosePredictor predictor;
     Eigen::Vector3d centre_in_patient;
+    std::optional<Instant> shown_last{};  ///< the last picture; empty after darkness
+    Instant usual_life{};                 ///< of a picture until the next; 0: not known
 
     OverlayStep dark(std::string reason) {
         projector.go_dark();
+        shown_last.reset();
         OverlayStep step;
         step.reason = std::move(reason);
         step.picture = RgbImage(renderer.width(), renderer.height());
@@ -71,7 +74,17 @@ struct OverlayLoop::Parts {
     std::optional<RigidTransform> pose_at_light(const TrackedPose& pose, Instant now) {
         if (!settings.predict) return pose.rig_from_patient;
         predictor.add(pose, centre_in_patient);
-        return predictor.rig_from_patient_at(now + settings.light_delay);
+        return predictor.rig_from_patient_at(now + settings.light_delay +
+                                             std::min(usual_life / 2, settings.most_ahead));
+    }
+    /// A slow mean, so that one late picture does not move the light.
+    void note_shown(Instant now) {
+        constexpr int kSlow = 8;
+        if (shown_last) {
+            const Instant life = std::min(now - *shown_last, 2 * settings.most_ahead);
+            usual_life = usual_life == Instant{} ? life : usual_life + (life - usual_life) / kSlow;
+        }
+        shown_last = now;
     }
     OverlayStep draw(const TrackedPose& pose);
 };
@@ -93,14 +106,23 @@ OverlayStep OverlayLoop::Parts::draw(const TrackedPose& pose) {
         return dark(std::move(reason));  // rendering took too long
     step.lit_from = projector.show(step.picture, shown + settings.picture_validity);
     step.lit = true;
+    note_shown(shown);
     return step;
 }
 
 OverlayLoop::OverlayLoop(Projector& projector, const Clock& clock, const DrawingRenderer& renderer,
                          const PlanDrawing& drawing, const RegistrationResult& registration,
                          const OverlaySettings& settings)
-    : parts_(new Parts{projector, clock, renderer, drawing, registration, settings, PosePredictor(),
-                       registration.patient_from_ct * middle_in_ct(drawing)}) {
+    : parts_(new Parts{projector,
+                       clock,
+                       renderer,
+                       drawing,
+                       registration,
+                       settings,
+                       PosePredictor(),
+                       registration.patient_from_ct * middle_in_ct(drawing),
+                       {},
+                       {}}) {
     projector.go_dark();
 }
 
@@ -110,6 +132,10 @@ OverlayLoop::~OverlayLoop() {
 
 void OverlayLoop::set_operator_confirmed(bool confirmed) {
     parts_->settings.operator_confirmed = confirmed;
+}
+
+void OverlayLoop::set_light_delay(Instant delay) {
+    parts_->settings.light_delay = delay;
 }
 
 OverlayStep OverlayLoop::step(const TrackedPose& pose) {

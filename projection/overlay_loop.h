@@ -19,6 +19,9 @@ struct OverlaySettings {
     Instant light_delay = std::chrono::milliseconds(25);  ///< from show to light, for the prediction
     double max_predicted_error_mm = 1.0;                  ///< above: dark
     bool predict = true;
+    /// The picture is drawn for the middle of the time that it will be light, as the last pictures tell it: until the
+    /// next one comes. At most so far past its beginning; 0: for its beginning.
+    Instant most_ahead = std::chrono::milliseconds(30);
     bool operator_confirmed = false;  ///< a person has looked at the overlay on landmarks: a verdict `ask` is drawn
     RenderSettings render;
 };
@@ -47,6 +50,9 @@ public:
 
     /// The operator's word on the overlay (`OverlaySettings::operator_confirmed`) while the loop runs.
     void set_operator_confirmed(bool confirmed);
+
+    /// `OverlaySettings::light_delay` from now on, when it was found to be another.
+    void set_light_delay(Instant delay);
 
 private:
     struct Parts;

@@ -19,19 +19,43 @@ public:
     /// a part of the same that comes back beside itself.
     double free_mm(std::size_t stroke, const StrokePlace& at) const {
         double free_mm = reach_mm_;
-        const Eigen::Vector3i middle = cell(at.p_in_ct);
+        double line_to_left_mm = 0, line_to_right_mm = 0;
+        each_near(at.p_in_ct, [&](std::size_t other, const Vector3d& p) {
+            if (!crossed_by(stroke, other)) {
+                free_mm = std::min(free_mm, free_of_mm(other, p, stroke, at));
+                return;
+            }
+            const Vector3d way = p - at.p_in_ct;
+            const double aside_mm = way.dot(at.sideways_in_ct), along_mm = std::abs(way.dot(at.along_in_ct));
+            if (along_mm < kBesideLine * at.width_mm) free_mm = 0;
+            line_to_left_mm = std::max(line_to_left_mm, -aside_mm);
+            line_to_right_mm = std::max(line_to_right_mm, aside_mm);
+        });
+        if (drawing_.strokes[stroke].kind == StrokeKind::tick)
+            free_mm = std::min({free_mm, line_to_left_mm, line_to_right_mm});
+        return free_mm;
+    }
+
+private:
+    static constexpr double kBesideLine = 0.75;  // of the width: a tick's arm begins so far from the middle of its line
+
+    /// True of a tick and the line that it is a tick of.
+    bool crossed_by(std::size_t tick, std::size_t line) const {
+        const Stroke &a = drawing_.strokes[tick], &b = drawing_.strokes[line];
+        return a.kind == StrokeKind::tick && a.item == b.item &&
+               (b.kind == StrokeKind::osteotomy_line || b.kind == StrokeKind::cut_plane);
+    }
+    template <class Visit>
+    void each_near(const Vector3d& at, Visit visit) const {
+        const Eigen::Vector3i middle = cell(at);
         for (int x = -1; x <= 1; ++x)
             for (int y = -1; y <= 1; ++y)
                 for (int z = -1; z <= 1; ++z) {
                     const auto found = cells_.find(key(middle + Eigen::Vector3i(x, y, z)));
                     if (found == cells_.end()) continue;
-                    for (const auto& [other, p] : found->second)
-                        free_mm = std::min(free_mm, free_of_mm(other, p, stroke, at));
+                    for (const auto& [other, p] : found->second) visit(other, p);
                 }
-        return free_mm;
     }
-
-private:
     double free_of_mm(std::size_t other, const Vector3d& p, std::size_t stroke, const StrokePlace& at) const {
         const Vector3d way = p - at.p_in_ct;
         const double widths_mm = (at.width_mm + drawing_.strokes[other].width_mm) / 2;
@@ -89,34 +113,42 @@ bool freely_seen(const StrokePlace& place, const SkinSurface& skin, const Camera
     return !skin.first_hit({place.p_in_ct + kOffSkin_mm * place.normal_in_ct, direction});
 }
 
-std::vector<StrokeSegment> segments_to_look_at(const PlanDrawing& drawing, const SkinSurface& skin,
-                                               const CameraModel& projector, const RigidTransform& rig_from_ct,
-                                               const CheckLightSettings& settings) {
+namespace {
+
+void add_segments(const PlanDrawing& drawing, std::size_t s, const StrokesNear& near,
+                  const CheckLightSettings& settings, std::vector<StrokeSegment>& segments) {
+    const Stroke& stroke = drawing.strokes[s];
+    const bool tick = stroke.kind == StrokeKind::tick;
+    const double spacing_mm = tick ? settings.spacing_mm / 2 : settings.spacing_mm;
+    const double most_mm = stroke.closed ? settings.segment_mm / 2 : settings.segment_mm;
+    const auto most = static_cast<std::size_t>(std::max(1.0, most_mm / settings.spacing_mm));
+    const StrokeSegment none{stroke.item, tick, {}, settings.search_mm};
+    StrokeSegment segment = none;
+    const auto close = [&](std::size_t least) {
+        if (segment.places.size() >= least) segments.push_back(segment);
+        segment = none;
+    };
+    for (const StrokePlace& place : places_of(stroke, spacing_mm)) {
+        const double free_mm = near.free_mm(s, place);
+        if (free_mm < settings.least_search_mm) {
+            if (!tick) close((most + 1) / 2);
+            continue;
+        }
+        segment.search_mm = std::min(segment.search_mm, free_mm);
+        segment.places.push_back(place);
+        if (segment.places.size() >= most && !tick) close((most + 1) / 2);
+    }
+    constexpr std::size_t kArms = 4;  // places of a tick, both arms together
+    close(tick ? kArms : (most + 1) / 2);
+}
+
+}  // namespace
+
+std::vector<StrokeSegment> segments_of(const PlanDrawing& drawing, const CheckLightSettings& settings) {
     const StrokesNear near(drawing, settings.search_mm);
     std::vector<StrokeSegment> segments;
-    for (std::size_t s = 0; s < drawing.strokes.size(); ++s) {
-        const Stroke& stroke = drawing.strokes[s];
-        if (stroke.kind == StrokeKind::label) continue;
-        const double most_mm = stroke.closed ? settings.segment_mm / 2 : settings.segment_mm;
-        const auto most = static_cast<std::size_t>(std::max(1.0, most_mm / settings.spacing_mm));
-        StrokeSegment segment{stroke.item, {}, settings.search_mm};
-        const auto close = [&] {
-            if (2 * segment.places.size() >= most) segments.push_back(segment);
-            segment = {stroke.item, {}, settings.search_mm};
-        };
-        for (const StrokePlace& place : places_of(stroke, settings.spacing_mm)) {
-            const double free_mm = near.free_mm(s, place);
-            if (free_mm < settings.least_search_mm ||
-                !freely_seen(place, skin, projector, rig_from_ct, settings.steepest)) {
-                close();
-                continue;
-            }
-            segment.search_mm = std::min(segment.search_mm, free_mm);
-            segment.places.push_back(place);
-            if (segment.places.size() >= most) close();
-        }
-        close();
-    }
+    for (std::size_t s = 0; s < drawing.strokes.size(); ++s)
+        if (drawing.strokes[s].kind != StrokeKind::label) add_segments(drawing, s, near, settings, segments);
     return segments;
 }
 

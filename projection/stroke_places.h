@@ -12,20 +12,19 @@ struct StrokePlace {
     double width_mm = 0;                                                 ///< of the stroke
 };
 
-/// Some millimetres of one stroke whose light should fall freely on the skin.
+/// Some millimetres of one stroke.
 struct StrokeSegment {
     int item = -1;
+    bool tick = false;  ///< the arms of a tick that crosses its line
     std::vector<StrokePlace> places;
     double search_mm = 0;  ///< to both sides: no other light is wanted there
     const StrokePlace& middle() const { return places[places.size() / 2]; }
 };
 
-/// The drawing's strokes, labels aside, cut into segments of about `segment_mm` (circles half of it). Left out: what no
-/// light of the projector reaches (steep, hidden by other skin, beside the picture), and what lies so near another
-/// stroke or label that its light could be mistaken.
-std::vector<StrokeSegment> segments_to_look_at(const PlanDrawing& drawing, const SkinSurface& skin,
-                                               const CameraModel& projector, const RigidTransform& rig_from_ct,
-                                               const CheckLightSettings& settings);
+/// The drawing's strokes, labels aside, cut into segments of about `segment_mm` (circles half of it). Left out: what
+/// lies so near another stroke or label that its light could be mistaken. Of a tick only what lies beside its line, and
+/// only where that line goes on to both sides: its light is then the same all along the profile.
+std::vector<StrokeSegment> segments_of(const PlanDrawing& drawing, const CheckLightSettings& settings);
 
 /// True when a device sees the place: in its picture, not too steep, no skin before it.
 bool freely_seen(const StrokePlace& place, const SkinSurface& skin, const CameraModel& device,

@@ -62,6 +62,7 @@ public:
     /// Light from now + delay to valid_until + delay, or until the next order is light.
     void show(const RgbImage& picture, Instant now, Instant valid_until);
     void go_dark(Instant now) noexcept;
+    void set_untold_delay(Instant delay) { settings_.untold_delay = delay; }
     void cover(bool lens_is_covered) { covered_ = lens_is_covered; }  ///< no light at all, also no leak
 
     /// The light that an exposure gets: that of its middle, or of all of it where the settings say so; never null.

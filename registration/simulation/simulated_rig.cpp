@@ -229,6 +229,31 @@ void SimulatedRig::cover_markers(const std::vector<int>& markers) {
     room_->seen_room_from_ct.reset();
 }
 
+void SimulatedRig::bump(Device device, const Vector3d& turn, const Vector3d& shift_mm) {
+    RigLayout& rig = room_->rig;
+    Optics& optics = device == Device::projector     ? rig.projector
+                     : device == Device::left_camera ? rig.left_camera
+                                                     : rig.right_camera;
+    optics.eye += shift_mm.x() * optics.right + shift_mm.y() * optics.down + shift_mm.z() * optics.forward;
+    optics.turn(turn);
+    room_->seen_room_from_ct.reset();
+}
+
+void SimulatedRig::slip_marker(int marker, const Vector3d& shift_in_ct) {
+    for (std::size_t i = 0; i < room_->look.stickers.size(); ++i) {
+        if (marker >= 0 && static_cast<int>(i) != marker) continue;
+        Sticker& sticker = room_->look.stickers[i];
+        const auto place = room_->skin.nearest(sticker.centre_in_ct + shift_in_ct);
+        sticker.centre_in_ct = room_->markers_in_ct[i] = place.p_in_ct;
+        sticker.normal_in_ct = place.normal_in_ct;
+    }
+    room_->seen_room_from_ct.reset();
+}
+
+void SimulatedRig::delay_light(Instant untold) {
+    room_->schedule.set_untold_delay(untold);
+}
+
 RigidTransform SimulatedRig::true_rig_from_ct(Instant at) const {
     return room_->rig.room_from_rig.inverse() * room_->history.room_from_ct(at);
 }

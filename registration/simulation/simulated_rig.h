@@ -76,6 +76,17 @@ public:
     /// Covers markers, so that no camera sees their discs (a hand, blood); by index, empty uncovers all.
     void cover_markers(const std::vector<int>& markers);
 
+    enum class Device { left_camera, right_camera, projector };
+    /// Somebody knocks a device: from now on it is turned (radians) and shifted (mm), both in its own axes (right, down,
+    /// forward). `calibration()` does not know.
+    void bump(Device device, const Eigen::Vector3d& turn, const Eigen::Vector3d& shift_mm = {0, 0, 0});
+
+    /// A marker slips along the skin by about that much, ct; `marker` below 0: all of them, as when they sit on a cap.
+    void slip_marker(int marker, const Eigen::Vector3d& shift_in_ct);
+
+    /// From now on an order becomes light so much later than the projector promises.
+    void delay_light(Instant untold);
+
     // ---- truth: nothing of the product reads what follows ----
 
     /// True `rig_from_ct` at a moment.
