@@ -13,6 +13,7 @@ namespace planlight {
 using Run = std::function<int()>;
 
 Run add_demo(CLI::App& app);
+Run add_devices(CLI::App& app);
 Run add_prepare(CLI::App& app);
 Run add_plan(CLI::App& app);
 Run add_patterns(CLI::App& app);

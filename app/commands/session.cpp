@@ -3,8 +3,12 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/live/live_window.h"
+#include "app/live/real_room.h"
+#include "app/live/simulated_room.h"
 #include "app/site_settings.h"
 #include "planning_io/case/case_folder.h"
+#include "planning_io/case/rig_file.h"
+#include "planning_io/case/room_file.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
 
@@ -13,6 +17,7 @@ namespace {
 
 struct SessionOptions {
     Path case_folder, volume;
+    Path room;  ///< room.json of real devices; empty: the simulated room
     Path keep;  ///< folder for every match; empty: CASE/registrations
     std::string series_uid;
     std::string preset = "paper", projector_monitor, operator_monitor;
@@ -25,18 +30,8 @@ struct SessionOptions {
     Path projector_file;         ///< projector.json of the monitor; empty: none
 };
 
-int run_session(const SessionOptions& options) {
-    const Case the_case = read_case(options.case_folder);
-    const Volume volume = read_volume(options.volume, options.series_uid);
-    if (hash_of(volume) != the_case.volume_hash)
-        throw InputError(options.volume, "this is not the volume that the case was made from",
-                         "Give the volume of this case, or prepare a case from this volume.");
-    fmt::print("{}\n", title_of(the_case));
+LiveOptions live_options(const SessionOptions& options, const SiteSettings& site) {
     LiveOptions live;
-    live.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
-    live.seed = options.seed;
-    live.speed_mm_s = options.speed_mm_s;
-    const SiteSettings site = read_site_settings();
     live.projector_monitor = options.projector_monitor.empty() ? site.projector_monitor : options.projector_monitor;
     live.operator_monitor = options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor;
     if (!options.projector_file.empty()) live.projector = read_projector_file(options.projector_file);
@@ -45,7 +40,40 @@ int run_session(const SessionOptions& options) {
     live.end_after_s = options.end_after_s;
     live.screenshots = options.screenshots;
     live.keep_matches_in = options.keep.empty() ? options.case_folder / kRegistrationsFolder : options.keep;
-    return run_live(volume, the_case, CaseDrawing(the_case, drawing_settings(site)), live);
+    return live;
+}
+
+int run_in_simulated_room(const SessionOptions& options, const Case& the_case) {
+    if (options.volume.empty())
+        throw InputError({}, "neither a room nor a simulated patient was named",
+                         "Give --room room.json for real devices, or --volume VOLUME for the simulated room.");
+    const Volume volume = read_volume(options.volume, options.series_uid);
+    if (hash_of(volume) != the_case.volume_hash)
+        throw InputError(options.volume, "this is not the volume that the case was made from",
+                         "Give the volume of this case, or prepare a case from this volume.");
+    const SiteSettings site = read_site_settings();
+    simulation::RoomSettings room;
+    room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
+    room.seed = options.seed;
+    return run_live_simulated(
+        [&] { return std::make_unique<SimulatedRoom>(volume, the_case.plan, room, options.speed_mm_s); }, the_case,
+        CaseDrawing(the_case, drawing_settings(site)), live_options(options, site));
+}
+
+int run_in_room(SessionOptions options, const Case& the_case) {
+    const RoomFile room = read_room(options.room);
+    const RigCalibration rig = read_rig(room.rig);
+    const SiteSettings site = read_site_settings();
+    if (options.projector_monitor.empty()) options.projector_monitor = room.monitor;
+    if (options.projector_file.empty() && options.light_delay_ms < 0) options.projector_file = room.projector_file;
+    return run_live([&](Projector& projector) { return std::make_unique<RealRoom>(room, rig, projector); }, the_case,
+                    CaseDrawing(the_case, drawing_settings(site)), live_options(options, site));
+}
+
+int run_session(const SessionOptions& options) {
+    const Case the_case = read_case(options.case_folder);
+    fmt::print("{}\n", title_of(the_case));
+    return options.room.empty() ? run_in_simulated_room(options, the_case) : run_in_room(options, the_case);
 }
 
 }  // namespace
@@ -54,10 +82,13 @@ Run add_session(CLI::App& app) {
     const auto options = std::make_shared<SessionOptions>();
     SessionOptions& o = *options;
     auto* sub = add_command(app, "session",
-                            "Live: operator window and projector window, on the simulated room, the head moving",
-                            "session case --volume Cranium.inv3 --projector HDMI-2");
+                            "Live: operator window and projector, in a room of real devices or in the simulated one",
+                            "session case --room room.json");
     sub->add_option("case", o.case_folder, "Case folder")->required();
-    sub->add_option("--volume", o.volume, "The simulated patient: the volume that the case was made from")->required();
+    auto* room = sub->add_option("--room", o.room, "room.json of real cameras and a real projector (see `devices`)");
+    sub->add_option("--volume", o.volume,
+                    "Without a room: the simulated patient, the volume that the case was made from")
+        ->excludes(room);
     series_option(sub, o.series_uid);
     sub->add_option("--keep", o.keep, "Folder that keeps every match and its scan (default: CASE/registrations)");
     preset_option(sub, o.preset);

@@ -65,6 +65,7 @@ int run_simulate(const SimulateOptions& options) {
     room.things = things_of(options);
     room.wet = options.wet;
     simulation::SimulatedRig rig(volume, points_of(plan), room);
+    if (!options.serve.empty()) return run_simulate_served(options, rig);
     std::filesystem::create_directories(options.out);
     write_rig(rig.calibration(), options.out / "rig.json");
     ProgressBar bar;
@@ -120,7 +121,7 @@ Run add_simulate(CLI::App& app) {
     sub->add_option("--frames", o.frames, "Tracking frames after the scan")
         ->capture_default_str()
         ->check(CLI::Range(0, 10000));
-    sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head in the tracking frames")
+    sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head in the tracking frames (served: 0)")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 500.0));
     sub->add_option("--with", o.with,
@@ -134,9 +135,18 @@ Run add_simulate(CLI::App& app) {
     sub->add_option("--wet", o.wet, "Wet skin: 0 dry to 1, with the highlights of a film of water")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 1.0));
+    sub->add_option("--serve", o.serve,
+                    "Serve the room as hardware until Ctrl-C: two GigE Vision cameras, and the light of this monitor; "
+                    "writes room.json, rig.json, truth.json");
+    sub->add_option("--addresses", o.addresses, "Of the served cameras, one each, of this machine")
+        ->delimiter(',')
+        ->capture_default_str();
     sub->add_option("--out", o.out, "Folder to write: rig.json, capture/, frames/, truth.json")->required();
     json_flag(sub, o.json);
-    return [options] { return run_simulate(*options); };
+    return [options, sub] {
+        if (sub->count("--speed-mm-s") == 0 && !options->serve.empty()) options->speed_mm_s = 0;
+        return run_simulate(*options);
+    };
 }
 
 }  // namespace planlight

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "registration/simulation/simulated_rig.h"
+
 namespace planlight {
 
 /// What `planlight simulate` was asked for; lengths in mm.
@@ -19,8 +21,12 @@ struct SimulateOptions {
     std::vector<std::string> with;  ///< drapes, hair, hand, instruments: names of kThings
     double hole_mm = 130;           ///< of the drape with a hole
     double wet = 0;                 ///< skin, 0 to 1
+    std::string serve;  ///< monitor whose picture is the light: the room is served as hardware; empty: written to files
+    std::vector<std::string> addresses{"127.0.0.1", "127.0.0.2"};  ///< of the served cameras
     bool json = false;
 };
+/// With `serve` given: two GigE Vision cameras and that monitor, until it is ended.
+int run_simulate_served(const SimulateOptions& options, simulation::SimulatedRig& rig);
 int run_simulate_board(const SimulateOptions& options);  ///< with `board` given
 
 }  // namespace planlight

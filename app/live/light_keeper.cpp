@@ -26,81 +26,39 @@ RgbImage fit_picture(const RgbImage& picture, int width, int height) {
     return out;
 }
 
-LightKeeper::LightKeeper(const std::string& monitor, const LiveSession& session, const LightKeeperSettings& settings)
-    : monitor_(monitor),
+LightKeeper::LightKeeper(ProjectorKeeper& projector, const LiveSession& session, Instant picture_validity)
+    : projector_(projector),
       session_(session),
-      settings_(settings),
-      window_beat_(clock_.now().count()),
-      projector_(std::make_unique<ProjectorProcess>(monitor, settings.process)),
+      picture_validity_(picture_validity),
+      starts_(projector.starts()),
       thread_([this](const std::stop_token& stop) { run(stop); }) {}
 
 LightKeeper::~LightKeeper() {
-    go_dark();
     thread_.request_stop();
     thread_.join();
+    projector_.go_dark();
 }
 
-void LightKeeper::beat() {
-    window_beat_ = clock_.now().count();
-}
-
-void LightKeeper::go_dark() noexcept {
-    const std::lock_guard lock(mutex_);
-    if (projector_) projector_->go_dark();
-}
-
-LightKeeper::Problem LightKeeper::problem() const {
-    const std::lock_guard lock(mutex_);
-    return problem_;
-}
-
-bool LightKeeper::alive() const {
-    const Instant now = clock_.now();
-    return now - Instant(window_beat_) < settings_.window_patience &&
-           now - session_.alive_at() < settings_.session_patience;
-}
-
-/// One look at the session's light. Under the lock.
+/// One look at the session's light.
 void LightKeeper::follow() {
-    projector_->check();
-    if (alive()) projector_->renew();
     const LiveSession::Light light = session_.light();
+    const unsigned starts = projector_.starts();
+    if (starts != starts_) number_ = light.number;  // what was lit before is not lit again by itself
+    starts_ = starts;
     if (light.number == number_) return;
     number_ = light.number;
     if (light.picture)
-        projector_->show(fit_picture(*light.picture, projector_->width(), projector_->height()),
-                         clock_.now() + settings_.picture_validity);
+        projector_.show(fit_picture(*light.picture, projector_.width(), projector_.height()),
+                        clock_.now() + picture_validity_);
     else
-        projector_->go_dark();
-}
-
-void LightKeeper::start_again() {
-    auto projector = std::make_unique<ProjectorProcess>(monitor_, settings_.process);  // black; takes a while
-    const std::lock_guard lock(mutex_);
-    projector_ = std::move(projector);
-    number_ = session_.light().number;  // what was lit before is not lit again by itself
-    problem_ = {};
-}
-
-void LightKeeper::lose(const Problem& problem) {
-    const std::lock_guard lock(mutex_);
-    projector_.reset();
-    problem_ = problem;
-    lost_at_ = clock_.now();
+        projector_.go_dark();
 }
 
 void LightKeeper::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         try {
-            std::unique_lock lock(mutex_);
-            const bool lost = !projector_;
-            if (!lost) follow();
-            lock.unlock();
-            if (lost && clock_.now() - lost_at_ > settings_.retry_after) start_again();
-        } catch (const Error& error) {
-            lose({error.what(), error.remedy});
-        } catch (const std::exception& error) {
-            lose({error.what(), "Start the session again."});
+            follow();
+        } catch (const std::exception&) {  // the keeper tells what is wrong with the projector
         }
         std::this_thread::sleep_for(kPoll);
     }

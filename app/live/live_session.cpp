@@ -1,29 +1,28 @@
 #include "app/live/live_session.h"
 
 #include "app/case_model.h"
-#include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/steady_clock.h"
 
 namespace planlight {
 
-/// Passes everything to the simulated projector and keeps the newest picture for the projector window.
+/// Passes everything to the room's projector and keeps the newest picture for the windows.
 class LiveSession::LightTap final : public Projector {
 public:
-    LightTap(Projector& simulated, LiveSession& session) : simulated_(simulated), session_(session) {}
-    int width() const override { return simulated_.width(); }
-    int height() const override { return simulated_.height(); }
+    LightTap(Projector& projector, LiveSession& session) : projector_(projector), session_(session) {}
+    int width() const override { return projector_.width(); }
+    int height() const override { return projector_.height(); }
     Instant show(const RgbImage& picture, Instant valid_until) override {
         session_.show_alive();
         if (!keep(std::make_shared<RgbImage>(picture))) {
-            simulated_.go_dark();
-            return simulated_.show(RgbImage(width(), height()), valid_until);
+            projector_.go_dark();
+            return projector_.show(RgbImage(width(), height()), valid_until);
         }
-        return simulated_.show(picture, valid_until);
+        return projector_.show(picture, valid_until);
     }
     void go_dark() noexcept override {
         session_.show_alive();
-        simulated_.go_dark();
+        projector_.go_dark();
         keep(nullptr);
     }
 
@@ -36,18 +35,21 @@ private:
         ++session_.light_.number;
         return permitted;
     }
-    Projector& simulated_;
+    Projector& projector_;
     LiveSession& session_;
 };
 
-LiveSession::LiveSession(const Volume& volume, const Case& the_case, const CaseDrawing& drawing,
-                         const LiveSettings& settings)
-    : case_(the_case), drawing_(drawing), settings_(settings), model_(model_of_case(the_case, drawing)) {
-    set_status(StatusKind::ready, "The simulated room is being made.");
+LiveSession::LiveSession(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
+                         std::filesystem::path keep_matches_in)
+    : case_(the_case),
+      drawing_(drawing),
+      keep_matches_in_(std::move(keep_matches_in)),
+      model_(model_of_case(the_case, drawing)) {
+    set_status(StatusKind::ready, "The room is being made ready.");
     show_alive();
-    thread_ = std::thread([this, &volume] {
+    thread_ = std::thread([this, make_room = std::move(make_room)] {
         try {
-            run(volume, settings_);
+            run(make_room);
         } catch (...) {
             const std::lock_guard lock(mutex_);
             fault_ = std::current_exception();
@@ -146,15 +148,12 @@ LiveSession::Press LiveSession::next_press(bool wait) {
     return press;
 }
 
-void LiveSession::run(const Volume& volume, const LiveSettings& settings) {
-    simulation::RoomSettings room;
-    room.preset = settings.preset;
-    room.seed = settings.seed;
-    simulation::SimulatedRig rig(volume, points_of(case_.plan), room);
-    LightTap tap(rig.projector(), *this);
+void LiveSession::run(const MakeRoom& make_room) {
+    const std::unique_ptr<Room> room = make_room();
+    LightTap tap(room->projector(), *this);
     SessionSettings session_settings;
-    session_settings.while_computing = [&rig] { rig.wait(std::chrono::milliseconds(10)); };
-    Session session(case_, drawing_, rig.calibration(), tap, rig.cameras(), rig.clock(), session_settings);
+    session_settings.while_computing = [&room] { room->computing(); };
+    Session session(case_, drawing_, room->rig(), tap, room->cameras(), room->clock(), session_settings);
     set_steps(2);
     set_status(StatusKind::ready, "Ready to scan.", {"The projector is dark."});
     change_model([](OperatorModel& m) {
@@ -168,7 +167,7 @@ void LiveSession::run(const Volume& volume, const LiveSettings& settings) {
         show_alive();
         if (press.action == OperatorAction::quit) return;
         try {
-            act(press, session, rig);
+            act(press, session, *room);
         } catch (const Error& refusal) {
             following_ = projecting_ = false;
             session.go_dark();
@@ -177,13 +176,12 @@ void LiveSession::run(const Volume& volume, const LiveSettings& settings) {
     }
 }
 
-void LiveSession::act(const Press& press, Session& session, simulation::SimulatedRig& rig) {
+void LiveSession::act(const Press& press, Session& session, Room& room) {
     switch (press.action) {
         case OperatorAction::scan:
             following_ = projecting_ = false;
             permit_light(press);
-            if (moving_) rig.set_motion({0, rig.clock().now()});
-            moving_ = false;
+            room.let_patient_move(false);
             scan(session);
             return;
         case OperatorAction::do_register:
@@ -194,8 +192,7 @@ void LiveSession::act(const Press& press, Session& session, simulation::Simulate
             permit_light(press);
             gate_.restart();
             following_ = true;
-            if (!moving_) rig.set_motion({settings_.speed_mm_s, rig.clock().now()});
-            moving_ = true;
+            room.let_patient_move(true);
             break;
         case OperatorAction::confirm:
             confirm(session);
@@ -214,7 +211,7 @@ void LiveSession::act(const Press& press, Session& session, simulation::Simulate
         case OperatorAction::quit:
             break;
     }
-    if (following_) follow(session, rig);
+    if (following_) follow(session, room);
 }
 
 }  // namespace planlight

@@ -10,30 +10,22 @@
 #include <string>
 #include <thread>
 
+#include "app/live/room.h"
 #include "app/session.h"
 #include "app/windows/operator_model.h"
 #include "app/windows/operator_window.h"
-#include "planning_io/types/volume.h"
 #include "projection/light_gate.h"
-#include "registration/simulation/simulated_rig.h"
 
 namespace planlight {
 
-/// The room of a live session and its pace.
-struct LiveSettings {
-    simulation::Preset preset = simulation::Preset::paper;
-    unsigned seed = 1;
-    double speed_mm_s = 20;                 ///< peak speed of the head while it is tracked
-    std::filesystem::path keep_matches_in;  ///< every match and its scan in a folder of its own there; empty: not kept
-};
-
-/// A session on the simulated room that runs in a thread of its own, so that the windows answer while it computes.
+/// A session in a room that runs in a thread of its own, so that the windows answer while it computes.
 ///
-/// The window thread posts what the person wants and takes the newest model and the newest light. Simulated time runs
-/// as fast as the room can be computed, not as fast as the wall clock.
+/// The window thread posts what the person wants and takes the newest model and the newest light.
 class LiveSession {
 public:
-    LiveSession(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, const LiveSettings& settings);
+    /// `keep_matches_in`: every match and its scan in a folder of its own there; empty: not kept.
+    LiveSession(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
+                std::filesystem::path keep_matches_in);
     ~LiveSession();
 
     /// Queued; `dark` and `stop` overtake everything that waits.
@@ -65,16 +57,16 @@ private:
         OperatorAction action = OperatorAction::none;
         std::uint64_t darks = 0;
     };
-    void run(const Volume& volume, const LiveSettings& settings);
-    void act(const Press& press, Session& session, simulation::SimulatedRig& rig);
+    void run(const MakeRoom& make_room);
+    void act(const Press& press, Session& session, Room& room);
     void scan(Session& session);
     void find_patient(Session& session, const std::vector<PointPair>& landmarks);
     void confirm(Session& session);
     std::vector<PointPair> newest_landmarks() const;
     std::string keep(const RegistrationResult& found, const PointCloud& cloud,
                      const std::vector<PointPair>& landmarks) const;
-    void follow(Session& session, simulation::SimulatedRig& rig);
-    void show_update(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update,
+    void follow(Session& session, Room& room);
+    void show_update(const Session& session, const Room& room, const Session::Update& update,
                      const LightGate::Ruling& ruling);
     void stop_light(Session& session, const LightGate::Ruling& ruling);
     void set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details = {});
@@ -91,7 +83,7 @@ private:
 
     const Case& case_;
     const CaseDrawing& drawing_;
-    LiveSettings settings_;
+    std::filesystem::path keep_matches_in_;
     mutable std::mutex mutex_;
     std::condition_variable wake_;
     std::deque<Press> presses_;
@@ -103,7 +95,7 @@ private:
     std::uint64_t permitted_ = 0;  ///< `darks_` when the light of now was asked for; it is dark where they differ
     LightGate gate_;               ///< of the session's thread
     Instant seen_at_{};            ///< of the last frame, on the room's clock
-    bool ending_ = false, following_ = false, moving_ = false;
+    bool ending_ = false, following_ = false;
     std::atomic<bool> projecting_{false};
     std::atomic<Instant::rep> alive_at_{0};
     std::thread thread_;

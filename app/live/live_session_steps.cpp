@@ -93,9 +93,9 @@ void LiveSession::find_patient(Session& session, const std::vector<PointPair>& l
 /// Keeps the match and its scan; what became of it, in a sentence. A full disk does not end a session.
 std::string LiveSession::keep(const RegistrationResult& found, const PointCloud& cloud,
                               const std::vector<PointPair>& landmarks) const {
-    if (settings_.keep_matches_in.empty()) return "This match is not kept.";
+    if (keep_matches_in_.empty()) return "This match is not kept.";
     try {
-        return "Kept in " + keep_match(found, &cloud, landmarks, settings_.keep_matches_in).string() + ".";
+        return "Kept in " + keep_match(found, &cloud, landmarks, keep_matches_in_).string() + ".";
     } catch (const std::exception& fault) {
         return std::string("This match could not be kept: ") + fault.what() + ".";
     }
@@ -118,7 +118,7 @@ void LiveSession::confirm(Session& session) {
                {"Press Track, and look at the light on two landmarks before you use it."});
 }
 
-void LiveSession::follow(Session& session, simulation::SimulatedRig& rig) {
+void LiveSession::follow(Session& session, Room& room) {
     const auto update = session.update();
     if (!light_permitted()) return;  // DARK was pressed meanwhile; its own turn comes next
     seen_at_ = update.frame.at;
@@ -128,7 +128,7 @@ void LiveSession::follow(Session& session, simulation::SimulatedRig& rig) {
         return;
     }
     projecting_ = update.overlay.lit;
-    show_update(session, rig, update, ruling);
+    show_update(session, room, update, ruling);
 }
 
 void LiveSession::stop_light(Session& session, const LightGate::Ruling& ruling) {
@@ -143,9 +143,9 @@ void LiveSession::stop_light(Session& session, const LightGate::Ruling& ruling) 
     set_status(StatusKind::refused, ruling.headline, ruling.details);
 }
 
-void LiveSession::show_update(const Session& session, const simulation::SimulatedRig& rig,
-                              const Session::Update& update, const LightGate::Ruling& ruling) {
-    const auto light = true_light_lines(session.drawing(), rig.calibration(), update.overlay, rig);
+void LiveSession::show_update(const Session& session, const Room& room, const Session::Update& update,
+                              const LightGate::Ruling& ruling) {
+    const auto light = room.true_light(session.drawing(), update.overlay);
     Figures figures;
     figures.updates_per_s = 1 / std::max(update.times.total_s(), 1e-6);
     figures.delay_to_light_ms = 1000 * seconds(update.overlay.lit_from - update.pose.at);

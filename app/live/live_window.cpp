@@ -10,6 +10,7 @@
 #include "app/case_model.h"
 #include "app/live/light_keeper.h"
 #include "app/live/live_session.h"
+#include "app/live/projector_keeper.h"
 #include "app/windows/operator_window.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/types/error.h"
@@ -94,7 +95,7 @@ private:
 };
 
 /// A projector that is lost is said in place of the status, and the session made dark once; match and markers are kept.
-void tell_of_projector(const LightKeeper::Problem& problem, LiveSession& session, bool& lost, OperatorModel& model) {
+void tell_of_projector(const ProjectorProblem& problem, LiveSession& session, bool& lost, OperatorModel& model) {
     if (problem.empty()) {
         lost = false;
         return;
@@ -112,19 +113,10 @@ bool display_is_there() {
     return std::getenv("DISPLAY") != nullptr && *std::getenv("DISPLAY") != '\0';
 }
 
-int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, const LiveOptions& options) {
-    OperatorWindowSettings window_settings;
-    if (!options.operator_monitor.empty()) window_settings.monitor = options.operator_monitor;
-    OperatorWindow window(window_settings);
-    LiveSession session(volume, the_case, drawing,
-                        {options.preset, options.seed, options.speed_mm_s, options.keep_matches_in});
-    std::unique_ptr<LightKeeper> light;  // dark and gone before the session is
-    if (const std::string monitor = light_monitor(options); !monitor.empty()) {
-        check_monitor(monitor, options.projector);
-        LightKeeperSettings light_settings;
-        light_settings.process.light_delay = options.projector.light_delay.value_or(light_settings.process.light_delay);
-        light = std::make_unique<LightKeeper>(monitor, session, light_settings);
-    }
+namespace {
+
+/// The windows' loop, until the operator window is closed; `projector` is null where there is none.
+int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* projector, const LiveOptions& options) {
     bool projector_lost = false;
     Autoplay autoplay;
     Screenshots screenshots(options.screenshots);
@@ -132,11 +124,14 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
     while (!asked_to_end) {
         OperatorModel model = session.model();
-        if (light) tell_of_projector(light->problem(), session, projector_lost, model);
+        if (projector) tell_of_projector(projector->problem(), session, projector_lost, model);
         const OperatorAction action = window.frame(model);
-        if (light) light->beat();
+        if (projector) {
+            projector->window_lives();
+            projector->session_lives(session.alive_at());
+        }
         if (action == OperatorAction::quit) return 0;
-        if (light && (action == OperatorAction::dark || action == OperatorAction::stop)) light->go_dark();
+        if (projector && (action == OperatorAction::dark || action == OperatorAction::stop)) projector->go_dark();
         // Landmarks that stand in the window count for every match of their scan: a match that they refuse stays
         // refused.
         if (action == OperatorAction::do_register || action == OperatorAction::use_landmarks)
@@ -153,6 +148,46 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
             return 0;
     }
     return 0;
+}
+
+OperatorWindowSettings window_settings(const LiveOptions& options) {
+    OperatorWindowSettings settings;
+    if (!options.operator_monitor.empty()) settings.monitor = options.operator_monitor;
+    return settings;
+}
+
+ProjectorKeeperSettings keeper_settings(const LiveOptions& options) {
+    ProjectorKeeperSettings settings;
+    settings.process.light_delay = options.projector.light_delay.value_or(settings.process.light_delay);
+    return settings;
+}
+
+}  // namespace
+
+int run_live_simulated(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
+                       const LiveOptions& options) {
+    OperatorWindow window(window_settings(options));
+    std::unique_ptr<ProjectorKeeper> projector;
+    if (const std::string monitor = light_monitor(options); !monitor.empty()) {
+        check_monitor(monitor, options.projector);
+        ProjectorKeeperSettings settings = keeper_settings(options);
+        // The simulated room computes longer than a real one exposes.
+        settings.session_patience = std::chrono::milliseconds(2500);
+        projector = std::make_unique<ProjectorKeeper>(monitor, settings);
+    }
+    LiveSession session(std::move(make_room), the_case, drawing, options.keep_matches_in);
+    std::unique_ptr<LightKeeper> light;  // dark and gone before the session is
+    if (projector) light = std::make_unique<LightKeeper>(*projector, session);
+    return run_windows(window, session, projector.get(), options);
+}
+
+int run_live(const MakeRoomWith& make_room, const Case& the_case, const CaseDrawing& drawing,
+             const LiveOptions& options) {
+    OperatorWindow window(window_settings(options));
+    check_monitor(options.projector_monitor, options.projector);
+    ProjectorKeeper projector(options.projector_monitor, keeper_settings(options));
+    LiveSession session([&] { return make_room(projector); }, the_case, drawing, options.keep_matches_in);
+    return run_windows(window, session, &projector, options);
 }
 
 void show_model(const OperatorModel& model, FitView view) {

@@ -1,23 +1,20 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
+#include "app/live/room.h"
 #include "app/session.h"
 #include "app/windows/operator_model.h"
 #include "planning_io/case/light_file.h"
 #include "planning_io/types/point_pair.h"
-#include "planning_io/types/volume.h"
-#include "registration/simulation/simulated_rig.h"
 
 namespace planlight {
 
 /// What `planlight session` was asked for.
 struct LiveOptions {
-    simulation::Preset preset = simulation::Preset::paper;
-    unsigned seed = 1;
-    double speed_mm_s = 20;
     std::string
         projector_monitor;  ///< name or number; empty: the first monitor that is not the primary one, if there is one
     ProjectorFacts projector;               ///< what was measured of the projector; empty fields are not compared
@@ -31,9 +28,17 @@ struct LiveOptions {
 /// True when a window could be opened.
 bool display_is_there();
 
+/// Makes the room of a session; a real one lights the projector that it is given, a simulated one has its own.
+using MakeRoomWith = std::function<std::unique_ptr<Room>(Projector& projector)>;
+
 /// Both windows on a live session in the simulated room, until the operator window is closed. Gives the exit code.
 /// Throws DeviceError when a monitor is missing or a window does not land where it should.
-int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, const LiveOptions& options);
+int run_live_simulated(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
+                       const LiveOptions& options);
+
+/// The same in a real room, whose light is that of the projector's monitor.
+int run_live(const MakeRoomWith& make_room, const Case& the_case, const CaseDrawing& drawing,
+             const LiveOptions& options);
 
 /// The operator window on a model that does not change, until it is closed. Throws DeviceError without a display.
 void show_model(const OperatorModel& model, FitView view = FitView::after);

@@ -1,0 +1,107 @@
+#include "app/live/projector_keeper.h"
+
+#include <fmt/format.h>
+
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+constexpr auto kPoll = std::chrono::milliseconds(4);
+
+}  // namespace
+
+ProjectorKeeper::ProjectorKeeper(const std::string& monitor, const ProjectorKeeperSettings& settings)
+    : monitor_(monitor),
+      settings_(settings),
+      window_at_(clock_.now().count()),
+      session_at_(clock_.now().count()),
+      projector_(std::make_unique<ProjectorProcess>(monitor, settings.process)),
+      width_(projector_->width()),
+      height_(projector_->height()),
+      thread_([this](const std::stop_token& stop) { run(stop); }) {}
+
+ProjectorKeeper::~ProjectorKeeper() {
+    go_dark();
+    thread_.request_stop();
+    thread_.join();
+}
+
+Instant ProjectorKeeper::show(const RgbImage& picture, Instant valid_until) {
+    std::unique_lock lock(mutex_);
+    if (!projector_) throw DeviceError("projector", problem_.what, problem_.remedy);
+    try {
+        return projector_->show(picture, valid_until);
+    } catch (const Error& error) {
+        lock.unlock();
+        lose({error.what(), error.remedy});
+        throw;
+    }
+}
+
+void ProjectorKeeper::go_dark() noexcept {
+    const std::lock_guard lock(mutex_);
+    if (projector_) projector_->go_dark();
+}
+
+void ProjectorKeeper::window_lives() {
+    window_at_ = clock_.now().count();
+}
+
+void ProjectorKeeper::session_lives(Instant at) {
+    session_at_ = at.count();
+}
+
+ProjectorProblem ProjectorKeeper::problem() const {
+    const std::lock_guard lock(mutex_);
+    return problem_;
+}
+
+bool ProjectorKeeper::alive() const {
+    const Instant now = clock_.now();
+    return now - Instant(window_at_) < settings_.window_patience &&
+           now - Instant(session_at_) < settings_.session_patience;
+}
+
+void ProjectorKeeper::start_again() {
+    auto projector = std::make_unique<ProjectorProcess>(monitor_, settings_.process);  // black; takes a while
+    if (projector->width() != width_ || projector->height() != height_)
+        throw DeviceError("projector",
+                          fmt::format("it came back with {} x {} pixels, and had {} x {}", projector->width(),
+                                      projector->height(), width_, height_),
+                          "Set its resolution back.");
+    const std::lock_guard lock(mutex_);
+    projector_ = std::move(projector);
+    ++starts_;
+    problem_ = {};
+}
+
+void ProjectorKeeper::lose(const ProjectorProblem& problem) {
+    const std::lock_guard lock(mutex_);
+    projector_.reset();
+    problem_ = problem;
+    lost_at_ = clock_.now();
+}
+
+void ProjectorKeeper::run(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+        try {
+            std::unique_lock lock(mutex_);
+            const bool lost = !projector_;
+            const Instant lost_at = lost_at_;
+            if (!lost) {
+                projector_->check();
+                if (alive()) projector_->renew();
+            }
+            lock.unlock();
+            if (lost && clock_.now() - lost_at > settings_.retry_after) start_again();
+        } catch (const Error& error) {
+            lose({error.what(), error.remedy});
+        } catch (const std::exception& error) {
+            lose({error.what(), "Start the session again."});
+        }
+        std::this_thread::sleep_for(kPoll);
+    }
+}
+
+}  // namespace planlight

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <thread>
+
+#include "planning_io/types/steady_clock.h"
+#include "projection/projector_process.h"
+
+namespace planlight {
+
+/// Patiences are of the wall's clock, whatever clock the room has.
+struct ProjectorKeeperSettings {
+    ProjectorProcessSettings process;
+    /// Since the operator window's last frame: without graphics hardware one may take half a second.
+    Instant window_patience = std::chrono::seconds(1);
+    Instant session_patience = std::chrono::seconds(1);  ///< since the session's last sign of life
+    Instant retry_after = std::chrono::seconds(1);       ///< after the projector was lost
+};
+
+/// Why there is no light to be had, with its remedy; empty while the projector answers.
+struct ProjectorProblem {
+    std::string what, remedy;
+    bool empty() const { return what.empty(); }
+};
+
+/// The projector of a session: its process is watched, its lease is kept only while the operator window and the session
+/// both show signs of life (where either hangs, it is dark), and it is started again when it was lost (unplugged,
+/// moved, its process ended): dark then, until the next picture.
+///
+/// May be used from any thread.
+class ProjectorKeeper final : public Projector {
+public:
+    /// Throws DeviceError when the projector cannot be opened now.
+    explicit ProjectorKeeper(const std::string& monitor, const ProjectorKeeperSettings& settings = {});
+    ~ProjectorKeeper() override;
+
+    int width() const override { return width_; }
+    int height() const override { return height_; }
+    /// Throws DeviceError while the projector is lost, or when it is found to be.
+    Instant show(const RgbImage& picture, Instant valid_until) override;
+    void go_dark() noexcept override;
+
+    void window_lives();             ///< the operator window has drawn a frame
+    void session_lives(Instant at);  ///< its last sign of life
+    ProjectorProblem problem() const;
+    /// Counts up with every start of the projector.
+    unsigned starts() const { return starts_; }
+
+private:
+    void run(const std::stop_token& stop);
+    bool alive() const;
+    void start_again();
+    void lose(const ProjectorProblem& problem);
+
+    std::string monitor_;
+    ProjectorKeeperSettings settings_;
+    SteadyClock clock_;
+    std::atomic<Instant::rep> window_at_, session_at_;
+    mutable std::mutex mutex_;
+    std::unique_ptr<ProjectorProcess> projector_;
+    ProjectorProblem problem_;
+    Instant lost_at_{};
+    std::atomic<unsigned> starts_{1};
+    int width_ = 0, height_ = 0;
+    std::jthread thread_;
+};
+
+}  // namespace planlight

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "app/session.h"
+#include "app/windows/operator_model.h"
+
+namespace planlight {
+
+/// Where a live session takes place: devices and their clock, whoever made them.
+class Room {
+public:
+    virtual ~Room() = default;
+
+    virtual std::string name() const = 0;
+    virtual const RigCalibration& rig() const = 0;
+    virtual Projector& projector() = 0;
+    virtual StereoCamera& cameras() = 0;
+    virtual const Clock& clock() const = 0;
+
+    /// What a person should know of the devices, a sentence each.
+    virtual std::vector<std::string> notes() const { return {}; }
+    /// True where nothing is real: the window says so in large letters, and its projector window shows a copy of the
+    /// light.
+    virtual bool simulated() const { return false; }
+    /// What a simulated room needs to be told: computing takes time there as well, and its patient moves on request.
+    virtual void computing() {}
+    virtual void let_patient_move(bool) {}
+    /// Where the light truly falls, ct; null where nobody knows.
+    virtual std::shared_ptr<const std::vector<LightLine>> true_light(const PlanDrawing&, const OverlayStep&) const {
+        return nullptr;
+    }
+};
+
+/// Makes the room in the session's own thread, for that may take seconds.
+using MakeRoom = std::function<std::unique_ptr<Room>()>;
+
+}  // namespace planlight

@@ -1,0 +1,124 @@
+#include "planning_io/case/room_file.h"
+
+#include "planning_io/case/recording_json.h"
+#include "planning_io/files/json_value.h"
+#include "planning_io/files/safe_write.h"
+
+namespace planlight {
+
+using recording::kVersion;
+using recording::parse_file;
+
+namespace {
+
+constexpr const char* kFormat = "planlight room";
+
+std::optional<double> number_in(const JsonValue& from, const char* key, double least, double most) {
+    const auto value = from.find(key);
+    return value ? std::optional(value->number(least, most)) : std::nullopt;
+}
+
+RoomCamera::Trigger trigger_of(const JsonValue& value) {
+    const std::string text = value.text();
+    if (text == "none") return RoomCamera::Trigger::none;
+    if (text == "software") return RoomCamera::Trigger::software;
+    if (text == "line") return RoomCamera::Trigger::line;
+    value.refuse("is none of \"none\", \"software\" and \"line\"");
+}
+
+const char* text_of(RoomCamera::Trigger trigger) {
+    switch (trigger) {
+        case RoomCamera::Trigger::software:
+            return "software";
+        case RoomCamera::Trigger::line:
+            return "line";
+        case RoomCamera::Trigger::none:
+            break;
+    }
+    return "none";
+}
+
+RoomCamera camera_of(const JsonValue& value) {
+    value.has_only(
+        {"device", "pixel_format", "trigger", "line", "exposure_ms", "gain", "frames_hz", "transfer_ms", "region"});
+    RoomCamera camera;
+    camera.device = value.at("device").text();
+    if (camera.device.empty())
+        value.at("device").refuse("is empty", "Give the camera's serial as `planlight devices` lists it.");
+    if (const auto format = value.find("pixel_format")) camera.pixel_format = format->text();
+    if (const auto trigger = value.find("trigger")) camera.trigger = trigger_of(*trigger);
+    if (const auto line = value.find("line")) camera.line = line->text();
+    camera.exposure_ms = number_in(value, "exposure_ms", 0.01, 10'000);
+    camera.gain = number_in(value, "gain", -100, 1000);
+    camera.frames_hz = number_in(value, "frames_hz", 0.1, 10'000);
+    camera.transfer_ms = number_in(value, "transfer_ms", 0, 10'000);
+    if (const auto region = value.find("region")) {
+        if (region->size() != 4) region->refuse("is not [x, y, width, height]");
+        camera.region.emplace();
+        for (std::size_t i = 0; i < 4; ++i)
+            (*camera.region)[i] = static_cast<int>((*region)[i].integer(i < 2 ? 0 : 16, 65535));
+    }
+    return camera;
+}
+
+Json json_of(const RoomCamera& camera) {
+    Json json{{"device", camera.device}, {"trigger", text_of(camera.trigger)}};
+    if (!camera.pixel_format.empty()) json["pixel_format"] = camera.pixel_format;
+    if (camera.trigger == RoomCamera::Trigger::line) json["line"] = camera.line;
+    if (camera.exposure_ms) json["exposure_ms"] = *camera.exposure_ms;
+    if (camera.gain) json["gain"] = *camera.gain;
+    if (camera.frames_hz) json["frames_hz"] = *camera.frames_hz;
+    if (camera.transfer_ms) json["transfer_ms"] = *camera.transfer_ms;
+    if (camera.region) json["region"] = *camera.region;
+    return json;
+}
+
+}  // namespace
+
+RoomFile read_room(const std::filesystem::path& file) {
+    const Json json = parse_file(file, kFormat);
+    const JsonValue root(json, file);
+    root.has_only({"format", "version", "name", "rig", "projector", "cameras", "markers"});
+    RoomFile room;
+    const auto beside = [&](const JsonValue& path) {
+        const std::filesystem::path given = path.text();
+        return given.is_absolute() ? given : file.parent_path() / given;
+    };
+    if (const auto name = root.find("name")) room.name = name->text();
+    room.rig = beside(root.at("rig"));
+    const JsonValue projector = root.at("projector");
+    projector.has_only({"monitor", "file"});
+    room.monitor = projector.at("monitor").text();
+    if (const auto measured = projector.find("file")) room.projector_file = beside(*measured);
+    const JsonValue cameras = root.at("cameras");
+    cameras.has_only({"left", "right", "max_apart_ms"});
+    room.left = camera_of(cameras.at("left"));
+    room.right = camera_of(cameras.at("right"));
+    if (room.left.device == room.right.device)
+        cameras.at("right").at("device").refuse("is the left camera as well", "Name two cameras.");
+    room.max_apart_ms = number_in(cameras, "max_apart_ms", 0.01, 1000).value_or(room.max_apart_ms);
+    if (const auto markers = root.find("markers")) {
+        markers->has_only({"disc_mm", "sticker_mm"});
+        room.disc_mm = markers->at("disc_mm").number(2, 50);
+        room.sticker_mm = markers->at("sticker_mm").number(room.disc_mm * 1.2, 100);
+    }
+    return room;
+}
+
+void write_room(const RoomFile& room, const std::filesystem::path& file) {
+    Json json;
+    json["format"] = kFormat;
+    json["version"] = kVersion;
+    json["name"] = room.name;
+    json["rig"] = room.rig.string();
+    json["projector"]["monitor"] = room.monitor;
+    if (!room.projector_file.empty()) json["projector"]["file"] = room.projector_file.string();
+    json["cameras"]["left"] = json_of(room.left);
+    json["cameras"]["right"] = json_of(room.right);
+    json["cameras"]["max_apart_ms"] = room.max_apart_ms;
+    json["markers"]["disc_mm"] = room.disc_mm;
+    json["markers"]["sticker_mm"] = room.sticker_mm;
+    write_safely(file, dump(json));
+}
+
+}  // namespace planlight

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace planlight {
+
+/// One camera of room.json. What is empty stays as the camera has it.
+struct RoomCamera {
+    std::string device;        ///< GenICam: serial, identifier or network address
+    std::string pixel_format;  ///< empty: Mono8
+    enum class Trigger { none, software, line } trigger = Trigger::none;
+    std::string line = "Line0";  ///< of the hardware trigger
+    std::optional<double> exposure_ms, gain, frames_hz;
+    std::optional<double> transfer_ms;         ///< from the end of the exposure to the arrival of the quickest frame
+    std::optional<std::array<int, 4>> region;  ///< x, y, width, height
+};
+
+/// A room of real devices (room.json): which cameras and which projector, and the files of their calibration.
+struct RoomFile {
+    std::string name;
+    std::filesystem::path rig;             ///< rig.json
+    std::filesystem::path projector_file;  ///< projector.json of `planlight projector`; empty: not measured
+    std::string monitor;                   ///< of the projector: its name
+    RoomCamera left, right;
+    double max_apart_ms = 2;              ///< of two exposures that are one
+    double disc_mm = 8, sticker_mm = 16;  ///< of the markers, diameters
+};
+
+/// Paths in it are relative to its own folder. Throws InputError for what is missing, unknown or out of range.
+RoomFile read_room(const std::filesystem::path& file);
+
+/// Written safely; paths as they stand in `room`. Throws DiskError.
+void write_room(const RoomFile& room, const std::filesystem::path& file);
+
+}  // namespace planlight

@@ -1,0 +1,56 @@
+#include "projection/monitor_picture.h"
+
+#include "planning_io/types/error.h"
+#include "projection/projector_window.h"
+
+// Last: its macros are everywhere.
+#include <X11/Xlib.h>
+#include <X11/Xutil.h>
+
+namespace planlight {
+
+struct MonitorPicture::Parts {
+    Monitor monitor;
+    Display* display = nullptr;
+    ~Parts() {
+        if (display) XCloseDisplay(display);
+    }
+};
+
+MonitorPicture::MonitorPicture(const std::string& name) : parts_(std::make_unique<Parts>()) {
+    for (const Monitor& monitor : list_monitors())
+        if (monitor.name == name) parts_->monitor = monitor;
+    if (parts_->monitor.name.empty())
+        throw DeviceError("monitor " + name, "there is none of this name", "See `planlight devices`.");
+    parts_->display = XOpenDisplay(nullptr);
+    if (!parts_->display)
+        throw DeviceError("monitor " + name, "there is no X display", "Start it in a graphical session.");
+}
+
+MonitorPicture::~MonitorPicture() = default;
+
+int MonitorPicture::width() const {
+    return parts_->monitor.width;
+}
+int MonitorPicture::height() const {
+    return parts_->monitor.height;
+}
+
+RgbImage MonitorPicture::look() {
+    const Monitor& m = parts_->monitor;
+    XImage* const image =
+        XGetImage(parts_->display, DefaultRootWindow(parts_->display), m.x, m.y, static_cast<unsigned>(m.width),
+                  static_cast<unsigned>(m.height), AllPlanes, ZPixmap);
+    if (!image || image->bits_per_pixel != 32)
+        throw DeviceError("monitor " + m.name, "its picture cannot be read", "Use a display of 24 bits a pixel.");
+    RgbImage picture(m.width, m.height);
+    for (int y = 0; y < m.height; ++y) {
+        const auto* row = reinterpret_cast<const unsigned char*>(image->data) +
+                          static_cast<std::size_t>(y) * static_cast<std::size_t>(image->bytes_per_line);
+        for (int x = 0; x < m.width; ++x, row += 4) picture.at(x, y) = {row[2], row[1], row[0]};
+    }
+    XDestroyImage(image);
+    return picture;
+}
+
+}  // namespace planlight

@@ -1,0 +1,235 @@
+// A whole session through the wire: the simulated room served as two GigE Vision cameras and a projector whose light is
+// what stands on the second monitor; scan, match and light by the same devices that real hardware has, against the same
+// room without a wire. Run by two_monitors.sh: `session_in_served_room FOLDER`, with PLANLIGHT the program (for its
+// projector process) and SEEDS how many rooms (default 1). Exit code 0 when every patient was found, the light at rest
+// is within 0.1 mm (95 %) of that without a wire, and each fault was noticed by name and dark; 77: skipped.
+#include <fmt/format.h>
+
+#include <atomic>
+#include <cstdlib>
+#include <thread>
+
+#include "app/evaluation/distribution.h"
+#include "app/evaluation/measure_overlay.h"
+#include "app/live/projector_keeper.h"
+#include "app/live/real_room.h"
+#include "app/prepare_case.h"
+#include "app/session.h"
+#include "planning_io/plan/plan_file.h"
+#include "planning_io/types/error.h"
+#include "planning_io/types/statistics.h"
+#include "planning_io/volume/read_volume.h"
+#include "projection/monitor_picture.h"
+#include "registration/simulation/serve/served_room.h"
+#include "root_window.h"
+#include "tests/support/test_data.h"
+
+namespace {
+
+using namespace planlight;
+using namespace std::chrono_literals;
+using test::expect;
+
+constexpr int kUpdates = 30, kMeasuredEvery = 5;
+
+struct Figures {
+    bool found = false;
+    std::string refused;
+    double tre_mm = 0, light_p95_mm = 0, scan_s = 0, updates_per_s = 0;
+    int lit = 0;
+    std::vector<double> late_ms;  ///< from mid-exposure to the picture on the display
+};
+
+simulation::RoomSettings room_of(unsigned seed, double threshold) {
+    simulation::RoomSettings room;
+    room.preset = simulation::Preset::paper;
+    room.seed = seed;
+    room.skin_threshold_hu = threshold;
+    return room;
+}
+
+/// Scan, match and some updates at rest, in whatever room; `truth` is the room by itself.
+Figures operate(const Case& the_case, const CaseDrawing& drawing, Session& session, const Clock& clock,
+                const simulation::SimulatedRig& truth) {
+    Figures figures;
+    const Instant began = clock.now();
+    session.scan();
+    figures.scan_s = seconds(clock.now() - began);
+    const RegistrationResult& found = session.find_patient();
+    if (found.verdict == Verdict::no) {
+        figures.refused = found.reasons.front();
+        return figures;
+    }
+    figures.found = true;
+    if (found.verdict == Verdict::ask) session.confirm();
+    const RigidTransform rig_from_ct = truth.true_rig_from_ct({});
+    for (const auto& p : points_of(the_case.plan))
+        figures.tre_mm = std::max(figures.tre_mm, (found.patient_from_ct * p - rig_from_ct * p).norm());
+    OverlayErrors errors;
+    const Instant from = clock.now();
+    for (int i = 0; i < kUpdates; ++i) {
+        const Session::Update update = session.update();
+        if (!update.overlay.lit) {
+            fmt::print("     dark: {}\n", update.overlay.reason);
+            continue;
+        }
+        ++figures.lit;
+        figures.late_ms.push_back(1e3 * seconds(update.overlay.lit_from - update.pose.at));
+        if (i % kMeasuredEvery == 0)
+            errors.append(measure_overlay(truth, the_case.plan, session.drawing(), session.renderer(),
+                                          session.render_settings(), {update.overlay.rig_from_ct, {}, {}}, false));
+    }
+    figures.updates_per_s = kUpdates / seconds(clock.now() - from);
+    if (!errors.position_mm.empty()) figures.light_p95_mm = quantile(errors.position_mm, 0.95);
+    (void)drawing;
+    return figures;
+}
+
+void print(const char* where, const Figures& f) {
+    if (!f.found) {
+        fmt::print("     {}: refused: {}\n", where, f.refused);
+        return;
+    }
+    auto late = f.late_ms;
+    fmt::print(
+        "     {}: registration {:.2f} mm, light at rest {:.2f} mm (95 %), {} of {} updates lit, scan {:.1f} s, {:.1f} "
+        "updates/s, mid-exposure to light {:.0f} / {:.0f} ms (median / 99 %)\n",
+        where, f.tre_mm, f.light_p95_mm, f.lit, kUpdates, f.scan_s, f.updates_per_s, late.empty() ? 0 : median(late),
+        late.empty() ? 0 : quantile(late, 0.99));
+}
+
+/// The session refuses with these words within `patience`, and how long it took.
+bool refuses(Session& session, const std::string& words, Instant patience, const Clock& clock) {
+    const Instant from = clock.now();
+    while (clock.now() - from < patience) {
+        try {
+            session.update();
+        } catch (const DeviceError& error) {
+            session.go_dark();
+            fmt::print("     after {:.0f} ms: {}\n", 1e3 * seconds(clock.now() - from), error.what());
+            return std::string(error.what()).find(words) != std::string::npos;
+        }
+    }
+    return false;
+}
+
+bool goes_on(Session& session, Instant patience, const Clock& clock) {
+    const Instant from = clock.now();
+    while (clock.now() - from < patience) {
+        try {
+            if (session.update().overlay.lit) return true;
+        } catch (const DeviceError&) {
+            std::this_thread::sleep_for(100ms);
+        }
+    }
+    return false;
+}
+
+void faults(Session& session, simulation::ServedRoom& served, ProjectorKeeper& projector, MonitorPicture& monitor,
+            const Clock& clock) {
+    served.right().silence(true);
+    expect(refuses(session, "right camera", 5s, clock), "a camera that is pulled out is named");
+    expect(monitor.look().pixels == RgbImage(monitor.width(), monitor.height()).pixels, "and the monitor is dark");
+    served.right().silence(false);
+    expect(goes_on(session, 20s, clock), "it comes back, and the session goes on with the same match");
+    served.left().change_exposure(3ms);
+    expect(refuses(session, "left camera", 10s, clock), "an exposure that somebody changed is named");
+    served.left().change_exposure(10ms);
+    expect(goes_on(session, 20s, clock), "and set again by itself");
+    expect(projector.problem().empty(), "the projector is well all the time");
+}
+
+int run(const std::string& program, unsigned seeds) {
+    const Volume volume = read_volume(*test::example_patient());
+    const Preparation prepared = prepare_case(
+        volume, read_plan(std::string(PLANLIGHT_EXAMPLE_FOLDER) + "/frontal_defect.mrk.json"), {}, {}, "2001-10-14");
+    const CaseDrawing drawing(prepared.prepared);
+    const Case& the_case = prepared.prepared;
+    MonitorPicture monitor("DUMMY1");
+    for (unsigned seed = 1; seed <= seeds; ++seed) {
+        simulation::SimulatedRig truth(volume, points_of(the_case.plan), room_of(seed, prepared.threshold));
+        Figures without;
+        {
+            simulation::SimulatedRig rig(volume, points_of(the_case.plan), room_of(seed, prepared.threshold));
+            SessionSettings settings;
+            settings.while_computing = [&] { rig.wait(10ms); };
+            Session session(the_case, drawing, rig.calibration(), rig.projector(), rig.cameras(), rig.clock(),
+                            settings);
+            without = operate(the_case, drawing, session, rig.clock(), truth);
+        }
+        simulation::SimulatedRig rig(volume, points_of(the_case.plan), room_of(seed, prepared.threshold));
+        simulation::ServeSettings serve;
+        serve.left.serial = "SIM-L";
+        serve.right.serial = "SIM-R";
+        serve.right.address = "127.0.0.2";
+        // Clocks of their own: hours apart, drifting by 100 ppm.
+        serve.left.clock_offset = 17h;
+        serve.left.clock_drift = 100e-6;
+        serve.right.clock_drift = -50e-6;
+        std::unique_ptr<simulation::ServedRoom> served;
+        try {
+            served = std::make_unique<simulation::ServedRoom>(
+                rig, [&] { return monitor.look(); }, serve);
+        } catch (const DeviceError& error) {
+            fmt::print("skipped: {}. {}\n", error.what(), error.remedy);
+            return 77;
+        }
+        RoomFile room;
+        room.left.device = "SIM-L";
+        room.right.device = "SIM-R";
+        room.left.exposure_ms = room.right.exposure_ms = 10;
+        room.left.transfer_ms = room.right.transfer_ms = 1e3 * seconds(serve.latency);
+        RigCalibration calibration = rig.calibration();
+        calibration.serials = {"SIM-L", "SIM-R", ""};
+        ProjectorKeeperSettings keeper;
+        keeper.process.program = program;
+        keeper.process.light_delay = 45ms;  // the lamp's 25, and what it takes to see the monitor
+        ProjectorKeeper projector("DUMMY1", keeper);
+        const SteadyClock clock;
+        const std::jthread beats([&](const std::stop_token& stop) {
+            while (!stop.stop_requested()) {
+                projector.window_lives();
+                projector.session_lives(clock.now());
+                std::this_thread::sleep_for(20ms);
+            }
+        });
+        RealRoom real(room, calibration, projector);
+        SessionSettings settings;
+        settings.patience = 2000ms;
+        Session session(the_case, drawing, real.rig(), real.projector(), real.cameras(), real.clock(), settings);
+        Figures with;
+        try {
+            with = operate(the_case, drawing, session, real.clock(), truth);
+        } catch (const Error& error) {
+            with.refused = std::string(error.what()) + " " + error.remedy;
+        }
+        const auto& pairs = static_cast<PairedCameras&>(real.cameras()).counts();
+        fmt::print("seed {}: {} pictures a camera made, {} late; {} pairs, alone {} left and {} right\n", seed,
+                   served->made(), served->late(), pairs.pairs, pairs.left_alone, pairs.right_alone);
+        print("in process", without);
+        print("by wire   ", with);
+        expect(with.found, "found through the wire");
+        expect(with.found && std::abs(with.light_p95_mm - without.light_p95_mm) <= 0.1,
+               "the light at rest is as true as without a wire, within 0.1 mm");
+        if (with.found && seed == 1) faults(session, *served, projector, monitor, real.clock());
+    }
+    return test::failures() > 0;
+}
+
+}  // namespace
+
+int main() {
+    if (!test::example_patient()) {
+        fmt::print("skipped: the example patient is not installed\n");
+        return 77;
+    }
+    const char *program = std::getenv("PLANLIGHT"), *seeds = std::getenv("SEEDS");
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);
+    [[maybe_unused]] const int added = std::system("ip address add 127.0.0.2/8 dev lo 2>/dev/null");
+    try {
+        return run(program, seeds ? static_cast<unsigned>(std::atoi(seeds)) : 1);
+    } catch (const planlight::Error& error) {
+        fmt::print("FAIL {} {}\n", error.what(), error.remedy);
+        return 1;
+    }
+}
