@@ -1,5 +1,7 @@
 #include <fmt/format.h>
 
+#include <thread>
+
 #include <algorithm>
 #include <iostream>
 
@@ -9,8 +11,10 @@
 #include "app/live/identify_monitors.h"
 #include "app/live/light_source.h"
 #include "app/live/projector_options.h"
+#include "app/live/room_cameras.h"
 #include "app/live/show_light.h"
 #include "app/report/projector_report.h"
+#include "planning_io/case/room_file.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
@@ -72,6 +76,34 @@ void measure_simulated(const ProjectorOptions& options, ProjectorReport& report)
     }
 }
 
+/// The projector of a room, by its own cameras; the delay in force is that of its projector.json.
+void measure_room(const ProjectorOptions& options, ProjectorReport& report) {
+    const RoomFile room = read_room(options.room);
+    const SteadyClock clock;
+    RoomCameras cameras(room, clock);
+    for (const std::string& note : cameras.notes()) warn(note + ".");
+    CommandProjector projector(room.monitor, room.projector_file);
+    report.source = room.name.empty() ? options.room.string() : room.name;
+    report.monitor = room.monitor;
+    report.width = projector.projector().width();
+    report.height = projector.projector().height();
+    if (!options.keep.empty()) std::filesystem::create_directories(options.keep);
+    ProgressBar bar;
+    for (const std::string part : kLightParts) {
+        if (!wanted(options, part)) continue;
+        RecordSettings record;
+        record.seed = options.seed;
+        const LightBench bench{projector.projector(),
+                               cameras.pair(),
+                               clock,
+                               [&](Instant at) { std::this_thread::sleep_for(at - clock.now()); },
+                               [&](double share) { bar.show(part, share); },
+                               {}};
+        evaluate(part, record_part(part, bench, record, options.keep.empty() ? Path{} : options.keep / part), options,
+                 report);
+    }
+}
+
 void measure_recorded(const ProjectorOptions& options, ProjectorReport& report) {
     report.source = options.recording.string();
     bool any = false;
@@ -96,14 +128,16 @@ void throw_if_refused(const std::optional<Result>& result, const char* what) {
 int run_projector(const ProjectorOptions& options) {
     if (options.identify) return identify_monitors(options);
     if (options.show) return show_light(options);
-    if (options.recording.empty() == options.simulate.empty())
-        throw InputError({}, "there is nothing to measure, or two things",
-                         "Give a folder of recorded light, or --simulate, --show or --identify.");
+    if (options.recording.empty() && options.simulate.empty() && options.room.empty())
+        throw InputError({}, "there is nothing to measure",
+                         "Give --room, a folder of recorded light, --simulate, --show or --identify.");
     ProjectorReport report;
     report.made_on = today();
     report.serial = options.serial;
     report.monitor = options.monitor;
-    if (options.simulate.empty())
+    if (!options.room.empty())
+        measure_room(options, report);
+    else if (!options.recording.empty())
         measure_recorded(options, report);
     else
         measure_simulated(options, report);
@@ -133,7 +167,8 @@ Run add_projector(CLI::App& app) {
     ProjectorOptions& o = *options;
     auto* sub = add_command(
         app, "projector", "What the projector really does: gamma, colour cycle, latency; which monitor it is",
-        "projector recording --configured-ms 25 --serial X7K2 --out projector.json\n"
+        "projector --room room.json --out projector.json\n"
+        "  planlight projector recording --configured-ms 25 --serial X7K2 --out projector.json\n"
         "  planlight projector --simulate paper --seed 3 --light wheel-hz=120 delay-ms=12 --out projector.json\n"
         "  planlight projector --identify\n"
         "  planlight projector --show --monitor HDMI-2 --frames-hz 60 --keep recording");
@@ -143,6 +178,11 @@ Run add_projector(CLI::App& app) {
         sub->add_option("--simulate", o.simulate, "Measure the simulated room's projector instead: modern or paper")
             ->check(CLI::IsMember({"modern", "paper"}))
             ->excludes(recording);
+    sub->add_option("--room", o.room,
+                    "Measure the projector of this room.json with its own cameras; a white card where the patient will "
+                    "be, and nobody there")
+        ->excludes(recording)
+        ->excludes(simulate);
     sub->add_option("--seed", o.seed, "Of the simulated room, and of the order of greys")->capture_default_str();
     sub->add_option("--light", o.light,
                     "Of the simulated room, NAME=NUMBER: gamma, dark-end, wheel-hz, mains-hz, delay-ms, ...")

@@ -1,0 +1,72 @@
+#include "app/live/room_cameras.h"
+
+#include "planning_io/case/light_file.h"
+
+namespace planlight {
+namespace {
+
+GenicamSettings::Trigger trigger_of(RoomCamera::Trigger trigger) {
+    switch (trigger) {
+        case RoomCamera::Trigger::software:
+            return GenicamSettings::Trigger::software;
+        case RoomCamera::Trigger::line:
+            return GenicamSettings::Trigger::line;
+        case RoomCamera::Trigger::none:
+            break;
+    }
+    return GenicamSettings::Trigger::none;
+}
+
+ProjectorKeeperSettings settings_of(const std::filesystem::path& projector_file) {
+    ProjectorKeeperSettings settings;
+    if (projector_file.empty()) return settings;
+    const ProjectorFacts facts = read_projector_file(projector_file);
+    settings.process.light_delay = facts.light_delay.value_or(settings.process.light_delay);
+    return settings;
+}
+
+}  // namespace
+
+GenicamSettings genicam_settings(const RoomCamera& camera, const std::string& name) {
+    GenicamSettings settings;
+    settings.name = name;
+    settings.device = camera.device;
+    settings.trigger = trigger_of(camera.trigger);
+    settings.line = camera.line;
+    settings.pixel_format = camera.pixel_format;
+    settings.exposure_ms = camera.exposure_ms;
+    settings.gain = camera.gain;
+    settings.frames_hz = camera.frames_hz;
+    settings.region = camera.region;
+    settings.transfer_ms = camera.transfer_ms;
+    return settings;
+}
+
+RoomCameras::RoomCameras(const RoomFile& room, const Clock& clock) {
+    auto left = std::make_unique<GenicamCamera>(genicam_settings(room.left, "left camera"), bell_, clock);
+    auto right = std::make_unique<GenicamCamera>(genicam_settings(room.right, "right camera"), bell_, clock);
+    left_ = left.get();
+    right_ = right.get();
+    PairSettings pairs;
+    pairs.most_apart = from_seconds(room.max_apart_ms / 1e3);
+    pair_ = std::make_unique<PairedCameras>(std::move(left), std::move(right), bell_, clock, pairs);
+}
+
+std::vector<std::string> RoomCameras::notes() const {
+    std::vector<std::string> notes;
+    for (const GenicamCamera* camera : {left_, right_})
+        for (const std::string& note : camera->notes()) notes.push_back(camera->name() + ": " + note);
+    return notes;
+}
+
+CommandProjector::CommandProjector(const std::string& monitor, const std::filesystem::path& projector_file)
+    : keeper_(monitor, settings_of(projector_file)), beats_([this](const std::stop_token& stop) {
+          const SteadyClock clock;
+          while (!stop.stop_requested()) {
+              keeper_.window_lives();
+              keeper_.session_lives(clock.now());
+              std::this_thread::sleep_for(std::chrono::milliseconds(20));
+          }
+      }) {}
+
+}  // namespace planlight

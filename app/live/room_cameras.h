@@ -1,0 +1,51 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "app/live/projector_keeper.h"
+#include "planning_io/case/room_file.h"
+#include "planning_io/types/rig_calibration.h"
+#include "registration/devices/genicam_camera.h"
+#include "registration/devices/paired_cameras.h"
+
+namespace planlight {
+
+/// How a camera of room.json is opened.
+GenicamSettings genicam_settings(const RoomCamera& camera, const std::string& name);
+
+/// Both cameras of a room.
+class RoomCameras {
+public:
+    /// Opens them. Throws DeviceError when one does not answer or does not take its settings.
+    RoomCameras(const RoomFile& room, const Clock& clock);
+
+    PairedCameras& pair() { return *pair_; }
+    const GenicamCamera& left() const { return *left_; }
+    const GenicamCamera& right() const { return *right_; }
+    /// What they do by themselves and cannot be told not to, a sentence each.
+    std::vector<std::string> notes() const;
+
+private:
+    FrameBell bell_;
+    GenicamCamera *left_ = nullptr, *right_ = nullptr;  ///< of `pair_`
+    std::unique_ptr<PairedCameras> pair_;
+};
+
+/// The projector of a room for a command that has no operator window: it stays as long as the command runs. Nobody may
+/// lie under it.
+class CommandProjector {
+public:
+    /// With the delay of `projector_file`, where there is one. Throws DeviceError.
+    CommandProjector(const std::string& monitor, const std::filesystem::path& projector_file);
+
+    Projector& projector() { return keeper_; }
+
+private:
+    ProjectorKeeper keeper_;
+    std::jthread beats_;
+};
+
+}  // namespace planlight

@@ -1,0 +1,75 @@
+#include "planning_io/case/room_file.h"
+
+#include <gtest/gtest.h>
+
+#include "planning_io/files/safe_write.h"
+#include "planning_io/types/error.h"
+#include "tests/support/test_data.h"
+
+namespace planlight {
+namespace {
+
+TEST(RoomFile, ReadsBackAndItsPathsAreBesideIt) {
+    const test::TemporaryFolder folder;
+    RoomFile room;
+    room.name = "Theatre 3";
+    room.rig = "rigs/rig.json";
+    room.projector_file = "/somewhere/projector.json";
+    room.monitor = "HDMI-2";
+    room.left.device = "1234";
+    room.left.trigger = RoomCamera::Trigger::line;
+    room.left.line = "Line2";
+    room.left.exposure_ms = 7.5;
+    room.left.region = {8, 16, 1920, 1200};
+    room.right.device = "192.168.7.2";
+    room.right.transfer_ms = 18;
+    room.max_apart_ms = 0.5;
+    write_room(room, folder.path() / "room.json");
+    const RoomFile back = read_room(folder.path() / "room.json");
+    EXPECT_EQ(back.name, room.name);
+    EXPECT_EQ(back.rig, folder.path() / "rigs/rig.json");
+    EXPECT_EQ(back.projector_file, "/somewhere/projector.json");
+    EXPECT_EQ(back.monitor, "HDMI-2");
+    EXPECT_EQ(back.left.device, "1234");
+    EXPECT_EQ(back.left.trigger, RoomCamera::Trigger::line);
+    EXPECT_EQ(back.left.line, "Line2");
+    EXPECT_EQ(back.left.exposure_ms, 7.5);
+    EXPECT_FALSE(back.left.gain);
+    EXPECT_EQ(back.left.region, room.left.region);
+    EXPECT_EQ(back.right.transfer_ms, 18);
+    EXPECT_EQ(back.max_apart_ms, 0.5);
+}
+
+TEST(RoomFile, WhatIsMissingMisspeltOrImpossibleIsRefusedByName) {
+    const test::TemporaryFolder folder;
+    const auto refusal = [&](const std::string& cameras) {
+        const auto file = folder.path() / "room.json";
+        write_safely(
+            file, R"({"format": "planlight room", "version": 1, "rig": "rig.json", "projector": {"monitor": "A"}, )" +
+                      cameras + "}");
+        try {
+            read_room(file);
+        } catch (const InputError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    const std::string two = R"("left": {"device": "1"}, "right": {"device": "2"})";
+    EXPECT_EQ(refusal(R"("cameras": {)" + two + "}"), "");
+    EXPECT_NE(refusal(R"("cameras": {"left": {"device": "1"}})").find("right"), std::string::npos);
+    EXPECT_NE(
+        refusal(R"("cameras": {"left": {"device": "1"}, "right": {"device": "1"}})").find("is the left camera as well"),
+        std::string::npos);
+    EXPECT_NE(refusal(R"("cameras": {"left": {"device": "1", "exposure": 5}, "right": {"device": "2"}})")
+                  .find("\"exposure\""),
+              std::string::npos);
+    EXPECT_NE(refusal(R"("cameras": {"left": {"device": "1", "exposure_ms": 0}, "right": {"device": "2"}})")
+                  .find("exposure_ms"),
+              std::string::npos);
+    EXPECT_NE(refusal(R"("cameras": {"left": {"device": "1", "trigger": "cable"}, "right": {"device": "2"}})")
+                  .find("trigger"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace planlight
