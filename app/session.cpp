@@ -192,13 +192,16 @@ void Session::start_overlay() {
     watch_.emplace(rig_, settings_.light_cause);
     jumps_.emplace(rig_);
     shown_.clear();
+    seen_until_ = clock_.now();
 }
 
 Session::Update Session::update() {
     if (!registration_) throw CheckFailedError("the patient has not been found", "Scan and register first.");
     if (!overlay_) start_overlay();
     Update update;
-    update.frame = cameras_.grab(clock_.now(), settings_.patience);
+    // The newest exposure after the last one that was used: none is left out because a picture was being drawn.
+    update.frame = cameras_.newest(seen_until_, settings_.patience);
+    seen_until_ = update.frame.at + update.frame.exposure / 2;
     const auto began = std::chrono::steady_clock::now();
     update.pose = tracker_.update(update.frame);
     update.times.track_s = elapsed_s(began);

@@ -153,6 +153,7 @@ private:
     std::optional<PictureJumps> jumps_;
     std::vector<ShownPicture> shown_;
     Instant found_delay_{};
+    Instant seen_until_{};  ///< end of the last exposure that was used
     Instant lit_since_ = Instant::max();  ///< light without a break; max: it is dark
     int updates_ = 0;
     bool confirmed_ = false;  ///< the last match, by the operator

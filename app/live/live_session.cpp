@@ -5,6 +5,11 @@
 #include "planning_io/types/steady_clock.h"
 
 namespace planlight {
+namespace {
+
+constexpr auto kLostPause = std::chrono::milliseconds(100);
+
+}  // namespace
 
 /// Passes everything to the room's projector and keeps the newest picture for the windows.
 class LiveSession::LightTap final : public Projector {
@@ -155,8 +160,12 @@ void LiveSession::run(const MakeRoom& make_room) {
     session_settings.while_computing = [&room] { room->computing(); };
     Session session(case_, drawing_, room->rig(), tap, room->cameras(), room->clock(), session_settings);
     set_steps(2);
-    set_status(StatusKind::ready, "Ready to scan.", {"The projector is dark."});
-    change_model([](OperatorModel& m) {
+    std::vector<std::string> details{"The projector is dark."};
+    const std::vector<std::string> notes = room->notes();
+    details.insert(details.end(), notes.begin(), notes.end());
+    set_status(StatusKind::ready, "Ready to scan.", std::move(details));
+    change_model([&](OperatorModel& m) {
+        if (room->simulated()) m.case_title = "SIMULATED ROOM: " + m.case_title;
         m.scan = {true, {}};
         m.do_register = {false, "scan first"};
         m.track = {false, "register first"};
@@ -168,6 +177,13 @@ void LiveSession::run(const MakeRoom& make_room) {
         if (press.action == OperatorAction::quit) return;
         try {
             act(press, session, *room);
+        } catch (const DeviceError& lost) {
+            // What is lost comes back by itself: the patient is still where the scan and the match say.
+            projecting_ = false;
+            session.go_dark();
+            set_status(StatusKind::dark, std::string("Dark: ") + lost.what() + ".",
+                       {lost.remedy, following_ ? "The light comes back by itself." : "Press the button again."});
+            if (following_) std::this_thread::sleep_for(kLostPause);
         } catch (const Error& refusal) {
             following_ = projecting_ = false;
             session.go_dark();
