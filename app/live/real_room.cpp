@@ -32,7 +32,7 @@ void check_serials(const std::string& left, const std::string& right, const Devi
 RealRoom::RealRoom(const RoomFile& room, const RigCalibration& rig, Projector& projector)
     : room_(room), rig_(rig), projector_(projector), cameras_(room, clock_) {
     check_size("the projector", projector.width(), projector.height(), rig.projector);
-    const GenicamCamera &left = cameras_.left(), &right = cameras_.right();
+    const Camera &left = cameras_.left(), &right = cameras_.right();
     check_size(left.name(), left.width(), left.height(), rig.left_camera);
     check_size(right.name(), right.width(), right.height(), rig.right_camera);
     check_serials(left.serial(), right.serial(), rig.serials);

@@ -1,6 +1,8 @@
 #include "app/live/room_cameras.h"
 
 #include "planning_io/case/light_file.h"
+#include "registration/devices/genicam_camera.h"
+#include "registration/devices/gstreamer_camera.h"
 
 namespace planlight {
 namespace {
@@ -25,8 +27,6 @@ ProjectorKeeperSettings settings_of(const std::filesystem::path& projector_file)
     return settings;
 }
 
-}  // namespace
-
 GenicamSettings genicam_settings(const RoomCamera& camera, const std::string& name) {
     GenicamSettings settings;
     settings.name = name;
@@ -42,9 +42,21 @@ GenicamSettings genicam_settings(const RoomCamera& camera, const std::string& na
     return settings;
 }
 
+std::unique_ptr<Camera> opened(const RoomCamera& camera, const std::string& name, FrameBell& bell, const Clock& clock) {
+    if (camera.pipeline.empty()) return std::make_unique<GenicamCamera>(genicam_settings(camera, name), bell, clock);
+    GstreamerSettings settings;
+    settings.name = name;
+    settings.pipeline = camera.pipeline;
+    settings.exposure_ms = camera.exposure_ms.value_or(settings.exposure_ms);
+    settings.stamped_late_ms = camera.transfer_ms.value_or(0);
+    return std::make_unique<GstreamerCamera>(settings, bell, clock);
+}
+
+}  // namespace
+
 RoomCameras::RoomCameras(const RoomFile& room, const Clock& clock) {
-    auto left = std::make_unique<GenicamCamera>(genicam_settings(room.left, "left camera"), bell_, clock);
-    auto right = std::make_unique<GenicamCamera>(genicam_settings(room.right, "right camera"), bell_, clock);
+    auto left = opened(room.left, "left camera", bell_, clock),
+         right = opened(room.right, "right camera", bell_, clock);
     left_ = left.get();
     right_ = right.get();
     PairSettings pairs;
@@ -54,7 +66,7 @@ RoomCameras::RoomCameras(const RoomFile& room, const Clock& clock) {
 
 std::vector<std::string> RoomCameras::notes() const {
     std::vector<std::string> notes;
-    for (const GenicamCamera* camera : {left_, right_})
+    for (const Camera* camera : {left_, right_})
         for (const std::string& note : camera->notes()) notes.push_back(camera->name() + ": " + note);
     return notes;
 }

@@ -8,13 +8,9 @@
 #include "app/live/projector_keeper.h"
 #include "planning_io/case/room_file.h"
 #include "planning_io/types/rig_calibration.h"
-#include "registration/devices/genicam_camera.h"
 #include "registration/devices/paired_cameras.h"
 
 namespace planlight {
-
-/// How a camera of room.json is opened.
-GenicamSettings genicam_settings(const RoomCamera& camera, const std::string& name);
 
 /// Both cameras of a room.
 class RoomCameras {
@@ -23,14 +19,14 @@ public:
     RoomCameras(const RoomFile& room, const Clock& clock);
 
     PairedCameras& pair() { return *pair_; }
-    const GenicamCamera& left() const { return *left_; }
-    const GenicamCamera& right() const { return *right_; }
+    const Camera& left() const { return *left_; }
+    const Camera& right() const { return *right_; }
     /// What they do by themselves and cannot be told not to, a sentence each.
     std::vector<std::string> notes() const;
 
 private:
     FrameBell bell_;
-    GenicamCamera *left_ = nullptr, *right_ = nullptr;  ///< of `pair_`
+    Camera *left_ = nullptr, *right_ = nullptr;  ///< of `pair_`
     std::unique_ptr<PairedCameras> pair_;
 };
 

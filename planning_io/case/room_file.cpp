@@ -39,12 +39,16 @@ const char* text_of(RoomCamera::Trigger trigger) {
 }
 
 RoomCamera camera_of(const JsonValue& value) {
-    value.has_only(
-        {"device", "pixel_format", "trigger", "line", "exposure_ms", "gain", "frames_hz", "transfer_ms", "region"});
+    value.has_only({"device", "pixel_format", "trigger", "line", "exposure_ms", "gain", "frames_hz", "transfer_ms",
+                    "region", "pipeline"});
     RoomCamera camera;
-    camera.device = value.at("device").text();
-    if (camera.device.empty())
-        value.at("device").refuse("is empty", "Give the camera's serial as `planlight devices` lists it.");
+    if (const auto pipeline = value.find("pipeline")) camera.pipeline = pipeline->text();
+    if (camera.pipeline.empty()) camera.device = value.at("device").text();
+    if (camera.device.empty() && camera.pipeline.empty())
+        value.refuse("names no camera",
+                     "Give \"device\", the serial that `planlight devices` lists, or a \"pipeline\".");
+    if (!camera.pipeline.empty())  // what is a GenICam camera's alone
+        value.has_only({"pipeline", "exposure_ms", "transfer_ms"});
     if (const auto format = value.find("pixel_format")) camera.pixel_format = format->text();
     if (const auto trigger = value.find("trigger")) camera.trigger = trigger_of(*trigger);
     if (const auto line = value.find("line")) camera.line = line->text();
@@ -62,7 +66,13 @@ RoomCamera camera_of(const JsonValue& value) {
 }
 
 Json json_of(const RoomCamera& camera) {
-    Json json{{"device", camera.device}, {"trigger", text_of(camera.trigger)}};
+    Json json;
+    if (camera.pipeline.empty()) {
+        json["device"] = camera.device;
+        json["trigger"] = text_of(camera.trigger);
+    } else {
+        json["pipeline"] = camera.pipeline;
+    }
     if (!camera.pixel_format.empty()) json["pixel_format"] = camera.pixel_format;
     if (camera.trigger == RoomCamera::Trigger::line) json["line"] = camera.line;
     if (camera.exposure_ms) json["exposure_ms"] = *camera.exposure_ms;
@@ -94,8 +104,8 @@ RoomFile read_room(const std::filesystem::path& file) {
     cameras.has_only({"left", "right", "max_apart_ms"});
     room.left = camera_of(cameras.at("left"));
     room.right = camera_of(cameras.at("right"));
-    if (room.left.device == room.right.device)
-        cameras.at("right").at("device").refuse("is the left camera as well", "Name two cameras.");
+    if (room.left.device == room.right.device && room.left.pipeline == room.right.pipeline)
+        cameras.at("right").refuse("is the left camera as well", "Name two cameras.");
     room.max_apart_ms = number_in(cameras, "max_apart_ms", 0.01, 1000).value_or(room.max_apart_ms);
     if (const auto markers = root.find("markers")) {
         markers->has_only({"disc_mm", "sticker_mm"});

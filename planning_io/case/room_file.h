@@ -9,12 +9,15 @@ namespace planlight {
 
 /// One camera of room.json. What is empty stays as the camera has it.
 struct RoomCamera {
-    std::string device;        ///< GenICam: serial, identifier or network address
+    std::string device;        ///< GenICam: serial, identifier or network address; empty where `pipeline` is said
+    std::string pipeline;      ///< GStreamer: its source, as for gst-launch-1.0
     std::string pixel_format;  ///< empty: Mono8
     enum class Trigger { none, software, line } trigger = Trigger::none;
     std::string line = "Line0";  ///< of the hardware trigger
     std::optional<double> exposure_ms, gain, frames_hz;
-    std::optional<double> transfer_ms;         ///< from the end of the exposure to the arrival of the quickest frame
+    /// From the end of the exposure to the arrival of the quickest frame; of a pipeline: from mid-exposure to the time
+    /// that it stamps.
+    std::optional<double> transfer_ms;
     std::optional<std::array<int, 4>> region;  ///< x, y, width, height
 };
 

@@ -71,7 +71,12 @@ private:
 class Camera {
 public:
     virtual ~Camera() = default;
-    virtual const std::string& name() const = 0;  ///< for a person: "left camera (serial 1234)"
+    virtual const std::string& name() const = 0;    ///< for a person: "left camera (serial 1234)"
+    virtual const std::string& serial() const = 0;  ///< what tells it from others
+    virtual int width() const = 0;
+    virtual int height() const = 0;
+    /// What it does by itself and could not be told not to, a sentence each.
+    virtual std::vector<std::string> notes() const { return {}; }
     virtual FrameQueue& frames() = 0;
 };
 

@@ -111,7 +111,8 @@ void GenicamCamera::configure() {
     // What a camera does by itself changes pictures between two of a scan.
     if (arv_camera_is_exposure_auto_available(camera, failure.slot()))
         arv_camera_set_exposure_time_auto(camera, ARV_AUTO_OFF, failure.slot());
-    if (arv_camera_is_gain_auto_available(camera, failure.slot())) arv_camera_set_gain_auto(camera, ARV_AUTO_OFF, failure.slot());
+    if (arv_camera_is_gain_auto_available(camera, failure.slot()))
+        arv_camera_set_gain_auto(camera, ARV_AUTO_OFF, failure.slot());
     if (arv_camera_is_black_level_auto_available(camera, failure.slot()))
         arv_camera_set_black_level_auto(camera, ARV_AUTO_OFF, failure.slot());
     for (const char* name : {"GammaEnable", "GammaEnabled", "SharpnessEnable", "SharpnessEnabled", "LUTEnable"}) {
@@ -123,12 +124,14 @@ void GenicamCamera::configure() {
     if (arv_camera_is_feature_available(camera, "Gamma", failure.slot())) {
         arv_camera_set_float(camera, "Gamma", 1, failure.slot());
         const double gamma = arv_camera_get_float(camera, "Gamma", failure.slot());
-        if (!failure.happened() && std::abs(gamma - 1) > 0.01) notes_.push_back(fmt::format("its gamma stays at {:.2f}", gamma));
+        if (!failure.happened() && std::abs(gamma - 1) > 0.01)
+            notes_.push_back(fmt::format("its gamma stays at {:.2f}", gamma));
     }
     if (arv_camera_is_exposure_auto_available(camera, failure.slot()) &&
         arv_camera_get_exposure_time_auto(camera, failure.slot()) != ARV_AUTO_OFF)
         notes_.push_back("its automatic exposure cannot be switched off");
-    if (arv_camera_is_gain_auto_available(camera, failure.slot()) && arv_camera_get_gain_auto(camera, failure.slot()) != ARV_AUTO_OFF)
+    if (arv_camera_is_gain_auto_available(camera, failure.slot()) &&
+        arv_camera_get_gain_auto(camera, failure.slot()) != ARV_AUTO_OFF)
         notes_.push_back("its automatic gain cannot be switched off");
     if (settings_.exposure_ms) {
         arv_camera_set_exposure_time(camera, 1e3 * *settings_.exposure_ms, failure.slot());

@@ -50,11 +50,10 @@ public:
     const std::string& name() const override { return name_; }
     FrameQueue& frames() override { return frames_; }
 
-    int width() const { return width_; }
-    int height() const { return height_; }
-    const std::string& serial() const { return serial_; }
-    /// What it does by itself and could not be told not to, a sentence each.
-    const std::vector<std::string>& notes() const { return notes_; }
+    int width() const override { return width_; }
+    int height() const override { return height_; }
+    const std::string& serial() const override { return serial_; }
+    std::vector<std::string> notes() const override { return notes_; }
     /// Fires the software trigger.
     void trigger();
 

@@ -60,6 +60,12 @@ TEST(RoomFile, WhatIsMissingMisspeltOrImpossibleIsRefusedByName) {
     EXPECT_NE(
         refusal(R"("cameras": {"left": {"device": "1"}, "right": {"device": "1"}})").find("is the left camera as well"),
         std::string::npos);
+    EXPECT_EQ(refusal(R"("cameras": {"left": {"pipeline": "v4l2src", "exposure_ms": 5}, "right": {"device": "2"}})"),
+              "");
+    EXPECT_NE(
+        refusal(R"("cameras": {"left": {"pipeline": "v4l2src", "gain": 5}, "right": {"device": "2"}})").find("gain"),
+        std::string::npos)
+        << "nobody would set it";
     EXPECT_NE(refusal(R"("cameras": {"left": {"device": "1", "exposure": 5}, "right": {"device": "2"}})")
                   .find("\"exposure\""),
               std::string::npos);

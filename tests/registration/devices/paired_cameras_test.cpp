@@ -14,6 +14,9 @@ class ScriptedCamera final : public Camera {
 public:
     ScriptedCamera(std::string name, FrameBell& bell) : name_(std::move(name)), frames_(bell) {}
     const std::string& name() const override { return name_; }
+    const std::string& serial() const override { return name_; }
+    int width() const override { return 2; }
+    int height() const override { return 2; }
     FrameQueue& frames() override { return frames_; }
     void expose(double at_ms, std::uint8_t grey, double exposure_ms = 10) {
         frames_.push({GrayImage(2, 2, grey), from_seconds(at_ms / 1e3), from_seconds(exposure_ms / 1e3), {}});

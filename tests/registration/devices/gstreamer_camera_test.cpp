@@ -1,0 +1,65 @@
+#include "registration/devices/gstreamer_camera.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "planning_io/types/error.h"
+#include "planning_io/types/steady_clock.h"
+
+// GStreamer's own test source, live, in place of a camera.
+namespace planlight {
+namespace {
+
+using std::chrono::milliseconds;
+
+TEST(GstreamerCamera, PicturesComeGreyWithTheirTimes) {
+    FrameBell bell;
+    const SteadyClock clock;
+    GstreamerSettings settings;
+    settings.pipeline =
+        "videotestsrc is-live=true pattern=white ! video/x-raw,format=RGB,width=90,height=50,framerate=50/1";
+    GstreamerCamera camera(settings, bell, clock);
+    EXPECT_EQ(camera.width(), 90);
+    EXPECT_EQ(camera.height(), 50);
+    std::vector<CameraFrame> frames;
+    const Instant until = clock.now() + milliseconds(20000);
+    while (frames.size() < 20 && clock.now() < until) {
+        for (CameraFrame& frame : camera.frames().take_all()) {
+            EXPECT_LT(clock.now() - frame.at, milliseconds(1000));
+            frames.push_back(std::move(frame));
+        }
+        std::this_thread::sleep_for(milliseconds(2));
+    }
+    ASSERT_GE(frames.size(), 20u);
+    EXPECT_GT(frames.back().picture.at(45, 25), 230);
+    EXPECT_GT(frames.back().picture.at(89, 49), 230) << "rows of 90 pixels are padded by GStreamer";
+    for (std::size_t i = 1; i < frames.size(); ++i) EXPECT_GT(frames[i].at, frames[i - 1].at);
+}
+
+TEST(GstreamerCamera, APipelineThatIsNoneOrEndsIsSaid) {
+    FrameBell bell;
+    const SteadyClock clock;
+    const auto refusal = [&](const std::string& pipeline) {
+        GstreamerSettings settings;
+        settings.name = "left camera";
+        settings.pipeline = pipeline;
+        try {
+            GstreamerCamera(settings, bell, clock);
+        } catch (const DeviceError& error) {
+            return std::string(error.what());
+        }
+        return std::string();
+    };
+    EXPECT_NE(refusal("nosuchsource").find("left camera: \"nosuchsource\" is no pipeline"), std::string::npos);
+    EXPECT_NE(refusal("filesrc location=/nowhere").find("sends no frame"), std::string::npos);
+    GstreamerSettings settings;
+    settings.pipeline = "videotestsrc is-live=true num-buffers=5";
+    GstreamerCamera camera(settings, bell, clock);
+    const Instant until = clock.now() + milliseconds(10000);
+    while (!camera.frames().fault() && clock.now() < until) std::this_thread::sleep_for(milliseconds(5));
+    EXPECT_TRUE(camera.frames().fault()) << "a source that ended";
+}
+
+}  // namespace
+}  // namespace planlight
