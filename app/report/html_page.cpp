@@ -102,7 +102,8 @@ ReportFacts facts_of(const Case& the_case) {
     const CaseNames& names = the_case.names;
     std::string plan = names.plan + (names.plan_version.empty() ? "" : ", version " + names.plan_version);
     if (plan.empty()) plan = fmt::format("{} items", the_case.plan.size());
-    return {{"Case", title_of(the_case)},
+    const std::string title = title_of(the_case);
+    return {{"Case", title.find(the_case.code) == std::string::npos ? title : ""},  // else the code says it all
             {"Code", the_case.code + ", prepared " + the_case.created.substr(0, 10)},
             {"Patient", names.patient},
             {"Volume", the_case.source},
