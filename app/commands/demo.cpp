@@ -11,6 +11,7 @@
 #include "app/evaluation/chain_report.h"
 #include "app/evaluation/run_rooms.h"
 #include "app/live/live_window.h"
+#include "app/live/simulated_room.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
@@ -86,10 +87,15 @@ int run_demo(const DemoOptions& options) {
     if (!options.json) fmt::print("\nReport: {}\n", (options.out / "report.html").string());
     if (!options.headless && display_is_there()) {
         LiveOptions live;
-        live.preset = presets_of(options).front();
-        live.seed = options.seed;
         live.autoplay = true;
-        return run_live(volume, prepared.prepared, drawing, live);
+        simulation::RoomSettings room;
+        room.preset = presets_of(options).front();
+        room.seed = options.seed;
+        constexpr double kSpeed_mm_s = 20;
+        const auto make_room = [&] {
+            return std::make_unique<SimulatedRoom>(volume, prepared.prepared.plan, room, kSpeed_mm_s);
+        };
+        return run_live_simulated(make_room, prepared.prepared, drawing, live);
     }
     return 0;
 }

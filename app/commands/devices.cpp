@@ -81,7 +81,7 @@ int run_devices(const DevicesOptions& options) {
     fmt::print(
         stderr,
         "{}: the first two cameras and a monitor. Exchange \"left\" and \"right\" if they stand the other way, and "
-        "calibrate the rig.\n",
+        "calibrate the rig; set \"together\" when one triggers the other.\n",
         options.out.string());
     return 0;
 }

@@ -32,6 +32,7 @@ void write_files(const SimulateOptions& options, const simulation::SimulatedRig&
     room.left.device = served.left.serial;
     room.right.device = served.right.serial;
     room.left.transfer_ms = room.right.transfer_ms = 1e3 * seconds(served.latency);
+    room.together = true;
     write_room(room, options.out / "room.json");
 }
 

@@ -1,6 +1,7 @@
 #include "app/live/room_cameras.h"
 
 #include "planning_io/case/light_file.h"
+#include "planning_io/types/error.h"
 #include "registration/devices/genicam_camera.h"
 #include "registration/devices/gstreamer_camera.h"
 
@@ -60,8 +61,31 @@ RoomCameras::RoomCameras(const RoomFile& room, const Clock& clock) {
     left_ = left.get();
     right_ = right.get();
     PairSettings pairs;
+    pairs.together = room.together;
     pairs.most_apart = from_seconds(room.max_apart_ms / 1e3);
+    learn_clocks(clock);
     pair_ = std::make_unique<PairedCameras>(std::move(left), std::move(right), bell_, clock, pairs);
+}
+
+/// A frame's time is as good as the quickest frame so far: the first ones may have come late.
+void RoomCameras::learn_clocks(const Clock& clock) {
+    constexpr std::size_t kFrames = 20;
+    constexpr Instant kLeast = std::chrono::seconds(1), kMost = std::chrono::seconds(10);
+    const Instant began = clock.now();
+    const auto known = [](Camera& camera) { return camera.frames().counts().received >= kFrames; };
+    while (clock.now() - began < kLeast || !known(*left_) || !known(*right_)) {
+        for (Camera* camera : {left_, right_})
+            if (const auto fault = camera->frames().fault())
+                throw DeviceError(camera->name(), fault->problem, fault->remedy);
+        if (clock.now() - began > kMost) {
+            const Camera& slow = known(*left_) ? *right_ : *left_;
+            throw DeviceError(slow.name(), "it sent too few frames in ten seconds",
+                              "Look at its trigger, its frame rate and the network.");
+        }
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    left_->frames().take_all();
+    right_->frames().take_all();
 }
 
 std::vector<std::string> RoomCameras::notes() const {

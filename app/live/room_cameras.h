@@ -15,7 +15,8 @@ namespace planlight {
 /// Both cameras of a room.
 class RoomCameras {
 public:
-    /// Opens them. Throws DeviceError when one does not answer or does not take its settings.
+    /// Opens them, and looks at their frames for a second or two, until their clocks are known. Throws DeviceError when
+    /// one does not answer, does not take its settings, or sends nothing.
     RoomCameras(const RoomFile& room, const Clock& clock);
 
     PairedCameras& pair() { return *pair_; }
@@ -25,6 +26,8 @@ public:
     std::vector<std::string> notes() const;
 
 private:
+    void learn_clocks(const Clock& clock);
+
     FrameBell bell_;
     Camera *left_ = nullptr, *right_ = nullptr;  ///< of `pair_`
     std::unique_ptr<PairedCameras> pair_;

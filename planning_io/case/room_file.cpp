@@ -101,7 +101,8 @@ RoomFile read_room(const std::filesystem::path& file) {
     room.monitor = projector.at("monitor").text();
     if (const auto measured = projector.find("file")) room.projector_file = beside(*measured);
     const JsonValue cameras = root.at("cameras");
-    cameras.has_only({"left", "right", "max_apart_ms"});
+    cameras.has_only({"left", "right", "together", "max_apart_ms"});
+    if (const auto together = cameras.find("together")) room.together = together->flag();
     room.left = camera_of(cameras.at("left"));
     room.right = camera_of(cameras.at("right"));
     if (room.left.device == room.right.device && room.left.pipeline == room.right.pipeline)
@@ -125,6 +126,7 @@ void write_room(const RoomFile& room, const std::filesystem::path& file) {
     if (!room.projector_file.empty()) json["projector"]["file"] = room.projector_file.string();
     json["cameras"]["left"] = json_of(room.left);
     json["cameras"]["right"] = json_of(room.right);
+    json["cameras"]["together"] = room.together;
     json["cameras"]["max_apart_ms"] = room.max_apart_ms;
     json["markers"]["disc_mm"] = room.disc_mm;
     json["markers"]["sticker_mm"] = room.sticker_mm;

@@ -28,7 +28,8 @@ struct RoomFile {
     std::filesystem::path projector_file;  ///< projector.json of `planlight projector`; empty: not measured
     std::string monitor;                   ///< of the projector: its name
     RoomCamera left, right;
-    double max_apart_ms = 2;              ///< of two exposures that are one
+    bool together = false;    ///< one camera triggers the other, or one line both: their exposures coincide by wire
+    double max_apart_ms = 2;  ///< of two exposures that are one, where they are not triggered together
     double disc_mm = 8, sticker_mm = 16;  ///< of the markers, diameters
 };
 

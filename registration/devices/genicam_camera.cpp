@@ -168,12 +168,16 @@ void GenicamCamera::configure() {
 void GenicamCamera::start() {
     ArvCamera* camera = device_->camera.get();
     Failure failure;
+    // As large packets as the network lets through: fewer of them are lost.
+    if (arv_camera_is_gv_device(camera)) arv_camera_gv_auto_packet_size(camera, failure.slot());
     const unsigned payload = arv_camera_get_payload(camera, failure.slot());
     transfer_ = from_seconds(settings_.transfer_ms ? *settings_.transfer_ms / 1e3 : payload / 125e6);
     device_->stream.reset(arv_camera_create_stream(camera, nullptr, nullptr, failure.slot()));
     if (!device_->stream)
         throw DeviceError(name_, fmt::format("its stream cannot be opened ({})", failure.text()),
                           "Look at the firewall and the network's packet size.");
+    if (ARV_IS_GV_STREAM(device_->stream.get()))
+        g_object_set(device_->stream.get(), "socket-buffer", ARV_GV_STREAM_SOCKET_BUFFER_AUTO, nullptr);
     for (int i = 0; i < kBuffers; ++i) arv_stream_push_buffer(device_->stream.get(), arv_buffer_new(payload, nullptr));
     device_->lost = false;
     g_signal_connect(arv_camera_get_device(camera), "control-lost",
@@ -185,6 +189,7 @@ void GenicamCamera::start() {
     device_clock_ = DeviceClock();
     last_by_device_ = Instant(-1);
     heard_at_ = looked_at_ = clock_.now();
+    incomplete_before_ = frames_.counts().incomplete;
 }
 
 /// One frame, or none within a moment. False when the camera is lost.
@@ -207,6 +212,7 @@ bool GenicamCamera::receive() {
     if (by_device == last_by_device_) return there;  // the same exposure twice
     last_by_device_ = by_device;
     heard_at_ = arrived;
+    incomplete_before_ = frames_.counts().incomplete;
     if (!device_clock_.add(by_device, arrived)) frames_.count_jump();
     std::size_t size = 0;
     const auto* data = static_cast<const std::uint8_t*>(arv_buffer_get_data(buffer, &size));
@@ -266,15 +272,23 @@ void GenicamCamera::reopen(const std::stop_token& stop) {
     }
 }
 
+/// Nothing came, or nothing whole.
+void GenicamCamera::tell_silence() {
+    const auto allowed_ms = std::chrono::duration_cast<std::chrono::milliseconds>(settings_.silence_allowed).count();
+    if (const std::size_t incomplete = frames_.counts().incomplete - incomplete_before_; incomplete > 0)
+        frames_.fail(
+            {fmt::format("no whole frame came from it for {} ms, and {} with packets lost", allowed_ms, incomplete),
+             "Look at the network: its receive buffer (net.core.rmem_max), jumbo frames, other traffic."});
+    else
+        frames_.fail({fmt::format("nothing came from it for {} ms", allowed_ms),
+                      "Look at its cable and its power. It is looked for every second."});
+}
+
 void GenicamCamera::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
         const bool there = receive();
         if (there && still_as_set()) continue;
-        if (!there)
-            frames_.fail(
-                {fmt::format("nothing came from it for {} ms",
-                             std::chrono::duration_cast<std::chrono::milliseconds>(settings_.silence_allowed).count()),
-                 "Look at its cable and its power. It is looked for every second."});
+        if (!there) tell_silence();
         reopen(stop);
     }
 }

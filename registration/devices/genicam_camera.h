@@ -65,6 +65,7 @@ private:
     void run(const std::stop_token& stop);
     bool receive();
     bool still_as_set();
+    void tell_silence();
     void reopen(const std::stop_token& stop);
 
     GenicamSettings settings_;
@@ -77,6 +78,7 @@ private:
     int width_ = 0, height_ = 0;
     Instant exposure_{}, transfer_{}, heard_at_{}, looked_at_{}, last_by_device_{-1};
     double gain_ = 0;
+    std::size_t incomplete_before_ = 0;  ///< when the last whole frame came
     std::jthread thread_;
 };
 

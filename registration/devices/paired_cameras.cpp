@@ -10,8 +10,9 @@
 namespace planlight {
 namespace {
 
+/// The earliest that its exposure can have begun, as far as its camera's clock is known.
 Instant begin_of(const CameraFrame& frame) {
-    return frame.at - frame.exposure / 2;
+    return frame.at - frame.exposure / 2 - 2 * frame.at_sigma;
 }
 
 void append(std::deque<CameraFrame>& to, std::vector<CameraFrame> frames) {
@@ -36,9 +37,23 @@ StereoFrame PairedCameras::newest(Instant not_before, std::chrono::milliseconds 
 void PairedCameras::collect() {
     std::vector<CameraFrame> left = left_->frames().take_all(), right = right_->frames().take_all();
     lefts_seen_ += left.size();
+    for (const CameraFrame& frame : left) {
+        const Instant since = frame.at - last_left_;
+        if (last_left_ > Instant{} && since > Instant{})
+            interval_ = interval_ == Instant{} ? since : std::min(since, interval_ + interval_ / 8);
+        last_left_ = frame.at;
+    }
     rights_seen_ += right.size();
     append(lefts_, std::move(left));
     append(rights_, std::move(right));
+}
+
+Instant PairedCameras::allowed_apart(const CameraFrame& left, const CameraFrame& right) const {
+    constexpr Instant kMostTogether = std::chrono::milliseconds(10);
+    if (settings_.together && interval_ > Instant{}) return std::min(kMostTogether, interval_ / 3);
+    const Instant shorter = std::min(left.exposure, right.exposure);
+    return std::max(settings_.least_apart,
+                    std::min(settings_.most_apart, from_seconds(settings_.apart_of_exposure * seconds(shorter))));
 }
 
 /// The earliest pair that begins at or after a moment; frames that can no longer have a partner are left behind.
@@ -47,10 +62,7 @@ std::optional<StereoFrame> PairedCameras::next_pair(Instant not_before) {
     while (!rights_.empty() && begin_of(rights_.front()) < not_before) rights_.pop_front();
     while (!lefts_.empty() && !rights_.empty()) {
         CameraFrame &left = lefts_.front(), &right = rights_.front();
-        const Instant shorter = std::min(left.exposure, right.exposure);
-        const Instant allowed =
-            std::max(settings_.least_apart,
-                     std::min(settings_.most_apart, from_seconds(settings_.apart_of_exposure * seconds(shorter))));
+        const Instant allowed = allowed_apart(left, right);
         counts_.apart = right.at - left.at;
         if (counts_.apart > allowed) {
             ++counts_.left_alone;
@@ -64,7 +76,9 @@ std::optional<StereoFrame> PairedCameras::next_pair(Instant not_before) {
         }
         StereoFrame pair;
         pair.at = left.at + counts_.apart / 2;
-        pair.exposure = std::max(left.exposure, right.exposure) + std::max(counts_.apart, -counts_.apart);
+        // Of what is not together by wire the light must be steady from the first to open to the last to close.
+        const Instant apart = settings_.together ? Instant{} : std::max(counts_.apart, -counts_.apart);
+        pair.exposure = std::max(left.exposure, right.exposure) + apart;
         pair.number = ++counts_.pairs;
         pair.left = std::move(left.picture);
         pair.right = std::move(right.picture);

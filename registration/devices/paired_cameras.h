@@ -13,6 +13,9 @@ struct PairSettings {
     double apart_of_exposure = 0.1;                        ///< mid-exposures may be apart by so much of an exposure,
     Instant most_apart = std::chrono::milliseconds(2);     ///< by this at most,
     Instant least_apart = std::chrono::microseconds(200);  ///< and by this in any case: clocks are no truer
+    /// One camera triggers the other, or both are triggered by one line: their exposures coincide by wire, and their
+    /// times need only tell which belongs to which (a third of the time between two frames, 10 ms at most).
+    bool together = false;
 };
 
 /// What became of the frames of two cameras.
@@ -42,6 +45,7 @@ public:
 private:
     StereoFrame wait_for_pair(Instant not_before, std::chrono::milliseconds patience, bool newest);
     void collect();
+    Instant allowed_apart(const CameraFrame& left, const CameraFrame& right) const;
     std::optional<StereoFrame> next_pair(Instant not_before);
     [[noreturn]] void refuse(std::chrono::milliseconds patience) const;
 
@@ -52,6 +56,7 @@ private:
     std::deque<CameraFrame> lefts_, rights_;
     std::size_t lefts_seen_ = 0, rights_seen_ = 0;  ///< in this call
     PairCounts counts_;
+    Instant last_left_{}, interval_{};  ///< of the left camera's frames; 0: not known yet
 };
 
 }  // namespace planlight

@@ -33,6 +33,7 @@ struct ServedRoom::Parts {
     std::mutex mutex;
     std::deque<Order> orders;
     std::atomic<std::uint64_t> made{0}, late{0};
+    std::atomic<Instant::rep> looked_at{0};  ///< what stood on the monitor until then is known
     std::unique_ptr<ServedCamera> left, right;
     std::jthread monitor, cameras;
 
@@ -54,6 +55,7 @@ void ServedRoom::Parts::watch_monitor(const std::stop_token& stop) {
             const std::lock_guard lock(mutex);
             orders.push_back({std::move(now), at});
         }
+        looked_at = at.count();
         std::this_thread::sleep_for(kLook);
     }
 }
@@ -95,7 +97,8 @@ void ServedRoom::Parts::expose(const std::stop_token& stop) {
             ++late;
             next = wall - exposure;
         }
-        wait_until(began + next + exposure + 2 * Instant(kLook));
+        wait_until(began + next + exposure);
+        while (Instant(looked_at) < began + next && !stop.stop_requested()) std::this_thread::sleep_for(kLook / 4);
         order_until(began + next);
         StereoFrame frame = rig.cameras().grab(std::max(rig.clock().now(), next), std::chrono::seconds(10));
         const Instant opened = frame.at - exposure / 2;

@@ -175,6 +175,7 @@ int run(const std::string& program, unsigned seeds) {
             return 77;
         }
         RoomFile room;
+        room.together = true;  // both expose at once, by the simulator
         room.left.device = "SIM-L";
         room.right.device = "SIM-R";
         room.left.exposure_ms = room.right.exposure_ms = 10;
@@ -183,7 +184,7 @@ int run(const std::string& program, unsigned seeds) {
         calibration.serials = {"SIM-L", "SIM-R", ""};
         ProjectorKeeperSettings keeper;
         keeper.process.program = program;
-        keeper.process.light_delay = 45ms;  // the lamp's 25, and what it takes to see the monitor
+        keeper.process.light_delay = 70ms;  // the lamp's 25, and what software OpenGL takes to paint
         ProjectorKeeper projector("DUMMY1", keeper);
         const SteadyClock clock;
         const std::jthread beats([&](const std::stop_token& stop) {

@@ -98,6 +98,25 @@ TEST_F(PairedCamerasTest, ExposuresThatAreApartMakeNoPairAndThatIsSaid) {
     EXPECT_EQ(cameras->counts().pairs, 0u);
 }
 
+TEST_F(PairedCamerasTest, CamerasOfOneTriggerArePairedThoughTheirClocksAreApart) {
+    PairSettings settings;
+    settings.together = true;
+    auto l = std::make_unique<ScriptedCamera>("left camera", bell),
+         r = std::make_unique<ScriptedCamera>("right camera", bell);
+    left = l.get();
+    right = r.get();
+    PairedCameras triggered(std::move(l), std::move(r), bell, clock, settings);
+    for (int i = 1; i < 4; ++i) left->expose(40 * i, static_cast<std::uint8_t>(i));
+    for (int i = 2; i < 4; ++i) right->expose(40 * i + 6, static_cast<std::uint8_t>(i));  // the first was lost
+    for (int i = 2; i < 4; ++i) {
+        const StereoFrame frame = triggered.grab({}, milliseconds(100));
+        EXPECT_EQ(frame.left.at(0, 0), i);
+        EXPECT_EQ(frame.right.at(0, 0), i) << "6 ms apart, and 34 from the next";
+        EXPECT_NEAR(seconds(frame.exposure), 0.010, 1e-9);
+    }
+    EXPECT_EQ(triggered.counts().left_alone, 1u);
+}
+
 TEST_F(PairedCamerasTest, ACameraThatSendsNothingOrFailedIsNamed) {
     left->expose(0, 1);
     EXPECT_NE(refusal().find("right camera: no whole frame came"), std::string::npos);
