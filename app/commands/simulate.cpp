@@ -64,6 +64,7 @@ int run_simulate(const SimulateOptions& options) {
     room.seed = options.seed;
     room.things = things_of(options);
     room.wet = options.wet;
+    room.light.whole_exposure = !options.serve.empty();  // as real cameras see it
     simulation::SimulatedRig rig(volume, points_of(plan), room);
     if (!options.serve.empty()) return run_simulate_served(options, rig);
     std::filesystem::create_directories(options.out);

@@ -74,11 +74,9 @@ void RoomCameras::learn_clocks(const Clock& clock) {
     const Instant began = clock.now();
     const auto known = [](Camera& camera) { return camera.frames().counts().received >= kFrames; };
     while (clock.now() - began < kLeast || !known(*left_) || !known(*right_)) {
-        for (Camera* camera : {left_, right_})
-            if (const auto fault = camera->frames().fault())
-                throw DeviceError(camera->name(), fault->problem, fault->remedy);
-        if (clock.now() - began > kMost) {
-            const Camera& slow = known(*left_) ? *right_ : *left_;
+        if (clock.now() - began > kMost) {  // a camera that stumbles at its start is opened again by itself until then
+            Camera& slow = known(*left_) ? *right_ : *left_;
+            if (const auto fault = slow.frames().fault()) throw DeviceError(slow.name(), fault->problem, fault->remedy);
             throw DeviceError(slow.name(), "it sent too few frames in ten seconds",
                               "Look at its trigger, its frame rate and the network.");
         }

@@ -7,8 +7,10 @@
 namespace planlight {
 namespace {
 
-constexpr std::size_t kParts = 8;          // of the window, the quickest frame of each makes the line
-constexpr std::size_t kJumpFrames = 3;     // so many late frames in a row are no hiccup of the computer
+constexpr std::size_t kParts = 8;       // of the window, the quickest frame of each makes the line
+constexpr std::size_t kJumpFrames = 3;  // so many late frames in a row are no hiccup of the computer
+constexpr std::size_t kFewFrames = 20;  // of fewer the quickest may still have come late
+constexpr Instant kFewSigma{5'000'000};
 constexpr Instant kArrivalNoise{100'000};  // of the quickest arrivals, one standard deviation
 
 Instant scaled(Instant t, double factor) {
@@ -23,15 +25,21 @@ bool DeviceClock::add(Instant by_device, Instant arrived) {
     bool steady = true;
     if (known()) {
         const Instant off = arrived - on_session_clock(by_device);
-        const bool backwards = by_device < frames_.back().by_device;
+        const bool backwards = by_device<frames_.back().by_device, late = off> settings_.largest_jump;
+        if (!late)
+            late_since_ = Instant(-1);
+        else if (late_since_ < Instant{})
+            late_since_ = by_device;
         // Earlier than any frame can be: at once. Later: only when it stays so.
-        off_in_a_row_ = off > settings_.largest_jump ? off_in_a_row_ + 1 : 0;
-        if (backwards || off < -settings_.largest_jump || off_in_a_row_ >= kJumpFrames) {
+        const bool stays_late = late && by_device - late_since_ > settings_.late_for;
+        if (backwards || off < -settings_.largest_jump || stays_late) {
             frames_.clear();
-            off_in_a_row_ = 0;
+            late_since_ = Instant(-1);
             drift_ = 0;
             ++jumps_;
             steady = false;
+        } else if (late) {
+            return true;  // it tells nothing of the clock
         }
     }
     frames_.push_back({by_device, arrived - by_device});
@@ -48,7 +56,8 @@ void DeviceClock::fit() {
         origin_ = best.by_device;
         offset_ = best.late;
         drift_ = 0;
-        sigma_ = kArrivalNoise + scaled(frames_.back().by_device - origin_, settings_.largest_drift);
+        sigma_ = kArrivalNoise + scaled(frames_.back().by_device - origin_, settings_.largest_drift) +
+                 (frames_.size() < kFewFrames ? kFewSigma : Instant{});
         return;
     }
     std::vector<Frame> best;

@@ -13,6 +13,9 @@ struct DeviceClockSettings {
     Instant drift_known_after = std::chrono::seconds(4);   ///< before, both clocks are taken to run alike
     double largest_drift = 500e-6;                         ///< seconds a second; more is another clock than was thought
     Instant largest_jump = std::chrono::milliseconds(20);  ///< of arrivals off the fit; more is a clock that was set
+    /// Frames that come late for so long do not come late: the clock was set. Until then they count as late, for a
+    /// computer that is busy for a moment is no clock that was set, and to take it for one would make old pictures new.
+    Instant late_for = std::chrono::seconds(2);
 };
 
 /// The running fit of a device's clock to the session's: offset and drift, from the device's times of frames and the
@@ -44,7 +47,8 @@ private:
     std::deque<Frame> frames_;
     Instant origin_{}, offset_{}, sigma_{};
     double drift_ = 0;
-    std::size_t jumps_ = 0, off_in_a_row_ = 0;
+    std::size_t jumps_ = 0;
+    Instant late_since_{-1};  ///< by the device, first of the late frames in a row; -1: the last was not late
 };
 
 }  // namespace planlight

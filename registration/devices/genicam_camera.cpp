@@ -279,6 +279,9 @@ void GenicamCamera::tell_silence() {
         frames_.fail(
             {fmt::format("no whole frame came from it for {} ms, and {} with packets lost", allowed_ms, incomplete),
              "Look at the network: its receive buffer (net.core.rmem_max), jumbo frames, other traffic."});
+    else if (device_->lost)
+        frames_.fail({"the connection to it was lost",
+                      "End other programs that use it, look at its cable. It is looked for every second."});
     else
         frames_.fail({fmt::format("nothing came from it for {} ms", allowed_ms),
                       "Look at its cable and its power. It is looked for every second."});

@@ -13,7 +13,7 @@ namespace planlight::simulation {
 /// How the simulated room is served as hardware.
 struct ServeSettings {
     ServedCameraSettings left, right;                 ///< size, exposure and rate are those of the room
-    Instant latency = std::chrono::milliseconds(40);  ///< from the end of an exposure to its sending
+    Instant latency = std::chrono::milliseconds(32);  ///< from the end of an exposure to its sending
     double slower = 1;  ///< the cameras' rate is that of the room divided by this, for a machine that cannot keep up
 };
 

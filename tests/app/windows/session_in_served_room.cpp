@@ -45,6 +45,7 @@ simulation::RoomSettings room_of(unsigned seed, double threshold) {
     room.preset = simulation::Preset::paper;
     room.seed = seed;
     room.skin_threshold_hu = threshold;
+    room.light.whole_exposure = true;
     return room;
 }
 
@@ -209,6 +210,10 @@ int run(const std::string& program, unsigned seeds) {
                    served->made(), served->late(), pairs.pairs, pairs.left_alone, pairs.right_alone);
         print("in process", without);
         print("by wire   ", with);
+        if (10 * served->late() > served->made()) {
+            fmt::print("skipped: this machine is too busy to serve the room in time\n");
+            return 77;
+        }
         expect(with.found, "found through the wire");
         expect(with.found && std::abs(with.light_p95_mm - without.light_p95_mm) <= 0.1,
                "the light at rest is as true as without a wire, within 0.1 mm");

@@ -1,0 +1,38 @@
+#!/bin/bash
+# operate_served_room.sh FOLDER: as a person would, on the display with two monitors that two_monitors.sh made: the room served
+# as hardware by `simulate --serve`, its devices listed, captured and checked, the projector's delay measured, and a session in
+# it, each by the program's own command. $PLANLIGHT is the program, $PLAN the plan. Leaves screenshots in FOLDER.
+folder=$1 patient=/usr/share/doc/invesalius-examples/examples/Cranium.inv3
+[ -e $patient ] || { echo "skipped: the package invesalius-examples is not installed"; exit 77; }
+ip address add 127.0.0.2/8 dev lo 2>/dev/null
+failed=0
+check() { if [ "$2" = 1 ]; then echo "ok   $1"; else echo "FAIL $1 ($3)"; failed=1; fi; }
+number() { awk "BEGIN { print ($1) ? 1 : 0 }"; }
+rm -rf "$folder"/{case,room,capture,pictures,errors,room.json,projector.json}
+"$PLANLIGHT" prepare $patient --plan "$PLAN" --out "$folder/case" >/dev/null 2>"$folder/errors" || { cat "$folder/errors"; exit 1; }
+"$PLANLIGHT" simulate $patient --plan "$PLAN" --preset paper --seed 1 --serve DUMMY1 --out "$folder/room" >"$folder/served" 2>&1 & served=$!
+trap 'kill $served 2>/dev/null; wait $served 2>/dev/null' EXIT
+for i in $(seq 300); do grep -q "cameras answer" "$folder/served" && break; kill -0 $served 2>/dev/null || break; sleep 0.1; done
+grep -q "cameras answer" "$folder/served" || { echo "skipped: $(cat "$folder/served")"; exit 77; }
+"$PLANLIGHT" devices --out "$folder/room.json" >"$folder/devices" 2>&1
+check "both cameras and both monitors are listed" "$(grep -c -e SIM-L -e SIM-R -e DUMMY0 -e DUMMY1 "$folder/devices" | awk '{print ($1 >= 4) ? 1 : 0}')" "$(cat "$folder/devices")"
+check "a first room.json names them" "$(grep -c -e SIM-L -e SIM-R -e DUMMY1 "$folder/room.json" | awk '{print ($1 >= 3) ? 1 : 0}')" "$(cat "$folder/room.json")"
+"$PLANLIGHT" projector --room "$folder/room/room.json" --part latency --refresh-hz 60 --out "$folder/projector.json" >"$folder/latency" 2>"$folder/errors"; code=$?
+check "the projector's delay is measured through the wire" "$(number "$code == 0")" "exit code $code: $(cat "$folder/errors")"
+cat "$folder/latency"
+sed -i 's|"monitor": "DUMMY1"|"monitor": "DUMMY1", "file": "'"$folder"'/projector.json"|' "$folder/room/room.json"
+"$PLANLIGHT" capture --room "$folder/room/room.json" --out "$folder/capture" 2>"$folder/errors"; code=$?
+check "a scan is captured" "$(number "$code == 0")" "exit code $code: $(cat "$folder/errors")"
+"$PLANLIGHT" check "$folder/capture" --rig "$folder/room/rig.json" >"$folder/checked" 2>&1; code=$?
+check "the rig is good by it" "$(number "$code == 0")" "exit code $code: $(cat "$folder/checked")"
+"$PLANLIGHT" session "$folder/case" --room "$folder/room/room.json" --operator DUMMY0 --autoplay --end-after-s 10 \
+  --screenshots "$folder/pictures" 2>"$folder/errors" & session=$!
+for i in $(seq 600); do
+  kill -0 $session 2>/dev/null || break
+  [ "$(ls "$folder"/pictures/operator-*.png 2>/dev/null | wc -l)" -ge 6 ] && import -window root "$folder/during.png"
+  sleep 0.2
+done
+wait $session; code=$?
+check "the session ends by itself without a fault" "$(number "$code == 0")" "exit code $code: $(cat "$folder/errors")"
+check "it came to the light" "$(ls "$folder"/pictures/light-*.png 2>/dev/null | wc -l | awk '{print ($1 > 0) ? 1 : 0}')" "no light"
+exit $failed
