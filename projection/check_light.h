@@ -43,6 +43,8 @@ struct SeenSegment {
 
 /// Where one item's light lies against the plan.
 struct ItemLight {
+    std::string name;
+    bool lit = false;  ///< the projector's light reaches it; a camera may not see it, or not apart from other light
     int segments = 0, seen = 0;  ///< stretches that should be seen by a camera, and those where light was found
     Eigen::Vector3d shift_in_ct = Eigen::Vector3d::Zero();  ///< of the light along the skin, mm
     double off_mm = 0;                                      ///< its length, in the directions that the strokes tell

@@ -250,6 +250,32 @@ std::vector<LightCause> find_causes(const std::vector<LightFacts>& facts, const 
     return Judgement(facts, rig, usual_background, settings).causes();
 }
 
+std::string LightCause::headline() const {
+    switch (fault) {
+        case LightFault::late_picture:
+            return "the light comes late.";
+        case LightFault::projector_moved:
+            return "the projector has moved.";
+        case LightFault::left_camera_moved:
+            return "the left camera has moved.";
+        case LightFault::right_camera_moved:
+            return "the right camera has moved.";
+        case LightFault::marker_slipped:
+            return "a marker has slipped.";
+        case LightFault::markers_moved:
+            return "the markers have moved on the patient.";
+        case LightFault::no_picture:
+            return "no light of the plan is seen.";
+        case LightFault::other_picture:
+            return "the projector shows another picture.";
+        case LightFault::partly_covered:
+            return "a part of the light is covered.";
+        case LightFault::light_off:
+            return "the light lies aside.";
+    }
+    return {};
+}
+
 std::string LightCause::sentence() const {
     const std::string by = size > 0 ? fmt::format(": its light lies {:.1f} mm aside", size) : "";
     switch (fault) {

@@ -1,5 +1,7 @@
 #include "app/live/light_keeper.h"
 
+#include <signal.h>
+
 #include <algorithm>
 
 #include "planning_io/types/error.h"
@@ -52,6 +54,11 @@ void LightKeeper::go_dark() noexcept {
 LightKeeper::Problem LightKeeper::problem() const {
     const std::lock_guard lock(mutex_);
     return problem_;
+}
+
+void LightKeeper::disturb(int signal) noexcept {
+    const std::lock_guard lock(mutex_);
+    if (projector_) kill(projector_->process(), signal);
 }
 
 bool LightKeeper::alive() const {

@@ -44,6 +44,9 @@ public:
     };
     Problem problem() const;
 
+    /// For tests: sends that signal to the projector process, if there is one.
+    void disturb(int signal) noexcept;
+
 private:
     void run(const std::stop_token& stop);
     void follow();

@@ -40,6 +40,14 @@ private:
     LiveSession& session_;
 };
 
+namespace {
+
+Status dark_status() {
+    return {StatusKind::dark, "Dark: no light on the patient.", {"Press Track to show the plan again."}};
+}
+
+}  // namespace
+
 LiveSession::LiveSession(const Volume& volume, const Case& the_case, const CaseDrawing& drawing,
                          const LiveSettings& settings)
     : case_(the_case), drawing_(drawing), settings_(settings), model_(model_of_case(the_case, drawing)) {
@@ -90,7 +98,12 @@ void LiveSession::post_find_patient(std::vector<PointPair> landmarks) {
 
 OperatorModel LiveSession::model() const {
     const std::lock_guard lock(mutex_);
-    return model_;
+    if (darks_answered_ == darks_) return model_;
+    OperatorModel dark = model_;  // DARK was pressed, and the thread is still at something else
+    dark.status = dark_status();
+    dark.scene.light = nullptr;
+    dark.confirm = dark.check_skin = false;
+    return dark;
 }
 
 LiveSession::Light LiveSession::light() const {
@@ -190,9 +203,16 @@ void LiveSession::act(const Press& press, Session& session, simulation::Simulate
         case OperatorAction::use_landmarks:
             find_patient(session, newest_landmarks());
             return;
+        case OperatorAction::check_skin:
+            permit_light(press);
+            if (moving_) rig.set_motion({0, rig.clock().now()});  // the patient was asked to lie still
+            check_skin(session);
+            if (moving_) rig.set_motion({settings_.speed_mm_s, rig.clock().now()});
+            break;
         case OperatorAction::track:
             permit_light(press);
             gate_.restart();
+            end_verification(session);
             following_ = true;
             if (!moving_) rig.set_motion({settings_.speed_mm_s, rig.clock().now()});
             moving_ = true;
@@ -204,9 +224,11 @@ void LiveSession::act(const Press& press, Session& session, simulation::Simulate
         case OperatorAction::stop:
             following_ = projecting_ = false;
             session.go_dark();
-            set_status(StatusKind::dark, "Dark: no light on the patient.", {"Press Track to show the plan again."});
-            change_model([](OperatorModel& m) {
+            change_model([&](OperatorModel& m) {
+                darks_answered_ = press.darks;
+                m.status = dark_status();
                 m.scene.light = nullptr;
+                m.confirm = m.check_skin = false;
                 m.stop = {false, "nothing runs"};
             });
             return;

@@ -15,7 +15,18 @@ LightCheck seen_at(double off_mm, int seen = 40, int expected = 40) {
     check.seen = seen;
     check.off_mm = off_mm;
     check.sigma_mm = 0.05;
+    check.told_whole = true;
     return check;
+}
+
+ItemLight item(const std::string& name, int seen, int segments, double off_mm, bool lit = true) {
+    ItemLight light;
+    light.name = name;
+    light.lit = lit;
+    light.segments = segments;
+    light.seen = seen;
+    light.off_mm = off_mm;
+    return light;
 }
 
 /// Updates 40 ms apart with the same measurement; the last ruling.
@@ -83,6 +94,62 @@ TEST(LightGate, ANewMatchAndALongPauseAskAgain) {
     gate.verify(now);
     gate.new_match();
     EXPECT_NE(after(gate, now, 5, seen_at(0.1)).trust, LightTrust::aligned);
+}
+
+TEST(LightGate, EveryItemThatIsLitMustBeMeasured) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    LightCheck check = seen_at(0.1);
+    check.items = {item("Hole 1", 8, 8, 0.1), item("Hole 2", 0, 6, 0), item("Far side", 0, 0, 0, false)};
+    const auto covered = after(gate, now, 10, check);
+    EXPECT_EQ(covered.trust, LightTrust::look);
+    EXPECT_NE(covered.headline.find("Hole 2"), std::string::npos) << covered.headline;
+    check.items[1] = item("Hole 2", 5, 6, 1.3);
+    const auto aside = after(gate, now, 10, check);
+    EXPECT_NE(aside.headline.find("1.3 mm"), std::string::npos) << aside.headline;
+    check.items[1] = item("Hole 2", 5, 6, 0.2);
+    EXPECT_EQ(after(gate, now, 10, check).trust, LightTrust::aligned) << "what is not lit need not be measured";
+}
+
+TEST(LightGate, OneDirectionIsNoPlace) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    LightCheck line = seen_at(0.1);
+    line.told_whole = false;
+    EXPECT_EQ(after(gate, now, 100, line).trust, LightTrust::look);
+    EXPECT_EQ(after(gate, now, 3, seen_at(0.1)).trust, LightTrust::aligned);
+}
+
+TEST(LightGate, AKnownFaultIsNotGreenUnlessItIsDealtWith) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    after(gate, now, 5, seen_at(0.4));
+    LightCause bumped{LightFault::projector_moved, 0.5, 0, 0, -1, 0.9, true};
+    EXPECT_EQ(gate.step(now += 40ms, true, seen_at(0.4), {bumped}).trust, LightTrust::look);
+    LightCause slipped{LightFault::marker_slipped, 1, 0, 0, 2, 1, false};
+    const auto ruling = gate.step(now += 40ms, true, seen_at(0.1), {slipped});
+    EXPECT_EQ(ruling.trust, LightTrust::aligned) << "the patient is followed without that marker";
+    EXPECT_NE(ruling.details[1].find("Marker 3 has slipped by 1.0 mm"), std::string::npos) << ruling.details[1];
+}
+
+TEST(LightGate, SkinThatLiesElsewhereStopsTheLightUntilTheNextMatch) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    after(gate, now, 5, seen_at(0.1));
+    gate.skin_checked(0.3);
+    EXPECT_EQ(after(gate, now, 1, seen_at(0.1)).trust, LightTrust::aligned);
+    gate.skin_checked(1.4);
+    EXPECT_EQ(after(gate, now, 1, seen_at(0.1)).trust, LightTrust::look);
+    gate.skin_checked(2.6);
+    EXPECT_TRUE(after(gate, now, 1, seen_at(0.1)).stop);
+    gate.restart();
+    EXPECT_TRUE(after(gate, now, 1, seen_at(0.1)).stop) << "Track does not mend it";
+    gate.new_match();
+    EXPECT_FALSE(after(gate, now, 1, seen_at(0.1)).stop);
 }
 
 // 100,000 random runs of faults of any size: light more than 2 mm off that is measured so is green in none; good light

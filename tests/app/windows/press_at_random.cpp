@@ -1,0 +1,174 @@
+// DARK at random moments of scan, match, verification, tracking and checks of the skin, in the pixels of the monitor.
+// Run by two_monitors.sh: `press_at_random FOLDER`, with PRESSES how often DARK is pressed (default 20), SEED, and
+// FAULTS=1 to stop and kill the projector process now and then. Between the presses of DARK other buttons are pressed
+// at random by two threads, and the model and the light are read as the window reads them. Exit code 0 when each light
+// was dark in 100 ms and stayed so, and the banner said so at once.
+//
+// The same source, with the threads of the product, is built with ThreadSanitizer as race_session.
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdlib>
+#include <random>
+#include <thread>
+#include <vector>
+
+#include "app/live/light_keeper.h"
+#include "app/live/live_session.h"
+#include "app/prepare_case.h"
+#include "planning_io/plan/plan_file.h"
+#include "planning_io/types/error.h"
+#include "planning_io/volume/read_volume.h"
+#include "root_window.h"
+#include "tests/support/test_data.h"
+
+// Last, for its macros.
+#include <X11/Xlib.h>
+#include <X11/Xutil.h>
+#undef Status
+
+namespace {
+
+using namespace planlight;
+using namespace std::chrono_literals;
+using test::expect;
+
+constexpr Instant kLongest = 100ms, kWatched = 150ms;
+
+int number_from(const char* name, int otherwise) {
+    const char* const text = std::getenv(name);
+    return text == nullptr ? otherwise : std::atoi(text);
+}
+
+/// The whole of a monitor, as a person sees it.
+class Eye {
+public:
+    explicit Eye(const Monitor& monitor) : monitor_(monitor) {}
+    ~Eye() { XCloseDisplay(display_); }
+    bool lit() const {
+        XImage* const image = XGetImage(display_, DefaultRootWindow(display_), monitor_.x, monitor_.y,
+                                        static_cast<unsigned>(monitor_.width), static_cast<unsigned>(monitor_.height),
+                                        AllPlanes, ZPixmap);
+        bool lit = false;
+        for (int y = 0; y < monitor_.height && !lit; ++y) {
+            const auto* row = reinterpret_cast<const std::uint32_t*>(image->data + y * image->bytes_per_line);
+            lit = std::any_of(row, row + monitor_.width, [](std::uint32_t p) { return (p & 0xFFFFFF) != 0; });
+        }
+        XDestroyImage(image);
+        return lit;
+    }
+
+private:
+    Monitor monitor_;
+    Display* display_ = XOpenDisplay(nullptr);
+};
+
+/// What a person at the window may press next, by what the window offers.
+OperatorAction any_press(const OperatorModel& model, std::mt19937& random) {
+    std::vector<OperatorAction> offered{OperatorAction::none};
+    if (model.scan.enabled) offered.push_back(OperatorAction::scan);
+    if (model.do_register.enabled) offered.insert(offered.end(), 2, OperatorAction::do_register);
+    if (model.track.enabled) offered.insert(offered.end(), 6, OperatorAction::track);
+    if (model.confirm) offered.insert(offered.end(), 4, OperatorAction::confirm);
+    if (model.check_skin) offered.push_back(OperatorAction::check_skin);
+    return offered[std::uniform_int_distribution<std::size_t>(0, offered.size() - 1)(random)];
+}
+
+struct Tally {
+    std::vector<double> dark_ms;
+    int lit_before = 0, late = 0, came_back = 0, banner_wrong = 0, buttons_wrong = 0;
+};
+
+/// Watches from a press of DARK on; `quiet`: nothing else is pressed meanwhile.
+void watch_dark(const Eye& eye, LiveSession& session, LightKeeper& keeper, Tally& tally) {
+    const SteadyClock clock;
+    tally.lit_before += eye.lit();
+    const Instant pressed = clock.now();
+    keeper.go_dark();
+    session.post(OperatorAction::dark);
+    tally.banner_wrong += session.model().status.kind != StatusKind::dark;
+    Instant last_lit = pressed;
+    while (clock.now() - pressed < kLongest + kWatched) {
+        const Instant looked = clock.now();
+        if (eye.lit()) last_lit = looked;
+        keeper.beat();
+        std::this_thread::sleep_for(1ms);
+    }
+    const double ms = 1000 * seconds(last_lit - pressed);
+    tally.dark_ms.push_back(ms);
+    tally.late += last_lit - pressed > kLongest;
+    tally.buttons_wrong += session.model().confirm && !session.projecting() && session.model().scene.light != nullptr;
+}
+
+int run(const std::string& monitor_name, const Monitor& monitor) {
+    const Volume volume = read_volume(*test::example_patient());
+    const Preparation prepared = prepare_case(
+        volume, read_plan(std::string(PLANLIGHT_EXAMPLE_FOLDER) + "/frontal_defect.mrk.json"), {}, {}, "2001-10-14");
+    const CaseDrawing drawing(prepared.prepared);
+    const unsigned seed = static_cast<unsigned>(number_from("SEED", 1));
+    LiveSession session(volume, prepared.prepared, drawing, {simulation::Preset::paper, seed, 20, {}});
+    LightKeeper keeper(monitor_name, session);
+    const Eye eye(monitor);
+    std::mt19937 random(seed);
+    std::atomic<bool> ending{false}, quiet{false};
+    std::jthread other([&] {  // a second hand on the buttons
+        std::mt19937 own(seed + 1);
+        while (!ending) {
+            const OperatorAction press = any_press(session.model(), own);
+            if (!quiet) session.post(press);
+            static_cast<void>(session.light());
+            static_cast<void>(keeper.problem());
+            std::this_thread::sleep_for(std::chrono::milliseconds(std::uniform_int_distribution<int>(5, 300)(own)));
+        }
+    });
+    Tally tally;
+    const int presses = number_from("PRESSES", 20);
+    const bool faults = number_from("FAULTS", 0) != 0;
+    for (int press = 0; press < presses; ++press) {
+        const auto until = std::chrono::steady_clock::now() +
+                           std::chrono::milliseconds(std::uniform_int_distribution<int>(50, 2500)(random));
+        while (std::chrono::steady_clock::now() < until) {
+            const OperatorModel model = session.model();
+            session.rethrow_fault();
+            keeper.beat();
+            if (std::uniform_int_distribution<int>(0, 20)(random) == 0) session.post(any_press(model, random));
+            std::this_thread::sleep_for(15ms);
+        }
+        if (faults && std::uniform_int_distribution<int>(0, 9)(random) == 0)
+            keeper.disturb(random() % 2 == 0 ? SIGSTOP : SIGKILL);
+        quiet = true;
+        watch_dark(eye, session, keeper, tally);
+        quiet = false;
+    }
+    ending = true;
+    std::sort(tally.dark_ms.begin(), tally.dark_ms.end());
+    const auto share = [&](double s) {
+        return tally.dark_ms[static_cast<std::size_t>(s * static_cast<double>(tally.dark_ms.size() - 1))];
+    };
+    expect(tally.late == 0,
+           fmt::format("{} presses of DARK, {} while lit: dark after {:.0f} ms (median), {:.0f} ms (95 %), {:.0f} ms "
+                       "(worst); later than {:.0f} ms: {}",
+                       presses, tally.lit_before, share(0.5), share(0.95), share(1), 1000 * seconds(kLongest),
+                       tally.late));
+    expect(tally.banner_wrong == 0,
+           fmt::format("the banner says DARK in the next frame: not {} times", tally.banner_wrong));
+    return test::failures() == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc == 4 && std::string(argv[1]) == "projector-window")
+        return serve_projector(argv[3], kProjectorBell, kProjectorMailbox);
+    if (!test::example_patient()) return 77;
+    try {
+        const std::vector<Monitor> monitors = list_monitors();
+        if (monitors.size() != 2) return 2;
+        return run(monitors[1].name, monitors[1]);
+    } catch (const Error& error) {
+        fmt::print(stderr, "{} {}\n", error.what(), error.remedy);
+        return static_cast<int>(error.exit_code);
+    }
+}
