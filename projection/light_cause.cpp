@@ -185,11 +185,8 @@ private:
         const auto told = [](const LightSample& s) { return s.told_mm; };
         const double unexplained = left_mm2(recent, told);
         const TurnedProjector turned = fit_projector(recent);
-        const auto longer = light_samples(facts_, now() - settings_.long_window, rig_, delays_s);
-        const Lateness late = fit_delay(longer, delays_s);
-        const double unexplained_longer = left_mm2(longer, told);
         const double explained_by_turn = 1 - turned.left_mm2 / std::max(unexplained, 1e-9);
-        const double explained_by_delay = 1 - late.left_mm2 / std::max(unexplained_longer, 1e-9);
+        const auto [late, explained_by_delay] = best_delay(delays_s);
         const bool is_late = late.middle_s() >= settings_.least_delay_s &&
                              late.effect_mm >= settings_.least_effect_mm && explained_by_delay > 0.5;
         const bool is_turned = turned.size_mm >= settings_.least_off_mm && explained_by_turn > 0.5;
@@ -204,6 +201,21 @@ private:
         } else if (std::sqrt(unexplained) >= 2 * settings_.least_off_mm) {
             add(LightFault::light_off, std::sqrt(unexplained), 0.5);
         }
+    }
+
+    /// The delay of that part of the last seconds which a delay explains best: it may have begun just now, and takes
+    /// movement to be told.
+    std::pair<Lateness, double> best_delay(const std::vector<double>& delays_s) const {
+        std::pair<Lateness, double> best{{}, 0};
+        for (const Instant window : {settings_.least, settings_.window, 2 * settings_.window, settings_.long_window}) {
+            const auto samples = light_samples(facts_, now() - window, rig_, delays_s);
+            if (checks_since(now() - window) < settings_.least_checks) continue;
+            const double unexplained = left_mm2(samples, [](const LightSample& s) { return s.told_mm; });
+            const Lateness late = fit_delay(samples, delays_s);
+            const double explained = 1 - late.left_mm2 / std::max(unexplained, 1e-9);
+            if (late.effect_mm >= settings_.least_effect_mm && explained > best.second) best = {late, explained};
+        }
+        return best;
     }
 
     int checks_since(Instant from) const {

@@ -9,6 +9,7 @@
 #include <signal.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdlib>
 #include <random>
@@ -65,15 +66,34 @@ private:
     Display* display_ = XOpenDisplay(nullptr);
 };
 
-/// What a person at the window may press next, by what the window offers.
-OperatorAction any_press(const OperatorModel& model, std::mt19937& random) {
-    std::vector<OperatorAction> offered{OperatorAction::none};
-    if (model.scan.enabled) offered.push_back(OperatorAction::scan);
-    if (model.do_register.enabled) offered.insert(offered.end(), 2, OperatorAction::do_register);
-    if (model.track.enabled) offered.insert(offered.end(), 6, OperatorAction::track);
-    if (model.confirm) offered.insert(offered.end(), 4, OperatorAction::confirm);
-    if (model.check_skin) offered.push_back(OperatorAction::check_skin);
-    return offered[std::uniform_int_distribution<std::size_t>(0, offered.size() - 1)(random)];
+/// How far a person goes before DARK is pressed.
+enum class Goal { scan, match, track, verify, check_skin };
+
+Goal any_goal(std::mt19937& random) {
+    constexpr std::array goals{Goal::scan,  Goal::match,  Goal::track,  Goal::track,      Goal::track,
+                               Goal::track, Goal::verify, Goal::verify, Goal::check_skin, Goal::track};
+    return goals[std::uniform_int_distribution<std::size_t>(0, goals.size() - 1)(random)];
+}
+
+/// The press that leads on to the goal, by what the window offers; `none` when it is reached or something runs.
+OperatorAction press_towards(Goal goal, const OperatorModel& model) {
+    const StatusKind now = model.status.kind;
+    if (now == StatusKind::scanning || now == StatusKind::matching) return OperatorAction::none;
+    if (goal == Goal::scan) return model.scan.enabled ? OperatorAction::scan : OperatorAction::none;
+    if (goal == Goal::match && model.do_register.enabled) return OperatorAction::do_register;
+    if (model.stop.enabled) {  // the plan is lit
+        if (goal == Goal::verify && model.confirm) return OperatorAction::confirm;
+        return goal == Goal::check_skin && model.check_skin ? OperatorAction::check_skin : OperatorAction::none;
+    }
+    if (model.confirm) return OperatorAction::confirm;
+    if (model.track.enabled) return OperatorAction::track;
+    return model.do_register.enabled ? OperatorAction::do_register : OperatorAction::scan;
+}
+
+bool reached(Goal goal, const OperatorModel& model) {
+    if (goal == Goal::scan) return model.status.kind == StatusKind::scanning;
+    if (goal == Goal::match) return model.status.kind == StatusKind::matching;
+    return model.stop.enabled;
 }
 
 struct Tally {
@@ -113,28 +133,33 @@ int run(const std::string& monitor_name, const Monitor& monitor) {
     const Eye eye(monitor);
     std::mt19937 random(seed);
     std::atomic<bool> ending{false}, quiet{false};
-    std::jthread other([&] {  // a second hand on the buttons
+    std::jthread other([&] {  // a second reader, and now and then a second hand
         std::mt19937 own(seed + 1);
         while (!ending) {
-            const OperatorAction press = any_press(session.model(), own);
-            if (!quiet) session.post(press);
+            const OperatorModel model = session.model();
+            if (!quiet && std::uniform_int_distribution<int>(0, 60)(own) == 0)
+                session.post(press_towards(any_goal(own), model));
             static_cast<void>(session.light());
             static_cast<void>(keeper.problem());
-            std::this_thread::sleep_for(std::chrono::milliseconds(std::uniform_int_distribution<int>(5, 300)(own)));
+            std::this_thread::sleep_for(std::chrono::milliseconds(std::uniform_int_distribution<int>(5, 100)(own)));
         }
     });
     Tally tally;
     const int presses = number_from("PRESSES", 20);
     const bool faults = number_from("FAULTS", 0) != 0;
     for (int press = 0; press < presses; ++press) {
-        const auto until = std::chrono::steady_clock::now() +
-                           std::chrono::milliseconds(std::uniform_int_distribution<int>(50, 2500)(random));
+        const Goal goal = any_goal(random);
+        const auto give_up = std::chrono::steady_clock::now() + 15s;
+        auto until = give_up;
         while (std::chrono::steady_clock::now() < until) {
             const OperatorModel model = session.model();
             session.rethrow_fault();
             keeper.beat();
-            if (std::uniform_int_distribution<int>(0, 20)(random) == 0) session.post(any_press(model, random));
-            std::this_thread::sleep_for(15ms);
+            if (until == give_up && reached(goal, model))
+                until = std::chrono::steady_clock::now() +
+                        std::chrono::milliseconds(std::uniform_int_distribution<int>(0, 1200)(random));
+            session.post(press_towards(goal, model));
+            std::this_thread::sleep_for(30ms);
         }
         if (faults && std::uniform_int_distribution<int>(0, 9)(random) == 0)
             keeper.disturb(random() % 2 == 0 ? SIGSTOP : SIGKILL);
