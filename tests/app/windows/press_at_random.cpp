@@ -7,6 +7,7 @@
 // The same source, with the threads of the product, is built with ThreadSanitizer as race_session.
 #include <fmt/format.h>
 #include <signal.h>
+#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <array>
@@ -188,6 +189,8 @@ int main(int argc, char** argv) {
     if (argc == 4 && std::string(argv[1]) == "projector-window")
         return serve_projector(argv[3], kProjectorBell, kProjectorMailbox);
     if (!test::example_patient()) return 77;
+    // The workers of a library that is not built with ThreadSanitizer look like races to it.
+    const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
     try {
         const std::vector<Monitor> monitors = list_monitors();
         if (monitors.size() != 2) return 2;
