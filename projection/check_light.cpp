@@ -107,6 +107,7 @@ void sum_up(LightCheck& check) {
     }
     check.seen = static_cast<int>(sizes.size());
     check.off_mm = quantile(sizes, 0.95);
+    check.most_mm = quantile(sizes, 2.0 / 3);
     check.median_mm = median(std::move(sizes));
     check.sigma_mm = median(std::move(sigmas));
     check.background = median(std::move(backgrounds));

@@ -60,6 +60,7 @@ struct LightCheck {
     int expected = 0, seen = 0;  ///< segments
     double off_mm = 0;           ///< 95 % of the segments' sides lie within this; 0 when nothing was seen
     double median_mm = 0;
+    double most_mm = 0;  ///< a third of the sides lie beyond this: light as a whole, not what falls on a hand before it
     double sigma_mm = 0;    ///< of a single segment, median
     double background = 0;  ///< grey of the skin beside the strokes, median; 0 when no camera looked
     /// True where the segments that were seen tell the light's place in two directions along the skin. Straight lines

@@ -48,7 +48,7 @@ void LightGate::take(Instant at, const LightCheck& check) {
         items_[i].off_mm = item.off_mm;
     }
     const bool measured = check.seen >= settings_.least_seen && check.seen_share() >= settings_.least_seen_share;
-    const bool far = check.seen >= settings_.least_seen && check.off_mm > settings_.stop_mm;
+    const bool far = check.seen >= settings_.least_seen && check.most_mm > settings_.stop_mm;
     bad_ = far ? bad_ + 1 : 0;
     good_ = measured && check.off_mm <= settings_.warn_mm ? good_ + 1 : 0;
     if (bad_ >= settings_.dark_after) stopped_ = true;

@@ -12,7 +12,7 @@ namespace planlight {
 
 struct LightGateSettings {
     double warn_mm = 1;                              ///< 95 % of the light lies within this of the plan, else amber
-    double stop_mm = 2;                              ///< and within this, else dark
+    double stop_mm = 2;                              ///< and two thirds of it within this, else dark
     double least_seen_share = 0.5;                   ///< of the stretches that the cameras should see
     double least_seen_of_item = 0.3;                 ///< of the stretches of each item
     int least_seen = 5;                              ///< stretches: fewer are no measurement
