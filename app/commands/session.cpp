@@ -3,6 +3,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/live/live_window.h"
+#include "app/live/simulated_fault.h"
 #include "app/site_settings.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/types/error.h"
@@ -18,6 +19,7 @@ struct SessionOptions {
     std::string preset = "paper", projector_monitor, operator_monitor;
     unsigned seed = 1;
     double speed_mm_s = 20;
+    std::string fault;
     bool autoplay = false;
     double end_after_s = 0;  ///< wall time; 0 = until the window is closed
     Path screenshots;
@@ -36,6 +38,7 @@ int run_session(const SessionOptions& options) {
     live.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     live.seed = options.seed;
     live.speed_mm_s = options.speed_mm_s;
+    live.fault = options.fault;
     const SiteSettings site = read_site_settings();
     live.projector_monitor = options.projector_monitor.empty() ? site.projector_monitor : options.projector_monitor;
     live.operator_monitor = options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor;
@@ -76,6 +79,8 @@ Run add_session(CLI::App& app) {
     sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 500.0));
+    sub->add_option("--fault", o.fault, "To see what it looks like: begins some seconds after the light is ALIGNED")
+        ->check(CLI::IsMember(simulated_faults()));
     sub->add_flag("--autoplay", o.autoplay, "Scan, register and track by itself");
     sub->add_option("--end-after-s", o.end_after_s, "Close after this many seconds of tracking");
     sub->add_option("--screenshots", o.screenshots, "Folder for screenshots of every step");

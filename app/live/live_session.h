@@ -23,6 +23,7 @@ struct LiveSettings {
     simulation::Preset preset = simulation::Preset::paper;
     unsigned seed = 1;
     double speed_mm_s = 20;                 ///< peak speed of the head while it is tracked
+    std::string fault;                      ///< of `simulated_faults`, some seconds after the light is ALIGNED
     std::filesystem::path keep_matches_in;  ///< every match and its scan in a folder of its own there; empty: not kept
 };
 
@@ -79,6 +80,7 @@ private:
     void follow(Session& session, simulation::SimulatedRig& rig);
     void show_update(const Session& session, const simulation::SimulatedRig& rig, const Session::Update& update,
                      const LightGate::Ruling& ruling);
+    void play_fault(const LightGate::Ruling& ruling, simulation::SimulatedRig& rig);
     void stop_light(Session& session, const LightGate::Ruling& ruling);
     void set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details = {});
     void set_steps(int active, StepState state = StepState::active);
@@ -109,6 +111,7 @@ private:
     Instant seen_at_{};                 ///< of the last frame, on the room's clock
     int landmark_ = -1;                 ///< that is lit for a person to look at; -1: the plan is lit
     int landmarks_to_look_at_ = 0;
+    int good_updates_ = 0;  ///< ALIGNED so often; then the simulated fault begins
     bool ending_ = false, following_ = false, moving_ = false;
     std::atomic<bool> projecting_{false};
     std::atomic<Instant::rep> alive_at_{0};

@@ -8,6 +8,7 @@
 #include "app/live/clickable_scan.h"
 #include "app/live/live_session.h"
 #include "app/live/scene_of_session.h"
+#include "app/live/simulated_fault.h"
 #include "app/report/registration_certificate.h"
 #include "planning_io/types/error.h"
 
@@ -177,8 +178,14 @@ void LiveSession::follow(Session& session, simulation::SimulatedRig& rig) {
         return;
     }
     show_verification(update, ruling);
+    play_fault(ruling, rig);
     projecting_ = update.overlay.lit;
     show_update(session, rig, update, ruling);
+}
+
+void LiveSession::play_fault(const LightGate::Ruling& ruling, simulation::SimulatedRig& rig) {
+    constexpr int kGoodBefore = 40;
+    if (ruling.trust == LightTrust::aligned && ++good_updates_ == kGoodBefore) begin_fault(settings_.fault, rig);
 }
 
 void LiveSession::stop_light(Session& session, const LightGate::Ruling& ruling) {

@@ -119,7 +119,7 @@ int run_live(const Volume& volume, const Case& the_case, const CaseDrawing& draw
     if (!options.operator_monitor.empty()) window_settings.monitor = options.operator_monitor;
     OperatorWindow window(window_settings);
     LiveSession session(volume, the_case, drawing,
-                        {options.preset, options.seed, options.speed_mm_s, options.keep_matches_in});
+                        {options.preset, options.seed, options.speed_mm_s, options.fault, options.keep_matches_in});
     std::unique_ptr<LightKeeper> light;  // dark and gone before the session is
     if (const std::string monitor = light_monitor(options); !monitor.empty()) {
         check_monitor(monitor, options.projector);

@@ -17,6 +17,7 @@ struct LiveOptions {
     simulation::Preset preset = simulation::Preset::paper;
     unsigned seed = 1;
     double speed_mm_s = 20;
+    std::string fault;  ///< of `simulated_faults`; empty: none
     std::string
         projector_monitor;  ///< name or number; empty: the first monitor that is not the primary one, if there is one
     ProjectorFacts projector;               ///< what was measured of the projector; empty fields are not compared

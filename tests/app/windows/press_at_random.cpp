@@ -13,6 +13,7 @@
 #include <array>
 #include <atomic>
 #include <cstdlib>
+#include <optional>
 #include <random>
 #include <thread>
 #include <vector>
@@ -110,16 +111,19 @@ void watch_dark(const Eye& eye, LiveSession& session, LightKeeper& keeper, Tally
     keeper.go_dark();
     session.post(OperatorAction::dark);
     tally.banner_wrong += session.model().status.kind != StatusKind::dark;
-    Instant last_lit = pressed;
-    while (clock.now() - pressed < kLongest + kWatched) {
-        const Instant looked = clock.now();
-        if (eye.lit()) last_lit = looked;
+    std::optional<Instant> dark_since;  // of the look that first found it dark, when that ended
+    while (clock.now() - pressed < kLongest + kWatched || !dark_since) {
+        if (eye.lit())
+            dark_since.reset();
+        else if (!dark_since)
+            dark_since = clock.now();
         keeper.beat();
+        if (clock.now() - pressed > 5s) break;
         std::this_thread::sleep_for(1ms);
     }
-    const double ms = 1000 * seconds(last_lit - pressed);
-    tally.dark_ms.push_back(ms);
-    tally.late += last_lit - pressed > kLongest;
+    const Instant took = dark_since ? *dark_since - pressed : Instant(5s);
+    tally.dark_ms.push_back(1000 * seconds(took));
+    tally.late += took > kLongest;
     tally.buttons_wrong += session.model().confirm && !session.projecting() && session.model().scene.light != nullptr;
 }
 
@@ -129,7 +133,7 @@ int run(const std::string& monitor_name, const Monitor& monitor) {
         volume, read_plan(std::string(PLANLIGHT_EXAMPLE_FOLDER) + "/frontal_defect.mrk.json"), {}, {}, "2001-10-14");
     const CaseDrawing drawing(prepared.prepared);
     const unsigned seed = static_cast<unsigned>(number_from("SEED", 1));
-    LiveSession session(volume, prepared.prepared, drawing, {simulation::Preset::paper, seed, 20, {}});
+    LiveSession session(volume, prepared.prepared, drawing, {simulation::Preset::paper, seed, 20, {}, {}});
     const bool slow = number_from("SLOW", 0) != 0;  // with ThreadSanitizer: times are not judged
     LightKeeperSettings keeping;
     if (slow) {
