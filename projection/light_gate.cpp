@@ -57,6 +57,8 @@ void LightGate::take(Instant at, const LightCheck& check) {
 LightGate::Ruling LightGate::step(Instant at, bool lit, const std::optional<LightCheck>& check,
                                   const std::vector<LightCause>& causes) {
     if (lit && verified_ && at - lit_at_ > settings_.verified_for) verified_ = false;
+    if (lit && !lit_) lit_since_ = at;
+    lit_ = lit;
     if (lit) lit_at_ = at;
     if (check && lit) take(at, *check);
     if (!lit) forget();
@@ -72,6 +74,10 @@ LightGate::Ruling LightGate::step(Instant at, bool lit, const std::optional<Ligh
 /// The light as measured, from the gravest down; false when nothing is wrong with it.
 bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
     if (!last_ || !within_fresh(measured_at_, at)) {
+        if (!last_ && at - lit_since_ <= settings_.fresh) {
+            ruling.headline = "LOOK: the light is being measured.";
+            return true;
+        }
         ruling.headline = "LOOK: the light is not measured.";
         ruling.details = {
             "The cameras have not measured the light for a second or more: look at it on landmarks before you use it."};

@@ -75,12 +75,12 @@ private:
     bool within_fresh(Instant then, Instant at) const { return then != Instant::min() && at - then <= settings_.fresh; }
 
     LightGateSettings settings_;
-    bool verified_ = false, stopped_ = false;
+    bool verified_ = false, stopped_ = false, lit_ = false;
     int good_ = 0, bad_ = 0;
     double skin_off_mm_ = 0;  ///< by the last check of the skin; 0: none
     std::optional<LightCheck> last_;
     std::vector<Item> items_;
-    Instant measured_at_{}, lit_at_{}, told_whole_at_ = Instant::min();
+    Instant measured_at_{}, lit_at_{}, told_whole_at_ = Instant::min(), lit_since_{};
 };
 
 }  // namespace planlight

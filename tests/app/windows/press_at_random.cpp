@@ -13,7 +13,6 @@
 #include <array>
 #include <atomic>
 #include <cstdlib>
-#include <optional>
 #include <random>
 #include <thread>
 #include <vector>
@@ -111,17 +110,17 @@ void watch_dark(const Eye& eye, LiveSession& session, LightKeeper& keeper, Tally
     keeper.go_dark();
     session.post(OperatorAction::dark);
     tally.banner_wrong += session.model().status.kind != StatusKind::dark;
-    std::optional<Instant> dark_since;  // of the look that first found it dark, when that ended
-    while (clock.now() - pressed < kLongest + kWatched || !dark_since) {
+    Instant dark_since = Instant::max();  // of the look that first found it dark, when that ended
+    while (clock.now() - pressed < kLongest + kWatched || dark_since == Instant::max()) {
         if (eye.lit())
-            dark_since.reset();
-        else if (!dark_since)
+            dark_since = Instant::max();
+        else if (dark_since == Instant::max())
             dark_since = clock.now();
         keeper.beat();
         if (clock.now() - pressed > 5s) break;
         std::this_thread::sleep_for(1ms);
     }
-    const Instant took = dark_since ? *dark_since - pressed : Instant(5s);
+    const Instant took = dark_since == Instant::max() ? Instant(5s) : dark_since - pressed;
     tally.dark_ms.push_back(1000 * seconds(took));
     tally.late += took > kLongest;
     tally.buttons_wrong += session.model().confirm && !session.projecting() && session.model().scene.light != nullptr;
