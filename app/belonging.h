@@ -31,8 +31,12 @@ double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d
 /// Warnings for what is not known are added to `unknown`.
 void check_case(const RegistrationResult& match, const Case& the_case, const std::filesystem::path& file,
                 std::vector<std::string>& unknown);
+
+/// As `check_case`, for the rig file that the light is about to be drawn with.
 void check_rig(const RegistrationResult& match, const RigCalibration& rig, const std::filesystem::path& file,
                const std::filesystem::path& rig_file, std::vector<std::string>& unknown);
+
+/// As `check_case`, for poses: they must follow this match, on this rig.
 void check_poses(const std::optional<PosesOrigin>& origin, const RegistrationResult& match, const RigCalibration& rig,
                  const std::filesystem::path& file, std::vector<std::string>& unknown);
 

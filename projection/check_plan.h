@@ -12,6 +12,7 @@
 
 namespace planlight {
 
+/// From when on a plan is doubted; lengths in mm.
 struct PlanCheckSettings {
     double near_skin_mm = 10;      ///< an entry, borehole or line farther from the skin is warned of
     double too_far_mm = 30;        ///< and is not drawn from here on: the plan is stopped

@@ -40,6 +40,7 @@ struct PlanDrawing {
     std::vector<Stroke> strokes;
 };
 
+/// How a plan becomes lines on the skin; lengths in mm on the skin.
 struct DrawingSettings {
     double line_width_mm = 0.8;
     double max_segment_mm = 0.5;

@@ -12,6 +12,7 @@
 
 namespace planlight {
 
+/// From when on a pose is too old, too unsure or too far to be drawn with.
 struct OverlaySettings {
     Instant max_pose_age = std::chrono::milliseconds(75);  ///< an older pose is not drawn
     Instant picture_validity = std::chrono::milliseconds(75);

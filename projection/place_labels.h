@@ -46,6 +46,8 @@ struct TextBlock {
     std::vector<std::u32string> lines;
     double width_mm = 0, height_mm = 0;
 };
+
+/// Lines of the text, and the size of their block with letters of this height.
 TextBlock lay_out(const std::string& text, double text_height_mm);
 
 /// A skin point with the directions in which text runs and stands there, read from outside.
@@ -53,6 +55,8 @@ struct TextFrame {
     SkinSurface::Point at;
     Eigen::Vector3d right_in_ct, up_in_ct;  ///< unit, tangent; right x up = outward normal
 };
+
+/// The plane that touches the skin at `at`, upright along `up_in_ct` as far as the skin lets it.
 TextFrame text_frame(const SkinSurface::Point& at, const Eigen::Vector3d& up_in_ct);
 
 }  // namespace planlight

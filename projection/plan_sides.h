@@ -5,6 +5,7 @@
 
 namespace planlight {
 
+/// The patient's own.
 enum class Side { left, right };
 
 /// The side that a name claims: a word "left", "links", "sinister", "gauche" or "right", "rechts", "dexter", "droit(e)"

@@ -12,6 +12,7 @@
 
 namespace planlight {
 
+/// Times of the lease and of the watch over the process that owns the monitor.
 struct ProjectorProcessSettings {
     std::filesystem::path program = "/proc/self/exe";          ///< run as `PROGRAM projector-window ...`
     Instant light_delay = std::chrono::milliseconds(25);       ///< from the swap to light on the skin

@@ -20,6 +20,7 @@ struct Monitor {
 /// The monitors there are now. Throws DeviceError when there is no display at all.
 std::vector<Monitor> list_monitors();
 
+/// Which monitor, and how its window is made.
 struct ProjectorWindowSettings {
     Instant light_delay = std::chrono::milliseconds(25);  ///< from the swap to light on the skin: display and lamp
 };

@@ -73,8 +73,8 @@ struct DrawingRenderer::Parts {
     /// True when the stroke is a circle that is lit in part; `counts` is told.
     bool is_partly_lit_ring(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts) const;
     /// The two edge points of the ribbon at one end of a segment.
-    std::array<Vector2d, 2> edges(const Stroke& stroke, std::size_t at, const Vector3d& own, const Vector3d* other,
-                                  double outwards) const;
+    std::array<Vector2d, 2> edges(const Stroke& stroke, std::size_t at, const Vector3d& direction,
+                                  const Vector3d* other, double outwards) const;
 
     const SkinSurface& skin;
     CameraModel projector;
@@ -125,11 +125,11 @@ void DrawingRenderer::Parts::light_points(const Stroke& stroke, const RenderSett
         points.push_back(light_point(stroke.points_in_ct[i], stroke.normals_in_ct[i], steepest_cosine, counts));
 }
 
-std::array<Vector2d, 2> DrawingRenderer::Parts::edges(const Stroke& stroke, std::size_t at, const Vector3d& own,
+std::array<Vector2d, 2> DrawingRenderer::Parts::edges(const Stroke& stroke, std::size_t at, const Vector3d& direction,
                                                       const Vector3d* other, double outwards) const {
     const LitPoint& point = points[at];
-    const bool smooth = other != nullptr && own.dot(*other) > kSmooth_turn;
-    const Vector3d along = smooth ? Vector3d((own + *other).normalized()) : own;
+    const bool smooth = other != nullptr && direction.dot(*other) > kSmooth_turn;
+    const Vector3d along = smooth ? Vector3d((direction + *other).normalized()) : direction;
     const Vector3d side = stroke.normals_in_ct[at].cross(along).normalized();
     Vector2d half = point.pixel_by_ct * side * (stroke.width_mm / 2);
     const Vector2d along_px = point.pixel_by_ct * along;
@@ -138,7 +138,7 @@ std::array<Vector2d, 2> DrawingRenderer::Parts::edges(const Stroke& stroke, std:
     if (width_px < kMin_width_px) half *= std::min(4.0, kMin_width_px / std::max(1e-12, width_px));
     Vector2d centre = point.pixel;
     if (other != nullptr && !smooth)
-        centre += point.pixel_by_ct * own * (outwards * stroke.width_mm / 2);  // fills the corner
+        centre += point.pixel_by_ct * direction * (outwards * stroke.width_mm / 2);  // fills the corner
     return {centre + half, centre - half};
 }
 
@@ -153,12 +153,12 @@ void DrawingRenderer::Parts::add_ribbon(const Stroke& stroke, bool broken) {
         const std::size_t j = (i + 1) % count;
         if (!points[i].lit || !points[j].lit) continue;
         if (broken && static_cast<int>(static_cast<double>(i) * segment_mm / kBroken_mm) % 2 != 0) continue;
-        const Vector3d own = direction(i);
-        if (!own.allFinite() || own.isZero()) continue;
-        const Vector3d before = i > 0 || stroke.closed ? direction(i + count - 1) : own;
-        const Vector3d after = i + 1 < segments || stroke.closed ? direction(i + 1) : own;
-        const auto start = edges(stroke, i, own, i > 0 || stroke.closed ? &before : nullptr, -1);
-        const auto end = edges(stroke, j, own, i + 1 < segments || stroke.closed ? &after : nullptr, 1);
+        const Vector3d along = direction(i);
+        if (!along.allFinite() || along.isZero()) continue;
+        const Vector3d before = i > 0 || stroke.closed ? direction(i + count - 1) : along;
+        const Vector3d after = i + 1 < segments || stroke.closed ? direction(i + 1) : along;
+        const auto start = edges(stroke, i, along, i > 0 || stroke.closed ? &before : nullptr, -1);
+        const auto end = edges(stroke, j, along, i + 1 < segments || stroke.closed ? &after : nullptr, 1);
         raster.add_quad({start[0], end[0], end[1], start[1]});
     }
 }

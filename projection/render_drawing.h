@@ -9,6 +9,7 @@
 
 namespace planlight {
 
+/// How lines become pixels of the projector.
 struct RenderSettings {
     double steepest = 1.31;  ///< radians (75 degrees) between skin normal and light: beyond it nothing is drawn
     double brightness = 1;

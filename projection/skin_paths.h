@@ -14,6 +14,7 @@ struct SkinLine {
     bool closed = false;
 };
 
+/// Along the skin, from its first point to its last; 0 under two points.
 double length_mm(const SkinLine& line);
 
 /// The straight way (geodesic) from one skin point to another, points at most `max_segment_mm` apart, both ends

@@ -7,6 +7,7 @@
 
 namespace planlight {
 
+/// Edge and extent of the tables, mm.
 struct LutSettings {
     double voxel_mm = 1;
     double margin_mm = 40;         ///< round the skin

@@ -7,6 +7,7 @@
 
 namespace planlight {
 
+/// The head, and what was cut off it.
 struct DetachedBody {
     Mask body;               ///< with its enclosed cavities filled
     int pieces_removed = 0;  ///< of at least 0.05 ml

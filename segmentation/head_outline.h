@@ -5,6 +5,7 @@
 
 namespace planlight {
 
+/// How air and tissue are told apart; values are above the air.
 struct OutlineSettings {
     double threshold = 0;          ///< of the skin, everywhere, in the volume's unit; 0 = found from air and tissue
     double seal_radius_mm = 5;     ///< air does not enter through openings narrower than twice this

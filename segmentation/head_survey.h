@@ -25,6 +25,7 @@ struct HeadSurvey {
     Eigen::Vector3d place_of(std::size_t index) const;  ///< centre of a voxel in ct
 };
 
+/// How coarsely a volume is looked at.
 struct SurveySettings {
     double step_mm = 2;
     std::size_t most_voxels = 4'000'000;  ///< a larger space has a larger step

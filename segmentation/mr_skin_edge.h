@@ -5,6 +5,7 @@
 
 namespace planlight {
 
+/// How far the skin may be moved to its edge.
 struct EdgeSettings {
     double reach_mm = 3;       ///< an edge further than this from the vertex is another one
     int smoothing_rounds = 8;  ///< of the moves, over neighbours: the noise of a profile is not the skin's

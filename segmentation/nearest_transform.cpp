@@ -42,11 +42,11 @@ struct SkinRows {
         const std::uint16_t* before = nullptr;
         for (std::size_t s = 0; s < x.size(); ++s) {
             const auto& v = lut.skin[s].voxel;
-            const std::size_t own = at(v[2]) * at(lut.size[1]) + v[1];
-            if (v[0] >= lut.size[0] || v[1] >= lut.size[1] || v[2] >= lut.size[2] || own + 1 < row ||
-                (own + 1 == row && *before >= v[0]))
+            const std::size_t row_of_voxel = at(v[2]) * at(lut.size[1]) + v[1];
+            if (v[0] >= lut.size[0] || v[1] >= lut.size[1] || v[2] >= lut.size[2] || row_of_voxel + 1 < row ||
+                (row_of_voxel + 1 == row && *before >= v[0]))
                 throw std::logic_error("the skin voxels are not in the order of the table");
-            for (; row <= own; ++row) begin[row] = static_cast<std::uint32_t>(s);
+            for (; row <= row_of_voxel; ++row) begin[row] = static_cast<std::uint32_t>(s);
             x[s] = v[0];
             before = &x[s];
             if (slices.empty() || slices.back() != v[2]) slices.push_back(v[2]);
@@ -90,9 +90,9 @@ void transform(SkinLut& lut, const SkinRows& rows, unsigned bits, VectorPath pat
     const std::size_t scratch = scratch_bytes<Key>(lut.size[1], lut.size[2]);
     const auto for_all = [&](int count, auto&& pass) {
         tbb::parallel_for(tbb::blocked_range<int>(0, count, 4), [&](const tbb::blocked_range<int>& range) {
-            thread_local LargeArray<std::byte> own;
-            if (own.size() < scratch) own = LargeArray<std::byte>(scratch);
-            for (int i = range.begin(); i < range.end(); ++i) pass(stripe, i, own.data());
+            thread_local LargeArray<std::byte> buffer;
+            if (buffer.size() < scratch) buffer = LargeArray<std::byte>(scratch);
+            for (int i = range.begin(); i < range.end(); ++i) pass(stripe, i, buffer.data());
         });
     };
     for (; stripe.x0 < stripe.size_x; stripe.x0 += kLanes) {

@@ -13,6 +13,7 @@
 
 namespace planlight {
 
+/// How the skin is found; all may stay as they are.
 struct SkinSettings {
     double threshold = 0;           ///< HU (or stored units); 0 = found from the histogram
     double seal_radius_mm = 5;      ///< openings narrower than twice this (nostrils, ear canals, mouth) are lidded

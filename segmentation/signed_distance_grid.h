@@ -10,6 +10,7 @@ namespace planlight {
 /// distance to the point behind the pointer. The table itself must be complete.
 void fill_signed_distance(const TriangleMesh& skin, SkinLut& lut);
 
+/// Nearer than this to the skin the distance is exact.
 inline constexpr double kExactBand_mm = 5;
 
 }  // namespace planlight

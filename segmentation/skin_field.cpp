@@ -36,8 +36,8 @@ SkinField skin_field(const Volume& volume, const SkinMask& mask) {
         const std::size_t v = volume.index(i, j, k);
         const bool body = mask.body[v];
         const bool dense = volume.values[v] >= field.threshold;
-        const double own = std::isfinite(volume.values[v]) ? static_cast<double>(volume.values[v]) : t - contrast;
-        return off_threshold(body == dense ? own : body ? t + contrast : t - contrast, body, t, contrast);
+        const double value = std::isfinite(volume.values[v]) ? static_cast<double>(volume.values[v]) : t - contrast;
+        return off_threshold(body == dense ? value : body ? t + contrast : t - contrast, body, t, contrast);
     };
     std::size_t at = 0;
     for (int k = -1; k <= volume.size[2]; ++k)

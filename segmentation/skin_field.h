@@ -22,6 +22,7 @@ struct SkinField {
     }
 };
 
+/// Of the whole volume, on its own grid.
 SkinField skin_field(const Volume& volume, const SkinMask& mask);
 
 /// What the crossing on a grid edge of the field is: real skin, a lid, or the end of the volume. `a` and `b` are the

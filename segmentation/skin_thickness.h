@@ -7,6 +7,7 @@
 
 namespace planlight {
 
+/// How deep the bone is looked for.
 struct ThicknessSettings {
     double bone_hu = 300;
     double longest_mm = 40;  ///< further in nothing is looked for

@@ -21,6 +21,7 @@ struct VoxelGrid {
     double voxel_ml() const { return spacing_mm.prod() / 1000; }
 };
 
+/// The volume's size and spacing, without its place.
 VoxelGrid grid_of(const Volume& volume);
 
 using Mask = std::vector<std::uint8_t>;
@@ -31,6 +32,8 @@ Mask within(const Mask& mask, std::uint8_t target, const VoxelGrid& grid, double
 
 /// Ball morphology. The array's border neither erodes nor feeds: a body cut by the end of the volume stays whole there.
 Mask erode(const Mask& mask, const VoxelGrid& grid, double radius_mm);
+
+/// By a ball of `radius_mm`, whatever the spacing.
 Mask dilate(const Mask& mask, const VoxelGrid& grid, double radius_mm);
 
 /// Dilation, then erosion, in a space that is empty beyond the array: the dome of a head cut by the last slice stays
@@ -61,6 +64,8 @@ struct LargestPiece {
     std::size_t voxels = 0;
     int pieces = 0;
 };
+
+/// Of all connected pieces of ones, and how many there are.
 LargestPiece largest_piece(Mask mask, const VoxelGrid& grid);
 
 }  // namespace planlight

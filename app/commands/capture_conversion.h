@@ -16,6 +16,8 @@ std::vector<StripePattern> patterns_of(const StripeSettings& stripes, const std:
 /// Between a scan's frames in memory and a capture folder. Throws InputError when the folder's pictures are not the
 /// sequence that its settings make; without fringes, the finest bits or all rows, what is left of it is `partial`.
 ScanCapture scan_capture_from(CaptureFolder folder, const std::filesystem::path& named);
+
+/// The pictures are copied.
 CaptureFolder capture_folder_from(const ScanCapture& capture);
 
 /// Throws InputError when the pictures or the projector have another size than the rig says, or too few devices are

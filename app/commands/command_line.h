@@ -13,6 +13,7 @@ using Path = std::filesystem::path;
 /// A command of the program with its help and its example.
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& what, const std::string& example);
 
+/// --json: the result as JSON on standard output, and nothing else there.
 void json_flag(CLI::App* command, bool& json);
 
 /// --preset: the simulated room.

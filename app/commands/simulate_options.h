@@ -6,6 +6,7 @@
 
 namespace planlight {
 
+/// What `planlight simulate` was asked for; lengths in mm.
 struct SimulateOptions {
     std::filesystem::path volume, plan, out;
     std::string series_uid, frame, accept_frame;  ///< of the volume; of a plan that does not say its coordinate system

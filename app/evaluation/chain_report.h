@@ -31,6 +31,7 @@ struct PresetSummary {
     bool reached() const;
 };
 
+/// Of the rooms of `preset`; the others in `rooms` are left out. Without any, all counts are 0.
 PresetSummary summarise(const std::vector<ChainFigures>& rooms, const std::string& preset);
 
 /// A few lines and a table, for a terminal.

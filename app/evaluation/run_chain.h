@@ -13,6 +13,7 @@
 
 namespace planlight {
 
+/// One room of the evaluation, by `planlight demo` and by tests.
 struct ChainSettings {
     simulation::Preset preset = simulation::Preset::modern;
     unsigned seed = 1;
@@ -74,6 +75,7 @@ struct ChainFigures {
 ChainFigures run_chain(const Volume& volume, const Case& the_case, const CaseDrawing& drawing,
                        const ChainSettings& settings, const ChainWatcher& watcher = {});
 
+/// "paper" or "modern", as `--preset` takes it.
 std::string name_of(simulation::Preset preset);
 
 }  // namespace planlight

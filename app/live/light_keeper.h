@@ -12,6 +12,7 @@
 
 namespace planlight {
 
+/// Patiences are of the wall's clock, whatever clock the room has.
 struct LightKeeperSettings {
     ProjectorProcessSettings process;
     /// Since the operator window's last frame: without graphics hardware one may take half a second.

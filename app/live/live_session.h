@@ -19,6 +19,7 @@
 
 namespace planlight {
 
+/// The room of a live session and its pace.
 struct LiveSettings {
     simulation::Preset preset = simulation::Preset::paper;
     unsigned seed = 1;

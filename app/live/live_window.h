@@ -13,6 +13,7 @@
 
 namespace planlight {
 
+/// What `planlight session` was asked for.
 struct LiveOptions {
     simulation::Preset preset = simulation::Preset::paper;
     unsigned seed = 1;

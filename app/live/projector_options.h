@@ -6,6 +6,7 @@
 
 namespace planlight {
 
+/// What `planlight projector` was asked for.
 struct ProjectorOptions {
     std::filesystem::path recording, keep,
         out;                         ///< `out`: projector.json, empty: not written; `keep`: folder for what is recorded

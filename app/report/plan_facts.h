@@ -34,6 +34,8 @@ std::vector<PlanFact> plan_facts(const Plan& plan, const PlanDrawing& drawing, c
 /// A distance to the skin in words, and how grave it is: "on the skin" up to 0.5 mm, "look" from 2 mm, "stop" where it
 /// is not drawn (three times `max_distance_to_skin_mm`).
 std::string distance_in_words(double mm, const DrawingSettings& settings = {});
+
+/// How a distance of `mm` between plan and skin is to be taken, by the limits of the drawing.
 Gravity gravity_of(double mm, const DrawingSettings& settings = {});
 
 /// "12° to the left, 30° down" of a unit direction: out of the sagittal and out of the axial plane.

@@ -16,6 +16,7 @@ struct PreparationReport {
     std::string json;  ///< the same in figures
 };
 
+/// What the page says, from what was prepared; nothing is written yet.
 PreparationReport preparation_report(const Preparation& prepared, const PlanDrawing& drawing,
                                      const RemovedPieces& removed, const PreparationPictures& pictures);
 

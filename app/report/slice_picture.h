@@ -11,6 +11,7 @@ namespace planlight {
 /// (R left, A up), coronal from the front (R left, S up), sagittal from the patient's left (A left, S up).
 enum class SliceKind { axial, coronal, sagittal };
 
+/// How a slice of the volume is shown.
 struct SliceSettings {
     int width = 640, height = 640;  ///< pixels
     double plan_within_mm = 3;      ///< plan lines this near to the slice are drawn on it

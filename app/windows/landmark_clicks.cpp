@@ -29,12 +29,12 @@ void LandmarkClicks::clear() {
 
 std::vector<PointPair> LandmarkClicks::pairs() const {
     std::vector<PointPair> pairs;
-    const auto taken = [&](const std::string& name) {
+    const auto name_taken = [&](const std::string& name) {
         return std::any_of(pairs.begin(), pairs.end(), [&](const PointPair& pair) { return pair.name == name; });
     };
     for (std::size_t i = 0; i < std::min(in_ct_.size(), in_rig_.size()); ++i) {
         std::string name = i < names_.size() ? names_[i] : std::string();
-        for (std::size_t number = i + 1; name.empty() || taken(name); ++number) name = std::to_string(number);
+        for (std::size_t number = i + 1; name.empty() || name_taken(name); ++number) name = std::to_string(number);
         pairs.push_back({name, in_ct_[i], in_rig_[i]});
     }
     return pairs;

@@ -81,6 +81,7 @@ struct SceneView {
     Eigen::Vector2d shift_mm = Eigen::Vector2d::Zero();  ///< of the picture's middle, along the view's right and up
 };
 
+/// Of a step in the list of the session's steps; `attention` wants the operator before it goes on.
 enum class StepState { waiting, active, done, attention };
 
 /// A found disc in a camera picture, pixels of that picture.
@@ -103,6 +104,7 @@ struct PlanRow {
     std::optional<double> depth_mm, predicted_error_mm, light_off_mm;
 };
 
+/// What the banner says; only `aligned` is green, and `dark` is the operator's or the gate's.
 enum class StatusKind { ready, scanning, matching, aligned, check, refused, dark };
 
 struct Status {
@@ -121,6 +123,7 @@ struct ButtonState {
     std::string why_not;  ///< a few words, shown in the button while it is not enabled: "scan first"
 };
 
+/// All that the operator window shows, as values: the window draws it and knows nothing else.
 struct OperatorModel {
     std::string case_title, case_subtitle;
     std::array<StepState, 6> steps{};  ///< Case, Rig, Scan, Match, Verify, Project

@@ -10,6 +10,7 @@
 
 namespace planlight {
 
+/// What the operator pressed, by mouse, key or pedal.
 enum class OperatorAction { none, scan, do_register, track, stop, dark, quit, confirm, use_landmarks, check_skin };
 
 struct OperatorWindowSettings {

@@ -12,6 +12,7 @@ struct ViewAxes {
     Eigen::Vector3d right_in_ct, up_in_ct, backward_in_ct;
 };
 
+/// Of the view's camera, unit length.
 ViewAxes axes_of(const SceneView& view);
 
 /// The anatomical name of a direction in ct (LPS): R L A P S I, the strongest first, a second when it is at least half

@@ -23,6 +23,8 @@ TableShown draw_table(const Pen& pen, const Box& box, const OperatorModel& model
 
 /// A button: drawn, and true when it was pressed and is enabled. `chosen`: it shows what is on, and looks held.
 bool button(const Pen& pen, const Box& box, const std::string& label, const ButtonState& state, bool chosen = false);
+
+/// The button that is always there and always works.
 void draw_dark_button(const Pen& pen, const Box& box, bool hovered, bool held);
 
 /// The word of a status: "ALIGNED".

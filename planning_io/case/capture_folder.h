@@ -30,6 +30,8 @@ struct CaptureFolder {
     Instant began{}, ended{};
     DeviceSerials serials;  ///< of the devices it was captured with, where they are known
 };
+
+/// A new folder, whole or not at all. Throws InputError where a picture is missing, and DiskError.
 void write_capture(const CaptureFolder& capture, const std::filesystem::path& folder);
 
 /// How a capture folder is read.

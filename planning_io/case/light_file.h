@@ -22,6 +22,8 @@ struct LightFile {
     };
     std::vector<Frame> frames;  ///< in their order of time
 };
+
+/// light.json in `folder`; the pictures that it names are there already. Throws DiskError.
 void write_light_file(const LightFile& light, const std::filesystem::path& folder);
 
 /// Throws InputError (no orders or frames, times that run backwards, a colour out of range) and DamagedFileError.

@@ -19,6 +19,8 @@ struct PosesOrigin {
 /// poses.json, as `track` writes it: one entry a frame, with or without a pose.
 void write_poses(const std::vector<TrackedPose>& poses, const std::filesystem::path& file,
                  const std::optional<PosesOrigin>& origin = {});
+
+/// In the file's order; a frame without a pose is there with its reason. Throws InputError or DamagedFileError.
 std::vector<TrackedPose> read_poses(const std::filesystem::path& file);
 
 /// What the file says of its origin; empty when it says nothing.

@@ -10,6 +10,9 @@ namespace planlight {
 /// as the scan found it, and a checksum. Throws DamagedFileError when the checksum is another; without one the verdict
 /// `yes` is read as `ask`.
 void write_registration(const RegistrationResult& result, const std::filesystem::path& file);
+
+/// Throws DamagedFileError where the file's checksum does not fit, so that `ask` cannot become `yes` by an editor;
+/// without a checksum a `yes` is read as `ask`.
 RegistrationResult read_registration(const std::filesystem::path& file);
 
 }  // namespace planlight

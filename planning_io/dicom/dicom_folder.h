@@ -31,6 +31,7 @@ struct DicomSeries {
     bool is_volume() const;
 };
 
+/// What a folder of DICOM files holds: its series, and what could not be used.
 struct DicomFolder {
     std::vector<DicomSeries> series;
     std::vector<std::filesystem::path> unreadable;  ///< DICOM files that do not say of which series they are

@@ -30,6 +30,7 @@ struct DicomSlice {
     std::string defaced;  ///< how it says that the face was taken away
 };
 
+/// Why a series makes no volume, and what to do.
 struct DicomRefusal {
     std::string problem, remedy;
 };
@@ -53,6 +54,8 @@ double tilt_of(const Eigen::Affine3d& ct_from_voxel);
 
 /// Whether the pixels can be unpacked, and whether they were packed with loss.
 enum class TransferSyntax { unknown, lossless, lossy };
+
+/// By the UID of file group 2; see TransferSyntax for one that is not known.
 TransferSyntax transfer_syntax_of(const std::string& uid);
 
 }  // namespace planlight

@@ -38,6 +38,7 @@ private:
     std::unique_ptr<Inflater> inflater_;
 };
 
+/// How a voxel is stored; the volumes themselves are float.
 enum class VoxelType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
 std::size_t bytes_of(VoxelType type);
 

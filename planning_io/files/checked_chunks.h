@@ -52,6 +52,8 @@ struct ChunkedArray {
     std::byte* data;
     std::size_t bytes, element_bytes;
 };
+
+/// A view of `values`, which must outlive it.
 template <class T, class Allocator>
 ChunkedArray array_of(std::vector<T, Allocator>& values) {
     return {reinterpret_cast<std::byte*>(values.data()), values.size() * sizeof(T), sizeof(T)};

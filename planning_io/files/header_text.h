@@ -32,6 +32,7 @@ TextHeader read_text_header(const std::filesystem::path& file, const std::string
 /// Numbers of a text; empty when it holds anything else.
 std::vector<double> numbers_of(std::string text);
 
+/// ASCII letters only, whatever the locale.
 std::string lower_case(std::string text);
 
 /// "1 slice", "4 slices".

@@ -18,6 +18,8 @@ std::string png_bytes(const RgbImage& picture);
 /// PNG or TIFF, 8 or 16 bit (of which the upper 8 are kept), grey or colour (converted to grey by luma). Throws
 /// DamagedFileError.
 GrayImage read_gray(const std::filesystem::path& file);
+
+/// Grey pictures become three equal channels. Throws InputError or DamagedFileError.
 RgbImage read_rgb(const std::filesystem::path& file);
 
 /// A camera of 10 or 12 bits whose program stored them at the lower end of 16 leaves pictures that read as nearly

@@ -57,6 +57,7 @@ private:
 /// Refuses a file whose "format" is another, or whose "version" is not `version` (that with DamagedFileError).
 void check_format(const JsonValue& root, const char* format, int version, const std::filesystem::path& file);
 
+/// [x, y, z].
 Json to_json(const Eigen::Vector3d& v);
 Json to_json(const Eigen::Matrix3d& m);  ///< row by row
 Json to_json(const RigidTransform& t);   ///< 4x4, row by row

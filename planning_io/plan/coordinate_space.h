@@ -24,6 +24,7 @@ std::optional<Space> space_marked(std::string_view header, const std::filesystem
 Space settled_space(std::optional<Space> file_says, std::optional<Space> person_says, const std::filesystem::path& file,
                     std::string_view how_to_say, std::string_view option = "--frame");
 
+/// `ct` is LPS, mm: a point in RAS has its first two numbers turned.
 inline Eigen::Vector3d to_ct(const Eigen::Vector3d& p, Space space) {
     return space == Space::lps ? p : Eigen::Vector3d(-p.x(), -p.y(), p.z());
 }

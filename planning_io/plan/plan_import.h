@@ -18,6 +18,7 @@ struct PlanImportSettings {
     std::optional<std::string> frame_of_reference_uid;
 };
 
+/// A plan with what was assumed or left out on the way.
 struct PlanImport {
     Plan plan;
     std::string frame_of_reference_uid;  ///< that the DICOM plans are in; empty when none says it

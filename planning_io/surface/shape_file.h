@@ -42,6 +42,8 @@ struct WeldedShape {
     Shape shape;
     std::size_t degenerate = 0;  ///< triangles left out
 };
+
+/// Points stand in the order in which they first come in the file.
 WeldedShape welded(const Shape& shape);
 
 // The readers of single formats, over the file's content (VTK's over the file).

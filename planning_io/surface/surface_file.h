@@ -11,6 +11,7 @@
 
 namespace planlight {
 
+/// What a surface's file does not say of itself.
 struct SurfaceSettings {
     PlanImportSettings said;  ///< space of files that do not say theirs; frame of reference of the CT (for DICOM SEG)
     std::string segment;      ///< which of a SEG or RTSTRUCT, by its name; needed when it holds several

@@ -10,8 +10,11 @@ namespace planlight {
 /// Memory on huge pages where it is large and the system has them: the first touch of 64 MiB takes 4 ms instead of 30
 /// ms. Up to 192 MiB that were freed are kept for the next of the same sizes. Throws std::bad_alloc.
 void* allocate_large(std::size_t bytes);
+
+/// Of `allocate_large` with the same number of bytes.
 void free_large(void* memory, std::size_t bytes) noexcept;
 
+/// For LargeArray: `allocate_large`, and elements that are not touched before they are written.
 template <class T>
 struct LargeAllocator {
     using value_type = T;

@@ -11,6 +11,7 @@
 
 namespace planlight {
 
+/// Whether a match may be used.
 enum class Verdict {
     yes,  ///< may be used
     ask,  ///< needs a person's look at the overlay on landmarks before it is used

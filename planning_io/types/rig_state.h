@@ -14,12 +14,18 @@ namespace planlight {
 /// a shift (mm) of the scene in the device's frame, the logarithm of the focal length, the principal point (pixels),
 /// k1.
 using DeviceChange = Eigen::Matrix<double, 10, 1>;
+
+/// `device` with the change applied; exact for the turn, the rest as DeviceChange says.
 CameraModel changed(CameraModel device, const DeviceChange& change);
 
 /// The devices of a rig, in this order wherever an array is by device.
 enum class RigDevice { left_camera, right_camera, projector };
 inline constexpr std::size_t kRigDevices = 3;
+
+/// "left camera", "right camera", "projector".
 const char* text_of(RigDevice device);
+
+/// The device's model; the rig must hold it.
 const CameraModel& device_of(const RigCalibration& rig, RigDevice device);
 CameraModel& device_of(RigCalibration& rig, RigDevice device);
 
@@ -74,6 +80,8 @@ struct RigState {
     bool moved() const { return verdict == Verdict::corrected || verdict == Verdict::not_trusted; }
     bool checked() const { return verdict == Verdict::as_calibrated || verdict == Verdict::corrected; }
 };
+
+/// In words: "as calibrated" and so on.
 const char* text_of(RigState::Verdict verdict);
 
 /// The point that three pixels see best (0.1 px the cameras, 0.25 px the projector), rig, mm, from a start near it;

@@ -37,9 +37,9 @@ struct SkinDisplacementField::Parts {
         coarse.cell_mm = std::max(fine.cell_mm, 0.5 * displacement.alike_over_mm);
         for (const auto& place : displacement.places) fine.add(place);
         // Off the scan a few places tell as much as all.
-        std::unordered_map<std::uint64_t, bool> taken;
+        std::unordered_map<std::uint64_t, bool> occupied;
         for (const auto& place : displacement.places)
-            if (taken.emplace(coarse.key(coarse.cell_of(place.p_in_ct)), true).second) coarse.add(place);
+            if (occupied.emplace(coarse.key(coarse.cell_of(place.p_in_ct)), true).second) coarse.add(place);
     }
 
     struct Grid {
@@ -78,7 +78,7 @@ SkinDisplacementField::Value SkinDisplacementField::Parts::krige(const Vector3d&
     const std::size_t count = std::min(kNeighbours, near.size());
     std::partial_sort(near.begin(), near.begin() + static_cast<std::ptrdiff_t>(count), near.end());
     const double variance = displacement.spread_mm * displacement.spread_mm;
-    const auto alike = [&](const Vector3d& a, const Vector3d& b) {
+    const auto kernel = [&](const Vector3d& a, const Vector3d& b) {
         return variance * std::exp(-(a - b).norm() / displacement.alike_over_mm);
     };
     const auto n = static_cast<Eigen::Index>(count);
@@ -89,9 +89,9 @@ SkinDisplacementField::Value SkinDisplacementField::Parts::krige(const Vector3d&
     for (Eigen::Index i = 0; i < n; ++i) {
         const auto& a = *near[static_cast<std::size_t>(i)].second;
         for (Eigen::Index j = 0; j <= i; ++j)
-            K(i, j) = K(j, i) = alike(a.p_in_ct, near[static_cast<std::size_t>(j)].second->p_in_ct);
+            K(i, j) = K(j, i) = kernel(a.p_in_ct, near[static_cast<std::size_t>(j)].second->p_in_ct);
         K(i, i) += a.sigma_mm * a.sigma_mm;
-        k[i] = alike(a.p_in_ct, p);
+        k[i] = kernel(a.p_in_ct, p);
         above[i] = a.mm - displacement.offset_mm;
     }
     const Column weights = Eigen::LLT<Square>(K).solve(k);

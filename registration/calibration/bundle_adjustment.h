@@ -7,6 +7,7 @@
 
 namespace planlight {
 
+/// What is adjusted and how strongly it is held.
 struct BundleSettings {
     bool sixth_order = false;     ///< also k3: for lenses wider than those of a usual rig
     bool bend = true;             ///< the board may be bent by a fraction of a mm
@@ -25,6 +26,7 @@ struct PoseResidual {
     std::size_t used = 0, left_out = 0;
 };
 
+/// The adjusted rig and what the residuals say of it.
 struct BundleResult {
     RigEstimate rig;
     bool converged = false;

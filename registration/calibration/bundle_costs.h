@@ -13,11 +13,13 @@
 // Lens numbers: fx fy cx cy k1 k2 p1 p2 k3; places: rotation vector, then shift in mm.
 namespace planlight {
 
+/// A point of plain numbers or of Ceres' numbers with derivatives.
 template <typename T>
 struct V3 {
     T x, y, z;
 };
 
+/// The point by a place: turned by its rotation vector, then shifted.
 template <typename T>
 V3<T> moved(const T* twist, const V3<T>& p) {
     const T in[3] = {p.x, p.y, p.z};
@@ -26,6 +28,7 @@ V3<T> moved(const T* twist, const V3<T>& p) {
     return {out[0] + twist[3], out[1] + twist[4], out[2] + twist[5]};
 }
 
+/// A direction by the inverse of the place's rotation.
 template <typename T>
 V3<T> turned_back(const T* twist, const V3<T>& p) {
     const T back[3] = {-twist[0], -twist[1], -twist[2]}, in[3] = {p.x, p.y, p.z};
@@ -34,6 +37,7 @@ V3<T> turned_back(const T* twist, const V3<T>& p) {
     return {out[0], out[1], out[2]};
 }
 
+/// Brown's lens model with k1, k2, k3, p1, p2 (OpenCV's order of terms), on normalised coordinates.
 template <typename T>
 void distort(const T* k, const T& x, const T& y, T* out) {
     const T r2 = x * x + y * y;
@@ -42,6 +46,7 @@ void distort(const T* k, const T& x, const T& y, T* out) {
     out[1] = y * radial + k[6] * (r2 + 2.0 * y * y) + 2.0 * k[7] * x * y;
 }
 
+/// A point in the device's frame, mm, to its pixel; z must not be 0.
 template <typename T>
 void pixel_of(const T* k, const V3<T>& p, T* pixel) {
     T d[2];
@@ -50,6 +55,7 @@ void pixel_of(const T* k, const V3<T>& p, T* pixel) {
     pixel[1] = k[1] * d[1] + k[3];
 }
 
+/// The value without its derivatives.
 inline double plain(double v) {
     return v;
 }
@@ -88,6 +94,7 @@ void undistorted(const T* k, const Eigen::Vector2d& pixel, T* xy) {
     xy[1] = y + inverse(1, 0) * du + inverse(1, 1) * dv;
 }
 
+/// The board's corners on a plane or on the bent board.
 struct BoardShape {
     double middle_x, middle_y, half;
     explicit BoardShape(const BoardSpec& board)
@@ -164,6 +171,7 @@ struct LensPrior {
     }
 };
 
+/// Holds the board's bend near none, by `BundleSettings::bend_sigma_mm`.
 struct BendPrior {
     double sigma_mm;
     template <typename T>

@@ -9,6 +9,7 @@
 
 namespace planlight {
 
+/// From when on captures are too few, too alike or too bad for a rig.
 struct CalibrationSettings {
     BundleSettings bundle;
     int folds = 4;  ///< the poses are held out in so many groups, one after the other
@@ -43,6 +44,7 @@ struct HeldOut {
     double length_mean_mm = 0;  ///< the part that all share: scale
 };
 
+/// A rig with its uncertainty, or the refusal.
 struct Calibration {
     BundleResult bundle;  ///< from all poses
     HeldOut held_out;

@@ -38,8 +38,11 @@ struct DriftCheck {
     double light_off_mm = 0;          ///< what `projector_rms_px` is on the surface
     double moved_mm = 0, turned = 0;  ///< of the projector against the rig file; radians
 };
+
+/// As `check --json` says it.
 const char* text_of(DriftCheck::Verdict verdict);
 
+/// Judged on what both cameras saw of whatever was scanned; `cannot_tell` where that is too little.
 DriftCheck check_drift(const ScanResult& scan, const RigCalibration& rig, const DriftLimits& limits = {});
 
 /// A check of an earlier day.
@@ -55,6 +58,8 @@ struct DriftTrend {
     double px_per_day = 0;
     double days_to_limit = 0;  ///< from the last check; 0 when the limit is reached
 };
+
+/// The epipolar error before the projector; empty when nothing rises.
 std::vector<DriftTrend> drift_trends(const std::vector<EarlierCheck>& checks, const DriftLimits& limits = {});
 
 }  // namespace planlight

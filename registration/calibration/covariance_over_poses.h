@@ -11,6 +11,7 @@ struct PoseInformation {
     Eigen::VectorXd score;   ///< J^T r
 };
 
+/// Of the shared numbers, already widened by `factor`.
 struct CovarianceOverPoses {
     Eigen::MatrixXd covariance;
     /// How much more the numbers change when a pose is left out than the residuals say if each counts by itself.

@@ -136,10 +136,10 @@ std::optional<Refusal> judge_poses(const RigEstimate& rig, const BoardSpec& boar
         for (const auto& other : rig.rig_from_board)
             if (other)
                 widest = std::max(widest, std::acos(std::min(1.0, std::abs(normal.dot(other->linear().col(2))))));
-        const bool alike = std::any_of(distinct.begin(), distinct.end(), [&](const RigidTransform& d) {
+        const bool seen_before = std::any_of(distinct.begin(), distinct.end(), [&](const RigidTransform& d) {
             return angle_between(*pose, d) < s.alike_angle && (*pose * middle - d * middle).norm() < s.alike_mm;
         });
-        if (!alike) distinct.push_back(*pose);
+        if (!seen_before) distinct.push_back(*pose);
     }
     const char* remedy = "Tilt the board 15 to 40 degrees, every way, and vary its distance.";
     if (distinct.size() < s.least_poses)

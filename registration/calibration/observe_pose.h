@@ -32,11 +32,13 @@ struct CameraObservation {
     std::string wrong_sequence;      ///< a frame that does not show its own picture (`check_sequence`); empty: none
 };
 
+/// What both cameras saw of the board in one place.
 struct PoseObservation {
     std::string name;
     CameraObservation left, right;
 };
 
+/// How a pose's pictures are looked at.
 struct ObserveSettings {
     int light_samples = 400;      ///< a camera and pose: enough for their noise to vanish, few enough to be quick
     double edge_contrast = 0.10;  ///< light samples lie where the white picture varies less than this within 5x5 pixels

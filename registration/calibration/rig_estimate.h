@@ -12,6 +12,7 @@
 
 namespace planlight {
 
+/// As they are numbered wherever an array is by device.
 enum class DeviceName { left_camera, right_camera, projector };
 inline constexpr std::array kDevices{DeviceName::left_camera, DeviceName::right_camera, DeviceName::projector};
 const char* text_of(DeviceName device);
@@ -38,6 +39,8 @@ std::optional<Eigen::Vector3d> board_point(const CameraModel& camera, const Eige
 /// The numbers of a rig that a calibration determines, and back: per device fx, fy, cx, cy, k1, k2, p1, p2, k3, then
 /// (but not for the left camera, whose frame it is) the rotation vector and the shift of device_from_rig.
 Eigen::VectorXd numbers_of(const RigEstimate& rig);
+
+/// `rig` with its numbers replaced; the inverse of `numbers_of`.
 RigEstimate with_numbers(const RigEstimate& rig, const Eigen::VectorXd& numbers);
 
 inline const CameraObservation& view_of(const PoseObservation& pose, DeviceName camera) {

@@ -53,7 +53,7 @@ Matrix3f triangle_axes(const Vector3f& a, const Vector3f& b, const Vector3f& c) 
     return axes;
 }
 
-bool alike(const SkinPairs::Shape& a, const SkinPairs::Shape& b, float tolerance_mm) {
+bool same_shape(const SkinPairs::Shape& a, const SkinPairs::Shape& b, float tolerance_mm) {
     return std::abs(a.length_mm - b.length_mm) < tolerance_mm && std::abs(a.first - b.first) < kNormalTolerance &&
            std::abs(a.second - b.second) < kNormalTolerance && std::abs(a.between - b.between) < kNormalTolerance;
 }
@@ -140,7 +140,7 @@ void SkinPairs::find_alike(const Shape& wanted, std::size_t a, float tolerance_m
     const std::size_t n = skin_.size();
     if (!kept_) {
         for (std::size_t b = 0; b < n; ++b)
-            if (alike(wanted, shape(a, b), tolerance_mm)) found.push_back(static_cast<int>(b));
+            if (same_shape(wanted, shape(a, b), tolerance_mm)) found.push_back(static_cast<int>(b));
         return;
     }
     std::uint8_t marks[kBlock];
@@ -157,7 +157,7 @@ void SkinPairs::find_alike(const Shape& wanted, std::size_t a, float tolerance_m
 void SkinPairs::find_alike(const Shape& wanted, std::size_t a, float tolerance_mm, std::span<const int> among,
                            std::vector<int>& found) const {
     for (const int b : among)
-        if (alike(wanted, shape(a, static_cast<std::size_t>(b)), tolerance_mm)) found.push_back(b);
+        if (same_shape(wanted, shape(a, static_cast<std::size_t>(b)), tolerance_mm)) found.push_back(b);
 }
 
 void for_each_contact_triplet(const Base& base, const SkinPairs& pairs, double tolerance_mm,

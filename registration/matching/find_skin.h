@@ -11,6 +11,7 @@ namespace planlight {
 
 struct CloudPieces;
 
+/// Which pieces of a cloud are tried as skin.
 struct FindSkinSettings {
     double reach_mm = 60;  ///< of the part of the scan round a place that is tried alone
     int max_places = 140;  ///< that are tried, those whose shape holds a pose best first

@@ -9,6 +9,7 @@
 
 namespace planlight {
 
+/// Of the three-contact-point search.
 struct InitialMatchSettings {
     double model_spacing_mm = 10;  ///< of the skin samples that the contact points are tried on
     int scoring_points = 96;       ///< scan points in the failure function

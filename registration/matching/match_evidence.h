@@ -35,6 +35,8 @@ struct WeakestWay {
     std::string in_words;  ///< "turn about the head-foot axis"
     std::string advice;    ///< what a further scan should show: "the bridge of the nose or an ear"
 };
+
+/// The direction of the largest variance, in words.
 WeakestWay weakest_way(const PoseCovariance& covariance);
 
 /// Standard deviations along the cloud's principal axes times sqrt(12): the extents of an even slab; largest first.

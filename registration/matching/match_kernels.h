@@ -21,6 +21,7 @@ struct Placing {
     float arm_shift[3];  ///< mm, from the centre about which the step turns
 };
 
+/// How much a point counts by its distance from the skin.
 struct Gate {
     float scale_inside_mm, scale_outside_mm;  ///< of Tukey's biweight
     float max_mm;                             ///< farther than this from the skin a point takes no part

@@ -7,6 +7,7 @@
 
 namespace planlight {
 
+/// How the skin's displacement is read from the residuals.
 struct DisplacementSettings {
     double apart_mm = 4;           ///< the scan is gathered into places of this size
     double alike_over_mm = 25;     ///< beyond the scan's rim the displacement goes back to the offset over this length

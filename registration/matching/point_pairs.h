@@ -7,6 +7,7 @@
 
 namespace planlight {
 
+/// How landmarks may disagree.
 struct PointPairSettings {
     double max_residual_mm = 5;   ///< rms of the landmarks after the fit; above: no
     double least_error_mm = 1.5;  ///< with which a landmark on skin is found and touched, at least, rms

@@ -32,6 +32,7 @@ struct PoseSearch {
     InitialMatchSettings settings;
 };
 
+/// `sites` in rig.
 PoseSearch prepare_search(std::vector<SurfaceSite> sites, const MatchingSkin& skin,
                           const InitialMatchSettings& settings);
 

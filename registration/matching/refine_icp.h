@@ -6,6 +6,7 @@
 
 namespace planlight {
 
+/// Of the ICP on the table.
 struct IcpSettings {
     enum class Mode {
         signed_distance,  ///< point to plane on the trilinear signed distance, annealed robust weights (default)
@@ -18,6 +19,7 @@ struct IcpSettings {
     int max_points = 20000;
 };
 
+/// The refined pose and how it was reached.
 struct IcpResult {
     RigidTransform ct_from_rig = RigidTransform::Identity();
     int iterations = 0;

@@ -7,6 +7,7 @@
 
 namespace planlight {
 
+/// How the skin may have moved over the bone.
 struct DeformableSettings {
     int max_patches = 240;       ///< the scan is gathered into at most about this many patches of equal size
     int steps = 3;               ///< each from where the one before led

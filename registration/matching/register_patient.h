@@ -25,6 +25,7 @@ struct AmongClothLimits {
     double far_too_much_scale = 0.04;  ///< of the skin alone, and 2 of its sigmas; above: no
 };
 
+/// Of the whole match, and from when on it is not `yes`; the rules stand in VERDICT.md.
 struct RegistrationSettings {
     InitialMatchSettings initial;
     IcpSettings icp;

@@ -25,6 +25,7 @@ struct FrameBrightness {
     Instant closed() const { return at - exposure / 2 + exposure; }
 };
 
+/// The camera's picture in tiles, of which only the mean brightness is kept.
 constexpr int kTilesAcross = 16, kTilesDown = 12, kTiles = kTilesAcross * kTilesDown;
 
 /// The tiles of one frame. `right` may be empty (one camera): its tiles are missing then.
@@ -54,6 +55,8 @@ struct LitTiles {
     std::size_t at_zero = 0;      ///< kept, but the camera's zero cuts off their darks
     std::optional<LightRefusal> refusal;  ///< nothing seen, or all of it saturated; `tiles` is empty then
 };
+
+/// The tiles in which white and black light differ; `refusal` where nothing can be told.
 LitTiles find_lit_tiles(const LightRecording& recording);
 
 /// The same from flashes, by the darker and the brighter half of the frames, each by its median: does not need to know
@@ -68,6 +71,8 @@ struct FrameTiming {
     double interval_s = 0;              ///< mean over all that fit the median; 0 with fewer than three frames
     std::size_t lost = 0, doubled = 0;  ///< doubled: one number or one moment twice
 };
+
+/// By the frames' times and numbers.
 FrameTiming frame_timing(const LightRecording& recording);
 
 }  // namespace planlight

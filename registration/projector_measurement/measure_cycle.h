@@ -8,6 +8,7 @@
 
 namespace planlight {
 
+/// Of the search for the projector's refresh in a camera's pictures.
 struct CycleSettings {
     double refresh_hz = 60;             ///< of the projector; cycles of colour wheels are small multiples of it
     double refresh_tolerance_hz = 0.1;  ///< how well that is known; 0.1 covers 59.94 that is called 60

@@ -15,6 +15,7 @@ struct LightDelay {
     bool exact = false;                    ///< it did, or it came at a refresh that others showed
 };
 
+/// Of the measurement of the delay from order to light.
 struct LatencySettings {
     double least_s = -0.3, most_s = 1.5;  ///< searched
     double refresh_hz = 60;  ///< of the projector, within 1 %: its changes may come then only; what is a picture late

@@ -18,6 +18,7 @@ struct LightBench {
     std::function<void(const StereoFrame&)> keep;  ///< every frame as it was taken, to be written; may be empty
 };
 
+/// What light is ordered, how often and how long.
 struct RecordSettings {
     Instant settle = std::chrono::milliseconds(250);  ///< longer than any delay of a projector and its dynamic contrast
     std::chrono::milliseconds patience{2000};         ///< for one frame

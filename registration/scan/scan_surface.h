@@ -33,6 +33,7 @@ struct ScanCapture {
 ScanCapture capture_scan(Projector& projector, StereoCamera& cameras, const Clock& clock, const StripeSettings& stripes,
                          const std::function<void(int, int)>& progress = {});
 
+/// Of every step of a scan, from pictures to cloud.
 struct ScanSettings {
     DecodeSettings decode;
     TriangulationSettings triangulation;

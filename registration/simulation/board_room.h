@@ -12,6 +12,7 @@
 
 namespace planlight::simulation {
 
+/// The room of a calibration, with what may be wrong in it.
 struct BoardRoomSettings {
     Preset preset = Preset::modern;
     unsigned seed = 1;

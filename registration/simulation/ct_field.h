@@ -50,6 +50,7 @@ private:
     double air_ = 0;
 };
 
+/// Trilinear; `voxel` in voxels from the first centre.
 inline double CtField::sample(const std::vector<float>& values, const Eigen::Vector3d& voxel) const {
     const double x = std::floor(voxel.x()), y = std::floor(voxel.y()), z = std::floor(voxel.z());
     if (!(x >= 0 && y >= 0 && z >= 0 && x < size_[0] - 1 && y < size_[1] - 1 && z < size_[2] - 1)) return air_;

@@ -13,6 +13,8 @@ namespace planlight::simulation {
 struct WorkRegion {
     Eigen::Vector3d centre_in_ct, outwards_in_ct;
 };
+
+/// Points off the skin count by the skin nearest to them.
 WorkRegion find_work_region(const TrueSurface& skin, const std::vector<Eigen::Vector3d>& plan_points_in_ct);
 
 /// Lays the head under the projector: the region faces it within 30 degrees, at any angle about the line of sight.

@@ -28,6 +28,7 @@ struct Motion {
     Instant begins{};       ///< at rest before
 };
 
+/// A room of the evaluation, all of whose chances come from `seed`.
 struct RoomSettings {
     Preset preset = Preset::modern;
     unsigned seed = 1;                ///< of everything random: pose, noise, texture, calibration error, markers

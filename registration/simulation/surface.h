@@ -6,6 +6,7 @@
 
 namespace planlight::simulation {
 
+/// What a surface is of, for its look.
 enum class Material : std::uint8_t { none, skin, paper, ink, blood, cloth, glove, plastic, metal, hair };
 
 /// What stands in front of the rig, in its own frame (`ct` for a head, `board` for a board; below always called ct).
@@ -40,6 +41,7 @@ struct Look {
     double translucent = 0;  ///< share of the light that leaves beside where it fell
 };
 
+/// How the points of a surface reflect.
 class SurfaceLook {
 public:
     virtual ~SurfaceLook() = default;

@@ -7,6 +7,7 @@
 
 namespace planlight::simulation {
 
+/// All that the simulator knows and the product must not.
 struct TruthNumbers {
     RoomSettings settings;
     Instant at{};
@@ -17,7 +18,7 @@ struct TruthNumbers {
     double left_blur_px = 0, right_blur_px = 0, gain = 0;
 };
 
-/// The truth file's text (README.md of this room).
+/// The truth file's text (ROOM.md).
 std::string as_json(const TruthNumbers& truth);
 
 /// The devices of a rig, in the words of the truth file.

@@ -21,6 +21,7 @@ struct Ellipse {
     double distance(const Eigen::Vector2d& pixel) const;
 };
 
+/// A circle in the picture, as an ellipse.
 Ellipse circle(const Eigen::Vector2d& centre, double radius_px);
 
 /// The ellipse through edge points, those far off left out (`used` says which were kept). Algebraic fit with A + C = 2.

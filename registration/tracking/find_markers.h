@@ -23,6 +23,7 @@ struct MarkerObservation {
     double contrast = 0;    ///< grey values across the edge
 };
 
+/// What a disc must look like to be a marker's.
 struct MarkerSettings {
     double min_radius_px = 3, max_radius_px = 60;
     double min_contrast = 12;  ///< grey values

@@ -17,6 +17,7 @@ struct Sighting {
     MarkerObservation seen;
 };
 
+/// A pose and how well the sightings agree on it.
 struct PoseFit {
     RigidTransform rig_from_patient = RigidTransform::Identity();
     double residual_px = 0;  ///< rms distance in the picture
@@ -34,6 +35,7 @@ double sighting_sigma_px(const MarkerObservation& seen);
 std::optional<PoseFit> fit_pose(const RigCalibration& rig, const std::vector<PatientMarker>& markers,
                                 const std::vector<Sighting>& sightings, const RigidTransform& start);
 
+/// A pose after markers that do not agree were left out, or why there is none.
 struct CheckedPose {
     std::optional<PoseFit> fit;  ///< empty when refused
     std::vector<Sighting> used;

@@ -9,6 +9,7 @@
 
 namespace planlight {
 
+/// Which discs are which markers, and the pose that says so.
 struct ConstellationMatch {
     std::optional<RigidTransform> rig_from_patient;
     std::vector<Sighting> sightings;

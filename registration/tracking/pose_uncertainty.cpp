@@ -20,7 +20,7 @@ using Matrix32 = Eigen::Matrix<double, 3, 2>;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
 // What a good calibration (0.1 px rms over all devices) leaves, one sigma each; measured on the simulated rooms
-// (README, measure_tracking). Larger where the calibration says it is worse.
+// (ACCURACY.md, measure_tracking). Larger where the calibration says it is worse.
 constexpr double kUsualRms_px = 0.1;
 constexpr double kDirection_px = 0.045, kRoll_rad = 1e-4, kAside_px = 0.045, kDepth_mm = 0.055;
 constexpr double kFocal = 2e-4;         // with the distance that makes up for it

@@ -7,6 +7,7 @@
 
 namespace planlight {
 
+/// How far a pose is carried on, and how a head moves.
 struct PredictionSettings {
     Instant max_ahead = std::chrono::milliseconds(120);  ///< a pose is not predicted farther than this
     Instant max_gap = std::chrono::milliseconds(150);    ///< older measurements do not carry a velocity

@@ -39,10 +39,11 @@ std::vector<Sighting> one_disc_one_marker(std::vector<std::pair<double, Sighting
     std::sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<Sighting> sightings;
     for (const auto& [distance, sighting] : found) {
-        const bool taken = std::any_of(sightings.begin(), sightings.end(), [&s = sighting](const Sighting& other) {
-            return (other.seen.pixel - s.seen.pixel).norm() < 0.5 * s.seen.radius_px;
-        });
-        if (!taken) sightings.push_back(sighting);
+        const bool already_sighted =
+            std::any_of(sightings.begin(), sightings.end(), [&s = sighting](const Sighting& other) {
+                return (other.seen.pixel - s.seen.pixel).norm() < 0.5 * s.seen.radius_px;
+            });
+        if (!already_sighted) sightings.push_back(sighting);
     }
     return sightings;
 }

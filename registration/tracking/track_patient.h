@@ -10,6 +10,7 @@
 
 namespace planlight {
 
+/// What markers must agree to for a pose.
 struct TrackingSettings {
     MarkerSettings markers;
     MarkerDesign design;

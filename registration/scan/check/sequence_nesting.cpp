@@ -61,7 +61,7 @@ private:
 };
 
 /// A step of the surface, an edge of a shadow or of a stain are likely to change the light.
-bool alike(const Code& a, const Code& b) {
+bool under_same_light(const Code& a, const Code& b) {
     return b.contrast > 0 && 4 * std::abs(a.contrast - b.contrast) <= a.contrast;
 }
 
@@ -140,12 +140,12 @@ Seen look(std::span<const GrayImage> frames, const Samples& s, const Direction& 
     for (const Place& place : places) {
         for (std::size_t k = 0; k < seen.bits; ++k) seen.clear[k] += place.here.clear >> k & 1;
         for (std::size_t side = 0; side < 2; ++side)
-            if (alike(place.here, place.next[side])) look_at_edges(place.here, place.next[side], side, seen);
+            if (under_same_light(place.here, place.next[side])) look_at_edges(place.here, place.next[side], side, seen);
     }
     while (seen.resolved < direction.wide && resolved(seen, seen.resolved)) ++seen.resolved;
     for (const Place& place : places)
         for (std::size_t side = 0; side < 2; ++side)
-            if (alike(place.here, place.next[side])) look_along(place.here, place.next[side], side, seen);
+            if (under_same_light(place.here, place.next[side])) look_along(place.here, place.next[side], side, seen);
     return seen;
 }
 

@@ -66,6 +66,7 @@ struct Samples {
 Samples gather_samples(std::span<const GrayImage> frames, const StripeSettings& stripes,
                        std::vector<StripePattern> patterns);
 
+/// 0 when `all` is 0.
 inline double share_of(std::size_t part, std::size_t all) {
     return all == 0 ? 0 : static_cast<double>(part) / static_cast<double>(all);
 }

@@ -5,6 +5,7 @@
 // Sums over the neighbours of a point, several neighbours side by side. Private to registration/scan.
 namespace planlight::neighbour_kernel {
 
+/// Points side by side in one register at most.
 inline constexpr int kLanes = 8;
 
 /// Places [begin, end) of the points' arrays, one run a line of cells.

@@ -6,6 +6,7 @@
 
 namespace planlight {
 
+/// From when on a point is not of the surface.
 struct OutlierSettings {
     double max_grid_jump_mm = 3;       ///< to neighbours in the projector's grid
     double max_grazing_angle = 1.31;   ///< radians (75 degrees) between the normal and the way to the projector
@@ -20,6 +21,8 @@ struct OutlierReport {
     std::size_t jump = 0, grazing = 0, small_piece = 0, lonely = 0, thinned = 0;
 };
 
+/// By the rules in the README, in their order; normals look to the projector. A point is counted under the first that
+/// drops it.
 OutlierReport remove_outliers(const Triangulation& raw, const RigCalibration& rig,
                               const OutlierSettings& settings = {});
 

@@ -8,6 +8,7 @@
 
 namespace planlight {
 
+/// From when on a side of a triangle bridges a gap.
 struct SurfaceSettings {
     double max_edge_medians =
         4;                    ///< a triangle with a side longer than so many median sides is left out: there is a gap

@@ -90,6 +90,8 @@ struct Limits {
     float min_modulation, min_direct_fraction, sigma_by_inverse_amplitude, max_sigma_px;
     int saturated_at;
 };
+
+/// Pixels by the reason they were dropped for.
 struct Counts {
     std::uint32_t decoded = 0, dark = 0, saturated = 0, uncertain = 0;
 };

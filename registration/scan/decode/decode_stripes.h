@@ -9,6 +9,7 @@
 
 namespace planlight {
 
+/// From when on a pixel is too dark, too bright or too noisy to be read.
 struct DecodeSettings {
     double min_modulation = 4;  ///< grey values: fringe amplitude below which a pixel is dark
     int saturated_at = 254;     ///< grey value

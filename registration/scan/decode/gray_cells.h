@@ -24,6 +24,7 @@ struct GrayFrames {
     GrayDirection columns, rows;
 };
 
+/// From when on a bit is in doubt, and a bit of the whole picture is of no use.
 struct GrayCellSettings {
     double least_difference_grey = 5,
            least_share = 0.15;   ///< of (white - black): a bit that differs by less is in doubt

@@ -11,6 +11,8 @@ namespace planlight::gray_pair_kernel {
 
 /// A projector may have so many pixels a direction.
 inline constexpr int kMostPixels = 32767;
+
+/// No code; greater than any.
 inline constexpr std::uint16_t kUnknown = 65535;
 
 /// Twice the projector pixel of each code; odd between two pixels, where just the bit of their common border is in
@@ -19,6 +21,7 @@ inline constexpr std::uint16_t kUnknown = 65535;
 void find_halves(const decode_kernels::CodeBytes& code, int size, std::uint16_t* halves, std::size_t n,
                  decode_kernels::LinesAhead& ahead);
 
+/// `GrayCellSettings` in whole grey values.
 struct Limits {
     int least_grey, saturated_at;
 };

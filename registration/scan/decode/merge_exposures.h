@@ -18,6 +18,7 @@ void take_better(DecodedView& view, const DecodedView& other);
 ScanResult scan_from_exposures(std::span<const ScanCapture> captures, const RigCalibration& rig,
                                const ScanSettings& settings = {});
 
+/// Which exposure of a pixel is taken.
 struct ExposureSettings {
     double max_saturated = 0.01;  ///< share of the lit pixels of either camera above which a darker capture follows
     int most = 3;                 ///< captures

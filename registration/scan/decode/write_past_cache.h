@@ -35,6 +35,7 @@ PLANLIGHT_INLINE void fill_past_cache(float value, float* to, std::size_t n) {
     for (; i < n; ++i) to[i] = value;
 }
 
+/// Makes what was written past the caches visible to other threads.
 PLANLIGHT_INLINE void finish_writing() {
 #ifdef __SSE2__
     _mm_sfence();

@@ -55,6 +55,8 @@ std::vector<StripePattern> stripe_sequence(const StripeSettings& settings);
 
 /// Period (projector pixels) and shifts of a fringe.
 double period_of(const StripeSettings& settings, int frequency);
+
+/// Phase steps of one of the frequencies, by its place in the settings.
 int steps_of(const StripeSettings& settings, int frequency);
 
 /// Bits of the Gray code of one direction; 0 where fringes of further frequencies take its place. It counts half

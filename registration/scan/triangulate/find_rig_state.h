@@ -20,6 +20,7 @@ struct CalibrationPrior {
     double projector = 2;  ///< so much worse is the projector known
 };
 
+/// What counts as moved, and what is no bump any more.
 struct RigStateSettings {
     CalibrationPrior calibration;
     std::size_t places = 600;  ///< of the skin, looked at

@@ -8,6 +8,7 @@
 
 namespace planlight {
 
+/// Of the projector's placing by points that both cameras saw.
 struct ResectionSettings {
     bool free_intrinsics =
         false;  ///< also principal point and focal length (9 instead of 6 numbers): needs depth in the scene

@@ -26,6 +26,8 @@ struct RigFits {
     double noise =
         1;  ///< chi-squares are to be compared by this: more where the light is read with more noise than expected
 };
+
+/// `places` are those of one scan, evenly over the surface.
 RigFits fit_explanations(const std::vector<SeenPlace>& places, const RigCalibration& rig,
                          const RigStateSettings& settings);
 

@@ -13,6 +13,7 @@ inline constexpr int kRigNumbers = 10 * static_cast<int>(kRigDevices);  ///< a D
 using RigNumbers = Eigen::Matrix<double, kRigNumbers, 1>;
 using RigMatrix = Eigen::Matrix<double, kRigNumbers, kRigNumbers>;
 
+/// Every device of the rig by its ten numbers.
 RigCalibration changed(const RigCalibration& rig, const RigNumbers& numbers);
 
 /// A place of the skin as the devices see it: the pixels of both cameras and the projector's that lit it.
@@ -21,6 +22,7 @@ struct SeenPlace {
     Eigen::Vector3d p_in_rig;  ///< a start for the point
 };
 
+/// Normal equations about a rig, the places eliminated.
 struct RigResiduals {
     RigMatrix normal = RigMatrix::Zero();
     RigNumbers right = RigNumbers::Zero();

@@ -8,6 +8,7 @@
 
 namespace planlight {
 
+/// What rays must agree to, and where points may lie.
 struct TriangulationSettings {
     /// What the calibration leaves, one standard deviation of a pixel; the noise of the code is added to it. The
     /// projector is calibrated worse than the cameras: the cameras place the point, the projector checks it.

@@ -6,6 +6,7 @@
 // over all views (Gauss-Newton), weighted by their covariance. Private to registration/scan.
 namespace planlight::triangulate_kernel {
 
+/// Points of a block, so that a block stays in the first cache.
 inline constexpr int kLanes = 64;
 
 /// A device as plain numbers: `CameraModel`, its rotation row by row, and where it stands.
@@ -37,6 +38,7 @@ struct alignas(64) Points {
 void start_three(const Device& left, const Device& right, const Device& projector, Points& points);
 void start_two(const Device& camera, const Device& projector, Points& points);
 
+/// One standard deviation of a pixel by the calibration alone.
 struct Sigmas {
     double camera_px, projector_px;
 };

@@ -36,6 +36,7 @@ double worst_sigma(const Eigen::Matrix3d& covariance);
 /// point lies behind a device. Midpoint method (Hartley & Zisserman, 12.2).
 std::optional<Eigen::Vector3d> between_rays(const Ray& a, const Ray& b);
 
+/// By its distance from the projector.
 bool in_volume(const CameraModel& projector, const Eigen::Vector3d& p_in_rig, const TriangulationSettings& settings);
 
 /// The strides of settings, or those that make at most 75,000 points of this many pixels.

@@ -1,0 +1,41 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "planning_io/files/safe_write.h"
+#include "planning_io/types/error.h"
+#include "tests/support/test_data.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::size_t files_in(const fs::path& folder) {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+TEST(SafeWrite, AFailedWriteLeavesTheOldFileAndNothingElse) {
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.path() / "a.txt";
+    write_safely(file, "old");
+    EXPECT_THROW(write_safely(file, [](std::ostream& out) { out.setstate(std::ios::badbit); }), DiskError);
+    EXPECT_THROW(write_safely(file, [](std::ostream&) { throw std::runtime_error("stop"); }), std::runtime_error);
+    EXPECT_EQ(read_whole(file), "old");
+    EXPECT_EQ(files_in(folder.path()), 1u);
+    EXPECT_THROW(write_safely(folder.path() / "no" / "folder.txt", "x"), DiskError);
+    if (fs::is_character_file("/dev/full")) {
+        EXPECT_THROW(write_safely("/dev/full", "x"), DiskError) << "a full disk is told";
+        EXPECT_TRUE(fs::is_character_file("/dev/full")) << "a device is never replaced by a file";
+    }
+    EXPECT_THROW(write_safely(folder.path(), "x"), DiskError);
+    fs::create_symlink(file, folder.path() / "link");
+    write_safely(folder.path() / "link", "new");
+    EXPECT_EQ(read_whole(file), "new");
+    EXPECT_TRUE(fs::is_symlink(folder.path() / "link"));
+    EXPECT_THROW(read_whole(folder.path()), InputError);
+    EXPECT_THROW(read_whole(folder.path() / "none"), InputError);
+}
+
+}  // namespace
+}  // namespace planlight

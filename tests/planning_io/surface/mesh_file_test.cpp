@@ -1,0 +1,97 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+
+#include "planning_io/files/safe_write.h"
+#include "planning_io/surface/mesh_file.h"
+#include "planning_io/types/error.h"
+#include "tests/support/analytic_head.h"
+#include "tests/support/test_data.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+
+TEST(MeshFile, ReadsBackBitForBitWithNormalsFlagsAndThickness) {
+    const test::TemporaryFolder folder;
+    TriangleMesh mesh = test::analytic_head_mesh(12);
+    mesh.flags.assign(mesh.vertices_in_ct.size(), kSkin);
+    mesh.flags[5] = kCutPlane;
+    mesh.thickness_mm.assign(mesh.vertices_in_ct.size(), 4.25F);
+    mesh.thickness_mm[5] = std::numeric_limits<float>::quiet_NaN();
+    write_mesh(mesh, folder.path() / "m.ply");
+    const TriangleMesh back = read_mesh(folder.path() / "m.ply");
+    EXPECT_EQ(back.vertices_in_ct, mesh.vertices_in_ct);
+    EXPECT_EQ(back.triangles, mesh.triangles);
+    EXPECT_EQ(back.normals_in_ct, mesh.normals_in_ct);
+    EXPECT_EQ(back.flags, mesh.flags);
+    ASSERT_EQ(back.thickness_mm.size(), mesh.thickness_mm.size());
+    EXPECT_TRUE(std::isnan(back.thickness_mm[5]));
+    EXPECT_EQ(back.thickness_mm[6], 4.25F);
+    EXPECT_EQ(hash_of(back), hash_of(mesh));
+    std::swap(mesh.triangles[0][1], mesh.triangles[0][2]);
+    EXPECT_NE(hash_of(back), hash_of(mesh));
+    const std::string whole = read_whole(folder.path() / "m.ply");
+    for (const std::size_t cut : {1u, 5u, 1000u, 20000u}) {
+        write_safely(folder.path() / "m.ply", whole.substr(0, whole.size() - cut));
+        EXPECT_THROW(read_mesh(folder.path() / "m.ply"), DamagedFileError);
+    }
+    mesh.thickness_mm[7] = -1;
+    write_mesh(mesh, folder.path() / "m.ply");
+    EXPECT_THROW(read_mesh(folder.path() / "m.ply"), DamagedFileError);
+}
+
+TEST(MeshFile, AnotherProgramsPlyNeedsItsSpace) {
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.path() / "m.ply";
+    const auto text = [](const std::string& comment) {
+        return "ply\nformat ascii 1.0\n" + comment +
+               "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty uchar red\n"
+               "element face 1\nproperty list uchar uint vertex_index\nend_header\n1 2 3 9\n2 2 3 9\n2 3 3 9\n1 3 3.5 "
+               "9\n4 0 1 2 3\n";
+    };
+    write_safely(file, text(""));
+    EXPECT_THROW(read_mesh(file), InputError);
+    write_safely(file, text("comment SPACE=LPS\ncomment SPACE=RAS\n"));
+    EXPECT_THROW(read_mesh(file), InputError);
+    write_safely(file, text("comment 3D Slicer output. SPACE=RAS\n"));
+    const TriangleMesh mesh = read_mesh(file);
+    EXPECT_EQ(mesh.vertices_in_ct[3], Vector3d(-1, -3, 3.5));
+    EXPECT_EQ(mesh.triangles, (std::vector<std::array<std::int32_t, 3>>{{0, 1, 2}, {0, 2, 3}}));
+    std::string outside = text("comment SPACE=LPS\n");
+    outside[outside.size() - 2] = '4';
+    write_safely(file, outside);
+    EXPECT_THROW(read_mesh(file), DamagedFileError);
+    write_safely(file, "solid stl");
+    EXPECT_THROW(read_mesh(file), InputError);
+}
+
+TEST(CloudFile, ReadsBackWithAndWithoutItsOptionalColumns) {
+    const test::TemporaryFolder folder;
+    PointCloud cloud;
+    cloud.points_in_rig = {{1.0 / 3, 2, 3}, {4, 5, 600.25}};
+    write_cloud(cloud, folder.path() / "bare.ply");
+    EXPECT_EQ(read_cloud(folder.path() / "bare.ply").points_in_rig, cloud.points_in_rig);
+    EXPECT_TRUE(read_cloud(folder.path() / "bare.ply").normals_in_rig.empty());
+    cloud.normals_in_rig = {{0, 0, -1}, {0, 0.6, -0.8}};
+    cloud.sigma_mm = {0.1F, 0.2F};
+    cloud.pixels_in_projector = {{1.25, 3}, {1919.5, 7.0 / 3}};
+    write_cloud(cloud, folder.path() / "full.ply");
+    const PointCloud back = read_cloud(folder.path() / "full.ply");
+    EXPECT_EQ(back.points_in_rig, cloud.points_in_rig);
+    EXPECT_EQ(back.normals_in_rig, cloud.normals_in_rig);
+    EXPECT_EQ(back.sigma_mm, cloud.sigma_mm);
+    EXPECT_EQ(back.pixels_in_projector, cloud.pixels_in_projector);
+    TriangleMesh mesh;
+    mesh.vertices_in_ct = cloud.points_in_rig;
+    write_mesh(mesh, folder.path() / "mesh.ply");
+    EXPECT_THROW(read_cloud(folder.path() / "mesh.ply"), InputError) << "a mesh in ct is no cloud in rig";
+    EXPECT_THROW(read_mesh(folder.path() / "full.ply"), InputError);
+}
+
+}  // namespace
+}  // namespace planlight
