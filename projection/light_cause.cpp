@@ -65,7 +65,8 @@ TurnedProjector fit_projector(const std::vector<LightSample>& samples) {
 
 struct Lateness {
     double low_s = 0, high_s = 0, effect_mm = 0, left_mm2 = 0;
-    int frames = 0;  ///< in which it makes a difference: one jerk of the head is no delay
+    int frames = 0;  ///< in which it makes a difference, and the time they cover: one jerk of the head is no delay
+    Instant span{};
     double middle_s() const { return (low_s + high_s) / 2; }
 };
 
@@ -79,13 +80,13 @@ Lateness fit_delay(const std::vector<LightSample>& samples, const std::vector<do
     std::size_t low = best, high = best;
     while (low > 0 && left[low - 1] <= alike) --low;
     while (high + 1 < left.size() && left[high + 1] <= alike) ++high;
-    Lateness fit{delays_s[low], delays_s[high], 0, left[best], 0};
+    Lateness fit{delays_s[low], delays_s[high], 0, left[best], 0, {}};
     constexpr double kDifference_mm = 0.1;
     double sum = 0, weight = 0;
     Instant counted = Instant::min();
     for (const LightSample& s : samples) {
         if (s.at != counted && std::abs(s.by_delay_mm[best] - s.told_mm) > kDifference_mm) {
-            ++fit.frames;
+            if (fit.frames++ > 0) fit.span += s.at - counted;
             counted = s.at;
         }
         sum += s.weight * std::pow(s.by_delay_mm[best] - s.told_mm, 2);
@@ -214,6 +215,7 @@ private:
     /// The delay of that part of the last seconds which a delay explains best: it may have begun just now, and takes
     /// movement to be told.
     std::pair<Lateness, double> best_delay(const std::vector<double>& delays_s) const {
+        constexpr Instant kLeastSpan = std::chrono::milliseconds(250);
         std::pair<Lateness, double> best{{}, 0};
         for (const Instant window : {settings_.least, settings_.window, 2 * settings_.window, settings_.long_window}) {
             const auto samples = light_samples(facts_, now() - window, rig_, delays_s);
@@ -222,7 +224,7 @@ private:
             const Lateness late = fit_delay(samples, delays_s);
             const double explained = 1 - late.left_mm2 / std::max(unexplained, 1e-9);
             if (late.effect_mm >= settings_.least_effect_mm && late.frames > settings_.least_checks &&
-                explained > best.second)
+                late.span >= kLeastSpan && explained > best.second)
                 best = {late, explained};
         }
         return best;

@@ -135,13 +135,18 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
         return ruling;
     }
     ruling.trust = LightTrust::look;
-    if (rule_on_measurement(at, ruling)) return ruling;
+    const auto wrong = std::find_if(causes.begin(), causes.end(), [](const LightCause& c) { return c.light_is_wrong; });
+    if (rule_on_measurement(at, ruling)) {
+        if (wrong == causes.end()) return ruling;
+        ruling.headline = "LOOK: " + wrong->headline();  // its sentence and remedy follow
+        ruling.details.clear();
+        return ruling;
+    }
     if (skin_off_mm_ > settings_.warn_mm) {
         ruling.headline = fmt::format("LOOK: the skin lies {:.1f} mm off where the markers put it.", skin_off_mm_);
         ruling.details = {"Check the skin again; if it stays so, scan and match anew."};
         return ruling;
     }
-    const auto wrong = std::find_if(causes.begin(), causes.end(), [](const LightCause& c) { return c.light_is_wrong; });
     if (wrong != causes.end()) {
         ruling.headline = "LOOK: " + wrong->headline();
         return ruling;
@@ -158,8 +163,8 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
     }
     ruling.trust = LightTrust::aligned;
     ruling.headline = "The plan is on the skin.";
-    ruling.details = {
-        fmt::format("Measured by the cameras: 95 % of the light within {:.1f} mm of the plan.", last_->off_mm)};
+    ruling.details = {fmt::format("Measured by the cameras: 95 % of the light within {:.1f} mm of the plan.",
+                                  std::max(0.1, last_->off_mm))};
     return ruling;
 }
 
