@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "app/belonging.h"
+#include "app/verify_landmarks.h"
 #include "planning_io/types/error.h"
 #include "projection/skin_now.h"
 #include "registration/scan/decode/merge_exposures.h"
@@ -12,6 +13,12 @@
 
 namespace planlight {
 namespace {
+
+/// The drawing without the strokes of other items, for a check of that one alone.
+PlanDrawing only(PlanDrawing drawing, std::size_t item) {
+    std::erase_if(drawing.strokes, [&](const Stroke& stroke) { return stroke.item != static_cast<int>(item); });
+    return drawing;
+}
 
 double elapsed_s(std::chrono::steady_clock::time_point since) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
@@ -134,12 +141,16 @@ void Session::take_reference(const ScanCapture& capture) {
                                "Paste markers where both cameras see them, or turn the light up, and scan again.");
 }
 
-/// The paper's patient must not move during the scan; ours is asked once more under white light after the last picture.
-double Session::moved_at_the_end_mm() {
+TrackedPose Session::pose_under_white() {
     const DarkOnExit dark(projector_);
     const RgbImage white(projector_.width(), projector_.height(), {255, 255, 255});
     const Instant lit_from = projector_.show(white, clock_.now() + settings_.patience);
-    const TrackedPose pose = tracker_.update(cameras_.grab(lit_from, settings_.patience));
+    return tracker_.update(cameras_.grab(lit_from, settings_.patience));
+}
+
+/// The paper's patient must not move during the scan; ours is asked once more under white light after the last picture.
+double Session::moved_at_the_end_mm() {
+    const TrackedPose pose = pose_under_white();
     if (!pose.rig_from_patient)
         throw CheckFailedError("the markers were lost during the scan: " + pose.reason,
                                "Free the markers and scan again.");
@@ -157,6 +168,8 @@ const RegistrationResult& Session::find_patient(const std::vector<PointPair>& la
     settings.viewpoint_in_rig = rig_.projector.centre_in_rig();
     confirmed_ = false;
     overlay_.reset();
+    landmarks_.reset();
+    lit_landmark_.reset();
     registration_ = register_with_landmarks(scanned_->clean.kept, case_.lut, landmarks, settings);
     registration_->moved_in_scan_mm = motion_in_scan_mm_;
     take_case_and_rig(case_, rig_state_, *registration_);
@@ -184,15 +197,42 @@ void Session::start_overlay() {
     auto& keep_dark = settings_.overlay.render.keep_dark_in_patient;
     keep_dark.clear();
     for (const auto& marker : tracker_.markers()) keep_dark.push_back(marker.centre_in_patient);
+    settings_.overlay.render.only_item = lit_landmark_ ? static_cast<int>(*lit_landmark_) : -1;
     overlay_ =
-        std::make_unique<OverlayLoop>(projector_, clock_, *renderer_, drawing(), *registration_, settings_.overlay);
+        std::make_unique<OverlayLoop>(projector_, clock_, *renderer_, lit_drawing(), *registration_, settings_.overlay);
     if (confirmed_) overlay_->set_operator_confirmed(true);
     overlay_->set_light_delay(settings_.overlay.light_delay + found_delay_);
-    checker_.emplace(drawing(), now_ ? now_->skin : planned_.skin, rig_, settings_.check_light);
+    checker_.emplace(lit_landmark_ ? only(lit_drawing(), *lit_landmark_) : drawing(), skin_of_light(), rig_,
+                     settings_.check_light);
     watch_.emplace(rig_, settings_.light_cause);
     jumps_.emplace(rig_);
     shown_.clear();
     seen_until_ = clock_.now();
+    lit_since_ = Instant::max();
+}
+
+const std::vector<Eigen::Vector3d>& Session::landmarks() {
+    if (landmarks_) return *landmarks_;
+    landmarks_ = landmarks_to_verify(skin_of_light(), rig_, registration_->patient_from_ct);
+    Plan plan;
+    for (std::size_t i = 0; i < landmarks_->size(); ++i) {
+        constexpr double kRing_mm = 10;
+        Borehole ring;
+        ring.name = fmt::format("Landmark {}", i + 1);
+        ring.position_in_ct = (*landmarks_)[i];
+        ring.diameter_mm = kRing_mm;
+        plan.boreholes.push_back(ring);
+    }
+    DrawingSettings drawing;
+    drawing.labels = false;
+    landmark_drawing_ = draw_plan(plan, skin_of_light(), drawing);
+    return *landmarks_;
+}
+
+void Session::light_landmark(std::optional<std::size_t> which) {
+    if (which == lit_landmark_) return;
+    overlay_.reset();
+    lit_landmark_ = which && *which < landmarks().size() ? which : std::nullopt;
 }
 
 Session::Update Session::update() {
@@ -259,7 +299,9 @@ void Session::watch_light(Update& update) {
 void Session::correct_delay(const std::vector<LightCause>& causes) {
     if (causes.empty() || causes.front().fault != LightFault::late_picture) return;
     const Instant more = from_seconds(causes.front().size / 1e3);
-    if (found_delay_ + more > settings_.most_delay_corrected) return;
+    if (found_delay_ + more > settings_.most_delay_corrected ||
+        settings_.overlay.light_delay + found_delay_ + more < Instant{})
+        return;
     found_delay_ += more;
     overlay_->set_light_delay(settings_.overlay.light_delay + found_delay_);
     watch_->forget();

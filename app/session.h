@@ -25,13 +25,14 @@ struct SessionSettings {
     TrackingSettings tracking;
     OverlaySettings overlay;
     CheckLightSettings check_light;
-    int check_light_every = 3;  ///< updates; 0: the light is not measured
+    int check_light_every = 2;  ///< updates; 0: the light is not measured
     LightCauseSettings light_cause;
     /// Light that comes later than told is drawn ahead by so much at most; 0: it is said only.
     std::chrono::milliseconds most_delay_corrected{60};
     double max_motion_in_scan_mm = 0.15;  ///< of any marker between two moments of a scan; above: the scan is repeated
     int max_scans = 3;                    ///< so often at most, then refused
-    int min_reference_markers = 5;        ///< found in both pictures at the scan
+    double max_motion_in_skin_check_mm = 0.3;  ///< of any marker during a check of the skin; above: no answer
+    int min_reference_markers = 5;             ///< found in both pictures at the scan
     std::chrono::milliseconds patience{1000};
     /// Called between seeing and showing, so that a simulated clock can be told how long the computing took. May be
     /// empty.
@@ -53,6 +54,16 @@ struct CaseDrawing {
 private:
     CaseDrawing(const Case& the_case, const CaseDrawing& planned, const SkinDisplacementField& found,
                 const DrawingSettings& how);
+};
+
+/// Where the skin lies against where the markers put it, by a short scan.
+struct SkinCheck {
+    bool known = false;
+    std::string why_not;     ///< why it is not known, in words
+    std::size_t points = 0;  ///< of skin, scanned
+    double off_mm = 0;       ///< of the plan's point that lies farthest off
+    double bound_mm = 0;     ///< how far off the scan itself may be there, 95 %
+    double moved_meanwhile_mm = 0;
 };
 
 /// The times of one tracked update: the product's own work.
@@ -98,6 +109,18 @@ public:
     };
     Update update();
 
+    /// The short scan: some 15 pictures (a second), columns only, laid on the skin from CT as the match was. Sees what
+    /// the light's own check cannot: markers that moved on the head all together, a head that slid under its cap. The
+    /// projector is dark afterwards until the next `update`. Throws CheckFailedError without a match, DeviceError.
+    SkinCheck check_skin(const std::function<void(int, int)>& progress = {});
+
+    /// Places at which a person can judge the light (`landmarks_to_verify`), found anew for each match; ct, mm.
+    const std::vector<Eigen::Vector3d>& landmarks();
+    /// From the next `update` on this landmark alone is lit, as a ring with a cross; empty: the plan.
+    void light_landmark(std::optional<std::size_t> which);
+    /// What is lit: the plan, or the landmarks.
+    const PlanDrawing& lit_drawing() const { return lit_landmark_ ? landmark_drawing_ : drawing(); }
+
     /// How much later than told the light of this match was found to be; it is drawn ahead by that.
     Instant found_delay() const { return found_delay_; }
 
@@ -128,6 +151,9 @@ private:
     void draw_on_skin_as_found();
     void start_overlay();
     std::optional<LightCheck> look_at_light(const Update& update);
+    TrackedPose pose_under_white();
+    void compare_skin(const PointCloud& cloud, const RigidTransform& rig_from_ct, SkinCheck& check) const;
+    const SkinSurface& skin_of_light() const { return now_ ? now_->skin : planned_.skin; }
     void watch_light(Update& update);
     void note_shown(const OverlayStep& overlay);
     void correct_delay(const std::vector<LightCause>& causes);
@@ -154,6 +180,9 @@ private:
     std::vector<ShownPicture> shown_;
     Instant found_delay_{};
     Instant seen_until_{};  ///< end of the last exposure that was used
+    std::optional<std::vector<Eigen::Vector3d>> landmarks_;
+    PlanDrawing landmark_drawing_;
+    std::optional<std::size_t> lit_landmark_;
     Instant lit_since_ = Instant::max();  ///< light without a break; max: it is dark
     int updates_ = 0;
     bool confirmed_ = false;  ///< the last match, by the operator

@@ -107,6 +107,7 @@ void sum_up(LightCheck& check) {
     }
     check.seen = static_cast<int>(sizes.size());
     check.off_mm = quantile(sizes, 0.95);
+    check.most_mm = quantile(sizes, 2.0 / 3);
     check.median_mm = median(std::move(sizes));
     check.sigma_mm = median(std::move(sigmas));
     check.background = median(std::move(backgrounds));
@@ -138,7 +139,8 @@ struct LightChecker::Parts {
     const SkinSurface& skin;
     const RigCalibration& rig;
     CheckLightSettings settings;
-    std::size_t items;
+    std::vector<ItemLight> items;                   ///< names only
+    std::vector<std::optional<StrokePlace>> apart;  ///< of each item without a segment, a place on it
     std::vector<StrokeSegment> segments;
     std::vector<Sight> sights;
     std::size_t turn = 0;
@@ -177,8 +179,11 @@ void LightChecker::Parts::look_around(const RigidTransform& rig_from_ct) {
 
 LightChecker::LightChecker(const PlanDrawing& drawing, const SkinSurface& skin, const RigCalibration& rig,
                            const CheckLightSettings& settings)
-    : parts_(new Parts{skin, rig, settings, drawing.items.size(), segments_of(drawing, settings), {}, 0, 0, {}}) {
+    : parts_(new Parts{skin, rig, settings, {}, {}, segments_of(drawing, settings), {}, 0, 0, {}}) {
     parts_->sights.resize(parts_->segments.size());
+    parts_->apart = places_of_items(drawing);
+    for (const StrokeSegment& segment : parts_->segments) parts_->apart[static_cast<std::size_t>(segment.item)].reset();
+    for (const DrawnItem& item : drawing.items) parts_->items.emplace_back().name = item.name;
 }
 LightChecker::~LightChecker() = default;
 LightChecker::LightChecker(LightChecker&&) noexcept = default;
@@ -186,8 +191,13 @@ LightChecker::LightChecker(LightChecker&&) noexcept = default;
 LightCheck LightChecker::look(const RigidTransform& rig_from_ct, const StereoFrame& frame) {
     Parts& p = *parts_;
     LightCheck check;
-    check.items.resize(p.items);
+    check.items = p.items;
     p.look_around(rig_from_ct);
+    for (std::size_t i = 0; i < p.items.size(); ++i)
+        check.items[i].lit =
+            p.apart[i] && freely_seen(*p.apart[i], p.skin, p.rig.projector, rig_from_ct, p.settings.steepest);
+    for (std::size_t i = 0; i < p.segments.size(); ++i)
+        if (p.sights[i].lit) check.items[static_cast<std::size_t>(p.segments[i].item)].lit = true;
     const auto segments = p.segments.size();
     const std::size_t most = std::max<std::size_t>(1, p.settings.most_segments);
     const std::size_t step = std::max<std::size_t>(1, (segments + most - 1) / most);

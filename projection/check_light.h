@@ -43,6 +43,8 @@ struct SeenSegment {
 
 /// Where one item's light lies against the plan.
 struct ItemLight {
+    std::string name;
+    bool lit = false;  ///< the projector's light reaches it; a camera may not see it, or not apart from other light
     int segments = 0, seen = 0;  ///< stretches that should be seen by a camera, and those where light was found
     Eigen::Vector3d shift_in_ct = Eigen::Vector3d::Zero();  ///< of the light along the skin, mm
     double off_mm = 0;                                      ///< its length, in the directions that the strokes tell
@@ -58,6 +60,7 @@ struct LightCheck {
     int expected = 0, seen = 0;  ///< segments
     double off_mm = 0;           ///< 95 % of the segments' sides lie within this; 0 when nothing was seen
     double median_mm = 0;
+    double most_mm = 0;  ///< a third of the sides lie beyond this: light as a whole, not what falls on a hand before it
     double sigma_mm = 0;    ///< of a single segment, median
     double background = 0;  ///< grey of the skin beside the strokes, median; 0 when no camera looked
     /// True where the segments that were seen tell the light's place in two directions along the skin. Straight lines

@@ -65,6 +65,8 @@ TurnedProjector fit_projector(const std::vector<LightSample>& samples) {
 
 struct Lateness {
     double low_s = 0, high_s = 0, effect_mm = 0, left_mm2 = 0;
+    int frames = 0;  ///< in which it makes a difference, and the time they cover: one jerk of the head is no delay
+    Instant span{};
     double middle_s() const { return (low_s + high_s) / 2; }
 };
 
@@ -78,9 +80,15 @@ Lateness fit_delay(const std::vector<LightSample>& samples, const std::vector<do
     std::size_t low = best, high = best;
     while (low > 0 && left[low - 1] <= alike) --low;
     while (high + 1 < left.size() && left[high + 1] <= alike) ++high;
-    Lateness fit{delays_s[low], delays_s[high], 0, left[best]};
+    Lateness fit{delays_s[low], delays_s[high], 0, left[best], 0, {}};
+    constexpr double kDifference_mm = 0.1;
     double sum = 0, weight = 0;
+    Instant counted = Instant::min();
     for (const LightSample& s : samples) {
+        if (s.at != counted && std::abs(s.by_delay_mm[best] - s.told_mm) > kDifference_mm) {
+            if (fit.frames++ > 0) fit.span += s.at - counted;
+            counted = s.at;
+        }
         sum += s.weight * std::pow(s.by_delay_mm[best] - s.told_mm, 2);
         weight += s.weight;
     }
@@ -179,18 +187,16 @@ private:
     /// Light beside its place: the explanation that leaves least.
     void look_at_place() {
         std::vector<double> delays_s;
-        for (double d = 0; d <= settings_.most_delay_s; d += settings_.delay_step_s) delays_s.push_back(d);
+        constexpr double kEarliest_s = -0.04;  // light may also come earlier than told, as after a delay that went by
+        for (double d = kEarliest_s; d <= settings_.most_delay_s; d += settings_.delay_step_s) delays_s.push_back(d);
         const auto recent = light_samples(facts_, now() - settings_.window, rig_, delays_s);
         if (checks_since(now() - settings_.window) < settings_.least_checks || recent.empty()) return;
         const auto told = [](const LightSample& s) { return s.told_mm; };
         const double unexplained = left_mm2(recent, told);
         const TurnedProjector turned = fit_projector(recent);
-        const auto longer = light_samples(facts_, now() - settings_.long_window, rig_, delays_s);
-        const Lateness late = fit_delay(longer, delays_s);
-        const double unexplained_longer = left_mm2(longer, told);
         const double explained_by_turn = 1 - turned.left_mm2 / std::max(unexplained, 1e-9);
-        const double explained_by_delay = 1 - late.left_mm2 / std::max(unexplained_longer, 1e-9);
-        const bool is_late = late.middle_s() >= settings_.least_delay_s &&
+        const auto [late, explained_by_delay] = best_delay(delays_s);
+        const bool is_late = std::abs(late.middle_s()) >= settings_.least_delay_s &&
                              late.effect_mm >= settings_.least_effect_mm && explained_by_delay > 0.5;
         const bool is_turned = turned.size_mm >= settings_.least_off_mm && explained_by_turn > 0.5;
         if (is_late && (!is_turned || explained_by_delay > explained_by_turn - 0.1)) {
@@ -204,6 +210,24 @@ private:
         } else if (std::sqrt(unexplained) >= 2 * settings_.least_off_mm) {
             add(LightFault::light_off, std::sqrt(unexplained), 0.5);
         }
+    }
+
+    /// The delay of that part of the last seconds which a delay explains best: it may have begun just now, and takes
+    /// movement to be told.
+    std::pair<Lateness, double> best_delay(const std::vector<double>& delays_s) const {
+        constexpr Instant kLeastSpan = std::chrono::milliseconds(250);
+        std::pair<Lateness, double> best{{}, 0};
+        for (const Instant window : {settings_.least, settings_.window, 2 * settings_.window, settings_.long_window}) {
+            const auto samples = light_samples(facts_, now() - window, rig_, delays_s);
+            if (checks_since(now() - window) < settings_.least_checks) continue;
+            const double unexplained = left_mm2(samples, [](const LightSample& s) { return s.told_mm; });
+            const Lateness late = fit_delay(samples, delays_s);
+            const double explained = 1 - late.left_mm2 / std::max(unexplained, 1e-9);
+            if (late.effect_mm >= settings_.least_effect_mm && late.frames > settings_.least_checks &&
+                late.span >= kLeastSpan && explained > best.second)
+                best = {late, explained};
+        }
+        return best;
     }
 
     int checks_since(Instant from) const {
@@ -250,10 +274,37 @@ std::vector<LightCause> find_causes(const std::vector<LightFacts>& facts, const 
     return Judgement(facts, rig, usual_background, settings).causes();
 }
 
+std::string LightCause::headline() const {
+    switch (fault) {
+        case LightFault::late_picture:
+            return size < 0 ? "the light comes early." : "the light comes late.";
+        case LightFault::projector_moved:
+            return "the projector has moved.";
+        case LightFault::left_camera_moved:
+            return "the left camera has moved.";
+        case LightFault::right_camera_moved:
+            return "the right camera has moved.";
+        case LightFault::marker_slipped:
+            return "a marker has slipped.";
+        case LightFault::markers_moved:
+            return "the markers have moved on the patient.";
+        case LightFault::no_picture:
+            return "no light of the plan is seen.";
+        case LightFault::other_picture:
+            return "the projector shows another picture.";
+        case LightFault::partly_covered:
+            return "a part of the light is covered.";
+        case LightFault::light_off:
+            return "the light lies aside.";
+    }
+    return {};
+}
+
 std::string LightCause::sentence() const {
     const std::string by = size > 0 ? fmt::format(": its light lies {:.1f} mm aside", size) : "";
     switch (fault) {
         case LightFault::late_picture:
+            if (size < 0) return fmt::format("The light comes {:.0f} ms earlier than the projector promises.", -size);
             return high - low < 4
                        ? fmt::format("The light comes {:.0f} ms later than the projector promises.", size)
                        : fmt::format("The light comes {:.0f} to {:.0f} ms later than the projector promises.", low,

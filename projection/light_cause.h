@@ -48,7 +48,7 @@ struct LightFacts {
 };
 
 struct LightCauseSettings {
-    Instant window = std::chrono::milliseconds(1000);       ///< that light beside its place is judged over
+    Instant window = std::chrono::milliseconds(600);        ///< that light beside its place is judged over
     Instant long_window = std::chrono::milliseconds(2500);  ///< a delay takes movement to be seen: it may have so long
     Instant least = std::chrono::milliseconds(350);         ///< a fault must show for so long
     int least_checks = 3;
@@ -66,11 +66,12 @@ struct LightCauseSettings {
 /// A cause with its size, likeliest first.
 struct LightCause {
     LightFault fault = LightFault::light_off;
-    double size = 0;             ///< ms of a late picture; else mm on the skin; share seen of light that is not seen
-    double low = 0, high = 0;    ///< of a delay, ms: all in between explain the frames alike
-    int marker = -1;             ///< that slipped
-    double share = 0;            ///< of what is unexplained, explained; 1 where it is seen directly
-    bool light_is_wrong = true;  ///< false: it is noticed and dealt with, and the light lies where it belongs
+    double size = 0;               ///< ms of a late picture; else mm on the skin; share seen of light that is not seen
+    double low = 0, high = 0;      ///< of a delay, ms: all in between explain the frames alike
+    int marker = -1;               ///< that slipped
+    double share = 0;              ///< of what is unexplained, explained; 1 where it is seen directly
+    bool light_is_wrong = true;    ///< false: it is noticed and dealt with, and the light lies where it belongs
+    std::string headline() const;  ///< a few words for the banner
     std::string sentence() const;
     std::string remedy() const;
 };

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace planlight {
 
 void LightGate::verify(Instant at) {
@@ -9,43 +11,111 @@ void LightGate::verify(Instant at) {
     lit_at_ = at;
 }
 
-void LightGate::new_match() {
-    verified_ = stopped_ = false;
+void LightGate::forget() {
     good_ = bad_ = 0;
     last_.reset();
+    items_.clear();
+    told_whole_at_ = Instant::min();
+}
+
+void LightGate::skin_checked(double off_mm) {
+    skin_off_mm_ = off_mm;
+    if (off_mm > settings_.stop_mm) stopped_ = true;
+}
+
+void LightGate::new_match() {
+    verified_ = stopped_ = false;
+    skin_off_mm_ = 0;
+    forget();
 }
 
 void LightGate::restart() {
-    stopped_ = false;
-    good_ = bad_ = 0;
-    last_.reset();
+    stopped_ = skin_off_mm_ > settings_.stop_mm;  // only a new match mends that
+    forget();
 }
 
 void LightGate::take(Instant at, const LightCheck& check) {
     last_ = check;
     measured_at_ = at;
+    if (check.told_whole) told_whole_at_ = at;
+    items_.resize(check.items.size());
+    for (std::size_t i = 0; i < items_.size(); ++i) {
+        const ItemLight& item = check.items[i];
+        items_[i].name = item.name;
+        if (item.lit) items_[i].lit_at = at;
+        if (item.segments == 0 || item.seen < settings_.least_seen_of_item * item.segments) continue;
+        items_[i].seen_at = at;
+        items_[i].off_mm = item.off_mm;
+    }
     const bool measured = check.seen >= settings_.least_seen && check.seen_share() >= settings_.least_seen_share;
-    const bool far = measured && check.off_mm > settings_.stop_mm;
+    const bool far = check.seen >= settings_.least_seen && check.most_mm > settings_.stop_mm;
     bad_ = far ? bad_ + 1 : 0;
     good_ = measured && check.off_mm <= settings_.warn_mm ? good_ + 1 : 0;
     if (bad_ >= settings_.dark_after) stopped_ = true;
 }
 
-LightGate::Ruling LightGate::step(Instant at, bool lit, const std::optional<LightCheck>& check) {
+LightGate::Ruling LightGate::step(Instant at, bool lit, const std::optional<LightCheck>& check,
+                                  const std::vector<LightCause>& causes) {
     if (lit && verified_ && at - lit_at_ > settings_.verified_for) verified_ = false;
+    if (lit && !lit_) lit_since_ = at;
+    lit_ = lit;
     if (lit) lit_at_ = at;
     if (check && lit) take(at, *check);
-    if (!lit) {
-        good_ = bad_ = 0;
-        last_.reset();
-    }
-    Ruling ruling = rule(at);
+    if (!lit) forget();
+    Ruling ruling = rule(at, causes);
     if (!lit && !stopped_) ruling = {};
+    for (const LightCause& cause : causes) {
+        ruling.details.push_back(cause.sentence());
+        ruling.details.push_back(cause.remedy());
+    }
     return ruling;
 }
 
-/// The table of the README, from the gravest down.
-LightGate::Ruling LightGate::rule(Instant at) const {
+/// The light as measured, from the gravest down; false when nothing is wrong with it.
+bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
+    if (!last_ || !within_fresh(measured_at_, at)) {
+        if (!last_ && at - lit_since_ <= settings_.fresh) {
+            ruling.headline = "LOOK: the light is being measured.";
+            return true;
+        }
+        ruling.headline = "LOOK: the light is not measured.";
+        ruling.details = {
+            "The cameras have not measured the light for a second or more: look at it on landmarks before you use it."};
+        return true;
+    }
+    if (last_->seen < settings_.least_seen || last_->seen_share() < settings_.least_seen_share) {
+        ruling.headline = "LOOK: the cameras do not see the light.";
+        ruling.details = {fmt::format("They see {} of {} stretches.", last_->seen, last_->expected)};
+        return true;
+    }
+    if (last_->off_mm > settings_.warn_mm) {
+        ruling.headline = fmt::format("LOOK: the light lies up to {:.1f} mm beside the plan.", last_->off_mm);
+        ruling.details = {"Wait until the patient lies still; if it stays so, scan again."};
+        return true;
+    }
+    for (const Item& item : items_) {
+        if (!within_fresh(item.lit_at, at)) continue;
+        if (!within_fresh(item.seen_at, at)) {
+            ruling.headline = fmt::format("LOOK: \"{}\" is not measured.", item.name);
+            ruling.details = {"The cameras do not see its light, or not apart from other light: look at it yourself."};
+            return true;
+        }
+        if (item.off_mm > settings_.warn_mm) {
+            ruling.headline = fmt::format("LOOK: \"{}\" lies {:.1f} mm beside its place.", item.name, item.off_mm);
+            ruling.details = {"Look at it on the skin; if it stays so, scan again."};
+            return true;
+        }
+    }
+    if (!within_fresh(told_whole_at_, at)) {
+        ruling.headline = "LOOK: the light is measured in one direction only.";
+        ruling.details = {"Straight lines tell nothing along themselves: look at their ends on the skin."};
+        return true;
+    }
+    return false;
+}
+
+/// The table of GATE.md, from the gravest down.
+LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& causes) const {
     Ruling ruling;
     ruling.ask_to_verify = !verified_;
     if (last_ && last_->seen > 0) {
@@ -54,34 +124,37 @@ LightGate::Ruling LightGate::rule(Instant at) const {
     }
     if (stopped_) {
         ruling.stop = true;
+        if (skin_off_mm_ > settings_.stop_mm) {
+            ruling.headline = fmt::format("Dark: the skin lies {:.1f} mm off where the markers put it.", skin_off_mm_);
+            ruling.details = {
+                "The markers have moved on the patient, or the patient under them: fix them, and scan again."};
+            return ruling;
+        }
         ruling.headline = fmt::format("Dark: the light lay {:.1f} mm beside the plan.", ruling.off_mm.value_or(0));
-        ruling.details = {
-            "The cameras measured it twice: the projector, a camera or a marker has moved, or the picture is late.",
-            "Scan again; if it comes back, run `planlight check`."};
+        ruling.details = {"The cameras measured it twice.", "Scan again; if it comes back, run `planlight check`."};
         return ruling;
     }
     ruling.trust = LightTrust::look;
-    if (!last_ || at - measured_at_ > settings_.fresh) {
-        ruling.headline = "LOOK: the light is not measured.";
-        ruling.details = {
-            "The cameras have not measured the light for a second or more: look at it on landmarks before you use it."};
+    const auto wrong = std::find_if(causes.begin(), causes.end(), [](const LightCause& c) { return c.light_is_wrong; });
+    if (rule_on_measurement(at, ruling)) {
+        if (wrong == causes.end()) return ruling;
+        ruling.headline = "LOOK: " + wrong->headline();  // its sentence and remedy follow
+        ruling.details.clear();
         return ruling;
     }
-    if (last_->seen < settings_.least_seen || last_->seen_share() < settings_.least_seen_share) {
-        ruling.headline = "LOOK: the cameras do not see the light.";
-        ruling.details = {fmt::format("They see {} of {} stretches.", last_->seen, last_->expected),
-                          "Is something before the projector or a camera, or another window over the projector's?"};
+    if (skin_off_mm_ > settings_.warn_mm) {
+        ruling.headline = fmt::format("LOOK: the skin lies {:.1f} mm off where the markers put it.", skin_off_mm_);
+        ruling.details = {"Check the skin again; if it stays so, scan and match anew."};
         return ruling;
     }
-    if (last_->off_mm > settings_.warn_mm) {
-        ruling.headline = fmt::format("LOOK: the light lies up to {:.1f} mm beside the plan.", last_->off_mm);
-        ruling.details = {"Wait until the patient lies still; if it stays so, scan again."};
+    if (wrong != causes.end()) {
+        ruling.headline = "LOOK: " + wrong->headline();
         return ruling;
     }
     if (!verified_) {
         ruling.headline = "LOOK at the light on two landmarks.";
         ruling.details = {fmt::format("The cameras measure it within {:.1f} mm of the plan.", last_->off_mm),
-                          "If it lies where it belongs, press \"The light is right\"."};
+                          "Press \"Show landmarks\": they are lit one after the other for you to look at."};
         return ruling;
     }
     if (good_ < settings_.green_after) {
@@ -90,8 +163,8 @@ LightGate::Ruling LightGate::rule(Instant at) const {
     }
     ruling.trust = LightTrust::aligned;
     ruling.headline = "The plan is on the skin.";
-    ruling.details = {
-        fmt::format("Measured by the cameras: 95 % of the light within {:.1f} mm of the plan.", last_->off_mm)};
+    ruling.details = {fmt::format("Measured by the cameras: 95 % of the light within {:.1f} mm of the plan.",
+                                  std::max(0.1, last_->off_mm))};
     return ruling;
 }
 

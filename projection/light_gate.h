@@ -6,13 +6,15 @@
 
 #include "planning_io/types/time.h"
 #include "projection/check_light.h"
+#include "projection/light_cause.h"
 
 namespace planlight {
 
 struct LightGateSettings {
     double warn_mm = 1;                              ///< 95 % of the light lies within this of the plan, else amber
-    double stop_mm = 2;                              ///< and within this, else dark
-    double least_seen_share = 0.3;                   ///< of the stretches that the cameras should see
+    double stop_mm = 2;                              ///< and two thirds of it within this, else dark
+    double least_seen_share = 0.5;                   ///< of the stretches that the cameras should see
+    double least_seen_of_item = 0.3;                 ///< of the stretches of each item
     int least_seen = 5;                              ///< stretches: fewer are no measurement
     int green_after = 3;                             ///< good measurements in a row
     int dark_after = 2;                              ///< bad ones in a row
@@ -45,24 +47,40 @@ public:
         std::optional<double> off_mm, sigma_mm;  ///< of the light, as last measured
     };
 
-    /// One update: whether light is on the skin, and what CHECK saw of it, if it looked.
-    Ruling step(Instant at, bool lit, const std::optional<LightCheck>& check);
+    /// One update: whether light is on the skin, what CHECK saw of it, if it looked, and what is known to be wrong.
+    Ruling step(Instant at, bool lit, const std::optional<LightCheck>& check,
+                const std::vector<LightCause>& causes = {});
 
     /// A person has looked at the light on landmarks and says that it is right.
     void verify(Instant at);
     bool verified() const { return verified_; }
+
+    /// A short scan found the plan's skin so far off where the markers put it, mm: beyond `stop_mm` the light stops,
+    /// beyond `warn_mm` it is not trusted until the next check or match.
+    void skin_checked(double off_mm);
     void new_match();  ///< nothing is verified or measured any more
     void restart();    ///< light is asked for again after a stop; what was verified still is
 
 private:
+    /// An item of the plan, as the checks of the last `fresh` saw it.
+    struct Item {
+        std::string name;
+        Instant lit_at = Instant::min(), seen_at = Instant::min();
+        double off_mm = 0;
+    };
     void take(Instant at, const LightCheck& check);
-    Ruling rule(Instant at) const;
+    Ruling rule(Instant at, const std::vector<LightCause>& causes) const;
+    bool rule_on_measurement(Instant at, Ruling& ruling) const;
+    void forget();
+    bool within_fresh(Instant then, Instant at) const { return then != Instant::min() && at - then <= settings_.fresh; }
 
     LightGateSettings settings_;
-    bool verified_ = false, stopped_ = false;
+    bool verified_ = false, stopped_ = false, lit_ = false;
     int good_ = 0, bad_ = 0;
+    double skin_off_mm_ = 0;  ///< by the last check of the skin; 0: none
     std::optional<LightCheck> last_;
-    Instant measured_at_{}, lit_at_{};
+    std::vector<Item> items_;
+    Instant measured_at_{}, lit_at_{}, told_whole_at_ = Instant::min(), lit_since_{};
 };
 
 }  // namespace planlight

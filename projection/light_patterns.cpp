@@ -70,6 +70,7 @@ std::vector<LightSample> light_samples(const std::vector<LightFacts>& facts, Ins
         for (const SeenSegment& segment : frame.segments) {
             if (!segment.seen) continue;
             LightSample sample;
+            sample.at = frame.at;
             sample.off_mm = segment.off_mm;
             sample.weight = 1 / (std::pow(segment.sigma_mm, 2) + kCommon_mm * kCommon_mm);
             if (told) sample.told_mm = aside_mm(segment, told->rig_from_ct, frame.rig_from_ct, rig.projector);

@@ -8,6 +8,7 @@ namespace planlight {
 
 /// One seen segment of one frame, with what each fault would do to it. mm along its `sideways`.
 struct LightSample {
+    Instant at{};                     ///< of its frame
     double off_mm = 0;                ///< as seen
     double weight = 1;                ///< 1 / variance
     double told_mm = 0;               ///< as the picture that should have been lit explains it: prediction and hold

@@ -144,6 +144,20 @@ void add_segments(const PlanDrawing& drawing, std::size_t s, const StrokesNear& 
 
 }  // namespace
 
+std::vector<std::optional<StrokePlace>> places_of_items(const PlanDrawing& drawing) {
+    std::vector<std::optional<StrokePlace>> places(drawing.items.size());
+    std::vector<std::size_t> longest(drawing.items.size(), 0);
+    for (const Stroke& stroke : drawing.strokes) {
+        if (stroke.kind == StrokeKind::label || stroke.item < 0) continue;
+        const auto item = static_cast<std::size_t>(stroke.item);
+        const std::vector<StrokePlace> all = places_of(stroke, 0.5);
+        if (all.size() <= longest[item]) continue;
+        longest[item] = all.size();
+        places[item] = all[all.size() / 2];
+    }
+    return places;
+}
+
 std::vector<StrokeSegment> segments_of(const PlanDrawing& drawing, const CheckLightSettings& settings) {
     const StrokesNear near(drawing, settings.search_mm);
     std::vector<StrokeSegment> segments;

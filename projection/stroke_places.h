@@ -26,6 +26,9 @@ struct StrokeSegment {
 /// only where that line goes on to both sides: its light is then the same all along the profile.
 std::vector<StrokeSegment> segments_of(const PlanDrawing& drawing, const CheckLightSettings& settings);
 
+/// A place on each item of the drawing, on the middle of its longest stroke that is no label; empty for items without.
+std::vector<std::optional<StrokePlace>> places_of_items(const PlanDrawing& drawing);
+
 /// True when a device sees the place: in its picture, not too steep, no skin before it.
 bool freely_seen(const StrokePlace& place, const SkinSurface& skin, const CameraModel& device,
                  const RigidTransform& rig_from_ct, double steepest);

@@ -4,6 +4,7 @@
 #include "app/commands/commands.h"
 #include "app/live/live_window.h"
 #include "app/live/real_room.h"
+#include "app/live/simulated_fault.h"
 #include "app/live/simulated_room.h"
 #include "app/site_settings.h"
 #include "planning_io/case/case_folder.h"
@@ -23,6 +24,7 @@ struct SessionOptions {
     std::string preset = "paper", projector_monitor, operator_monitor;
     unsigned seed = 1;
     double speed_mm_s = 20;
+    std::string fault;
     bool autoplay = false;
     double end_after_s = 0;  ///< wall time; 0 = until the window is closed
     Path screenshots;
@@ -56,8 +58,8 @@ int run_in_simulated_room(const SessionOptions& options, const Case& the_case) {
     room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     room.seed = options.seed;
     return run_live_simulated(
-        [&] { return std::make_unique<SimulatedRoom>(volume, the_case.plan, room, options.speed_mm_s); }, the_case,
-        CaseDrawing(the_case, drawing_settings(site)), live_options(options, site));
+        [&] { return std::make_unique<SimulatedRoom>(volume, the_case.plan, room, options.speed_mm_s, options.fault); },
+        the_case, CaseDrawing(the_case, drawing_settings(site)), live_options(options, site));
 }
 
 int run_in_room(SessionOptions options, const Case& the_case) {
@@ -107,6 +109,8 @@ Run add_session(CLI::App& app) {
     sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 500.0));
+    sub->add_option("--fault", o.fault, "To see what it looks like: begins some seconds after the light is ALIGNED")
+        ->check(CLI::IsMember(simulated_faults()));
     sub->add_flag("--autoplay", o.autoplay, "Scan, register and track by itself");
     sub->add_option("--end-after-s", o.end_after_s, "Close after this many seconds of tracking");
     sub->add_option("--screenshots", o.screenshots, "Folder for screenshots of every step");

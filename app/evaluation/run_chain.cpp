@@ -147,6 +147,7 @@ private:
         for (int i = 0; i < updates; ++i) {
             const Session::Update update = session_.update();
             note(update, stage, dark);
+            note_measured(update, stage == "at rest" ? figures_.measured_rest_mm : figures_.measured_moving_mm);
             report_progress(stage, static_cast<double>(i + 1) / updates);
             if (waiting) {
                 const double share = std::uniform_real_distribution<double>(0, 1)(random_);
@@ -161,6 +162,12 @@ private:
                 waiting = DrawnPicture{update.overlay.rig_from_ct, RigidTransform::Identity(), update.overlay.lit_from};
             if (waiting && update.pose.rig_from_patient) waiting->rig_from_patient = *update.pose.rig_from_patient;
         }
+    }
+
+    static void note_measured(const Session::Update& update, std::vector<double>& measured_mm) {
+        if (!update.light) return;
+        for (const SeenSegment& segment : update.light->segments)
+            if (segment.seen) measured_mm.push_back(std::abs(segment.off_mm));
     }
 
     void note(const Session::Update& update, const std::string& stage, int& dark) {

@@ -57,6 +57,8 @@ struct ChainFigures {
     std::vector<double> tre_of_bound;  ///< the same / the 95 % bound that was predicted there
 
     OverlayErrors at_rest, moving;
+    /// The same light as the product's own CHECK measured it: stretches of stroke beside their place, signs dropped.
+    std::vector<double> measured_rest_mm, measured_moving_mm;
     int rest_dark = 0, moving_dark = 0;  ///< updates that gave no light
     std::map<std::string, int> dark_reasons;
     std::vector<double>

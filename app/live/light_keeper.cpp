@@ -1,5 +1,7 @@
 #include "app/live/light_keeper.h"
 
+#include <signal.h>
+
 #include <algorithm>
 
 #include "planning_io/types/error.h"

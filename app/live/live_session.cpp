@@ -44,6 +44,14 @@ private:
     LiveSession& session_;
 };
 
+namespace {
+
+Status dark_status() {
+    return {StatusKind::dark, "Dark: no light on the patient.", {"Press Track to show the plan again."}};
+}
+
+}  // namespace
+
 LiveSession::LiveSession(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
                          std::filesystem::path keep_matches_in)
     : case_(the_case),
@@ -97,7 +105,12 @@ void LiveSession::post_find_patient(std::vector<PointPair> landmarks) {
 
 OperatorModel LiveSession::model() const {
     const std::lock_guard lock(mutex_);
-    return model_;
+    if (darks_answered_ == darks_) return model_;
+    OperatorModel dark = model_;  // DARK was pressed, and the thread is still at something else
+    dark.status = dark_status();
+    dark.scene.light = nullptr;
+    dark.confirm = dark.check_skin = false;
+    return dark;
 }
 
 LiveSession::Light LiveSession::light() const {
@@ -204,9 +217,16 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
         case OperatorAction::use_landmarks:
             find_patient(session, newest_landmarks());
             return;
+        case OperatorAction::check_skin:
+            permit_light(press);
+            room.let_patient_move(false);  // was asked to lie still
+            check_skin(session);
+            room.let_patient_move(following_);
+            break;
         case OperatorAction::track:
             permit_light(press);
             gate_.restart();
+            end_verification(session);
             following_ = true;
             room.let_patient_move(true);
             break;
@@ -217,9 +237,11 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
         case OperatorAction::stop:
             following_ = projecting_ = false;
             session.go_dark();
-            set_status(StatusKind::dark, "Dark: no light on the patient.", {"Press Track to show the plan again."});
-            change_model([](OperatorModel& m) {
+            change_model([&](OperatorModel& m) {
+                darks_answered_ = press.darks;
+                m.status = dark_status();
                 m.scene.light = nullptr;
+                m.confirm = m.check_skin = false;
                 m.stop = {false, "nothing runs"};
             });
             return;

@@ -62,12 +62,17 @@ private:
     void scan(Session& session);
     void find_patient(Session& session, const std::vector<PointPair>& landmarks);
     void confirm(Session& session);
+    void confirm_light(Session& session);
+    void check_skin(Session& session);
+    void show_verification(const Session::Update& update, LightGate::Ruling& ruling);
+    void end_verification(Session& session);
     std::vector<PointPair> newest_landmarks() const;
     std::string keep(const RegistrationResult& found, const PointCloud& cloud,
                      const std::vector<PointPair>& landmarks) const;
     void follow(Session& session, Room& room);
     void show_update(const Session& session, const Room& room, const Session::Update& update,
                      const LightGate::Ruling& ruling);
+    void play_fault(const LightGate::Ruling& ruling, Room& room);
     void stop_light(Session& session, const LightGate::Ruling& ruling);
     void set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details = {});
     void set_steps(int active, StepState state = StepState::active);
@@ -91,10 +96,14 @@ private:
     OperatorModel model_;
     Light light_;
     std::exception_ptr fault_;
-    std::uint64_t darks_ = 0;      ///< DARK presses so far
-    std::uint64_t permitted_ = 0;  ///< `darks_` when the light of now was asked for; it is dark where they differ
-    LightGate gate_;               ///< of the session's thread
-    Instant seen_at_{};            ///< of the last frame, on the room's clock
+    std::uint64_t darks_ = 0;           ///< DARK presses so far
+    std::uint64_t darks_answered_ = 0;  ///< of these, how many the thread has come to; until then the banner says DARK
+    std::uint64_t permitted_ = 0;       ///< `darks_` when the light of now was asked for; it is dark where they differ
+    LightGate gate_;                    ///< of the session's thread
+    Instant seen_at_{};                 ///< of the last frame, on the room's clock
+    int landmark_ = -1;                 ///< that is lit for a person to look at; -1: the plan is lit
+    int landmarks_to_look_at_ = 0;
+    int good_updates_ = 0;  ///< ALIGNED so often; then the simulated fault begins
     bool ending_ = false, following_ = false;
     std::atomic<bool> projecting_{false};
     std::atomic<Instant::rep> alive_at_{0};

@@ -26,7 +26,7 @@ void LiveSession::scan(Session& session) {
         m.scene.markers = nullptr;
         m.fit = std::nullopt;
         m.landmarks = std::nullopt;
-        m.confirm = false;
+        m.confirm = m.check_skin = false;
         m.track = {false, "register first"};
     });
     const ScanResult& scan = session.scan([&](int done, int of) {
@@ -64,6 +64,8 @@ void LiveSession::find_patient(Session& session, const std::vector<PointPair>& l
     OperatorModel shown = model();
     show_match(case_, found, std::make_shared<PointCloud>(session.scanned()->clean.kept), shown);
     gate_.new_match();
+    landmark_ = -1;
+    shown.check_skin = false;
     shown.confirm = found.verdict == Verdict::ask;
     shown.confirm_words = "It fits: use it";
     shown.scene.light = nullptr;
@@ -102,8 +104,8 @@ std::string LiveSession::keep(const RegistrationResult& found, const PointCloud&
 }
 
 void LiveSession::confirm(Session& session) {
-    if (following_) {  // the light was looked at
-        gate_.verify(seen_at_);
+    if (following_) {
+        confirm_light(session);
         return;
     }
     if (session.registration() == nullptr || session.registration()->verdict != Verdict::ask) return;
@@ -118,17 +120,71 @@ void LiveSession::confirm(Session& session) {
                {"Press Track, and look at the light on two landmarks before you use it."});
 }
 
+/// One press lights the first landmark, each further one says that the light on it is right; after the last the plan is
+/// lit again, and verified.
+void LiveSession::confirm_light(Session& session) {
+    landmarks_to_look_at_ = static_cast<int>(session.landmarks().size());
+    if (++landmark_ < landmarks_to_look_at_) {
+        session.light_landmark(static_cast<std::size_t>(landmark_));
+    } else {
+        end_verification(session);
+        gate_.verify(seen_at_);
+    }
+    change_model([&](OperatorModel& m) {
+        m.confirm = false;  // until the light of this is there to be looked at
+        m.scene.plan = std::make_shared<PlanDrawing>(session.lit_drawing());
+    });
+}
+
+void LiveSession::end_verification(Session& session) {
+    landmark_ = -1;
+    session.light_landmark(std::nullopt);
+    change_model([&](OperatorModel& m) { m.scene.plan = std::make_shared<PlanDrawing>(session.drawing()); });
+}
+
+/// What is said while a landmark is lit, where nothing worse is to be said.
+void LiveSession::show_verification(const Session::Update& update, LightGate::Ruling& ruling) {
+    if (landmark_ < 0 || !update.overlay.lit || ruling.stop) return;
+    ruling.headline =
+        fmt::format("LOOK: is the ring of light on landmark {} of {}?", landmark_ + 1, landmarks_to_look_at_);
+    ruling.details.insert(ruling.details.begin(),
+                          "The picture of the head shows where it belongs. If it lies elsewhere on the patient, press "
+                          "Stop, and scan again.");
+}
+
+/// The short scan, and what it means for the light.
+void LiveSession::check_skin(Session& session) {
+    set_status(StatusKind::scanning, "Checking the skin: keep the patient still.");
+    const SkinCheck check = session.check_skin([&](int, int) {
+        if (!light_permitted()) throw CheckFailedError("The check was ended by DARK", "Press Track to go on.");
+    });
+    std::string said = "Skin checked: " + check.why_not + "; check it again.";
+    if (check.known) {
+        gate_.skin_checked(check.off_mm);
+        said = fmt::format("Skin checked: the plan's points lie within {:.1f} mm of where the markers put them.",
+                           check.off_mm);
+    }
+    change_model([&](OperatorModel& m) { m.evidence.insert(m.evidence.begin(), said); });
+}
+
 void LiveSession::follow(Session& session, Room& room) {
     const auto update = session.update();
     if (!light_permitted()) return;  // DARK was pressed meanwhile; its own turn comes next
     seen_at_ = update.frame.at;
-    const LightGate::Ruling ruling = gate_.step(seen_at_, update.overlay.lit, update.light);
+    LightGate::Ruling ruling = gate_.step(seen_at_, update.overlay.lit, update.light, update.causes);
     if (ruling.stop) {
         stop_light(session, ruling);
         return;
     }
+    show_verification(update, ruling);
+    play_fault(ruling, room);
     projecting_ = update.overlay.lit;
     show_update(session, room, update, ruling);
+}
+
+void LiveSession::play_fault(const LightGate::Ruling& ruling, Room& room) {
+    constexpr int kGoodBefore = 40;
+    if (ruling.trust == LightTrust::aligned && ++good_updates_ == kGoodBefore) room.begin_fault();
 }
 
 void LiveSession::stop_light(Session& session, const LightGate::Ruling& ruling) {
@@ -136,16 +192,25 @@ void LiveSession::stop_light(Session& session, const LightGate::Ruling& ruling) 
     session.go_dark();
     change_model([](OperatorModel& m) {
         m.scene.light = nullptr;
-        m.confirm = false;
+        m.confirm = m.check_skin = false;
         m.stop = {false, "nothing runs"};
     });
     set_steps(4, StepState::attention);
     set_status(StatusKind::refused, ruling.headline, ruling.details);
 }
 
+namespace {
+
+std::vector<std::string> why_dark(const std::vector<LightCause>& causes) {
+    if (causes.empty()) return {"The light comes back by itself when the pose is good."};
+    return {causes.front().sentence(), causes.front().remedy()};
+}
+
+}  // namespace
+
 void LiveSession::show_update(const Session& session, const Room& room, const Session::Update& update,
                               const LightGate::Ruling& ruling) {
-    const auto light = room.true_light(session.drawing(), update.overlay);
+    const auto light = room.true_light(session.lit_drawing(), update.overlay);
     Figures figures;
     figures.updates_per_s = 1 / std::max(update.times.total_s(), 1e-6);
     figures.delay_to_light_ms = 1000 * seconds(update.overlay.lit_from - update.pose.at);
@@ -160,8 +225,10 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
     set_steps(gate_.verified() ? 5 : 4, gate_.verified() ? StepState::active : StepState::attention);
     change_model([&](OperatorModel& m) {
         m.confirm = update.overlay.lit && ruling.ask_to_verify;
-        m.confirm_words = "The light is right";
-        for (std::size_t i = 0; update.light && i < std::min(m.rows.size(), update.light->items.size()); ++i) {
+        m.confirm_words = landmark_ >= 0 ? fmt::format("Light {} is right", landmark_ + 1) : "Show landmarks";
+        m.check_skin = true;
+        for (std::size_t i = 0;
+             landmark_ < 0 && update.light && i < std::min(m.rows.size(), update.light->items.size()); ++i) {
             const ItemLight& item = update.light->items[i];
             m.rows[i].light_off_mm = item.known() ? std::optional(item.off_mm) : std::nullopt;
         }
@@ -173,14 +240,13 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
         m.right.found = found_markers(session.tracker().seen_right());
         m.stop = {true, {}};
     });
-    std::vector<std::string> details = sentences(update.overlay.counts.partly_lit, session.drawing());
+    std::vector<std::string> details = sentences(update.overlay.counts.partly_lit, session.lit_drawing());
     details.insert(details.end(), ruling.details.begin(), ruling.details.end());
     if (update.overlay.lit)
         set_status(ruling.trust == LightTrust::aligned ? StatusKind::aligned : StatusKind::check, ruling.headline,
                    details);
     else
-        set_status(StatusKind::dark, "Dark: " + update.overlay.reason + ".",
-                   {"The light comes back by itself when the pose is good."});
+        set_status(StatusKind::dark, "Dark: " + update.overlay.reason + ".", why_dark(update.causes));
 }
 
 }  // namespace planlight

@@ -59,8 +59,9 @@ public:
         if (step_ == 0 && model.scan.enabled) return advance(OperatorAction::scan);
         if (step_ == 1 && model.do_register.enabled) return advance(OperatorAction::do_register);
         if (step_ == 2 && model.track.enabled) return advance(OperatorAction::track);
-        if (step_ == 3 && model.confirm) return advance(OperatorAction::confirm);
-        return OperatorAction::none;
+        if (step_ < 3 || !model.confirm || model.confirm_words == confirmed_) return OperatorAction::none;
+        confirmed_ = model.confirm_words;
+        return OperatorAction::confirm;
     }
 
 private:
@@ -69,6 +70,7 @@ private:
         return action;
     }
     int step_ = 0;
+    std::string confirmed_;  ///< the words on the button that was pressed last
 };
 
 /// A screenshot of the operator window whenever the status changes its kind, and the light of that moment beside it.

@@ -1,6 +1,7 @@
 #include "app/live/projector_keeper.h"
 
 #include <fmt/format.h>
+#include <signal.h>
 
 #include "planning_io/types/error.h"
 
@@ -42,6 +43,11 @@ Instant ProjectorKeeper::show(const RgbImage& picture, Instant valid_until) {
 void ProjectorKeeper::go_dark() noexcept {
     const std::lock_guard lock(mutex_);
     if (projector_) projector_->go_dark();
+}
+
+void ProjectorKeeper::disturb(int signal) noexcept {
+    const std::lock_guard lock(mutex_);
+    if (projector_) kill(projector_->process(), signal);
 }
 
 void ProjectorKeeper::window_lives() {

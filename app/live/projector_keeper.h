@@ -48,6 +48,8 @@ public:
     ProjectorProblem problem() const;
     /// Counts up with every start of the projector.
     unsigned starts() const { return starts_; }
+    /// For tests: sends that signal to the projector process, if there is one.
+    void disturb(int signal) noexcept;
 
 private:
     void run(const std::stop_token& stop);

@@ -29,6 +29,8 @@ public:
     /// What a simulated room needs to be told: computing takes time there as well, and its patient moves on request.
     virtual void computing() {}
     virtual void let_patient_move(bool) {}
+    /// The fault that a simulated room was asked to show begins now.
+    virtual void begin_fault() {}
     /// Where the light truly falls, ct; null where nobody knows.
     virtual std::shared_ptr<const std::vector<LightLine>> true_light(const PlanDrawing&, const OverlayStep&) const {
         return nullptr;

@@ -64,7 +64,8 @@ void MiddleView::draw_scene(const Pen& pen, const Box& place, const OperatorMode
     const SceneModel shown = scene_of_fit(model, fit_view);
     const float strip = button_height(pen) + 24 * pen.scale;  // of buttons, which a finger must meet at once
     const float above = model.fit ? strip : 0;
-    const float below = (model.landmarks ? strip : 0) + (model.fit && model.confirm ? strip : 0);
+    const float below =
+        (model.landmarks ? strip : 0) + (model.fit && model.confirm ? strip : 0) + (model.check_skin ? strip : 0);
     scene_.take_mouse("scene", {place.x, place.y + above, place.width, place.height - above - below});
     scene_.draw(pen, place, shown);
     draw_title(pen, place, model, shown);
@@ -105,9 +106,15 @@ OperatorAction MiddleView::draw_corner_buttons(const Pen& pen, Box corner, const
         if (button(pen, corner, "Landmarks", {true, {}})) open_landmarks();
         corner.y -= corner.height + 12 * pen.scale;
     }
-    if (!model.fit || !model.confirm) return OperatorAction::none;
+    OperatorAction wanted = OperatorAction::none;
+    if (model.check_skin) {
+        places_["check-skin"] = corner;
+        if (button(pen, corner, "Check skin", {true, {}})) wanted = OperatorAction::check_skin;
+        corner.y -= corner.height + 12 * pen.scale;
+    }
+    if (!model.fit || !model.confirm) return wanted;
     places_["confirm"] = corner;
-    return button(pen, corner, model.confirm_words, {true, {}}) ? OperatorAction::confirm : OperatorAction::none;
+    return button(pen, corner, model.confirm_words, {true, {}}) ? OperatorAction::confirm : wanted;
 }
 
 Box MiddleView::place_of(const std::string& button) const {

@@ -140,6 +140,7 @@ struct OperatorModel {
     Figures figures;
     ButtonState scan, do_register, track, stop;   ///< DARK is always enabled
     std::string use_landmarks = "Use landmarks";  ///< on the button that hands over the landmarks that were clicked
+    bool check_skin = false;                      ///< a short scan may be asked for: a button over the 3-D view
     bool confirm = false;  ///< the match, or its light, needs a person's look: a button says that it is right
     std::string confirm_words = "It fits: use it";  ///< on that button
 };

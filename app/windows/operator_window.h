@@ -11,7 +11,7 @@
 namespace planlight {
 
 /// What the operator pressed, by mouse, key or pedal.
-enum class OperatorAction { none, scan, do_register, track, stop, dark, quit, confirm, use_landmarks };
+enum class OperatorAction { none, scan, do_register, track, stop, dark, quit, confirm, use_landmarks, check_skin };
 
 struct OperatorWindowSettings {
     std::string title = "Planlight";
@@ -52,8 +52,8 @@ public:
 
     /// Where a control is, in window pixels (x, y, width, height), as the last frame drew it; for tests by mouse.
     std::array<int, 4> place_of(OperatorAction control) const;
-    /// The same for a control over the 3-D view by its word: before, after, error, landmarks; while these are clicked:
-    /// undo, turn, use, close, skin-view, scan-view. Zeros for what was not drawn.
+    /// The same for a control over the 3-D view by its word: before, after, error, landmarks, check-skin; while these
+    /// are clicked: undo, turn, use, close, skin-view, scan-view. Zeros for what was not drawn.
     std::array<int, 4> place_of(const std::string& button) const;
 
 private:

@@ -86,8 +86,9 @@ void* allocate_large(std::size_t bytes) {
     const std::size_t size = size_of(bytes);
     if (is_large(bytes))
         if (void* spare = Spares::all().take(size)) return spare;
-    void* memory = std::aligned_alloc(is_large(bytes) ? kHugePage : kCacheLine, size);
-    if (!memory) throw std::bad_alloc();
+    // Not std::aligned_alloc: that wants a size that is a multiple of the alignment.
+    void* memory = nullptr;
+    if (posix_memalign(&memory, is_large(bytes) ? kHugePage : kCacheLine, size) != 0) throw std::bad_alloc();
     if (is_large(bytes)) madvise(memory, size, MADV_HUGEPAGE);  // a wish: without it all works, slower
     return memory;
 }

@@ -1,10 +1,14 @@
 // How well CHECK measures the light: the example patient at rest in simulated rooms, the plan drawn beside its place by
 // a known shift, and what `check_light` makes of one frame of both cameras, against where the light truly fell.
 // measure_light_check paper|modern FIRST COUNT
+// measure_light_check paper|modern FIRST COUNT session: whole sessions instead (scan, match, tracking), at rest and
+// with the head moving at up to 20 and 50 mm/s: what CHECK measured in each frame against where the light of the
+// picture that was lit in it truly fell at that moment, as 95 % of the light; and what an update's CHECK costs.
 #include <fmt/format.h>
 
 #include <chrono>
 #include <cstdlib>
+#include <ctime>
 #include <random>
 #include <string>
 
@@ -64,6 +68,87 @@ void measure(const simulation::SimulatedRig& truth, simulation::SimulatedRig& ri
     row.seen_share.push_back(check.seen_share());
 }
 
+struct Frames {
+    std::vector<double> measured_mm, true_mm, difference_mm, cost_ms, seen_share;
+};
+
+double processor_ms() {
+    timespec now{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+/// Updates of one session at one speed. The frame shows the newest picture that was lit by its mid-exposure.
+void follow(Session& session, const SkinSurface& skin, simulation::SimulatedRig& rig, const Plan& plan, int updates,
+            Frames& frames) {
+    std::vector<ShownPicture> shown;
+    LightChecker timed(session.drawing(), skin, session.rig());
+    for (int i = 0; i < updates; ++i) {
+        const Session::Update update = session.update();
+        const ShownPicture* lit = nullptr;
+        for (const ShownPicture& picture : shown)
+            if (picture.lit_from <= update.frame.at) lit = &picture;
+        if (update.light && lit && update.light->seen > 0) {
+            const double before_ms = processor_ms();
+            timed.look(*update.pose.rig_from_patient * session.registration()->patient_from_ct, update.frame);
+            frames.cost_ms.push_back(processor_ms() - before_ms);
+            frames.seen_share.push_back(update.light->seen_share());
+            const OverlayErrors truth =
+                measure_overlay(rig, plan, session.drawing(), session.renderer(), session.render_settings(),
+                                {lit->rig_from_ct, RigidTransform::Identity(), update.frame.at}, false);
+            frames.measured_mm.push_back(update.light->off_mm);
+            frames.true_mm.push_back(quantile(truth.position_mm, 0.95));
+            frames.difference_mm.push_back(std::abs(frames.measured_mm.back() - frames.true_mm.back()));
+        }
+        if (update.overlay.lit) shown.push_back({update.overlay.lit_from, update.overlay.rig_from_ct});
+    }
+}
+
+int measure_sessions(const Volume& volume, const Case& the_case, const CaseDrawing& drawing, simulation::Preset preset,
+                     int first, int count) {
+    constexpr double kSpeeds_mm_s[] = {0, 20, 50};
+    std::vector<Frames> all(std::size(kSpeeds_mm_s));
+    int refused = 0;
+    for (int seed = first; seed < first + count; ++seed) {
+        simulation::RoomSettings room;
+        room.preset = preset;
+        room.seed = static_cast<unsigned>(seed);
+        simulation::SimulatedRig rig(volume, points_of(the_case.plan), room);
+        SessionSettings settings;
+        settings.check_light_every = 3;
+        settings.while_computing = [&rig] { rig.wait(std::chrono::milliseconds(10)); };
+        Session session(the_case, drawing, rig.calibration(), rig.projector(), rig.cameras(), rig.clock(), settings);
+        session.scan();
+        if (session.find_patient().verdict == Verdict::no) {
+            ++refused;
+            continue;
+        }
+        session.confirm();
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            if (k > 0) rig.set_motion({kSpeeds_mm_s[k], rig.clock().now()});
+            follow(session, drawing.skin, rig, the_case.plan, k == 0 ? 16 : 40, all[k]);
+        }
+        fmt::print(stderr, "room {}\n", seed);
+    }
+    fmt::print("rooms {} to {}, {} refused; 95 % of the light in a frame, mm: median / 95 % / worst\n", first,
+               first + count - 1, refused);
+    fmt::print(
+        "head, mm/s | frames | measured | true | measured and true apart | seen | CHECK, ms of processor (median / 95 "
+        "%)\n");
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        const Frames& f = all[k];
+        const auto text = [](const std::vector<double>& v) {
+            const Distribution d = distribution_of(v);
+            return fmt::format("{:.2f} / {:.2f} / {:.2f}", d.median, d.p95, d.worst);
+        };
+        const Distribution cost = distribution_of(f.cost_ms);
+        fmt::print("{:.0f} | {} | {} | {} | {} | {:.0f} % | {:.1f} / {:.1f}\n", kSpeeds_mm_s[k], f.true_mm.size(),
+                   text(f.measured_mm), text(f.true_mm), text(f.difference_mm), 100 * median(f.seen_share), cost.median,
+                   cost.p95);
+    }
+    return 0;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -74,6 +159,10 @@ int main(int argc, char** argv) {
     const Preparation prepared = prepare_case(
         volume, read_plan(std::string(PLANLIGHT_EXAMPLE_FOLDER) + "/frontal_defect.mrk.json"), {}, {}, "2001-10-14");
     const CaseDrawing drawing(prepared.prepared);
+    if (argc > 4 && std::string(argv[4]) == "session")
+        return measure_sessions(volume, prepared.prepared, drawing,
+                                preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern, first,
+                                count);
     std::vector<Row> rows(std::size(kShifts_mm));
     for (int seed = first; seed < first + count; ++seed) {
         std::mt19937 random(static_cast<unsigned>(seed));

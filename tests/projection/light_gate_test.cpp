@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 namespace planlight {
@@ -13,9 +15,20 @@ LightCheck seen_at(double off_mm, int seen = 40, int expected = 40) {
     LightCheck check;
     check.expected = expected;
     check.seen = seen;
-    check.off_mm = off_mm;
+    check.off_mm = check.most_mm = off_mm;
     check.sigma_mm = 0.05;
+    check.told_whole = true;
     return check;
+}
+
+ItemLight item(const std::string& name, int seen, int segments, double off_mm, bool lit = true) {
+    ItemLight light;
+    light.name = name;
+    light.lit = lit;
+    light.segments = segments;
+    light.seen = seen;
+    light.off_mm = off_mm;
+    return light;
 }
 
 /// Updates 40 ms apart with the same measurement; the last ruling.
@@ -85,25 +98,134 @@ TEST(LightGate, ANewMatchAndALongPauseAskAgain) {
     EXPECT_NE(after(gate, now, 5, seen_at(0.1)).trust, LightTrust::aligned);
 }
 
-// 100,000 random runs of faults of any size: light more than 2 mm off that is measured so is green in none; good light
-// is never darkened.
-TEST(LightGate, NoMeasuredErrorBeyondTheStopIsEverGreen) {
+TEST(LightGate, AHandInTheLightIsNoReasonToGoDark) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    LightCheck hand = seen_at(2.6);  // a tenth of the light, on the hand
+    hand.most_mm = 0.1;
+    const auto ruling = after(gate, now, 20, hand);
+    EXPECT_FALSE(ruling.stop);
+    EXPECT_EQ(ruling.trust, LightTrust::look);
+}
+
+TEST(LightGate, EveryItemThatIsLitMustBeMeasured) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    LightCheck check = seen_at(0.1);
+    check.items = {item("Hole 1", 8, 8, 0.1), item("Hole 2", 0, 6, 0), item("Far side", 0, 0, 0, false)};
+    const auto covered = after(gate, now, 10, check);
+    EXPECT_EQ(covered.trust, LightTrust::look);
+    EXPECT_NE(covered.headline.find("Hole 2"), std::string::npos) << covered.headline;
+    check.items[1] = item("Hole 2", 5, 6, 1.3);
+    const auto aside = after(gate, now, 10, check);
+    EXPECT_NE(aside.headline.find("1.3 mm"), std::string::npos) << aside.headline;
+    check.items[1] = item("Hole 2", 5, 6, 0.2);
+    EXPECT_EQ(after(gate, now, 10, check).trust, LightTrust::aligned) << "what is not lit need not be measured";
+}
+
+TEST(LightGate, OneDirectionIsNoPlace) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    LightCheck line = seen_at(0.1);
+    line.told_whole = false;
+    EXPECT_EQ(after(gate, now, 100, line).trust, LightTrust::look);
+    EXPECT_EQ(after(gate, now, 3, seen_at(0.1)).trust, LightTrust::aligned);
+}
+
+TEST(LightGate, AKnownFaultIsNotGreenUnlessItIsDealtWith) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    after(gate, now, 5, seen_at(0.4));
+    LightCause bumped{LightFault::projector_moved, 0.5, 0, 0, -1, 0.9, true};
+    EXPECT_EQ(gate.step(now += 40ms, true, seen_at(0.4), {bumped}).trust, LightTrust::look);
+    LightCause slipped{LightFault::marker_slipped, 1, 0, 0, 2, 1, false};
+    const auto ruling = gate.step(now += 40ms, true, seen_at(0.1), {slipped});
+    EXPECT_EQ(ruling.trust, LightTrust::aligned) << "the patient is followed without that marker";
+    EXPECT_NE(ruling.details[1].find("Marker 3 has slipped by 1.0 mm"), std::string::npos) << ruling.details[1];
+}
+
+TEST(LightGate, SkinThatLiesElsewhereStopsTheLightUntilTheNextMatch) {
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    after(gate, now, 5, seen_at(0.1));
+    gate.skin_checked(0.3);
+    EXPECT_EQ(after(gate, now, 1, seen_at(0.1)).trust, LightTrust::aligned);
+    gate.skin_checked(1.4);
+    EXPECT_EQ(after(gate, now, 1, seen_at(0.1)).trust, LightTrust::look);
+    gate.skin_checked(2.6);
+    EXPECT_TRUE(after(gate, now, 1, seen_at(0.1)).stop);
+    gate.restart();
+    EXPECT_TRUE(after(gate, now, 1, seen_at(0.1)).stop) << "Track does not mend it";
+    gate.new_match();
+    EXPECT_FALSE(after(gate, now, 1, seen_at(0.1)).stop);
+}
+
+/// What CHECK makes of light that lies aside by `shift_mm` (along the skin), as `measure_light_check` found it to err:
+/// 0.1 mm a stretch, one stretch in fifty something else within reach, nothing found beyond 3 mm.
+LightCheck drawn_check(const Eigen::Vector2d& shift_mm, double covered, bool one_way, std::mt19937& random) {
+    std::normal_distribution<double> noise(0, 0.1);
+    std::uniform_real_distribution<double> any(-3, 3), share(0, 1);
+    LightCheck check;
+    check.expected = std::uniform_int_distribution<int>(12, 60)(random);
+    std::vector<double> sizes;
+    for (int i = 0; i < check.expected; ++i) {
+        const double angle = one_way ? 0.02 * any(random) : 2 * any(random);
+        const double off_mm = shift_mm.dot(Eigen::Vector2d(std::cos(angle), std::sin(angle))) + noise(random);
+        if (share(random) < covered || std::abs(off_mm) > 3) continue;
+        sizes.push_back(std::abs(share(random) < 0.02 ? any(random) : off_mm));
+    }
+    std::sort(sizes.begin(), sizes.end());
+    const auto at = [&](double q) {
+        return sizes.empty() ? 0 : sizes[static_cast<std::size_t>(q * static_cast<double>(sizes.size() - 1))];
+    };
+    check.seen = static_cast<int>(sizes.size());
+    check.off_mm = at(0.95);
+    check.most_mm = at(2.0 / 3);
+    check.told_whole = !one_way && check.seen >= 3;
+    return check;
+}
+
+// 100,000 situations: light that begins to lie aside by up to 6 mm in any direction, wholly or partly covered, drawn by
+// strokes that run every way or one way only. Light more than 2 mm off is green in less than one in a thousand after
+// half a second; good light that is seen is never put out.
+TEST(LightGate, WrongLightIsNotGreenAndGoodLightIsNotDark) {
     std::mt19937 random(1);
-    std::uniform_real_distribution<double> size_mm(0, 6);
-    std::uniform_int_distribution<int> seen(0, 40), length(1, 6);
-    int green_and_wrong = 0, dark_and_right = 0;
+    std::uniform_real_distribution<double> size_mm(0, 6), angle(0, 6.2832), share(0, 1);
+    int wrong = 0, wrong_and_green = 0, good = 0, good_and_dark = 0, good_and_green = 0;
     for (int run = 0; run < 100000; ++run) {
         LightGate gate;
         Instant now{};
         gate.verify(now);
-        after(gate, now, 4, seen_at(0.2));
-        const double off_mm = size_mm(random);
-        const auto ruling = after(gate, now, length(random), seen_at(off_mm, seen(random)));
-        green_and_wrong += ruling.trust == LightTrust::aligned && off_mm > 2;
-        dark_and_right += ruling.stop && off_mm <= 1;
+        const bool one_way = share(random) < 0.2;
+        for (int i = 0; i < 5; ++i) gate.step(now += 120ms, true, drawn_check({0, 0}, 0, one_way, random));
+        const double off_mm = share(random) < 0.3 ? 0.3 * share(random) : size_mm(random);
+        const double covered = share(random) < 0.5 ? 0 : share(random), a = angle(random);
+        LightGate::Ruling ruling;
+        for (int i = 0; i < 5 && !ruling.stop; ++i)
+            ruling =
+                gate.step(now += 120ms, true,
+                          drawn_check(off_mm * Eigen::Vector2d(std::cos(a), std::sin(a)), covered, one_way, random));
+        if (off_mm > 2) {
+            ++wrong;
+            wrong_and_green += ruling.trust == LightTrust::aligned;
+        } else if (off_mm <= 0.3) {
+            ++good;
+            good_and_dark += ruling.stop;
+            good_and_green += ruling.trust == LightTrust::aligned;
+        }
     }
-    EXPECT_EQ(green_and_wrong, 0);
-    EXPECT_EQ(dark_and_right, 0);
+    RecordProperty("wrong", wrong);
+    RecordProperty("good_and_green", good_and_green);
+    EXPECT_GT(wrong, 40000);
+    EXPECT_GT(good, 20000);
+    EXPECT_LT(wrong_and_green, wrong / 1000) << "of " << wrong;
+    EXPECT_LT(good_and_dark, good / 200) << "of " << good;
+    EXPECT_GT(good_and_green, good / 3) << "of " << good << ", a half covered in part and a fifth one way";
 }
 
 }  // namespace

@@ -59,8 +59,8 @@ int main(int, char** argv) {
         }
     }
     write_places("views", {"before", "after", "error", "landmarks"});
-    const char* const names[] = {"none", "scan", "register", "track",        "stop",
-                                 "dark", "quit", "confirm",  "use landmarks"};
+    const char* const names[] = {"none", "scan", "register", "track",         "stop",
+                                 "dark", "quit", "confirm",  "use landmarks", "check skin"};
     const auto start = steady_clock::now();
     const char* const views[] = {"view after", "view before", "view error"};
     FitView last_view = window.fit_view();

@@ -1,0 +1,63 @@
+// The session's short scan: does the skin still lie where the markers put it?
+#include <algorithm>
+#include <cmath>
+
+#include "app/session.h"
+#include "planning_io/plan/plan_file.h"
+#include "planning_io/types/error.h"
+#include "registration/matching/refine_pose_deformable.h"
+
+namespace planlight {
+
+SkinCheck Session::check_skin(const std::function<void(int, int)>& progress) {
+    if (!registration_ || registration_->verdict == Verdict::no)
+        throw CheckFailedError("there is no match to compare the skin with", "Scan and register first.");
+    overlay_.reset();
+    projector_.go_dark();
+    const ScanCapture capture =
+        capture_scan(projector_, cameras_, clock_, fast_stripes(projector_.width(), projector_.height()), progress);
+    const TrackedPose before =
+        tracker_.update({capture.left.front(), capture.right.front(), capture.began, Instant{}, 0});
+    const TrackedPose after = pose_under_white();
+    SkinCheck check;
+    if (!before.rig_from_patient || !after.rig_from_patient) {
+        check.why_not = "the markers were not seen: " + (before.rig_from_patient ? after : before).reason;
+        return check;
+    }
+    for (const auto& marker : tracker_.markers())
+        check.moved_meanwhile_mm = std::max(
+            check.moved_meanwhile_mm,
+            (*before.rig_from_patient * marker.centre_in_patient - *after.rig_from_patient * marker.centre_in_patient)
+                .norm());
+    if (check.moved_meanwhile_mm > settings_.max_motion_in_skin_check_mm) {
+        check.why_not = "the patient moved during the check";
+        return check;
+    }
+    ScanSettings scan = settings_.scan;
+    scan.use_resection = false;
+    const ScanResult skin = scan_from_capture(capture, rig_, scan);
+    compare_skin(skin.clean.kept, *before.rig_from_patient * registration_->patient_from_ct, check);
+    return check;
+}
+
+/// As the match itself was refined, so that what both get wrong alike cancels.
+void Session::compare_skin(const PointCloud& cloud, const RigidTransform& rig_from_ct, SkinCheck& check) const {
+    constexpr std::size_t kLeast = 1000;
+    check.points = cloud.size();
+    if (check.points < kLeast) {
+        check.why_not = "too little skin was seen";
+        return;
+    }
+    const DeformablePose found = refine_pose_deformable(cloud, case_.lut, rig_from_ct.inverse());
+    const RigidTransform seen = found.ct_from_rig.inverse();
+    for (const Eigen::Vector3d& p : points_of(case_.plan)) {
+        const double off_mm = (seen * p - rig_from_ct * p).norm();
+        if (off_mm < check.off_mm) continue;
+        check.off_mm = off_mm;
+        check.bound_mm = predicted_error(found.covariance, p).bound_95_mm;
+    }
+    check.known = std::isfinite(check.bound_mm);
+    if (!check.known) check.why_not = "too little skin was seen";
+}
+
+}  // namespace planlight

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "planning_io/types/rig_calibration.h"
+#include "projection/skin_surface.h"
+
+namespace planlight {
+
+/// Places of the skin at which a person can see by eye whether light lies right: where the skin bends most (the tip of
+/// the nose, the rim of an eye socket, a chin), that the projector lights and both cameras see with the head at
+/// `rig_from_ct`, at least `apart_mm` from each other. Two, or fewer where the skin has none; ct, mm.
+std::vector<Eigen::Vector3d> landmarks_to_verify(const SkinSurface& skin, const RigCalibration& rig,
+                                                 const RigidTransform& rig_from_ct, double apart_mm = 40);
+
+}  // namespace planlight

@@ -1,0 +1,165 @@
+// The light's own check in rooms and with plans that it was not made for: light that lies 2.5 mm aside is never said to
+// be right, and good light never put out.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "app/prepare_case.h"
+#include "app/session.h"
+#include "planning_io/plan/plan_file.h"
+#include "planning_io/volume/read_volume.h"
+#include "projection/check_light.h"
+#include "projection/light_gate.h"
+#include "registration/simulation/simulated_rig.h"
+#include "tests/support/test_data.h"
+
+namespace planlight::test {
+namespace {
+
+using namespace std::chrono_literals;
+using Eigen::Vector3d;
+
+class StrangeLight : public testing::Test {
+protected:
+    static void SetUpTestSuite() {
+        if (!example_patient()) return;
+        volume_ = read_volume(*example_patient());
+        const auto prepared =
+            prepare_case(*volume_, read_plan(std::string(PLANLIGHT_EXAMPLE_FOLDER) + "/frontal_defect.mrk.json"), {},
+                         {}, "2001-10-14");
+        case_ = prepared.prepared;
+        threshold_ = prepared.threshold;
+    }
+    void SetUp() override {
+        if (!volume_) GTEST_SKIP() << "the package invesalius-examples is not installed";
+        room_.preset = simulation::Preset::paper;
+        room_.seed = 11;
+        room_.skin_threshold_hu = threshold_;
+    }
+
+    struct Seen {
+        LightCheck check;
+        LightGate::Ruling ruling;
+    };
+    /// The plan drawn `aside_mm` along the skin, seen in some frames by a gate whose light a person has verified.
+    static Seen seen(simulation::SimulatedRig& rig, const Plan& plan, double aside_mm) {
+        Case the_case = *case_;
+        the_case.plan = plan;
+        const CaseDrawing drawing(the_case);
+        const RigidTransform rig_from_ct = rig.true_rig_from_ct(rig.clock().now());
+        const Vector3d p = points_of(plan).front();
+        const Vector3d normal = drawing.skin.nearest(p).normal_in_ct;
+        // Neither along the line of the one-line plan nor across it.
+        const Vector3d aside = aside_mm * (normal.cross(Vector3d(0.2, 0.1, 1))).normalized();
+        const DrawingRenderer renderer(drawing.skin, rig.calibration().projector);
+        const Instant lit = rig.projector().show(
+            renderer.render(drawing.drawing, rig_from_ct * Eigen::Translation3d(aside)), rig.clock().now() + 10s);
+        LightChecker checker(drawing.drawing, drawing.skin, rig.calibration());
+        LightGate gate;
+        gate.verify(rig.clock().now());
+        Seen seen;
+        for (int i = 0; i < 6; ++i) {
+            const StereoFrame frame = rig.cameras().grab(lit, 1s);
+            seen.check = checker.look(rig_from_ct, frame);
+            seen.ruling = gate.step(frame.at, true, seen.check);
+            if (seen.ruling.stop) break;
+        }
+        return seen;
+    }
+
+    void expect_honest(const std::string& name, const Plan& plan) {
+        simulation::SimulatedRig rig(*volume_, points_of(plan), room_);
+        const Seen good = seen(rig, plan, 0), off = seen(rig, plan, 2.5);
+        for (const auto& [what, s] : {std::pair("good", &good), {"2.5 mm aside", &off}})
+            fmt::print("{:<22} {:<13} seen {:>3} of {:>3}, 95 % {:.2f} mm: {} {}\n", name, what, s->check.seen,
+                       s->check.expected, s->check.off_mm,
+                       s->ruling.stop                           ? "DARK"
+                       : s->ruling.trust == LightTrust::aligned ? "ALIGNED"
+                                                                : "CHECK",
+                       s->ruling.headline);
+        EXPECT_FALSE(good.ruling.stop) << name << ": " << good.ruling.headline;
+        EXPECT_NE(off.ruling.trust, LightTrust::aligned) << name << ": " << off.ruling.headline;
+        green_ = good.ruling.trust == LightTrust::aligned;
+    }
+    const Plan& example() const { return case_->plan; }
+    /// Near the middle of the example's plan, on the skin.
+    static Vector3d middle() { return case_->plan.boreholes.front().position_in_ct; }
+
+    simulation::RoomSettings room_;
+    bool green_ = false;
+    static std::optional<Volume> volume_;
+    static std::optional<Case> case_;
+    static double threshold_;
+};
+std::optional<Volume> StrangeLight::volume_;
+std::optional<Case> StrangeLight::case_;
+double StrangeLight::threshold_ = 0;
+
+TEST_F(StrangeLight, GoodLightInAPlainRoomIsGreen) {
+    expect_honest("plain", example());
+    EXPECT_TRUE(green_);
+}
+
+TEST_F(StrangeLight, BrightTheatreLight) {
+    room_.ambient = 0.55;
+    expect_honest("bright room", example());
+}
+
+TEST_F(StrangeLight, GlossySkin) {
+    room_.wet = 1;
+    expect_honest("glossy skin", example());
+}
+
+TEST_F(StrangeLight, ClothOverAPartOfTheLight) {
+    room_.things.drape_hole = true;
+    room_.things.hole_mm = 25;
+    expect_honest("cloth, hole of 25 mm",
+                  example());  // thin, and laid on the skin: its light lies where the skin's would
+}
+
+TEST_F(StrangeLight, AHandInTheLight) {
+    room_.things.hand = true;
+    expect_honest("a hand", example());
+}
+
+TEST_F(StrangeLight, OneStraightLine) {
+    Plan plan;
+    OsteotomyLine line = example().osteotomy_lines.front();
+    line.points_in_ct = {example().boreholes.front().position_in_ct, example().boreholes.back().position_in_ct};
+    line.closed = false;
+    plan.osteotomy_lines = {line};
+    expect_honest("one straight line", plan);
+}
+
+TEST_F(StrangeLight, OneShortLineTellsOneDirection) {
+    Plan plan;
+    OsteotomyLine line = example().osteotomy_lines.front();
+    const Vector3d way = (line.points_in_ct[1] - line.points_in_ct[0]).normalized();
+    line.points_in_ct = {line.points_in_ct[0], line.points_in_ct[0] + 9 * way};
+    line.closed = false;
+    plan.osteotomy_lines = {line};
+    expect_honest("one line of 9 mm", plan);
+    EXPECT_FALSE(green_) << "nothing tells where it lies along itself";
+}
+
+TEST_F(StrangeLight, OneSmallCircle) {
+    Plan plan;
+    Borehole hole = example().boreholes.front();
+    hole.diameter_mm = 2;
+    plan.boreholes = {hole};
+    expect_honest("one hole of 2 mm", plan);
+}
+
+TEST_F(StrangeLight, APlanFullOfText) {
+    Plan plan;
+    for (int i = 0; i < 16; ++i) {
+        Borehole hole = example().boreholes.front();
+        hole.name = fmt::format("A hole with a very long name {}", i);
+        hole.diameter_mm = 3;
+        hole.position_in_ct = middle() + Vector3d(9.0 * (i % 4) - 13, 0, 9.0 * (i / 4) - 13);
+        plan.boreholes.push_back(hole);
+    }
+    expect_honest("16 holes 9 mm apart", plan);
+}
+
+}  // namespace
+}  // namespace planlight::test
