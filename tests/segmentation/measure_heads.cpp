@@ -16,8 +16,8 @@
 #include "segmentation/outside_air.h"
 #include "segmentation/skin_judgement.h"
 #include "segmentation/skin_threshold.h"
-#include "tests/segmentation/distance_to_mesh.h"
 #include "tests/segmentation/head_sheet.h"
+#include "tests/segmentation/off_skin.h"
 #include "tests/segmentation/ray_skin.h"
 
 namespace planlight::test {
@@ -32,32 +32,6 @@ struct Row {
     SkinMask mask;
 };
 
-/// The triangles that have a corner on a lid or an end of the volume.
-TriangleMesh not_skin(const TriangleMesh& skin) {
-    TriangleMesh lids;
-    lids.vertices_in_ct = skin.vertices_in_ct;
-    for (const auto& t : skin.triangles)
-        if (std::any_of(t.begin(), t.end(),
-                        [&](std::int32_t c) { return skin.flags[static_cast<std::size_t>(c)] != kSkin; }))
-            lids.triangles.push_back(t);
-    return lids;
-}
-
-/// Share of the rays' points further than 2 mm from the surface, per cent. What lies behind a lid (nostril, ear) is
-/// flagged as no skin and not counted.
-double off_percent(const std::vector<Eigen::Vector3d>& points, const TriangleMesh& skin) {
-    if (points.empty() || skin.triangles.empty()) return NAN;
-    const DistanceToMesh distance(skin), from_lid(not_skin(skin));
-    std::size_t off = 0, of = 0;
-    for (const auto& p : points) {
-        const double mm = distance(p);
-        if (mm > 0.5 && from_lid(p) < mm + 0.5) continue;
-        ++of;
-        off += mm > 2;
-    }
-    return of > 0 ? 100.0 * static_cast<double>(off) / static_cast<double>(of) : NAN;
-}
-
 /// Threshold, largest piece, fill.
 double plain_off_percent(Volume volume, const std::vector<Eigen::Vector3d>& points) {
     try {
@@ -70,7 +44,7 @@ double plain_off_percent(Volume volume, const std::vector<Eigen::Vector3d>& poin
         mask.body = outside_air(largest_piece(std::move(mask.body), grid).mask, grid);
         for (auto& v : mask.body) v = !v;
         volume.modality.clear();
-        return off_percent(points, triangulate_skin(volume, mask));
+        return off_skin(points, triangulate_skin(volume, mask)).percent();
     } catch (const Error&) {
         return NAN;
     }
@@ -93,12 +67,14 @@ Row measure(const fs::path& path, const fs::path& pictures) {
         row.judged = judge_skin(volume, row.mask, skin);
         row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
         row.ml = row.mask.volume_ml;
-        if (!pictures.empty()) write_png(head_sheet(volume, skin), pictures / (path.filename().string() + ".png"));
+        const auto points = ray_skin(volume);
+        const OffSkin off = off_skin(points, skin);
+        if (!pictures.empty())
+            write_png(head_sheet(volume, skin, off.off), pictures / (path.filename().string() + ".png"));
         refuse_implausible(row.judged);
         row.verdict = verdict_of(row.judged);
         for (const SkinDoubt& d : row.judged.doubts) row.why += (row.why.empty() ? "" : "; ") + d.finding;
-        const auto points = ray_skin(volume);
-        row.off_percent = off_percent(points, skin);
+        row.off_percent = off.percent();
         row.plain_off_percent = plain_off_percent(volume, points);
     } catch (const Error& error) {
         row.why = error.what();
