@@ -17,12 +17,12 @@ using Eigen::Vector3d;
 constexpr double kBeginsInHead = -1;  // of a ray: where the volume does, the head does
 
 constexpr double kBetween_mm = 4, kStep_mm = 0.5;
-constexpr int kLeastAir = 12, kStays = 6;      // samples: 6 mm of air, 3 mm above it
+constexpr int kLeastAir = 12, kStays = 6;         // samples: 6 mm of air, 3 mm above it
 constexpr double kBefore_mm = 6, kBehind_mm = 8;  // of that place, where the edge is sought along the normal
-constexpr int kDeeper = 4;                     // samples: 2 mm of skin lie over the fat
-constexpr double kSteepest = 2;                // mm of depth a mm aside: 63 degrees
-constexpr int kBesideCut = 5;                  // rays
-constexpr int kThin = 24, kGap = 6;            // samples: what is thinner with so much air behind is no skin (CT)
+constexpr int kDeeper = 4;                        // samples: 2 mm of skin lie over the fat
+constexpr double kSteepest = 2;                   // mm of depth a mm aside: 63 degrees
+constexpr int kBesideCut = 5;                     // rays
+constexpr int kThin = 24, kGap = 6;               // samples: what is thinner with so much air behind is no skin (CT)
 constexpr double kDeviations = 8, kLoneliest_mm = 5;
 
 /// The mean of five rays 1.2 mm aside, and of 1.5 mm along.
@@ -48,17 +48,18 @@ std::vector<double> profile_of(const Volume& volume, const Eigen::Affine3d& voxe
 /// half of the brightest that follows: under the skin of a T1 lies fat two or three times as bright as the skin itself
 /// (2 to 3 mm thick on a scalp), and in a CT under a thin scalp the bone, so that the half of that crest lies within
 /// the skin or under it.
-double edge_at(const std::vector<double>& profile, double air, double level) {
-    for (std::size_t n = 1; n + kDeeper < profile.size(); ++n) {
-        const double before = profile[n - 1] - air - (profile[n - 1 + kDeeper] - air) / 2,
-                     now = profile[n] - air - (profile[n + kDeeper] - air) / 2;
-        if (profile[n + kDeeper] > level && now >= 0)
+double edge_at(const std::vector<double>& profile, double air, double level, std::size_t deeper) {
+    for (std::size_t n = 1; n + deeper < profile.size(); ++n) {
+        const double before = profile[n - 1] - air - (profile[n - 1 + deeper] - air) / 2,
+                     now = profile[n] - air - (profile[n + deeper] - air) / 2;
+        if (profile[n + deeper] > level && now >= 0)
             return before < 0 ? kStep_mm * (static_cast<double>(n) - now / (now - before)) : NAN;
     }
     return NAN;
 }
 
-/// Whether air follows close behind: a couch, a mask, the rim of an ear. To be asked of a CT only, where bone is no air.
+/// Whether air follows close behind: a couch, a mask, the rim of an ear. To be asked of a CT only, where bone is no
+/// air.
 bool is_thin(const std::vector<double>& profile, std::size_t above, double level) {
     int gap = 0;
     for (std::size_t n = above; n < std::min(above + kThin + kGap, profile.size()); ++n) {
@@ -160,9 +161,12 @@ std::vector<Vector3d> ray_skin(const Volume& volume) {
                 if (std::hypot(along_u, along_v) > kSteepest) continue;
                 const Vector3d inwards = -(side + along_u * u + along_v * v).normalized(),
                                from = start(a, b) - here * side - kBefore_mm * inwards, p = inwards.unitOrthogonal();
+                const double voxel_mm = (volume.ct_from_voxel.linear().transpose() * inwards).cwiseAbs().maxCoeff();
                 const auto profile = profile_of(volume, voxel_from_ct, from, inwards, p, inwards.cross(p),
                                                 static_cast<int>((kBefore_mm + kBehind_mm) / kStep_mm));
-                const double edge_mm = edge_at(profile, exits[at(a, b)].air, exits[at(a, b)].level);
+                const double edge_mm =
+                    edge_at(profile, exits[at(a, b)].air, exits[at(a, b)].level,
+                            static_cast<std::size_t>(std::max<double>(kDeeper, 0.6 * voxel_mm / kStep_mm)));
                 if (std::isfinite(edge_mm)) points.push_back(from + edge_mm * inwards);
             }
     }
