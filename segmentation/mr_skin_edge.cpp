@@ -18,7 +18,8 @@ using Eigen::Vector3d;
 
 constexpr double kStep_mm = 0.25;
 constexpr int kSide = 32;                           // samples on each side of the vertex: 8 mm
-constexpr int kDeeper = 8;                          // samples: 2 mm, as thick as the skin of a scalp over its fat
+constexpr double kDeeper_mm = 2;                    // as thick as the skin of a scalp over its fat
+constexpr double kOfVoxel = 0.6;                    // but more than half a voxel, which may be a thick slice
 using Profile = std::array<double, 2 * kSide + 1>;  // from the inside out
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
