@@ -26,6 +26,8 @@ constexpr double kNose_mm = 18;  // of an adult: noses stand out by 28 to 50; sm
 constexpr double kBlurred_mm = 4.2;
 constexpr double kThick_mm = 3.5;  // thicker slices than that leave more than 1 % of the skin over 2 mm off
 constexpr double kUnsure_doubted = 0.1, kUnsure_refused = 0.3;
+constexpr double kFaintInBlur = 0.35, kNoBrain_mm = 72;  // an adult's brain holds a ball of 65 mm
+constexpr double kBoneless_cm2 = 15;
 constexpr double kGap_cm2 = 15, kLeastCut_cm2 = 1;
 
 const char* const kGiveHead =
@@ -167,12 +169,29 @@ void judge_size(SkinJudgement& r) {
             kGiveHead);
 }
 
-void judge_layers(const Volume& volume, bool air_is_blank, SkinJudgement& r) {
+void judge_layers(const Volume& volume, bool air_is_blank, double faint_share, SkinJudgement& r) {
     const bool hu = volume.is_hu;
     if (std::isnan(r.layered_share)) return;
+    if (r.boneless_cm2 > kBoneless_cm2)
+        add(r.doubts,
+            fmt::format(
+                "Over {:.0f} square cm of the upper head no bone lies within 16 mm of the surface, though it does "
+                "elsewhere: something that shines lies on the head there (a cushion, a blanket), or bone is "
+                "missing",
+                r.boneless_cm2),
+            kLook);
     // Where a program blanked everything round a brain, not even a part of the layers is a head's.
     const double least = air_is_blank ? kFewLayers_masked : kFewLayers_refused;
-    if (r.layered_share < least)
+    // A blurred average of heads hides its bone; but nothing of that size is a brain, and a bottle has no layer at all.
+    if (r.layered_share < least && !air_is_blank && faint_share > kFaintInBlur && r.edge_blur_mm > kBlurred_mm &&
+        r.ball_radius_mm > kNoBrain_mm)
+        add(r.doubts,
+            fmt::format(
+                "Scalp and bone can hardly be told apart: the volume is blurred, and only under {:.0f} % of the "
+                "surface of the vault is bone as dark as on heads (60 to 100 %)",
+                100 * r.layered_share),
+            kLook);
+    else if (r.layered_share < least)
         add(r.refusals,
             fmt::format("There is no scalp: only under {:.0f} % of the surface of the vault lies a layer of bone with "
                         "soft tissue over it (on heads 60 to 100 %); this is a stripped brain, a phantom or no head",
@@ -264,10 +283,11 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     result.scalp_mm = layers.scalp_mm;
     result.edge_blur_mm = layers.edge_blur_mm;
     result.gap_cm2 = layers.gap_cm2;
+    result.boneless_cm2 = layers.boneless_cm2;
     result.bright_bone = layers.bright_bone;
     result.sigma_mm = std::max(skin_edge_sigma_mm(volume, mask, skin), 0.25 * std::max(0.0, result.edge_blur_mm - 1.5));
     judge_size(result);
-    judge_layers(volume, layers.faint_share < kFaintLayers && layers.air_is_blank, result);
+    judge_layers(volume, layers.faint_share < kFaintLayers && layers.air_is_blank, layers.faint_share, result);
     judge_face(result);
     judge_edges(mask, result);
     judge_steps(volume, result);
