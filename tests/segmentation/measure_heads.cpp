@@ -1,7 +1,10 @@
 // The skin of every head of a folder, as `planlight prepare` takes it: verdict, how it was checked, a picture sheet,
 // and how far it lies off the skin that rays find; beside it the plain way (threshold, largest piece, fill). Compared
-// with EXPECTED.tsv where the folder has one. measure_heads FOLDER [PICTURES] [--only WORD]
+// with EXPECTED.tsv where the folder has one. measure_heads FOLDER [PICTURES] [--only WORD] [--variants]
+// --variants: each head once more without a word in its header, along other axes, on a turned grid, with noise and
+// shading, and without crown, chin or face; verdicts only.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -17,6 +20,7 @@
 #include "segmentation/skin_judgement.h"
 #include "segmentation/skin_threshold.h"
 #include "tests/segmentation/head_sheet.h"
+#include "tests/segmentation/head_variants.h"
 #include "tests/segmentation/off_skin.h"
 #include "tests/segmentation/ray_skin.h"
 
@@ -57,6 +61,22 @@ std::string verdict_of(const SkinJudgement& judged) {
     return cuts > 0 ? "skin+cut" : "skin";
 }
 
+/// The verdict of a volume, without rays.
+Row judge(const Volume& volume) {
+    Row row;
+    try {
+        row.mask = segment_skin(volume);
+        row.judged = judge_skin(volume, row.mask, triangulate_skin(volume, row.mask));
+        row.ml = row.mask.volume_ml;
+        refuse_implausible(row.judged);
+        row.verdict = verdict_of(row.judged);
+        for (const SkinDoubt& d : row.judged.doubts) row.why += (row.why.empty() ? "" : "; ") + d.finding;
+    } catch (const Error& error) {
+        row.why = error.what();
+    }
+    return row;
+}
+
 Row measure(const fs::path& path, const fs::path& pictures) {
     Row row;
     try {
@@ -94,11 +114,38 @@ std::map<std::string, std::string> expected_in(const fs::path& folder) {
 }
 
 /// A warning does for a cut and for a refusal expected as one ("warn"); a refusal is right where "warn" was expected.
-bool is_right(const std::string& verdict, const std::string& expected) {
+bool is_right(const std::string& verdict, const std::string& expected, bool cut) {
     if (expected == "refuse") return verdict == "refuse";
     if (expected == "warn") return verdict != "skin";
+    if (cut) return verdict != "skin";  // crown, chin or face: said, or not taken
     if (expected == "skin+cut") return verdict == "skin+cut" || verdict == "warn";
     return verdict != "refuse";
+}
+
+/// Prints each variant's verdict; returns how many are not as expected.
+int measure_variants(const fs::path& head, const std::string& expected) {
+    const fs::path folder = fs::temp_directory_path() / fmt::format("planlight_heads_{}", getpid());
+    std::vector<HeadVariant> all;
+    std::string refused;
+    try {
+        const Volume volume = read_volume(without_words(head, folder), {}, SliceGaps::resampled);
+        all = variants_of(volume);
+        all.insert(all.begin(), {"no words", volume});
+    } catch (const Error& error) {
+        refused = error.what();
+    }
+    fs::remove_all(folder);
+    int wrong = 0;
+    for (const HeadVariant& variant : all) {
+        const Row row = judge(variant.volume);
+        const bool right = expected.empty() || is_right(row.verdict, expected, variant.cut);
+        wrong += !right;
+        fmt::print("{}\t{}\t{}{}\t{}\t{:.0f}\t{}\n", head.filename().string(), variant.name, row.verdict,
+                   right ? "" : " WRONG", expected, row.ml, row.why);
+        std::fflush(stdout);
+    }
+    if (all.empty()) fmt::print("{}\tnot read\trefuse\t{}\t\t{}\n", head.filename().string(), expected, refused);
+    return wrong;
 }
 
 }  // namespace
@@ -107,12 +154,17 @@ bool is_right(const std::string& verdict, const std::string& expected) {
 int main(int argc, char** argv) {
     using namespace planlight::test;
     if (argc < 2) {
-        fmt::print(stderr, "measure_heads FOLDER [PICTURES] [--only WORD]\n");
+        fmt::print(stderr, "measure_heads FOLDER [PICTURES] [--only WORD] [--variants]\n");
         return 2;
     }
     namespace fs = std::filesystem;
     const fs::path folder = argv[1], pictures = argc > 2 && argv[2][0] != '-' ? argv[2] : "";
-    const std::string only = std::string(argv[argc - 2]) == "--only" ? argv[argc - 1] : "";
+    std::string only;
+    bool variants = false;
+    for (int a = 2; a < argc; ++a) {
+        if (std::string(argv[a]) == "--only" && a + 1 < argc) only = argv[++a];
+        if (std::string(argv[a]) == "--variants") variants = true;
+    }
     if (!pictures.empty()) fs::create_directories(pictures);
     const auto expected = expected_in(folder);
     std::vector<fs::path> heads;
@@ -121,6 +173,15 @@ int main(int argc, char** argv) {
             heads.push_back(entry.path());
     std::sort(heads.begin(), heads.end());
     int wrong = 0;
+    if (variants) {
+        fmt::print("head\tvariant\tverdict\texpected\tml\twhy\n");
+        for (const auto& head : heads) {
+            const auto known = expected.find(head.filename().string());
+            wrong += measure_variants(head, known == expected.end() ? "" : known->second);
+        }
+        fmt::print("{} heads, {} variants not as expected\n", heads.size(), wrong);
+        return wrong == 0 ? 0 : 6;
+    }
     fmt::print(
         "head\tverdict\texpected\tml\tthreshold\tball mm\tlayered\tnose mm\tblur mm\tunsure\tsigma mm\toff > 2 mm "
         "%\tplain off %\ts\twhy\n");
@@ -128,7 +189,7 @@ int main(int argc, char** argv) {
         const std::string name = head.filename().string();
         const Row row = measure(head, pictures);
         const auto known = expected.find(name);
-        const bool right = known == expected.end() || is_right(row.verdict, known->second);
+        const bool right = known == expected.end() || is_right(row.verdict, known->second, false);
         wrong += !right;
         fmt::print(
             "{}\t{}{}\t{}\t{:.0f}\t{:.4g}\t{:.0f}\t{:.2f}\t{:.0f}\t{:.1f}\t{:.3f}\t{:.2f}\t{:.2f}\t{:.2f}\t{:.1f}\t{}"

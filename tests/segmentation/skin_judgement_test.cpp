@@ -136,7 +136,7 @@ TEST(JudgeSkin, ABlurredAverageOfHeadsIsDoubtedAndABlurredBottleRefused) {
     const Judged head = judged(mr_of(
         [&](const Vector3d& p) {
             const double d = depth_in_head(p, false);
-            return 350 * step(d, 2.2) - 130 * step(d - 10, 2) + 380 * step(d - 17, 2);
+            return 350 * step(d, 2.2) - 220 * step(d - 10, 2) + 380 * step(d - 17, 2);
         },
         {105, 125, 115}, 4));
     for (const SkinDoubt& d : head.skin.refusals) ADD_FAILURE() << d.finding << " blur " << head.skin.edge_blur_mm;
