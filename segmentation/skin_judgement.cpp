@@ -244,6 +244,7 @@ void judge_edges(const SkinMask& mask, SkinJudgement& r) {
     const std::string tries =
         fmt::format("Try `planlight prepare --threshold {:.3g}` and {:.3g}, and compare the pictures of the report.",
                     0.7 * mask.threshold_said, 1.5 * mask.threshold_said);
+    r.unsure = mask.unsure_share > kUnsure_doubted;
     if (mask.unsure_share > kUnsure_refused)
         add(r.refusals, "The skin cannot be told from what surrounds it: " + unsure, tries);
     else if (mask.unsure_share > kUnsure_doubted)
