@@ -103,7 +103,7 @@ int width_of_line(const RgbImage& sheet, int column, int row) {
     int first = -1, last = -1;
     for (int x = column * tile + 50; x < (column + 1) * tile - 50; ++x) {
         const Rgb p = sheet.at(x, y);
-        if (p.g < p.r + 60 || p.g < p.b + 60) continue;
+        if (p[1] < p[0] + 60 || p[1] < p[2] + 60) continue;  // the skin's line is green
         if (first < 0) first = x;
         last = x;
     }

@@ -131,6 +131,19 @@ TEST(JudgeSkin, SaysThatACushionThatShinesLiesOnTheHead) {
     }
 }
 
+TEST(JudgeSkin, SaysThatAStrapHangsOnTheHead) {
+    // 8 mm thick, from above the ear 110 mm upwards, standing off.
+    const Judged head = judged(mr_of([](const Vector3d& p) {
+        const double depth = depth_in_head(p);
+        const bool strap = std::hypot(p.x() - 92, p.y()) < 5 && p.z() > -20 && p.z() < 90;
+        const bool bridge = std::hypot(p.z() + 15, p.y()) < 7 && p.x() > 60 && p.x() < 95;
+        return depth < 0 && (strap || bridge) ? 900 : layered(depth);
+    }));
+    EXPECT_TRUE(head.refused || doubts(head.skin, "hangs") || head.skin.strand_mm < 15)  // said, or cut off
+        << head.skin.strand_mm;
+    EXPECT_LT(judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); })).skin.strand_mm, 40);
+}
+
 TEST(JudgeSkin, ABlurredAverageOfHeadsIsDoubtedAndABlurredBottleRefused) {
     const auto step = [](double d, double wide) { return 1 / (1 + std::exp(-d / wide)); };
     const Judged head = judged(mr_of(
