@@ -104,17 +104,13 @@ TEST(RaySkin, ACoilsShadingOfFourToOneMovesNothing) {
 }
 
 TEST(RaySkin, NothingIsFoundNearASideWhereTheVolumeCutsTheHead) {
-    // The left side ends 60 mm from the middle; there a dark hole of 20 mm looks like air.
-    const Volume cut =
-        ball_of([](double d, const Vector3d& p) { return std::hypot(p.y(), p.z()) < 20 ? 0 : one_tissue(d); }, 5,
-                {60, 112, 112});
-    for (const Vector3d& p : ray_skin(cut))
-        if (std::hypot(p.y(), p.z()) > 35)
-            EXPECT_NEAR(p.norm(), kRadius_mm, 2);
-        else
-            EXPECT_LT(std::abs(p.x()), 75);
-    EXPECT_EQ(0, std::count_if(ray_skin(cut).begin(), ray_skin(cut).end(),
-                               [](const Vector3d& p) { return kRadius_mm - p.norm() > 15 && std::abs(p.x()) > 40; }));
+    // Left and right the volume ends 60 mm from the middle; there a dark hole of 20 mm looks like air.
+    const auto points =
+        ray_skin(ball_of([](double d, const Vector3d& p) { return std::hypot(p.y(), p.z()) < 20 ? 0 : one_tissue(d); },
+                         5, {60, 112, 112}));
+    ASSERT_GT(points.size(), 2000U);
+    for (const Vector3d& p : points)
+        if (std::hypot(p.y(), p.z()) > 20) EXPECT_NEAR(p.norm(), kRadius_mm, 2) << p.transpose();
 }
 
 TEST(OffSkin, CountsAPatchThatIsOffAndNothingElse) {
