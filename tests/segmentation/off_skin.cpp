@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "tests/segmentation/distance_to_mesh.h"
 
@@ -31,13 +32,14 @@ OffSkin off_skin(const std::vector<Eigen::Vector3d>& points, const TriangleMesh&
     OffSkin result;
     if (points.empty() || skin.triangles.empty()) return result;
     const TriangleMesh lids = not_skin(skin);
-    const DistanceToMesh distance(skin), from_lid(lids);
+    const DistanceToMesh distance(skin);
+    std::optional<DistanceToMesh> from_lid;
+    if (!lids.triangles.empty()) from_lid.emplace(lids);
     for (const auto& p : points) {
         double mm = distance.within(p, more_than_mm);
         const bool off = !std::isfinite(mm);
         if (off) mm = distance.within(p, kFar_mm);
-        if (mm > kOnSkin_mm && std::isfinite(mm) && !lids.triangles.empty() &&
-            std::isfinite(from_lid.within(p, mm + kOnSkin_mm)))
+        if (mm > kOnSkin_mm && std::isfinite(mm) && from_lid && std::isfinite(from_lid->within(p, mm + kOnSkin_mm)))
             continue;
         ++result.asked;
         if (off) result.off.push_back(p);

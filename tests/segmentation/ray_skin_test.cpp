@@ -109,8 +109,11 @@ TEST(RaySkin, NothingIsFoundNearASideWhereTheVolumeCutsTheHead) {
         ray_skin(ball_of([](double d, const Vector3d& p) { return std::hypot(p.y(), p.z()) < 20 ? 0 : one_tissue(d); },
                          5, {60, 112, 112}));
     ASSERT_GT(points.size(), 2000U);
-    for (const Vector3d& p : points)
-        if (std::hypot(p.y(), p.z()) > 20) EXPECT_NEAR(p.norm(), kRadius_mm, 2) << p.transpose();
+    for (const Vector3d& p : points) {
+        if (std::hypot(p.y(), p.z()) > 20) {
+            EXPECT_NEAR(p.norm(), kRadius_mm, 2) << p.transpose();
+        }
+    }
 }
 
 TEST(OffSkin, CountsAPatchThatIsOffAndNothingElse) {
