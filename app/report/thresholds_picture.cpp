@@ -39,7 +39,8 @@ RgbImage thresholds_picture(const Volume& volume, const SkinSettings& settings, 
     of_slice.width = of_slice.height = kTile;
     int column = 0;
     for (const double factor : {kLowerThreshold, 1.0, kHigherThreshold}) {
-        const TriangleMesh skin = skin_at(volume, settings, factor * threshold);
+        // The one found may change from place to place (MR): as it was taken; the others are one value everywhere.
+        const TriangleMesh skin = skin_at(volume, settings, factor == 1.0 ? settings.threshold : factor * threshold);
         int row = 0;
         for (const SliceKind kind : {SliceKind::sagittal, SliceKind::coronal, SliceKind::axial})
             put(slice_picture(volume, skin, {}, kind, middle, of_slice), column * kTile, kTitle + kTile * row++, sheet);

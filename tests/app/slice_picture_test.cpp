@@ -119,7 +119,9 @@ TEST(ThresholdsPicture, ShowsTheSkinAtThreeThresholdsSideBySide) {
             for (int i = 0; i < 51; ++i)
                 ball.values[ball.index(i, j, k)] = static_cast<float>(
                     std::clamp((46 - (ball.ct_from_voxel * Vector3d(i, j, k)).norm()) / 16, 0.0, 1.0) * 1000);
-    const RgbImage sheet = thresholds_picture(ball, {}, 500);
+    SkinSettings settings;
+    settings.threshold = 500;
+    const RgbImage sheet = thresholds_picture(ball, settings, 500);
     for (int row = 0; row < 3; ++row) {
         const double mm_per_pixel = 2 * 38.0 / width_of_line(sheet, 1, row);  // 500: radius 38 mm
         EXPECT_NEAR(width_of_line(sheet, 0, row) * mm_per_pixel, 2 * 40.4, 1.5) << row;
