@@ -79,6 +79,7 @@ void judge(const Volume& volume, const SkinSettings& skin, const PreparationWatc
         return;
     }
     done.judgement = judge_skin(volume, done.mask, the_case.skin);
+    if (done.judgement.unsure && watcher.unsure) watcher.unsure(volume, done.threshold);
     refuse_implausible(done.judgement);
     the_case.skin_edge_sigma_mm = done.judgement.sigma_mm;
     for (const SkinDoubt& doubt : done.judgement.doubts)

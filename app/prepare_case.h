@@ -45,6 +45,8 @@ struct PreparationWatcher {
     std::function<void(const std::string& step, double share)> progress;  ///< the step's name and how far it is, 0..1
     std::function<void(const std::string& sentence)>
         warned;  ///< each warning when it is known, whatever comes after it
+    /// Told when the skin moves much with its threshold, before it is doubted or refused: show others beside it.
+    std::function<void(const Volume& volume, double threshold)> unsure = {};
 };
 
 /// PREPARE: volume -> outer skin -> mesh -> LUT, plan checked against the skin (its warnings go into the case). `names`

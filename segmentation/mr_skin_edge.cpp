@@ -17,9 +17,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kStep_mm = 0.25;
-constexpr int kSide = 32;         // samples on each side of the vertex: 8 mm
-constexpr double kDrop = 0.85;    // of a crest: below it the profile has left it
-constexpr double kPlateau = 0.1;  // of the steepest rise: slower than that for 1 mm, the tissue is reached
+constexpr int kSide = 32;                           // samples on each side of the vertex: 8 mm
+constexpr double kDeeper_mm = 2;                    // as thick as the skin of a scalp over its fat
+constexpr double kOfVoxel = 0.6;                    // but more than half a voxel, which may be a thick slice
 using Profile = std::array<double, 2 * kSide + 1>;  // from the inside out
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
@@ -33,38 +33,25 @@ double mean(const Profile& profile, double from_mm, double to_mm) {
     return sum / count;
 }
 
-/// The first crest or plateau of the profile, walking inwards from `from` (an index).
-double first_crest(const Profile& profile, int from, double air) {
-    constexpr int kMillimetre = static_cast<int>(1 / kStep_mm);
-    double crest = -std::numeric_limits<double>::infinity(), steepest = 0;
-    for (int s = from; s >= 0; --s) {
-        const double here = profile[static_cast<std::size_t>(s)];
-        if (!std::isfinite(here)) break;
-        if (here < air + kDrop * (crest - air)) break;
-        crest = std::max(crest, here);
-        if (s + kMillimetre >= static_cast<int>(profile.size())) continue;
-        const double rise = here - profile[static_cast<std::size_t>(s + kMillimetre)];
-        if (!std::isfinite(rise)) continue;
-        steepest = std::max(steepest, rise);
-        if (steepest > 0 && rise < kPlateau * steepest && from - s > kMillimetre) break;
-    }
-    return crest;
-}
-
-/// Where the profile falls to half way, nearest to its middle; mm outwards.
-double half_way(const Profile& profile, double threshold, double reach_mm) {
+/// The outermost place where the profile has risen half as far above the air as it has `deeper` samples further in; mm
+/// outwards.
+///
+/// The half of the first crest would not do: fat shines two to three times as bright as the skin over it (T1), and bone
+/// in a CT that is not in HU, so that the half of their crest lies at the skin's inner side.
+double half_way(const Profile& profile, double threshold, double reach_mm, int deeper) {
     const double air = std::min(mean(profile, 2, 4), mean(profile, 3, 5));
     if (!(air < threshold)) return kUnknown;  // a fold: skin again outside
-    const double crest = first_crest(profile, kSide, air), half = (air + crest) / 2;
-    if (!(crest > threshold)) return kUnknown;
-    double found = kUnknown;
-    for (std::size_t s = 0; s + 1 < profile.size(); ++s) {
-        if (!(profile[s] >= half) || !(profile[s + 1] < half)) continue;
-        const double at =
-            (static_cast<double>(s) + (profile[s] - half) / (profile[s] - profile[s + 1]) - kSide) * kStep_mm;
-        if (std::abs(at) <= reach_mm && !(std::abs(at) >= std::abs(found))) found = at;
+    const auto over_half = [&](int s) {
+        const auto at = static_cast<std::size_t>(s + kSide);
+        return profile[at] - air - (profile[at - static_cast<std::size_t>(deeper)] - air) / 2;
+    };
+    const int reach = static_cast<int>(reach_mm / kStep_mm);
+    for (int s = reach; s >= -reach; --s) {
+        const double here = over_half(s), outer = over_half(s + 1);
+        if (!(profile[static_cast<std::size_t>(s + kSide - deeper)] > threshold) || !(here >= 0)) continue;
+        return outer < 0 ? (s + here / (here - outer)) * kStep_mm : kUnknown;
     }
-    return found;
+    return kUnknown;
 }
 
 /// For each vertex those it shares a triangle with, one after the other; `first[v]` to `first[v + 1]`.
@@ -133,7 +120,11 @@ std::size_t move_to_edges(TriangleMesh& mesh, const Volume& volume, double thres
         Profile profile;
         for (int s = -kSide; s <= kSide; ++s)
             profile[static_cast<std::size_t>(s + kSide)] = value_at(volume, at + s * step).value_or(kUnknown);
-        moves_mm[v] = half_way(profile, threshold, settings.reach_mm);
+        // How long a voxel is along the normal.
+        const double voxel_mm =
+            (volume.ct_from_voxel.linear().transpose() * mesh.normals_in_ct[v]).cwiseAbs().maxCoeff();
+        const double deeper_mm = std::min(std::max(kDeeper_mm, kOfVoxel * voxel_mm), 4.0);
+        moves_mm[v] = half_way(profile, threshold, settings.reach_mm, static_cast<int>(deeper_mm / kStep_mm));
     });
     const auto found = std::count_if(moves_mm.begin(), moves_mm.end(), [](double move) { return !std::isnan(move); });
     const Neighbours next = neighbours_of(mesh);

@@ -25,7 +25,10 @@ constexpr double kThinnestScalp_mm = 1.5;
 constexpr double kNose_mm = 18;  // of an adult: noses stand out by 28 to 50; smaller heads in proportion
 constexpr double kBlurred_mm = 4.2;
 constexpr double kThick_mm = 3.5;  // thicker slices than that leave more than 1 % of the skin over 2 mm off
-constexpr double kUnsure_doubted = 0.1, kUnsure_refused = 0.3;
+constexpr double kUnsure_doubted = 0.06, kUnsure_refused = 0.3;
+constexpr double kFaintInBlur = 0.35, kNoBrain_mm = 72;  // an adult's brain holds a ball of 65 mm
+constexpr double kStrand_mm = 75;                        // ears, lips and fins of noise lead away by 50
+constexpr double kBoneless_cm2 = 15;
 constexpr double kGap_cm2 = 15, kLeastCut_cm2 = 1;
 
 const char* const kGiveHead =
@@ -66,6 +69,46 @@ void find_ball(const Volume& volume, const SkinMask& mask, const TriangleMesh& s
         result.ball_radius_mm = static_cast<double>(depth[v]);
         result.ball_centre_in_ct = at;
     }
+}
+
+/// How far a thin thing that hangs on an MR's head (a strap, a wire) leads away from it, mm along itself; an ear's rim
+/// 50 mm at most. Steps along the axes, so that a way aslant is longer than it is.
+double strand_of(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin) {
+    constexpr double kStep_mm = 3, kThin_mm = 7, kMost_mm = 300;
+    Vector3d low = skin.vertices_in_ct.front(), high = low;
+    for (const auto& p : skin.vertices_in_ct) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    HeadSurvey survey;
+    survey.grid.spacing_mm = Vector3d::Constant(kStep_mm);
+    survey.first_in_ct = low - Vector3d::Constant(kStep_mm);
+    for (int a = 0; a < 3; ++a)
+        survey.grid.size[static_cast<std::size_t>(a)] = static_cast<int>((high - low)[a] / kStep_mm) + 3;
+    Mask body(survey.grid.count(), 0);
+    const Eigen::Affine3d voxel_from_ct = volume.ct_from_voxel.inverse();
+    for (std::size_t v = 0; v < body.size(); ++v) {
+        const Eigen::Vector3i at = (voxel_from_ct * survey.place_of(v)).array().round().cast<int>();
+        bool inside = true;
+        for (int a = 0; a < 3; ++a) inside = inside && at[a] >= 0 && at[a] < volume.size[static_cast<std::size_t>(a)];
+        if (inside) body[v] = mask.body[volume.index(at.x(), at.y(), at.z())];
+    }
+    const auto depth = distance_from(body, 0, survey.grid, kThin_mm + kStep_mm);
+    Mask core(body.size());
+    for (std::size_t v = 0; v < core.size(); ++v) core[v] = static_cast<double>(depth[v]) > kThin_mm;
+    core = largest_piece(std::move(core), survey.grid).mask;
+    const auto from_core = distance_from(core, 1, survey.grid, kThin_mm + 2 * kStep_mm);
+    std::vector<std::size_t> front;
+    for (std::size_t v = 0; v < body.size(); ++v)
+        if (body[v] && static_cast<double>(from_core[v]) < kThin_mm + kStep_mm) front.push_back(v), body[v] = 0;
+    double reached_mm = 0;
+    for (double way_mm = kStep_mm; !front.empty() && way_mm < kMost_mm; way_mm += kStep_mm) {
+        std::vector<std::size_t> next;
+        for (const std::size_t v : front)
+            for_face_neighbours(survey.grid, v, [&](std::size_t n) {
+                if (body[n]) body[n] = 0, next.push_back(n);
+            });
+        if (!next.empty()) reached_mm = way_mm;
+        front = std::move(next);
+    }
+    return reached_mm;
 }
 
 void find_cut_sides(const TriangleMesh& skin, SkinJudgement& result) {
@@ -167,12 +210,29 @@ void judge_size(SkinJudgement& r) {
             kGiveHead);
 }
 
-void judge_layers(const Volume& volume, bool air_is_blank, SkinJudgement& r) {
+void judge_layers(const Volume& volume, bool air_is_blank, double faint_share, SkinJudgement& r) {
     const bool hu = volume.is_hu;
     if (std::isnan(r.layered_share)) return;
+    if (r.boneless_cm2 > kBoneless_cm2)
+        add(r.doubts,
+            fmt::format(
+                "Over {:.0f} square cm of the upper head no bone lies within 16 mm of the surface, though it does "
+                "elsewhere: something that shines lies on the head there (a cushion, a blanket), or bone is "
+                "missing",
+                r.boneless_cm2),
+            kLook);
     // Where a program blanked everything round a brain, not even a part of the layers is a head's.
     const double least = air_is_blank ? kFewLayers_masked : kFewLayers_refused;
-    if (r.layered_share < least)
+    // A blurred average of heads hides its bone; but nothing of that size is a brain, and a bottle has no layer at all.
+    if (r.layered_share < least && !air_is_blank && faint_share > kFaintInBlur && r.edge_blur_mm > kBlurred_mm &&
+        r.ball_radius_mm > kNoBrain_mm)
+        add(r.doubts,
+            fmt::format(
+                "Scalp and bone can hardly be told apart: the volume is blurred, and only under {:.0f} % of the "
+                "surface of the vault is bone as dark as on heads (60 to 100 %)",
+                100 * r.layered_share),
+            kLook);
+    else if (r.layered_share < least)
         add(r.refusals,
             fmt::format("There is no scalp: only under {:.0f} % of the surface of the vault lies a layer of bone with "
                         "soft tissue over it (on heads 60 to 100 %); this is a stripped brain, a phantom or no head",
@@ -218,6 +278,13 @@ void judge_edges(const SkinMask& mask, SkinJudgement& r) {
                 "there the surface is not the skin",
                 r.gap_cm2),
             kLook);
+    if (r.strand_mm > kStrand_mm)
+        add(r.doubts,
+            fmt::format(
+                "Something thin hangs on the head and leads {:.0f} mm away along itself (a strap, a wire, a strip "
+                "beside an ear): there the surface is not the skin",
+                r.strand_mm),
+            kLook);
     const std::string unsure = fmt::format(
         "{:.0f} % of the outline moves by more than 3 mm when the threshold is taken at 0.7 or 1.5 "
         "times what was found ({:.3g})",
@@ -225,6 +292,7 @@ void judge_edges(const SkinMask& mask, SkinJudgement& r) {
     const std::string tries =
         fmt::format("Try `planlight prepare --threshold {:.3g}` and {:.3g}, and compare the pictures of the report.",
                     0.7 * mask.threshold_said, 1.5 * mask.threshold_said);
+    r.unsure = mask.unsure_share > kUnsure_doubted;
     if (mask.unsure_share > kUnsure_refused)
         add(r.refusals, "The skin cannot be told from what surrounds it: " + unsure, tries);
     else if (mask.unsure_share > kUnsure_doubted)
@@ -264,10 +332,12 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     result.scalp_mm = layers.scalp_mm;
     result.edge_blur_mm = layers.edge_blur_mm;
     result.gap_cm2 = layers.gap_cm2;
+    result.boneless_cm2 = layers.boneless_cm2;
+    if (!mask.levels.empty()) result.strand_mm = strand_of(volume, mask, skin);
     result.bright_bone = layers.bright_bone;
     result.sigma_mm = std::max(skin_edge_sigma_mm(volume, mask, skin), 0.25 * std::max(0.0, result.edge_blur_mm - 1.5));
     judge_size(result);
-    judge_layers(volume, layers.faint_share < kFaintLayers && layers.air_is_blank, result);
+    judge_layers(volume, layers.faint_share < kFaintLayers && layers.air_is_blank, layers.faint_share, result);
     judge_face(result);
     judge_edges(mask, result);
     judge_steps(volume, result);

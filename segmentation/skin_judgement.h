@@ -34,6 +34,9 @@ struct SkinJudgement {
     double nose_mm = 0;             ///< how far the nose stands out before the cheeks
     double edge_blur_mm = 0;        ///< median way from 20 to 80 % of the step from air to skin
     double gap_cm2 = 0;             ///< of skin under which air is again (a mask, a cushion, a cloth)
+    double boneless_cm2 = 0;        ///< of an MR: patch of the upper head with no bone within 16 mm (a shining cushion)
+    double strand_mm = 0;           ///< of an MR: how long a thin thing is that hangs on the head
+    bool unsure = false;            ///< much of the outline moves with the threshold: other thresholds are to be seen
     double sigma_mm = 0;            ///< `skin_edge_sigma_mm`, or more where the edge is blurred
     bool bright_bone = false;       ///< bone shines like a CT's in a volume that is not in HU
     std::vector<SkinDoubt> doubts;  ///< accepted with these

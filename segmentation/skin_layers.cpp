@@ -21,6 +21,7 @@ constexpr double kBoneFrom_mm = 2, kBoneTo_mm = 16;  // under the skin
 constexpr double kBrainFrom_mm = 22, kBrainTo_mm = 45;
 constexpr double kDark = 0.55;   // of the brain: bone with what thick voxels add to it
 constexpr double kBright = 1.6;  // of the brain: bone in a CT that is not in HU
+constexpr double kPatch_mm = 25, kPatchBoneless = 0.9, kLayeredAllOver = 0.5;
 constexpr double kThinMatter_mm = 3.5, kGap_mm = 3;
 
 /// Values from 8 mm before the skin (index 0) to 50 mm under it.
@@ -29,6 +30,8 @@ using Profile = std::vector<float>;
 struct Sample {
     std::size_t vertex = 0;
     bool vault = false, beside = false;  ///< beside: where ears are
+    bool upper = false;                  ///< the vault, and behind down to where the neck's muscles begin
+    Vector3d at_in_ct;
     Profile values;
     double at(double depth_mm) const {
         const auto index = std::lround(depth_mm / kStep_mm) + kOut;
@@ -59,6 +62,9 @@ std::vector<Sample> samples_of(const Volume& values, const TriangleMesh& skin, c
         const Vector3d away = (p - centre).normalized();
         // Above the skull's middle, not the face, and where the surface looks outwards (not behind an ear).
         s.beside = std::abs(away.x()) > 0.75;
+        s.at_in_ct = p;
+        s.upper =
+            (away.z() > 0.2 || (away.z() > -0.15 && away.y() > 0.5)) && skin.normals_in_ct[s.vertex].dot(away) > 0.7;
         s.vault = away.z() > 0.2 && skin.normals_in_ct[s.vertex].dot(away) > 0.7;
         const Vector3d inwards = voxel_from_ct.linear() * (-kStep_mm * skin.normals_in_ct[s.vertex]),
                        at = voxel_from_ct * p;
@@ -156,6 +162,24 @@ Layer bone_of(const Sample& s, double brain) {
     return layer;
 }
 
+/// The largest area of samples without bone that have hardly any with bone within kPatch_mm: share of all samples.
+double boneless_share(const std::vector<Sample>& samples, double brain) {
+    std::vector<Vector3d> boneless, bony;
+    for (const Sample& s : samples)
+        if (s.upper) (bone_of(s, brain).dark ? bony : boneless).push_back(s.at_in_ct);
+    const auto near = [](const std::vector<Vector3d>& all, const Vector3d& p) {
+        return static_cast<double>(
+            std::count_if(all.begin(), all.end(), [&](const Vector3d& q) { return (p - q).norm() < kPatch_mm; }));
+    };
+    std::vector<Vector3d> middles;
+    for (const Vector3d& p : boneless)
+        if (const double without = near(boneless, p); without > kPatchBoneless * (without + near(bony, p)))
+            middles.push_back(p);
+    const auto patch =
+        std::count_if(boneless.begin(), boneless.end(), [&](const Vector3d& p) { return near(middles, p) > 0; });
+    return static_cast<double>(patch) / static_cast<double>(samples.size());
+}
+
 }  // namespace
 
 SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin,
@@ -205,6 +229,8 @@ SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const Triang
                         .norm() /
                     200;
     }
+    if (!volume.is_hu && !layers.bright_bone && layers.layered_share > kLayeredAllOver)
+        layers.boneless_cm2 = area_cm2 * boneless_share(samples, brain);
     layers.gap_cm2 = samples.empty() || !volume.is_hu ? 0 : area_cm2 * off / static_cast<double>(samples.size());
     return layers;
 }

@@ -11,6 +11,8 @@
 #include "app/live/live_window.h"
 #include "app/prepare_case.h"
 #include "app/report/preparation_report.h"
+#include "app/report/thresholds_picture.h"
+#include "planning_io/files/image_file.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/spare_memory.h"
 #include "planning_io/volume/read_volume.h"
@@ -71,7 +73,14 @@ Preparation prepare(const Inputs& in, const PrepareOptions& options, ProgressBar
     check_memory_to_prepare(in.volume, lut);
     const auto told = [&bar](const std::string& warning) { bar.note("warning: " + warning); };
     for (const auto& note : in.plan.notes) told(note);
-    const PreparationWatcher watcher{bar.callback(), told};
+    const auto show_thresholds = [&](const Volume& volume, double threshold) {
+        Path picture = options.out;
+        picture += ".thresholds.png";
+        write_png(thresholds_picture(volume, skin, threshold), picture);
+        bar.note(fmt::format("The skin at {:.3g}, {:.3g} and {:.3g} side by side: {}", kLowerThreshold * threshold,
+                             threshold, kHigherThreshold * threshold, picture.string()));
+    };
+    const PreparationWatcher watcher{bar.callback(), told, show_thresholds};
     Preparation done =
         in.surface
             ? prepare_case_on(in.volume, *in.surface, in.plan.plan, lut, iso_date_now(), watcher, names_of(options))

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/report/thresholds_picture.h"
+
 namespace planlight::test {
 namespace {
 
@@ -93,6 +95,38 @@ TEST(SlicePicture, SkinLineLiesWhereThePlaneCutsTheMesh) {
 TEST(SlicePicture, OutsideTheVolumeIsNotBlackTissue) {
     const RgbImage picture = slice_picture(air_with_a_ball({0, 0, 0}), {}, {}, SliceKind::axial, {0, 0, 200});
     EXPECT_EQ(picture.at(320, 320), (Rgb{10, 14, 26})) << "beyond the last slice there is nothing to show";
+}
+
+/// Pixels of the middle row of `row`-th tile of `column` between the outermost ones of the skin's line.
+int width_of_line(const RgbImage& sheet, int column, int row) {
+    const int tile = sheet.width / 3, y = sheet.height - 3 * tile + row * tile + tile / 2;
+    int first = -1, last = -1;
+    for (int x = column * tile + 50; x < (column + 1) * tile - 50; ++x) {
+        const Rgb p = sheet.at(x, y);
+        if (p[1] < p[0] + 60 || p[1] < p[2] + 60) continue;  // the skin's line is green
+        if (first < 0) first = x;
+        last = x;
+    }
+    return last - first;
+}
+
+TEST(ThresholdsPicture, ShowsTheSkinAtThreeThresholdsSideBySide) {
+    // A ball whose values fall from 1000 at 30 mm of its middle to 0 at 46 mm.
+    Volume ball = air_with_a_ball(Vector3d::Zero());
+    ball.is_hu = false;
+    for (int k = 0; k < 51; ++k)
+        for (int j = 0; j < 51; ++j)
+            for (int i = 0; i < 51; ++i)
+                ball.values[ball.index(i, j, k)] = static_cast<float>(
+                    std::clamp((46 - (ball.ct_from_voxel * Vector3d(i, j, k)).norm()) / 16, 0.0, 1.0) * 1000);
+    SkinSettings settings;
+    settings.threshold = 500;
+    const RgbImage sheet = thresholds_picture(ball, settings, 500);
+    for (int row = 0; row < 3; ++row) {
+        const double mm_per_pixel = 2 * 38.0 / width_of_line(sheet, 1, row);  // 500: radius 38 mm
+        EXPECT_NEAR(width_of_line(sheet, 0, row) * mm_per_pixel, 2 * 40.4, 1.5) << row;
+        EXPECT_NEAR(width_of_line(sheet, 2, row) * mm_per_pixel, 2 * 34.0, 1.5) << row;
+    }
 }
 
 }  // namespace

@@ -40,4 +40,12 @@ double DistanceToMesh::operator()(const Eigen::Vector3d& p) const {
     return std::sqrt(squared);
 }
 
+double DistanceToMesh::within(const Eigen::Vector3d& p, double most_mm) const {
+    double closest[3], squared = 0, at[3] = {p.x(), p.y(), p.z()};
+    vtkIdType cell = 0;
+    int part = 0;
+    if (locator_->cells->FindClosestPointWithinRadius(at, most_mm, closest, cell, part, squared) <= 0) return INFINITY;
+    return std::sqrt(squared);
+}
+
 }  // namespace planlight::test

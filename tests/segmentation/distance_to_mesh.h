@@ -13,6 +13,8 @@ public:
     explicit DistanceToMesh(const TriangleMesh& mesh);
     ~DistanceToMesh();
     double operator()(const Eigen::Vector3d& p) const;
+    /// The distance where it is at most `most_mm`, else infinite: much sooner found.
+    double within(const Eigen::Vector3d& p, double most_mm) const;
 
 private:
     struct Locator;

@@ -31,7 +31,11 @@ Rgb shade(double light, std::uint8_t flag) {
     return {c(l), c(0.85 * l), c(0.74 * l)};
 }
 
-void draw_view(RgbImage& sheet, int x0, int y0, const TriangleMesh& skin, const View& view, const Frame& frame) {
+constexpr Rgb kMark{255, 235, 40};
+constexpr double kNearMark_mm = 8;  // a mark that lies no deeper than this under the surface is seen
+
+void draw_view(RgbImage& sheet, int x0, int y0, const TriangleMesh& skin, const std::vector<Vector3d>& marks,
+               const View& view, const Frame& frame) {
     std::vector<double> depth(static_cast<std::size_t>(kTile) * kTile, 1e9);
     for (const auto& t : skin.triangles) {
         std::array<Vector3d, 3> p;
@@ -68,10 +72,20 @@ void draw_view(RgbImage& sheet, int x0, int y0, const TriangleMesh& skin, const 
                 sheet.pixels[sheet.index(x0 + x, y0 + y)] = shade(light, flag);
             }
     }
+    for (const Vector3d& mark : marks) {
+        const Vector3d at = mark - frame.middle;
+        const int x = static_cast<int>(std::lround(kTile / 2.0 + at.dot(view.right) / frame.mm_per_pixel)),
+                  y = static_cast<int>(std::lround(kTile / 2.0 + at.dot(view.down) / frame.mm_per_pixel));
+        if (x < 1 || y < 1 || x + 1 >= kTile || y + 1 >= kTile) continue;
+        if (at.dot(view.forward) > depth[static_cast<std::size_t>(y) * kTile + static_cast<std::size_t>(x)] + kNearMark_mm)
+            continue;
+        for (const auto& [dx, dy] : {std::pair(0, 0), std::pair(1, 0), std::pair(0, 1), std::pair(1, 1)})
+            sheet.pixels[sheet.index(x0 + x + dx, y0 + y + dy)] = kMark;
+    }
 }
 
-void draw_slice(RgbImage& sheet, int x0, int y0, const Volume& volume, const TriangleMesh& skin, const View& view,
-                const Frame& frame, double black, double white) {
+void draw_slice(RgbImage& sheet, int x0, int y0, const Volume& volume, const TriangleMesh& skin,
+                const std::vector<Vector3d>& marks, const View& view, const Frame& frame, double black, double white) {
     const Eigen::Affine3d voxel_from_ct = volume.ct_from_voxel.inverse();
     for (int y = 0; y < kTile; ++y)
         for (int x = 0; x < kTile; ++x) {
@@ -100,6 +114,13 @@ void draw_slice(RgbImage& sheet, int x0, int y0, const Volume& volume, const Tri
             if (x >= 0 && y >= 0 && x < kTile && y < kTile) sheet.pixels[sheet.index(x0 + x, y0 + y)] = {255, 70, 60};
         }
     }
+    for (const Vector3d& mark : marks) {
+        const Vector3d at = mark - frame.middle;
+        if (std::abs(at.dot(view.forward)) > 2) continue;
+        const int x = static_cast<int>(std::lround(kTile / 2.0 + at.dot(view.right) / frame.mm_per_pixel)),
+                  y = static_cast<int>(std::lround(kTile / 2.0 + at.dot(view.down) / frame.mm_per_pixel));
+        if (x >= 0 && y >= 0 && x < kTile && y < kTile) sheet.pixels[sheet.index(x0 + x, y0 + y)] = kMark;
+    }
 }
 
 std::pair<double, double> window_of(const Volume& volume) {
@@ -116,7 +137,7 @@ std::pair<double, double> window_of(const Volume& volume) {
 
 }  // namespace
 
-RgbImage head_sheet(const Volume& volume, const TriangleMesh& skin) {
+RgbImage head_sheet(const Volume& volume, const TriangleMesh& skin, const std::vector<Vector3d>& marks) {
     RgbImage sheet(5 * kTile, 2 * kTile, {12, 14, 18});
     if (skin.vertices_in_ct.empty()) return sheet;
     Vector3d low = skin.vertices_in_ct.front(), high = low;
@@ -125,15 +146,15 @@ RgbImage head_sheet(const Volume& volume, const TriangleMesh& skin) {
     const Vector3d left(1, 0, 0), back(0, 1, 0), up(0, 0, 1);
     const View views[] = {
         {left, -up, back}, {back, -up, -left}, {-back, -up, left}, {-left, -up, -back}, {left, back, -up}};
-    for (int v = 0; v < 5; ++v) draw_view(sheet, v * kTile, 0, skin, views[v], frame);
+    for (int v = 0; v < 5; ++v) draw_view(sheet, v * kTile, 0, skin, marks, views[v], frame);
     const auto [black, white] = window_of(volume);
     const View sagittal{back, -up, left}, coronal{left, -up, back}, axial{left, back, up};
     const auto at = [&](const Vector3d& aside) { return Frame{frame.middle + aside, frame.mm_per_pixel}; };
-    draw_slice(sheet, 0, kTile, volume, skin, sagittal, at({0, 0, 0}), black, white);
-    draw_slice(sheet, kTile, kTile, volume, skin, sagittal, at({32, 0, 0}), black, white);
-    draw_slice(sheet, 2 * kTile, kTile, volume, skin, coronal, at({0, 0, 0}), black, white);
-    draw_slice(sheet, 3 * kTile, kTile, volume, skin, axial, at({0, 0, 0}), black, white);
-    draw_slice(sheet, 4 * kTile, kTile, volume, skin, axial, at({0, 0, high.z() - 70 - frame.middle.z()}), black,
+    draw_slice(sheet, 0, kTile, volume, skin, marks, sagittal, at({0, 0, 0}), black, white);
+    draw_slice(sheet, kTile, kTile, volume, skin, marks, sagittal, at({32, 0, 0}), black, white);
+    draw_slice(sheet, 2 * kTile, kTile, volume, skin, marks, coronal, at({0, 0, 0}), black, white);
+    draw_slice(sheet, 3 * kTile, kTile, volume, skin, marks, axial, at({0, 0, 0}), black, white);
+    draw_slice(sheet, 4 * kTile, kTile, volume, skin, marks, axial, at({0, 0, high.z() - 70 - frame.middle.z()}), black,
                white);
     return sheet;
 }

@@ -1,7 +1,10 @@
 // The skin of every head of a folder, as `planlight prepare` takes it: verdict, how it was checked, a picture sheet,
 // and how far it lies off the skin that rays find; beside it the plain way (threshold, largest piece, fill). Compared
-// with EXPECTED.tsv where the folder has one. measure_heads FOLDER [PICTURES] [--only WORD]
+// with EXPECTED.tsv where the folder has one. measure_heads FOLDER [PICTURES] [--only WORD] [--variants]
+// --variants: each head once more without a word in its header, along other axes, on a turned grid, with noise and
+// shading, and without crown, chin or face; verdicts only.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -16,8 +19,9 @@
 #include "segmentation/outside_air.h"
 #include "segmentation/skin_judgement.h"
 #include "segmentation/skin_threshold.h"
-#include "tests/segmentation/distance_to_mesh.h"
 #include "tests/segmentation/head_sheet.h"
+#include "tests/segmentation/head_variants.h"
+#include "tests/segmentation/off_skin.h"
 #include "tests/segmentation/ray_skin.h"
 
 namespace planlight::test {
@@ -32,32 +36,6 @@ struct Row {
     SkinMask mask;
 };
 
-/// The triangles that have a corner on a lid or an end of the volume.
-TriangleMesh not_skin(const TriangleMesh& skin) {
-    TriangleMesh lids;
-    lids.vertices_in_ct = skin.vertices_in_ct;
-    for (const auto& t : skin.triangles)
-        if (std::any_of(t.begin(), t.end(),
-                        [&](std::int32_t c) { return skin.flags[static_cast<std::size_t>(c)] != kSkin; }))
-            lids.triangles.push_back(t);
-    return lids;
-}
-
-/// Share of the rays' points further than 2 mm from the surface, per cent. What lies behind a lid (nostril, ear) is
-/// flagged as no skin and not counted.
-double off_percent(const std::vector<Eigen::Vector3d>& points, const TriangleMesh& skin) {
-    if (points.empty() || skin.triangles.empty()) return NAN;
-    const DistanceToMesh distance(skin), from_lid(not_skin(skin));
-    std::size_t off = 0, of = 0;
-    for (const auto& p : points) {
-        const double mm = distance(p);
-        if (mm > 0.5 && from_lid(p) < mm + 0.5) continue;
-        ++of;
-        off += mm > 2;
-    }
-    return of > 0 ? 100.0 * static_cast<double>(off) / static_cast<double>(of) : NAN;
-}
-
 /// Threshold, largest piece, fill.
 double plain_off_percent(Volume volume, const std::vector<Eigen::Vector3d>& points) {
     try {
@@ -70,7 +48,7 @@ double plain_off_percent(Volume volume, const std::vector<Eigen::Vector3d>& poin
         mask.body = outside_air(largest_piece(std::move(mask.body), grid).mask, grid);
         for (auto& v : mask.body) v = !v;
         volume.modality.clear();
-        return off_percent(points, triangulate_skin(volume, mask));
+        return off_skin(points, triangulate_skin(volume, mask)).percent();
     } catch (const Error&) {
         return NAN;
     }
@@ -83,6 +61,22 @@ std::string verdict_of(const SkinJudgement& judged) {
     return cuts > 0 ? "skin+cut" : "skin";
 }
 
+/// The verdict of a volume, without rays.
+Row judge(const Volume& volume) {
+    Row row;
+    try {
+        row.mask = segment_skin(volume);
+        row.judged = judge_skin(volume, row.mask, triangulate_skin(volume, row.mask));
+        row.ml = row.mask.volume_ml;
+        refuse_implausible(row.judged);
+        row.verdict = verdict_of(row.judged);
+        for (const SkinDoubt& d : row.judged.doubts) row.why += (row.why.empty() ? "" : "; ") + d.finding;
+    } catch (const Error& error) {
+        row.why = error.what();
+    }
+    return row;
+}
+
 Row measure(const fs::path& path, const fs::path& pictures) {
     Row row;
     try {
@@ -93,12 +87,14 @@ Row measure(const fs::path& path, const fs::path& pictures) {
         row.judged = judge_skin(volume, row.mask, skin);
         row.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
         row.ml = row.mask.volume_ml;
-        if (!pictures.empty()) write_png(head_sheet(volume, skin), pictures / (path.filename().string() + ".png"));
+        const auto points = ray_skin(volume);
+        const OffSkin off = off_skin(points, skin);
+        if (!pictures.empty())
+            write_png(head_sheet(volume, skin, off.off), pictures / (path.filename().string() + ".png"));
         refuse_implausible(row.judged);
         row.verdict = verdict_of(row.judged);
         for (const SkinDoubt& d : row.judged.doubts) row.why += (row.why.empty() ? "" : "; ") + d.finding;
-        const auto points = ray_skin(volume);
-        row.off_percent = off_percent(points, skin);
+        row.off_percent = off.percent();
         row.plain_off_percent = plain_off_percent(volume, points);
     } catch (const Error& error) {
         row.why = error.what();
@@ -118,11 +114,38 @@ std::map<std::string, std::string> expected_in(const fs::path& folder) {
 }
 
 /// A warning does for a cut and for a refusal expected as one ("warn"); a refusal is right where "warn" was expected.
-bool is_right(const std::string& verdict, const std::string& expected) {
-    if (expected == "refuse") return verdict == "refuse";
+bool is_right(const std::string& verdict, const std::string& expected, bool cut) {
+    if (expected == "refuse") return verdict == "refuse" || (cut && verdict == "warn");
     if (expected == "warn") return verdict != "skin";
+    if (cut) return verdict != "skin";  // crown, chin or face: said, or not taken
     if (expected == "skin+cut") return verdict == "skin+cut" || verdict == "warn";
     return verdict != "refuse";
+}
+
+/// Prints each variant's verdict; returns how many are not as expected.
+int measure_variants(const fs::path& head, const std::string& expected) {
+    const fs::path folder = fs::temp_directory_path() / fmt::format("planlight_heads_{}", getpid());
+    std::vector<HeadVariant> all;
+    std::string refused;
+    try {
+        const Volume volume = read_volume(without_words(head, folder), {}, SliceGaps::resampled);
+        all = variants_of(volume);
+        all.insert(all.begin(), {"no words", volume});
+    } catch (const Error& error) {
+        refused = error.what();
+    }
+    fs::remove_all(folder);
+    int wrong = 0;
+    for (const HeadVariant& variant : all) {
+        const Row row = judge(variant.volume);
+        const bool right = expected.empty() || is_right(row.verdict, expected, variant.cut);
+        wrong += !right;
+        fmt::print("{}\t{}\t{}{}\t{}\t{:.0f}\t{}\n", head.filename().string(), variant.name, row.verdict,
+                   right ? "" : " WRONG", expected, row.ml, row.why);
+        std::fflush(stdout);
+    }
+    if (all.empty()) fmt::print("{}\tnot read\trefuse\t{}\t\t{}\n", head.filename().string(), expected, refused);
+    return wrong;
 }
 
 }  // namespace
@@ -131,12 +154,17 @@ bool is_right(const std::string& verdict, const std::string& expected) {
 int main(int argc, char** argv) {
     using namespace planlight::test;
     if (argc < 2) {
-        fmt::print(stderr, "measure_heads FOLDER [PICTURES] [--only WORD]\n");
+        fmt::print(stderr, "measure_heads FOLDER [PICTURES] [--only WORD] [--variants]\n");
         return 2;
     }
     namespace fs = std::filesystem;
     const fs::path folder = argv[1], pictures = argc > 2 && argv[2][0] != '-' ? argv[2] : "";
-    const std::string only = std::string(argv[argc - 2]) == "--only" ? argv[argc - 1] : "";
+    std::string only;
+    bool variants = false;
+    for (int a = 2; a < argc; ++a) {
+        if (std::string(argv[a]) == "--only" && a + 1 < argc) only = argv[++a];
+        if (std::string(argv[a]) == "--variants") variants = true;
+    }
     if (!pictures.empty()) fs::create_directories(pictures);
     const auto expected = expected_in(folder);
     std::vector<fs::path> heads;
@@ -145,6 +173,15 @@ int main(int argc, char** argv) {
             heads.push_back(entry.path());
     std::sort(heads.begin(), heads.end());
     int wrong = 0;
+    if (variants) {
+        fmt::print("head\tvariant\tverdict\texpected\tml\twhy\n");
+        for (const auto& head : heads) {
+            const auto known = expected.find(head.filename().string());
+            wrong += measure_variants(head, known == expected.end() ? "" : known->second);
+        }
+        fmt::print("{} heads, {} variants not as expected\n", heads.size(), wrong);
+        return wrong == 0 ? 0 : 6;
+    }
     fmt::print(
         "head\tverdict\texpected\tml\tthreshold\tball mm\tlayered\tnose mm\tblur mm\tunsure\tsigma mm\toff > 2 mm "
         "%\tplain off %\ts\twhy\n");
@@ -152,7 +189,7 @@ int main(int argc, char** argv) {
         const std::string name = head.filename().string();
         const Row row = measure(head, pictures);
         const auto known = expected.find(name);
-        const bool right = known == expected.end() || is_right(row.verdict, known->second);
+        const bool right = known == expected.end() || is_right(row.verdict, known->second, false);
         wrong += !right;
         fmt::print(
             "{}\t{}{}\t{}\t{:.0f}\t{:.4g}\t{:.0f}\t{:.2f}\t{:.0f}\t{:.1f}\t{:.3f}\t{:.2f}\t{:.2f}\t{:.2f}\t{:.1f}\t{}"

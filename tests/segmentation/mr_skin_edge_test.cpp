@@ -47,6 +47,23 @@ Volume mr_of_head(double ratio, double sigma = 15, bool layers = false) {
     return volume;
 }
 
+/// The same head with a skin of 250 and 2 mm over fat of 600: T1, as a scalp shows it.
+Volume mr_of_scalp() {
+    Volume volume = mr_of_head(1);
+    std::mt19937 random(5);
+    std::normal_distribution<double> noise(0, 10);
+    const auto step = [](double d) { return 0.5 * std::erfc(d / 0.9 / std::numbers::sqrt2); };
+    for (int k = 0; k < volume.size[2]; ++k)
+        for (int j = 0; j < volume.size[1]; ++j)
+            for (int i = 0; i < volume.size[0]; ++i) {
+                const double d = analytic_head_distance(volume.ct_from_voxel * Vector3d(i, j, k));
+                const double signal = 250 * step(d) + 350 * step(d + 2) - 560 * step(d + 6) + 300 * step(d + 12);
+                volume.values[volume.index(i, j, k)] =
+                    static_cast<float>(std::hypot(signal + noise(random), noise(random)));
+            }
+    return volume;
+}
+
 struct Errors {
     double front = 0, back = 0, rms = 0, p99 = 0;  ///< mean before and behind, mm outwards
 };
@@ -118,9 +135,19 @@ TEST(MrSkinEdge, ItsSigmaIsWhatNoiseDoesToIt) {
         const TriangleMesh skin = triangulate_skin(volume, mask);
         sigmas.push_back(skin_edge_sigma_mm(volume, mask, skin));
         EXPECT_GT(sigmas.back(), 0.5 * errors_of(skin).rms) << noise;
-        EXPECT_LT(sigmas.back(), 2 * errors_of(skin).rms) << noise;
+        EXPECT_LT(sigmas.back(), 3 * errors_of(skin).rms) << noise;  // the mean over neighbours lies better
     }
     EXPECT_NEAR(sigmas[1] / sigmas[0], 3, 0.3);
+}
+
+TEST(MrSkinEdge, BrightFatUnderADimSkinDoesNotDrawItInwards) {
+    const Volume volume = mr_of_scalp();
+    const SkinMask mask = segment_skin(volume);
+    const Errors errors = errors_of(triangulate_skin(volume, mask));
+    // Voxels of 1.2 mm mix the fat into the skin: no profile shows where it ends. The half of the fat's crest lies 1.6 mm
+    // deep.
+    EXPECT_LT(errors.rms, 1.1);
+    EXPECT_LT(errors.p99, 1.4);
 }
 
 TEST(MrSkinEdge, MovesNothingFarWhereTheThresholdIsRight) {

@@ -14,8 +14,15 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr double kBeginsInHead = -1;  // of a ray: where the volume does, the head does
+
 constexpr double kBetween_mm = 4, kStep_mm = 0.5;
-constexpr int kLeastAir = 12, kStays = 6, kCrest = 14;  // samples: 6 mm of air, 3 mm above it, 7 mm to the crest
+constexpr int kLeastAir = 12, kStays = 6;         // samples: 6 mm of air, 3 mm above it
+constexpr double kBefore_mm = 6, kBehind_mm = 8;  // of that place, where the edge is sought along the normal
+constexpr int kDeeper = 4;                        // samples: 2 mm of skin lie over the fat
+constexpr double kSteepest = 2;                   // mm of depth a mm aside: 63 degrees
+constexpr int kBesideCut = 5;                     // rays
+constexpr int kThin = 24, kGap = 6;               // samples: what is thinner with so much air behind is no skin (CT)
 constexpr double kDeviations = 8, kLoneliest_mm = 5;
 
 /// The mean of five rays 1.2 mm aside, and of 1.5 mm along.
@@ -37,12 +44,42 @@ std::vector<double> profile_of(const Volume& volume, const Eigen::Affine3d& voxe
     return result;
 }
 
-/// How far along the profile the skin is, mm; not a number where the ray sees no air first, or nothing but air.
-double skin_at(const std::vector<double>& profile, double contrast) {
+/// Of a profile along the normal: the first place whose value above the air is half of the one 2 mm deeper, mm. Not the
+/// half of the brightest that follows: under the skin of a T1 lies fat two or three times as bright as the skin itself
+/// (2 to 3 mm thick on a scalp), and in a CT under a thin scalp the bone, so that the half of that crest lies within
+/// the skin or under it.
+double edge_at(const std::vector<double>& profile, double air, double level, std::size_t deeper) {
+    for (std::size_t n = 1; n + deeper < profile.size(); ++n) {
+        const double before = profile[n - 1] - air - (profile[n - 1 + deeper] - air) / 2,
+                     now = profile[n] - air - (profile[n + deeper] - air) / 2;
+        if (profile[n + deeper] > level && now >= 0)
+            return before < 0 ? kStep_mm * (static_cast<double>(n) - now / (now - before)) : NAN;
+    }
+    return NAN;
+}
+
+/// Whether air follows close behind: a couch, a mask, the rim of an ear. To be asked of a CT only, where bone is no
+/// air.
+bool is_thin(const std::vector<double>& profile, std::size_t above, double level) {
+    int gap = 0;
+    for (std::size_t n = above; n < std::min(above + kThin + kGap, profile.size()); ++n) {
+        gap = profile[n] < level ? gap + 1 : 0;
+        if (gap >= kGap) return true;
+    }
+    return false;
+}
+
+/// Where a ray leaves the air that it has seen.
+struct Exit {
+    double depth_mm = NAN;  ///< along the ray; not a number where it sees no air first, or nothing but air
+    double air = 0, level = 0;
+};
+
+Exit exit_of(const std::vector<double>& profile, double contrast, bool air_behind) {
     std::vector<double> air;
     for (std::size_t s = 0; s + kStays < profile.size(); ++s) {
         if (!std::isfinite(profile[s])) {
-            if (!air.empty()) return NAN;
+            if (!air.empty()) return {};
             continue;
         }
         if (static_cast<int>(air.size()) >= kLeastAir) {
@@ -52,21 +89,14 @@ double skin_at(const std::vector<double>& profile, double contrast) {
             const double level = middle + std::max(kDeviations * 1.4826 * median(last), 0.15 * contrast);
             bool stays = true;
             for (std::size_t n = s; n < s + kStays; ++n) stays = stays && profile[n] > level;
-            if (stays) {
-                double crest = profile[s];
-                for (std::size_t n = s; n < std::min(s + kCrest, profile.size()) && profile[n] > 0.85 * crest; ++n)
-                    crest = std::max(crest, profile[n]);
-                const double half = (middle + crest) / 2;
-                std::size_t n = s;
-                while (n + 1 < profile.size() && profile[n] < half) ++n;
-                return kStep_mm * static_cast<double>(n);
-            }
+            if (stays && air_behind && is_thin(profile, s, level)) return {};
+            if (stays) return {kStep_mm * static_cast<double>(s), middle, level};
         } else if (static_cast<int>(air.size()) >= 4 && profile[s] > median(air) + 0.3 * contrast) {
-            return NAN;  // the head begins where the volume does
+            return {kBeginsInHead};
         }
         air.push_back(profile[s]);
     }
-    return NAN;
+    return {};
 }
 
 double contrast_of(const Volume& volume) {
@@ -96,23 +126,48 @@ std::vector<Vector3d> ray_skin(const Volume& volume) {
         const Vector3d u = side.unitOrthogonal(), v = side.cross(u);
         const int n = static_cast<int>(half / kBetween_mm);
         const auto at = [&](int a, int b) { return static_cast<std::size_t>((a + n) * (2 * n + 1) + b + n); };
-        std::vector<double> depth(static_cast<std::size_t>((2 * n + 1) * (2 * n + 1)), NAN);
+        std::vector<Exit> exits(static_cast<std::size_t>((2 * n + 1) * (2 * n + 1)));
         const auto start = [&](int a, int b) -> Vector3d {
             return box.center() + half * side + kBetween_mm * (a * u + b * v);
         };
         tbb::parallel_for(-n, n + 1, [&](int a) {
             for (int b = -n; b <= n; ++b)
-                depth[at(a, b)] = skin_at(
+                exits[at(a, b)] = exit_of(
                     profile_of(volume, voxel_from_ct, start(a, b), -side, u, v, static_cast<int>(2 * half / kStep_mm)),
-                    contrast);
+                    contrast, volume.is_hu);
         });
+        const auto depth = [&](int a, int b) { return exits[at(a, b)].depth_mm; };
+        // Near a cut side what is dark there (a sinus, an ear's canal, bone) is no air.
+        const auto beside_cut = [&](int a, int b) {
+            for (int i = std::max(-n, a - kBesideCut); i <= std::min(n, a + kBesideCut); ++i)
+                for (int j = std::max(-n, b - kBesideCut); j <= std::min(n, b + kBesideCut); ++j)
+                    if (depth(i, j) == kBeginsInHead) return true;
+            return false;
+        };
         for (int a = -n + 1; a < n; ++a)
             for (int b = -n + 1; b < n; ++b) {
-                const double here = depth[at(a, b)];
+                const double here = depth(a, b);
                 int alike = 0;
                 for (const auto& [da, db] : {std::pair(1, 0), std::pair(-1, 0), std::pair(0, 1), std::pair(0, -1)})
-                    alike += std::abs(depth[at(a + da, b + db)] - here) < kLoneliest_mm;
-                if (std::isfinite(here) && alike >= 3) points.push_back(start(a, b) - here * side);
+                    alike += std::abs(depth(a + da, b + db) - here) < kLoneliest_mm;
+                if (!std::isfinite(here) || alike < 3 || beside_cut(a, b)) continue;
+                const auto slope = [&](double before, double after) {  // of two neighbours, or of the one that is there
+                    const double low = here - before, high = after - here;
+                    const bool has_low = std::abs(low) < kLoneliest_mm, has_high = std::abs(high) < kLoneliest_mm;
+                    return (has_low && has_high ? (low + high) / 2 : has_low ? low : high) / kBetween_mm;
+                };
+                const double along_u = slope(depth(a - 1, b), depth(a + 1, b)),
+                             along_v = slope(depth(a, b - 1), depth(a, b + 1));
+                if (std::hypot(along_u, along_v) > kSteepest) continue;
+                const Vector3d inwards = -(side + along_u * u + along_v * v).normalized(),
+                               from = start(a, b) - here * side - kBefore_mm * inwards, p = inwards.unitOrthogonal();
+                const double voxel_mm = (volume.ct_from_voxel.linear().transpose() * inwards).cwiseAbs().maxCoeff();
+                const auto profile = profile_of(volume, voxel_from_ct, from, inwards, p, inwards.cross(p),
+                                                static_cast<int>((kBefore_mm + kBehind_mm) / kStep_mm));
+                const double edge_mm =
+                    edge_at(profile, exits[at(a, b)].air, exits[at(a, b)].level,
+                            static_cast<std::size_t>(std::max<double>(kDeeper, 0.6 * voxel_mm / kStep_mm)));
+                if (std::isfinite(edge_mm)) points.push_back(from + edge_mm * inwards);
             }
     }
     return points;

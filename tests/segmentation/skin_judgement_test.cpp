@@ -107,6 +107,58 @@ TEST(JudgeSkin, SaysWhichSidesAreCutOffWithTheirArea) {
     EXPECT_NEAR(cm2["crown"], ellipse_cm2(75, 92, 60.5 / 85) * 0.9, 25);
 }
 
+bool doubts(const SkinJudgement& skin, const std::string& word) {
+    return std::any_of(skin.doubts.begin(), skin.doubts.end(),
+                       [&](const SkinDoubt& d) { return d.finding.find(word) != std::string::npos; });
+}
+
+TEST(JudgeSkin, SaysThatACushionThatShinesLiesOnTheHead) {
+    // 30 mm thick and 110 mm wide, as bright as the scalp, pressed on the back of the head, or on its crown.
+    for (const Vector3d& towards : {Vector3d(0, 0.95, 0.3), Vector3d(0.3, 0.4, 0.9)}) {
+        const Vector3d out = towards.normalized();
+        const auto cushion = [&](const Vector3d& p) {
+            const double along = p.dot(out);
+            return along > 60 && (p - along * out).norm() < 55 && depth_in_head(p) > -30;
+        };
+        const Judged head = judged(mr_of(
+            [&](const Vector3d& p) {
+                const double depth = depth_in_head(p);
+                return depth < 0 && cushion(p) ? 900 : layered(depth);
+            },
+            {125, 145, 135}));
+        EXPECT_TRUE(head.refused || doubts(head.skin, "cushion"))
+            << towards.transpose() << ": " << head.skin.boneless_cm2 << ", " << head.skin.layered_share;
+    }
+}
+
+TEST(JudgeSkin, SaysThatAStrapHangsOnTheHead) {
+    // 8 mm thick, from above the ear 110 mm upwards, standing off.
+    const Judged head = judged(mr_of([](const Vector3d& p) {
+        const double depth = depth_in_head(p);
+        const bool strap = std::hypot(p.x() - 92, p.y()) < 5 && p.z() > -20 && p.z() < 90;
+        const bool bridge = std::hypot(p.z() + 15, p.y()) < 7 && p.x() > 60 && p.x() < 95;
+        return depth < 0 && (strap || bridge) ? 900 : layered(depth);
+    }));
+    EXPECT_TRUE(head.refused || doubts(head.skin, "hangs") || head.skin.strand_mm < 15)  // said, or cut off
+        << head.skin.strand_mm;
+    EXPECT_LT(judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); })).skin.strand_mm, 40);
+}
+
+TEST(JudgeSkin, ABlurredAverageOfHeadsIsDoubtedAndABlurredBottleRefused) {
+    const auto step = [](double d, double wide) { return 1 / (1 + std::exp(-d / wide)); };
+    const Judged head = judged(mr_of(
+        [&](const Vector3d& p) {
+            const double d = depth_in_head(p, false);
+            return 350 * step(d, 2.2) - 220 * step(d - 10, 2) + 380 * step(d - 17, 2);
+        },
+        {105, 125, 115}, 4));
+    for (const SkinDoubt& d : head.skin.refusals) ADD_FAILURE() << d.finding << " blur " << head.skin.edge_blur_mm;
+    EXPECT_FALSE(head.skin.doubts.empty());
+    EXPECT_TRUE(judged(mr_of([&](const Vector3d& p) { return 600 * step(80 - std::hypot(p.x(), p.y(), p.z()), 2.2); },
+                             {105, 125, 115}, 4))
+                    .refused);
+}
+
 TEST(SegmentMrSkin, NoisyDarkBoneAndASpeckOfHolesDoNotOpenTheHead) {
     // Holes of 8 mm through the scalp, noise of a quarter of the brain.
     const Volume volume = mr_of(
