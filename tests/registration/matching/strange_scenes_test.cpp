@@ -79,7 +79,7 @@ TEST(StrangeScene, HalfAFaceIsFoundOrNotSure) {
         }
         const RegistrationResult found = register_patient(half, head_lut());
         const double off_mm = pose_error(found.patient_from_ct, scan).target_mm;
-        if (found.verdict != Verdict::no) EXPECT_LT(off_mm, 3) << "seed " << seed;
+        EXPECT_TRUE(found.verdict == Verdict::no || off_mm < 3) << "seed " << seed << ": " << off_mm << " mm off";
     }
 }
 
