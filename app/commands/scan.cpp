@@ -47,6 +47,12 @@ nlohmann::json or_null(double value) {
     return value > 0 ? nlohmann::json(value) : nlohmann::json();
 }
 
+/// How far the light lies off where both cameras see it, median; null where no point is seen by both.
+nlohmann::json offset_of(const Triangulation& raw) {
+    if (raw.by_cameras.empty()) return nullptr;
+    return {raw.projector_offset_px.x(), raw.projector_offset_px.y()};
+}
+
 /// Where the scan found the projector; null where it could not tell.
 nlohmann::json projector_of(const ScanResult& scan) {
     if (!scan.resection) return nullptr;
@@ -198,7 +204,7 @@ int run_scan(const ScanOptions& options) {
             {"code_step_px", scan.code_step_px},
             {"epipolar_px", or_null(epipolar_of(scan))},
             {"epipolar_rms_px", or_null(scan.raw.epipolar_rms_px)},
-            {"projector_offset_px", {scan.raw.projector_offset_px.x(), scan.raw.projector_offset_px.y()}},
+            {"projector_offset_px", offset_of(scan.raw)},
             {"projector", projector_of(scan)},
             {"rig", rig_state_json(scan.rig)},
             {"movement", json_of(movement)},

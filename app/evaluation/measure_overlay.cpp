@@ -118,7 +118,7 @@ void measure_line(const Light& light, StrokeKind kind, const FootOf& foot_of, Ov
     for (const auto& [place, bin] : bins) {
         if (bin.weight < kFullWeight) continue;
         errors.position_mm.push_back(std::abs(bin.sideways / bin.weight));
-        errors.places.push_back({kind, bin.incidence / bin.weight, errors.position_mm.back(), 0, true});
+        errors.places.push_back({kind, bin.incidence / bin.weight, errors.position_mm.back(), 0, true, {}});
     }
 }
 
@@ -169,8 +169,8 @@ Vector3d wanted_place(const Vector3d& planned, const std::optional<Vector3d>& ax
     return hit && (hit->p_in_ct - planned).norm() < 3 * (nearest - planned).norm() + 1 ? hit->p_in_ct : nearest;
 }
 
-void measure_ring(const Light& light, StrokeKind kind, const Vector3d& wanted_in_ct, double diameter_mm, bool shapes,
-                  OverlayErrors& errors) {
+void measure_ring(const Light& light, StrokeKind kind, const std::string& item, const Vector3d& wanted_in_ct,
+                  double diameter_mm, bool shapes, OverlayErrors& errors) {
     const auto ring = fit_ring(light);
     if (!ring) return;
     Vector3d normal = Vector3d::Zero();
@@ -183,7 +183,7 @@ void measure_ring(const Light& light, StrokeKind kind, const Vector3d& wanted_in
     const Vector3d off = ring->centre_in_ct - wanted_in_ct;
     const double off_mm = (off - off.dot(normal) * normal).norm();
     const double larger_percent = diameter_mm > 0 ? 200 * ring->radius_mm / diameter_mm - 100 : 0;
-    errors.places.push_back({kind, incidence_deg, off_mm, larger_percent, light.whole});
+    errors.places.push_back({kind, incidence_deg, off_mm, larger_percent, light.whole, item});
     if (!light.whole) return;  // drawn as what it is: no circle
     errors.position_mm.push_back(off_mm);
     if (shapes && diameter_mm > 0) errors.diameter_percent.push_back(std::abs(larger_percent));
@@ -270,15 +270,16 @@ OverlayErrors measure_overlay(const simulation::SimulatedRig& rig, const Plan& p
                 const auto hole = named(plan.boreholes, item.name);
                 if (hole == plan.boreholes.end()) continue;
                 if (stroke.closed)
-                    measure_ring(light, stroke.kind, wanted_place(hole->position_in_ct, hole->axis_in_ct, rig),
-                                 hole->diameter_mm, shapes, errors);
+                    measure_ring(light, stroke.kind, item.name,
+                                 wanted_place(hole->position_in_ct, hole->axis_in_ct, rig), hole->diameter_mm, shapes,
+                                 errors);
                 else if (shapes)
                     arms.push_back(direction_of(light));
             } else if (stroke.kind == StrokeKind::trajectory && stroke.closed) {
                 const auto trajectory = named(plan.trajectories, item.name);
                 if (trajectory != plan.trajectories.end())
                     measure_ring(
-                        light, stroke.kind,
+                        light, stroke.kind, item.name,
                         wanted_place(trajectory->entry_in_ct, trajectory->target_in_ct - trajectory->entry_in_ct, rig),
                         trajectory->diameter_mm >= 6 ? trajectory->diameter_mm : 0, shapes, errors);
             }

@@ -23,6 +23,7 @@ struct OverlayErrors {
         double position_mm = 0;
         double diameter_percent = 0;  ///< signed; 0 of lines, and of circles whose diameter is not planned
         bool whole = true;            ///< false: a circle that the product itself draws as one lit in part
+        std::string item;             ///< of the plan; circles only
     };
     std::vector<Place> places;
     std::size_t unseen_strokes = 0;  ///< strokes of which no light fell on the patient (hidden, too steep)

@@ -147,7 +147,8 @@ DriftCheck check_drift(const ScanResult& scan, const RigCalibration& rig, const 
     DriftCheck check;
     check.points = scan.raw.by_cameras.size();
     const bool moved = scan.rig.moved();
-    check.epipolar_px = moved ? scan.epipolar_as_calibrated_px : usual_epipolar_px(scan.raw);
+    check.epipolar_px =
+        scan.epipolar_as_calibrated_px > 0 ? scan.epipolar_as_calibrated_px : usual_epipolar_px(scan.raw);
     if (scan.resection) {
         check.projector_rms_px = std::numbers::sqrt2 * scan.resection->rms_before_px;  // said per axis there
         check.projector_after_px = std::numbers::sqrt2 * scan.resection->rms_after_px;

@@ -26,9 +26,12 @@ void judge_fit(const RegistrationSettings& settings, const CloudOnSkin& fit, boo
     judgement.no_if(!enough, on_skin);
     judgement.ask_if(enough && share < settings.min_inlier_fraction, on_skin);
     judgement.ask_if(
-        enough && fit.inlier_rms_mm > settings.loose_residual_rms_mm && share < settings.loose_inlier_fraction,
-        fmt::format("the scan lies only loosely on the skin: {:.0f} % of it, {:.2f} mm (rms) off", 100 * share,
-                    fit.inlier_rms_mm));
+        enough && fit.inlier_rms_mm > settings.loose_residual_rms_mm &&
+            fit.shape_rms_mm > settings.loose_shape_rms_mm && share < settings.loose_inlier_fraction,
+        fmt::format(
+            "the scan lies only loosely on the skin: {:.0f} % of it, {:.2f} mm (rms) off, {:.2f} mm without its "
+            "own noise",
+            100 * share, fit.inlier_rms_mm, fit.shape_rms_mm));
     judgement.no_if(fit.inlier_rms_mm > settings.max_residual_rms_mm,
                     fmt::format("the scan lies {:.2f} mm (rms) from the skin; at most {:.2f} mm is good enough",
                                 fit.inlier_rms_mm, settings.max_residual_rms_mm));

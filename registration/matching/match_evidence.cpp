@@ -2,8 +2,10 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "planning_io/types/statistics.h"
 #include "planning_io/types/triangle_mesh.h"
@@ -39,6 +41,36 @@ std::string advice_against(const Vector6d& scaled) {
     return turns ? kAgainstTurns[axis] : kAgainstSlides[axis];
 }
 
+/// Mean square of the inliers' distances without the variance within cells.
+class ShapeResidual {
+public:
+    void add(const Vector3d& x_in_ct, double distance_mm) {
+        const Eigen::Vector3i at = (x_in_ct / kCell_mm).array().floor().cast<int>();
+        Cell& cell = cells_[{at.x(), at.y(), at.z()}];
+        ++cell.count;
+        cell.sum += distance_mm;
+        cell.squares += distance_mm * distance_mm;
+    }
+    double rms_mm() const {
+        double all = 0, of_shape = 0;
+        for (const auto& [at, cell] : cells_) {
+            if (cell.count < 2) continue;
+            const double mean = cell.sum / cell.count;
+            const double variance = (cell.squares - cell.count * mean * mean) / (cell.count - 1);
+            of_shape += cell.squares - cell.count * variance;
+            all += cell.count;
+        }
+        return all == 0 ? 0 : std::sqrt(std::max(of_shape / all, 0.));
+    }
+
+private:
+    static constexpr double kCell_mm = 6;
+    struct Cell {
+        double count = 0, sum = 0, squares = 0;
+    };
+    std::map<std::array<int, 3>, Cell> cells_;
+};
+
 }  // namespace
 
 CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
@@ -47,6 +79,7 @@ CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const Rigid
     const bool has_normals = cloud.normals_in_rig.size() == cloud.size();
     CloudOnSkin result;
     std::vector<double> distances;
+    ShapeResidual shape;
     double sum = 0;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
         if (!cloud.points_in_rig[i].allFinite()) continue;
@@ -64,7 +97,9 @@ CloudOnSkin lay_on_skin(const PointCloud& cloud, const SkinLut& lut, const Rigid
         if (has_normals && normal.dot(ct_from_rig.linear() * cloud.normals_in_rig[i]) < 0) continue;
         ++result.inliers;
         sum += d * d;
+        shape.add(x, d);
     }
+    result.shape_rms_mm = shape.rms_mm();
     if (result.inliers > 0) result.inlier_rms_mm = std::sqrt(sum / static_cast<double>(result.inliers));
     result.median_mm = median(distances);
     return result;

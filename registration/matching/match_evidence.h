@@ -17,6 +17,9 @@ struct CloudOnSkin {
     std::size_t inliers = 0;  ///< nearer than the inlier distance, facing the same way as the skin
     std::size_t inside = 0;   ///< deeper in the body than that, where no light comes from
     double inlier_rms_mm = 0;
+    /// The same without what neighbouring points differ by among themselves, which is the scan's own noise: how far the
+    /// surfaces lie apart. Of cells of 6 mm.
+    double shape_rms_mm = 0;
     double median_mm = 0;  ///< of the known ones, absolute
     double inlier_fraction() const {
         return known == 0 ? 0 : static_cast<double>(inliers) / static_cast<double>(known);

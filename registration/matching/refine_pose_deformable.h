@@ -52,7 +52,7 @@ struct DeformablePose {
 ///
 /// What no residual can show is added: skin that is pulled along as a whole, in proportion to the movement and the
 /// offset that are seen. The shares were set on three models of movement; the bound is measured on others
-/// (matching/README.md).
+/// (registration/matching/ACCURACY.md).
 DeformablePose refine_pose_deformable(const PointCloud& cloud, const SkinLut& lut, const RigidTransform& ct_from_rig,
                                       const DeformableSettings& settings = {});
 

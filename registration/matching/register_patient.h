@@ -37,14 +37,15 @@ struct RegistrationSettings {
     double inlier_distance_mm = 1.5;
     double min_inlier_fraction = 0.8;  ///< of what is no stray; below: ask; below 0.5: no
     double max_residual_rms_mm = 1.0;  ///< of the inliers; above: no
-    /// Points anywhere within 1.5 mm have an rms of 0.87 mm: a fit as loose as that, of not nearly all: ask.
-    double loose_residual_rms_mm = 0.75, loose_inlier_fraction = 0.9;
+    /// Points anywhere within 1.5 mm have an rms of 0.87 mm: a fit as loose as that, of not nearly all, and not by the
+    /// scan's noise alone: ask.
+    double loose_residual_rms_mm = 0.75, loose_shape_rms_mm = 0.5, loose_inlier_fraction = 0.9;
     int min_agreeing_bases = 2;
-    double max_weakest_sigma_mm = 1;   ///< above: ask
-    double max_skin_offset_mm = 1.5;   ///< of the whole skin; above: ask
-    bool mirror_test = true;           ///< match the mirrored scan too
-    double min_mirror_ratio = 1.15;    ///< of the mirrored scan's cost; below: ask
-    double mirror_fits_better = 0.87;  ///< below: no
+    double max_weakest_sigma_mm = 1.25;  ///< of the movement 80 mm from the scan's centre; above: ask
+    double max_skin_offset_mm = 1.5;     ///< of the whole skin; above: ask
+    bool mirror_test = true;             ///< match the mirrored scan too
+    double min_mirror_ratio = 1.15;      ///< of the mirrored scan's cost; below: ask
+    double mirror_fits_better = 0.87;    ///< below: no
     /// Where the scan was lit or seen from (a device that all points were seen by), rig frame: then the way back from
     /// every point must be free in the CT too.
     std::optional<Eigen::Vector3d> viewpoint_in_rig;

@@ -91,7 +91,10 @@ void triangulate_and_resect(const ScanSettings& settings, ScanResult& result, Ri
         result.rig.sentence = "whether the rig moved is not known: the light was read too coarsely";
     else
         result.rig = find_rig_state(matches, rig, settings.rig);
-    if (settings.use_resection && result.rig.moved()) {
+    const bool adjusted =
+        result.rig.verdict == RigState::Verdict::as_calibrated &&
+        result.rig.rig.left_camera.device_from_rig.matrix() != rig.left_camera.device_from_rig.matrix();
+    if (settings.use_resection && (result.rig.moved() || adjusted)) {
         rig = result.rig.rig;
         place_projector(resected(), rig);
     } else if (settings.use_resection) {

@@ -5,23 +5,14 @@
 #include <cmath>
 #include <limits>
 
+#include "planning_io/types/between_rays.h"
+
 namespace planlight {
 namespace {
 
 constexpr double kPairSigmaPx = 0.3;    // calibration and measurement, for the choice between pairs
 constexpr double kSizeSigma = 0.04;     // of the logarithm of the disc's size
 constexpr double kMaxSizeError = 0.25;  // printing, skin that bends the sticker, blur
-
-/// Midpoint of the two rays (Hartley & Zisserman, 12.2).
-std::optional<Eigen::Vector3d> midpoint(const Ray& a, const Ray& b) {
-    const Eigen::Vector3d w = b.origin - a.origin;
-    const double c = a.direction.dot(b.direction), s2 = 1 - c * c;
-    if (s2 < 1e-6) return std::nullopt;
-    const double along_a = (w.dot(a.direction) - c * w.dot(b.direction)) / s2;
-    const double along_b = (c * w.dot(a.direction) - w.dot(b.direction)) / s2;
-    if (along_a <= 0 || along_b <= 0) return std::nullopt;
-    return 0.5 * (a.origin + along_a * a.direction + b.origin + along_b * b.direction);
-}
 
 /// Logarithm of (disc size as seen / true size). A tilted disc keeps its large axis.
 double size_error(const CameraModel& camera, const MarkerObservation& seen, const Eigen::Vector3d& point_in_rig,
@@ -80,7 +71,7 @@ std::optional<TriangulatedMarker> triangulate_marker(const RigCalibration& rig, 
                                                      const MarkerObservation& right) {
     const auto a = ray_through(rig.left_camera, left.pixel), b = ray_through(rig.right_camera, right.pixel);
     if (!a || !b) return std::nullopt;
-    const auto start = midpoint(*a, *b);
+    const auto start = between_rays(*a, *b);
     if (!start) return std::nullopt;
     TriangulatedMarker result{*start};
     for (int iteration = 0; iteration < 4; ++iteration) {

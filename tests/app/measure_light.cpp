@@ -15,6 +15,7 @@
 #include "app/evaluation/measure_overlay.h"
 #include "app/prepare_case.h"
 #include "planning_io/plan/plan_file.h"
+#include "planning_io/types/pose_covariance.h"
 #include "planning_io/volume/read_volume.h"
 #include "projection/skin_now.h"
 #include "registration/matching/register_patient.h"
@@ -68,7 +69,7 @@ struct Measured {
     std::string verdict;
     SkinDisplacement skin;
     std::vector<OverlayErrors::Place> before, after, known;
-    std::vector<double> target_mm;
+    std::vector<double> target_mm, bound_mm;  ///< of the registration at the points of the plan, and as it was stated
     int unscanned = 0;
 };
 
@@ -103,8 +104,10 @@ Measured measure(const Room& of, const Volume& volume, const Case& the_case, con
     if (found.verdict == Verdict::no) return measured;
     measured.skin = found.skin;
     const RigidTransform truth = rig.true_rig_from_ct(capture.began);
-    for (const Vector3d& p : points_of(plan))
+    for (const Vector3d& p : points_of(plan)) {
         measured.target_mm.push_back((found.patient_from_ct * p - truth * p).norm());
+        measured.bound_mm.push_back(predicted_error(found.covariance, p).bound_95_mm);
+    }
 
     DrawingSettings drawing;
     drawing.labels = false;
@@ -130,15 +133,32 @@ Measured measure(const Room& of, const Volume& volume, const Case& the_case, con
 }
 
 struct Figures {
-    std::array<std::vector<double>, 5> line_mm, hole_mm, diameter_percent;
+    /// `against_known_percent`: of the diameter, to the same circle with skin, pose and rig known.
+    std::array<std::vector<double>, 5> line_mm, hole_mm, diameter_percent, against_known_percent;
     std::array<int, 5> partly_lit{};
 };
 constexpr std::array kBins_deg{0., 30., 45., 60., 70., 91.};
 
-void add(const std::vector<OverlayErrors::Place>& places, Figures& figures) {
+using Places = std::vector<OverlayErrors::Place>;
+
+std::size_t bin_of(const OverlayErrors::Place& place) {
+    std::size_t bin = 0;
+    while (bin + 1 < 5 && place.incidence_deg >= kBins_deg[bin + 1]) ++bin;
+    return bin;
+}
+
+void add_diameters_against(const Places& known, const Places& places, Figures& figures) {
+    for (const auto& place : places)
+        for (const auto& other : known)
+            if (!place.item.empty() && place.item == other.item && place.kind == other.kind && place.whole &&
+                other.whole && place.diameter_percent != 0 && other.diameter_percent != 0)
+                figures.against_known_percent[bin_of(place)].push_back(
+                    std::abs(place.diameter_percent - other.diameter_percent));
+}
+
+void add(const Places& places, Figures& figures) {
     for (const auto& place : places) {
-        std::size_t bin = 0;
-        while (bin + 1 < 5 && place.incidence_deg >= kBins_deg[bin + 1]) ++bin;
+        const std::size_t bin = bin_of(place);
         const bool ring = place.kind == StrokeKind::borehole || place.kind == StrokeKind::trajectory;
         if (!place.whole) {
             ++figures.partly_lit[bin];
@@ -163,7 +183,7 @@ using Bins = std::array<std::vector<double>, 5>;
 
 void print(const char* what, const std::array<const Bins*, 3>& ways) {
     for (std::size_t bin = 0; bin < 5; ++bin) {
-        fmt::print("  {:<20} {:>2.0f} to {:>2.0f} deg", what, kBins_deg[bin], std::min(90., kBins_deg[bin + 1]));
+        fmt::print("  {:<22} {:>2.0f} to {:>2.0f} deg", what, kBins_deg[bin], std::min(90., kBins_deg[bin + 1]));
         for (const Bins* way : ways) {
             const Distribution d = distribution_of((*way)[bin]);
             fmt::print(" |{:>5} {:>5.2f} {:>5.2f} {:>5.2f}", d.count, d.median, d.p95, d.worst);
@@ -174,11 +194,13 @@ void print(const char* what, const std::array<const Bins*, 3>& ways) {
 
 void print(const std::string& name, const Figures& before, const Figures& after, const Figures& known) {
     constexpr const char* kOf = "places, median, 95 %, worst";
-    fmt::print("\n{}\n  {:<34} |{:^24}|{:^24}|{:^24}\n  {:<34} |{:^74}\n", name, "light meets the skin at", "before",
+    fmt::print("\n{}\n  {:<36} |{:^24}|{:^24}|{:^24}\n  {:<36} |{:^74}\n", name, "light meets the skin at", "before",
                "after", "known", "", kOf);
     print("line, beside it, mm", {&before.line_mm, &after.line_mm, &known.line_mm});
     print("circle, centre, mm", {&before.hole_mm, &after.hole_mm, &known.hole_mm});
     print("circle, diameter, %", {&before.diameter_percent, &after.diameter_percent, &known.diameter_percent});
+    print("the same, to the known",
+          {&before.against_known_percent, &after.against_known_percent, &known.against_known_percent});
     const auto& broken = after.partly_lit;
     fmt::print("  drawn broken (less than 85 % of the rim can be lit), after: {} below 60 deg, {} to 70, {} beyond\n",
                broken[0] + broken[1] + broken[2], broken[3], broken[4]);
@@ -190,11 +212,18 @@ void measure_rooms(Preset preset, bool still, int rooms, unsigned first_seed, co
                    const Case& the_case, const SkinSurface& skin) {
     Figures before, after, known;
     std::map<std::string, int> verdicts;
+    std::vector<double> target_mm, bound_mm;
+    std::size_t within = 0;
     for (int i = 0; i < rooms; ++i) {
         const Room room = room_of(preset, first_seed + static_cast<unsigned>(i), still);
         const Measured m = measure(room, volume, the_case, skin);
         ++verdicts[m.verdict];
         add(m.before, before), add(m.after, after), add(m.known, known);
+        add_diameters_against(m.known, m.before, before), add_diameters_against(m.known, m.after, after);
+        for (std::size_t k = 0; k < m.target_mm.size(); ++k) {
+            target_mm.push_back(m.target_mm[k]), bound_mm.push_back(m.bound_mm[k]);
+            within += m.target_mm[k] <= m.bound_mm[k];
+        }
         fmt::print(
             "{} {:>3} {:<12} {:>5.0f} HU {:<8} {}: offset {:+.2f}, spread {:.2f} mm, {} places, {} items not all "
             "scanned; plan points {:.2f} mm off; lines to 60 deg, 95 %: {:.2f}, {:.2f}, known {:.2f} mm\n",
@@ -207,6 +236,13 @@ void measure_rooms(Preset preset, bool still, int rooms, unsigned first_seed, co
                       still ? "still since the CT" : "moved since the CT", rooms, verdicts["yes"], verdicts["ask"],
                       verdicts["no"]),
           before, after, known);
+    const Distribution off = distribution_of(target_mm), stated = distribution_of(bound_mm);
+    fmt::print(
+        "  registration at the plan's points: median {:.2f}, 95 % {:.2f}, worst {:.2f} mm; stated bound: median "
+        "{:.2f}, "
+        "95 % {:.2f} mm, covers {} of {}\n",
+        off.median, off.p95, off.worst, stated.median, stated.p95, within, target_mm.size());
+    std::fflush(stdout);
 }
 
 int run(int rooms, unsigned first_seed, const std::string& preset, const std::string& skin_is) {

@@ -179,7 +179,8 @@ private:
 
     void light(const RigCalibration& rig, Outcome& out) {
         ScanSettings settings;
-        if (options_.before) settings.rig.moved_chi_square = std::numeric_limits<double>::infinity();
+        if (options_.before)
+            settings.rig.moved_chi_square = settings.rig.max_unadjusted = std::numeric_limits<double>::infinity();
         const ScanResult scan = scan_from_capture(capture_, rig, settings);
         if (scan.clean.kept.empty()) throw CheckFailedError("no skin was found", "-");
         out.state = named_rig_state(scan, rig, capture_);

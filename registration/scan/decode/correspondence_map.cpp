@@ -33,7 +33,7 @@ constexpr float kQuadricVariance =
 // the centre has sqrt(0.114) times the noise more, and skin's detail bends the code by about 0.06 px over the window.
 constexpr float kHalfWaySigma_px = 0.2f;
 // Over what variance (camera pixels squared, an axis) the lens and the skin spread light: a lens as it is focused (0.6
-// to 0.8 px), and as much again in the skin.
+// to 0.8 px), and as much again in the skin. The radius of the ball of `measure_scan_rooms` tells (scan/ACCURACY.md).
 constexpr float kSpread_px2 = 1;
 // Slope of the light's logarithm, a pixel, above which it is more an edge (of the projector's picture, a shadow, ink)
 // than the shading of a surface: there the code is no quadric and the light not spread evenly about its slope.

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <string>
 
+#include "planning_io/types/between_rays.h"
+#include "planning_io/types/statistics.h"
 #include "registration/scan/triangulate/rig_doubts.h"
 #include "registration/scan/triangulate/rig_explanations.h"
 
@@ -29,14 +31,9 @@ std::vector<SeenPlace> places_of(const ViewMatches& matches, const RigCalibratio
         if (!m.whole) continue;
         const auto a = ray_through(rig.left_camera, m.pixel), b = ray_through(rig.right_camera, m.right);
         if (!a || !b) continue;
-        // Midpoint method (Hartley & Zisserman, 12.2).
-        const Eigen::Vector3d between = b->origin - a->origin;
-        const double c = a->direction.dot(b->direction), u = a->direction.dot(between), v = b->direction.dot(between);
-        if (!(1 - c * c > 1e-6)) continue;
-        const double s = (u - c * v) / (1 - c * c), t = (c * u - v) / (1 - c * c);
-        if (!(s > 0) || !(t > 0)) continue;
-        const Eigen::Vector3d p = 0.5 * (a->origin + s * a->direction + b->origin + t * b->direction);
-        places.push_back({{m.pixel, m.right, m.code}, p});
+        const auto p = between_rays(*a, *b);
+        if (!p) continue;
+        places.push_back({{m.pixel, m.right, m.code}, *p});
     }
     return places;
 }
@@ -168,15 +165,49 @@ void take_moved(const RigCalibration& rig, const RigFits& fits, const std::vecto
     state.remedy = "Use the rig.json of this rig, say in capture.json where its code begins, or calibrate it again.";
 }
 
-void take_as_calibrated(const RigFits& fits, const std::vector<SeenPlace>& some, const RigStateSettings& settings,
-                        RigState& state) {
-    state.doubts = own_doubts(fits.as_calibrated, state.rig, some);
-    state.hidden_light_mm = hidden_over(state, some);
-    if (fits.as_calibrated.usual <= settings.max_usual_residual) {
+/// How far the cameras' rays miss each other, sigmas of their pixels: the usual place.
+double usual_miss(const std::vector<SeenPlace>& places, const RigCalibration& rig) {
+    constexpr double kSigma_px = 0.1, kMedianOfNormal = 0.6745;
+    std::vector<double> sigmas;
+    for (const SeenPlace& place : places) {
+        const auto left = ray_through(rig.left_camera, place.pixels[0]),
+                   right = ray_through(rig.right_camera, place.pixels[1]);
+        const auto p = left && right ? between_rays(*left, *right) : std::nullopt;
+        const auto in_left = p ? project(rig.left_camera, *p) : std::nullopt,
+                   in_right = p ? project(rig.right_camera, *p) : std::nullopt;
+        if (in_left && in_right)
+            sigmas.push_back(std::hypot((*in_left - place.pixels[0]).norm(), (*in_right - place.pixels[1]).norm()) /
+                             kSigma_px);
+    }
+    return median(std::move(sigmas)) / kMedianOfNormal;
+}
+
+/// The rig within what its calibration leaves open, where rig.json itself would lose the points of usual places.
+void adjust_within_calibration(const RigFits& fits, const std::vector<SeenPlace>& places,
+                               const RigStateSettings& settings, RigState& state) {
+    const double before = usual_miss(places, state.rig);
+    if (!(before > settings.max_unadjusted)) return;
+    const RigCalibration adjusted = changed(state.rig, fits.as_calibrated.numbers);
+    const double after = usual_miss(places, adjusted);
+    if (!(after < before)) return;
+    state.rig = adjusted;
+    state.sentence += fmt::format(
+        ", within what its calibration leaves open: the cameras' rays missed each other by {:.1f} sigmas, now by "
+        "{:.1f}",
+        before, after);
+}
+
+void take_as_calibrated(const RigFits& fits, const std::vector<SeenPlace>& places, const std::vector<SeenPlace>& some,
+                        const RigStateSettings& settings, RigState& state) {
+    const bool fits_together = fits.as_calibrated.usual <= settings.max_usual_residual;
+    if (fits_together) {
         state.verdict = RigState::Verdict::as_calibrated;
         state.sentence = "the rig is as it was calibrated";
-        return;
+        adjust_within_calibration(fits, places, settings, state);
     }
+    state.doubts = own_doubts(fits.as_calibrated, state.rig, some);
+    state.hidden_light_mm = hidden_over(state, some);
+    if (fits_together) return;
     state.verdict = RigState::Verdict::not_trusted;
     state.sentence = "the devices fit each other from no place: another rig, or a lens or a distortion that is wrong";
     state.remedy = "Use the rig.json of this rig, or calibrate it again.";
@@ -199,7 +230,7 @@ RigState find_rig_state(const ViewMatches& matches, const RigCalibration& rig, c
         fits.as_calibrated.chi_square - fits.others.front().chi_square > fits.noise * settings.moved_chi_square)
         take_moved(rig, fits, some, settings, state);
     else
-        take_as_calibrated(fits, some, settings, state);
+        take_as_calibrated(fits, places, some, settings, state);
     return state;
 }
 

@@ -33,6 +33,9 @@ struct RigStateSettings {
     double moved_chi_square = 25, doubt_chi_square = 16;
     double lens_and_place_penalty = 12, two_devices_penalty = 20;  ///< of explanations with more to choose
     double max_usual_residual = 4;                                 ///< sigmas; more is a rig that fits from no place
+    /// How far the cameras' rays may miss each other by rig.json, sigmas of a pixel (usual place), before the rig is
+    /// adjusted within what its calibration leaves open; the points of farther places are lost.
+    double max_unadjusted = 1.5;
     double max_hidden_mm = 0.5;  ///< light that may be off without a sign of it; above: not trusted
 };
 
@@ -40,7 +43,8 @@ struct RigStateSettings {
 /// of both against the projector, and the calibration's own uncertainty as prior. First as calibrated; where that does
 /// not hold, every device (or two of them) is taken to have moved, or its lens to have been touched, and the
 /// explanation that costs least is taken; those that cost little more are kept as doubts, with what they would do to
-/// the light. The scale of the whole is never seen, nor a camera that moved along the line to the other.
+/// the light. A rig that holds, but only within what its calibration leaves open, is adjusted by that much
+/// (`max_unadjusted`). The scale of the whole is never seen, nor a camera that moved along the line to the other.
 ///
 /// The verdict is `unknown` where too few places are seen by both cameras. `capture_hash` and `calibrated` are the
 /// caller's to fill. MacKay 2003, ch. 28, for comparing explanations; Hartley & Zisserman, 18, for the adjustment.

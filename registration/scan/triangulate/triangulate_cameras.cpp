@@ -7,6 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "planning_io/types/between_rays.h"
 #include "registration/scan/decode/correspondence_map.h"
 #include "registration/scan/triangulate/triangulate_parts.h"
 

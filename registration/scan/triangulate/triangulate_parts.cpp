@@ -42,16 +42,6 @@ double worst_sigma(const Eigen::Matrix3d& covariance) {
     return std::sqrt(std::max(0.0, solver.eigenvalues()(2)));
 }
 
-std::optional<Eigen::Vector3d> between_rays(const Ray& a, const Ray& b) {
-    const Eigen::Vector3d w = b.origin - a.origin;
-    const double cosine = a.direction.dot(b.direction), sine2 = 1 - cosine * cosine;
-    if (sine2 < 1e-6) return std::nullopt;
-    const double along_a = (w.dot(a.direction) - cosine * w.dot(b.direction)) / sine2;
-    const double along_b = (cosine * w.dot(a.direction) - w.dot(b.direction)) / sine2;
-    if (along_a <= 0 || along_b <= 0) return std::nullopt;
-    return 0.5 * (a.origin + along_a * a.direction + b.origin + along_b * b.direction);
-}
-
 bool in_volume(const CameraModel& projector, const Eigen::Vector3d& p_in_rig, const TriangulationSettings& settings) {
     const double distance = (projector.device_from_rig * p_in_rig).norm();
     return distance >= settings.near_mm && distance <= settings.far_mm;

@@ -32,10 +32,6 @@ struct PointOutcome {
 /// One standard deviation along the worst direction of a covariance.
 double worst_sigma(const Eigen::Matrix3d& covariance);
 
-/// The point halfway between two rays, and the distance between them; empty when they are almost parallel or the
-/// point lies behind a device. Midpoint method (Hartley & Zisserman, 12.2).
-std::optional<Eigen::Vector3d> between_rays(const Ray& a, const Ray& b);
-
 /// By its distance from the projector.
 bool in_volume(const CameraModel& projector, const Eigen::Vector3d& p_in_rig, const TriangulationSettings& settings);
 

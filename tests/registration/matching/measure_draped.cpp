@@ -7,15 +7,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <random>
 #include <set>
 
 #include "tests/registration/matching/draped_scene.h"
+#include "tests/registration/matching/trial_counts.h"
 #include "tests/registration/matching/trial_heads.h"
 #include "tests/registration/matching/trial_options.h"
-#include "tests/registration/matching/trial_record.h"
 #include "tests/support/test_data.h"
 
 namespace planlight::test {
@@ -108,29 +107,17 @@ TrialRecord run(const std::vector<TrialHead>& heads, unsigned seed) {
     return record;
 }
 
-using In = std::function<bool(const TrialRecord&)>;
-
-void print_row(const std::string& name, const std::vector<TrialRecord>& all, const In& in) {
-    std::vector<double> error, seconds, processor_s;
-    std::size_t n = 0, found = 0, verdicts[3] = {0, 0, 0}, wrong[2] = {0, 0};
-    for (const TrialRecord& r : all) {
-        if (!in(r)) continue;
-        ++n;
-        ++verdicts[r.verdict];
-        found += r.found_finally();
-        if (r.verdict < 2) wrong[r.verdict] += r.wrong();
-        if (r.found_finally() && r.verdict < 2) error.push_back(r.final.target_mm);
-        seconds.push_back(r.initial_s);
-        processor_s.push_back(r.processor_s);
-    }
-    if (n == 0) return;
-    const auto percent = [&](std::size_t k) { return 100. * static_cast<double>(k) / static_cast<double>(n); };
+void print_row(const std::string& name, const std::vector<TrialRecord>& all, const TrialsThat& in) {
+    const TrialCounts row(all, in);
+    if (row.empty()) return;
+    const auto error =
+        row.target_mm(&TrialRecord::final, [](const TrialRecord& r) { return r.found_finally() && r.verdict < 2; });
+    const auto seconds = row.values(&TrialRecord::initial_s), processor_s = row.values(&TrialRecord::processor_s);
     fmt::print(
-        "| {} | {} | {:.1f} % | {:.1f} / {:.1f} / {:.1f} % | {} / {} | {:.2f}, {:.2f}, {:.2f} | {:.2f}, {:.2f} | "
-        "{:.2f} |\n",
-        name, n, percent(found), percent(verdicts[0]), percent(verdicts[1]), percent(verdicts[2]), wrong[0], wrong[1],
-        quantile(error, 0.5), quantile(error, 0.95), quantile(error, 1), quantile(seconds, 0.5),
-        quantile(seconds, 0.99), quantile(processor_s, 0.5));
+        "| {} | {} | {:.1f} % | {} / {} / {} | {} / {} | {:.2f}, {:.2f}, {:.2f} | {:.2f}, {:.2f} | {:.2f}, {:.2f} |\n",
+        name, row.trials.size(), row.percent(row.found_finally), row.verdicts[0], row.verdicts[1], row.verdicts[2],
+        row.wrong[0], row.wrong[1], quantile(error, 0.5), quantile(error, 0.95), quantile(error, 1),
+        quantile(seconds, 0.5), quantile(seconds, 0.99), quantile(processor_s, 0.5), quantile(processor_s, 0.99));
 }
 
 void print_table(const std::vector<TrialRecord>& all) {
@@ -139,9 +126,9 @@ void print_table(const std::vector<TrialRecord>& all) {
         "patient): yes / ask | "
         "error at targets of those found and not refused, mm: median, 95 %, worst | initial match, s by the wall: "
         "median, 99 % | "
-        "processor s in all: median |\n|---|---|---|---|---|---|---|---|\n");
-    const In patient = [](const TrialRecord& r) { return r.right_object; };
-    const In within = [](const TrialRecord& r) { return r.right_object && r.drape <= 0.8 && r.width_mm >= 90; };
+        "processor s in all: median, 99 % |\n|---|---|---|---|---|---|---|---|\n");
+    const TrialsThat patient = [](const TrialRecord& r) { return r.right_object; };
+    const TrialsThat within = [](const TrialRecord& r) { return r.right_object && r.drape <= 0.8 && r.width_mm >= 90; };
     const auto looked_at = [](const TrialRecord& r, bool yes) {
         for (const Draping& d : drapings())
             if (d.name == r.view) return d.looked_at == yes;
@@ -190,13 +177,8 @@ int main(int argc, char** argv) {
     TrialOptions options = trial_options(argc, argv, 1000);
     for (const char* name : {"heads/head_11.nii.gz", "heads/head_21.nii.gz"})
         if (const auto file = third_party_data(name)) options.files.volumes.push_back(*file);
-    TrialLog log(options.log);
     const std::vector<TrialHead> heads = trial_heads(options.files);
-    for (unsigned i = 0; i < options.trials; ++i) {
-        if (log.holds(options.seed + i)) continue;
-        log.add(run(heads, options.seed + i));
-        if (i % 20 == 0) fmt::print(stderr, "\r{} of {}", i, options.trials);
-    }
-    print_table(log.records());
-    print_misses(log.records());
+    const auto all = run_trials(options, [&](unsigned seed) { return run(heads, seed); });
+    print_table(all);
+    print_misses(all);
 }

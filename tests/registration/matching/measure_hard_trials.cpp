@@ -14,10 +14,9 @@
 #include "tests/registration/matching/matching_scenes.h"
 #include "tests/registration/matching/moved_skin.h"
 #include "tests/registration/matching/roc_picture.h"
+#include "tests/registration/matching/trial_counts.h"
 #include "tests/registration/matching/trial_heads.h"
 #include "tests/registration/matching/trial_objects.h"
-#include "tests/registration/matching/trial_options.h"
-#include "tests/registration/matching/trial_record.h"
 
 namespace planlight::test {
 namespace {
@@ -247,17 +246,10 @@ std::vector<RocPoint> verdicts_of(const std::vector<TrialRecord>& all) {
 int main(int argc, char** argv) {
     using namespace planlight::test;
     const TrialOptions options = trial_options(argc, argv, 5000);
-    TrialLog log(options.log);
     const std::vector<TrialHead> heads = trial_heads(options.files);
-    const double before = processor_seconds();
-    for (unsigned i = 0; i < options.trials; ++i) {
-        if (log.holds(options.seed + i)) continue;
-        log.add(run(heads, options.seed + i));
-        if (i % 20 == 0)
-            fmt::print(stderr, "\r{} of {}, {:.0f} processor seconds", i, options.trials, processor_seconds() - before);
-    }
-    print_table(log.records());
-    const auto curves = curves_of(log.records());
+    const auto all = run_trials(options, [&](unsigned seed) { return run(heads, seed); });
+    print_table(all);
+    const auto curves = curves_of(all);
     fmt::print(
         "\n| measure, {} right and {} wrong | area under its ROC | right ones accepted at no wrong one | at 1 % |\n"
         "|---|---|---|---|\n",
@@ -266,5 +258,5 @@ int main(int argc, char** argv) {
         fmt::print("| {} | {:.3f} | {:.1f} % | {:.1f} % |\n", curve.name, area_under(curve),
                    100 * accepted_at(curve, 0), 100 * accepted_at(curve, 0.01));
     if (!options.picture.empty())
-        write_roc(curves, verdicts_of(log.records()), "Certificate: right against wrong matches", options.picture);
+        write_roc(curves, verdicts_of(all), "Certificate: right against wrong matches", options.picture);
 }

@@ -23,7 +23,9 @@ TrialOptions trial_options(int argc, char** argv, unsigned default_trials) {
     int numbers = 0;
     for (int i = 1; i < argc; ++i) {
         const std::string word = argv[i];
-        if (word == "--volume" && i + 1 < argc) {
+        if (word == "--plain") {
+            options.plain = true;
+        } else if (word == "--volume" && i + 1 < argc) {
             options.files.volumes.emplace_back(argv[++i]);
         } else if (const auto at = paths.find(word); at != paths.end() && i + 1 < argc) {
             *at->second = argv[++i];
@@ -33,7 +35,7 @@ TrialOptions trial_options(int argc, char** argv, unsigned default_trials) {
             fmt::print(stderr,
                        "usage: {} [TRIALS [SEED]] [--ch2 FILE] [--mannequin FILE] [--ct-head FOLDER] [--volume "
                        "FILE]... [--log FILE] "
-                       "[--picture FILE]\n",
+                       "[--picture FILE] [--plain]\n",
                        argv[0]);
             std::exit(2);
         }

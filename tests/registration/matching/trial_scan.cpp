@@ -3,12 +3,12 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <random>
 
 #include "tests/registration/matching/matching_scenes.h"
 #include "tests/registration/matching/moved_skin.h"
+#include "tests/registration/matching/ray_grid.h"
 
 namespace planlight::test {
 namespace {
@@ -39,19 +39,17 @@ struct Window {
     }
 };
 
-/// A grid of rays: what each met.
-struct Grid {
-    int columns = 0, rows = 0;
+/// What each ray met.
+struct Grid : RayGrid {
     std::vector<Vector2d> window;  ///< of each ray
-    std::vector<Vector3d> direction;
-    std::vector<char> met;
-    std::vector<Vector3d> p, normal;  ///< in ct
+    std::vector<Vector3d> normal;  ///< of the surface, in ct
 };
 
 Grid cast(const TrialSurface& surface, const Window& window, int columns) {
     Grid grid;
     grid.columns = columns;
     grid.rows = std::max(1, columns * 3 / 4);
+    grid.spacing_mm = window.width_mm / columns;
     for (int j = 0; j < grid.rows; ++j)
         for (int i = 0; i < columns; ++i) {
             const Vector2d at((i + 0.5) / columns - 0.5, (j + 0.5) / grid.rows - 0.5);
@@ -67,17 +65,10 @@ Grid cast(const TrialSurface& surface, const Window& window, int columns) {
     return grid;
 }
 
-std::vector<std::size_t> met(const Grid& grid) {
-    std::vector<std::size_t> which;
-    for (std::size_t i = 0; i < grid.met.size(); ++i)
-        if (grid.met[i]) which.push_back(i);
-    return which;
-}
-
 /// The skin's movement acts on the head, before it is seen.
 void move_skin(Grid& grid, const TrialScanSettings& settings) {
     if (settings.movement.empty() || !(settings.movement_mm > 0)) return;
-    const auto skin = met(grid);
+    const auto skin = grid.those_that_met();
     PointCloud cloud;
     for (const auto i : skin) {
         cloud.points_in_rig.push_back(grid.p[i]);
@@ -94,7 +85,7 @@ std::vector<char> lay_drape(Grid& grid, const Window& window, const TrialScanSet
     std::uniform_real_distribution<double> unit;
     const double side = 2 * std::numbers::pi * unit(random), fold_side = 2 * std::numbers::pi * unit(random);
     const double fold_mm = 20 + 40 * unit(random), phase = 2 * std::numbers::pi * unit(random);
-    auto skin = met(grid);
+    auto skin = grid.those_that_met();
     const auto across = [&](std::size_t i) { return grid.window[i].dot(Vector2d(std::cos(side), std::sin(side))); };
     const auto under = static_cast<std::size_t>(settings.drape_share * static_cast<double>(skin.size()));
     if (under < 50) return draped;
@@ -122,42 +113,13 @@ std::vector<char> lay_drape(Grid& grid, const Window& window, const TrialScanSet
     return draped;
 }
 
-/// The plane through the rays round one that met about the same surface; towards the devices.
-Vector3d normal_of(const Grid& grid, std::size_t at, double spacing_mm) {
-    constexpr int kReach = 3;
-    const double farthest_mm = 2.5 * kReach * spacing_mm + 1;
-    const int row = static_cast<int>(at) / grid.columns, column = static_cast<int>(at) % grid.columns;
-    Vector3d sum = Vector3d::Zero();
-    Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
-    int count = 0;
-    for (int j = std::max(0, row - kReach); j <= std::min(grid.rows - 1, row + kReach); ++j)
-        for (int i = std::max(0, column - kReach); i <= std::min(grid.columns - 1, column + kReach); ++i) {
-            const auto k = static_cast<std::size_t>(j * grid.columns + i);
-            if (!grid.met[k]) continue;
-            const Vector3d d = grid.p[k] - grid.p[at];
-            if (d.norm() > farthest_mm) continue;
-            sum += d;
-            squares += d * d.transpose();
-            ++count;
-        }
-    if (count < 6) return -grid.direction[at];
-    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-    solver.computeDirect(squares / count - sum * sum.transpose() / (count * count));
-    const Vector3d n = solver.eigenvectors().col(0);
-    return n.dot(grid.direction[at]) > 0 ? Vector3d(-n) : n;
-}
-
 void spoil(Grid& grid, const TrialScanSettings& settings, TrialScan& scan, const std::vector<char>& draped,
            std::mt19937& random) {
-    std::normal_distribution<double> noise(0, 1);
-    std::uniform_real_distribution<double> unit;
-    for (const auto i : met(grid)) {
-        const double off = settings.noise_mm * noise(random), stray = unit(random), way = unit(random),
-                     far = unit(random);
-        const bool is_stray = stray < settings.stray_share;
-        const double thrown = is_stray ? (way < 0.5 ? -1 : 1) * (15 + 85 * far) : 0;
-        grid.p[i] += (off + thrown) * grid.direction[i];
-        ++(is_stray ? scan.stray_points : draped[i] ? scan.drape_points : scan.bare_points);
+    DepthSpoiler spoiler(settings.noise_mm, settings.stray_share, random);
+    for (const auto i : grid.those_that_met()) {
+        const DepthSpoiler::Spoilt spoilt = spoiler.next();
+        grid.p[i] += spoilt.mm * grid.direction[i];
+        ++(spoilt.stray ? scan.stray_points : draped[i] ? scan.drape_points : scan.bare_points);
     }
 }
 
@@ -169,16 +131,13 @@ Vector3d as_is(const Vector3d& p_in_ct, const Vector3d& middle, const TrialScanS
 }
 
 void set_targets(const Grid& grid, TrialScan& scan) {
-    const auto skin = met(grid);
+    const auto skin = grid.those_that_met();
     Vector3d outwards = Vector3d::Zero();
     for (const auto i : skin) {
         scan.middle_in_ct += grid.p[i] / static_cast<double>(skin.size());
         outwards += grid.normal[i];
     }
-    const Vector3d deep = scan.middle_in_ct - 60 * outwards.normalized();
-    scan.targets_in_ct.push_back(deep);
-    for (int axis = 0; axis < 3; ++axis)
-        for (const double side : {-40., 40.}) scan.targets_in_ct.emplace_back(deep + side * Vector3d::Unit(axis));
+    scan.targets_in_ct = targets_round(scan.middle_in_ct - 60 * outwards.normalized());
 }
 
 }  // namespace
@@ -187,11 +146,11 @@ TrialScan trial_scan(const TrialSurface& surface, const TrialScanSettings& setti
     TrialScan scan;
     const Window window(surface, settings);
     const Grid coarse = cast(surface, window, 40);
-    const auto share = static_cast<double>(met(coarse).size()) / static_cast<double>(coarse.met.size());
+    const auto share = static_cast<double>(coarse.those_that_met().size()) / static_cast<double>(coarse.met.size());
     if (share < 0.02) return scan;
     const int columns = static_cast<int>(std::sqrt(settings.points / share * 4 / 3));
     Grid grid = cast(surface, window, columns);
-    if (met(grid).size() < 200) return scan;
+    if (grid.those_that_met().size() < 200) return scan;
     set_targets(grid, scan);
     std::mt19937 random(settings.seed);
     move_skin(grid, settings);
@@ -200,8 +159,8 @@ TrialScan trial_scan(const TrialSurface& surface, const TrialScanSettings& setti
     scan.rig_from_ct = random_pose(settings.seed);
     const Vector3d middle = surface.middle_in_ct();
     scan.viewpoint_in_rig = scan.rig_from_ct * as_is(window.eye, middle, settings);
-    for (const auto i : met(grid)) {
-        const Vector3d n = normal_of(grid, i, window.width_mm / columns);
+    for (const auto i : grid.those_that_met()) {
+        const Vector3d n = grid.normal_at(i);
         const Vector3d turned = as_is(middle + n, middle, settings) - middle;
         scan.cloud.points_in_rig.emplace_back(scan.rig_from_ct * as_is(grid.p[i], middle, settings));
         scan.cloud.normals_in_rig.emplace_back((scan.rig_from_ct.linear() * turned).normalized());

@@ -74,6 +74,7 @@ public:
     const std::vector<Vector3d>& points() const { return points_; }  ///< seen by the camera's pixels, NaN: none
 
 private:
+    static constexpr int kLattice_px = 6;  ///< of the places whose light from other walls is traced
     struct Path {
         float u, v, share;
     };
