@@ -58,7 +58,7 @@ LiveSession::LiveSession(MakeRoom make_room, const Case& the_case, const CaseDra
       drawing_(drawing),
       keep_matches_in_(std::move(keep_matches_in)),
       model_(model_of_case(the_case, drawing)) {
-    set_status(StatusKind::ready, "The room is being made ready.");
+    set_status(StatusKind::waiting, "The room is being made ready.", {"This takes some seconds."});
     show_alive();
     thread_ = std::thread([this, make_room = std::move(make_room)] {
         try {

@@ -72,6 +72,7 @@ private:
     void follow(Session& session, Room& room);
     void show_update(const Session& session, const Room& room, const Session::Update& update,
                      const LightGate::Ruling& ruling);
+    std::optional<double> lit_per_s(const Session::Update& update);
     void play_fault(const LightGate::Ruling& ruling, Room& room);
     void stop_light(Session& session, const LightGate::Ruling& ruling);
     void set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details = {});
@@ -103,7 +104,8 @@ private:
     Instant seen_at_{};                 ///< of the last frame, on the room's clock
     int landmark_ = -1;                 ///< that is lit for a person to look at; -1: the plan is lit
     int landmarks_to_look_at_ = 0;
-    int good_updates_ = 0;  ///< ALIGNED so often; then the simulated fault begins
+    std::deque<Instant> lit_at_;  ///< of the last pictures, on the room's clock
+    int good_updates_ = 0;        ///< ALIGNED so often; then the simulated fault begins
     bool ending_ = false, following_ = false;
     std::atomic<bool> projecting_{false};
     std::atomic<Instant::rep> alive_at_{0};

@@ -208,11 +208,25 @@ std::vector<std::string> why_dark(const std::vector<LightCause>& causes) {
 
 }  // namespace
 
+/// How many pictures reached the skin in the last two seconds of the room, a second; empty while there were too few to
+/// say.
+std::optional<double> LiveSession::lit_per_s(const Session::Update& update) {
+    constexpr Instant kOver = std::chrono::seconds(2);
+    if (!update.overlay.lit) {
+        lit_at_.clear();
+        return std::nullopt;
+    }
+    lit_at_.push_back(update.overlay.lit_from);
+    while (lit_at_.back() - lit_at_.front() > kOver) lit_at_.pop_front();
+    if (lit_at_.size() < 5) return std::nullopt;
+    return static_cast<double>(lit_at_.size() - 1) / seconds(lit_at_.back() - lit_at_.front());
+}
+
 void LiveSession::show_update(const Session& session, const Room& room, const Session::Update& update,
                               const LightGate::Ruling& ruling) {
     const auto light = room.true_light(session.lit_drawing(), update.overlay);
     Figures figures;
-    figures.updates_per_s = 1 / std::max(update.times.total_s(), 1e-6);
+    figures.updates_per_s = lit_per_s(update);
     figures.delay_to_light_ms = 1000 * seconds(update.overlay.lit_from - update.pose.at);
     if (update.pose.rig_from_patient) {
         const Eigen::Vector3d middle = session.tracker().markers().front().centre_in_patient;

@@ -15,7 +15,7 @@ struct Look {
 };
 
 const Look& look_of(StatusKind kind) {
-    static const std::array<Look, 7> looks{{
+    static const std::array<Look, 8> looks{{
         {"READY", IM_COL32(26, 31, 40, 255), IM_COL32(120, 134, 158, 255), IM_COL32(160, 172, 192, 255), theme::kText},
         {"SCANNING", IM_COL32(14, 36, 66, 255), theme::kBlue, theme::kBlue, IM_COL32(220, 236, 255, 255)},
         {"MATCHING", IM_COL32(14, 36, 66, 255), theme::kBlue, theme::kBlue, IM_COL32(220, 236, 255, 255)},
@@ -25,6 +25,7 @@ const Look& look_of(StatusKind kind) {
         {"REFUSED", IM_COL32(70, 18, 20, 255), theme::kRed, theme::kRed, IM_COL32(255, 225, 225, 255)},
         {"DARK", IM_COL32(38, 28, 31, 255), IM_COL32(158, 104, 110, 255), IM_COL32(168, 112, 118, 255),
          IM_COL32(240, 222, 224, 255)},
+        {"WAIT", IM_COL32(26, 31, 40, 255), IM_COL32(120, 134, 158, 255), IM_COL32(160, 172, 192, 255), theme::kText},
     }};
     return looks[static_cast<std::size_t>(kind)];
 }
@@ -62,6 +63,11 @@ void draw_shape(const Pen& pen, StatusKind kind, ImVec2 middle, float radius, co
         case StatusKind::matching:
             pen.polygon(middle, 1.1F * radius, 4, 0, look.shape);
             pen.polygon(middle, 0.5F * radius, 4, 0, look.fill);
+            break;
+        case StatusKind::waiting:
+            for (int i = -1; i <= 1; ++i)
+                list.AddCircleFilled({middle.x + 0.7F * radius * static_cast<float>(i), middle.y}, 0.22F * radius,
+                                     look.shape, 24);
             break;
         case StatusKind::ready:
             list.AddCircle(middle, 0.88F * radius, look.shape, 64, 0.2F * radius);

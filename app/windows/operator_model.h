@@ -105,7 +105,7 @@ struct PlanRow {
 };
 
 /// What the banner says; only `aligned` is green, and `dark` is the operator's or the gate's.
-enum class StatusKind { ready, scanning, matching, aligned, check, refused, dark };
+enum class StatusKind { ready, scanning, matching, aligned, check, refused, dark, waiting };
 
 struct Status {
     StatusKind kind = StatusKind::dark;
