@@ -32,6 +32,8 @@ Instant ProjectorKeeper::show(const RgbImage& picture, Instant valid_until) {
     std::unique_lock lock(mutex_);
     if (!projector_) throw DeviceError("projector", problem_.what, problem_.remedy);
     try {
+        if (alive())
+            projector_->renew();  // a picture that comes before the lease, or right after darkness, would be lost
         return projector_->show(picture, valid_until);
     } catch (const Error& error) {
         lock.unlock();

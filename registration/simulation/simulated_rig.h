@@ -77,8 +77,8 @@ public:
     void cover_markers(const std::vector<int>& markers);
 
     enum class Device { left_camera, right_camera, projector };
-    /// Somebody knocks a device: from now on it is turned (radians) and shifted (mm), both in its own axes (right, down,
-    /// forward). `calibration()` does not know.
+    /// Somebody knocks a device: from now on it is turned (radians) and shifted (mm), both in its own axes (right,
+    /// down, forward). `calibration()` does not know.
     void bump(Device device, const Eigen::Vector3d& turn, const Eigen::Vector3d& shift_mm = {0, 0, 0});
 
     /// A marker slips along the skin by about that much, ct; `marker` below 0: all of them, as when they sit on a cap.

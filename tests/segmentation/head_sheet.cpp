@@ -77,7 +77,8 @@ void draw_view(RgbImage& sheet, int x0, int y0, const TriangleMesh& skin, const 
         const int x = static_cast<int>(std::lround(kTile / 2.0 + at.dot(view.right) / frame.mm_per_pixel)),
                   y = static_cast<int>(std::lround(kTile / 2.0 + at.dot(view.down) / frame.mm_per_pixel));
         if (x < 1 || y < 1 || x + 1 >= kTile || y + 1 >= kTile) continue;
-        if (at.dot(view.forward) > depth[static_cast<std::size_t>(y) * kTile + static_cast<std::size_t>(x)] + kNearMark_mm)
+        if (at.dot(view.forward) >
+            depth[static_cast<std::size_t>(y) * kTile + static_cast<std::size_t>(x)] + kNearMark_mm)
             continue;
         for (const auto& [dx, dy] : {std::pair(0, 0), std::pair(1, 0), std::pair(0, 1), std::pair(1, 1)})
             sheet.pixels[sheet.index(x0 + x + dx, y0 + y + dy)] = kMark;

@@ -144,8 +144,8 @@ TEST(MrSkinEdge, BrightFatUnderADimSkinDoesNotDrawItInwards) {
     const Volume volume = mr_of_scalp();
     const SkinMask mask = segment_skin(volume);
     const Errors errors = errors_of(triangulate_skin(volume, mask));
-    // Voxels of 1.2 mm mix the fat into the skin: no profile shows where it ends. The half of the fat's crest lies 1.6 mm
-    // deep.
+    // Voxels of 1.2 mm mix the fat into the skin: no profile shows where it ends. The half of the fat's crest lies 1.6
+    // mm deep.
     EXPECT_LT(errors.rms, 1.1);
     EXPECT_LT(errors.p99, 1.4);
 }
