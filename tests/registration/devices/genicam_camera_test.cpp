@@ -1,6 +1,9 @@
 #include "registration/devices/genicam_camera.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <thread>
@@ -25,6 +28,18 @@ ServedCameraSettings small_camera() {
     settings.exposure = milliseconds(8);
     return settings;
 }
+
+/// The cameras' address is this machine's only one: tests that run side by side take turns.
+class OneAtATime {
+public:
+    OneAtATime() : file_(open("/tmp/planlight-served-camera.lock", O_CREAT | O_RDWR, 0666)) { flock(file_, LOCK_EX); }
+    ~OneAtATime() { close(file_); }
+    OneAtATime(const OneAtATime&) = delete;
+    OneAtATime& operator=(const OneAtATime&) = delete;
+
+private:
+    int file_;
+};
 
 /// Offers a picture every 20 ms whose grey counts up, as long as it lives.
 class Source {
@@ -53,6 +68,7 @@ bool within(milliseconds patience, const std::function<bool()>& wanted) {
 }
 
 TEST(GenicamCamera, ACameraThatIsNotThereIsSaid) {
+    const OneAtATime turn;
     FrameBell bell;
     const SteadyClock clock;
     GenicamSettings settings;
@@ -68,6 +84,7 @@ TEST(GenicamCamera, ACameraThatIsNotThereIsSaid) {
 }
 
 TEST(GenicamCamera, PicturesComeWithTheTimeOfTheirExposure) {
+    const OneAtATime turn;
     ServedCameraSettings served = small_camera();
     served.clock_offset = std::chrono::hours(30);
     served.clock_drift = 100e-6;
@@ -97,6 +114,7 @@ TEST(GenicamCamera, PicturesComeWithTheTimeOfTheirExposure) {
 }
 
 TEST(GenicamCamera, ASilentCameraIsAFaultAndComesBackByItself) {
+    const OneAtATime turn;
     ServedCamera camera(small_camera());
     const Source source(camera);
     FrameBell bell;
@@ -115,6 +133,7 @@ TEST(GenicamCamera, ASilentCameraIsAFaultAndComesBackByItself) {
 }
 
 TEST(GenicamCamera, AnExposureThatSomebodyElseChangedIsAFault) {
+    const OneAtATime turn;
     ServedCamera camera(small_camera());
     const Source source(camera);
     FrameBell bell;
