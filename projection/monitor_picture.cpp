@@ -21,10 +21,10 @@ MonitorPicture::MonitorPicture(const std::string& name) : parts_(std::make_uniqu
     for (const Monitor& monitor : list_monitors())
         if (monitor.name == name) parts_->monitor = monitor;
     if (parts_->monitor.name.empty())
-        throw DeviceError("monitor " + name, "there is none of this name", "See `planlight devices`.");
+        throw DeviceError("Monitor " + name, "there is none of this name", "See `planlight devices`.");
     parts_->display = XOpenDisplay(nullptr);
     if (!parts_->display)
-        throw DeviceError("monitor " + name, "there is no X display", "Start it in a graphical session.");
+        throw DeviceError("Monitor " + name, "there is no X display", "Start it in a graphical session.");
 }
 
 MonitorPicture::~MonitorPicture() = default;
@@ -42,7 +42,7 @@ RgbImage MonitorPicture::look() {
         XGetImage(parts_->display, DefaultRootWindow(parts_->display), m.x, m.y, static_cast<unsigned>(m.width),
                   static_cast<unsigned>(m.height), AllPlanes, ZPixmap);
     if (!image || image->bits_per_pixel != 32)
-        throw DeviceError("monitor " + m.name, "its picture cannot be read", "Use a display of 24 bits a pixel.");
+        throw DeviceError("Monitor " + m.name, "its picture cannot be read", "Use a display of 24 bits a pixel.");
     RgbImage picture(m.width, m.height);
     for (int y = 0; y < m.height; ++y) {
         const auto* row = reinterpret_cast<const unsigned char*>(image->data) +

@@ -84,7 +84,7 @@ void warn_of(const ScanResult& scan, const RigCalibration& rig) {
 
 /// By rig.json, as `check` says it.
 double epipolar_of(const ScanResult& scan) {
-    return scan.rig.moved() ? scan.epipolar_as_calibrated_px : usual_epipolar_px(scan.raw);
+    return scan.epipolar_as_calibrated_px > 0 ? scan.epipolar_as_calibrated_px : usual_epipolar_px(scan.raw);
 }
 
 std::string said_of_cameras(const ScanResult& scan) {

@@ -43,7 +43,7 @@ int run_simulate_served(const SimulateOptions& options, simulation::SimulatedRig
         throw InputError({}, "--addresses needs one address for each camera", "Give --addresses 127.0.0.1,127.0.0.2.");
     MonitorPicture monitor(options.serve);
     if (monitor.width() != rig.projector().width() || monitor.height() != rig.projector().height())
-        throw DeviceError("monitor " + options.serve,
+        throw DeviceError("Monitor " + options.serve,
                           fmt::format("has {} x {} pixels, and the room's projector {} x {}", monitor.width(),
                                       monitor.height(), rig.projector().width(), rig.projector().height()),
                           "Set that resolution (`xrandr`), or choose the other --preset.");

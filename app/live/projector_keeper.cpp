@@ -30,7 +30,7 @@ ProjectorKeeper::~ProjectorKeeper() {
 
 Instant ProjectorKeeper::show(const RgbImage& picture, Instant valid_until) {
     std::unique_lock lock(mutex_);
-    if (!projector_) throw DeviceError("projector", problem_.what, problem_.remedy);
+    if (!projector_) throw DeviceError("Projector", problem_.what, problem_.remedy);
     try {
         if (alive())
             projector_->renew();  // a picture that comes before the lease, or right after darkness, would be lost
@@ -74,7 +74,7 @@ bool ProjectorKeeper::alive() const {
 void ProjectorKeeper::start_again() {
     auto projector = std::make_unique<ProjectorProcess>(monitor_, settings_.process);  // black; takes a while
     if (projector->width() != width_ || projector->height() != height_)
-        throw DeviceError("projector",
+        throw DeviceError("Projector",
                           fmt::format("it came back with {} x {} pixels, and had {} x {}", projector->width(),
                                       projector->height(), width_, height_),
                           "Set its resolution back.");

@@ -56,8 +56,8 @@ std::unique_ptr<Camera> opened(const RoomCamera& camera, const std::string& name
 }  // namespace
 
 RoomCameras::RoomCameras(const RoomFile& room, const Clock& clock) {
-    auto left = opened(room.left, "left camera", bell_, clock),
-         right = opened(room.right, "right camera", bell_, clock);
+    auto left = opened(room.left, "Left camera", bell_, clock),
+         right = opened(room.right, "Right camera", bell_, clock);
     left_ = left.get();
     right_ = right.get();
     PairSettings pairs;

@@ -71,7 +71,7 @@ private:
 class Camera {
 public:
     virtual ~Camera() = default;
-    virtual const std::string& name() const = 0;    ///< for a person: "left camera (serial 1234)"
+    virtual const std::string& name() const = 0;    ///< for a person: "Left camera (serial 1234)"
     virtual const std::string& serial() const = 0;  ///< what tells it from others
     virtual int width() const = 0;
     virtual int height() const = 0;

@@ -23,7 +23,7 @@ std::vector<FoundCamera> list_genicam_cameras();
 
 /// How a GenICam camera is run. What is not said stays as the camera has it.
 struct GenicamSettings {
-    std::string name = "camera";  ///< for messages: "left camera"
+    std::string name = "Camera";  ///< for messages: "Left camera"
     std::string device;           ///< serial, identifier or network address
     enum class Trigger { none, software, line } trigger = Trigger::none;
     std::string line = "Line0";  ///< of the hardware trigger

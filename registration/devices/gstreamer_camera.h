@@ -10,7 +10,7 @@ namespace planlight {
 
 /// How a camera that GStreamer knows is run.
 struct GstreamerSettings {
-    std::string name = "camera";  ///< for messages: "left camera"
+    std::string name = "Camera";  ///< for messages: "Left camera"
     /// The source and what it needs, as for `gst-launch-1.0`: "v4l2src device=/dev/video0". Converted to 8-bit grey
     /// behind.
     std::string pipeline;

@@ -94,7 +94,7 @@ void PairedCameras::refuse(std::chrono::milliseconds patience) const {
         if (seen == 0)
             throw DeviceError(camera->name(), fmt::format("no whole frame came in {} ms", patience.count()),
                               "Look at its cable and its power, and whether its trigger runs.");
-    throw DeviceError("cameras",
+    throw DeviceError("Cameras",
                       fmt::format("the two do not expose together: their nearest exposures are {:.1f} ms apart",
                                   std::abs(1e3 * seconds(counts_.apart))),
                       "Let one camera trigger the other, or both by one line, and give both the same exposure.");

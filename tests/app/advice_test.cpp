@@ -22,6 +22,7 @@ const std::map<std::string, std::vector<std::string>> kServes{
     {"app/prepare_case.cpp", {"prepare"}},
     {"planning_io/case/case_folder.cpp", {"prepare"}},
     {"app/commands/cloud_unit.cpp", {"register"}},
+    {"app/commands/simulate_served.cpp", {"simulate"}},
     {"app/live/show_light.cpp", {"projector"}},
     {"app/console.cpp", {"demo", "merge", "register"}},
     {"planning_io/dicom/dicom_folder.cpp", {"prepare", "plan", "demo", "simulate", "session"}},

@@ -70,7 +70,7 @@ ServedCamera::ServedCamera(const ServedCameraSettings& settings) : parts_(new Pa
     parts_->sent = {GrayImage(settings.width, settings.height), Instant{}};
     parts_->server = arv_gv_fake_camera_new(settings.address.c_str(), settings.serial.c_str());
     if (!parts_->server || !arv_gv_fake_camera_is_running(parts_->server))
-        throw DeviceError("served camera " + settings.serial, settings.address + " cannot be used",
+        throw DeviceError("Served camera " + settings.serial, settings.address + " cannot be used",
                           "Give this machine the address (`ip address add " + settings.address +
                               "/8 dev lo`), one a camera, and end other cameras there.");
     ArvFakeCamera* camera = parts_->camera();

@@ -129,12 +129,12 @@ bool goes_on(Session& session, Instant patience, const Clock& clock) {
 void faults(Session& session, simulation::ServedRoom& served, ProjectorKeeper& projector, MonitorPicture& monitor,
             const Clock& clock) {
     served.right().silence(true);
-    expect(refuses(session, "right camera", 5s, clock), "a camera that is pulled out is named");
+    expect(refuses(session, "Right camera", 5s, clock), "a camera that is pulled out is named");
     expect(monitor.look().pixels == RgbImage(monitor.width(), monitor.height()).pixels, "and the monitor is dark");
     served.right().silence(false);
     expect(goes_on(session, 20s, clock), "it comes back, and the session goes on with the same match");
     served.left().change_exposure(3ms);
-    expect(refuses(session, "left camera", 10s, clock), "an exposure that somebody changed is named");
+    expect(refuses(session, "Left camera", 10s, clock), "an exposure that somebody changed is named");
     served.left().change_exposure(10ms);
     expect(goes_on(session, 20s, clock), "and set again by itself");
     expect(projector.problem().empty(), "the projector is well all the time");
