@@ -45,8 +45,8 @@ TEST(DeviceClock, FindsOffsetAndDriftUnderArrivalsThatAreLate) {
 }
 
 TEST(DeviceClock, AClockThatJumpsIsNoticedAndLearntAnew) {
-    for (const Instant jump :
-         {Instant(seconds(-3)), Instant(milliseconds(-50)), Instant(milliseconds(50)), Instant(seconds(600))}) {
+    for (const Instant jump : {Instant(seconds(-3)), Instant(milliseconds(-50)), Instant(milliseconds(-30)),
+                               Instant(milliseconds(50)), Instant(seconds(600))}) {
         Source source;
         DeviceClock clock;
         Instant t = seconds(5);
