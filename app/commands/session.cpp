@@ -93,7 +93,7 @@ Run add_session(CLI::App& app) {
         ->excludes(room);
     series_option(sub, o.series_uid);
     sub->add_option("--keep", o.keep, "Folder that keeps every match and its scan (default: CASE/registrations)");
-    preset_option(sub, o.preset);
+    preset_option(sub, o.preset)->excludes(room);
     sub->add_option(
         "--projector", o.projector_monitor,
         "Monitor (name or number) that is the projector; without it the light is shown in the operator window only");
@@ -105,13 +105,16 @@ Run add_session(CLI::App& app) {
                     "refused (exit 6)")
         ->excludes(delay);
     sub->add_option("--operator", o.operator_monitor, "Monitor of the operator window (default: the primary one)");
-    sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str();
+    sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str()->excludes(room);
     sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")
         ->capture_default_str()
+        ->excludes(room)
         ->check(CLI::Range(0.0, 500.0));
     sub->add_option("--fault", o.fault, "To see what it looks like: begins some seconds after the light is ALIGNED")
+        ->excludes(room)
         ->check(CLI::IsMember(simulated_faults()));
-    sub->add_flag("--autoplay", o.autoplay, "Scan, register and track by itself");
+    sub->add_flag("--autoplay", o.autoplay,
+                  "Scan, register and track by itself; that the light is right is said in the simulated room only");
     sub->add_option("--end-after-s", o.end_after_s, "Close after this many seconds of tracking");
     sub->add_option("--screenshots", o.screenshots, "Folder for screenshots of every step");
     return [options] { return run_session(*options); };

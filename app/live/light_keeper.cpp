@@ -1,10 +1,6 @@
 #include "app/live/light_keeper.h"
 
-#include <signal.h>
-
 #include <algorithm>
-
-#include "planning_io/types/error.h"
 
 namespace planlight {
 namespace {

@@ -14,8 +14,8 @@ namespace planlight {
 /// next picture.
 class LightKeeper {
 public:
-    /// Throws DeviceError when the projector cannot be opened now. `picture_validity`: of a picture of the simulated
-    /// room, by the wall; that room computes longer than a real one exposes.
+    /// `picture_validity`: of a picture of the simulated room, by the wall; that room computes longer than a real one
+    /// exposes.
     LightKeeper(ProjectorKeeper& projector, const LiveSession& session,
                 Instant picture_validity = std::chrono::milliseconds(2500));
     ~LightKeeper();

@@ -170,6 +170,9 @@ void LiveSession::run(const MakeRoom& make_room) {
     const std::unique_ptr<Room> room = make_room();
     LightTap tap(room->projector(), *this);
     SessionSettings session_settings;
+    session_settings.tracking.design = room->markers();
+    session_settings.tracking.markers.sticker_ratio =
+        session_settings.tracking.design.sticker_diameter_mm / session_settings.tracking.design.disc_diameter_mm;
     session_settings.while_computing = [&room] { room->computing(); };
     Session session(case_, drawing_, room->rig(), tap, room->cameras(), room->clock(), session_settings);
     set_steps(2);
@@ -178,7 +181,10 @@ void LiveSession::run(const MakeRoom& make_room) {
     details.insert(details.end(), notes.begin(), notes.end());
     set_status(StatusKind::ready, "Ready to scan.", std::move(details));
     change_model([&](OperatorModel& m) {
-        if (room->simulated()) m.case_title = "SIMULATED ROOM: " + m.case_title;
+        if (room->simulated())
+            m.case_title = "SIMULATED ROOM: " + m.case_title;
+        else
+            m.case_subtitle = room->name() + " · " + m.case_subtitle;
         m.scan = {true, {}};
         m.do_register = {false, "scan first"};
         m.track = {false, "register first"};

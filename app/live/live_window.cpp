@@ -55,11 +55,15 @@ void check_monitor(const std::string& name, const ProjectorFacts& facts) {
 /// Presses the buttons in their order as soon as each is free: the session by itself.
 class Autoplay {
 public:
+    /// That light or a match is right is a person's word: only in the simulated room is it said without one.
+    explicit Autoplay(bool says_it_is_right) : says_it_is_right_(says_it_is_right) {}
+
     OperatorAction next(const OperatorModel& model) {
         if (step_ == 0 && model.scan.enabled) return advance(OperatorAction::scan);
         if (step_ == 1 && model.do_register.enabled) return advance(OperatorAction::do_register);
         if (step_ == 2 && model.track.enabled) return advance(OperatorAction::track);
-        if (step_ < 3 || !model.confirm || model.confirm_words == confirmed_) return OperatorAction::none;
+        if (step_ < 3 || !says_it_is_right_ || !model.confirm || model.confirm_words == confirmed_)
+            return OperatorAction::none;
         confirmed_ = model.confirm_words;
         return OperatorAction::confirm;
     }
@@ -69,6 +73,7 @@ private:
         ++step_;
         return action;
     }
+    bool says_it_is_right_;
     int step_ = 0;
     std::string confirmed_;  ///< the words on the button that was pressed last
 };
@@ -118,9 +123,9 @@ bool display_is_there() {
 namespace {
 
 /// The windows' loop, until the operator window is closed; `projector` is null where there is none.
-int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* projector, const LiveOptions& options) {
+int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* projector, const LiveOptions& options,
+                Autoplay autoplay) {
     bool projector_lost = false;
-    Autoplay autoplay;
     Screenshots screenshots(options.screenshots);
     std::optional<std::chrono::steady_clock::time_point> projecting_since;
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
@@ -180,7 +185,7 @@ int run_live_simulated(MakeRoom make_room, const Case& the_case, const CaseDrawi
     LiveSession session(std::move(make_room), the_case, drawing, options.keep_matches_in);
     std::unique_ptr<LightKeeper> light;  // dark and gone before the session is
     if (projector) light = std::make_unique<LightKeeper>(*projector, session);
-    return run_windows(window, session, projector.get(), options);
+    return run_windows(window, session, projector.get(), options, Autoplay(true));
 }
 
 int run_live(const MakeRoomWith& make_room, const Case& the_case, const CaseDrawing& drawing,
@@ -189,7 +194,7 @@ int run_live(const MakeRoomWith& make_room, const Case& the_case, const CaseDraw
     check_monitor(options.projector_monitor, options.projector);
     ProjectorKeeper projector(options.projector_monitor, keeper_settings(options));
     LiveSession session([&] { return make_room(projector); }, the_case, drawing, options.keep_matches_in);
-    return run_windows(window, session, &projector, options);
+    return run_windows(window, session, &projector, options, Autoplay(false));
 }
 
 void show_model(const OperatorModel& model, FitView view) {

@@ -23,6 +23,7 @@ public:
     Projector& projector() override { return projector_; }
     StereoCamera& cameras() override { return cameras_.pair(); }
     const Clock& clock() const override { return clock_; }
+    MarkerDesign markers() const override { return {room_.disc_mm, room_.sticker_mm}; }
     std::vector<std::string> notes() const override { return cameras_.notes(); }
 
 private:

@@ -20,6 +20,7 @@ public:
     virtual Projector& projector() = 0;
     virtual StereoCamera& cameras() = 0;
     virtual const Clock& clock() const = 0;
+    virtual MarkerDesign markers() const { return {}; }  ///< that are pasted on the patient
 
     /// What a person should know of the devices, a sentence each.
     virtual std::vector<std::string> notes() const { return {}; }

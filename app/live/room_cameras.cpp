@@ -8,18 +8,6 @@
 namespace planlight {
 namespace {
 
-GenicamSettings::Trigger trigger_of(RoomCamera::Trigger trigger) {
-    switch (trigger) {
-        case RoomCamera::Trigger::software:
-            return GenicamSettings::Trigger::software;
-        case RoomCamera::Trigger::line:
-            return GenicamSettings::Trigger::line;
-        case RoomCamera::Trigger::none:
-            break;
-    }
-    return GenicamSettings::Trigger::none;
-}
-
 ProjectorKeeperSettings settings_of(const std::filesystem::path& projector_file) {
     ProjectorKeeperSettings settings;
     if (projector_file.empty()) return settings;
@@ -32,7 +20,6 @@ GenicamSettings genicam_settings(const RoomCamera& camera, const std::string& na
     GenicamSettings settings;
     settings.name = name;
     settings.device = camera.device;
-    settings.trigger = trigger_of(camera.trigger);
     settings.line = camera.line;
     settings.pixel_format = camera.pixel_format;
     settings.exposure_ms = camera.exposure_ms;

@@ -18,29 +18,9 @@ std::optional<double> number_in(const JsonValue& from, const char* key, double l
     return value ? std::optional(value->number(least, most)) : std::nullopt;
 }
 
-RoomCamera::Trigger trigger_of(const JsonValue& value) {
-    const std::string text = value.text();
-    if (text == "none") return RoomCamera::Trigger::none;
-    if (text == "software") return RoomCamera::Trigger::software;
-    if (text == "line") return RoomCamera::Trigger::line;
-    value.refuse("is none of \"none\", \"software\" and \"line\"");
-}
-
-const char* text_of(RoomCamera::Trigger trigger) {
-    switch (trigger) {
-        case RoomCamera::Trigger::software:
-            return "software";
-        case RoomCamera::Trigger::line:
-            return "line";
-        case RoomCamera::Trigger::none:
-            break;
-    }
-    return "none";
-}
-
 RoomCamera camera_of(const JsonValue& value) {
-    value.has_only({"device", "pixel_format", "trigger", "line", "exposure_ms", "gain", "frames_hz", "transfer_ms",
-                    "region", "pipeline"});
+    value.has_only(
+        {"device", "pixel_format", "line", "exposure_ms", "gain", "frames_hz", "transfer_ms", "region", "pipeline"});
     RoomCamera camera;
     if (const auto pipeline = value.find("pipeline")) camera.pipeline = pipeline->text();
     if (camera.pipeline.empty()) camera.device = value.at("device").text();
@@ -50,7 +30,6 @@ RoomCamera camera_of(const JsonValue& value) {
     if (!camera.pipeline.empty())  // what is a GenICam camera's alone
         value.has_only({"pipeline", "exposure_ms", "transfer_ms"});
     if (const auto format = value.find("pixel_format")) camera.pixel_format = format->text();
-    if (const auto trigger = value.find("trigger")) camera.trigger = trigger_of(*trigger);
     if (const auto line = value.find("line")) camera.line = line->text();
     camera.exposure_ms = number_in(value, "exposure_ms", 0.01, 10'000);
     camera.gain = number_in(value, "gain", -100, 1000);
@@ -69,12 +48,11 @@ Json json_of(const RoomCamera& camera) {
     Json json;
     if (camera.pipeline.empty()) {
         json["device"] = camera.device;
-        json["trigger"] = text_of(camera.trigger);
     } else {
         json["pipeline"] = camera.pipeline;
     }
     if (!camera.pixel_format.empty()) json["pixel_format"] = camera.pixel_format;
-    if (camera.trigger == RoomCamera::Trigger::line) json["line"] = camera.line;
+    if (!camera.line.empty()) json["line"] = camera.line;
     if (camera.exposure_ms) json["exposure_ms"] = *camera.exposure_ms;
     if (camera.gain) json["gain"] = *camera.gain;
     if (camera.frames_hz) json["frames_hz"] = *camera.frames_hz;

@@ -12,8 +12,7 @@ struct RoomCamera {
     std::string device;        ///< GenICam: serial, identifier or network address; empty where `pipeline` is said
     std::string pipeline;      ///< GStreamer: its source, as for gst-launch-1.0
     std::string pixel_format;  ///< empty: Mono8
-    enum class Trigger { none, software, line } trigger = Trigger::none;
-    std::string line = "Line0";  ///< of the hardware trigger
+    std::string line;          ///< of the hardware trigger, "Line0"; empty: it runs free
     std::optional<double> exposure_ms, gain, frames_hz;
     /// From the end of the exposure to the arrival of the quickest frame; of a pipeline: from mid-exposure to the time
     /// that it stamps.

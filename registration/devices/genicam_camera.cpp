@@ -65,7 +65,12 @@ std::vector<FoundCamera> list_genicam_cameras() {
 GenicamCamera::GenicamCamera(GenicamSettings settings, FrameBell& bell, const Clock& clock)
     : settings_(std::move(settings)), clock_(clock), frames_(bell), name_(settings_.name), device_(new Device) {
     open();
-    configure();
+    serial_ = serial_of_device();
+    name_ = fmt::format("{} (serial {})", settings_.name, serial_.empty() ? settings_.device : serial_);
+    const Setup setup = configure();
+    notes_ = setup.notes;
+    width_ = setup.width;
+    height_ = setup.height;
     start();
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
@@ -85,14 +90,16 @@ void GenicamCamera::open() {
     if (!device_->camera)
         throw DeviceError(name_, fmt::format("\"{}\" does not answer ({})", settings_.device, failure.text()),
                           "Look at its cable and power, end other programs that use it, and see `planlight devices`.");
-    serial_ = text_or_empty(arv_camera_get_device_serial_number(device_->camera.get(), failure.slot()));
-    name_ = fmt::format("{} (serial {})", settings_.name, serial_.empty() ? settings_.device : serial_);
 }
 
-void GenicamCamera::configure() {
+std::string GenicamCamera::serial_of_device() const {
+    return text_or_empty(arv_camera_get_device_serial_number(device_->camera.get(), Failure().slot()));
+}
+
+GenicamCamera::Setup GenicamCamera::configure() {
     ArvCamera* camera = device_->camera.get();
     Failure failure;
-    notes_.clear();
+    Setup setup;
     const auto refuse = [&](const std::string& what) {
         throw DeviceError(name_, fmt::format("does not take {} ({})", what, failure.text()),
                           "Give what `planlight devices` lists for it.");
@@ -119,20 +126,20 @@ void GenicamCamera::configure() {
         if (!arv_camera_is_feature_available(camera, name, failure.slot())) continue;
         arv_camera_set_boolean(camera, name, false, failure.slot());
         if (arv_camera_get_boolean(camera, name, failure.slot()))
-            notes_.push_back(fmt::format("{} cannot be switched off", name));
+            setup.notes.push_back(fmt::format("{} cannot be switched off", name));
     }
     if (arv_camera_is_feature_available(camera, "Gamma", failure.slot())) {
         arv_camera_set_float(camera, "Gamma", 1, failure.slot());
         const double gamma = arv_camera_get_float(camera, "Gamma", failure.slot());
         if (!failure.happened() && std::abs(gamma - 1) > 0.01)
-            notes_.push_back(fmt::format("its gamma stays at {:.2f}", gamma));
+            setup.notes.push_back(fmt::format("its gamma stays at {:.2f}", gamma));
     }
     if (arv_camera_is_exposure_auto_available(camera, failure.slot()) &&
         arv_camera_get_exposure_time_auto(camera, failure.slot()) != ARV_AUTO_OFF)
-        notes_.push_back("its automatic exposure cannot be switched off");
+        setup.notes.push_back("its automatic exposure cannot be switched off");
     if (arv_camera_is_gain_auto_available(camera, failure.slot()) &&
         arv_camera_get_gain_auto(camera, failure.slot()) != ARV_AUTO_OFF)
-        notes_.push_back("its automatic gain cannot be switched off");
+        setup.notes.push_back("its automatic gain cannot be switched off");
     if (settings_.exposure_ms) {
         arv_camera_set_exposure_time(camera, 1e3 * *settings_.exposure_ms, failure.slot());
         if (failure.happened()) refuse(fmt::format("an exposure of {} ms", *settings_.exposure_ms));
@@ -141,28 +148,27 @@ void GenicamCamera::configure() {
         arv_camera_set_gain(camera, *settings_.gain, failure.slot());
         if (failure.happened()) refuse(fmt::format("a gain of {}", *settings_.gain));
     }
-    if (settings_.trigger == GenicamSettings::Trigger::none) {
+    if (settings_.line.empty()) {
         arv_camera_clear_triggers(camera, failure.slot());
         if (settings_.frames_hz) {
             arv_camera_set_frame_rate(camera, *settings_.frames_hz, failure.slot());
             if (failure.happened()) refuse(fmt::format("{} frames a second", *settings_.frames_hz));
         }
     } else {
-        const std::string source =
-            settings_.trigger == GenicamSettings::Trigger::software ? "Software" : settings_.line;
-        arv_camera_set_trigger(camera, source.c_str(), failure.slot());
-        if (failure.happened()) refuse("the trigger " + source);
+        arv_camera_set_trigger(camera, settings_.line.c_str(), failure.slot());
+        if (failure.happened()) refuse("the trigger " + settings_.line);
     }
     const double exposure_us = arv_camera_get_exposure_time(camera, failure.slot());
     if (failure.happened() || !(exposure_us > 0)) refuse("a question for its exposure");
     exposure_ = from_seconds(exposure_us / 1e6);
     if (settings_.exposure_ms && std::abs(exposure_us / (1e3 * *settings_.exposure_ms) - 1) > 0.02)
-        notes_.push_back(
+        setup.notes.push_back(
             fmt::format("its exposure is {:.3f} ms, {:.3f} was asked for", exposure_us / 1e3, *settings_.exposure_ms));
     gain_ = arv_camera_is_gain_available(camera, failure.slot()) ? arv_camera_get_gain(camera, failure.slot()) : 0;
     int x = 0, y = 0;
-    arv_camera_get_region(camera, &x, &y, &width_, &height_, failure.slot());
+    arv_camera_get_region(camera, &x, &y, &setup.width, &setup.height, failure.slot());
     if (failure.happened()) refuse("a question for its region");
+    return setup;
 }
 
 void GenicamCamera::start() {
@@ -220,15 +226,15 @@ bool GenicamCamera::receive() {
     frame.exposure = exposure_;
     frame.at = device_clock_.on_session_clock(by_device) - transfer_ - exposure_ / 2;
     frame.at_sigma = device_clock_.uncertainty();
-    const auto picture = mono_picture({data, size}, arv_buffer_get_image_width(buffer),
-                                      arv_buffer_get_image_height(buffer), arv_buffer_get_image_pixel_format(buffer));
+    auto picture = mono_picture({data, size}, arv_buffer_get_image_width(buffer), arv_buffer_get_image_height(buffer),
+                                arv_buffer_get_image_pixel_format(buffer));
     if (!picture) {
         frames_.fail({fmt::format("it sends pictures of format {:#x}, which are not grey ones",
                                   arv_buffer_get_image_pixel_format(buffer)),
                       "Set \"pixel_format\" to Mono8, Mono10, Mono12 or Mono16."});
         return true;
     }
-    frame.picture = *picture;
+    frame.picture = std::move(*picture);
     frames_.push(std::move(frame));
     return true;
 }
@@ -247,6 +253,13 @@ bool GenicamCamera::still_as_set() {
                       "End the other program that uses this camera; it is set again by itself."});
         return false;
     }
+    if (!arv_camera_is_gain_available(device_->camera.get(), failure.slot())) return true;
+    const double gain = arv_camera_get_gain(device_->camera.get(), failure.slot());
+    if (!failure.happened() && std::abs(gain - gain_) > 0.02 * std::max(1.0, std::abs(gain_))) {
+        frames_.fail({fmt::format("its gain was changed from {:.1f} to {:.1f} by somebody else", gain_, gain),
+                      "End the other program that uses this camera; it is set again by itself."});
+        return false;
+    }
     return true;
 }
 
@@ -260,7 +273,10 @@ void GenicamCamera::reopen(const std::stop_token& stop) {
         }
         try {
             open();
-            configure();
+            const Setup setup = configure();
+            if (serial_of_device() != serial_ || setup.width != width_ || setup.height != height_)
+                throw DeviceError(name_, "it came back as another camera, or with another resolution",
+                                  "Connect that camera again, or start the session anew.");
             start();
             frames_.recovered();
             return;
@@ -294,14 +310,6 @@ void GenicamCamera::run(const std::stop_token& stop) {
         if (!there) tell_silence();
         reopen(stop);
     }
-}
-
-void GenicamCamera::trigger() {
-    Failure failure;
-    arv_camera_software_trigger(device_->camera.get(), failure.slot());
-    if (failure.happened())
-        throw DeviceError(name_, fmt::format("its software trigger does not work ({})", failure.text()),
-                          "Let it run free, or trigger it by a line.");
 }
 
 }  // namespace planlight

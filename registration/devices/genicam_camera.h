@@ -25,9 +25,8 @@ std::vector<FoundCamera> list_genicam_cameras();
 struct GenicamSettings {
     std::string name = "Camera";  ///< for messages: "Left camera"
     std::string device;           ///< serial, identifier or network address
-    enum class Trigger { none, software, line } trigger = Trigger::none;
-    std::string line = "Line0";  ///< of the hardware trigger
-    std::string pixel_format;    ///< "Mono8", "Mono10", "Mono12", "Mono16" or packed; empty: Mono8
+    std::string line;             ///< of the hardware trigger, "Line0"; empty: it runs free
+    std::string pixel_format;     ///< "Mono8", "Mono10", "Mono12", "Mono16" or packed; empty: Mono8
     std::optional<double> exposure_ms, gain, frames_hz;
     std::optional<std::array<int, 4>> region;  ///< x, y, width, height
     /// From the end of the exposure to the arrival of the quickest frame; empty: the payload over a gigabit.
@@ -54,13 +53,16 @@ public:
     int height() const override { return height_; }
     const std::string& serial() const override { return serial_; }
     std::vector<std::string> notes() const override { return notes_; }
-    /// Fires the software trigger.
-    void trigger();
 
 private:
     struct Device;
+    struct Setup {
+        std::vector<std::string> notes;
+        int width = 0, height = 0;
+    };
     void open();
-    void configure();
+    std::string serial_of_device() const;
+    Setup configure();
     void start();
     void run(const std::stop_token& stop);
     bool receive();
@@ -71,11 +73,13 @@ private:
     GenicamSettings settings_;
     const Clock& clock_;
     FrameQueue frames_;
+    // Of the first opening, and never changed: another camera in its place is refused.
     std::string name_, serial_;
     std::vector<std::string> notes_;
-    std::unique_ptr<Device> device_;
-    DeviceClock device_clock_;
     int width_ = 0, height_ = 0;
+    std::unique_ptr<Device> device_;
+    // Of the camera's thread, once it runs.
+    DeviceClock device_clock_;
     Instant exposure_{}, transfer_{}, heard_at_{}, looked_at_{}, last_by_device_{-1};
     double gain_ = 0;
     std::size_t incomplete_before_ = 0;  ///< when the last whole frame came

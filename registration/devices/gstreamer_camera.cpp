@@ -122,15 +122,18 @@ bool GstreamerCamera::receive() {
                      : now;
     frame.at -= from_seconds(settings_.stamped_late_ms / 1e3);
     frame.at_sigma = timed ? std::chrono::milliseconds(1) : std::chrono::milliseconds(15);
-    width_ = GST_VIDEO_FRAME_WIDTH(&video);
-    height_ = GST_VIDEO_FRAME_HEIGHT(&video);
-    frame.picture = GrayImage(width_, height_);
+    frame.picture = GrayImage(GST_VIDEO_FRAME_WIDTH(&video), GST_VIDEO_FRAME_HEIGHT(&video));
     const auto* rows = static_cast<const std::uint8_t*>(GST_VIDEO_FRAME_PLANE_DATA(&video, 0));
     const auto stride = static_cast<std::size_t>(GST_VIDEO_FRAME_PLANE_STRIDE(&video, 0)),
-               columns = static_cast<std::size_t>(width_);
-    for (std::size_t y = 0; y < static_cast<std::size_t>(height_); ++y)
+               columns = static_cast<std::size_t>(frame.picture.width);
+    for (std::size_t y = 0; y < static_cast<std::size_t>(frame.picture.height); ++y)
         std::memcpy(frame.picture.pixels.data() + y * columns, rows + y * stride, columns);
     gst_video_frame_unmap(&video);
+    if (width_ == 0) {  // before the thread runs
+        width_ = frame.picture.width;
+        height_ = frame.picture.height;
+    }
+    if (frame.picture.width != width_ || frame.picture.height != height_) return false;
     frames_.push(std::move(frame));
     return true;
 }

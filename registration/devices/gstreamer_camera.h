@@ -48,7 +48,7 @@ private:
     FrameQueue frames_;
     std::unique_ptr<Pipeline> pipeline_;
     Instant heard_at_{}, offset_{};  ///< session's clock less the pipeline's
-    int width_ = 0, height_ = 0;
+    int width_ = 0, height_ = 0;     ///< of the first frame, and never changed
     std::jthread thread_;
 };
 

@@ -50,8 +50,7 @@ simulation::RoomSettings room_of(unsigned seed, double threshold) {
 }
 
 /// Scan, match and some updates at rest, in whatever room; `truth` is the room by itself.
-Figures operate(const Case& the_case, const CaseDrawing& drawing, Session& session, const Clock& clock,
-                const simulation::SimulatedRig& truth) {
+Figures operate(const Case& the_case, Session& session, const Clock& clock, const simulation::SimulatedRig& truth) {
     Figures figures;
     const Instant began = clock.now();
     session.scan();
@@ -82,7 +81,6 @@ Figures operate(const Case& the_case, const CaseDrawing& drawing, Session& sessi
     }
     figures.updates_per_s = kUpdates / seconds(clock.now() - from);
     if (!errors.position_mm.empty()) figures.light_p95_mm = quantile(errors.position_mm, 0.95);
-    (void)drawing;
     return figures;
 }
 
@@ -156,7 +154,7 @@ int run(const std::string& program, unsigned seeds) {
             settings.while_computing = [&] { rig.wait(10ms); };
             Session session(the_case, drawing, rig.calibration(), rig.projector(), rig.cameras(), rig.clock(),
                             settings);
-            without = operate(the_case, drawing, session, rig.clock(), truth);
+            without = operate(the_case, session, rig.clock(), truth);
         }
         simulation::SimulatedRig rig(volume, points_of(the_case.plan), room_of(seed, prepared.threshold));
         simulation::ServeSettings serve;
@@ -201,7 +199,7 @@ int run(const std::string& program, unsigned seeds) {
         Session session(the_case, drawing, real.rig(), real.projector(), real.cameras(), real.clock(), settings);
         Figures with;
         try {
-            with = operate(the_case, drawing, session, real.clock(), truth);
+            with = operate(the_case, session, real.clock(), truth);
         } catch (const Error& error) {
             with.refused = std::string(error.what()) + " " + error.remedy;
         }

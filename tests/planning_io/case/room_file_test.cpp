@@ -17,7 +17,6 @@ TEST(RoomFile, ReadsBackAndItsPathsAreBesideIt) {
     room.projector_file = "/somewhere/projector.json";
     room.monitor = "HDMI-2";
     room.left.device = "1234";
-    room.left.trigger = RoomCamera::Trigger::line;
     room.left.line = "Line2";
     room.left.exposure_ms = 7.5;
     room.left.region = {8, 16, 1920, 1200};
@@ -31,7 +30,6 @@ TEST(RoomFile, ReadsBackAndItsPathsAreBesideIt) {
     EXPECT_EQ(back.projector_file, "/somewhere/projector.json");
     EXPECT_EQ(back.monitor, "HDMI-2");
     EXPECT_EQ(back.left.device, "1234");
-    EXPECT_EQ(back.left.trigger, RoomCamera::Trigger::line);
     EXPECT_EQ(back.left.line, "Line2");
     EXPECT_EQ(back.left.exposure_ms, 7.5);
     EXPECT_FALSE(back.left.gain);
@@ -72,7 +70,7 @@ TEST(RoomFile, WhatIsMissingMisspeltOrImpossibleIsRefusedByName) {
     EXPECT_NE(refusal(R"("cameras": {"left": {"device": "1", "exposure_ms": 0}, "right": {"device": "2"}})")
                   .find("exposure_ms"),
               std::string::npos);
-    EXPECT_NE(refusal(R"("cameras": {"left": {"device": "1", "trigger": "cable"}, "right": {"device": "2"}})")
+    EXPECT_NE(refusal(R"("cameras": {"left": {"device": "1", "trigger": "software"}, "right": {"device": "2"}})")
                   .find("trigger"),
               std::string::npos);
 }
