@@ -296,12 +296,13 @@ void Session::watch_light(Update& update) {
 }
 
 /// A late picture is drawn ahead, within limits; what was seen before is of the light as it was.
-void Session::correct_delay(const std::vector<LightCause>& causes) {
+void Session::correct_delay(std::vector<LightCause>& causes) {
     if (causes.empty() || causes.front().fault != LightFault::late_picture) return;
     const Instant more = from_seconds(causes.front().size / 1e3);
     if (found_delay_ + more > settings_.most_delay_corrected ||
         settings_.overlay.light_delay + found_delay_ + more < Instant{})
         return;
+    causes.front().drawn_ahead = true;
     found_delay_ += more;
     overlay_->set_light_delay(settings_.overlay.light_delay + found_delay_);
     watch_->forget();

@@ -156,7 +156,7 @@ private:
     const SkinSurface& skin_of_light() const { return now_ ? now_->skin : planned_.skin; }
     void watch_light(Update& update);
     void note_shown(const OverlayStep& overlay);
-    void correct_delay(const std::vector<LightCause>& causes);
+    void correct_delay(std::vector<LightCause>& causes);
 
     const Case& case_;
     const CaseDrawing& planned_;

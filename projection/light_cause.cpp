@@ -1,7 +1,5 @@
 #include "projection/light_cause.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
@@ -272,91 +270,6 @@ private:
 std::vector<LightCause> find_causes(const std::vector<LightFacts>& facts, const RigCalibration& rig,
                                     double usual_background, const LightCauseSettings& settings) {
     return Judgement(facts, rig, usual_background, settings).causes();
-}
-
-std::string LightCause::headline() const {
-    switch (fault) {
-        case LightFault::late_picture:
-            return size < 0 ? "the light comes early." : "the light comes late.";
-        case LightFault::projector_moved:
-            return "the projector has moved.";
-        case LightFault::left_camera_moved:
-            return "the left camera has moved.";
-        case LightFault::right_camera_moved:
-            return "the right camera has moved.";
-        case LightFault::marker_slipped:
-            return "a marker has slipped.";
-        case LightFault::markers_moved:
-            return "the markers have moved on the patient.";
-        case LightFault::no_picture:
-            return "no light of the plan is seen.";
-        case LightFault::other_picture:
-            return "the projector shows another picture.";
-        case LightFault::partly_covered:
-            return "a part of the light is covered.";
-        case LightFault::light_off:
-            return "the light lies aside.";
-    }
-    return {};
-}
-
-std::string LightCause::sentence() const {
-    const std::string by = size > 0 ? fmt::format(": its light lies {:.1f} mm aside", size) : "";
-    switch (fault) {
-        case LightFault::late_picture:
-            if (size < 0) return fmt::format("The light comes {:.0f} ms earlier than the projector promises.", -size);
-            return high - low < 4
-                       ? fmt::format("The light comes {:.0f} ms later than the projector promises.", size)
-                       : fmt::format("The light comes {:.0f} to {:.0f} ms later than the projector promises.", low,
-                                     high);
-        case LightFault::projector_moved:
-            return "The projector has moved, or its picture" + by + ".";
-        case LightFault::left_camera_moved:
-        case LightFault::right_camera_moved:
-            return fmt::format("The {} camera has moved{}.", fault == LightFault::left_camera_moved ? "left" : "right",
-                               size > 0 ? fmt::format(": the light lies {:.1f} mm aside", size) : "");
-        case LightFault::marker_slipped:
-            return fmt::format("Marker {} has slipped by {:.1f} mm; the patient is followed without it.", marker + 1,
-                               size);
-        case LightFault::markers_moved:
-            return fmt::format("The markers have moved on the patient: the skin lies {:.1f} mm off where they put it.",
-                               size);
-        case LightFault::no_picture:
-            return "No light of the plan is seen: the projector shows no picture, or something is before its lens.";
-        case LightFault::other_picture:
-            return "The projector shows something else: another window lies before the plan, or another picture.";
-        case LightFault::partly_covered:
-            return fmt::format("Only {:.0f} % of the light is seen: something is before the projector or a camera.",
-                               100 * size);
-        case LightFault::light_off:
-            return fmt::format("The light lies {:.1f} mm aside, and the cause is not known.", size);
-    }
-    return {};
-}
-
-std::string LightCause::remedy() const {
-    switch (fault) {
-        case LightFault::late_picture:
-            return "It is drawn ahead by that much; measure the delay anew with `planlight projector`.";
-        case LightFault::projector_moved:
-            return "Fix the projector and its picture, then press Scan: the scan finds where it stands now.";
-        case LightFault::left_camera_moved:
-        case LightFault::right_camera_moved:
-            return "Fix the camera, then press Scan; if the scan is refused, calibrate the rig again.";
-        case LightFault::marker_slipped:
-            return "Paste it again, and scan anew when there is time.";
-        case LightFault::markers_moved:
-            return "Press \"Check skin\", fix the markers, and scan again.";
-        case LightFault::no_picture:
-            return "Look whether the projector is on and its lens free.";
-        case LightFault::other_picture:
-            return "Close whatever lies on the projector's monitor.";
-        case LightFault::partly_covered:
-            return "Take it away, or look at the light where it is seen only.";
-        case LightFault::light_off:
-            return "Wait until the patient lies still; if it stays so, scan again.";
-    }
-    return {};
 }
 
 }  // namespace planlight

@@ -71,6 +71,7 @@ struct LightCause {
     int marker = -1;               ///< that slipped
     double share = 0;              ///< of what is unexplained, explained; 1 where it is seen directly
     bool light_is_wrong = true;    ///< false: it is noticed and dealt with, and the light lies where it belongs
+    bool drawn_ahead = false;      ///< of a late picture: the next ones allow for it
     std::string headline() const;  ///< a few words for the banner
     std::string sentence() const;
     std::string remedy() const;

@@ -88,9 +88,15 @@ void judge_fine_match(const RegistrationSettings& settings, const FineMatch& fin
         std::abs(fine.skin_offset_mm) > settings.max_skin_offset_mm,
         fmt::format("the whole skin lies {:.1f} mm {} that of the CT: swollen, or not the threshold of the skin",
                     std::abs(fine.skin_offset_mm), fine.skin_offset_mm > 0 ? "outside" : "inside"));
-    judgement.ask_if(fine.weakest.sigma_mm > settings.max_weakest_sigma_mm,
-                     fmt::format("the patient could {} by {:.1f} mm unnoticed: scan {} as well", fine.weakest.in_words,
-                                 fine.weakest.sigma_mm, fine.weakest.advice));
+    const bool weak = fine.weakest.sigma_mm > settings.max_weakest_sigma_mm;
+    judgement.ask_if(weak, fmt::format("the patient could {} by {:.1f} mm unnoticed: scan {} as well",
+                                       fine.weakest.in_words, fine.weakest.sigma_mm, fine.weakest.advice));
+    judgement.ask_if(
+        !weak && fine.weakest.sigma_mm > settings.weak_sigma_mm && fine.fit.shape_rms_mm > settings.max_shape_rms_mm,
+        fmt::format("what was scanned has not quite the shape of the skin ({:.1f} mm rms beside the scan's own "
+                    "noise), and could be cloth on it or skin that moved; the patient could {} by {:.1f} mm "
+                    "unnoticed: scan {} as well",
+                    fine.fit.shape_rms_mm, fine.weakest.in_words, fine.weakest.sigma_mm, fine.weakest.advice));
 }
 
 void judge_found_skin(const RegistrationSettings& settings, const FoundSkin& found, const FineMatch& fine,

@@ -1,7 +1,8 @@
 // Is the patient found among cloth, hands and instruments, and is what is not the patient refused there?
-// measure_draped [TRIALS [SEED]] [--ch2 FILE] [--mannequin FILE] [--ct-head FOLDER] [--volume FILE]... [--log FILE]
+// measure_draped [TRIALS [SEED]] [--ch2 FILE] [--mannequin FILE] [--ct-head FOLDER] [--volume FILE]... [--log FILE] [--to-refuse]
 // Default 1000 trials, seed 1. With a log the run can be cut and goes on; the tables are of all trials in the log. One
-// trial in five must be refused: the face of another patient, a mirrored face, or the cloth without anybody under it.
+// trial in five must be refused: the face of another patient, a mirrored face, or the cloth without anybody under it;
+// with --to-refuse all are such.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -178,7 +179,12 @@ int main(int argc, char** argv) {
     for (const char* name : {"heads/head_11.nii.gz", "heads/head_21.nii.gz"})
         if (const auto file = third_party_data(name)) options.files.volumes.push_back(*file);
     const std::vector<TrialHead> heads = trial_heads(options.files);
-    const auto all = run_trials(options, [&](unsigned seed) { return run(heads, seed); });
+    // Five times the kinds of drapings are a turn, and the last fifth of each must be refused.
+    const auto kinds = static_cast<unsigned>(drapings().size());
+    const auto scene_of = [&](unsigned seed) {
+        return options.to_refuse ? kinds * (5 * (seed / kinds) + 4) + seed % kinds : seed;
+    };
+    const auto all = run_trials(options, [&](unsigned seed) { return run(heads, scene_of(seed)); });
     print_table(all);
     print_misses(all);
 }

@@ -25,6 +25,8 @@ TrialOptions trial_options(int argc, char** argv, unsigned default_trials) {
         const std::string word = argv[i];
         if (word == "--plain") {
             options.plain = true;
+        } else if (word == "--to-refuse") {
+            options.to_refuse = true;
         } else if (word == "--volume" && i + 1 < argc) {
             options.files.volumes.emplace_back(argv[++i]);
         } else if (const auto at = paths.find(word); at != paths.end() && i + 1 < argc) {
@@ -35,7 +37,7 @@ TrialOptions trial_options(int argc, char** argv, unsigned default_trials) {
             fmt::print(stderr,
                        "usage: {} [TRIALS [SEED]] [--ch2 FILE] [--mannequin FILE] [--ct-head FOLDER] [--volume "
                        "FILE]... [--log FILE] "
-                       "[--picture FILE] [--plain]\n",
+                       "[--picture FILE] [--plain] [--to-refuse]\n",
                        argv[0]);
             std::exit(2);
         }

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "registration/matching/match_evidence.h"
 #include "registration/matching/register_patient.h"
 
 namespace planlight::test {
@@ -19,11 +20,12 @@ constexpr char kSeparator = ';';
 
 std::string line_of(const TrialRecord& r) {
     return fmt::format(
-        "{};{};{};{:d};{};{};{};{};{};{};{};{};{};{:d};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{}",
+        "{};{};{};{:d};{};{};{};{};{};{};{};{};{};{:d};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{};{}",
         r.seed, r.kind, r.head, r.right_object, r.width_mm, r.noise_mm, r.strays, r.drape, r.movement_mm, r.view,
         r.movement, r.points, r.verdict, r.searched, r.initial.turn_deg, r.initial.middle_mm, r.initial.target_mm,
         r.final.turn_deg, r.final.middle_mm, r.final.target_mm, r.bound_mm, r.runner_up, r.mirror, r.inliers, r.rms_mm,
-        r.median_mm, r.scale, r.weakest_mm, r.bases, r.initial_s, r.refine_s, r.processor_s, r.blocked, r.reasons);
+        r.median_mm, r.scale, r.weakest_mm, r.bases, r.initial_s, r.refine_s, r.processor_s, r.blocked, r.shape_mm,
+        r.reasons);
 }
 
 void take(const std::string& text, std::string& into) {
@@ -62,7 +64,7 @@ TrialRecord record_of(const std::string& line) {
              r.view, r.movement, r.points, r.verdict, r.searched, r.initial.turn_deg, r.initial.middle_mm,
              r.initial.target_mm, r.final.turn_deg, r.final.middle_mm, r.final.target_mm, r.bound_mm, r.runner_up,
              r.mirror, r.inliers, r.rms_mm, r.median_mm, r.scale, r.weakest_mm, r.bases, r.initial_s, r.refine_s,
-             r.processor_s, r.blocked);
+             r.processor_s, r.blocked, r.shape_mm);
     std::getline(in, r.reasons);
     return r;
 }
@@ -94,6 +96,10 @@ void run_trial(const TrialScan& scan, const SkinLut& lut, TrialRecord& record) {
     record.inliers = result.inlier_fraction;
     record.rms_mm = result.residual_rms_mm;
     record.median_mm = result.residual_median_mm;
+    if (record.searched)
+        record.shape_mm = lay_on_skin(scan.cloud, lut, result.patient_from_ct.inverse(), settings.inlier_distance_mm,
+                                      result.skin_offset_mm)
+                              .shape_rms_mm;
     record.scale = result.scale;
     record.weakest_mm = result.weakest_sigma_mm;
     record.blocked = result.blocked_fraction.value_or(0);
@@ -121,7 +127,7 @@ TrialLog::TrialLog(const std::filesystem::path& file) {
     if (file.empty()) return;
     std::ifstream in(file);
     for (std::string line; std::getline(in, line);) {
-        if (std::count(line.begin(), line.end(), kSeparator) < 32) continue;  // cut off while it was written
+        if (std::count(line.begin(), line.end(), kSeparator) < 33) continue;  // cut off while it was written
         records_.push_back(record_of(line));
         seeds_[records_.back().seed] = true;
     }

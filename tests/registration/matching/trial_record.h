@@ -26,6 +26,7 @@ struct TrialRecord {
     PoseError initial{}, final{};
     double bound_mm = 0;  ///< largest 95 % bound that was predicted at a target
     double runner_up = 0, mirror = 0, inliers = 0, rms_mm = 0, median_mm = 0, scale = 1, weakest_mm = 0, blocked = 0;
+    double shape_mm = 0;  ///< rms of what lies on the skin, without the scan's own noise
     int bases = 0;
     double initial_s = 0, refine_s = 0,
            processor_s = 0;  ///< the first two by the wall, the last all threads, whole registration

@@ -1,0 +1,29 @@
+#include "registration/matching/judge_match.h"
+
+#include <gtest/gtest.h>
+
+namespace planlight {
+namespace {
+
+Verdict verdict_of(double shape_rms_mm, double weakest_sigma_mm) {
+    FineMatch fine;
+    fine.fit.shape_rms_mm = shape_rms_mm;
+    fine.weakest.sigma_mm = weakest_sigma_mm;
+    RegistrationResult result;
+    result.mirror_ratio = 2;
+    Judgement judgement(result);
+    judge_fine_match({}, fine, result, judgement);
+    return result.verdict;
+}
+
+// A sheet that followed a head 14 mm over it lay within 0.57 mm (rms) of the skin 14 mm beside its place, where it could
+// slide by 0.87 mm: neither is much, both together are.
+TEST(JudgeMatch, AnotherShapeAtAPlaceThatCouldSlideIsAskedAbout) {
+    EXPECT_EQ(verdict_of(0.57, 0.87), Verdict::ask);
+    EXPECT_EQ(verdict_of(0.57, 0.3), Verdict::yes) << "well determined";
+    EXPECT_EQ(verdict_of(0.3, 0.87), Verdict::yes) << "the skin as it is in the CT";
+    EXPECT_EQ(verdict_of(0.1, 1.3), Verdict::ask) << "could slide too far whatever its shape";
+}
+
+}  // namespace
+}  // namespace planlight
