@@ -6,15 +6,9 @@
 #include "planning_io/types/triangle_mesh.h"
 #include "planning_io/types/volume.h"
 #include "segmentation/segment_skin.h"
+#include "segmentation/skin_shape.h"
 
 namespace planlight {
-
-/// Where the volume ends within the head: no skin to scan, to match or to draw on (`kCutPlane`).
-struct CutSide {
-    std::string name;  ///< "crown", "neck", "chin", "face", "back", "left side", "right side"
-    double area_cm2 = 0;
-    bool usual = false;  ///< a neck's: every head scan ends there
-};
 
 /// A finding that a person must hear, with its figure and what to do.
 struct SkinDoubt {
