@@ -44,7 +44,7 @@ SkinMask segment_skin(const Volume& volume, const SkinSettings& settings, const 
     report(0.1);
 
     DetachedBody detached = detach_objects(dense, volume.values, result.threshold, grid, settings.detach_radius_mm);
-    if (detached.body.empty()) refuse(fmt::format("nothing thick is denser than {:.0f}", result.threshold));
+    if (detached.body.empty()) refuse(fmt::format("nothing thick is denser than {:.4g}", result.threshold));
     report(0.6);
 
     result.body = outside_air_sealed(detached.body, grid, settings.seal_radius_mm);
@@ -53,7 +53,7 @@ SkinMask segment_skin(const Volume& volume, const SkinSettings& settings, const 
     result.volume_ml = static_cast<double>(voxels) * grid.voxel_ml();
     if (voxels == result.body.size()) refuse("no air round the body");
     if (result.volume_ml < kLeastBody_ml)
-        refuse(fmt::format("the largest piece denser than {:.0f} has {:.1f} ml", result.threshold, result.volume_ml));
+        refuse(fmt::format("the largest piece denser than {:.4g} has {:.1f} ml", result.threshold, result.volume_ml));
 
     result.pieces_removed = detached.pieces_removed;
     result.removed_ml = detached.removed_ml;

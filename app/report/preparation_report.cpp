@@ -64,7 +64,7 @@ std::string time_in_words(const std::string& iso) {
 
 std::string threshold_of(const Preparation& done) {
     if (done.on_given_surface) return "none: the surface was given, not segmented here";
-    return fmt::format("{:.0f} {}, {}", done.threshold, done.volume.is_hu ? "HU" : "(stored values, not HU)",
+    return fmt::format("{:.4g} {}, {}", done.threshold, done.volume.is_hu ? "HU" : "(stored values, not HU)",
                        done.threshold_given ? "given by hand" : "found automatically");
 }
 
