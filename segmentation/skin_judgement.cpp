@@ -8,6 +8,7 @@
 #include "planning_io/types/error.h"
 #include "segmentation/skin_layers.h"
 #include "segmentation/skin_shape.h"
+#include "segmentation/things_on_skin.h"
 
 namespace planlight {
 namespace {
@@ -24,6 +25,7 @@ constexpr double kFaintInBlur = 0.35, kNoBrain_mm = 72;  // an adult's brain hol
 constexpr double kStrand_mm = 75;                        // ears, lips and fins of noise lead away by 50
 constexpr double kBoneless_cm2 = 15;
 constexpr double kGap_cm2 = 15;
+constexpr double kOneSided_cm2 = 15, kBumps_cm2 = 10, kWidth = 1.35, kThickest_mm = 15;
 
 const char* const kGiveHead =
     "Give the CT or MR series of the whole head as the scanner made it; for a phantom or a dry skull use `planlight "
@@ -51,7 +53,10 @@ void judge_size(SkinJudgement& r) {
 
 void judge_layers(const Volume& volume, bool air_is_blank, double faint_share, SkinJudgement& r) {
     const bool hu = volume.is_hu;
-    if (std::isnan(r.layered_share)) return;
+    if (std::isnan(r.layered_share))
+        return add(r.doubts,
+                   "Whether scalp lies over bone could not be asked: too little of the upper head is in the volume",
+                   kLook);
     if (r.boneless_cm2 > kBoneless_cm2)
         add(r.doubts,
             fmt::format(
@@ -138,6 +143,33 @@ void judge_edges(const SkinMask& mask, SkinJudgement& r) {
         add(r.doubts, "The skin is uncertain in places: " + unsure, tries);
 }
 
+void judge_things(SkinJudgement& r) {
+    if (r.one_sided_cm2 > kOneSided_cm2)
+        add(r.doubts,
+            fmt::format("Over {:.0f} square cm one side of the head stands out by more than 10 mm before the other: "
+                        "something lies on the skin there (a cushion, a cloth), or the head itself is not symmetric",
+                        r.one_sided_cm2),
+            kLook);
+    if (r.bumps_cm2 > kBumps_cm2)
+        add(r.doubts,
+            fmt::format("Small things stand out from the upper head over {:.0f} square cm (electrodes, a bandage, a "
+                        "strap, a mask): there the surface is not the skin",
+                        r.bumps_cm2),
+            kLook);
+    if (r.width > kWidth)
+        add(r.doubts,
+            fmt::format("At ears or jaw the head is {:.1f} times as wide as its skull (heads are 0.9 to 1.2 times): "
+                        "something may lie on the skin at both sides (head phones, cushions)",
+                        r.width),
+            kLook);
+    if (r.scalp_mm > kThickest_mm)
+        add(r.doubts,
+            fmt::format("The soft tissue over the bone of the upper head is {:.0f} mm thick (on heads 4 to 14): "
+                        "something may lie on it all over (a cap, wet hair)",
+                        r.scalp_mm),
+            kLook);
+}
+
 void judge_steps(const Volume& volume, SkinJudgement& r) {
     const double step_mm = volume.spacing_mm().maxCoeff();
     if (step_mm < kThick_mm) return;
@@ -175,12 +207,17 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     result.gap_cm2 = layers.gap_cm2;
     result.boneless_cm2 = layers.boneless_cm2;
     if (!mask.levels.empty()) result.strand_mm = strand_length_mm(volume, mask, skin);
+    const ThingsOnSkin things = things_on_skin(volume, mask, skin, ball);
+    result.one_sided_cm2 = things.one_sided_cm2;
+    result.bumps_cm2 = things.bumps_cm2;
+    result.width = things.width;
     result.bright_bone = layers.bright_bone;
     result.sigma_mm = std::max(skin_edge_sigma_mm(volume, mask, skin), 0.25 * std::max(0.0, result.edge_blur_mm - 1.5));
     judge_size(result);
     judge_layers(volume, layers.faint_share < kFaintLayers && layers.air_is_blank, layers.faint_share, result);
     judge_face(result);
     judge_edges(mask, result);
+    judge_things(result);
     judge_steps(volume, result);
     judge_cuts(result);
     return result;

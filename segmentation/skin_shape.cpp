@@ -5,7 +5,7 @@
 #include <map>
 
 #include "planning_io/types/statistics.h"
-#include "segmentation/head_survey.h"
+#include "segmentation/coarse_body.h"
 
 namespace planlight {
 namespace {
@@ -16,39 +16,6 @@ constexpr double kBallGrid_mm = 4, kUpperHead_mm = 150, kMostDepth_mm = 130;
 constexpr double kStrandGrid_mm = 3, kThin_mm = 7, kLongestStrand_mm = 300;
 constexpr double kLeastCut_cm2 = 1, kAdultSkull_mm = 75;
 constexpr double kCell_mm = 4, kSteep = 0.4;  // of the nose's search
-
-/// The body on a coarse grid along ct, one voxel wider than the skin.
-struct CoarseBody {
-    HeadSurvey places;
-    Mask body;
-    Vector3d low_in_ct, high_in_ct;  ///< of the skin
-};
-
-/// Beyond the volume lies `beyond` (1 body, 0 air).
-CoarseBody coarse_body(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin, double step_mm,
-                       std::uint8_t beyond) {
-    CoarseBody coarse;
-    coarse.low_in_ct = coarse.high_in_ct = skin.vertices_in_ct.front();
-    for (const auto& p : skin.vertices_in_ct) {
-        coarse.low_in_ct = coarse.low_in_ct.cwiseMin(p);
-        coarse.high_in_ct = coarse.high_in_ct.cwiseMax(p);
-    }
-    VoxelGrid& grid = coarse.places.grid;
-    grid.spacing_mm = Vector3d::Constant(step_mm);
-    coarse.places.first_in_ct = coarse.low_in_ct - Vector3d::Constant(step_mm);
-    for (int a = 0; a < 3; ++a)
-        grid.size[static_cast<std::size_t>(a)] =
-            static_cast<int>((coarse.high_in_ct - coarse.low_in_ct)[a] / step_mm) + 3;
-    coarse.body.assign(grid.count(), beyond);
-    const Eigen::Affine3d voxel_from_ct = volume.ct_from_voxel.inverse();
-    for (std::size_t v = 0; v < coarse.body.size(); ++v) {
-        const Eigen::Vector3i at = (voxel_from_ct * coarse.places.place_of(v)).array().round().cast<int>();
-        bool inside = true;
-        for (int a = 0; a < 3; ++a) inside = inside && at[a] >= 0 && at[a] < volume.size[static_cast<std::size_t>(a)];
-        if (inside) coarse.body[v] = mask.body[volume.index(at.x(), at.y(), at.z())];
-    }
-    return coarse;
-}
 
 double area_of(const TriangleMesh& mesh, const std::array<std::int32_t, 3>& t, Vector3d* normal) {
     const auto& a = mesh.vertices_in_ct[static_cast<std::size_t>(t[0])];
@@ -129,7 +96,7 @@ HeadBall largest_ball(const Volume& volume, const SkinMask& mask, const Triangle
     for (std::size_t v = 0; v < coarse.body.size(); ++v) {
         const Vector3d at = coarse.places.place_of(v);
         if (coarse.high_in_ct.z() - at.z() > kUpperHead_mm || static_cast<double>(depth[v]) <= ball.radius_mm) continue;
-        if (((at - coarse.low_in_ct).array() < 0).any() || ((coarse.high_in_ct - at).array() < 0).any()) continue;
+        if (!coarse.places.measured[v] || !coarse.body[v]) continue;
         ball = {static_cast<double>(depth[v]), at};
     }
     return ball;

@@ -24,7 +24,8 @@ struct HeadBall {
 };
 
 /// Sought in the upper 150 mm, so that it is the skull's and not the chest's. What the volume does not show is taken
-/// for body: it does not make a ball small. `skin` has vertices.
+/// for body: it does not make a ball small; but the ball's middle is one of the body that it shows. `skin` has
+/// vertices.
 HeadBall largest_ball(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin);
 
 /// How far a thin thing that hangs on the head (a strap, a wire) leads away from it, mm along itself; an ear's rim 50
