@@ -142,7 +142,7 @@ Preparation prepare_case(const Volume& volume, const Plan& plan, const SkinSetti
     done.pieces_removed = mask.pieces_removed;
     add_warnings(mask.warnings, watcher, the_case);
     if (volume.modality == "CT" && !volume.is_hu)
-        add_warnings({fmt::format("the values of this CT are not HU; the skin threshold {:.0f} was {}: look at the "
+        add_warnings({fmt::format("the values of this CT are not HU; the skin threshold {:.4g} was {}: look at the "
                                   "skin before you use it",
                                   done.threshold, done.threshold_given ? "given" : "found from their histogram")},
                      watcher, the_case);

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "planning_io/types/error.h"
 #include "segmentation/detach_objects.h"
 #include "segmentation/outside_air.h"
@@ -28,6 +30,18 @@ void check(const Volume& volume, const SkinSettings& settings) {
         throw InputError({}, "a radius of the skin settings is negative", "Give radii of 0 mm or more.");
 }
 
+/// The largest piece, thin or thick, with nothing cut off it: a dry skull is thin, and its insert is its thickest part.
+DetachedBody whole_phantom(const Mask& dense, const VoxelGrid& grid) {
+    DetachedBody whole;
+    LargestPiece piece = largest_piece(dense, grid);
+    if (piece.voxels == 0) return whole;
+    whole.body = std::move(piece.mask);
+    whole.pieces_removed = piece.pieces - 1;
+    const auto all = static_cast<std::size_t>(std::count(dense.begin(), dense.end(), 1));
+    whole.removed_ml = static_cast<double>(all - piece.voxels) * grid.voxel_ml();
+    return whole;
+}
+
 }  // namespace
 
 SkinMask segment_skin(const Volume& volume, const SkinSettings& settings, const std::function<void(double)>& progress) {
@@ -43,8 +57,10 @@ SkinMask segment_skin(const Volume& volume, const SkinSettings& settings, const 
     for (std::size_t i = 0; i < dense.size(); ++i) dense[i] = volume.values[i] >= static_cast<float>(result.threshold);
     report(0.1);
 
-    DetachedBody detached = detach_objects(dense, volume.values, result.threshold, grid, settings.detach_radius_mm);
-    if (detached.body.empty()) refuse(fmt::format("nothing thick is denser than {:.0f}", result.threshold));
+    DetachedBody detached =
+        settings.phantom ? whole_phantom(dense, grid)
+                         : detach_objects(dense, volume.values, result.threshold, grid, settings.detach_radius_mm);
+    if (detached.body.empty()) refuse(fmt::format("nothing thick is denser than {:.4g}", result.threshold));
     report(0.6);
 
     result.body = outside_air_sealed(detached.body, grid, settings.seal_radius_mm);
@@ -53,7 +69,7 @@ SkinMask segment_skin(const Volume& volume, const SkinSettings& settings, const 
     result.volume_ml = static_cast<double>(voxels) * grid.voxel_ml();
     if (voxels == result.body.size()) refuse("no air round the body");
     if (result.volume_ml < kLeastBody_ml)
-        refuse(fmt::format("the largest piece denser than {:.0f} has {:.1f} ml", result.threshold, result.volume_ml));
+        refuse(fmt::format("the largest piece denser than {:.4g} has {:.1f} ml", result.threshold, result.volume_ml));
 
     result.pieces_removed = detached.pieces_removed;
     result.removed_ml = detached.removed_ml;

@@ -20,7 +20,9 @@ struct SkinSettings {
     double detach_radius_mm = 2.5;  ///< bridges thinner than twice this to the table or head holder are cut
     double max_edge_mm = 2;         ///< of the finished mesh
     double max_decimation_error_mm = 0.15;
-    bool phantom = false;         ///< a phantom, a dry skull or a plate: the result is not asked whether it is a head
+    /// A phantom, a dry skull or a plate: of a CT the largest piece is kept whole, and the result is not asked whether
+    /// it is a head.
+    bool phantom = false;
     ThicknessSettings thickness;  ///< of the soft tissue over the bone
 };
 

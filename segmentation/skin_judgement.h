@@ -6,15 +6,9 @@
 #include "planning_io/types/triangle_mesh.h"
 #include "planning_io/types/volume.h"
 #include "segmentation/segment_skin.h"
+#include "segmentation/skin_shape.h"
 
 namespace planlight {
-
-/// Where the volume ends within the head: no skin to scan, to match or to draw on (`kCutPlane`).
-struct CutSide {
-    std::string name;  ///< "crown", "neck", "chin", "face", "back", "left side", "right side"
-    double area_cm2 = 0;
-    bool usual = false;  ///< a neck's: every head scan ends there
-};
 
 /// A finding that a person must hear, with its figure and what to do.
 struct SkinDoubt {
@@ -29,12 +23,15 @@ struct SkinJudgement {
     double ball_radius_mm =
         0;  ///< of the largest ball within the upper head: an adult's skull 65 to 80, a newborn's 45
     Eigen::Vector3d ball_centre_in_ct = Eigen::Vector3d::Zero();
-    double layered_share = 0;       ///< of the vault, where bone lies under the skin, between scalp and brain
-    double scalp_mm = 0;            ///< median soft tissue over the bone of the vault
-    double nose_mm = 0;             ///< how far the nose stands out before the cheeks
-    double edge_blur_mm = 0;        ///< median way from 20 to 80 % of the step from air to skin
-    double gap_cm2 = 0;             ///< of skin under which air is again (a mask, a cushion, a cloth)
-    double boneless_cm2 = 0;        ///< of an MR: patch of the upper head with no bone within 16 mm (a shining cushion)
+    double layered_share = 0;  ///< of the vault, where bone lies under the skin, between scalp and brain
+    double scalp_mm = 0;       ///< median soft tissue over the bone of the vault
+    double nose_mm = 0;        ///< how far the nose stands out before the cheeks
+    double edge_blur_mm = 0;   ///< median way from 20 to 80 % of the step from air to skin
+    double gap_cm2 = 0;        ///< of skin under which air is again (a mask, a cushion, a cloth)
+    double boneless_cm2 = 0;   ///< of an MR: patch of the upper head with no bone within 16 mm (a shining cushion)
+    double one_sided_cm2 = 0;  ///< `ThingsOnSkin`, and the next two
+    double bumps_cm2 = 0;
+    double width = 0;
     double strand_mm = 0;           ///< of an MR: how long a thin thing is that hangs on the head
     bool unsure = false;            ///< much of the outline moves with the threshold: other thresholds are to be seen
     double sigma_mm = 0;            ///< `skin_edge_sigma_mm`, or more where the edge is blurred
@@ -44,8 +41,8 @@ struct SkinJudgement {
 };
 
 /// Asks a skin whether it is that of a head: size (the largest ball in it), layers (scalp over bone over brain: a
-/// stripped brain, a bottle and a phantom have none), face (a nose), ends, sharpness, things that lie on it. No name
-/// and no word of a header is asked.
+/// stripped brain, a bottle and a phantom have none), face (a nose), ends, sharpness, symmetry, things that lie on it.
+/// No name and no word of a header is asked.
 SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin);
 
 /// Throws InputError with the first refusal, if there is one.

@@ -16,6 +16,7 @@ using Eigen::Vector3d;
 constexpr double kStep_mm = 0.5;
 constexpr int kOut = 16, kIn = 100;  // samples before and under the skin: 8 and 50 mm
 constexpr std::size_t kMostSamples = 12000;
+constexpr int kFewSamples = 50;
 constexpr double kBone_hu = 300, kAir_hu = -500;
 constexpr double kBoneFrom_mm = 2, kBoneTo_mm = 16;  // under the skin
 constexpr double kBrainFrom_mm = 22, kBrainTo_mm = 45;
@@ -30,6 +31,7 @@ using Profile = std::vector<float>;
 struct Sample {
     std::size_t vertex = 0;
     bool vault = false, beside = false;  ///< beside: where ears are
+    bool round_vault = false;            ///< the vault, its sides and its back
     bool upper = false;                  ///< the vault, and behind down to where the neck's muscles begin
     Vector3d at_in_ct;
     Profile values;
@@ -65,12 +67,16 @@ std::vector<Sample> samples_of(const Volume& values, const TriangleMesh& skin, c
         s.at_in_ct = p;
         s.upper =
             (away.z() > 0.2 || (away.z() > -0.15 && away.y() > 0.5)) && skin.normals_in_ct[s.vertex].dot(away) > 0.7;
-        s.vault = away.z() > 0.2 && skin.normals_in_ct[s.vertex].dot(away) > 0.7;
+        const bool outwards = skin.normals_in_ct[s.vertex].dot(away) > 0.7;
+        s.vault = away.z() > 0.2 && outwards;
+        s.round_vault = away.z() > -0.35 && away.y() > -0.5 && outwards;
         const Vector3d inwards = voxel_from_ct.linear() * (-kStep_mm * skin.normals_in_ct[s.vertex]),
                        at = voxel_from_ct * p;
         for (int i = -kOut; i <= kIn; ++i)
             s.values.push_back(static_cast<float>(value_at(values, at + i * inwards).value_or(NAN)));
     });
+    if (std::count_if(samples.begin(), samples.end(), [](const Sample& s) { return s.vault; }) < kFewSamples)
+        for (Sample& s : samples) s.vault = s.round_vault;  // the volume ends above: what it shows of the skull
     return samples;
 }
 
@@ -216,8 +222,8 @@ SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const Triang
         if (layer.dark || layer.bright) depths.push_back(layer.depth_mm);
     }
     layers.bright_bone = bright > 0.5 * vault && layered < 0.3 * vault;
-    layers.layered_share = vault < 50 ? NAN : (layers.bright_bone ? bright : layered) / vault;
-    layers.faint_share = vault < 50 ? NAN : faint / vault;
+    layers.layered_share = vault < kFewSamples ? NAN : (layers.bright_bone ? bright : layered) / vault;
+    layers.faint_share = vault < kFewSamples ? NAN : faint / vault;
     layers.air_is_blank = is_blank(samples, static_cast<float>(mask.threshold));
     layers.scalp_mm = depths.empty() ? NAN : median(std::move(depths));
     layers.dip = levels.empty() ? NAN : median(std::move(levels));

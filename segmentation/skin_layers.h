@@ -22,7 +22,8 @@ struct SkinLayers {
     double air_share = 0;  ///< of all skin: what lies 3 to 8 mm before it is air
 };
 
-/// `centre_in_ct` is the middle of the skull: the vault is what lies above it. Figures that cannot be taken are not a
+/// `centre_in_ct` is the middle of the skull: the vault is what lies above it, or where the volume ends there, the
+/// skull's sides and back. Figures that cannot be taken are not a
 /// number.
 SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin,
                         const Eigen::Vector3d& centre_in_ct);

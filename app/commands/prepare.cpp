@@ -110,7 +110,7 @@ void print_summary(const Preparation& done, const PrepareOptions& options) {
     const Case& c = done.prepared;
     fmt::print("{}\nCase {} in {}: {}, {} triangles, LUT {} x {} x {} voxels of {:.2f} mm, {} plan items.\n",
                title_of(c), c.code, options.out.string(),
-               done.on_given_surface ? "on the surface given" : fmt::format("skin at {:.0f}", done.threshold),
+               done.on_given_surface ? "on the surface given" : fmt::format("skin at {:.4g}", done.threshold),
                c.skin.triangles.size(), c.lut.size[0], c.lut.size[1], c.lut.size[2], c.lut.voxel_mm, c.plan.size());
     fmt::print("Report: {}\n", (options.out / "report.html").string());
 }

@@ -26,7 +26,8 @@ td,th{padding:.5mm 2mm .5mm 0;border-bottom:.2mm solid #d5d9df;text-align:left;v
 th{color:#5b6470;font-weight:500;font-size:8pt}tr{break-inside:avoid}
 td.name{width:24%;overflow-wrap:anywhere}.plan td{padding:.35mm 2mm .35mm 0}
 .plan td:nth-child(n+2):nth-child(-n+5),.plan td:nth-child(7){white-space:nowrap}
-.two{display:grid;grid-template-columns:1fr 1fr;gap:0 6mm}
+.two{display:grid;grid-template-columns:1fr 1fr;gap:0 6mm;align-items:start}
+.two table{table-layout:fixed}.two td{overflow-wrap:anywhere}
 .two td:first-child{color:#5b6470;width:34%}
 .verdict{border:.5mm solid;border-radius:1.5mm;padding:1.5mm 3mm;font-weight:600;margin:2.5mm 0 1.5mm;break-inside:avoid}
 .good{color:#14663a}.look{color:#8a5300}.stop{color:#a3121f;font-weight:600}
@@ -34,6 +35,10 @@ ul{margin:1mm 0;padding-left:5mm}li{margin:.4mm 0}
 .row{display:grid;gap:2mm;margin:1mm 0}
 figure{margin:0;break-inside:avoid}
 figure img{width:100%;display:block;border:.2mm solid #c3c8d0}
+/* A sheet that fits is one page: its pictures share the room that its text leaves. */
+@media print{.fit{height:250mm;display:flex;flex-direction:column}.fit>*{flex:none}
+.fit>.row{flex:0 1 68mm;min-height:32mm;grid-template-rows:minmax(0,1fr)}
+.fit figure{display:flex;flex-direction:column;min-height:0}.fit figure img{flex:1;min-height:0;object-fit:contain}}
 figcaption{font-size:7.5pt;line-height:1.25;padding-top:.6mm;color:#353b45}
 .sign{display:grid;grid-template-columns:5fr 3fr 6fr;gap:0 6mm;margin-top:7.5mm;break-inside:avoid}
 .sign span{border-top:.25mm solid #15181d;font-size:7.5pt;color:#5b6470;padding-top:.5mm})";

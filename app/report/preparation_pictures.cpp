@@ -108,7 +108,7 @@ void add_slices(const Volume& volume, const Case& the_case, PreparationPictures&
 void add_views(const Case& the_case, const PlanDrawing& drawing, PreparationPictures& pictures) {
     try {
         pictures.views = views_of(the_case, drawing);
-    } catch (const DeviceError& error) {
+    } catch (const Error& error) {  // no renderer, or no memory for it
         pictures.no_views = fmt::format("the report has no views of the head: {}", error.what());
     }
 }

@@ -44,6 +44,14 @@ std::string warnings_html(const std::vector<std::string>& warnings) {
     return html + "</ul>";
 }
 
+/// Whether the first sheet can be one page, with pictures that are no smaller than can be judged.
+bool fit_on_a_page(const std::vector<std::string>& warnings) {
+    constexpr std::size_t kLine = 105, kMostLines = 13;
+    std::size_t lines = 0;
+    for (const auto& warning : warnings) lines += 1 + warning.size() / kLine;
+    return lines <= kMostLines;
+}
+
 std::string contents_of(const Plan& plan) {
     std::string words;
     const auto add = [&](std::size_t count, const char* noun, const char* several) {
@@ -64,7 +72,7 @@ std::string time_in_words(const std::string& iso) {
 
 std::string threshold_of(const Preparation& done) {
     if (done.on_given_surface) return "none: the surface was given, not segmented here";
-    return fmt::format("{:.0f} {}, {}", done.threshold, done.volume.is_hu ? "HU" : "(stored values, not HU)",
+    return fmt::format("{:.4g} {}, {}", done.threshold, done.volume.is_hu ? "HU" : "(stored values, not HU)",
                        done.threshold_given ? "given by hand" : "found automatically");
 }
 
@@ -87,7 +95,9 @@ std::string identity_html(const Preparation& done) {
                              row("Title", c.names.title) +
                              row("Plan", c.names.plan.empty() ? "not named" : c.names.plan) +
                              row("Version of the plan", c.names.plan_version) + row("It holds", contents_of(c.plan)) +
-                             row("Case", c.code) + row("Prepared", time_in_words(c.created));
+                             row("Case", c.code) + row("Prepared", time_in_words(c.created)) +
+                             (done.on_given_surface ? "" : row("Body", fmt::format("{:.0f} ml", done.body_ml))) +
+                             row("Cut off by the volume", cut_sides_of(done.judgement));
     const std::string right =
         row("Source", c.source) + row("Series", series_of(c.names)) +
         row("Modality",
@@ -95,8 +105,6 @@ std::string identity_html(const Preparation& done) {
         row("Voxels", fmt::format("{} x {} x {} of {:.2f} x {:.2f} x {:.2f} mm", v.size[0], v.size[1], v.size[2],
                                   v.voxel_mm.x(), v.voxel_mm.y(), v.voxel_mm.z())) +
         (done.on_given_surface ? "" : row("Skin threshold", threshold_of(done))) +
-        row("Cut off by the volume", cut_sides_of(done.judgement)) +
-        (done.on_given_surface ? "" : row("Body", fmt::format("{:.0f} ml", done.body_ml))) +
         (done.brightness_ratio > 1 ? row("Evened out", fmt::format("{:.1f} : 1 across the head", done.brightness_ratio))
                                    : "") +
         (c.skin_edge_sigma_mm > 0
@@ -222,8 +230,8 @@ PreparationReport preparation_report(const Preparation& done, const PlanDrawing&
         warnings_html(c.warnings) + identity_html(done) + slices_html(pictures);
     const std::string second =
         views_html(done, pictures, removed) + plan_html(facts) + figures_html(done) + signatures_html();
-    const std::string body =
-        "<section class=\"sheet\">" + first + "</section><section class=\"sheet\">" + second + "</section>";
+    const std::string body = fmt::format("<section class=\"sheet{}\">", fit_on_a_page(c.warnings) ? " fit" : "") +
+                             first + "</section><section class=\"sheet\">" + second + "</section>";
     return {paper_page("Preparation: " + title_of(c), body,
                        fmt::format("{} · case {} · prepared {}", title_of(c), c.code, time_in_words(c.created))),
             preparation_json(done, drawing, facts, removed)};

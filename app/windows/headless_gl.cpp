@@ -2,9 +2,15 @@
 
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <string>
+#include <thread>
 
+#include "planning_io/files/memory_need.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -14,6 +20,21 @@ void check(bool worked, const std::string& step) {
     if (!worked)
         throw DeviceError("Picture without display", step + " failed",
                           "Install the package libgl1-mesa-dri, which draws without any graphics card.");
+}
+
+/// The renderer without a card (Mesa's llvmpipe) ends the whole program where it is given no memory, so it is asked
+/// before. Measured: 200 MiB in use, and address space for each of its threads' heaps besides.
+void check_memory_to_draw() {
+    constexpr std::size_t kMiB = std::size_t{1} << 20;
+    check_memory("Drawing without display", 200 * kMiB, "Close other programs.");
+    const std::size_t room = (700 + 96 * std::min<std::size_t>(std::thread::hardware_concurrency(), 32)) * kMiB;
+    void* const at = mmap(nullptr, room, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (at == MAP_FAILED)
+        throw Error(
+            ExitCode::disk,
+            fmt::format("Drawing without display needs {} MiB of address space, which are not to be had", room / kMiB),
+            "Raise the limit of address space (`ulimit -v`).");
+    munmap(at, room);
 }
 
 struct Context {
@@ -63,6 +84,7 @@ struct Context {
 }  // namespace
 
 std::shared_ptr<void> headless_gl(int width, int height) {
+    check_memory_to_draw();
     return std::make_shared<Context>(width, height);
 }
 

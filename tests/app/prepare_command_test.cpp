@@ -85,6 +85,16 @@ TEST_F(CommandsTest, WhereMemoryIsShortTheNeedIsSaid) {
     EXPECT_FALSE(fs::exists(root() / "never"));
 }
 
+TEST_F(CommandsTest, WhereMemoryIsTooShortToDrawTheCaseIsMadeWithoutViewsAndSaysSo) {
+    // The renderer without a card would end the whole program, where it is given no memory.
+    const auto run = run_planlight("prepare " + patient() + " --plan " + plan() + " --voxel-mm 4 --out viewless",
+                                   root(), "ulimit -v 1000000; ");
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_NE(run.err.find("no views of the head"), std::string::npos) << run.err;
+    EXPECT_NE(run.err.find("MiB"), std::string::npos) << run.err;
+    EXPECT_NE(read_text(root() / "viewless" / "report.html").find("no views of the head"), std::string::npos);
+}
+
 TEST_F(CommandsTest, TheExamplePlanRaisesNoWarningOnItsPatient) {
     for (const auto& warning : json::parse(prepared().out)["warnings"])
         for (const char* item : {"Osteotomy", "B1", "B2", "B3", "B4", "T1"})

@@ -78,14 +78,14 @@ float sample(const Volume& volume, const Vector3d& voxel) {
 
 }  // namespace
 
-MrDraw mr_like(const Volume& ct, const SkinMask& body, std::uint32_t seed, double least_mm) {
+MrDraw mr_like(const Volume& ct, const SkinMask& body, std::uint32_t seed, const MrLook& look) {
     std::mt19937 random(seed);
     const auto uniform = [&](double from, double to) {
         return std::uniform_real_distribution<double>(from, to)(random);
     };
     const Contrast& contrast = kContrasts[seed % kContrasts.size()];
     const Signals signals = signals_of(ct, body, contrast);
-    Vector3d spacing = Vector3d::Constant(uniform(least_mm, 2.0));
+    Vector3d spacing = Vector3d::Constant(uniform(look.least_mm, 2.0));
     double slice_mm = spacing.z();  // of what is measured of each step: the rest is a gap
     const bool thick = uniform(0, 1) < 0.25;
     if (thick) {
@@ -113,8 +113,9 @@ MrDraw mr_like(const Volume& ct, const SkinMask& body, std::uint32_t seed, doubl
     for (int a = 0; a < 3; ++a)
         mr.size[static_cast<std::size_t>(a)] =
             std::max(16, static_cast<int>((head.sizes()[a] + 2 * margin_mm) / spacing[a]));
-    const double noise = uniform(0.01, 0.15) * static_cast<double>(contrast.soft), ratio = uniform(1, 3),
-                 fat_shift_mm = uniform(0, 1.5), ghost = uniform(0, 0.06), wrap = uniform(0, 0.06);
+    const double noise = uniform(0.01, 0.15) * static_cast<double>(contrast.soft), drawn_ratio = uniform(1, 3),
+                 ratio = look.coil > 0 ? look.coil : drawn_ratio, fat_shift_mm = uniform(0, 1.5),
+                 ghost = uniform(0, 0.06), wrap = uniform(0, 0.06);
     const Vector3d coil = Vector3d(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)).normalized(),
                    middle = turn * head.center();
     const Vector3d readout = turn * Vector3d::UnitX();

@@ -14,10 +14,16 @@ struct MrDraw {
     std::string said;  ///< contrast, voxel, noise, bias ...
 };
 
+/// What is not drawn.
+struct MrLook {
+    double least_mm = 0.8;  ///< of a voxel
+    double coil = 0;        ///< brightest to darkest place; 0: drawn up to 3
+};
+
 /// Dark bone, bright fat (T1), bright water (T2), dark water (FLAIR) or all alike (PD), 0.8 to 2 mm (thick slices with
 /// gaps of up to 5 mm), turned anyhow, coil shading to 3:1, Rician noise to 15 % of the soft tissue, fat shifted along
 /// the readout by up to 1.5 mm, ghosts and wrap of up to 6 %. `ct` in HU with the mask of its body (what the table
-/// shows is left out). `least_mm` of a voxel.
-MrDraw mr_like(const Volume& ct, const SkinMask& body, std::uint32_t seed, double least_mm = 0.8);
+/// shows is left out).
+MrDraw mr_like(const Volume& ct, const SkinMask& body, std::uint32_t seed, const MrLook& look = {});
 
 }  // namespace planlight::test

@@ -200,6 +200,28 @@ TEST(SegmentSkin, RefusesVolumesWithoutSkin) {
     EXPECT_THROW(segment_skin(pea), InputError);
 }
 
+TEST(SegmentSkin, APhantomKeepsItsThinSkullAndNotItsThickInsertAlone) {
+    // A shell of 4 mm round a ball of 25 mm, that a rod of 3 mm holds.
+    Volume volume;
+    volume.modality = "CT";
+    volume.is_hu = true;
+    volume.ct_from_voxel.linear() *= 1.5;
+    volume.ct_from_voxel.translation() = Eigen::Vector3d(-90, -90, -90);
+    volume.size = {121, 121, 121};
+    for (int k = 0; k < 121; ++k)
+        for (int j = 0; j < 121; ++j)
+            for (int i = 0; i < 121; ++i) {
+                const Eigen::Vector3d p = volume.ct_from_voxel * Eigen::Vector3d(i, j, k);
+                const double r = p.norm();
+                const bool rod = std::hypot(p.x(), p.y()) < 1.6 && p.z() > 0 && r < 75;
+                volume.values.push_back(r < 25 || (r > 71 && r < 75) || rod ? 400.0F : -1000.0F);
+            }
+    SkinSettings settings;
+    EXPECT_LT(segment_skin(volume, settings).volume_ml, 200) << "the shell is thinner than what hangs on a head";
+    settings.phantom = true;
+    EXPECT_NEAR(segment_skin(volume, settings).volume_ml, 4.0 / 3 * 3.1416 * 7.5 * 7.5 * 7.5, 60);
+}
+
 TEST(SegmentSkin, ReportsProgressToTheEnd) {
     ScanOptions options;
     options.spacing_mm = {3, 3, 3};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <random>
 
 #include "planning_io/types/error.h"
@@ -16,13 +17,13 @@ namespace {
 using Eigen::Vector3d;
 
 /// An MR of 3 mm voxels of what `signal` says at a place (mm, the middle is the origin, the front is at negative y),
-/// with Rician noise.
+/// with Rician noise. The grid may be turned about the body's long axis.
 Volume mr_of(const std::function<double(const Vector3d&)>& signal, const Vector3d& half_mm = {105, 125, 115},
-             double noise = 12) {
+             double noise = 12, double turn_degrees = 0) {
     Volume volume;
     volume.modality = "MR";
-    volume.ct_from_voxel.linear() *= 3;
-    volume.ct_from_voxel.translation() = -half_mm;
+    volume.ct_from_voxel = Eigen::AngleAxisd(turn_degrees * std::numbers::pi / 180, Vector3d::UnitZ()) *
+                           Eigen::Translation3d(-half_mm) * Eigen::Scaling(3.0);
     for (int a = 0; a < 3; ++a) volume.size[static_cast<std::size_t>(a)] = static_cast<int>(2 * half_mm[a] / 3) + 1;
     std::mt19937 random(3);
     std::normal_distribution<double> normal(0, noise);
@@ -129,6 +130,73 @@ TEST(JudgeSkin, SaysThatACushionThatShinesLiesOnTheHead) {
         EXPECT_TRUE(head.refused || doubts(head.skin, "cushion"))
             << towards.transpose() << ": " << head.skin.boneless_cm2 << ", " << head.skin.layered_share;
     }
+}
+
+/// A head with something as bright as scalp where `is_there` says so.
+Volume head_with(const std::function<bool(const Vector3d& p, double depth)>& is_there, double turn_degrees = 0) {
+    return mr_of(
+        [&](const Vector3d& p) {
+            const double depth = depth_in_head(p);
+            return depth < 0 && is_there(p, depth) ? 900 : layered(depth);
+        },
+        {125, 145, 115}, 12, turn_degrees);
+}
+
+bool phones(const Vector3d& p, double depth) {
+    return std::hypot(p.y(), p.z() + 35) < 40 && std::abs(p.x()) > 40 && depth > -32;
+}
+
+TEST(JudgeSkin, SaysThatACushionLiesAtOneCheek) {
+    const Judged head = judged(head_with([](const Vector3d& p, double depth) {
+        return p.x() > 35 && p.y() < 10 && p.z() < -20 && p.z() > -80 && depth > -25;
+    }));
+    EXPECT_TRUE(doubts(head.skin, "one side of the head")) << head.skin.one_sided_cm2;
+    EXPECT_LT(judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); })).skin.one_sided_cm2, 3);
+}
+
+TEST(JudgeSkin, SaysThatThingsLieAtBothEars) {
+    const Judged head = judged(head_with(phones));
+    EXPECT_TRUE(doubts(head.skin, "at both sides")) << head.skin.width;
+    EXPECT_LT(judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); })).skin.width, 1.2);
+}
+
+TEST(JudgeSkin, SaysThatSmallThingsStandOutFromTheUpperHead) {
+    // Knobs of 14 mm, 8 mm high, some 40 mm apart.
+    const Judged head = judged(head_with([](const Vector3d& p, double depth) {
+        const double round = std::atan2(p.y(), p.x()), up = std::asin(p.z() / p.norm());
+        const double along = std::remainder(round * std::cos(up) * 95, 40), across = std::remainder(up * 95, 40);
+        return p.z() > 0 && depth > -8 && std::hypot(along, across) < 7;
+    }));
+    EXPECT_TRUE(head.refused || doubts(head.skin, "Small things")) << head.skin.bumps_cm2;
+    EXPECT_LT(judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); })).skin.bumps_cm2, 3);
+}
+
+TEST(JudgeSkin, SaysThatSomethingLiesOnItAllOver) {
+    const Judged head = judged(mr_of([](const Vector3d& p) {
+        const double depth = depth_in_head(p);
+        return depth < 0 ? 0.0 : depth < 14 ? 900.0 : depth < 22 ? 40.0 : 500.0;
+    }));
+    EXPECT_TRUE(head.refused || doubts(head.skin, "all over")) << head.skin.scalp_mm;
+}
+
+TEST(JudgeSkin, TheSkullsMiddleIsSoughtInWhatTheVolumeShows) {
+    // On a turned grid the corners of the skin's box lie beyond the volume's sides.
+    const SkinJudgement skin = judged(head_with(phones, 45)).skin;
+    EXPECT_LT(skin.ball_centre_in_ct.norm(), 25) << skin.ball_centre_in_ct.transpose();
+    EXPECT_GT(skin.layered_share, 0.8);
+}
+
+TEST(JudgeSkin, WhereTheVolumeEndsBelowTheCrownTheSidesAreAskedForScalp) {
+    Volume part = mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); });
+    part.size[2] = 42;  // up to 8 mm above the middle
+    part.values.resize(part.index(0, 0, 42));
+    const SkinJudgement skin = judged(part).skin;
+    EXPECT_GT(skin.layered_share, 0.7);
+    EXPECT_FALSE(doubts(skin, "could not be asked"));
+    Volume brain = mr_of([](const Vector3d& p) { return depth_in_head(p, false) > 13 ? 500.0 : 0.0; });
+    brain.size[2] = 42;
+    brain.values.resize(brain.index(0, 0, 42));
+    EXPECT_TRUE(judged(brain).refused);
 }
 
 TEST(JudgeSkin, SaysThatAStrapHangsOnTheHead) {

@@ -1,0 +1,201 @@
+#include "tests/segmentation/strange_heads.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+
+#include "segmentation/head_survey.h"
+#include "segmentation/skin_shape.h"
+
+namespace planlight::test {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr float kWet_hu = 40, kFat_hu = -90, kAir_hu = -1000;
+constexpr float kBone_hu = 300;
+
+/// The head that is made strange, with the distance of each voxel from its skin, mm: outwards, and under it.
+class Maker {
+public:
+    Maker(const Volume& ct, const SkinMask& body, const TriangleMesh& skin)
+        : ct_(ct), body_(body), skin_(skin), ball_(largest_ball(ct, body, skin)) {
+        const VoxelGrid grid = grid_of(ct);
+        out_mm_ = distance_from(body.body, 1, grid, 60);
+        depth_mm_ = distance_from(body.body, 0, grid, 60);
+    }
+    double radius_mm() const { return ball_.radius_mm; }
+
+    /// `change` is given a place from the skull's middle in mm (x to the left, y to the back, z up), its distance
+    /// outside the skin, its depth under it, and the value, which it may change; it says whether the place shows.
+    using Change = std::function<bool(const Vector3d& p, double out_mm, double depth_mm, float& hu)>;
+    StrangeHead made(const Change& change) const {
+        StrangeHead head{ct_, body_, skin_};
+        for (int k = 0; k < ct_.size[2]; ++k)
+            for (int j = 0; j < ct_.size[1]; ++j)
+                for (int i = 0; i < ct_.size[0]; ++i) {
+                    const std::size_t v = ct_.index(i, j, k);
+                    const Vector3d p = ct_.ct_from_voxel * Vector3d(i, j, k) - ball_.centre_in_ct;
+                    head.body.body[v] = change(p, static_cast<double>(out_mm_[v]), static_cast<double>(depth_mm_[v]),
+                                               head.ct.values[v]);
+                }
+        return head;
+    }
+    StrangeHead scaled(double by) const {
+        StrangeHead head{ct_, body_, skin_};
+        head.ct.ct_from_voxel = Eigen::Scaling(by) * ct_.ct_from_voxel;
+        for (auto& p : head.skin.vertices_in_ct) p *= by;
+        return head;
+    }
+
+private:
+    const Volume& ct_;
+    const SkinMask& body_;
+    const TriangleMesh& skin_;
+    HeadBall ball_;
+    std::vector<float> out_mm_, depth_mm_;
+};
+
+/// Whether a direction lies within 6 mm of one of some sixty places evenly over the upper head (a spiral).
+bool near_electrode(const Vector3d& p) {
+    constexpr int kPlaces = 120;
+    const Vector3d way = p.normalized();
+    if (way.z() < 0) return false;
+    const double at = (1 - way.z()) / 2 * kPlaces;
+    for (int n = static_cast<int>(at) - 12; n <= static_cast<int>(at) + 12; ++n) {
+        const double z = 1 - 2 * (n + 0.5) / kPlaces, turn = 2.399963 * n;
+        if (std::abs(z) >= 1) continue;
+        const double flat = std::sqrt(1 - z * z);
+        if (p.norm() * (way - Vector3d(flat * std::cos(turn), flat * std::sin(turn), z)).norm() < 6) return true;
+    }
+    return false;
+}
+
+class Cases {
+public:
+    explicit Cases(std::shared_ptr<const Maker> of) : of_(std::move(of)) {}
+    double radius_mm() const { return of_->radius_mm(); }
+    void made(const std::string& name, Fate fate, Maker::Change change) {
+        all.push_back({name, fate, [of = of_, change = std::move(change)] { return of->made(change); }});
+    }
+    /// Something that lies outside the skin.
+    void with(const std::string& name, Fate fate, std::function<bool(const Vector3d& p, double out_mm)> is_there,
+              float hu = kWet_hu) {
+        made(name, fate, [is_there = std::move(is_there), hu](const Vector3d& p, double out_mm, double, float& value) {
+            if (out_mm <= 0) return true;
+            if (is_there(p, out_mm)) return value = hu, true;
+            return false;
+        });
+    }
+    void scaled(const std::string& name, Fate fate, double by, double coil = 0) {
+        all.push_back({name, fate, [of = of_, by] { return of->scaled(by); }, coil});
+    }
+    void solid(const std::string& name, std::function<bool(const Vector3d&)> inside) {
+        made(name, Fate::refused, [inside = std::move(inside)](const Vector3d& p, double, double, float& hu) {
+            hu = inside(p) ? kWet_hu : kAir_hu;
+            return inside(p);
+        });
+    }
+    std::vector<StrangeCase> all;
+
+private:
+    std::shared_ptr<const Maker> of_;
+};
+
+void add_things_that_lie_on_it(Cases& of) {
+    const double r = of.radius_mm();
+    of.with("electrodes with gel", Fate::not_bad,
+            [](const Vector3d& p, double out) { return out < 6 && near_electrode(p); });
+    of.with("cushion behind the head", Fate::said, [r](const Vector3d& p, double out) {
+        return p.y() > 0.7 * r && out < 40 && std::abs(p.x()) < 60 && std::abs(p.z()) < 50;
+    });
+    of.with("cushion at one cheek", Fate::said, [r](const Vector3d& p, double out) {
+        return p.x() > 0.5 * r && out < 30 && p.y() < -0.1 * r && p.z() < -0.3 * r;
+    });
+    of.with("cushions at both sides of the jaw", Fate::said,
+            [r](const Vector3d& p, double out) { return std::abs(p.x()) > 0.6 * r && out < 30 && p.z() < -0.4 * r; });
+    of.with("cushion behind the neck", Fate::said, [r](const Vector3d& p, double out) {
+        return p.y() > 0 && out < 40 && std::abs(p.x()) < 70 && p.z() < -0.6 * r;
+    });
+    of.with("cushion on the face", Fate::said,
+            [r](const Vector3d& p, double out) { return p.y() < -0.5 * r && out < 40 && p.z() < 0.2 * r; });
+    of.with("wet bandage round the forehead", Fate::said,
+            [r](const Vector3d& p, double out) { return out < 9 && p.z() > 0.2 * r && p.z() < 0.7 * r; });
+    of.with("blanket 10 mm off, from ear to ear below", Fate::not_bad,
+            [r](const Vector3d& p, double out) { return out > 10 && out < 16 && p.y() > -0.5 * r && p.z() < 0.3 * r; });
+    of.with("shell of a coil, 25 mm off", Fate::right,
+            [](const Vector3d&, double out) { return out > 25 && out < 28; });
+    of.with("head phones filled with gel", Fate::said, [](const Vector3d& p, double out) {
+        return std::hypot(p.y(), p.z() + 30) < 40 && out < 28 && std::abs(p.x()) > 40;
+    });
+    of.with("hair soaked with gel, 8 mm", Fate::said,
+            [r](const Vector3d& p, double out) { return out < 8 && p.z() > 0.1 * r + 0.6 * p.y() * -1; });
+    of.with(
+        "vitamin pills as markers", Fate::not_bad,
+        [](const Vector3d& p, double out) {
+            const Vector3d way = p.normalized();
+            for (const auto& at :
+                 {Vector3d(0.7, -0.5, 0.5), Vector3d(-0.7, -0.5, 0.5), Vector3d(0, -0.8, 0.6), Vector3d(0, 0.3, 0.95)})
+                if (p.norm() * (way - at.normalized()).norm() < 5 && out < 7) return true;
+            return false;
+        },
+        kFat_hu);
+}
+
+void add_what_is_missing(Cases& of) {
+    const double r = of.radius_mm();
+    of.made("flap of bone is out", Fate::not_bad, [r](const Vector3d& p, double out, double, float& hu) {
+        if (hu > 130 && (p - Vector3d(r, 0, 0.4 * r)).norm() < 45) hu = kWet_hu;
+        return out <= 0;
+    });
+    of.made("mouth full of metal", Fate::not_bad, [r](const Vector3d& p, double out, double, float& hu) {
+        if ((p - Vector3d(0, -1.1 * r, -1.2 * r)).norm() < 45) hu = kAir_hu;
+        return out <= 0 && hu > -900;
+    });
+    of.made("face taken away", Fate::said, [r](const Vector3d& p, double out, double, float& hu) {
+        const bool face = p.y() < -0.55 * r - 0.5 * (p.z() + 0.2 * r) && p.z() < 0;
+        if (face) hu = kAir_hu;
+        return out <= 0 && !face;
+    });
+    of.made("brain alone", Fate::refused, [r](const Vector3d& p, double, double depth, float& hu) {
+        const bool brain = depth > 14 && hu > 0 && hu < 130 && p.z() > -0.5 * r && p.norm() < 1.15 * r;
+        if (!brain) hu = kAir_hu;
+        return brain;
+    });
+    of.made("skull alone, wet", Fate::refused, [](const Vector3d&, double, double, float& hu) {
+        const bool bone = hu > kBone_hu;
+        hu = bone ? kWet_hu : kAir_hu;
+        return bone;
+    });
+}
+
+void add_no_heads(Cases& of) {
+    of.solid("ball of 80 mm", [](const Vector3d& p) { return p.norm() < 80; });
+    of.solid("bottle", [](const Vector3d& p) { return std::hypot(p.x(), p.y()) < 70 && std::abs(p.z()) < 85; });
+    of.solid("box", [](const Vector3d& p) { return p.cwiseAbs().maxCoeff() < 65; });
+    // Rind, pith, flesh: layers, but no face.
+    of.made("melon", Fate::said, [](const Vector3d& p, double, double, float& hu) {
+        const double d = 80 - p.norm();
+        hu = d < 0 ? kAir_hu : d > 5 && d < 12 ? 900.0F : kWet_hu;
+        return d > 0;
+    });
+}
+
+}  // namespace
+
+std::vector<StrangeCase> strange_heads_of(const Volume& ct, const SkinMask& body, const TriangleMesh& skin) {
+    Cases of(std::make_shared<const Maker>(ct, body, skin));
+    of.scaled("as it is", Fate::right, 1);
+    of.scaled("a child of six, 0.88", Fate::right, 0.88);
+    of.scaled("a baby of one, 0.75", Fate::right, 0.75);
+    of.scaled("newborn, 0.62", Fate::right, 0.62);
+    of.scaled("coil on one side, 5 : 1", Fate::not_bad, 1, 5);
+    of.scaled("coil on one side, 8 : 1", Fate::not_bad, 1, 8);
+    add_things_that_lie_on_it(of);
+    add_what_is_missing(of);
+    add_no_heads(of);
+    return std::move(of.all);
+}
+
+}  // namespace planlight::test
