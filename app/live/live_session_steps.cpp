@@ -256,6 +256,7 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
     });
     std::vector<std::string> details = sentences(update.overlay.counts.partly_lit, session.lit_drawing());
     details.insert(details.end(), ruling.details.begin(), ruling.details.end());
+    if (!update.camera_doubt.empty()) details.push_back(update.camera_doubt + ".");
     if (update.overlay.lit)
         set_status(ruling.trust == LightTrust::aligned ? StatusKind::aligned : StatusKind::check, ruling.headline,
                    details);

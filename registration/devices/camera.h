@@ -31,6 +31,8 @@ struct CameraFault {
 struct CameraCounts {
     std::size_t received = 0, incomplete = 0, dropped = 0;  ///< dropped: nobody took them before newer ones came
     std::size_t clock_jumps = 0, lost_connections = 0;
+    std::size_t lately = 0, lately_incomplete = 0;  ///< of the last 25 frames, whole or not
+    Instant behind{};  ///< by so much the last frames came later than their times say they should; 0: in time
 };
 
 /// Wakes whoever waits for the frames of several cameras.
@@ -51,6 +53,8 @@ public:
     void push(CameraFrame frame);
     void count_incomplete();
     void count_jump();
+    /// How much later than usual the last frames came, by the camera's own times; 0: in time.
+    void note_behind(Instant by);
     /// From now on `fault` says why nothing comes; frames that wait are thrown away.
     void fail(CameraFault fault);
     void recovered();
@@ -65,6 +69,8 @@ private:
     std::deque<CameraFrame> frames_;
     std::optional<CameraFault> fault_;
     CameraCounts counts_;
+    std::deque<bool> lately_whole_;
+    void note_whole(bool whole);
 };
 
 /// A camera that runs by itself from its making to its end.

@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kBuffers = 6;  // on their way; more would only hide that nobody takes the frames
 constexpr Instant kPatience = std::chrono::milliseconds(100);
+constexpr std::size_t kLearnt = 20;  // frames: one that came quickly is among them
 
 struct Unref {
     void operator()(void* object) const {
@@ -219,7 +220,7 @@ bool GenicamCamera::receive() {
     last_by_device_ = by_device;
     heard_at_ = arrived;
     incomplete_before_ = frames_.counts().incomplete;
-    if (!device_clock_.add(by_device, arrived)) frames_.count_jump();
+    if (!clock_is_known(by_device, arrived)) return there;
     std::size_t size = 0;
     const auto* data = static_cast<const std::uint8_t*>(arv_buffer_get_data(buffer, &size));
     CameraFrame frame;
@@ -236,6 +237,28 @@ bool GenicamCamera::receive() {
     }
     frame.picture = std::move(*picture);
     frames_.push(std::move(frame));
+    return true;
+}
+
+/// False while its clock is not known well enough for a frame to have a time.
+bool GenicamCamera::clock_is_known(Instant by_device, Instant arrived) {
+    if (!device_clock_.add(by_device, arrived)) {
+        frames_.count_jump();
+        frames_.fail({fmt::format("its clock jumped by {:.0f} ms", 1e3 * seconds(device_clock_.last_jump())),
+                      "It is learnt anew, which takes a second. If this comes back, exchange the camera."});
+        learning_ = true;
+    }
+    frames_.note_behind(device_clock_.behind());
+    if (const double wrong = device_clock_.runs_wrong(); wrong != 0) {
+        frames_.fail({fmt::format("its clock runs {:.1f} % {}", 100 * std::abs(wrong), wrong > 0 ? "fast" : "slow"),
+                      "No camera's clock may: exchange the camera, or look at who sets its clock."});
+        learning_ = ran_wrong_ = true;
+    }
+    if (!learning_) return true;
+    if (device_clock_.size() < kLearnt || device_clock_.runs_wrong() != 0) return false;
+    if (ran_wrong_ && device_clock_.span() < std::chrono::seconds(5)) return false;
+    learning_ = ran_wrong_ = false;
+    frames_.recovered();
     return true;
 }
 
@@ -278,7 +301,7 @@ void GenicamCamera::reopen(const std::stop_token& stop) {
                 throw DeviceError(name_, "it came back as another camera, or with another resolution",
                                   "Connect that camera again, or start the session anew.");
             start();
-            frames_.recovered();
+            learning_ = true;
             return;
         } catch (const DeviceError& error) {
             device_->stream.reset();

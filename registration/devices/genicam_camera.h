@@ -32,7 +32,7 @@ struct GenicamSettings {
     /// From the end of the exposure to the arrival of the quickest frame; empty: the payload over a gigabit.
     std::optional<double> transfer_ms;
     Instant silence_allowed = std::chrono::milliseconds(500);  ///< without a frame; then it is lost
-    Instant look_every = std::chrono::seconds(1);              ///< whether exposure and gain are still what they were
+    Instant look_every = std::chrono::milliseconds(150);       ///< whether exposure and gain are still what they were
 };
 
 /// A GigE Vision or USB3 Vision camera by Aravis, running by itself: what it does on its own (automatic exposure and
@@ -66,6 +66,7 @@ private:
     void start();
     void run(const std::stop_token& stop);
     bool receive();
+    bool clock_is_known(Instant by_device, Instant arrived);
     bool still_as_set();
     void tell_silence();
     void reopen(const std::stop_token& stop);
@@ -82,6 +83,8 @@ private:
     DeviceClock device_clock_;
     Instant exposure_{}, transfer_{}, heard_at_{}, looked_at_{}, last_by_device_{-1};
     double gain_ = 0;
+    bool learning_ = false;  ///< its clock, after a fault: its frames have no time yet
+    bool ran_wrong_ = false;
     std::size_t incomplete_before_ = 0;  ///< when the last whole frame came
     std::jthread thread_;
 };
