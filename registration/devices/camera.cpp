@@ -41,9 +41,12 @@ void FrameQueue::note_whole(bool whole) {
     counts_.lately_incomplete = static_cast<std::size_t>(std::count(lately_whole_.begin(), lately_whole_.end(), false));
 }
 
-void FrameQueue::note_behind(Instant by) {
+void FrameQueue::note_clock(double drift, Instant sigma, Instant behind) {
     const std::lock_guard lock(mutex_);
-    counts_.behind = by;
+    counts_.own_clock = true;
+    counts_.clock_drift = drift;
+    counts_.clock_sigma = sigma;
+    counts_.behind = behind;
 }
 
 void FrameQueue::count_jump() {

@@ -178,6 +178,8 @@ void GenicamCamera::start() {
     // As large packets as the network lets through: fewer of them are lost.
     if (arv_camera_is_gv_device(camera)) arv_camera_gv_auto_packet_size(camera, failure.slot());
     const unsigned payload = arv_camera_get_payload(camera, failure.slot());
+    if (link_.frame_bytes == 0 && arv_camera_is_gv_device(camera))  // before the thread runs
+        link_ = {static_cast<int>(arv_camera_gv_get_packet_size(camera, failure.slot())), payload};
     transfer_ = from_seconds(settings_.transfer_ms ? *settings_.transfer_ms / 1e3 : payload / 125e6);
     device_->stream.reset(arv_camera_create_stream(camera, nullptr, nullptr, failure.slot()));
     if (!device_->stream)
@@ -248,7 +250,7 @@ bool GenicamCamera::clock_is_known(Instant by_device, Instant arrived) {
                       "It is learnt anew, which takes a second. If this comes back, exchange the camera."});
         learning_ = true;
     }
-    frames_.note_behind(device_clock_.behind());
+    frames_.note_clock(device_clock_.drift(), device_clock_.uncertainty(), device_clock_.behind());
     if (const double wrong = device_clock_.runs_wrong(); wrong != 0) {
         frames_.fail({fmt::format("its clock runs {:.1f} % {}", 100 * std::abs(wrong), wrong > 0 ? "fast" : "slow"),
                       "No camera's clock may: exchange the camera, or look at who sets its clock."});

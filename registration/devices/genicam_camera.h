@@ -53,6 +53,7 @@ public:
     int height() const override { return height_; }
     const std::string& serial() const override { return serial_; }
     std::vector<std::string> notes() const override { return notes_; }
+    CameraLink link() const override { return link_; }
 
 private:
     struct Device;
@@ -78,6 +79,7 @@ private:
     std::string name_, serial_;
     std::vector<std::string> notes_;
     int width_ = 0, height_ = 0;
+    CameraLink link_;
     std::unique_ptr<Device> device_;
     // Of the camera's thread, once it runs.
     DeviceClock device_clock_;

@@ -146,7 +146,7 @@ LightRecording record_latency(const LightBench& bench, const RecordSettings& set
     const std::vector<bool> code = flash_code();
     std::mt19937 random(settings.seed);
     std::uniform_real_distribution<double> evenly;
-    Recorder recorder(bench, settings, 2 * static_cast<int>(code.size()) + 2 * kRests);
+    Recorder recorder(bench, settings, settings.code_passes * static_cast<int>(code.size()) + 2 * kRests);
     for (int i = 0; i < kRests; ++i) {
         recorder.show_steady(kWhite, kRestFrames);
         recorder.show_steady(kBlack, kRestFrames);
@@ -154,7 +154,7 @@ LightRecording record_latency(const LightBench& bench, const RecordSettings& set
     const double interval_s = frame_timing(recorder.so_far()).interval_s;
     bool on = false;
     std::optional<double> latency_s;
-    for (int pass = 0; pass < 2; ++pass) {
+    for (int pass = 0; pass < settings.code_passes; ++pass) {
         if (pass == 1) {
             const LatencyResult coarse = measure_latency(recorder.so_far());
             if (!coarse.refusal) latency_s = coarse.median_s;
