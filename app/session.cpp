@@ -241,6 +241,7 @@ Session::Update Session::update() {
     if (!overlay_) start_overlay();
     Update update;
     update.frame = next_frame();
+    update.received_at = clock_.now();
     const auto began = std::chrono::steady_clock::now();
     update.pose = tracker_.update(update.frame);
     name_lost_pose(update);
@@ -249,6 +250,7 @@ Session::Update Session::update() {
     const auto drawing_began = std::chrono::steady_clock::now();
     update.overlay = overlay_->step(update.pose);
     update.times.draw_s = elapsed_s(drawing_began);
+    if (update.overlay.lit) update.swapped_at = clock_.now();
     update.camera_doubt = cameras_.doubt();
     if (!update.overlay.lit && !update.camera_doubt.empty()) update.overlay.reason += "; " + update.camera_doubt;
     const auto checking_began = std::chrono::steady_clock::now();

@@ -105,6 +105,8 @@ public:
         TrackedPose pose;
         OverlayStep overlay;
         UpdateTimes times;
+        Instant received_at{};  ///< when the frame was there, on the session's clock
+        Instant swapped_at{};   ///< when the picture was on the display; 0: dark
         /// The light of the picture before, as this frame shows it; empty where it was not looked at, or not lit for
         /// the whole exposure.
         std::optional<LightCheck> light;

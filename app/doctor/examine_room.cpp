@@ -32,12 +32,23 @@ CameraFigures figures_of(Camera& camera, const std::string& side, const RoomCame
     figures.received = now.received - before.received;
     figures.incomplete = now.incomplete - before.incomplete;
     figures.rate_hz = static_cast<double>(figures.received) / watched_s;
+    figures.notes = camera.notes();
+    return figures;
+}
+
+void note_clock(Camera& camera, const CameraCounts& before, CameraFigures& figures) {
+    const CameraCounts now = camera.frames().counts();
     figures.own_clock = now.own_clock;
     figures.clock_drift = now.clock_drift;
     figures.clock_sigma_ms = 1e3 * seconds(now.clock_sigma);
     figures.clock_jumps = now.clock_jumps - before.clock_jumps;
-    figures.notes = camera.notes();
-    return figures;
+}
+
+CameraModel size_of(const CameraFigures& camera) {
+    CameraModel model;
+    model.width = camera.width;
+    model.height = camera.height;
+    return model;
 }
 
 /// Of one camera's tiles alone.
@@ -74,14 +85,18 @@ public:
         attempt("the cameras", "cameras, opening", [&] { open_cameras(); });
         attempt("the projector", "projector, window", [&] { open_projector(); });
         if (monitor_) add(judge_monitor(*monitor_, rig_ ? rig_->projector : CameraModel{}));
-        if (!cameras_ || !projector_) return std::move(lines_);
-        attempt("the projector's delay", "projector, delay", [&] {
-            DelayFigures delay = flash(projector_->projector(), cameras_->pair(), clock_);
-            if (monitor_ && monitor_->measured.light_delay)
-                delay.told_ms = 1e3 * seconds(*monitor_->measured.light_delay);
-            add(judge_delay(delay));
-        });
-        attempt("a scan", "rig, scan", [&] { scan(); });
+        if (watched_ && watched_->pairs.problem.empty() && projector_) {
+            attempt("the projector's delay", "projector, delay", [&] {
+                DelayFigures delay = flash(projector_->projector(), cameras_->pair(), clock_);
+                // (Of what was taken while flashing, frames may have been left out.)
+                delay.frame_interval_ms = 1e3 / std::max(watched_->left.rate_hz, watched_->right.rate_hz);
+                if (monitor_ && monitor_->measured.light_delay)
+                    delay.told_ms = 1e3 * seconds(*monitor_->measured.light_delay);
+                add(judge_delay(delay));
+            });
+            attempt("a scan", "rig, scan", [&] { scan(); });
+        }
+        if (watched_) judge_cameras();
         return std::move(lines_);
     }
 
@@ -114,20 +129,25 @@ private:
 
     void open_cameras() {
         cameras_ = std::make_unique<RoomCameras>(room_, clock_);
-        const WatchedCameras seen = watch_cameras(cameras_->pair(), room_, clock_, settings_.watch);
+        left_before_ = cameras_->pair().left().frames().counts();
+        right_before_ = cameras_->pair().right().frames().counts();
+        watched_ = watch_cameras(cameras_->pair(), room_, clock_, settings_.watch);
+    }
+
+    /// Last, for their clocks are known the better the longer they run.
+    void judge_cameras() {
+        CameraFigures &left = watched_->left, &right = watched_->right;
+        note_clock(cameras_->pair().left(), left_before_, left);
+        note_clock(cameras_->pair().right(), right_before_, right);
         const RigCalibration& rig = rig_ ? *rig_ : unknown_;
-        const auto model = [&](const CameraModel& calibrated, const CameraFigures& is) {
-            CameraModel as_is = calibrated;
-            if (!rig_) as_is.width = is.width, as_is.height = is.height;
-            return as_is;
-        };
-        add(judge_camera(seen.left, rig.serials.left_camera, model(rig.left_camera, seen.left)));
-        add(judge_camera(seen.right, rig.serials.right_camera, model(rig.right_camera, seen.right)));
-        for (auto& [side, camera] : {std::pair<std::string, Camera&>{"left camera", cameras_->pair().left()},
-                                     std::pair<std::string, Camera&>{"right camera", cameras_->pair().right()}})
-            add(judge_network({side, camera.link().packet_bytes, camera.link().frame_bytes, receive_buffer_max()}));
-        add(judge_pairs(seen.pairs));
-        if (!seen.pairs.problem.empty()) cameras_.reset();  // nothing further can be seen
+        add(judge_camera(left, rig.serials.left_camera, rig_ ? rig.left_camera : size_of(left)));
+        add(judge_camera(right, rig.serials.right_camera, rig_ ? rig.right_camera : size_of(right)));
+        for (Camera* camera : {&cameras_->pair().left(), &cameras_->pair().right()}) {
+            const CameraLink link = camera->link();
+            add(judge_network({camera == &cameras_->pair().left() ? left.side : right.side, link.packet_bytes,
+                               link.frame_bytes, receive_buffer_max()}));
+        }
+        add(judge_pairs(watched_->pairs));
     }
 
     void open_projector() {
@@ -167,6 +187,8 @@ private:
     const RigCalibration unknown_;
     std::optional<MonitorFigures> monitor_;
     std::unique_ptr<RoomCameras> cameras_;
+    CameraCounts left_before_, right_before_;  ///< when they were opened and their clocks known
+    std::optional<WatchedCameras> watched_;
     std::unique_ptr<CommandProjector> projector_;
 };
 
@@ -199,8 +221,6 @@ WatchedCameras watch_cameras(PairedCameras& cameras, const RoomFile& room, const
     watched.right = figures_of(cameras.right(), "right camera", room.right, right, watched_s);
     watched.pairs.left = watched.left.received;
     watched.pairs.right = watched.right.received;
-    watched.pairs.left_hz = watched.left.rate_hz;
-    watched.pairs.right_hz = watched.right.rate_hz;
     if (!apart_ms.empty()) watched.pairs.apart_ms = median(apart_ms);
     const double faster_hz = std::max(watched.left.rate_hz, watched.right.rate_hz);
     watched.pairs.allowed_ms = room.together && faster_hz > 0
@@ -211,8 +231,8 @@ WatchedCameras watch_cameras(PairedCameras& cameras, const RoomFile& room, const
 
 DelayFigures flash(Projector& projector, StereoCamera& cameras, const Clock& clock) {
     RecordSettings settings;
-    settings.frames_a_flash = 2;
     settings.code_passes = 1;
+    settings.code_bits = 36;
     const LightBench bench{
         projector, cameras, clock, [&](Instant at) { std::this_thread::sleep_for(at - clock.now()); }, {}, {}};
     const LightRecording recording = record_latency(bench, settings);

@@ -129,15 +129,17 @@ std::vector<DoctorLine> judge_network(const NetworkFigures& network) {
 }
 
 std::vector<DoctorLine> judge_pairs(const PairFigures& pairs) {
-    constexpr double kMost = 0.9, kHalf = 0.5, kSameRate = 0.03;
+    constexpr double kMost = 0.9, kHalf = 0.5, kSameRate = 0.03, kEnds = 3;
     const std::string subject = "cameras, pairing";
     if (!pairs.problem.empty()) return {line(subject, Health::stop, pairs.problem, pairs.remedy)};
     const double paired = share(pairs.pairs, std::min(pairs.left, pairs.right));
     const std::string said = fmt::format("{:.0f} % of the frames have a partner, {:.2f} ms apart ({:.2f} allowed)",
                                          100 * paired, pairs.apart_ms, pairs.allowed_ms);
     Health health = paired < kHalf ? Health::stop : paired < kMost ? Health::look : Health::good;
-    const double slower = std::min(pairs.left_hz, pairs.right_hz), faster = std::max(pairs.left_hz, pairs.right_hz);
-    if (!(slower > 0) || faster / slower - 1 > kSameRate) health = std::max(health, Health::look);
+    // Of a short while the first and the last frame of either may be missing.
+    const std::size_t fewer = std::min(pairs.left, pairs.right), more = std::max(pairs.left, pairs.right);
+    if (static_cast<double>(more - fewer) > kEnds + kSameRate * static_cast<double>(fewer))
+        health = std::max(health, Health::look);
     return {line(subject, health, said,
                  "Let one camera trigger the other, or both by one line, with the same exposure and frame rate, and "
                  "say \"together\" in room.json.")};

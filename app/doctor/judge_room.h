@@ -39,7 +39,7 @@ struct CameraFigures {
     double rate_hz = 0;              ///< whole frames
     std::size_t received = 0, incomplete = 0;
     bool own_clock = false;  ///< it stamps its frames
-    double clock_drift = 0;  ///< seconds a second against this machine's
+    double clock_drift = 0;  ///< seconds a second against this machine's; positive: it runs slow
     double clock_sigma_ms = 0;
     std::size_t clock_jumps = 0;
     std::vector<std::string> notes;  ///< what it does by itself
@@ -64,8 +64,7 @@ struct PairFigures {
     std::size_t left = 0, right = 0, pairs = 0;  ///< whole frames, and pairs of them
     double apart_ms = 0;                         ///< right less left, median
     double allowed_ms = 0;                       ///< apart
-    double left_hz = 0, right_hz = 0;
-    std::string problem, remedy;  ///< why there are no pairs; empty where there are
+    std::string problem, remedy;                 ///< why there are no pairs; empty where there are
 };
 
 std::vector<DoctorLine> judge_pairs(const PairFigures& pairs);

@@ -85,9 +85,13 @@ bool DeviceClock::add(Instant by_device, Instant arrived) {
     if (known()) {
         off = arrived - on_session_clock(by_device);
         const bool backwards = by_device < frames_.back().by_device;
+        const bool learning = frames_.size() < kFewFrames && !backwards;
         if (was_set(by_device, off) || backwards) {
             begin_anew(off);
-            steady = false;
+            if (learning)  // the first frames came late, that is all
+                --jumps_;
+            else
+                steady = false;
         } else if (off > settings_.largest_jump) {
             last_off_ = off;
             return true;  // it tells nothing of the clock

@@ -143,7 +143,8 @@ LightRecording record_cycle(const LightBench& bench, const RecordSettings& setti
 
 LightRecording record_latency(const LightBench& bench, const RecordSettings& settings) {
     constexpr int kRests = 3, kRestFrames = 4;  // an odd number: one that the projector leaves out does no harm
-    const std::vector<bool> code = flash_code();
+    std::vector<bool> code = flash_code();
+    code.resize(std::min(code.size(), static_cast<std::size_t>(std::max(settings.code_bits, 0))));
     std::mt19937 random(settings.seed);
     std::uniform_real_distribution<double> evenly;
     Recorder recorder(bench, settings, settings.code_passes * static_cast<int>(code.size()) + 2 * kRests);

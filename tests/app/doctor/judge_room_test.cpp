@@ -126,14 +126,16 @@ TEST(Doctor, ASmallReceiveBufferOrPacketIsLookedAt) {
 }
 
 TEST(Doctor, CamerasThatDoNotExposeTogetherStop) {
-    PairFigures pairs{75, 75, 75, 0.4, 10, 25, 25, {}, {}};
+    PairFigures pairs{75, 75, 75, 0.4, 10, {}, {}};
     EXPECT_EQ(worst_of(judge_pairs(pairs)), Health::good);
     pairs.pairs = 60;
     EXPECT_EQ(worst_of(judge_pairs(pairs)), Health::look);
     pairs.pairs = 20;
     EXPECT_EQ(worst_of(judge_pairs(pairs)), Health::stop);
-    pairs = {75, 150, 75, 0.4, 10, 25, 50, {}, {}};
+    pairs = {75, 150, 75, 0.4, 10, {}, {}};
     EXPECT_EQ(worst_of(judge_pairs(pairs)), Health::look) << "one runs at twice the rate of the other";
+    pairs = {48, 51, 47, 0.4, 10, {}, {}};
+    EXPECT_EQ(worst_of(judge_pairs(pairs)), Health::good) << "the ends of two seconds";
     pairs.problem = "Cameras: the two do not expose together";
     pairs.remedy = "Let one camera trigger the other.";
     EXPECT_EQ(worst_of(judge_pairs(pairs)), Health::stop);

@@ -88,6 +88,16 @@ TEST(DeviceClock, AClockThatIsSetStumblesAndIsToldAtOnce) {
     }
 }
 
+TEST(DeviceClock, FirstFramesThatComeLateAreNoJump) {
+    Source source;
+    DeviceClock clock;
+    Instant t = seconds(5);
+    for (int i = 0; i < 3; ++i, t += milliseconds(40)) clock.add(source.by_device(t), t + milliseconds(90));
+    EXPECT_TRUE(clock.add(source.by_device(t), t + milliseconds(8)));
+    EXPECT_EQ(clock.jumps(), 0u);
+    EXPECT_LT(std::abs(planlight::seconds(clock.on_session_clock(source.by_device(t)) - milliseconds(8) - t)), 1e-3);
+}
+
 TEST(DeviceClock, ACameraThatIsBehindIsNoClockThatWasSet) {
     Source source;
     DeviceClock clock;
