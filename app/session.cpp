@@ -9,6 +9,7 @@
 #include "planning_io/types/error.h"
 #include "projection/skin_now.h"
 #include "registration/scan/decode/merge_exposures.h"
+#include "registration/tracking/exchanged_cameras.h"
 #include "registration/tracking/markers_in_scan.h"
 
 namespace planlight {
@@ -239,16 +240,19 @@ Session::Update Session::update() {
     if (!registration_) throw CheckFailedError("the patient has not been found", "Scan and register first.");
     if (!overlay_) start_overlay();
     Update update;
-    // The newest exposure after the last one that was used: none is left out because a picture was being drawn.
-    update.frame = cameras_.newest(seen_until_, settings_.patience);
-    seen_until_ = update.frame.at + update.frame.exposure / 2;
+    update.frame = next_frame();
+    update.received_at = clock_.now();
     const auto began = std::chrono::steady_clock::now();
     update.pose = tracker_.update(update.frame);
+    name_lost_pose(update);
     update.times.track_s = elapsed_s(began);
     if (settings_.while_computing) settings_.while_computing();
     const auto drawing_began = std::chrono::steady_clock::now();
     update.overlay = overlay_->step(update.pose);
     update.times.draw_s = elapsed_s(drawing_began);
+    if (update.overlay.lit) update.swapped_at = clock_.now();
+    update.camera_doubt = cameras_.doubt();
+    if (!update.overlay.lit && !update.camera_doubt.empty()) update.overlay.reason += "; " + update.camera_doubt;
     const auto checking_began = std::chrono::steady_clock::now();
     update.light = look_at_light(update);
     watch_light(update);
@@ -256,6 +260,30 @@ Session::Update Session::update() {
     note_shown(update.overlay);
     correct_delay(update.causes);
     return update;
+}
+
+/// The newest exposure after the last one that was used: none is left out because a picture was being drawn.
+StereoFrame Session::next_frame() {
+    const Instant patience = std::clamp(3 * frame_interval_, Instant(settings_.follow_patience),
+                                        std::max(Instant(settings_.patience), Instant(settings_.follow_patience)));
+    StereoFrame frame = cameras_.newest(seen_until_, std::chrono::duration_cast<std::chrono::milliseconds>(patience));
+    const Instant since = frame.at - seen_at_;
+    if (seen_at_ > Instant{} && since > Instant{})
+        frame_interval_ = frame_interval_ == Instant{} ? since : std::min(since, frame_interval_ + frame_interval_ / 8);
+    seen_at_ = frame.at;
+    seen_until_ = frame.at + frame.exposure / 2;
+    return frame;
+}
+
+/// Without a pose now and then: are the cameras exchanged?
+void Session::name_lost_pose(Update& update) {
+    constexpr int kEvery = 10;
+    if (update.pose.rig_from_patient)
+        lost_poses_ = 0;
+    else if (lost_poses_++ % kEvery == 0)
+        exchanged_ = cameras_seem_exchanged(tracker_, update.frame);
+    if (lost_poses_ > 0 && exchanged_)
+        update.pose.reason = "left and right camera are exchanged: connect them as they were calibrated";
 }
 
 void Session::note_shown(const OverlayStep& overlay) {

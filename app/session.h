@@ -34,6 +34,9 @@ struct SessionSettings {
     double max_motion_in_skin_check_mm = 0.3;  ///< of any marker during a check of the skin; above: no answer
     int min_reference_markers = 5;             ///< found in both pictures at the scan
     std::chrono::milliseconds patience{1000};
+    /// While following: without a pair of frames for so long, or for three frame intervals where that is more, the
+    /// camera is named.
+    std::chrono::milliseconds follow_patience{200};
     /// Called between seeing and showing, so that a simulated clock can be told how long the computing took. May be
     /// empty.
     std::function<void()> while_computing;
@@ -102,9 +105,12 @@ public:
         TrackedPose pose;
         OverlayStep overlay;
         UpdateTimes times;
+        Instant received_at{};  ///< when the frame was there, on the session's clock
+        Instant swapped_at{};   ///< when the picture was on the display; 0: dark
         /// The light of the picture before, as this frame shows it; empty where it was not looked at, or not lit for
         /// the whole exposure.
         std::optional<LightCheck> light;
+        std::string camera_doubt;        ///< what is wrong with the cameras though frames come; empty: nothing
         std::vector<LightCause> causes;  ///< of light that is not where it belongs, likeliest first; empty: none
     };
     Update update();
@@ -144,6 +150,8 @@ public:
 
 private:
     void use_rig(const RigCalibration& rig);
+    StereoFrame next_frame();
+    void name_lost_pose(Update& update);
     std::size_t reference_markers(const ScanCapture& capture);
     void take_reference(const ScanCapture& capture);
     void take_rig(const ScanCapture& capture);
@@ -179,7 +187,10 @@ private:
     std::optional<PictureJumps> jumps_;
     std::vector<ShownPicture> shown_;
     Instant found_delay_{};
-    Instant seen_until_{};  ///< end of the last exposure that was used
+    Instant seen_until_{};                  ///< end of the last exposure that was used
+    Instant seen_at_{}, frame_interval_{};  ///< its middle, and between two; 0: not known
+    int lost_poses_ = 0;                    ///< in a row
+    bool exchanged_ = false;                ///< the cameras, when that was last looked at
     std::optional<std::vector<Eigen::Vector3d>> landmarks_;
     PlanDrawing landmark_drawing_;
     std::optional<std::size_t> lit_landmark_;

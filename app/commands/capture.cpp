@@ -8,6 +8,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/console.h"
+#include "app/doctor/exposure.h"
 #include "app/live/room_cameras.h"
 #include "planning_io/case/capture_folder.h"
 #include "planning_io/case/room_file.h"
@@ -30,31 +31,6 @@ StripeSettings stripes_of(const std::string& set, int width, int height) {
     stripes.width = width;
     stripes.height = height;
     return stripes;
-}
-
-/// How the light suits a camera, by its white and its black picture.
-struct Exposure {
-    double saturated_share = 0, lit_share = 0, brightest_lit_grey = 0;
-};
-
-Exposure exposure_of(const GrayImage& white, const GrayImage& black) {
-    constexpr int kLit_grey = 10, kSaturated = 254;
-    std::size_t lit = 0, saturated = 0;
-    std::vector<int> greys;
-    for (std::size_t i = 0; i < white.pixels.size(); ++i) {
-        if (white.pixels[i] - black.pixels[i] < kLit_grey) continue;
-        ++lit;
-        saturated += white.pixels[i] >= kSaturated;
-        greys.push_back(white.pixels[i]);
-    }
-    Exposure exposure;
-    if (lit == 0) return exposure;
-    const auto bright = greys.begin() + static_cast<std::ptrdiff_t>(greys.size() * 95 / 100);
-    std::nth_element(greys.begin(), bright, greys.end());
-    exposure.brightest_lit_grey = *bright;
-    exposure.lit_share = static_cast<double>(lit) / static_cast<double>(white.pixels.size());
-    exposure.saturated_share = static_cast<double>(saturated) / static_cast<double>(lit);
-    return exposure;
 }
 
 void warn_of(const std::string& camera, const Exposure& exposure) {

@@ -12,7 +12,10 @@
 #include "app/commands/device_check.h"
 #include "app/commands/rig_words.h"
 #include "app/console.h"
+#include "app/live/real_room.h"
+#include "app/live/room_cameras.h"
 #include "planning_io/case/rig_file.h"
+#include "planning_io/case/room_file.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "registration/calibration/check_drift.h"
@@ -22,7 +25,8 @@ namespace {
 
 struct CheckOptions {
     Path capture, rig, log;  ///< log empty: beside the rig file
-    bool json = false;
+    Path room;               ///< of a live check: the capture is taken here; empty: `capture` is read
+    bool live = false, json = false;
 };
 
 using Json = nlohmann::ordered_json;
@@ -69,10 +73,35 @@ std::string said_of_projector(const DriftCheck& check) {
                        check.light_off_mm, check.moved_mm);
 }
 
-int run_check(const CheckOptions& options) {
-    const RigCalibration rig = read_rig(options.rig);
-    const ScanCapture capture = scan_capture_from(read_capture_of(rig, options.capture), options.capture);
+ScanCapture recorded_capture(const CheckOptions& options, const RigCalibration& rig) {
+    ScanCapture capture = scan_capture_from(read_capture_of(rig, options.capture), options.capture);
     check_sizes(capture, rig, options.capture);
+    return capture;
+}
+
+/// Taken now, by the room's own devices, which must be those of the rig file.
+ScanCapture live_capture(const RoomFile& room, const RigCalibration& rig) {
+    CommandProjector projector(room.monitor, room.projector_file);
+    RealRoom real(room, rig, projector.projector());
+    for (const std::string& note : real.notes()) warn(note + ".");
+    StripeSettings stripes;
+    stripes.width = projector.projector().width();
+    stripes.height = projector.projector().height();
+    ProgressBar bar;
+    return capture_scan(projector.projector(), real.cameras(), real.clock(), stripes,
+                        [&](int done, int of) { bar.show("capture", static_cast<double>(done) / of); });
+}
+
+int run_check(CheckOptions options) {
+    if (options.live != options.capture.empty() || options.live != !options.room.empty())
+        throw InputError({}, "there is nothing to check",
+                         "Give a capture folder with --rig rig.json, or --live with --room room.json.");
+    std::optional<RoomFile> room;
+    if (options.live) room = read_room(options.room);
+    if (options.rig.empty() && room) options.rig = room->rig;
+    if (options.rig.empty())
+        throw InputError({}, "no rig file was named", "Give --rig rig.json, or --room room.json, which names one.");
+    const RigCalibration rig = read_rig(options.rig);
     Path file = options.log;
     if (file.empty()) {
         file = options.rig;
@@ -80,6 +109,7 @@ int run_check(const CheckOptions& options) {
         file += "-checks.json";
     }
     Json log = read_log(file);
+    const ScanCapture capture = room ? live_capture(*room, rig) : recorded_capture(options, rig);
     const ScanResult scan = scan_from_capture(capture, rig);
     const DriftCheck check = check_drift(scan, rig);
     const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
@@ -125,9 +155,13 @@ Run add_check(CLI::App& app) {
     const auto options = std::make_shared<CheckOptions>();
     CheckOptions& o = *options;
     auto* sub = add_command(app, "check", "One scan of anything against rig.json: has the rig moved? (exit 6 if so)",
-                            "check room/capture --rig room/rig.json");
-    sub->add_option("capture", o.capture, "Capture folder of a scan: a board, a phantom, the patient")->required();
-    sub->add_option("--rig", o.rig, "rig.json")->required();
+                            "check room/capture --rig room/rig.json\n"
+                            "  planlight check --live --room room.json");
+    auto* capture = sub->add_option("capture", o.capture, "Capture folder of a scan: a board, a phantom, the patient");
+    sub->add_option("--rig", o.rig, "rig.json (default of --live: that of the room)");
+    auto* live = sub->add_flag("--live", o.live, "Take the scan now, of whatever lies in the light of --room")
+                     ->excludes(capture);
+    sub->add_option("--room", o.room, "room.json of the real devices (see `devices`)")->needs(live);
     sub->add_option("--log", o.log, "Where the checks are kept for the trend (default: beside rig.json)");
     json_flag(sub, o.json);
     return [options] { return run_check(*options); };

@@ -14,6 +14,7 @@ using Run = std::function<int()>;
 
 Run add_demo(CLI::App& app);
 Run add_devices(CLI::App& app);
+Run add_doctor(CLI::App& app);
 Run add_prepare(CLI::App& app);
 Run add_plan(CLI::App& app);
 Run add_patterns(CLI::App& app);

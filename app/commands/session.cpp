@@ -25,7 +25,7 @@ struct SessionOptions {
     unsigned seed = 1;
     double speed_mm_s = 20;
     std::string fault;
-    bool autoplay = false;
+    bool autoplay = false, json = false;
     double end_after_s = 0;  ///< wall time; 0 = until the window is closed
     Path screenshots;
     double light_delay_ms = -1;  ///< of the projector window; below 0: the default, or what `projector_file` says
@@ -39,6 +39,7 @@ LiveOptions live_options(const SessionOptions& options, const SiteSettings& site
     if (!options.projector_file.empty()) live.projector = read_projector_file(options.projector_file);
     if (options.light_delay_ms >= 0) live.projector.light_delay = from_seconds(options.light_delay_ms / 1e3);
     live.autoplay = options.autoplay;
+    live.json = options.json;
     live.end_after_s = options.end_after_s;
     live.screenshots = options.screenshots;
     live.keep_matches_in = options.keep.empty() ? options.case_folder / kRegistrationsFolder : options.keep;
@@ -74,7 +75,7 @@ int run_in_room(SessionOptions options, const Case& the_case) {
 
 int run_session(const SessionOptions& options) {
     const Case the_case = read_case(options.case_folder);
-    fmt::print("{}\n", title_of(the_case));
+    if (!options.json) fmt::print("{}\n", title_of(the_case));
     return options.room.empty() ? run_in_simulated_room(options, the_case) : run_in_room(options, the_case);
 }
 
@@ -117,6 +118,7 @@ Run add_session(CLI::App& app) {
                   "Scan, register and track by itself; that the light is right is said in the simulated room only");
     sub->add_option("--end-after-s", o.end_after_s, "Close after this many seconds of tracking");
     sub->add_option("--screenshots", o.screenshots, "Folder for screenshots of every step");
+    json_flag(sub, o.json);
     return [options] { return run_session(*options); };
 }
 

@@ -142,6 +142,11 @@ Run add_simulate(CLI::App& app) {
     sub->add_option("--addresses", o.addresses, "Of the served cameras, one each, of this machine")
         ->delimiter(',')
         ->capture_default_str();
+    sub->add_option("--lose-packets", o.lose_packets,
+                    "Share of its packets that the left served camera loses, and never sends again")
+        ->check(CLI::Range(0.0, 1.0));
+    sub->add_option("--right-behind", o.right_behind, "The right served camera sends each picture so many frames late")
+        ->check(CLI::Range(0, 10));
     sub->add_option("--out", o.out, "Folder to write: rig.json, capture/, frames/, truth.json")->required();
     json_flag(sub, o.json);
     return [options, sub] {

@@ -56,6 +56,8 @@ int run_simulate_served(const SimulateOptions& options, simulation::SimulatedRig
     if (options.speed_mm_s > 0) rig.set_motion({options.speed_mm_s, rig.clock().now()});
     simulation::ServedRoom room(
         rig, [&] { return monitor.look(); }, settings);
+    room.left().lose_packets(options.lose_packets);
+    room.hold_right_back(options.right_behind);
     write_files(options, rig, settings);
     fmt::print(
         "{}: room.json, rig.json, truth.json. Two cameras answer on {} and {}; the projector is {}. Ctrl-C ends it.\n",

@@ -18,13 +18,15 @@ public:
     /// What is left of the sample: quantiles by the same rule of rank as `distribution_of`.
     Distribution distribution() const;
 
+    /// The value below which that share of the sample lies, to half a per cent; 0 when it is empty.
+    double quantile(double share) const;
+
     /// "BIN:COUNT BIN:COUNT ...", and the worst value behind "<=". Throws std::invalid_argument for a text that is
     /// none.
     std::string text() const;
     static LogHistogram from_text(const std::string& text);
 
 private:
-    double quantile(double share) const;
     std::map<int, std::size_t> bins_;
     std::size_t count_ = 0;
     double worst_ = 0;

@@ -118,6 +118,11 @@ LiveSession::Light LiveSession::light() const {
     return light_;
 }
 
+UpdateLatency LiveSession::latency() const {
+    const std::lock_guard lock(mutex_);
+    return latency_;
+}
+
 bool LiveSession::projecting() const {
     return projecting_;
 }

@@ -12,6 +12,7 @@
 
 #include "app/live/room.h"
 #include "app/session.h"
+#include "app/update_latency.h"
 #include "app/windows/operator_model.h"
 #include "app/windows/operator_window.h"
 #include "projection/light_gate.h"
@@ -43,6 +44,9 @@ public:
     };
     Light light() const;
 
+    /// How late the light of this session was so far.
+    UpdateLatency latency() const;
+
     /// True once the patient is followed and light is on the skin.
     bool projecting() const;
     /// Throws what ended the thread, if anything did.
@@ -72,6 +76,7 @@ private:
     void follow(Session& session, Room& room);
     void show_update(const Session& session, const Room& room, const Session::Update& update,
                      const LightGate::Ruling& ruling);
+    void note_latency(const Session::Update& update, OperatorModel& m);
     std::optional<double> lit_per_s(const Session::Update& update);
     void play_fault(const LightGate::Ruling& ruling, Room& room);
     void stop_light(Session& session, const LightGate::Ruling& ruling);
@@ -96,6 +101,8 @@ private:
     std::vector<PointPair> landmarks_;  ///< of the last `post_find_patient`
     OperatorModel model_;
     Light light_;
+    UpdateLatency latency_;
+    std::string latency_words_;  ///< as they were said last
     std::exception_ptr fault_;
     std::uint64_t darks_ = 0;           ///< DARK presses so far
     std::uint64_t darks_answered_ = 0;  ///< of these, how many the thread has come to; until then the banner says DARK

@@ -222,6 +222,20 @@ std::optional<double> LiveSession::lit_per_s(const Session::Update& update) {
     return static_cast<double>(lit_at_.size() - 1) / seconds(lit_at_.back() - lit_at_.front());
 }
 
+/// Under the lock of the model: every update is counted, and said now and then as the last of the evidence.
+void LiveSession::note_latency(const Session::Update& update, OperatorModel& m) {
+    constexpr std::size_t kEvery = 25;
+    const std::string before = latency_words_;
+    latency_.add(update);
+    if (latency_.updates % kEvery != 0) return;
+    latency_words_ = latency_.sentence();
+    if (latency_words_.empty()) return;
+    if (!before.empty() && !m.evidence.empty() && m.evidence.back() == before)
+        m.evidence.back() = latency_words_;
+    else
+        m.evidence.push_back(latency_words_);
+}
+
 void LiveSession::show_update(const Session& session, const Room& room, const Session::Update& update,
                               const LightGate::Ruling& ruling) {
     const auto light = room.true_light(session.lit_drawing(), update.overlay);
@@ -238,6 +252,7 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
     figures.overlay_error_mm = ruling.off_mm;
     set_steps(gate_.verified() ? 5 : 4, gate_.verified() ? StepState::active : StepState::attention);
     change_model([&](OperatorModel& m) {
+        note_latency(update, m);
         m.confirm = update.overlay.lit && ruling.ask_to_verify;
         m.confirm_words = landmark_ >= 0 ? fmt::format("Light {} is right", landmark_ + 1) : "Show landmarks";
         m.check_skin = true;
@@ -256,6 +271,7 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
     });
     std::vector<std::string> details = sentences(update.overlay.counts.partly_lit, session.lit_drawing());
     details.insert(details.end(), ruling.details.begin(), ruling.details.end());
+    if (!update.camera_doubt.empty()) details.push_back(update.camera_doubt + ".");
     if (update.overlay.lit)
         set_status(ruling.trust == LightTrust::aligned ? StatusKind::aligned : StatusKind::check, ruling.headline,
                    details);

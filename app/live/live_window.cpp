@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdlib>
+#include <iostream>
 #include <memory>
 
 #include "app/case_model.h"
+#include "app/console.h"
 #include "app/live/light_keeper.h"
 #include "app/live/live_session.h"
 #include "app/live/projector_keeper.h"
@@ -157,6 +159,17 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
     return 0;
 }
 
+/// How late the light was, for whoever asked, and for the log.
+int told_at_the_end(int code, const LiveSession& session, const LiveOptions& options) {
+    const UpdateLatency latency = session.latency();
+    if (options.json)
+        std::cout << latency.json() << std::flush;
+    else if (latency.lit > 0)
+        fmt::print("{}.\n", latency.sentence());
+    log_line(latency.sentence());
+    return code;
+}
+
 OperatorWindowSettings window_settings(const LiveOptions& options) {
     OperatorWindowSettings settings;
     if (!options.operator_monitor.empty()) settings.monitor = options.operator_monitor;
@@ -185,7 +198,7 @@ int run_live_simulated(MakeRoom make_room, const Case& the_case, const CaseDrawi
     LiveSession session(std::move(make_room), the_case, drawing, options.keep_matches_in);
     std::unique_ptr<LightKeeper> light;  // dark and gone before the session is
     if (projector) light = std::make_unique<LightKeeper>(*projector, session);
-    return run_windows(window, session, projector.get(), options, Autoplay(true));
+    return told_at_the_end(run_windows(window, session, projector.get(), options, Autoplay(true)), session, options);
 }
 
 int run_live(const MakeRoomWith& make_room, const Case& the_case, const CaseDrawing& drawing,
@@ -194,7 +207,7 @@ int run_live(const MakeRoomWith& make_room, const Case& the_case, const CaseDraw
     check_monitor(options.projector_monitor, options.projector);
     ProjectorKeeper projector(options.projector_monitor, keeper_settings(options));
     LiveSession session([&] { return make_room(projector); }, the_case, drawing, options.keep_matches_in);
-    return run_windows(window, session, &projector, options, Autoplay(false));
+    return told_at_the_end(run_windows(window, session, &projector, options, Autoplay(false)), session, options);
 }
 
 void show_model(const OperatorModel& model, FitView view) {

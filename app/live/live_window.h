@@ -22,6 +22,7 @@ struct LiveOptions {
     bool autoplay = false;                  ///< scan, register and track without a person
     double end_after_s = 0;                 ///< of projecting, wall time; 0 = until the window is closed
     std::filesystem::path keep_matches_in;  ///< folder for every match and its scan; empty = none
+    bool json = false;                      ///< at the end print how late the light was, as JSON
     std::filesystem::path screenshots;      ///< folder for a picture of the operator window a step; empty = none
 };
 

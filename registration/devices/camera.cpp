@@ -1,5 +1,6 @@
 #include "registration/devices/camera.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace planlight {
@@ -16,6 +17,7 @@ void FrameQueue::push(CameraFrame frame) {
     {
         const std::lock_guard lock(mutex_);
         ++counts_.received;
+        note_whole(true);
         if (frames_.size() == kMost) {
             frames_.pop_front();
             ++counts_.dropped;
@@ -28,6 +30,23 @@ void FrameQueue::push(CameraFrame frame) {
 void FrameQueue::count_incomplete() {
     const std::lock_guard lock(mutex_);
     ++counts_.incomplete;
+    note_whole(false);
+}
+
+void FrameQueue::note_whole(bool whole) {
+    constexpr std::size_t kLately = 25;
+    lately_whole_.push_back(whole);
+    if (lately_whole_.size() > kLately) lately_whole_.pop_front();
+    counts_.lately = lately_whole_.size();
+    counts_.lately_incomplete = static_cast<std::size_t>(std::count(lately_whole_.begin(), lately_whole_.end(), false));
+}
+
+void FrameQueue::note_clock(double drift, Instant sigma, Instant behind) {
+    const std::lock_guard lock(mutex_);
+    counts_.own_clock = true;
+    counts_.clock_drift = drift;
+    counts_.clock_sigma = sigma;
+    counts_.behind = behind;
 }
 
 void FrameQueue::count_jump() {

@@ -31,6 +31,11 @@ struct CameraFault {
 struct CameraCounts {
     std::size_t received = 0, incomplete = 0, dropped = 0;  ///< dropped: nobody took them before newer ones came
     std::size_t clock_jumps = 0, lost_connections = 0;
+    std::size_t lately = 0, lately_incomplete = 0;  ///< of the last 25 frames, whole or not
+    bool own_clock = false;                         ///< frames have the camera's own times
+    double clock_drift = 0;                         ///< seconds a second; positive: it runs slow
+    Instant clock_sigma{};                          ///< one standard deviation of a frame's time, now
+    Instant behind{};  ///< by so much the last frames came later than their times say they should; 0: in time
 };
 
 /// Wakes whoever waits for the frames of several cameras.
@@ -51,6 +56,8 @@ public:
     void push(CameraFrame frame);
     void count_incomplete();
     void count_jump();
+    /// Of the camera's own clock: drift, uncertainty, and how much later than usual the last frames came (0: in time).
+    void note_clock(double drift, Instant sigma, Instant behind);
     /// From now on `fault` says why nothing comes; frames that wait are thrown away.
     void fail(CameraFault fault);
     void recovered();
@@ -65,6 +72,14 @@ private:
     std::deque<CameraFrame> frames_;
     std::optional<CameraFault> fault_;
     CameraCounts counts_;
+    std::deque<bool> lately_whole_;
+    void note_whole(bool whole);
+};
+
+/// How a camera is connected. On no network: 0 bytes a packet.
+struct CameraLink {
+    int packet_bytes = 0;
+    std::size_t frame_bytes = 0;
 };
 
 /// A camera that runs by itself from its making to its end.
@@ -77,6 +92,7 @@ public:
     virtual int height() const = 0;
     /// What it does by itself and could not be told not to, a sentence each.
     virtual std::vector<std::string> notes() const { return {}; }
+    virtual CameraLink link() const { return {}; }
     virtual FrameQueue& frames() = 0;
 };
 

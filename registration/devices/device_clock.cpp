@@ -21,31 +21,121 @@ Instant scaled(Instant t, double factor) {
 
 DeviceClock::DeviceClock(const DeviceClockSettings& settings) : settings_(settings) {}
 
+Instant DeviceClock::span() const {
+    return known() ? frames_.back().by_device - frames_.front().by_device : Instant{};
+}
+
+/// Whether this frame's time lies a whole number of usual steps after the last one's.
+bool DeviceClock::steps_evenly(Instant by_device) {
+    const Instant step = by_device - last_by_device_;
+    const bool first = last_by_device_ < Instant{};
+    last_by_device_ = by_device;
+    if (first || step <= Instant{}) return false;
+    if (usual_step_ == Instant{}) {
+        usual_step_ = step;
+        return false;
+    }
+    const auto steps = std::max<Instant::rep>(1, (step + usual_step_ / 2) / usual_step_);
+    const Instant off = step - steps * usual_step_;
+    const bool even = std::max(off, -off) < usual_step_ / 8;
+    if (even && steps == 1) usual_step_ += off / 8;
+    if (!even && even_steps_ == 0) usual_step_ = std::min(step, usual_step_ + usual_step_ / 8);
+    return even;
+}
+
+/// Whether the clock was set, by a frame that came `off` later than it should.
+bool DeviceClock::was_set(Instant by_device, Instant off) {
+    constexpr int kEven = 20;  // in a row: its times can be judged by their steps
+    const bool late = off > settings_.largest_jump, judged = even_steps_ >= kEven;
+    const bool even = steps_evenly(by_device);
+    even_steps_ = even ? even_steps_ + 1 : 0;
+    if (off < -settings_.largest_jump) return true;  // earlier than any frame can be
+    if (!late) {
+        late_since_ = Instant(-1);
+        late_in_a_row_ = 0;
+        behind_ = false;
+        return false;
+    }
+    const bool first = late_since_ < Instant{};
+    if (first) {
+        late_since_ = by_device;
+        least_late_ = off;
+        behind_ = judged && even && off - last_off_ > settings_.largest_jump / 2;
+    }
+    ++late_in_a_row_;
+    least_late_ = std::min(least_late_, off);
+    if (first && judged && !even) return true;
+    return !behind_ && by_device - late_since_ > settings_.late_for;
+}
+
+void DeviceClock::begin_anew(Instant off) {
+    frames_.clear();
+    late_since_ = last_by_device_ = Instant(-1);
+    late_in_a_row_ = even_steps_ = 0;
+    usual_step_ = {};
+    behind_ = false;
+    drift_ = runs_wrong_ = 0;
+    ++jumps_;
+    last_jump_ = -off;
+}
+
 bool DeviceClock::add(Instant by_device, Instant arrived) {
     bool steady = true;
+    Instant off{};
     if (known()) {
-        const Instant off = arrived - on_session_clock(by_device);
-        const bool backwards = by_device<frames_.back().by_device, late = off> settings_.largest_jump;
-        if (!late)
-            late_since_ = Instant(-1);
-        else if (late_since_ < Instant{})
-            late_since_ = by_device;
-        // Earlier than any frame can be: at once. Later: only when it stays so.
-        const bool stays_late = late && by_device - late_since_ > settings_.late_for;
-        if (backwards || off < -settings_.largest_jump || stays_late) {
-            frames_.clear();
-            late_since_ = Instant(-1);
-            drift_ = 0;
-            ++jumps_;
-            steady = false;
-        } else if (late) {
+        off = arrived - on_session_clock(by_device);
+        const bool backwards = by_device < frames_.back().by_device;
+        const bool learning = frames_.size() < kFewFrames && !backwards;
+        if (was_set(by_device, off) || backwards) {
+            begin_anew(off);
+            if (learning)  // the first frames came late, that is all
+                --jumps_;
+            else
+                steady = false;
+        } else if (off > settings_.largest_jump) {
+            last_off_ = off;
             return true;  // it tells nothing of the clock
         }
     }
+    last_off_ = off;
     frames_.push_back({by_device, arrived - by_device});
     while (by_device - frames_.front().by_device > settings_.window) frames_.pop_front();
     fit();
+    judge_run();
     return steady;
+}
+
+/// The trend of the quickest frames of the last seconds: a straight line that is surely steeper than any clock runs.
+void DeviceClock::judge_run() {
+    constexpr double kSure = 6, kBeyond = 4;  // standard deviations; times the largest drift
+    const Instant over = settings_.drift_known_after, first = frames_.back().by_device - over;
+    runs_wrong_ = 0;
+    if (span() < over) return;
+    std::vector<double> x, y;
+    Instant part_ends{};
+    for (const Frame& frame : frames_) {
+        if (frame.by_device < first) continue;
+        if (x.empty() || frame.by_device >= part_ends) {
+            part_ends = frame.by_device + over / static_cast<Instant::rep>(kParts);
+            x.push_back(seconds(frame.by_device - first));
+            y.push_back(seconds(frame.late));
+        } else if (seconds(frame.late) < y.back()) {
+            x.back() = seconds(frame.by_device - first);
+            y.back() = seconds(frame.late);
+        }
+    }
+    if (x.size() < kParts / 2 + 1) return;
+    const auto n = static_cast<double>(x.size());
+    double mean_x = 0, mean_y = 0, xx = 0, xy = 0, rest = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) mean_x += x[i] / n, mean_y += y[i] / n;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+        xx += (x[i] - mean_x) * (x[i] - mean_x);
+        xy += (x[i] - mean_x) * (y[i] - mean_y);
+    }
+    const double slope = xy / xx;
+    for (std::size_t i = 0; i < x.size(); ++i) rest += std::pow(y[i] - mean_y - slope * (x[i] - mean_x), 2);
+    const double sigma = std::sqrt(rest / (n - 2) / xx);
+    if (std::abs(slope) - kSure * sigma > kBeyond * settings_.largest_drift) runs_wrong_ = -slope;
 }
 
 void DeviceClock::fit() {

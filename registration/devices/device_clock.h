@@ -15,6 +15,8 @@ struct DeviceClockSettings {
     Instant largest_jump = std::chrono::milliseconds(20);  ///< of arrivals off the fit; more is a clock that was set
     /// Frames that come late for so long do not come late: the clock was set. Until then they count as late, for a
     /// computer that is busy for a moment is no clock that was set, and to take it for one would make old pictures new.
+    /// Where the camera's own times come evenly it is told at once: a clock that was set stumbles, and one that does
+    /// not is that of a camera that is behind, for as long as that lasts.
     Instant late_for = std::chrono::seconds(2);
 };
 
@@ -36,12 +38,24 @@ public:
     double drift() const { return drift_; }         ///< seconds a second; positive: the device runs slow
     Instant uncertainty() const { return sigma_; }  ///< one standard deviation of `on_session_clock`, now
     std::size_t jumps() const { return jumps_; }
+    Instant last_jump() const { return last_jump_; }  ///< how far the last jump went; positive: ahead
+    /// How much later than they should the last frames come, three at least; 0: in time.
+    Instant behind() const { return late_in_a_row_ >= 3 ? least_late_ : Instant{}; }
+    /// Seconds a second by which the device's clock runs fast, where that is more than any clock may; 0: it is well, or
+    /// not known yet.
+    double runs_wrong() const { return runs_wrong_; }
+    Instant span() const;  ///< by the device, that the fit rests on
+    std::size_t size() const { return frames_.size(); }
 
 private:
     struct Frame {
         Instant by_device, late;  ///< arrived - by_device
     };
     void fit();
+    void judge_run();
+    bool was_set(Instant by_device, Instant off);
+    void begin_anew(Instant off);
+    bool steps_evenly(Instant by_device);
 
     DeviceClockSettings settings_;
     std::deque<Frame> frames_;
@@ -49,6 +63,13 @@ private:
     double drift_ = 0;
     std::size_t jumps_ = 0;
     Instant late_since_{-1};  ///< by the device, first of the late frames in a row; -1: the last was not late
+    int late_in_a_row_ = 0;
+    Instant least_late_{};
+    bool behind_ = false;  ///< it came late all at once, and its own times ran on evenly
+    Instant last_jump_{}, last_off_{};
+    double runs_wrong_ = 0;
+    Instant last_by_device_{-1}, usual_step_{};
+    int even_steps_ = 0;  ///< in a row, that were a whole number of the usual one
 };
 
 }  // namespace planlight

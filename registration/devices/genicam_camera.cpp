@@ -16,6 +16,7 @@ namespace {
 
 constexpr int kBuffers = 6;  // on their way; more would only hide that nobody takes the frames
 constexpr Instant kPatience = std::chrono::milliseconds(100);
+constexpr std::size_t kLearnt = 20;  // frames: one that came quickly is among them
 
 struct Unref {
     void operator()(void* object) const {
@@ -177,6 +178,8 @@ void GenicamCamera::start() {
     // As large packets as the network lets through: fewer of them are lost.
     if (arv_camera_is_gv_device(camera)) arv_camera_gv_auto_packet_size(camera, failure.slot());
     const unsigned payload = arv_camera_get_payload(camera, failure.slot());
+    if (link_.frame_bytes == 0 && arv_camera_is_gv_device(camera))  // before the thread runs
+        link_ = {static_cast<int>(arv_camera_gv_get_packet_size(camera, failure.slot())), payload};
     transfer_ = from_seconds(settings_.transfer_ms ? *settings_.transfer_ms / 1e3 : payload / 125e6);
     device_->stream.reset(arv_camera_create_stream(camera, nullptr, nullptr, failure.slot()));
     if (!device_->stream)
@@ -219,7 +222,7 @@ bool GenicamCamera::receive() {
     last_by_device_ = by_device;
     heard_at_ = arrived;
     incomplete_before_ = frames_.counts().incomplete;
-    if (!device_clock_.add(by_device, arrived)) frames_.count_jump();
+    if (!clock_is_known(by_device, arrived)) return there;
     std::size_t size = 0;
     const auto* data = static_cast<const std::uint8_t*>(arv_buffer_get_data(buffer, &size));
     CameraFrame frame;
@@ -236,6 +239,28 @@ bool GenicamCamera::receive() {
     }
     frame.picture = std::move(*picture);
     frames_.push(std::move(frame));
+    return true;
+}
+
+/// False while its clock is not known well enough for a frame to have a time.
+bool GenicamCamera::clock_is_known(Instant by_device, Instant arrived) {
+    if (!device_clock_.add(by_device, arrived)) {
+        frames_.count_jump();
+        frames_.fail({fmt::format("its clock jumped by {:.0f} ms", 1e3 * seconds(device_clock_.last_jump())),
+                      "It is learnt anew, which takes a second. If this comes back, exchange the camera."});
+        learning_ = true;
+    }
+    frames_.note_clock(device_clock_.drift(), device_clock_.uncertainty(), device_clock_.behind());
+    if (const double wrong = device_clock_.runs_wrong(); wrong != 0) {
+        frames_.fail({fmt::format("its clock runs {:.1f} % {}", 100 * std::abs(wrong), wrong > 0 ? "fast" : "slow"),
+                      "No camera's clock may: exchange the camera, or look at who sets its clock."});
+        learning_ = ran_wrong_ = true;
+    }
+    if (!learning_) return true;
+    if (device_clock_.size() < kLearnt || device_clock_.runs_wrong() != 0) return false;
+    if (ran_wrong_ && device_clock_.span() < std::chrono::seconds(5)) return false;
+    learning_ = ran_wrong_ = false;
+    frames_.recovered();
     return true;
 }
 
@@ -278,7 +303,7 @@ void GenicamCamera::reopen(const std::stop_token& stop) {
                 throw DeviceError(name_, "it came back as another camera, or with another resolution",
                                   "Connect that camera again, or start the session anew.");
             start();
-            frames_.recovered();
+            learning_ = true;
             return;
         } catch (const DeviceError& error) {
             device_->stream.reset();

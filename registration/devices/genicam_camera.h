@@ -32,7 +32,7 @@ struct GenicamSettings {
     /// From the end of the exposure to the arrival of the quickest frame; empty: the payload over a gigabit.
     std::optional<double> transfer_ms;
     Instant silence_allowed = std::chrono::milliseconds(500);  ///< without a frame; then it is lost
-    Instant look_every = std::chrono::seconds(1);              ///< whether exposure and gain are still what they were
+    Instant look_every = std::chrono::milliseconds(150);       ///< whether exposure and gain are still what they were
 };
 
 /// A GigE Vision or USB3 Vision camera by Aravis, running by itself: what it does on its own (automatic exposure and
@@ -53,6 +53,7 @@ public:
     int height() const override { return height_; }
     const std::string& serial() const override { return serial_; }
     std::vector<std::string> notes() const override { return notes_; }
+    CameraLink link() const override { return link_; }
 
 private:
     struct Device;
@@ -66,6 +67,7 @@ private:
     void start();
     void run(const std::stop_token& stop);
     bool receive();
+    bool clock_is_known(Instant by_device, Instant arrived);
     bool still_as_set();
     void tell_silence();
     void reopen(const std::stop_token& stop);
@@ -77,11 +79,14 @@ private:
     std::string name_, serial_;
     std::vector<std::string> notes_;
     int width_ = 0, height_ = 0;
+    CameraLink link_;
     std::unique_ptr<Device> device_;
     // Of the camera's thread, once it runs.
     DeviceClock device_clock_;
     Instant exposure_{}, transfer_{}, heard_at_{}, looked_at_{}, last_by_device_{-1};
     double gain_ = 0;
+    bool learning_ = false;  ///< its clock, after a fault: its frames have no time yet
+    bool ran_wrong_ = false;
     std::size_t incomplete_before_ = 0;  ///< when the last whole frame came
     std::jthread thread_;
 };

@@ -90,19 +90,46 @@ std::optional<StereoFrame> PairedCameras::next_pair(Instant not_before) {
 }
 
 void PairedCameras::refuse(std::chrono::milliseconds patience) const {
-    for (const auto& [camera, seen] : {std::pair{left_.get(), lefts_seen_}, std::pair{right_.get(), rights_seen_}})
-        if (seen == 0)
-            throw DeviceError(camera->name(), fmt::format("no whole frame came in {} ms", patience.count()),
+    struct Side {
+        Camera* camera;
+        std::size_t seen, incomplete;
+    };
+    const Side sides[] = {{left_.get(), lefts_seen_, left_->frames().counts().incomplete - left_incomplete_},
+                          {right_.get(), rights_seen_, right_->frames().counts().incomplete - right_incomplete_}};
+    for (const Side& side : sides)
+        if (side.seen == 0 && side.incomplete == 0)
+            throw DeviceError(side.camera->name(), fmt::format("no frame came in {} ms", patience.count()),
                               "Look at its cable and its power, and whether its trigger runs.");
+    const Side& worse = sides[0].incomplete >= sides[1].incomplete ? sides[0] : sides[1];
+    if (worse.incomplete > 0)
+        throw DeviceError(worse.camera->name(),
+                          fmt::format("of its frames {} came whole in {} ms, and {} with packets lost", worse.seen,
+                                      patience.count(), worse.incomplete),
+                          "Look at the network: its receive buffer (net.core.rmem_max), jumbo frames, other traffic.");
     throw DeviceError("Cameras",
                       fmt::format("the two do not expose together: their nearest exposures are {:.1f} ms apart",
                                   std::abs(1e3 * seconds(counts_.apart))),
                       "Let one camera trigger the other, or both by one line, and give both the same exposure.");
 }
 
+std::string PairedCameras::doubt() const {
+    constexpr std::size_t kMany = 3;
+    for (Camera* camera : {left_.get(), right_.get()}) {
+        const CameraCounts counts = camera->frames().counts();
+        if (counts.behind > Instant{})
+            return fmt::format("{}: its pictures come {:.0f} ms late", camera->name(), 1e3 * seconds(counts.behind));
+        if (counts.lately_incomplete >= kMany)
+            return fmt::format("{}: {} of its last {} frames lost packets", camera->name(), counts.lately_incomplete,
+                               counts.lately);
+    }
+    return {};
+}
+
 StereoFrame PairedCameras::wait_for_pair(Instant not_before, std::chrono::milliseconds patience, bool newest) {
     const Instant until = clock_.now() + patience;
     lefts_seen_ = rights_seen_ = 0;
+    left_incomplete_ = left_->frames().counts().incomplete;
+    right_incomplete_ = right_->frames().counts().incomplete;
     for (;;) {
         std::uint64_t rings = 0;
         {

@@ -38,6 +38,9 @@ public:
     /// As `grab`, but the newest pair that is there, for following a patient.
     StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) override;
 
+    /// A camera that is behind, or many of whose frames lose packets.
+    std::string doubt() const override;
+
     const PairCounts& counts() const { return counts_; }
     Camera& left() { return *left_; }
     Camera& right() { return *right_; }
@@ -54,7 +57,8 @@ private:
     const Clock& clock_;
     PairSettings settings_;
     std::deque<CameraFrame> lefts_, rights_;
-    std::size_t lefts_seen_ = 0, rights_seen_ = 0;  ///< in this call
+    std::size_t lefts_seen_ = 0, rights_seen_ = 0;            ///< in this call
+    std::size_t left_incomplete_ = 0, right_incomplete_ = 0;  ///< when it began
     PairCounts counts_;
     Instant last_left_{}, interval_{};  ///< of the left camera's frames; 0: not known yet
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <string>
 
 #include "planning_io/types/stereo_frame.h"
 
@@ -19,6 +20,9 @@ public:
     virtual StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) {
         return grab(not_before, patience);
     }
+
+    /// What is wrong with the cameras now though frames come, in a sentence that names the camera; empty: nothing.
+    virtual std::string doubt() const { return {}; }
 };
 
 }  // namespace planlight

@@ -143,10 +143,11 @@ LightRecording record_cycle(const LightBench& bench, const RecordSettings& setti
 
 LightRecording record_latency(const LightBench& bench, const RecordSettings& settings) {
     constexpr int kRests = 3, kRestFrames = 4;  // an odd number: one that the projector leaves out does no harm
-    const std::vector<bool> code = flash_code();
+    std::vector<bool> code = flash_code();
+    code.resize(std::min(code.size(), static_cast<std::size_t>(std::max(settings.code_bits, 0))));
     std::mt19937 random(settings.seed);
     std::uniform_real_distribution<double> evenly;
-    Recorder recorder(bench, settings, 2 * static_cast<int>(code.size()) + 2 * kRests);
+    Recorder recorder(bench, settings, settings.code_passes * static_cast<int>(code.size()) + 2 * kRests);
     for (int i = 0; i < kRests; ++i) {
         recorder.show_steady(kWhite, kRestFrames);
         recorder.show_steady(kBlack, kRestFrames);
@@ -154,7 +155,7 @@ LightRecording record_latency(const LightBench& bench, const RecordSettings& set
     const double interval_s = frame_timing(recorder.so_far()).interval_s;
     bool on = false;
     std::optional<double> latency_s;
-    for (int pass = 0; pass < 2; ++pass) {
+    for (int pass = 0; pass < settings.code_passes; ++pass) {
         if (pass == 1) {
             const LatencyResult coarse = measure_latency(recorder.so_far());
             if (!coarse.refusal) latency_s = coarse.median_s;

@@ -25,6 +25,8 @@ struct RecordSettings {
     int grey_passes = 2, frames_a_grey = 2;           ///< response
     int cycle_visits = 28, frames_a_visit = 3;        ///< colour cycle, to each colour
     int frames_a_flash = 3;                           ///< latency: a bit of the code
+    int code_bits = 63;                               ///< latency: of the code, from its beginning
+    int code_passes = 2;                              ///< latency; 1: at random moments only, in half the time
     unsigned seed = 1;                                ///< of the order of greys, and of the flashes
 };
 

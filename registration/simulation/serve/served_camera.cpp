@@ -23,19 +23,17 @@ struct ServedCamera::Parts {
     std::optional<Frame> newest;
     Frame sent;
     bool silent = false, ending = false;
-    ArvGvFakeCamera* server = nullptr;
+    double lost_share = 0;
+    Instant drifts_since{};             ///< by this machine's clock
+    ArvGvFakeCamera* server = nullptr;  ///< null: it has no power
 
-    ~Parts() {
-        {
-            const std::lock_guard lock(mutex);
-            ending = true;
-        }
-        offered.notify_all();
-        if (server) g_object_unref(server);
-    }
+    ~Parts() { switch_off(); }
+    void switch_on();
+    void switch_off();
     ArvFakeCamera* camera() const { return arv_gv_fake_camera_get_fake_camera(server); }
     Instant by_its_clock(Instant t) const {
-        const auto drift = static_cast<Instant::rep>(static_cast<double>(t.count()) * settings.clock_drift);
+        const auto drift =
+            static_cast<Instant::rep>(static_cast<double>((t - drifts_since).count()) * settings.clock_drift);
         return t + Instant(drift) + settings.clock_offset;
     }
     void fill(ArvBuffer* buffer);
@@ -65,26 +63,41 @@ void ServedCamera::Parts::fill(ArvBuffer* buffer) {
     arv_buffer_set_timestamp(buffer, static_cast<guint64>(std::max(Instant{}, by_its_clock(sent.began)).count()));
 }
 
-ServedCamera::ServedCamera(const ServedCameraSettings& settings) : parts_(new Parts) {
-    parts_->settings = settings;
-    parts_->sent = {GrayImage(settings.width, settings.height), Instant{}};
-    parts_->server = arv_gv_fake_camera_new(settings.address.c_str(), settings.serial.c_str());
-    if (!parts_->server || !arv_gv_fake_camera_is_running(parts_->server))
+void ServedCamera::Parts::switch_on() {
+    ending = false;
+    server = arv_gv_fake_camera_new(settings.address.c_str(), settings.serial.c_str());
+    if (!server || !arv_gv_fake_camera_is_running(server))
         throw DeviceError("Served camera " + settings.serial, settings.address + " cannot be used",
                           "Give this machine the address (`ip address add " + settings.address +
                               "/8 dev lo`), one a camera, and end other cameras there.");
-    ArvFakeCamera* camera = parts_->camera();
-    arv_fake_camera_write_register(camera, ARV_FAKE_CAMERA_REGISTER_WIDTH, static_cast<guint32>(settings.width));
-    arv_fake_camera_write_register(camera, ARV_FAKE_CAMERA_REGISTER_HEIGHT, static_cast<guint32>(settings.height));
-    arv_fake_camera_write_register(camera, ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US,
-                                   static_cast<guint32>(1e6 / settings.frames_hz));
-    change_exposure(settings.exposure);
+    g_object_set(server, "gvsp-lost-ratio", lost_share, nullptr);
+    const auto set = [&](guint32 place, guint32 value) { arv_fake_camera_write_register(camera(), place, value); };
+    set(ARV_FAKE_CAMERA_REGISTER_WIDTH, static_cast<guint32>(settings.width));
+    set(ARV_FAKE_CAMERA_REGISTER_HEIGHT, static_cast<guint32>(settings.height));
+    set(ARV_FAKE_CAMERA_REGISTER_ACQUISITION_FRAME_PERIOD_US, static_cast<guint32>(1e6 / settings.frames_hz));
+    set(ARV_FAKE_CAMERA_REGISTER_EXPOSURE_TIME_US, static_cast<guint32>(settings.exposure.count() / 1000));
     arv_fake_camera_set_fill_pattern(
-        camera,
+        camera(),
         [](ArvBuffer* buffer, void* parts, guint32, guint32, ArvPixelFormat) {
             static_cast<Parts*>(parts)->fill(buffer);
         },
-        parts_.get());
+        this);
+}
+
+void ServedCamera::Parts::switch_off() {
+    {
+        const std::lock_guard lock(mutex);
+        ending = true;
+    }
+    offered.notify_all();
+    if (server) g_object_unref(server);
+    server = nullptr;
+}
+
+ServedCamera::ServedCamera(const ServedCameraSettings& settings) : parts_(new Parts) {
+    parts_->settings = settings;
+    parts_->sent = {GrayImage(settings.width, settings.height), Instant{}};
+    parts_->switch_on();
 }
 
 ServedCamera::~ServedCamera() = default;
@@ -107,9 +120,37 @@ void ServedCamera::set_clock_offset(Instant offset) {
     parts_->settings.clock_offset = offset;
 }
 
+void ServedCamera::set_clock_drift(double seconds_a_second) {
+    const std::lock_guard lock(parts_->mutex);
+    // What it gained until now stays.
+    const Instant now = parts_->sent.began;
+    parts_->settings.clock_offset = parts_->by_its_clock(now) - now;
+    parts_->drifts_since = now;
+    parts_->settings.clock_drift = seconds_a_second;
+}
+
+Instant ServedCamera::clock_offset() const {
+    const std::lock_guard lock(parts_->mutex);
+    return parts_->settings.clock_offset;
+}
+
+void ServedCamera::power(bool on) {
+    if (on == (parts_->server != nullptr)) return;
+    if (on)
+        parts_->switch_on();
+    else
+        parts_->switch_off();
+}
+
+void ServedCamera::lose_packets(double share) {
+    parts_->lost_share = share;
+    if (parts_->server) g_object_set(parts_->server, "gvsp-lost-ratio", share, nullptr);
+}
+
 void ServedCamera::change_exposure(Instant exposure) {
-    arv_fake_camera_write_register(parts_->camera(), ARV_FAKE_CAMERA_REGISTER_EXPOSURE_TIME_US,
-                                   static_cast<guint32>(exposure.count() / 1000));
+    if (parts_->server)
+        arv_fake_camera_write_register(parts_->camera(), ARV_FAKE_CAMERA_REGISTER_EXPOSURE_TIME_US,
+                                       static_cast<guint32>(exposure.count() / 1000));
 }
 
 }  // namespace planlight::simulation

@@ -30,12 +30,19 @@ public:
     /// the camera open; thrown away when nobody took it before the next.
     void offer(GrayImage picture, Instant began);
 
-    /// As if the cable were pulled: nothing is sent from now on.
+    /// As if it hung: it answers, and sends nothing new from now on.
     void silence(bool silent);
+    /// Its power, or its cable: without, nothing answers at its address; with it again, it is as after being switched
+    /// on, and sends only to who opens it anew. Throws DeviceError when the address was taken meanwhile.
+    void power(bool on);
+    /// This share of its packets never arrives, 0 to 1; it does not send them again when asked to.
+    void lose_packets(double share);
     /// As another program would do it.
     void change_exposure(Instant exposure);
-    /// The camera's clock is set anew.
+    /// The camera's clock is set anew, or runs otherwise from now on.
     void set_clock_offset(Instant offset);
+    void set_clock_drift(double seconds_a_second);
+    Instant clock_offset() const;
 
 private:
     struct Parts;

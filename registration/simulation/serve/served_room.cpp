@@ -33,7 +33,10 @@ struct ServedRoom::Parts {
     std::mutex mutex;
     std::deque<Order> orders;
     std::atomic<std::uint64_t> made{0}, late{0};
-    std::atomic<Instant::rep> looked_at{0};  ///< what stood on the monitor until then is known
+    std::atomic<bool> exchanged{false};
+    std::atomic<int> right_held_back{0};
+    std::deque<std::pair<GrayImage, Instant>> held;  ///< by the right camera, with when its exposure began
+    std::atomic<Instant::rep> looked_at{0};          ///< what stood on the monitor until then is known
     std::unique_ptr<ServedCamera> left, right;
     std::jthread monitor, cameras;
 
@@ -42,6 +45,7 @@ struct ServedRoom::Parts {
     void watch_monitor(const std::stop_token& stop);
     void expose(const std::stop_token& stop);
     void order_until(Instant until);
+    void send(StereoFrame frame, Instant opened);
 };
 
 /// Notes when what stands on the monitor changes.
@@ -104,10 +108,20 @@ void ServedRoom::Parts::expose(const std::stop_token& stop) {
         const Instant opened = frame.at - exposure / 2;
         next = opened + from_seconds(seconds(interval) * std::max(1.0, settings.slower)) - Instant(1000);
         wait_until(began + opened + exposure + settings.latency);
-        left->offer(std::move(frame.left), began + opened);
-        right->offer(std::move(frame.right), began + opened);
+        send(std::move(frame), began + opened);
         ++made;
     }
+}
+
+void ServedRoom::Parts::send(StereoFrame frame, Instant opened) {
+    if (exchanged) std::swap(frame.left, frame.right);
+    left->offer(std::move(frame.left), opened);
+    held.emplace_back(std::move(frame.right), opened);
+    while (held.size() > static_cast<std::size_t>(right_held_back) + 1) held.pop_front();
+    // (While it begins to hold back, it sends nothing for so many frames.)
+    if (held.size() <= static_cast<std::size_t>(right_held_back)) return;
+    right->offer(std::move(held.front().first), held.front().second);
+    held.pop_front();
 }
 
 ServedRoom::ServedRoom(SimulatedRig& rig, LookAtMonitor look, const ServeSettings& given)
@@ -138,6 +152,12 @@ ServedCamera& ServedRoom::left() {
 }
 ServedCamera& ServedRoom::right() {
     return *parts_->right;
+}
+void ServedRoom::exchange_cameras(bool exchanged) {
+    parts_->exchanged = exchanged;
+}
+void ServedRoom::hold_right_back(int frames) {
+    parts_->right_held_back = frames;
 }
 std::uint64_t ServedRoom::made() const {
     return parts_->made;

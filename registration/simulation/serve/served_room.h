@@ -30,6 +30,10 @@ public:
 
     ServedCamera& left();
     ServedCamera& right();
+    /// The cameras change places: each sends what the other sees.
+    void exchange_cameras(bool exchanged);
+    /// The right camera sends each picture so many frames late, with the time at which it was exposed.
+    void hold_right_back(int frames);
     /// Pictures that were made since the beginning, and those that came too late for their own moment.
     std::uint64_t made() const;
     std::uint64_t late() const;

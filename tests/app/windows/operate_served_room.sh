@@ -25,8 +25,8 @@ sed -i 's|"monitor": "DUMMY1"|"monitor": "DUMMY1", "file": "'"$folder"'/projecto
 check "a scan is captured" "$(number "$code == 0")" "exit code $code: $(cat "$folder/errors")"
 "$PLANLIGHT" check "$folder/capture" --rig "$folder/room/rig.json" >"$folder/checked" 2>&1; code=$?
 check "the rig is good by it" "$(number "$code == 0")" "exit code $code: $(cat "$folder/checked")"
-"$PLANLIGHT" session "$folder/case" --room "$folder/room/room.json" --operator DUMMY0 --autoplay --end-after-s 10 \
-  --screenshots "$folder/pictures" 2>"$folder/errors" & session=$!
+"$PLANLIGHT" session "$folder/case" --room "$folder/room/room.json" --operator DUMMY0 --autoplay --json --end-after-s ${TRACK_S:-10} \
+  --screenshots "$folder/pictures" >"$folder/latency.json" 2>"$folder/errors" & session=$!
 for i in $(seq 600); do
   kill -0 $session 2>/dev/null || break
   [ "$(ls "$folder"/pictures/operator-*.png 2>/dev/null | wc -l)" -ge 6 ] && import -window root "$folder/during.png"
@@ -34,6 +34,7 @@ for i in $(seq 600); do
 done
 wait $session; code=$?
 check "the session ends by itself without a fault" "$(number "$code == 0")" "exit code $code: $(cat "$folder/errors")"
+grep -v histogram "$folder/latency.json"; grep -o '^.*worst_ms": [0-9.]*' "$folder/latency.json"
 check "it came to the light" "$(ls "$folder"/pictures/light-*.png 2>/dev/null | wc -l | awk '{print ($1 > 0) ? 1 : 0}')" "no light"
 kill $served; wait $served 2>/dev/null
 tail -1 "$folder/served"

@@ -76,6 +76,67 @@ TEST(DeviceClock, ABusyComputerIsNoJump) {
     EXPECT_EQ(clock.jumps(), 0u);
 }
 
+TEST(DeviceClock, AClockThatIsSetStumblesAndIsToldAtOnce) {
+    for (const Instant jump : {Instant(seconds(600)), Instant(seconds(-3)), Instant(milliseconds(-30))}) {
+        Source source;
+        DeviceClock clock;
+        Instant t = seconds(5);
+        for (; t < seconds(15); t += milliseconds(40)) clock.add(source.by_device(t), t + source.late());
+        source.offset += jump;
+        EXPECT_FALSE(clock.add(source.by_device(t), t + source.late())) << "by the first frame";
+        EXPECT_NEAR(planlight::seconds(clock.last_jump()), planlight::seconds(jump), 0.03) << "less than its lateness";
+    }
+}
+
+TEST(DeviceClock, FirstFramesThatComeLateAreNoJump) {
+    Source source;
+    DeviceClock clock;
+    Instant t = seconds(5);
+    for (int i = 0; i < 3; ++i, t += milliseconds(40)) clock.add(source.by_device(t), t + milliseconds(90));
+    EXPECT_TRUE(clock.add(source.by_device(t), t + milliseconds(8)));
+    EXPECT_EQ(clock.jumps(), 0u);
+    EXPECT_LT(std::abs(planlight::seconds(clock.on_session_clock(source.by_device(t)) - milliseconds(8) - t)), 1e-3);
+}
+
+TEST(DeviceClock, ACameraThatIsBehindIsNoClockThatWasSet) {
+    Source source;
+    DeviceClock clock;
+    Instant t = seconds(5);
+    for (; t < seconds(15); t += milliseconds(40)) clock.add(source.by_device(t), t + source.late());
+    for (int i = 0; i < 250; ++i, t += milliseconds(40)) {
+        EXPECT_TRUE(clock.add(source.by_device(t), t + milliseconds(40) + source.late()));
+        if (i < 2) continue;
+        EXPECT_GT(clock.behind(), milliseconds(35));
+        EXPECT_LT(clock.behind(), milliseconds(80));
+        EXPECT_LT(std::abs(planlight::seconds(clock.on_session_clock(source.by_device(t)) - milliseconds(8) - t)), 1e-3)
+            << "an old picture is not made new, however long it lasts";
+    }
+    for (int i = 0; i < 5; ++i, t += milliseconds(40)) clock.add(source.by_device(t), t + milliseconds(8));
+    EXPECT_EQ(clock.behind(), Instant{}) << "in time again";
+    EXPECT_EQ(clock.jumps(), 0u);
+}
+
+TEST(DeviceClock, AClockThatRunsWrongIsToldAndAGoodOneNever) {
+    for (const double wrong : {0.01, -0.01}) {
+        Source source;
+        DeviceClock clock;
+        Instant t = seconds(5);
+        for (; t < seconds(25); t += milliseconds(40)) {
+            clock.add(source.by_device(t), t + source.late());
+            EXPECT_EQ(clock.runs_wrong(), 0) << "100 millionths, and frames that come late";
+        }
+        source.drift = wrong;
+        source.offset -= Instant(static_cast<Instant::rep>(static_cast<double>(t.count()) * (wrong - 100e-6)));
+        const Instant until = t + seconds(8);
+        double told = 0;
+        for (; t < until && told == 0; t += milliseconds(40)) {
+            clock.add(source.by_device(t), t + source.late());
+            told = clock.runs_wrong();
+        }
+        EXPECT_NEAR(told, wrong, 0.004);
+    }
+}
+
 TEST(DeviceClock, SaysItsUncertainty) {
     Source source;
     DeviceClock clock;

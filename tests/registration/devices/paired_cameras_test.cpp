@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -119,13 +121,29 @@ TEST_F(PairedCamerasTest, CamerasOfOneTriggerArePairedThoughTheirClocksAreApart)
 
 TEST_F(PairedCamerasTest, ACameraThatSendsNothingOrFailedIsNamed) {
     left->expose(0, 1);
-    EXPECT_NE(refusal().find("right camera: no whole frame came"), std::string::npos);
+    EXPECT_NE(refusal().find("right camera: no frame came"), std::string::npos);
     left->frames().fail({"nothing came from it for 500 ms", "Look."});
     EXPECT_EQ(refusal(), "left camera: nothing came from it for 500 ms");
     left->frames().recovered();
     left->expose(40, 7);
     right->expose(40, 8);
     EXPECT_EQ(cameras->grab({}, milliseconds(100)).left.at(0, 0), 7) << "nothing else is needed to go on";
+}
+
+TEST_F(PairedCamerasTest, WhoseFramesLosePacketsIsNamedWhetherAnyComeOrNone) {
+    std::thread network([&] {
+        std::this_thread::sleep_for(milliseconds(5));
+        for (int i = 0; i < 4; ++i) left->frames().count_incomplete();
+        left->expose(0, 1);
+        right->expose(40, 1);
+    });
+    EXPECT_NE(refusal().find("left camera: of its frames 1 came whole"), std::string::npos);
+    network.join();
+    EXPECT_EQ(cameras->doubt(), "left camera: 4 of its last 5 frames lost packets");
+    for (int i = 0; i < 25; ++i) left->expose(40 * i, 1);
+    EXPECT_EQ(cameras->doubt(), "") << "all of the last came whole";
+    right->frames().note_clock(0, {}, milliseconds(40));
+    EXPECT_EQ(cameras->doubt(), "right camera: its pictures come 40 ms late");
 }
 
 TEST_F(PairedCamerasTest, NoOldPictureIsTakenForALiveOne) {

@@ -1,0 +1,254 @@
+#include "app/doctor/examine_room.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <thread>
+
+#include "app/doctor/examine_machine.h"
+#include "app/doctor/exposure.h"
+#include "app/live/room_cameras.h"
+#include "planning_io/case/case_folder.h"
+#include "planning_io/case/rig_file.h"
+#include "planning_io/types/error.h"
+#include "planning_io/types/statistics.h"
+#include "registration/calibration/check_drift.h"
+#include "registration/projector_measurement/measure_latency.h"
+#include "registration/projector_measurement/record_light.h"
+
+namespace planlight {
+namespace {
+
+CameraFigures figures_of(Camera& camera, const std::string& side, const RoomCamera& room, const CameraCounts& before,
+                         double watched_s) {
+    const CameraCounts now = camera.frames().counts();
+    CameraFigures figures;
+    figures.side = side;
+    figures.serial = camera.serial();
+    figures.width = camera.width();
+    figures.height = camera.height();
+    figures.asked_hz = room.frames_hz;
+    figures.received = now.received - before.received;
+    figures.incomplete = now.incomplete - before.incomplete;
+    figures.rate_hz = static_cast<double>(figures.received) / watched_s;
+    figures.notes = camera.notes();
+    return figures;
+}
+
+void note_clock(Camera& camera, const CameraCounts& before, CameraFigures& figures) {
+    const CameraCounts now = camera.frames().counts();
+    figures.own_clock = now.own_clock;
+    figures.clock_drift = now.clock_drift;
+    figures.clock_sigma_ms = 1e3 * seconds(now.clock_sigma);
+    figures.clock_jumps = now.clock_jumps - before.clock_jumps;
+}
+
+CameraModel size_of(const CameraFigures& camera) {
+    CameraModel model;
+    model.width = camera.width;
+    model.height = camera.height;
+    return model;
+}
+
+/// Of one camera's tiles alone.
+LatencyResult latency_of(LightRecording recording, bool right) {
+    for (FrameBrightness& frame : recording.frames)
+        for (auto* of : {&frame.tiles, &frame.saturated, &frame.at_zero})
+            if (right)
+                of->erase(of->begin(), of->begin() + std::min<std::ptrdiff_t>(kTiles, std::ssize(*of)));
+            else
+                of->resize(std::min<std::size_t>(kTiles, of->size()));
+    return measure_latency(recording);
+}
+
+/// Days since a moment in ISO 8601; empty where that cannot be read.
+std::optional<double> days_since(const std::string& iso) {
+    std::tm then{};
+    if (iso.size() < 10 || !strptime(iso.substr(0, 10).c_str(), "%Y-%m-%d", &then)) return std::nullopt;
+    return std::difftime(std::time(nullptr), timegm(&then)) / 86400;
+}
+
+/// The lines so far, and what stops the rest.
+class Examination {
+public:
+    Examination(const RoomFile& room, const ExamineSettings& settings) : room_(room), settings_(settings) {}
+
+    std::vector<DoctorLine> whole() {
+        attempt("the case", "case, files", [&] { look_at_case(); });
+        attempt("this computer", "computer", [&] {
+            add(judge_machine(
+                examine_machine(settings_.case_folder.empty() ? std::filesystem::path(".") : settings_.case_folder)));
+        });
+        attempt("the rig file", "rig, file", [&] { rig_ = read_rig(room_.rig); });
+        attempt("the monitor", "projector, monitor", [&] { look_at_monitor(); });
+        attempt("the cameras", "cameras, opening", [&] { open_cameras(); });
+        attempt("the projector", "projector, window", [&] { open_projector(); });
+        if (monitor_) add(judge_monitor(*monitor_, rig_ ? rig_->projector : CameraModel{}));
+        if (watched_ && watched_->pairs.problem.empty() && projector_) {
+            attempt("the projector's delay", "projector, delay", [&] {
+                DelayFigures delay = flash(projector_->projector(), cameras_->pair(), clock_);
+                // (Of what was taken while flashing, frames may have been left out.)
+                delay.frame_interval_ms = 1e3 / std::max(watched_->left.rate_hz, watched_->right.rate_hz);
+                if (monitor_ && monitor_->measured.light_delay)
+                    delay.told_ms = 1e3 * seconds(*monitor_->measured.light_delay);
+                add(judge_delay(delay));
+            });
+            attempt("a scan", "rig, scan", [&] { scan(); });
+        }
+        if (watched_) judge_cameras();
+        return std::move(lines_);
+    }
+
+private:
+    void add(std::vector<DoctorLine> more) { lines_.insert(lines_.end(), more.begin(), more.end()); }
+
+    template <class Step>
+    void attempt(const std::string& what, const std::string& subject, Step step) {
+        if (settings_.under_way) settings_.under_way(what);
+        try {
+            step();
+        } catch (const Error& error) {
+            lines_.push_back({subject, Health::stop, error.what(), error.remedy});
+        }
+    }
+
+    void look_at_case() {
+        if (settings_.case_folder.empty()) return;
+        const Case the_case = read_case(settings_.case_folder);
+        lines_.push_back({"case, files", Health::good, title_of(the_case) + ": whole, every checksum fits", {}});
+    }
+
+    void look_at_monitor() {
+        monitor_.emplace();
+        monitor_->wanted = room_.monitor;
+        for (const Monitor& monitor : list_monitors())
+            if (monitor.name == room_.monitor) monitor_->found = monitor;
+        if (!room_.projector_file.empty()) monitor_->measured = read_projector_file(room_.projector_file);
+    }
+
+    void open_cameras() {
+        cameras_ = std::make_unique<RoomCameras>(room_, clock_);
+        left_before_ = cameras_->pair().left().frames().counts();
+        right_before_ = cameras_->pair().right().frames().counts();
+        watched_ = watch_cameras(cameras_->pair(), room_, clock_, settings_.watch);
+    }
+
+    /// Last, for their clocks are known the better the longer they run.
+    void judge_cameras() {
+        CameraFigures &left = watched_->left, &right = watched_->right;
+        note_clock(cameras_->pair().left(), left_before_, left);
+        note_clock(cameras_->pair().right(), right_before_, right);
+        const RigCalibration& rig = rig_ ? *rig_ : unknown_;
+        add(judge_camera(left, rig.serials.left_camera, rig_ ? rig.left_camera : size_of(left)));
+        add(judge_camera(right, rig.serials.right_camera, rig_ ? rig.right_camera : size_of(right)));
+        for (Camera* camera : {&cameras_->pair().left(), &cameras_->pair().right()}) {
+            const CameraLink link = camera->link();
+            add(judge_network({camera == &cameras_->pair().left() ? left.side : right.side, link.packet_bytes,
+                               link.frame_bytes, receive_buffer_max()}));
+        }
+        add(judge_pairs(watched_->pairs));
+    }
+
+    void open_projector() {
+        if (!monitor_ || !monitor_->found) return;
+        try {
+            projector_ = std::make_unique<CommandProjector>(room_.monitor, room_.projector_file);
+            Projector& projector = projector_->projector();
+            projector.show(RgbImage(projector.width(), projector.height()), clock_.now() + std::chrono::seconds(1));
+            monitor_->covered = true;
+        } catch (const Error& error) {
+            projector_.reset();
+            monitor_->problem = error.what();
+            monitor_->remedy = error.remedy;
+        }
+    }
+
+    void scan() {
+        StripeSettings stripes;
+        stripes.width = projector_->projector().width();
+        stripes.height = projector_->projector().height();
+        const ScanCapture capture = capture_scan(projector_->projector(), cameras_->pair(), clock_, stripes);
+        for (const bool right : {false, true}) {
+            const auto& pictures = right ? capture.right : capture.left;
+            const Exposure exposure = exposure_of(pictures[0], pictures[1]);
+            add(judge_picture({right ? "right camera" : "left camera", exposure.lit_share, exposure.saturated_share,
+                               exposure.brightest_lit_grey, fringe_share(pictures, stripes), stripes.phase_period_px}));
+        }
+        if (!rig_) return;
+        add(judge_rig(check_drift(scan_from_capture(capture, *rig_), *rig_), days_since(rig_->made_on)));
+    }
+
+    const RoomFile& room_;
+    const ExamineSettings& settings_;
+    SteadyClock clock_;
+    std::vector<DoctorLine> lines_;
+    std::optional<RigCalibration> rig_;
+    const RigCalibration unknown_;
+    std::optional<MonitorFigures> monitor_;
+    std::unique_ptr<RoomCameras> cameras_;
+    CameraCounts left_before_, right_before_;  ///< when they were opened and their clocks known
+    std::optional<WatchedCameras> watched_;
+    std::unique_ptr<CommandProjector> projector_;
+};
+
+}  // namespace
+
+std::vector<DoctorLine> examine_room(const RoomFile& room, const ExamineSettings& settings) {
+    return Examination(room, settings).whole();
+}
+
+WatchedCameras watch_cameras(PairedCameras& cameras, const RoomFile& room, const Clock& clock, Instant how_long) {
+    WatchedCameras watched;
+    const CameraCounts left = cameras.left().frames().counts(), right = cameras.right().frames().counts();
+    const Instant began = clock.now();
+    std::vector<double> apart_ms;
+    Instant seen_until = began, exposure{};
+    try {
+        while (clock.now() - began < how_long) {
+            const StereoFrame frame = cameras.grab(seen_until, std::chrono::milliseconds(1000));
+            seen_until = frame.at + frame.exposure / 2;
+            exposure = frame.exposure;
+            ++watched.pairs.pairs;
+            apart_ms.push_back(1e3 * seconds(cameras.counts().apart));
+        }
+    } catch (const DeviceError& error) {
+        watched.pairs.problem = error.what();
+        watched.pairs.remedy = error.remedy;
+    }
+    const double watched_s = seconds(clock.now() - began);
+    watched.left = figures_of(cameras.left(), "left camera", room.left, left, watched_s);
+    watched.right = figures_of(cameras.right(), "right camera", room.right, right, watched_s);
+    watched.pairs.left = watched.left.received;
+    watched.pairs.right = watched.right.received;
+    if (!apart_ms.empty()) watched.pairs.apart_ms = median(apart_ms);
+    const double faster_hz = std::max(watched.left.rate_hz, watched.right.rate_hz);
+    watched.pairs.allowed_ms = room.together && faster_hz > 0
+                                   ? std::min(10.0, 1e3 / faster_hz / 3)
+                                   : std::max(0.2, std::min(room.max_apart_ms, 1e2 * seconds(exposure)));
+    return watched;
+}
+
+DelayFigures flash(Projector& projector, StereoCamera& cameras, const Clock& clock) {
+    RecordSettings settings;
+    settings.code_passes = 1;
+    settings.code_bits = 36;
+    const LightBench bench{
+        projector, cameras, clock, [&](Instant at) { std::this_thread::sleep_for(at - clock.now()); }, {}, {}};
+    const LightRecording recording = record_latency(bench, settings);
+    const LatencyResult both = measure_latency(recording);
+    DelayFigures delay;
+    if (both.refusal) {
+        delay.problem = both.refusal->reason;
+        delay.remedy = both.refusal->remedy;
+        return delay;
+    }
+    delay.measured_ms = 1e3 * both.light_delay_s;
+    delay.sigma_ms = 1e3 * std::max(both.median_sigma_s, both.jitter_s);
+    delay.frame_interval_ms = 1e3 * both.frames.interval_s;
+    const LatencyResult left = latency_of(recording, false), right = latency_of(recording, true);
+    if (!left.refusal && !right.refusal) delay.right_later_ms = 1e3 * (right.median_s - left.median_s);
+    return delay;
+}
+
+}  // namespace planlight
