@@ -47,6 +47,9 @@ struct SimulatedBoardRoom::Room final : Projector, StereoCamera, Clock {
     double share_in_view(const RigidTransform& room_from_board) const;
     GrayImage expose(CameraView& view, const Sensor& sensor, const LightMap& light, double lamps, std::uint64_t frame);
     void look();
+    RigidTransform posed(double way, double tilt, double turn, const Vector3d& at) const;
+    std::vector<BoardStop> stops_of_a_person(std::mt19937& random) const;
+    void follow_person(Instant at);
 
     BoardSheet sheet;
     BoardRoomSettings settings;
@@ -59,6 +62,7 @@ struct SimulatedBoardRoom::Room final : Projector, StereoCamera, Clock {
     CameraView left_view, right_view;
     Sensor left_sensor, right_sensor;
     bool seen = false;
+    std::optional<BoardPerson> person;
     std::vector<float> light_buffer;
     Instant now_{};
 };
@@ -99,6 +103,16 @@ double SimulatedBoardRoom::Room::share_in_view(const RigidTransform& pose) const
     return share;
 }
 
+/// The board's middle at `at` (room), tilted about the axis in direction `way`, turned in its plane; radians.
+RigidTransform SimulatedBoardRoom::Room::posed(double way, double tilt, double turn, const Vector3d& at) const {
+    RigidTransform pose = RigidTransform::Identity();
+    pose.linear() = (Eigen::AngleAxisd(tilt, Vector3d(std::cos(way), std::sin(way), 0)) *
+                     Eigen::AngleAxisd(turn, Vector3d::UnitZ()))
+                        .toRotationMatrix();
+    pose.translation() = at - pose.linear() * Vector3d(sheet.width_mm() / 2, sheet.height_mm() / 2, 0);
+    return pose;
+}
+
 RigidTransform SimulatedBoardRoom::Room::random_pose(std::mt19937& random) const {
     const auto between = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
@@ -106,17 +120,72 @@ RigidTransform SimulatedBoardRoom::Room::random_pose(std::mt19937& random) const
     for (int attempt = 0; attempt < 5000; ++attempt) {
         const double way = between(0, 2 * M_PI),
                      tilt = between(settings.min_tilt_deg, settings.max_tilt_deg) * kRadians;
-        RigidTransform pose = RigidTransform::Identity();
-        pose.linear() = (Eigen::AngleAxisd(tilt, Vector3d(std::cos(way), std::sin(way), 0)) *
-                         Eigen::AngleAxisd(between(0, 2 * M_PI), Vector3d::UnitZ()))
-                            .toRotationMatrix();
+        const double turn = between(0, 2 * M_PI);
         const Vector3d at(between(-settings.shift_mm, settings.shift_mm),
                           between(-settings.shift_mm, settings.shift_mm),
                           between(-settings.depth_mm, settings.depth_mm));
-        pose.translation() = at - pose.linear() * Vector3d(sheet.width_mm() / 2, sheet.height_mm() / 2, 0);
+        const RigidTransform pose = posed(way, tilt, turn, at);
         if (share_in_view(pose) >= (settings.whole ? 0.5 : 0.6)) return pose;
     }
     throw std::invalid_argument("no pose of the board is seen by all devices: it is too large for this room");
+}
+
+/// Useful poses, tilted every way in turn as somebody would who was told to; and what goes wrong on the way.
+std::vector<BoardStop> SimulatedBoardRoom::Room::stops_of_a_person(std::mt19937& random) const {
+    const auto between = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    std::vector<BoardStop> stops;
+    const auto useful = [&](int i) {
+        for (int attempt = 0; attempt < 5000; ++attempt) {
+            const double way = i * M_PI / 2 + between(-0.7, 0.7), tilt = between(18, 38) * kRadians;
+            const Vector3d at(between(-settings.shift_mm, settings.shift_mm),
+                              between(-settings.shift_mm, settings.shift_mm),
+                              (i / 2 % 2 ? 1 : -1) * between(0.2, 1) * settings.depth_mm);
+            const RigidTransform pose = posed(way, tilt, between(-0.4, 0.4) + (i % 3) * M_PI / 2, at);
+            if (share_in_view(pose) >= 0.6) return pose;
+        }
+        return random_pose(random);
+    };
+    const double aside = 0.15 * rig.working_distance_mm;
+    const double sign = between(0, 1) < 0.5 ? -1 : 1;
+    constexpr int kUseful = 24;
+    for (int i = 0; i < kUseful; ++i) {
+        switch (i) {
+            case 1:
+                stops.push_back({posed(between(0, 6), 70 * kRadians, 0, {0, 0, 0}), "too aslant"});
+                break;
+            case 2:
+                stops.push_back({posed(0, 0.35, 0, {sign * aside, 0, -0.25 * rig.working_distance_mm}), "seen by one camera"});
+                break;
+            case 3:
+                stops.push_back(stops.back());
+                stops.back().name = "the same again";
+                break;
+            case 4:
+                stops.push_back({posed(between(0, 6), 0.02, 0, {0, 0, 0}), "flat on"});
+                break;
+            case 5:
+                stops.push_back({posed(0.5, 0.4, 0, {0, 0, 1.2 * sheet.width_mm()}), "too far"});
+                break;
+            case 6:
+                stops.push_back({useful(i + 1), "leaves in the light", true});
+                break;
+            default:
+                break;
+        }
+        stops.push_back({useful(i), "useful"});
+    }
+    return stops;
+}
+
+/// The board to where the person has it; a place that it has left is not looked at again.
+void SimulatedBoardRoom::Room::follow_person(Instant at) {
+    if (!person) return;
+    const RigidTransform pose = person->place(at);
+    if (pose.matrix() == room_from_board_now.matrix()) return;
+    room_from_board_now = pose;
+    seen = false;
 }
 
 void SimulatedBoardRoom::Room::look() {
@@ -127,7 +196,7 @@ void SimulatedBoardRoom::Room::look() {
                 rig.left_camera.seen_from(to_board),
                 rig.projector.seen_from(to_board),
                 rig.working_distance_mm,
-                kSamplesAcrossEdge};
+                person && !person->at_rest() ? 2 : kSamplesAcrossEdge};
     left_view.look(scene);
     scene.camera = rig.right_camera.seen_from(to_board);
     right_view.look(scene);
@@ -146,6 +215,7 @@ Instant SimulatedBoardRoom::Room::show(const RgbImage& picture, Instant valid_un
     if (picture.width != width() || picture.height != height())
         throw DeviceError("simulated projector", "a picture of another size was to be shown",
                           "Draw the picture in the projector's own size.");
+    if (person) person->see_light_change(now_);
     schedule.show(picture, now_, valid_until);
     return now_ + settings.projector_delay;
 }
@@ -161,6 +231,7 @@ StereoFrame SimulatedBoardRoom::Room::grab(Instant not_before, std::chrono::mill
     frame.at = begins + rig.exposure / 2;
     frame.exposure = rig.exposure;
     frame.number = static_cast<std::uint64_t>(number);
+    follow_person(frame.at);
     look();
     const auto light = schedule.during(begins, ends);
     const double lamps = lamps_during(settings.light, begins, ends);
@@ -204,6 +275,15 @@ void SimulatedBoardRoom::lay(int pose) {
 void SimulatedBoardRoom::slip(const Vector3d& by_mm) {
     room_->room_from_board_now.translation() += by_mm;
     room_->seen = false;
+}
+
+void SimulatedBoardRoom::let_person_carry(const PersonSettings& person) {
+    std::mt19937 random(static_cast<unsigned>(mixed(static_cast<std::uint64_t>(room_->settings.seed) * 64 + 50)));
+    room_->person.emplace(room_->stops_of_a_person(random), person);
+}
+
+const BoardPerson* SimulatedBoardRoom::person() const {
+    return room_->person ? &*room_->person : nullptr;
 }
 
 void SimulatedBoardRoom::knock_right_camera(double degrees) {

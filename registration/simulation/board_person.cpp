@@ -1,0 +1,61 @@
+#include "registration/simulation/board_person.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace planlight::simulation {
+namespace {
+
+constexpr std::size_t kChangesOfFlicker = 4;
+constexpr Instant kFlickerWithin = std::chrono::milliseconds(1500);
+
+/// Smoothly from one place to another; `share` 0 to 1.
+RigidTransform between(const RigidTransform& a, const RigidTransform& b, double share) {
+    const double eased = (1 - std::cos(std::numbers::pi * share)) / 2;
+    RigidTransform p = RigidTransform::Identity();
+    p.linear() =
+        Eigen::Quaterniond(a.linear()).slerp(eased, Eigen::Quaterniond(b.linear())).normalized().toRotationMatrix();
+    p.translation() = (1 - eased) * a.translation() + eased * b.translation();
+    return p;
+}
+
+}  // namespace
+
+BoardPerson::BoardPerson(std::vector<BoardStop> stops, const PersonSettings& settings)
+    : stops_(std::move(stops)), settings_(settings) {}
+
+void BoardPerson::see_light_change(Instant at) {
+    changes_.push_back(at);
+    while (changes_.size() > kChangesOfFlicker) changes_.pop_front();
+}
+
+/// Stripes follow each other quickly; a word that changes does not flicker.
+bool BoardPerson::flickers(Instant at) const {
+    return changes_.size() == kChangesOfFlicker && at - changes_.front() < kFlickerWithin;
+}
+
+RigidTransform BoardPerson::place(Instant at) {
+    if (stops_.empty()) return RigidTransform::Identity();
+    if (!std::exchange(begun_, true)) came_ = at;
+    if (at_rest_) {
+        const bool light = flickers(at);
+        if (light && !stops_[stop_].leaves_at_once) came_ = std::max(came_, at - settings_.hold + settings_.reaction);
+        if (at - came_ >= settings_.hold) {
+            from_ = std::exchange(stop_, (stop_ + 1) % stops_.size());
+            left_ = at;
+            at_rest_ = false;
+            ++made_;
+        }
+    }
+    if (at_rest_) return stops_[stop_].room_from_board;
+    const double share = std::clamp(seconds(at - left_) / seconds(settings_.move), 0.0, 1.0);
+    if (share >= 1) {
+        at_rest_ = true;
+        came_ = at;
+    }
+    return between(stops_[from_].room_from_board, stops_[stop_].room_from_board, share);
+}
+
+}  // namespace planlight::simulation
