@@ -36,26 +36,30 @@ bool BoardPerson::flickers(Instant at) const {
     return changes_.size() == kChangesOfFlicker && at - changes_.front() < kFlickerWithin;
 }
 
-RigidTransform BoardPerson::place(Instant at) {
-    if (stops_.empty()) return RigidTransform::Identity();
-    if (!std::exchange(begun_, true)) came_ = at;
-    if (at_rest_) {
-        const bool light = flickers(at);
-        if (light && !stops_[stop_].leaves_at_once) came_ = std::max(came_, at - settings_.hold + settings_.reaction);
-        if (at - came_ >= settings_.hold) {
-            from_ = std::exchange(stop_, (stop_ + 1) % stops_.size());
-            left_ = at;
-            at_rest_ = false;
-            ++made_;
-        }
-    }
-    if (at_rest_) return stops_[stop_].room_from_board;
-    const double share = std::clamp(seconds(at - left_) / seconds(settings_.move), 0.0, 1.0);
-    if (share >= 1) {
-        at_rest_ = true;
-        came_ = at;
-    }
-    return between(stops_[from_].room_from_board, stops_[stop_].room_from_board, share);
+bool BoardPerson::leaves(Instant at) {
+    if (stops_.size() < 2) return false;
+    if (flickers(at) && !stops_[stop_].leaves_at_once)
+        came_ = std::max(came_, at - settings_.hold + settings_.reaction);
+    if (at - came_ < settings_.hold) return false;
+    from_ = std::exchange(stop_, (stop_ + 1) % stops_.size());
+    return true;
+}
+
+RigidTransform BoardPerson::next_place() {
+    return between(stops_[from_].room_from_board, stops_[stop_].room_from_board,
+                   static_cast<double>(step_ + 1) / settings_.steps);
+}
+
+void BoardPerson::arrive(Instant at) {
+    if (++step_ < settings_.steps) return;
+    step_ = 0;
+    came_ = at;
+    ++made_;
+}
+
+int BoardPerson::shaken_px(Instant at) {
+    constexpr double kPixels = 4, kTurns_hz = 1.6;
+    return static_cast<int>(std::lround(kPixels * std::sin(2 * std::numbers::pi * kTurns_hz * seconds(at))));
 }
 
 }  // namespace planlight::simulation

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <random>
@@ -31,6 +32,20 @@ bool in_view(const Optics& device, const Vector3d& p_in_room) {
            pixel.y() < device.rows - 4;
 }
 
+/// The picture shifted sideways; what comes in from outside is as its rim.
+void shift(GrayImage& picture, int by) {
+    for (int y = 0; y < picture.height; ++y) {
+        std::uint8_t* const row = &picture.at(0, y);
+        if (by > 0) {
+            std::copy_backward(row, row + picture.width - by, row + picture.width);
+            std::fill(row, row + by, row[by]);
+        } else if (by < 0) {
+            std::copy(row - by, row + picture.width, row);
+            std::fill(row + picture.width + by, row + picture.width, row[picture.width + by - 1]);
+        }
+    }
+}
+
 }  // namespace
 
 struct SimulatedBoardRoom::Room final : Projector, StereoCamera, Clock {
@@ -47,9 +62,11 @@ struct SimulatedBoardRoom::Room final : Projector, StereoCamera, Clock {
     double share_in_view(const RigidTransform& room_from_board) const;
     GrayImage expose(CameraView& view, const Sensor& sensor, const LightMap& light, double lamps, std::uint64_t frame);
     void look();
+    void look_at(const RigidTransform& pose, int finer, CameraView& left, CameraView& right) const;
     RigidTransform posed(double way, double tilt, double turn, const Vector3d& at) const;
     std::vector<BoardStop> stops_of_a_person(std::mt19937& random) const;
-    void follow_person(Instant at);
+    bool follow_person(Instant at);
+    void carry_on();
 
     BoardSheet sheet;
     BoardRoomSettings settings;
@@ -63,6 +80,10 @@ struct SimulatedBoardRoom::Room final : Projector, StereoCamera, Clock {
     Sensor left_sensor, right_sensor;
     bool seen = false;
     std::optional<BoardPerson> person;
+    struct Views {
+        CameraView left, right;
+    };
+    std::future<std::unique_ptr<Views>> on_the_way;  ///< of the next place of a board that is carried
     std::vector<float> light_buffer;
     Instant now_{};
 };
@@ -179,27 +200,52 @@ std::vector<BoardStop> SimulatedBoardRoom::Room::stops_of_a_person(std::mt19937&
     return stops;
 }
 
-/// The board to where the person has it; a place that it has left is not looked at again.
-void SimulatedBoardRoom::Room::follow_person(Instant at) {
-    if (!person) return;
-    const RigidTransform pose = person->place(at);
-    if (pose.matrix() == room_from_board_now.matrix()) return;
+/// The next place on the way, drawn meanwhile: coarsely until the board is laid down.
+void SimulatedBoardRoom::Room::carry_on() {
+    const RigidTransform pose = person->next_place();
+    const int finer = person->at_last_step() ? kSamplesAcrossEdge : 1;
     room_from_board_now = pose;
-    seen = false;
+    on_the_way = std::async(std::launch::async, [this, pose, finer] {
+        auto views = std::make_unique<Views>();
+        look_at(pose, finer, views->left, views->right);
+        return views;
+    });
 }
 
-void SimulatedBoardRoom::Room::look() {
-    if (seen) return;
-    const RigidTransform to_board = room_from_board_now.inverse();
+/// Brings the board on when a person has it; true while it moves.
+bool SimulatedBoardRoom::Room::follow_person(Instant at) {
+    if (!person) return false;
+    if (!on_the_way.valid()) {
+        if (!person->leaves(at)) return false;
+        carry_on();
+    } else if (on_the_way.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        const auto views = on_the_way.get();
+        left_view = std::move(views->left);
+        right_view = std::move(views->right);
+        person->arrive(at);
+        if (person->at_rest()) return false;
+        carry_on();
+    }
+    return true;
+}
+
+void SimulatedBoardRoom::Room::look_at(const RigidTransform& pose, int finer, CameraView& left,
+                                       CameraView& right) const {
+    const RigidTransform to_board = pose.inverse();
     Scene scene{surface,
                 look_of_sheet,
                 rig.left_camera.seen_from(to_board),
                 rig.projector.seen_from(to_board),
                 rig.working_distance_mm,
-                person && !person->at_rest() ? 2 : kSamplesAcrossEdge};
-    left_view.look(scene);
+                finer};
+    left.look(scene);
     scene.camera = rig.right_camera.seen_from(to_board);
-    right_view.look(scene);
+    right.look(scene);
+}
+
+void SimulatedBoardRoom::Room::look() {
+    if (seen) return;
+    look_at(room_from_board_now, kSamplesAcrossEdge, left_view, right_view);
     seen = true;
 }
 
@@ -231,12 +277,16 @@ StereoFrame SimulatedBoardRoom::Room::grab(Instant not_before, std::chrono::mill
     frame.at = begins + rig.exposure / 2;
     frame.exposure = rig.exposure;
     frame.number = static_cast<std::uint64_t>(number);
-    follow_person(frame.at);
     look();
+    const bool carried = follow_person(frame.at);
     const auto light = schedule.during(begins, ends);
     const double lamps = lamps_during(settings.light, begins, ends);
     frame.left = expose(left_view, left_sensor, *light, lamps, frame.number);
     frame.right = expose(right_view, right_sensor, *light, lamps, frame.number);
+    if (carried) {
+        shift(frame.left, BoardPerson::shaken_px(frame.at));
+        shift(frame.right, BoardPerson::shaken_px(frame.at));
+    }
     now_ = ends;
     return frame;
 }
@@ -280,6 +330,8 @@ void SimulatedBoardRoom::slip(const Vector3d& by_mm) {
 void SimulatedBoardRoom::let_person_carry(const PersonSettings& person) {
     std::mt19937 random(static_cast<unsigned>(mixed(static_cast<std::uint64_t>(room_->settings.seed) * 64 + 50)));
     room_->person.emplace(room_->stops_of_a_person(random), person);
+    room_->room_from_board_now = room_->person->stops().front().room_from_board;
+    room_->seen = false;
 }
 
 const BoardPerson* SimulatedBoardRoom::person() const {
