@@ -197,6 +197,15 @@ void GuidedCalibration::shine(const GuideLight& light) {
     state_.light = light;
 }
 
+/// Whether the board is still where it was, by a fresh look at it.
+bool GuidedCalibration::moved_since(const BoardSighting& before) {
+    const StereoFrame frame = cameras_.grab(clock_.now(), kFramePatience);
+    const BoardSighting now{look_at_board(frame.left, board_), look_at_board(frame.right, board_), frame.at};
+    PoseGuide here(board_, settings_.guide);
+    here.look(before);
+    return here.look(now).still_share <= 0;
+}
+
 /// The pose, if its pictures are good; the reason if not.
 void GuidedCalibration::capture(const BoardSighting& sighting) {
     tell(GuideEvent::Kind::capturing, PoseFault::none, "", "Leave it as it is.");
@@ -229,6 +238,13 @@ void GuidedCalibration::capture(const BoardSighting& sighting) {
     pose.right = right.get();
     if (pose.left.corners.size() == 0 || pose.right.corners.size() == 0) {
         given_up(PoseFault::in_part, "The board was not seen to the end.", "Leave it where it is while the light flickers.");
+        return;
+    }
+    constexpr double kMoved_px = 0.25;
+    const bool wrong = judge_pose_pictures(pose, board_).has_value();
+    if (wrong && (std::max(pose.left.moved_px, pose.right.moved_px) > kMoved_px || moved_since(sighting))) {
+        given_up(PoseFault::none, "It was moved while the light flickered.",
+                 "Lay it down, or lean your hands on something, until the light says TAKEN.");
         return;
     }
     if (!pose.left.wrong_sequence.empty() || !pose.right.wrong_sequence.empty()) {

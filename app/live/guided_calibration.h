@@ -75,6 +75,7 @@ private:
     void say(const PoseAdvice& advice);
     void shine(const GuideLight& light);
     void capture(const BoardSighting& sighting);
+    bool moved_since(const BoardSighting& before);
     void keep_pictures(const ScanCapture& capture) const;
     void estimate();
     void collect_estimate();

@@ -9,23 +9,33 @@
 namespace planlight {
 namespace {
 
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kUsualFocal = 1.8, kUsualSpread = 0.6;  ///< picture widths, and its logarithm's standard deviation
-constexpr double kMisfit_px = 0.3;                       ///< that distortion may leave
+constexpr double kUsualFocal = 1.8, kFocalLeast = 0.4, kFocalMost = 10;  ///< picture widths
+/// Of 1 / focal^2 (picture widths) before anything is seen, and of a homography's two equations for it.
+constexpr double kPrior = 0.3, kNoise = 1e-3;
 
-/// Mean square distance of the corners from where the best pose puts them, px^2.
-double misfit(const CameraModel& camera, const BoardCorners& corners, const BoardSpec& board) {
-    const auto pose = board_pose(camera, corners, board);
-    constexpr double kNone = 1e6;
-    if (!pose) return kNone;
-    double sum = 0;
+/// Board (its own widths, about its middle) to picture (picture widths, about its middle), its last number 1; from the
+/// corners by a direct linear transformation.
+Matrix3d homography(const BoardCorners& corners, const BoardSpec& board, int width, int height) {
+    Eigen::Matrix<double, 9, 9> square = Eigen::Matrix<double, 9, 9>::Zero();
     for (std::size_t i = 0; i < corners.size(); ++i) {
-        const auto pixel = project(camera, *pose * board.corner_in_board(corners.ids[i]));
-        if (!pixel) return kNone;
-        sum += (*pixel - corners.pixels[i]).squaredNorm();
+        const Vector3d b =
+            ((board.corner_in_board(corners.ids[i]).head<2>() - Vector2d(board.width_mm(), board.height_mm()) / 2) /
+             board.width_mm())
+                .homogeneous();
+        const Vector2d p = (corners.pixels[i] - Vector2d(width - 1, height - 1) / 2) / width;
+        Eigen::Matrix<double, 2, 9> rows;
+        rows << b.transpose(), 0, 0, 0, -p.x() * b.transpose(), 0, 0, 0, b.transpose(), -p.y() * b.transpose();
+        square += rows.transpose() * rows;
     }
-    return sum / static_cast<double>(corners.size());
+    const Eigen::Matrix<double, 9, 1> h =
+        Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>>(square).eigenvectors().col(0);
+    Matrix3d H;
+    H << h.segment<3>(0).transpose(), h.segment<3>(3).transpose(), h.segment<3>(6).transpose();
+    return H / H(2, 2);
 }
 
 /// Angle between the face and the line of sight to its middle.
@@ -42,15 +52,21 @@ CameraModel guessed_camera(const std::vector<BoardCorners>& views, const BoardSp
     camera.height = height;
     camera.centre_x = (width - 1) / 2.0;
     camera.centre_y = (height - 1) / 2.0;
-    double best = kUsualFocal, least = 1e18;
-    for (double focal = 0.5; focal < 8; focal *= 1.1) {
-        camera.focal_x = camera.focal_y = focal * width;
-        const double off = std::log(focal / kUsualFocal) / kUsualSpread;
-        double cost = off * off;
-        for (const BoardCorners& corners : views) cost += misfit(camera, corners, board) / (kMisfit_px * kMisfit_px);
-        if (cost < least) least = cost, best = focal;
+    // Zhang 2000, eq. 3 and 4, of a camera of which only the focal length is unknown: linear in 1 / focal^2.
+    double top = kNoise * kNoise / (kPrior * kPrior), sum = top / (kUsualFocal * kUsualFocal);
+    for (const BoardCorners& corners : views) {
+        const Matrix3d H = homography(corners, board, width, height);
+        const Vector2d a = H.block<2, 1>(0, 0), b = H.block<2, 1>(0, 1);
+        const double by[2] = {a.dot(b), a.dot(a) - b.dot(b)},
+                     rest[2] = {H(2, 0) * H(2, 1), H(2, 0) * H(2, 0) - H(2, 1) * H(2, 1)};
+        for (int i = 0; i < 2; ++i) {
+            top += by[i] * by[i];
+            sum -= by[i] * rest[i];
+        }
     }
-    camera.focal_x = camera.focal_y = best * width;
+    const double inverse_square = sum / top;
+    const double focal = inverse_square > 0 ? 1 / std::sqrt(inverse_square) : kFocalMost;
+    camera.focal_x = camera.focal_y = std::clamp(focal, kFocalLeast, kFocalMost) * width;
     return camera;
 }
 

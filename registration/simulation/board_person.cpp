@@ -9,7 +9,7 @@ namespace planlight::simulation {
 namespace {
 
 constexpr std::size_t kChangesOfFlicker = 4;
-constexpr Instant kFlickerWithin = std::chrono::milliseconds(1500);
+constexpr Instant kFlickerWithin = std::chrono::seconds(4);
 
 /// Smoothly from one place to another; `share` 0 to 1.
 RigidTransform between(const RigidTransform& a, const RigidTransform& b, double share) {

@@ -1,0 +1,116 @@
+// compare_rig RIG TRUTH EVENTS SECONDS: a rig that a guided calibration found against the simulator's truth.json, and what its events say.
+// Points: the corners of the board in the truth's own poses, seen without noise by the true rig, placed by the found one; a common turn and
+// shift is taken out, for it cancels between scan and light. Exit code 0 when scanned points and light are within the goals (0.1 mm and
+// 0.25 mm, 95 %), at least eight poses were taken and every refusal has a reason.
+#include <fmt/format.h>
+
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "planning_io/case/rig_file.h"
+#include "planning_io/files/safe_write.h"
+#include "planning_io/types/statistics.h"
+#include "registration/calibration/volume_error.h"
+
+namespace {
+
+using namespace planlight;
+using Eigen::Vector3d;
+
+bool failed = false;
+
+void expect(bool is_true, const char* what) {
+    if (!is_true) fmt::print("FAIL {}\n", what);
+    failed = failed || !is_true;
+}
+
+RigCalibration true_rig(const nlohmann::json& truth, const std::string& beside) {
+    const std::string file = beside + ".true-rig.json";
+    write_safely(file, truth.at("true_rig").dump());
+    return read_rig(file);
+}
+
+std::vector<Vector3d> points_of(const nlohmann::json& truth) {
+    std::vector<Vector3d> points;
+    for (const auto& rows : truth.at("rig_from_board")) {
+        RigidTransform pose = RigidTransform::Identity();
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 4; ++c) pose(r, c) = rows.at(static_cast<std::size_t>(r)).at(static_cast<std::size_t>(c));
+        for (double x = 25; x < 250; x += 25)
+            for (double y = 25; y < 175; y += 25) points.push_back(pose * Vector3d(x, y, 0));
+    }
+    return points;
+}
+
+struct Errors {
+    std::vector<double> points_mm, light_mm;
+};
+
+Errors errors_of(const RigCalibration& found, const RigCalibration& truth, const std::vector<Vector3d>& points) {
+    RigEstimate rig;
+    rig.devices = {found.left_camera, found.right_camera, found.projector};
+    const RigidTransform found_from_true =
+        found.left_camera.device_from_rig.inverse() * truth.left_camera.device_from_rig;
+    std::vector<Vector3d> placed, there;
+    Errors errors;
+    for (const Vector3d& p : points) {
+        const auto left = project(truth.left_camera, p), right = project(truth.right_camera, p),
+                   lit = project(truth.projector, p);
+        if (!left || !right || !lit || !in_picture(truth.left_camera, *left) ||
+            !in_picture(truth.right_camera, *right) || !in_picture(truth.projector, *lit))
+            continue;
+        const auto q = triangulate_pixels(rig, {*left, *right, std::nullopt}, kScanSigma_px, found_from_true * p);
+        if (!q) continue;
+        placed.push_back(*q);
+        there.push_back(p);
+        if (const auto sent = project(found.projector, *q))
+            errors.light_mm.push_back((truth.projector.device_from_rig * p).z() / truth.projector.focal_x *
+                                      (*sent - *lit).norm());
+    }
+    Eigen::Matrix3Xd a(3, placed.size()), b(3, placed.size());
+    for (std::size_t i = 0; i < placed.size(); ++i) {
+        a.col(static_cast<Eigen::Index>(i)) = placed[i];
+        b.col(static_cast<Eigen::Index>(i)) = there[i];
+    }
+    const RigidTransform true_from_found = fit_rigid_transform(a, b);
+    for (std::size_t i = 0; i < placed.size(); ++i)
+        errors.points_mm.push_back((true_from_found * placed[i] - there[i]).norm());
+    return errors;
+}
+
+void read_events(const std::string& file, std::size_t& poses, std::map<std::string, int>& refused) {
+    std::ifstream in(file);
+    double seconds = 0;
+    for (std::string line; std::getline(in, line);) {
+        if (line.empty()) continue;
+        const auto event = nlohmann::json::parse(line);
+        if (event.contains("at_s")) seconds = event["at_s"];
+        if (event["event"] == "refused") {
+            ++refused[event.value("fault", std::string("its pictures"))];
+            expect(!event.value("why", std::string()).empty() && !event.value("what", std::string()).empty(),
+                   "a refused pose has its reason and what to do");
+        }
+        if (event.contains("poses")) poses = event["poses"];
+    }
+    fmt::print("     {} poses in {:.0f} s; sent on:", poses, seconds);
+    for (const auto& [why, count] : refused) fmt::print(" {} {};", count, why);
+    fmt::print("\n");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 5) return 2;
+    const auto truth = nlohmann::json::parse(read_whole(argv[2]));
+    const Errors errors = errors_of(read_rig(argv[1]), true_rig(truth, argv[1]), points_of(truth));
+    std::size_t poses = 0;
+    std::map<std::string, int> refused;
+    read_events(argv[3], poses, refused);
+    const double points = quantile(errors.points_mm, 0.95), light = quantile(errors.light_mm, 0.95);
+    fmt::print("     true error: points {:.4f} mm, light {:.4f} mm (95 % of {} places; medians {:.4f}, {:.4f}); {} s in all\n",
+               points, light, errors.points_mm.size(), median(errors.points_mm), median(errors.light_mm), argv[4]);
+    expect(points < 0.1 && light < 0.25, "the rig is as true as the goals want");
+    expect(poses >= 8, "eight poses or more were taken");
+    return failed;
+}
