@@ -5,15 +5,19 @@
 #include <future>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <thread>
 
 #include "app/commands/calibrate_options.h"
 #include "app/console.h"
+#include "app/live/guide_screen.h"
 #include "app/live/guided_calibration.h"
 #include "app/live/room_cameras.h"
 #include "app/report/calibration_report.h"
+#include "app/windows/guide_window.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/case/room_file.h"
+#include "planning_io/files/image_file.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "registration/calibration/rig_on_poses.h"
@@ -73,15 +77,88 @@ void print(const GuideEvent& event) {
     std::fflush(stdout);
 }
 
-/// Runs it in a thread of its own, so that this one can see to signals and the window.
-void guide(GuidedCalibration& calibration) {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
+/// What the person looks at while something runs in a thread of its own: the window, or nothing but the terminal.
+class Screen {
+public:
+    Screen(const CalibrateOptions& options, const GuidedCalibration& calibration, std::string subtitle)
+        : calibration_(calibration), subtitle_(std::move(subtitle)), screenshots_(options.screenshots) {
+        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
+        if (options.headless) return;
+        OperatorWindowSettings settings;
+        settings.title = "Planlight calibration";
+        if (!options.operator_monitor.empty()) settings.monitor = options.operator_monitor;
+        window_ = std::make_unique<GuideWindow>(settings);
+        if (!screenshots_.empty()) std::filesystem::create_directories(screenshots_);
+    }
+
+    bool has_window() const { return window_ != nullptr; }
+
+    /// Until `ready`, or somebody wants to end it: false then.
+    template <typename Ready>
+    bool wait(const Ready& ready, const std::string& computing = {}) {
+        while (!ready()) {
+            if (asked_to_end) return false;
+            if (frame(computing) == GuideAction::quit) return false;
+        }
+        return true;
+    }
+    /// Keep, discard, or quit.
+    GuideAction ask(const std::vector<std::string>& result) {
+        result_ = result;
+        for (;;) {
+            const GuideAction wanted = frame({});
+            if (asked_to_end) return GuideAction::quit;
+            if (wanted != GuideAction::none) return wanted;
+        }
+    }
+
+private:
+    GuideAction frame(const std::string& computing) {
+        if (!window_) {
+            std::this_thread::sleep_for(50ms);
+            return GuideAction::none;
+        }
+        GuideModel model = guide_model_of(calibration_.state(), "Guided calibration", subtitle_);
+        if (!computing.empty() || !result_.empty()) {
+            model.mood = GuideModel::Mood::done;
+            model.word = result_.empty() ? "DONE" : "KEEP IT?";
+            model.what = result_.empty() ? computing : "Keep the new rig, or go on with the former one?";
+            model.why = result_.empty() ? "" : "Enter keeps it, Delete discards it.";
+            model.share = 0;
+            model.result = result_;
+        }
+        const GuideAction wanted = window_->frame(model);
+        take_picture(model.word);
+        std::this_thread::sleep_for(30ms);
+        return wanted;
+    }
+    /// One for every word, when it has stood for some frames.
+    void take_picture(const std::string& word) {
+        constexpr int kSettled = 4;
+        stood_ = word == word_ ? stood_ + 1 : 0;
+        word_ = word;
+        if (screenshots_.empty() || stood_ != kSettled) return;
+        write_png(window_->screenshot(), screenshots_ / fmt::format("guide-{:02}.png", ++pictures_));
+    }
+
+    const GuidedCalibration& calibration_;
+    std::string subtitle_;
+    path screenshots_;
+    std::unique_ptr<GuideWindow> window_;
+    std::vector<std::string> result_;
+    std::string word_;
+    int stood_ = 0, pictures_ = 0;
+};
+
+/// Guides in a thread of its own, so that this one can see to signals and the window.
+void guide(GuidedCalibration& calibration, Screen& screen) {
     std::stop_source stop;
     auto run = std::async(std::launch::async, [&] { calibration.run(stop.get_token()); });
-    while (run.wait_for(50ms) != std::future_status::ready)
-        if (asked_to_end) stop.request_stop();
+    const auto ready = [&] { return run.wait_for(0ms) == std::future_status::ready; };
+    const bool wanted = screen.wait(ready);
+    stop.request_stop();
     run.get();
-    if (asked_to_end)
+    if (!wanted)
         throw CheckFailedError(fmt::format("ended by hand after {} poses; no rig was made", calibration.poses().size()),
                                "Begin again when there is time; ten poses take some minutes.");
 }
@@ -115,9 +192,10 @@ bool ask_at_terminal() {
 
 enum class Keeping { keep, discard, beside };
 
-Keeping decide(const CalibrateOptions& options) {
+Keeping decide(const CalibrateOptions& options, const std::vector<std::string>& result, Screen& screen) {
     if (options.keep == "yes") return Keeping::keep;
     if (options.keep == "no") return Keeping::discard;
+    if (screen.has_window()) return screen.ask(result) == GuideAction::keep ? Keeping::keep : Keeping::discard;
     if (isatty(STDIN_FILENO) && !options.json) return ask_at_terminal() ? Keeping::keep : Keeping::discard;
     return std::filesystem::exists(options.out) ? Keeping::beside : Keeping::keep;
 }
@@ -136,9 +214,21 @@ path write_as_decided(const RigCalibration& rig, const CalibrateOptions& options
     return options.out;
 }
 
+/// The result in words, for the window.
+std::vector<std::string> sentences_of(const CalibrationReport& report) {
+    std::vector<std::string> sentences;
+    std::istringstream text(calibration_summary(report));
+    for (std::string line; std::getline(text, line);)
+        if (line.find("; the report: ") == std::string::npos) sentences.push_back(line);
+    return sentences;
+}
+
 int finish(const CalibrateOptions& options, const GuidedCalibration& guided, const BoardSpec& board,
-           const DeviceSerials& serials) {
-    const Calibration calibration = guided.calibrate();
+           const DeviceSerials& serials, Screen& screen) {
+    auto computed = std::async(std::launch::async, [&] { return guided.calibrate(); });
+    screen.wait([&] { return computed.wait_for(0ms) == std::future_status::ready; },
+                "The rig is computed, and judged on poses that it has not seen.");
+    const Calibration calibration = computed.get();
     if (calibration.refusal) throw CheckFailedError(calibration.refusal->reason, calibration.refusal->remedy);
     CalibrationReport report{calibration, guided.poses(), board, today(), options.out, {}, serials};
     RigCalibration rig = rig_calibration_of(calibration, report.made_on);
@@ -149,8 +239,9 @@ int finish(const CalibrateOptions& options, const GuidedCalibration& guided, con
             report.changes.push_back(words);
     }
     for (const std::string& warning : calibration.warnings) warn(warning);
-    if (!options.json) fmt::print("{}\n", calibration_summary(report));
-    const path written = write_as_decided(rig, options, decide(options));
+    if (!options.json)
+        for (const std::string& sentence : sentences_of(report)) fmt::print("{}\n", sentence);
+    const path written = write_as_decided(rig, options, decide(options, sentences_of(report), screen));
     report.rig_file = written;
     if (!written.empty()) {
         path stem = written;
@@ -196,8 +287,9 @@ int run_calibrate_live(const CalibrateOptions& options) {
                                  else
                                      print(event);
                              });
-    guide(guided);
-    return finish(options, guided, board, settings.serials);
+    Screen screen(options, guided, room.name + ", " + text_of(board));
+    guide(guided, screen);
+    return finish(options, guided, board, settings.serials, screen);
 }
 
 }  // namespace planlight

@@ -174,7 +174,7 @@ std::vector<BoardStop> SimulatedBoardRoom::Room::stops_of_a_person(std::mt19937&
     for (int i = 0; i < kUseful; ++i) {
         switch (i) {
             case 1:
-                stops.push_back({posed(between(0, 6), 70 * kRadians, 0, {0, 0, 0}), "too aslant"});
+                stops.push_back({posed(0, 64 * kRadians, 0, {0, 0, 0}), "too aslant"});
                 break;
             case 2:
                 stops.push_back({posed(0, 0.35, 0, {sign * aside, 0, -0.25 * rig.working_distance_mm}), "seen by one camera"});

@@ -25,10 +25,32 @@ void expect(bool is_true, const char* what) {
     failed = failed || !is_true;
 }
 
-RigCalibration true_rig(const nlohmann::json& truth, const std::string& beside) {
-    const std::string file = beside + ".true-rig.json";
-    write_safely(file, truth.at("true_rig").dump());
-    return read_rig(file);
+CameraModel device_of(const nlohmann::json& json) {
+    CameraModel d;
+    d.width = json.at("width");
+    d.height = json.at("height");
+    d.focal_x = json.at("focal_x");
+    d.focal_y = json.at("focal_y");
+    d.centre_x = json.at("centre_x");
+    d.centre_y = json.at("centre_y");
+    d.k1 = json.at("k1");
+    d.k2 = json.at("k2");
+    d.p1 = json.at("p1");
+    d.p2 = json.at("p2");
+    d.k3 = json.at("k3");
+    for (int r = 0; r < 4; ++r)
+        for (int c = 0; c < 4; ++c)
+            d.device_from_rig(r, c) =
+                json.at("device_from_rig").at(static_cast<std::size_t>(r)).at(static_cast<std::size_t>(c));
+    return d;
+}
+
+RigCalibration true_rig(const nlohmann::json& truth) {
+    RigCalibration rig;
+    rig.left_camera = device_of(truth.at("true_rig").at("left_camera"));
+    rig.right_camera = device_of(truth.at("true_rig").at("right_camera"));
+    rig.projector = device_of(truth.at("true_rig").at("projector"));
+    return rig;
 }
 
 std::vector<Vector3d> points_of(const nlohmann::json& truth) {
@@ -103,7 +125,7 @@ void read_events(const std::string& file, std::size_t& poses, std::map<std::stri
 int main(int argc, char** argv) {
     if (argc < 5) return 2;
     const auto truth = nlohmann::json::parse(read_whole(argv[2]));
-    const Errors errors = errors_of(read_rig(argv[1]), true_rig(truth, argv[1]), points_of(truth));
+    const Errors errors = errors_of(read_rig(argv[1]), true_rig(truth), points_of(truth));
     std::size_t poses = 0;
     std::map<std::string, int> refused;
     read_events(argv[3], poses, refused);
