@@ -129,7 +129,7 @@ private:
         }
         const GuideAction wanted = window_->frame(model);
         take_picture(model.word);
-        std::this_thread::sleep_for(30ms);
+        std::this_thread::sleep_for(80ms);
         return wanted;
     }
     /// One for every word, when it has stood for some frames.

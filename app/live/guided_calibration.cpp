@@ -18,6 +18,7 @@ using namespace std::chrono_literals;
 constexpr auto kFramePatience = 2000ms;
 constexpr Instant kLightValid = 3s, kLightRenewed = 1s;  ///< of a guiding light: it is shown again before it ends
 constexpr Instant kLightLeast = 300ms;                   ///< words that change faster cannot be read
+constexpr Instant kLookEvery = 100ms;  ///< to find a board takes a processor its while; a person is slower
 constexpr Instant kLaterStep = 60ms, kLatest = 300ms;    ///< of a light whose delay is not known
 constexpr double kLitGrey = 8;
 
@@ -146,7 +147,7 @@ void GuidedCalibration::run(const std::stop_token& stop) {
 /// One look at the newest pictures, and what follows from it.
 void GuidedCalibration::look() {
     collect_estimate();
-    StereoFrame frame = cameras_.newest(seen_at_, kFramePatience);
+    StereoFrame frame = cameras_.newest(seen_at_ + kLookEvery, kFramePatience);
     seen_at_ = frame.at;
     const auto left = std::make_shared<const GrayImage>(std::move(frame.left)),
                right = std::make_shared<const GrayImage>(std::move(frame.right));
@@ -197,13 +198,18 @@ void GuidedCalibration::shine(const GuideLight& light) {
     state_.light = light;
 }
 
-/// Whether the board is still where it was, by a fresh look at it.
+/// Whether the board has left its place, by a fresh look at it; false where it is not seen, for the light may be late.
 bool GuidedCalibration::moved_since(const BoardSighting& before) {
-    const StereoFrame frame = cameras_.grab(clock_.now(), kFramePatience);
-    const BoardSighting now{look_at_board(frame.left, board_), look_at_board(frame.right, board_), frame.at};
-    PoseGuide here(board_, settings_.guide);
-    here.look(before);
-    return here.look(now).still_share <= 0;
+    const Instant until = clock_.now() + 1s;
+    while (clock_.now() < until) {
+        const StereoFrame frame = cameras_.newest(clock_.now(), kFramePatience);
+        const BoardSighting now{look_at_board(frame.left, board_), look_at_board(frame.right, board_), frame.at};
+        if (now.left.corners.size() == 0 || now.right.corners.size() == 0) continue;
+        PoseGuide here(board_, settings_.guide);
+        here.look(before);
+        return here.look(now).still_share <= 0;
+    }
+    return false;
 }
 
 /// The pose, if its pictures are good; the reason if not.
