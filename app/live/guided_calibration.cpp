@@ -28,6 +28,9 @@ struct PoseLeft {
     std::string why, what;
 };
 
+/// Somebody ended it in the middle of a capture.
+struct Ended {};
+
 /// Share of the board's corners round which white light is brighter than black.
 double lit_share(const GrayImage& white, const GrayImage& black, const BoardCorners& corners) {
     constexpr int kRound = 3;
@@ -55,17 +58,24 @@ public:
     StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override {
         StereoFrame frame = cameras_.grab(not_before + later_, patience);
         if (++frames_ == 1) white_ = frame;
-        if (frames_ == 2) judge(frame);
+        if (frames_ == 2 && lit_by(frame) < least_lit_) {
+            // The light may have come late: black is still shown.
+            constexpr Instant kLate = 200ms;
+            frame = cameras_.grab(not_before + later_ + kLate, patience);
+            const double lit = lit_by(frame);
+            if (lit < least_lit_)
+                throw PoseLeft{PoseFault::beside_light,
+                               fmt::format("The projector lights only {:.0f} % of it.", 100 * lit),
+                               "Bring it into the middle of the projector's light."};
+        }
         return frame;
     }
 
 private:
-    void judge(const StereoFrame& black) const {
-        const double lit = std::min(lit_share(white_.left, black.left, sighting_.left.corners),
-                                    lit_share(white_.right, black.right, sighting_.right.corners));
-        if (lit < least_lit_)
-            throw PoseLeft{PoseFault::beside_light, fmt::format("The projector lights only {:.0f} % of it.", 100 * lit),
-                           "Bring it into the middle of the projector's light."};
+    /// The least share of the board that is brighter under white light than under black.
+    double lit_by(const StereoFrame& black) const {
+        return std::min(lit_share(white_.left, black.left, sighting_.left.corners),
+                        lit_share(white_.right, black.right, sighting_.right.corners));
     }
     StereoCamera& cameras_;
     const BoardSighting& sighting_;
@@ -120,6 +130,7 @@ GuideState GuidedCalibration::state() const {
 
 void GuidedCalibration::run(const std::stop_token& stop) {
     const DarkOnExit dark(projector_);
+    stop_ = stop;
     Instant good_at = clock_.now();
     seen_at_ = clock_.now();
     while (!stop.stop_requested() && !guide_.done(predicted_mm_)) {
@@ -230,7 +241,10 @@ void GuidedCalibration::capture(const BoardSighting& sighting) {
         WatchedCameras watched(cameras_, sighting, settings_.guide.least_in_light, later_);
         pictures = capture_scan(projector_, watched, clock_, stripes_, [&](int done, int of) {
             set_step("Capturing", static_cast<double>(done) / of);
+            if (stop_.stop_requested()) throw Ended{};
         });
+    } catch (const Ended&) {
+        return;
     } catch (const PoseLeft& left) {
         given_up(left.fault, left.why, left.what);
         return;

@@ -96,6 +96,7 @@ private:
     std::optional<double> predicted_mm_;
     Instant later_{}, began_{}, seen_at_{}, shone_at_{}, not_before_{};
     GuideLight light_;
+    std::stop_token stop_;
     PoseFault told_ = PoseFault::none;
     std::string told_what_;
     bool refused_here_ = false;  ///< the board has not moved since it was refused or captured

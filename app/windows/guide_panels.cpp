@@ -187,7 +187,9 @@ void draw_guide_progress(const Pen& pen, const Box& box, const GuideModel& model
                   *model.predicted_mm <= model.good_enough_mm ? theme::kGreen : theme::kAmber);
     else
         paragraph(pen.fonts.body, "Predicted error: after three poses", theme::kQuiet);
-    for (const std::string& wanted : model.wanted) paragraph(pen.fonts.body, "still wanted: " + wanted, theme::kAmber);
+    std::string wanted;
+    for (const std::string& one : model.wanted) wanted += (wanted.empty() ? "Still wanted: " : "; ") + one;
+    if (!wanted.empty()) paragraph(pen.fonts.body, wanted + ".", theme::kAmber);
 }
 
 }  // namespace planlight

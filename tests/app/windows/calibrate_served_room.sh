@@ -2,16 +2,18 @@
 # calibrate_served_room.sh FOLDER: a guided calibration through the wire, on the display with two monitors that two_monitors.sh made:
 # `simulate --serve --board` serves two cameras that see a board which a person carries about, with the mistakes that persons make, and the
 # light of the second monitor; `calibrate --live` guides it. $PLANLIGHT is the program, $COMPARE compares the rig with the simulator's truth,
-# $SEEDS the rooms (default 1), $PRESET which (default paper). Leaves events-SEED.json, room-SEED/ and guided-SEED.json in FOLDER.
+# $SEEDS how many rooms (default 1), $FIRST_SEED which is the first, $PRESET of which kind (default paper). Leaves events-SEED.json, room-SEED/ and guided-SEED.json in FOLDER.
 folder=$1
 ip address add 127.0.0.2/8 dev lo 2>/dev/null
 failed=0
 check() { if [ "$2" = 1 ]; then echo "ok   $1"; else echo "FAIL $1 ($3)"; failed=1; fi; }
 number() { awk "BEGIN { print ($1) ? 1 : 0 }"; }
-rm -rf "$folder"/{served,room-*,events-*,guided-*,errors*,pictures-*}
+rm -f "$folder/served"
 trap '[ -z "$served" ] || { kill $served 2>/dev/null; wait $served 2>/dev/null; }' EXIT
-for seed in $(seq ${SEEDS:-1}); do
+first=${FIRST_SEED:-1}
+for seed in $(seq $first $((first + ${SEEDS:-1} - 1))); do
   room="$folder/room-$seed"
+  rm -rf "$room" "$folder"/{events,guided,errors}-$seed*
   "$PLANLIGHT" simulate --board "charuco 10x7 25 mm" --preset ${PRESET:-paper} --seed $seed --serve DUMMY1 --out "$room" >"$folder/served" 2>&1 & served=$!
   for i in $(seq 300); do grep -q "cameras answer" "$folder/served" && break; kill -0 $served 2>/dev/null || break; sleep 0.1; done
   grep -q "cameras answer" "$folder/served" || { echo "skipped: $(cat "$folder/served")"; exit 77; }

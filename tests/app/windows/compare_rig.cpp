@@ -11,7 +11,7 @@
 #include "planning_io/case/rig_file.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/statistics.h"
-#include "registration/calibration/volume_error.h"
+#include "tests/app/rig_error.h"
 
 namespace {
 
@@ -59,46 +59,9 @@ std::vector<Vector3d> points_of(const nlohmann::json& truth) {
         RigidTransform pose = RigidTransform::Identity();
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 4; ++c) pose(r, c) = rows.at(static_cast<std::size_t>(r)).at(static_cast<std::size_t>(c));
-        for (double x = 25; x < 250; x += 25)
-            for (double y = 25; y < 175; y += 25) points.push_back(pose * Vector3d(x, y, 0));
+        test::add_board_points(pose, points);
     }
     return points;
-}
-
-struct Errors {
-    std::vector<double> points_mm, light_mm;
-};
-
-Errors errors_of(const RigCalibration& found, const RigCalibration& truth, const std::vector<Vector3d>& points) {
-    RigEstimate rig;
-    rig.devices = {found.left_camera, found.right_camera, found.projector};
-    const RigidTransform found_from_true =
-        found.left_camera.device_from_rig.inverse() * truth.left_camera.device_from_rig;
-    std::vector<Vector3d> placed, there;
-    Errors errors;
-    for (const Vector3d& p : points) {
-        const auto left = project(truth.left_camera, p), right = project(truth.right_camera, p),
-                   lit = project(truth.projector, p);
-        if (!left || !right || !lit || !in_picture(truth.left_camera, *left) ||
-            !in_picture(truth.right_camera, *right) || !in_picture(truth.projector, *lit))
-            continue;
-        const auto q = triangulate_pixels(rig, {*left, *right, std::nullopt}, kScanSigma_px, found_from_true * p);
-        if (!q) continue;
-        placed.push_back(*q);
-        there.push_back(p);
-        if (const auto sent = project(found.projector, *q))
-            errors.light_mm.push_back((truth.projector.device_from_rig * p).z() / truth.projector.focal_x *
-                                      (*sent - *lit).norm());
-    }
-    Eigen::Matrix3Xd a(3, placed.size()), b(3, placed.size());
-    for (std::size_t i = 0; i < placed.size(); ++i) {
-        a.col(static_cast<Eigen::Index>(i)) = placed[i];
-        b.col(static_cast<Eigen::Index>(i)) = there[i];
-    }
-    const RigidTransform true_from_found = fit_rigid_transform(a, b);
-    for (std::size_t i = 0; i < placed.size(); ++i)
-        errors.points_mm.push_back((true_from_found * placed[i] - there[i]).norm());
-    return errors;
 }
 
 void read_events(const std::string& file, std::size_t& poses, std::map<std::string, int>& refused) {
@@ -125,7 +88,7 @@ void read_events(const std::string& file, std::size_t& poses, std::map<std::stri
 int main(int argc, char** argv) {
     if (argc < 5) return 2;
     const auto truth = nlohmann::json::parse(read_whole(argv[2]));
-    const Errors errors = errors_of(read_rig(argv[1]), true_rig(truth), points_of(truth));
+    const test::RigError errors = test::rig_error(read_rig(argv[1]), true_rig(truth), points_of(truth));
     std::size_t poses = 0;
     std::map<std::string, int> refused;
     read_events(argv[3], poses, refused);
