@@ -8,46 +8,17 @@
 
 #include "planning_io/types/error.h"
 #include "projection/stroke_font.h"
-#include "projection/stroke_raster.h"
+#include "projection/text_line.h"
 
 namespace planlight {
-namespace {
-
 using Eigen::Vector2d;
-
-/// One line of text with its middle at `middle` (pixels), capitals `height` high, as bright as `colour`.
-void write_line(const std::string& text, Vector2d middle, double height, Rgb colour, StrokeRaster& raster,
-                RgbImage& picture) {
-    const std::u32string codes = code_points(text);
-    const double half = std::max(0.75, height / 16);
-    double x = middle.x() - text_width(codes) * height / 2;
-    for (const char32_t code : codes) {
-        const Glyph sign = glyph(code);
-        for (const auto& way : sign.lines)
-            for (std::size_t i = 0; i + 1 < way.size(); ++i) {
-                const auto place = [&](const Vector2d& p) {
-                    return Vector2d(x + p.x() * height, middle.y() + height / 2 - p.y() * height);
-                };
-                Vector2d a = place(way[i]), b = place(way[i + 1]);
-                if (a == b) continue;
-                const Vector2d along = half * (b - a).normalized(), aside(-along.y(), along.x());
-                a -= along, b += along;
-                raster.add_quad({a + aside, b + aside, b - aside, a - aside});
-                raster.flush(colour, picture);
-            }
-        x += sign.advance * height;
-    }
-}
-
-}  // namespace
 
 RgbImage draw_monitor_card(const Monitor& monitor, int number) {
     RgbImage picture(monitor.width, monitor.height);
-    StrokeRaster raster(monitor.width, monitor.height);
     const auto line = [&](const std::string& text, double at, double height, Rgb colour) {
         const double widest = 0.88 * monitor.width / std::max(0.1, text_width(code_points(text)));
         write_line(text, {monitor.width / 2.0, at * monitor.height}, std::min(height * monitor.height, widest), colour,
-                   raster, picture);
+                   picture);
     };
     constexpr Rgb kWhite{255, 255, 255}, kGrey{150, 150, 150}, kAmber{255, 180, 60};
     line("PLANLIGHT PROJECTOR HERE?", 0.14, 0.06, kAmber);

@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "app/commands/calibrate_options.h"
 #include "app/commands/capture_conversion.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
@@ -16,13 +17,6 @@
 
 namespace planlight {
 namespace {
-
-struct CalibrateOptions {
-    Path captures, out = "rig.json";
-    std::string board;
-    std::string serial_left, serial_right, serial_projector;  ///< empty: as capture.json says
-    bool json = false;
-};
 
 /// Refused where a board cannot be calibrated by it.
 StripeSettings calibration_light(const CaptureFolder& settings, const Path& pose) {
@@ -101,18 +95,19 @@ Observed observe_captures(const CalibrateOptions& options, const BoardSpec& boar
     return observed;
 }
 
-/// The calibration that this one would take the place of, if it can be read.
-std::optional<RigCalibration> previous_rig(const Path& file) {
-    if (!std::filesystem::exists(file)) return std::nullopt;
-    try {
-        return read_partial_rig(file);
-    } catch (const Error& error) {
-        warn(fmt::format("the rig file there cannot be read and will be replaced: {}", error.what()));
-        return std::nullopt;
-    }
+/// Which of its two kinds the command is asked for.
+void check_kind(const CalibrateOptions& options) {
+    if (options.live && options.room.empty())
+        throw InputError({}, "--live needs the room", "Name its room.json with --room (see `planlight devices`).");
+    if (options.live && !options.captures.empty())
+        throw InputError({}, "--live takes its captures itself", "Leave the folder of captures out.");
+    if (!options.live && options.captures.empty())
+        throw InputError({}, "no captures are named", "Name their folder, or say --live --room room.json.");
 }
 
 int run_calibrate(const CalibrateOptions& options) {
+    check_kind(options);
+    if (options.live) return run_calibrate_live(options);
     const BoardSpec board = parse_board(options.board);
     check_can_write(options.out);  // before minutes of work, not after
     const Observed observed = observe_captures(options, board);
@@ -144,13 +139,23 @@ int run_calibrate(const CalibrateOptions& options) {
 
 }  // namespace
 
+std::optional<RigCalibration> previous_rig(const std::filesystem::path& file) {
+    if (!std::filesystem::exists(file)) return std::nullopt;
+    try {
+        return read_partial_rig(file);
+    } catch (const Error& error) {
+        warn(fmt::format("the rig file there cannot be read and will be replaced: {}", error.what()));
+        return std::nullopt;
+    }
+}
+
 Run add_calibrate(CLI::App& app) {
     const auto options = std::make_shared<CalibrateOptions>();
     CalibrateOptions& o = *options;
     auto* sub =
-        add_command(app, "calibrate", "Captures of a board under coded light -> rig.json, or a refusal (exit 6)",
+        add_command(app, "calibrate", "A board under coded light, captured or in your hands -> rig.json, or a refusal (exit 6)",
                     "calibrate captures --board \"charuco 10x7 25 mm\" --out rig.json");
-    sub->add_option("captures", o.captures, "Folder with one folder a pose")->required();
+    sub->add_option("captures", o.captures, "Folder with one folder a pose");
     sub->add_option("--board", o.board,
                     "The board, its square as measured: \"charuco 10x7 24.98 mm\" or \"chessboard 9x6 25 mm\"")
         ->required();
@@ -161,6 +166,24 @@ Run add_calibrate(CLI::App& app) {
                     "Of the projector; `projector --identify` tells it where the monitor does");
     sub->add_option("--out", o.out, "rig.json to write; the report stands beside it")->capture_default_str();
     json_flag(sub, o.json);
+    sub->add_flag("--live", o.live,
+                  "Guided, with the board in your hands: watches both cameras, says how to hold it, captures by itself "
+                  "when it lies still, and ends when it is good enough");
+    sub->add_option("--room", o.room, "Of --live: room.json (see `devices`)");
+    sub->add_option("--keep", o.keep,
+                    "Of --live, the new rig: ask (in the window or at the terminal; where nobody can be asked it is "
+                    "written beside, as RIG-new.json), yes, no. The former one stays as RIG-before.json")
+        ->check(CLI::IsMember({"ask", "yes", "no"}))
+        ->capture_default_str();
+    sub->add_option("--keep-captures", o.keep_captures, "Of --live: new folder for the pictures of every pose");
+    sub->add_option("--most-poses", o.most_poses, "Of --live")->check(CLI::Range(8, 40))->capture_default_str();
+    sub->add_option("--good-enough-mm", o.good_enough_mm,
+                    "Of --live: ends when 95 % of the working volume is predicted to be this good")
+        ->check(CLI::Range(0.001, 10.0))
+        ->capture_default_str();
+    sub->add_flag("--headless", o.headless, "Of --live: in words on the terminal, without a window");
+    sub->add_option("--operator", o.operator_monitor, "Of --live: monitor of the window (default: the primary one)");
+    sub->add_option("--screenshots", o.screenshots, "Of --live: folder for pictures of the window");
     return [options] { return run_calibrate(*options); };
 }
 

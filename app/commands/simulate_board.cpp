@@ -12,18 +12,28 @@
 
 namespace planlight {
 
-int run_simulate_board(const SimulateOptions& options) {
+namespace {
+
+simulation::BoardSheet printed(const BoardSpec& board) {
     constexpr int kPxPerSquare = 256;
-    const BoardSpec board = parse_board(options.board);
     simulation::BoardSheet sheet;
     sheet.print = draw_board(board, kPxPerSquare);
     sheet.px_per_mm = kPxPerSquare / board.square_mm;
+    return sheet;
+}
+
+}  // namespace
+
+int run_simulate_board(const SimulateOptions& options) {
+    const BoardSpec board = parse_board(options.board);
     simulation::BoardRoomSettings settings;
     settings.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     settings.seed = options.seed;
     settings.poses = options.poses;
     settings.whole = board.kind == BoardSpec::Kind::chessboard;
-    simulation::SimulatedBoardRoom room(sheet, settings);
+    settings.light.whole_exposure = !options.serve.empty();  // as real cameras see it
+    simulation::SimulatedBoardRoom room(printed(board), settings);
+    if (!options.serve.empty()) return run_simulate_served_board(options, room);
     StripeSettings stripes;
     stripes.width = room.projector().width();
     stripes.height = room.projector().height();

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "registration/simulation/board_room.h"
 #include "registration/simulation/simulated_rig.h"
 
 namespace planlight {
@@ -29,6 +30,8 @@ struct SimulateOptions {
 };
 /// With `serve` given: two GigE Vision cameras and that monitor, until it is ended.
 int run_simulate_served(const SimulateOptions& options, simulation::SimulatedRig& rig);
+/// The same with a board that a person carries about.
+int run_simulate_served_board(const SimulateOptions& options, simulation::SimulatedBoardRoom& room);
 int run_simulate_board(const SimulateOptions& options);  ///< with `board` given
 
 }  // namespace planlight

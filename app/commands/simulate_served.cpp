@@ -16,15 +16,8 @@ namespace {
 
 volatile std::sig_atomic_t asked_to_end = 0;
 
-/// rig.json and room.json for whoever operates in this room.
-void write_files(const SimulateOptions& options, const simulation::SimulatedRig& rig,
-                 const simulation::ServeSettings& served) {
-    std::filesystem::create_directories(options.out);
-    RigCalibration calibration = rig.calibration();
-    calibration.serials.left_camera = served.left.serial;
-    calibration.serials.right_camera = served.right.serial;
-    write_rig(calibration, options.out / "rig.json");
-    write_safely(options.out / "truth.json", rig.truth_json());
+/// room.json for whoever operates in this room.
+void write_room_file(const SimulateOptions& options, const simulation::ServeSettings& served) {
     RoomFile room;
     room.name = "Simulated room, served";
     room.rig = "rig.json";
@@ -36,35 +29,75 @@ void write_files(const SimulateOptions& options, const simulation::SimulatedRig&
     write_room(room, options.out / "room.json");
 }
 
-}  // namespace
+/// Its rig and its truth.
+void write_rig_files(const SimulateOptions& options, const simulation::SimulatedRig& rig,
+                     const simulation::ServeSettings& served) {
+    RigCalibration calibration = rig.calibration();
+    calibration.serials.left_camera = served.left.serial;
+    calibration.serials.right_camera = served.right.serial;
+    write_rig(calibration, options.out / "rig.json");
+    write_safely(options.out / "truth.json", rig.truth_json());
+}
 
-int run_simulate_served(const SimulateOptions& options, simulation::SimulatedRig& rig) {
+void check_monitor(const MonitorPicture& monitor, const std::string& name, const Projector& projector) {
+    if (monitor.width() == projector.width() && monitor.height() == projector.height()) return;
+    throw DeviceError("Monitor " + name,
+                      fmt::format("has {} x {} pixels, and the room's projector {} x {}", monitor.width(),
+                                  monitor.height(), projector.width(), projector.height()),
+                      "Set that resolution (`xrandr`), or choose the other --preset.");
+}
+
+simulation::ServeSettings serve_settings(const SimulateOptions& options) {
     if (options.addresses.size() != 2)
         throw InputError({}, "--addresses needs one address for each camera", "Give --addresses 127.0.0.1,127.0.0.2.");
-    MonitorPicture monitor(options.serve);
-    if (monitor.width() != rig.projector().width() || monitor.height() != rig.projector().height())
-        throw DeviceError("Monitor " + options.serve,
-                          fmt::format("has {} x {} pixels, and the room's projector {} x {}", monitor.width(),
-                                      monitor.height(), rig.projector().width(), rig.projector().height()),
-                          "Set that resolution (`xrandr`), or choose the other --preset.");
     simulation::ServeSettings settings;
     settings.left.serial = "SIM-L";
     settings.right.serial = "SIM-R";
     settings.left.address = options.addresses[0];
     settings.right.address = options.addresses[1];
+    return settings;
+}
+
+/// Serves until somebody ends it.
+void serve(const SimulateOptions& options, const simulation::ServeSettings& settings, MonitorPicture& monitor,
+           const simulation::ServedDevices& devices, const std::function<void()>& write_files) {
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
-    if (options.speed_mm_s > 0) rig.set_motion({options.speed_mm_s, rig.clock().now()});
     simulation::ServedRoom room(
-        rig, [&] { return monitor.look(); }, settings);
+        devices, [&] { return monitor.look(); }, settings);
     room.left().lose_packets(options.lose_packets);
     room.hold_right_back(options.right_behind);
-    write_files(options, rig, settings);
-    fmt::print(
-        "{}: room.json, rig.json, truth.json. Two cameras answer on {} and {}; the projector is {}. Ctrl-C ends it.\n",
-        options.out.string(), options.addresses[0], options.addresses[1], options.serve);
+    std::filesystem::create_directories(options.out);
+    write_files();
+    write_room_file(options, settings);
+    fmt::print("{}: room.json, truth.json. Two cameras answer on {} and {}; the projector is {}. Ctrl-C ends it.\n",
+               options.out.string(), options.addresses[0], options.addresses[1], options.serve);
     std::fflush(stdout);
     while (!asked_to_end) std::this_thread::sleep_for(std::chrono::milliseconds(100));
     fmt::print("{} pictures a camera were sent; {} times it could not keep up.\n", room.made(), room.late());
+}
+
+}  // namespace
+
+int run_simulate_served(const SimulateOptions& options, simulation::SimulatedRig& rig) {
+    const simulation::ServeSettings settings = serve_settings(options);
+    MonitorPicture monitor(options.serve);
+    check_monitor(monitor, options.serve, rig.projector());
+    if (options.speed_mm_s > 0) rig.set_motion({options.speed_mm_s, rig.clock().now()});
+    serve(options, settings, monitor,
+          {rig.projector(), rig.cameras(), rig.clock(), [&](Instant duration) { rig.wait(duration); }},
+          [&] { write_rig_files(options, rig, settings); });
+    return 0;
+}
+
+int run_simulate_served_board(const SimulateOptions& options, simulation::SimulatedBoardRoom& room) {
+    const simulation::ServeSettings settings = serve_settings(options);
+    MonitorPicture monitor(options.serve);
+    check_monitor(monitor, options.serve, room.projector());
+    room.let_person_carry();
+    serve(options, settings, monitor,
+          {room.projector(), room.cameras(), room.clock(), [&](Instant duration) { room.wait(duration); }},
+          [&] { write_safely(options.out / "truth.json", room.truth_json() + "\n"); });
+    fmt::print("The person laid the board down in {} places.\n", room.person()->stops_made());
     return 0;
 }
 

@@ -90,6 +90,13 @@ std::optional<Refusal> judge_picture(const PoseObservation& pose, DeviceName cam
 
 }  // namespace
 
+std::optional<Refusal> judge_pose_pictures(const PoseObservation& pose, const BoardSpec& board,
+                                           const CalibrationSettings& settings) {
+    for (const DeviceName camera : kCameras)
+        if (auto refusal = judge_picture(pose, camera, board, settings)) return refusal;
+    return std::nullopt;
+}
+
 std::optional<Refusal> judge_pictures(const std::vector<PoseObservation>& poses, const BoardSpec& board,
                                       const CalibrationSettings& s) {
     for (const DeviceName camera : kCameras) {

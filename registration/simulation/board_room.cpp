@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <random>
@@ -31,6 +32,20 @@ bool in_view(const Optics& device, const Vector3d& p_in_room) {
            pixel.y() < device.rows - 4;
 }
 
+/// The picture shifted sideways; what comes in from outside is as its rim.
+void shift(GrayImage& picture, int by) {
+    for (int y = 0; y < picture.height; ++y) {
+        std::uint8_t* const row = &picture.at(0, y);
+        if (by > 0) {
+            std::copy_backward(row, row + picture.width - by, row + picture.width);
+            std::fill(row, row + by, row[by]);
+        } else if (by < 0) {
+            std::copy(row - by, row + picture.width, row);
+            std::fill(row + picture.width + by, row + picture.width, row[picture.width + by - 1]);
+        }
+    }
+}
+
 }  // namespace
 
 struct SimulatedBoardRoom::Room final : Projector, StereoCamera, Clock {
@@ -47,6 +62,11 @@ struct SimulatedBoardRoom::Room final : Projector, StereoCamera, Clock {
     double share_in_view(const RigidTransform& room_from_board) const;
     GrayImage expose(CameraView& view, const Sensor& sensor, const LightMap& light, double lamps, std::uint64_t frame);
     void look();
+    void look_at(const RigidTransform& pose, int finer, CameraView& left, CameraView& right) const;
+    RigidTransform posed(double way, double tilt, double turn, const Vector3d& at) const;
+    std::vector<BoardStop> stops_of_a_person(std::mt19937& random) const;
+    bool follow_person(Instant at);
+    void carry_on();
 
     BoardSheet sheet;
     BoardRoomSettings settings;
@@ -59,6 +79,11 @@ struct SimulatedBoardRoom::Room final : Projector, StereoCamera, Clock {
     CameraView left_view, right_view;
     Sensor left_sensor, right_sensor;
     bool seen = false;
+    std::optional<BoardPerson> person;
+    struct Views {
+        CameraView left, right;
+    };
+    std::future<std::unique_ptr<Views>> on_the_way;  ///< of the next place of a board that is carried
     std::vector<float> light_buffer;
     Instant now_{};
 };
@@ -99,6 +124,16 @@ double SimulatedBoardRoom::Room::share_in_view(const RigidTransform& pose) const
     return share;
 }
 
+/// The board's middle at `at` (room), tilted about the axis in direction `way`, turned in its plane; radians.
+RigidTransform SimulatedBoardRoom::Room::posed(double way, double tilt, double turn, const Vector3d& at) const {
+    RigidTransform pose = RigidTransform::Identity();
+    pose.linear() = (Eigen::AngleAxisd(tilt, Vector3d(std::cos(way), std::sin(way), 0)) *
+                     Eigen::AngleAxisd(turn, Vector3d::UnitZ()))
+                        .toRotationMatrix();
+    pose.translation() = at - pose.linear() * Vector3d(sheet.width_mm() / 2, sheet.height_mm() / 2, 0);
+    return pose;
+}
+
 RigidTransform SimulatedBoardRoom::Room::random_pose(std::mt19937& random) const {
     const auto between = [&](double low, double high) {
         return std::uniform_real_distribution<double>(low, high)(random);
@@ -106,31 +141,111 @@ RigidTransform SimulatedBoardRoom::Room::random_pose(std::mt19937& random) const
     for (int attempt = 0; attempt < 5000; ++attempt) {
         const double way = between(0, 2 * M_PI),
                      tilt = between(settings.min_tilt_deg, settings.max_tilt_deg) * kRadians;
-        RigidTransform pose = RigidTransform::Identity();
-        pose.linear() = (Eigen::AngleAxisd(tilt, Vector3d(std::cos(way), std::sin(way), 0)) *
-                         Eigen::AngleAxisd(between(0, 2 * M_PI), Vector3d::UnitZ()))
-                            .toRotationMatrix();
+        const double turn = between(0, 2 * M_PI);
         const Vector3d at(between(-settings.shift_mm, settings.shift_mm),
                           between(-settings.shift_mm, settings.shift_mm),
                           between(-settings.depth_mm, settings.depth_mm));
-        pose.translation() = at - pose.linear() * Vector3d(sheet.width_mm() / 2, sheet.height_mm() / 2, 0);
+        const RigidTransform pose = posed(way, tilt, turn, at);
         if (share_in_view(pose) >= (settings.whole ? 0.5 : 0.6)) return pose;
     }
     throw std::invalid_argument("no pose of the board is seen by all devices: it is too large for this room");
 }
 
-void SimulatedBoardRoom::Room::look() {
-    if (seen) return;
-    const RigidTransform to_board = room_from_board_now.inverse();
+/// Useful poses, tilted every way in turn as somebody would who was told to; and what goes wrong on the way.
+std::vector<BoardStop> SimulatedBoardRoom::Room::stops_of_a_person(std::mt19937& random) const {
+    const auto between = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    std::vector<BoardStop> stops;
+    const auto useful = [&](int i) {
+        for (int attempt = 0; attempt < 5000; ++attempt) {
+            const double way = i * M_PI / 2 + between(-0.7, 0.7), tilt = between(18, 38) * kRadians;
+            const Vector3d at(between(-settings.shift_mm, settings.shift_mm),
+                              between(-settings.shift_mm, settings.shift_mm),
+                              (i / 2 % 2 ? 1 : -1) * between(0.2, 1) * settings.depth_mm);
+            const RigidTransform pose = posed(way, tilt, between(-0.4, 0.4) + (i % 3) * M_PI / 2, at);
+            if (share_in_view(pose) >= 0.6) return pose;
+        }
+        return random_pose(random);
+    };
+    const double aside = 0.15 * rig.working_distance_mm;
+    const double sign = between(0, 1) < 0.5 ? -1 : 1;
+    constexpr int kUseful = 24;
+    for (int i = 0; i < kUseful; ++i) {
+        switch (i) {
+            case 1:
+                stops.push_back({posed(0, 64 * kRadians, 0, {0, 0, 0}), "too aslant"});
+                break;
+            case 2:
+                stops.push_back({posed(0, 0.35, 0, {sign * aside, 0, -0.25 * rig.working_distance_mm}), "seen by one camera"});
+                break;
+            case 3:
+                stops.push_back(stops.back());
+                stops.back().name = "the same again";
+                break;
+            case 4:
+                stops.push_back({posed(between(0, 6), 0.02, 0, {0, 0, 0}), "flat on"});
+                break;
+            case 5:
+                stops.push_back({posed(0.5, 0.4, 0, {0, 0, 1.2 * sheet.width_mm()}), "too far"});
+                break;
+            case 6:
+                stops.push_back({useful(i + 1), "leaves in the light", true});
+                break;
+            default:
+                break;
+        }
+        stops.push_back({useful(i), "useful"});
+    }
+    return stops;
+}
+
+/// The next place on the way, drawn meanwhile: coarsely until the board is laid down.
+void SimulatedBoardRoom::Room::carry_on() {
+    const RigidTransform pose = person->next_place();
+    const int finer = person->at_last_step() ? kSamplesAcrossEdge : 1;
+    room_from_board_now = pose;
+    on_the_way = std::async(std::launch::async, [this, pose, finer] {
+        auto views = std::make_unique<Views>();
+        look_at(pose, finer, views->left, views->right);
+        return views;
+    });
+}
+
+/// Brings the board on when a person has it; true while it moves.
+bool SimulatedBoardRoom::Room::follow_person(Instant at) {
+    if (!person) return false;
+    if (!on_the_way.valid()) {
+        if (!person->leaves(at)) return false;
+        carry_on();
+    } else if (on_the_way.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+        const auto views = on_the_way.get();
+        left_view = std::move(views->left);
+        right_view = std::move(views->right);
+        person->arrive(at);
+        if (person->at_rest()) return false;
+        carry_on();
+    }
+    return true;
+}
+
+void SimulatedBoardRoom::Room::look_at(const RigidTransform& pose, int finer, CameraView& left,
+                                       CameraView& right) const {
+    const RigidTransform to_board = pose.inverse();
     Scene scene{surface,
                 look_of_sheet,
                 rig.left_camera.seen_from(to_board),
                 rig.projector.seen_from(to_board),
                 rig.working_distance_mm,
-                kSamplesAcrossEdge};
-    left_view.look(scene);
+                finer};
+    left.look(scene);
     scene.camera = rig.right_camera.seen_from(to_board);
-    right_view.look(scene);
+    right.look(scene);
+}
+
+void SimulatedBoardRoom::Room::look() {
+    if (seen) return;
+    look_at(room_from_board_now, kSamplesAcrossEdge, left_view, right_view);
     seen = true;
 }
 
@@ -146,6 +261,7 @@ Instant SimulatedBoardRoom::Room::show(const RgbImage& picture, Instant valid_un
     if (picture.width != width() || picture.height != height())
         throw DeviceError("simulated projector", "a picture of another size was to be shown",
                           "Draw the picture in the projector's own size.");
+    if (person) person->see_light_change(now_);
     schedule.show(picture, now_, valid_until);
     return now_ + settings.projector_delay;
 }
@@ -162,10 +278,15 @@ StereoFrame SimulatedBoardRoom::Room::grab(Instant not_before, std::chrono::mill
     frame.exposure = rig.exposure;
     frame.number = static_cast<std::uint64_t>(number);
     look();
+    const bool carried = follow_person(frame.at);
     const auto light = schedule.during(begins, ends);
     const double lamps = lamps_during(settings.light, begins, ends);
     frame.left = expose(left_view, left_sensor, *light, lamps, frame.number);
     frame.right = expose(right_view, right_sensor, *light, lamps, frame.number);
+    if (carried) {
+        shift(frame.left, BoardPerson::shaken_px(frame.at));
+        shift(frame.right, BoardPerson::shaken_px(frame.at));
+    }
     now_ = ends;
     return frame;
 }
@@ -204,6 +325,17 @@ void SimulatedBoardRoom::lay(int pose) {
 void SimulatedBoardRoom::slip(const Vector3d& by_mm) {
     room_->room_from_board_now.translation() += by_mm;
     room_->seen = false;
+}
+
+void SimulatedBoardRoom::let_person_carry(const PersonSettings& person) {
+    std::mt19937 random(static_cast<unsigned>(mixed(static_cast<std::uint64_t>(room_->settings.seed) * 64 + 50)));
+    room_->person.emplace(room_->stops_of_a_person(random), person);
+    room_->room_from_board_now = room_->person->stops().front().room_from_board;
+    room_->seen = false;
+}
+
+const BoardPerson* SimulatedBoardRoom::person() const {
+    return room_->person ? &*room_->person : nullptr;
 }
 
 void SimulatedBoardRoom::knock_right_camera(double degrees) {

@@ -7,6 +7,7 @@
 #include "planning_io/types/rig_calibration.h"
 #include "registration/devices/projector.h"
 #include "registration/devices/stereo_camera.h"
+#include "registration/simulation/board_person.h"
 #include "registration/simulation/board_sheet.h"
 #include "registration/simulation/simulated_rig.h"
 
@@ -45,6 +46,11 @@ public:
     int poses() const;
     void lay(int pose);                       ///< puts the board into a pose
     void slip(const Eigen::Vector3d& by_mm);  ///< shifts the board (room frame) from now on, until the next `lay`
+    /// From now on a person carries the board, with mistakes on the way: `useful_stops` and what is wrong between them.
+    void let_person_carry(const PersonSettings& person = {});
+    /// Who carries it; null: nobody.
+    const BoardPerson* person() const;
+
     void knock_right_camera(double degrees);  ///< turns the right camera about its upright axis from now on
     void knock_projector(double degrees);
 

@@ -24,7 +24,7 @@ bool is_black(const RgbImage& picture) {
 }  // namespace
 
 struct ServedRoom::Parts {
-    SimulatedRig& rig;
+    ServedDevices rig;
     LookAtMonitor look;
     ServeSettings settings;
     SteadyClock clock;
@@ -40,7 +40,7 @@ struct ServedRoom::Parts {
     std::unique_ptr<ServedCamera> left, right;
     std::jthread monitor, cameras;
 
-    Parts(SimulatedRig& the_rig, LookAtMonitor look_at, const ServeSettings& given)
+    Parts(const ServedDevices& the_rig, LookAtMonitor look_at, const ServeSettings& given)
         : rig(the_rig), look(std::move(look_at)), settings(given) {}
     void watch_monitor(const std::stop_token& stop);
     void expose(const std::stop_token& stop);
@@ -75,12 +75,12 @@ void ServedRoom::Parts::order_until(Instant until) {
             orders.pop_front();
         }
         const Instant at = order.at - began;
-        if (at > rig.clock().now()) rig.wait(at - rig.clock().now());
+        if (at > rig.clock.now()) rig.wait(at - rig.clock.now());
         // A monitor keeps its picture until it gets another.
         if (is_black(order.picture))
-            rig.projector().go_dark();
+            rig.projector.go_dark();
         else
-            rig.projector().show(order.picture, rig.clock().now() + std::chrono::hours(1000));
+            rig.projector.show(order.picture, rig.clock.now() + std::chrono::hours(1000));
     }
 }
 
@@ -93,8 +93,8 @@ void ServedRoom::Parts::expose(const std::stop_token& stop) {
             std::this_thread::sleep_for(
                 std::clamp(wall - clock.now(), Instant{}, Instant(std::chrono::milliseconds(2))));
     };
-    began = clock.now() - rig.clock().now();
-    Instant next = rig.clock().now();
+    began = clock.now() - rig.clock.now();
+    Instant next = rig.clock.now();
     while (!stop.stop_requested()) {
         const Instant wall = clock.now() - began;
         if (next + exposure + settings.latency < wall) {  // it could not be sent in time any more
@@ -104,7 +104,7 @@ void ServedRoom::Parts::expose(const std::stop_token& stop) {
         wait_until(began + next + exposure);
         while (Instant(looked_at) < began + next && !stop.stop_requested()) std::this_thread::sleep_for(kLook / 4);
         order_until(began + next);
-        StereoFrame frame = rig.cameras().grab(std::max(rig.clock().now(), next), std::chrono::seconds(10));
+        StereoFrame frame = rig.cameras.grab(std::max(rig.clock.now(), next), std::chrono::seconds(10));
         const Instant opened = frame.at - exposure / 2;
         next = opened + from_seconds(seconds(interval) * std::max(1.0, settings.slower)) - Instant(1000);
         wait_until(began + opened + exposure + settings.latency);
@@ -125,10 +125,14 @@ void ServedRoom::Parts::send(StereoFrame frame, Instant opened) {
 }
 
 ServedRoom::ServedRoom(SimulatedRig& rig, LookAtMonitor look, const ServeSettings& given)
+    : ServedRoom({rig.projector(), rig.cameras(), rig.clock(), [&rig](Instant duration) { rig.wait(duration); }},
+                 std::move(look), given) {}
+
+ServedRoom::ServedRoom(const ServedDevices& rig, LookAtMonitor look, const ServeSettings& given)
     : parts_(std::make_unique<Parts>(rig, std::move(look), given)) {
     Parts& p = *parts_;
-    const StereoFrame frame = rig.cameras().grab(rig.clock().now(), std::chrono::seconds(10));
-    p.interval = rig.cameras().grab(rig.clock().now(), std::chrono::seconds(10)).at - frame.at;
+    const StereoFrame frame = rig.cameras.grab(rig.clock.now(), std::chrono::seconds(10));
+    p.interval = rig.cameras.grab(rig.clock.now(), std::chrono::seconds(10)).at - frame.at;
     p.exposure = frame.exposure;
     for (const auto& [camera, picture, made] :
          {std::tuple{&p.settings.left, &frame.left, &p.left}, std::tuple{&p.settings.right, &frame.right, &p.right}}) {

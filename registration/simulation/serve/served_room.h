@@ -17,6 +17,14 @@ struct ServeSettings {
     double slower = 1;  ///< the cameras' rate is that of the room divided by this, for a machine that cannot keep up
 };
 
+/// The devices of a simulated room and its time. What they refer to must outlive whoever serves them.
+struct ServedDevices {
+    Projector& projector;
+    StereoCamera& cameras;
+    const Clock& clock;
+    std::function<void(Instant)> wait;  ///< lets the room's time pass
+};
+
 /// What stands on the projector's monitor now, in the projector's own size. Called often, from a thread of its own.
 using LookAtMonitor = std::function<RgbImage()>;
 
@@ -26,6 +34,7 @@ class ServedRoom {
 public:
     /// `rig` must outlive it. Throws DeviceError when a camera's address cannot be used.
     ServedRoom(SimulatedRig& rig, LookAtMonitor look, const ServeSettings& settings);
+    ServedRoom(const ServedDevices& devices, LookAtMonitor look, const ServeSettings& settings);
     ~ServedRoom();
 
     ServedCamera& left();

@@ -1,7 +1,7 @@
 // A whole session through the wire: the simulated room served as two GigE Vision cameras and a projector whose light is
 // what stands on the second monitor; scan, match and light by the same devices that real hardware has, against the same
 // room without a wire. Run by two_monitors.sh: `session_in_served_room FOLDER`, with PLANLIGHT the program (for its
-// projector process) and SEEDS how many rooms (default 1). Exit code 0 when every patient was found, the light at rest
+// projector process) and SEEDS how many rooms (default 1), GUIDED a folder of guided calibrations of these rooms (default: the room's own). Exit code 0 when every patient was found, the light at rest
 // is within 0.1 mm (95 %) of that without a wire, and each fault was noticed by name and dark; 77: skipped.
 #include <fmt/format.h>
 
@@ -15,6 +15,7 @@
 #include "app/live/real_room.h"
 #include "app/prepare_case.h"
 #include "app/session.h"
+#include "planning_io/case/rig_file.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/statistics.h"
@@ -47,6 +48,20 @@ simulation::RoomSettings room_of(unsigned seed, double threshold) {
     room.skin_threshold_hu = threshold;
     room.light.whole_exposure = true;
     return room;
+}
+
+/// Of a guided calibration of that room ($GUIDED/guided-SEED.json, as calibrate_served_room.sh leaves it), laid into the
+/// frame of `calibration` by the left camera; else `calibration` itself.
+RigCalibration rig_to_operate_with(const RigCalibration& calibration, unsigned seed) {
+    const char* folder = std::getenv("GUIDED");
+    if (!folder) return calibration;
+    RigCalibration guided = read_rig(fmt::format("{}/guided-{}.json", folder, seed));
+    const RigidTransform guided_from_rig =
+        guided.left_camera.device_from_rig.inverse() * calibration.left_camera.device_from_rig;
+    for (CameraModel* device : {&guided.left_camera, &guided.right_camera, &guided.projector})
+        device->device_from_rig = device->device_from_rig * guided_from_rig;
+    fmt::print("     by the rig of {}\n", guided.made_on);
+    return guided;
 }
 
 /// Scan, match and some updates at rest, in whatever room; `truth` is the room by itself.
@@ -179,7 +194,7 @@ int run(const std::string& program, unsigned seeds) {
         room.right.device = "SIM-R";
         room.left.exposure_ms = room.right.exposure_ms = 10;
         room.left.transfer_ms = room.right.transfer_ms = 1e3 * seconds(serve.latency);
-        RigCalibration calibration = rig.calibration();
+        RigCalibration calibration = rig_to_operate_with(rig.calibration(), seed);
         calibration.serials = {"SIM-L", "SIM-R", ""};
         ProjectorKeeperSettings keeper;
         keeper.process.program = program;

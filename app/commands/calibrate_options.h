@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "planning_io/types/rig_calibration.h"
+
+namespace planlight {
+
+/// What `planlight calibrate` was asked for.
+struct CalibrateOptions {
+    std::filesystem::path captures, out = "rig.json";
+    std::string board;
+    std::string serial_left, serial_right, serial_projector;  ///< empty: as capture.json says
+    bool json = false;
+    // With a board in somebody's hands, in a room of real devices.
+    bool live = false, headless = false;
+    std::filesystem::path room, keep_captures;  ///< `keep_captures`: empty, the pictures are not kept
+    std::filesystem::path screenshots;          ///< of the window, for the pages and to look at; empty: none
+    std::string operator_monitor;
+    std::string keep = "ask";  ///< the new rig: ask, yes, no
+    int most_poses = 12;
+    double good_enough_mm = 0.1;
+};
+
+int run_calibrate_live(const CalibrateOptions& options);
+
+/// The calibration that this one would take the place of, if it can be read.
+std::optional<RigCalibration> previous_rig(const std::filesystem::path& file);
+
+}  // namespace planlight

@@ -1,0 +1,195 @@
+#include "app/windows/guide_panels.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace planlight {
+namespace {
+
+constexpr double kDegrees = 180 / std::numbers::pi;
+constexpr ImU32 kCell = IM_COL32(56, 214, 132, 34), kCellEdge = IM_COL32(56, 214, 132, 60);
+
+void draw_cells(const Pen& pen, ImVec2 low, ImVec2 size, const GuideModel::Cells& cells) {
+    if (cells.across <= 0 || cells.down <= 0) return;
+    const float width = size.x / static_cast<float>(cells.across), height = size.y / static_cast<float>(cells.down);
+    for (int y = 0; y < cells.down; ++y)
+        for (int x = 0; x < cells.across; ++x) {
+            if (cells.hits[static_cast<std::size_t>(y * cells.across + x)] == 0) continue;
+            const ImVec2 a(low.x + width * static_cast<float>(x), low.y + height * static_cast<float>(y));
+            pen.list->AddRectFilled(a, {a.x + width, a.y + height}, kCell);
+            pen.list->AddRect(a, {a.x + width, a.y + height}, kCellEdge);
+        }
+}
+
+void draw_title(const Pen& pen, const Box& box, const std::string& title) {
+    pen.line(pen.fonts.small, title, box.x + 14 * pen.scale, box.y + 20 * pen.scale, box.width - 28 * pen.scale,
+             theme::kQuiet);
+}
+
+struct Look {
+    ImU32 fill, edge, text;
+};
+
+Look look_of(GuideModel::Mood mood) {
+    switch (mood) {
+        case GuideModel::Mood::hold:
+            return {IM_COL32(14, 36, 66, 255), theme::kBlue, IM_COL32(220, 236, 255, 255)};
+        case GuideModel::Mood::busy:
+            return {IM_COL32(14, 36, 66, 255), theme::kBlue, IM_COL32(220, 236, 255, 255)};
+        case GuideModel::Mood::done:
+            return {IM_COL32(16, 58, 38, 255), theme::kGreen, IM_COL32(222, 255, 236, 255)};
+        case GuideModel::Mood::wrong:
+            break;
+    }
+    return {IM_COL32(62, 46, 8, 255), theme::kAmber, IM_COL32(255, 240, 205, 255)};
+}
+
+}  // namespace
+
+void draw_guide_camera(const Pen& pen, const Box& box, const GuideModel::Camera& camera, ImTextureID texture) {
+    pen.panel(box, IM_COL32(8, 9, 12, 255));
+    if (camera.picture && texture != nullptr) {
+        const auto width = static_cast<float>(camera.picture->width),
+                   height = static_cast<float>(camera.picture->height);
+        const float zoom = std::min((box.width - 4) / width, (box.height - 4) / height);
+        const ImVec2 low(box.x + (box.width - zoom * width) / 2, box.y + (box.height - zoom * height) / 2);
+        pen.list->AddImage(texture, low, {low.x + zoom * width, low.y + zoom * height});
+        draw_cells(pen, low, {zoom * width, zoom * height}, camera.cells);
+        for (const Eigen::Vector2d& p : camera.corners) {
+            const ImVec2 at(low.x + zoom * (static_cast<float>(p.x()) + 0.5F),
+                            low.y + zoom * (static_cast<float>(p.y()) + 0.5F));
+            pen.list->AddCircleFilled(at, 4.5F * pen.scale, IM_COL32(0, 0, 0, 200), 12);
+            pen.list->AddCircleFilled(at, 3 * pen.scale, theme::kBlue, 12);
+        }
+    }
+    const std::string title =
+        camera.title + (camera.corners.empty() ? " · board not seen" : fmt::format(" · {} corners", camera.corners.size()));
+    const float height = line_height(pen.fonts.small) + 8 * pen.scale,
+                width = std::min(text_width(pen.fonts.small, title) + 20 * pen.scale, box.width);
+    pen.list->AddRectFilled({box.x + 1, box.y + 1}, {box.x + width, box.y + height}, IM_COL32(10, 12, 16, 225),
+                            10 * pen.scale);
+    pen.line(pen.fonts.small, title, box.x + 10 * pen.scale, box.y + height / 2, box.width - 20 * pen.scale,
+             camera.corners.empty() ? theme::kAmber : theme::kText);
+}
+
+void draw_guide_cells(const Pen& pen, const Box& box, const std::string& title, const GuideModel::Cells& cells) {
+    pen.panel(box);
+    draw_title(pen, box, title);
+    const float top = 38 * pen.scale, pad = 14 * pen.scale;
+    const float width = std::min(box.width - 2 * pad, (box.height - top - pad) * 4 / 3), height = width * 3 / 4;
+    const ImVec2 low(box.x + (box.width - width) / 2, box.y + top);
+    pen.list->AddRectFilled(low, {low.x + width, low.y + height}, IM_COL32(8, 9, 12, 255));
+    draw_cells(pen, low, {width, height}, cells);
+    pen.list->AddRect(low, {low.x + width, low.y + height}, theme::kEdge);
+}
+
+void draw_guide_tilts(const Pen& pen, const Box& box, const GuideModel& model) {
+    constexpr double kRim = 50 / kDegrees;
+    pen.panel(box);
+    draw_title(pen, box, "Tilt: which edge came nearer");
+    const float s = pen.scale, top = 44 * s, word = line_height(pen.fonts.small);
+    const float radius = std::min(box.width / 2 - 90 * s, (box.height - top - 2 * word - 24 * s) / 2);
+    const ImVec2 middle(box.x + box.width / 2, box.y + top + word + radius);
+    // A face that is turned to the right has its left edge nearer: the dot goes to the edge that came nearer.
+    const auto at = [&](const Eigen::Vector2d& tilt) {
+        const double length = std::min(tilt.norm(), kRim), angle = std::atan2(-tilt.y(), -tilt.x());
+        return ImVec2(middle.x + radius * static_cast<float>(length / kRim * std::cos(angle)),
+                      middle.y + radius * static_cast<float>(length / kRim * std::sin(angle)));
+    };
+    constexpr float kQuarter = std::numbers::pi_v<float> / 2;
+    const float turns[4] = {2, 0, 3, 1};  // left, right, upper, lower
+    for (std::size_t i = 0; i < 4; ++i) {
+        pen.list->PathLineTo(middle);
+        pen.list->PathArcTo(middle, radius, (turns[i] - 0.5F) * kQuarter, (turns[i] + 0.5F) * kQuarter, 24);
+        pen.list->PathFillConvex(model.by_edge[i] > 0 ? IM_COL32(20, 62, 44, 255) : IM_COL32(58, 44, 14, 255));
+    }
+    pen.list->AddCircle(middle, radius, theme::kEdge, 48, 2);
+    pen.list->AddCircleFilled(middle, radius * static_cast<float>(model.least_tilt / kRim), theme::kPanel, 48);
+    const char* words[4] = {"left", "right", "upper", "lower"};
+    const ImVec2 places[4] = {{box.x + 6 * s, middle.y},
+                              {middle.x + radius + 6 * s, middle.y},
+                              {box.x + 6 * s, middle.y - radius - word / 2 - 2 * s},
+                              {box.x + 6 * s, middle.y + radius + word / 2 + 2 * s}};
+    for (std::size_t i = 0; i < 4; ++i) {
+        const std::string text = fmt::format("{} {}", words[i], model.by_edge[i]);
+        const float width = i == 0 ? middle.x - radius - box.x - 12 * s
+                            : i == 1 ? box.right() - places[i].x - 6 * s
+                                     : box.width - 12 * s;
+        pen.line(pen.fonts.small, text, places[i].x, places[i].y, width,
+                 model.by_edge[i] > 0 ? theme::kGreen : theme::kAmber, Pen::Side::centre);
+    }
+    for (const Eigen::Vector2d& tilt : model.tilts) pen.list->AddCircleFilled(at(tilt), 7 * s, theme::kGreen, 20);
+    if (model.tilt_now) pen.list->AddCircle(at(*model.tilt_now), 12 * s, theme::kText, 24, 3 * s);
+}
+
+void draw_guide_depths(const Pen& pen, const Box& box, const GuideModel& model) {
+    pen.panel(box);
+    draw_title(pen, box, "Distance");
+    if (model.distances_mm.empty() && !model.distance_now_mm) return;
+    std::vector<double> all = model.distances_mm;
+    std::sort(all.begin(), all.end());
+    const double usual = all.empty() ? *model.distance_now_mm : all[all.size() / 2];
+    const double low = 0.8 * usual, high = 1.2 * usual;
+    const float s = pen.scale, from = box.x + 70 * s, to = box.right() - 70 * s, y = box.y + box.height * 0.62F;
+    const auto at = [&](double mm) {
+        return from + (to - from) * static_cast<float>(std::clamp((mm - low) / (high - low), 0.0, 1.0));
+    };
+    pen.list->AddLine({from, y}, {to, y}, theme::kEdge, 4 * s);
+    pen.line(pen.fonts.small, "near", box.x + 12 * s, y, 60 * s, theme::kQuiet);
+    pen.line(pen.fonts.small, "far", to + 10 * s, y, 56 * s, theme::kQuiet);
+    for (const double mm : all) pen.list->AddCircleFilled({at(mm), y}, 7 * s, theme::kGreen, 20);
+    if (model.distance_now_mm) pen.list->AddCircle({at(*model.distance_now_mm), y}, 12 * s, theme::kText, 24, 3 * s);
+}
+
+void draw_guide_banner(const Pen& pen, const Box& box, const GuideModel& model) {
+    const Look look = look_of(model.mood);
+    const float s = pen.scale, pad = 26 * s;
+    pen.panel(box, look.fill, look.edge, 3);
+    const float word_width = std::min(0.42F * box.width, text_width(pen.fonts.word, model.word));
+    const float word_room = std::max(word_width, 0.36F * box.width);
+    pen.line(pen.fonts.word, model.word, box.x + pad, box.y + box.height / 2, 0, look.text);
+    const float x = box.x + pad + std::max(word_room, text_width(pen.fonts.word, model.word)) + pad;
+    const float width = box.right() - pad - x;
+    float y = box.y + 0.16F * box.height;
+    if (!model.what.empty())
+        y += pen.paragraph(pen.fonts.title, model.what, {x, y, width, 0.5F * box.height}, theme::kText);
+    if (!model.why.empty())
+        pen.paragraph(pen.fonts.body, model.why, {x, y + 4 * s, width, box.bottom() - y - 34 * s}, look.text);
+    if (model.share > 0) {
+        const float bar = box.bottom() - 22 * s;
+        pen.list->AddRectFilled({x, bar}, {x + width, bar + 10 * s}, theme::kBackground, 5 * s);
+        pen.list->AddRectFilled({x, bar}, {x + width * static_cast<float>(std::clamp(model.share, 0.0, 1.0)), bar + 10 * s},
+                                look.edge, 5 * s);
+    }
+}
+
+void draw_guide_progress(const Pen& pen, const Box& box, const GuideModel& model) {
+    pen.panel(box);
+    const float s = pen.scale, x = box.x + 20 * s, width = box.width - 40 * s;
+    float y = box.y + 14 * s;
+    const auto paragraph = [&](const ImFont* font, const std::string& text, ImU32 colour) {
+        y += pen.paragraph(font, text, {x, y, width, std::max(0.0F, box.bottom() - y - 8 * s)}, colour) + 4 * s;
+    };
+    if (!model.result.empty()) {
+        for (const std::string& sentence : model.result) paragraph(pen.fonts.small, sentence, theme::kText);
+        return;
+    }
+    paragraph(pen.fonts.number,
+              fmt::format("{} {}", model.poses, model.poses == 1 ? "pose" : "poses"), theme::kText);
+    paragraph(pen.fonts.small, fmt::format("{} at least, {} at most", model.least_poses, model.most_poses),
+              theme::kQuiet);
+    if (model.predicted_mm)
+        paragraph(pen.fonts.body,
+                  fmt::format("Predicted error {:.3f} mm (to reach: {:g})", *model.predicted_mm, model.good_enough_mm),
+                  *model.predicted_mm <= model.good_enough_mm ? theme::kGreen : theme::kAmber);
+    else
+        paragraph(pen.fonts.body, "Predicted error: after three poses", theme::kQuiet);
+    std::string wanted;
+    for (const std::string& one : model.wanted) wanted += (wanted.empty() ? "Still wanted: " : "; ") + one;
+    if (!wanted.empty()) paragraph(pen.fonts.body, wanted + ".", theme::kAmber);
+}
+
+}  // namespace planlight
