@@ -22,6 +22,8 @@ struct LiveOptions {
     bool autoplay = false;                  ///< scan, register and track without a person
     double end_after_s = 0;                 ///< of projecting, wall time; 0 = until the window is closed
     std::filesystem::path keep_matches_in;  ///< folder for every match and its scan; empty = none
+    SessionObserver* observer = nullptr;    ///< told of all that happens; null: nobody
+    std::function<std::string()> trouble;   ///< of the recording, to be said beside all else; may be empty
     std::filesystem::path screenshots;      ///< folder for a picture of the operator window a step; empty = none
 };
 

@@ -29,7 +29,7 @@ std::uint32_t crc_of(std::string_view a, std::string_view b = {}) {
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& doing) {
     throw DiskError(file, doing + ": " + std::strerror(errno),
-                    "Make room on the disk, or name another folder with --recordings.");
+                    "Make room on the disk, name another folder with --recordings, or do without (--record none).");
 }
 
 /// The folder is for its owner only; one that is there already stays as it is.

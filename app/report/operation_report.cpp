@@ -1,0 +1,349 @@
+#include "app/report/operation_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "app/evaluation/distribution.h"
+#include "app/live/scene_of_session.h"
+#include "app/recording/recording_head.h"
+#include "app/report/html_page.h"
+#include "app/report/paper_page.h"
+#include "planning_io/files/safe_write.h"
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr double kLook_mm = 1, kStop_mm = 2;  // as the light gate has them
+
+/// "3 min 12 s", "12.4 s".
+std::string duration(double s) {
+    if (s < 60) return fmt::format("{:.1f} s", s);
+    const auto whole = static_cast<long>(s + 0.5);
+    return whole < 3600 ? fmt::format("{} min {:02} s", whole / 60, whole % 60)
+                        : fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
+}
+
+/// Of the room's clock: "0:03:12".
+std::string moment_text(double s) {
+    const auto whole = static_cast<long>(s);
+    return fmt::format("{}:{:02}:{:02}", whole / 3600, whole % 3600 / 60, whole % 60);
+}
+
+std::string utc_text(const std::string& iso) {
+    return iso.size() < 19 ? iso : iso.substr(0, 10) + " " + iso.substr(11, 8) + " UTC";
+}
+
+std::string row(const std::string& name, const std::string& value) {
+    return value.empty() ? "" : fmt::format("<tr><td>{}</td><td>{}</td></tr>", name, html_escaped(value));
+}
+
+std::string mm(const std::optional<double>& value) {
+    return value ? fmt::format("{:.2f} mm", *value) : "not known";
+}
+
+std::string shown_text(const OperationItem& item) {
+    if (item.shown.empty()) return "not shown";
+    constexpr std::size_t kMost = 3;
+    std::string text;
+    for (std::size_t i = 0; i < std::min(item.shown.size(), kMost); ++i)
+        text += fmt::format("{}{}&ndash;{}", i == 0 ? "" : "<br>", moment_text(item.shown[i].first),
+                            moment_text(item.shown[i].second));
+    if (item.shown.size() > kMost)
+        text += fmt::format("<br>and {} times more, last until {}", item.shown.size() - kMost,
+                            moment_text(item.shown.back().second));
+    return text;
+}
+
+/// A figure beyond what the gate lets pass is marked by a sign and a word, not by its colour alone.
+std::string marked(double value_mm) {
+    const char* sign = value_mm > kStop_mm   ? " <span class=\"stop\">&#10007;</span>"
+                       : value_mm > kLook_mm ? " <span class=\"look\">&#9888;</span>"
+                                             : "";
+    return fmt::format("{:.2f}{}", value_mm, sign);
+}
+
+std::string items_html(const OperationFacts& facts) {
+    std::string html =
+        "<h2>What was shown, and how far off it was</h2><table class=\"plan\"><tr><th>Plan item</th><th>shown (room "
+        "clock)</th><th>for</th><th>predicted, 95 %</th><th>measured: median</th><th>95 %</th><th>worst</th>"
+        "<th>times</th></tr>";
+    for (const OperationItem& item : facts.items) {
+        const Distribution d = distribution_of(item.measured_mm);
+        const std::string measured = d.count > 0 ? fmt::format("<td>{}</td><td>{}</td><td>{}</td>", marked(d.median),
+                                                               marked(d.p95), marked(d.worst))
+                                                 : std::string("<td colspan=\"3\">not seen by the cameras</td>");
+        html += fmt::format("<tr><td class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}</td>{}<td>{}</td></tr>",
+                            html_escaped(item.name), shown_text(item), duration(item.shown_s), mm(item.predicted_mm),
+                            measured, d.count);
+    }
+    if (facts.items.empty()) html += "<tr><td colspan=\"8\">No match was found: nothing could be shown.</td></tr>";
+    return html +
+           "</table><p class=\"muted\">Predicted: within this in 95 of 100 cases, by the last match. Measured: where "
+           "both "
+           "cameras saw the light, against where it belongs on the skin as the scan found it, mm. What cameras, CT and "
+           "markers share is not seen by either: skin that slid over the bone, markers that moved all together.</p>";
+}
+
+std::string time_html(const OperationFacts& facts) {
+    std::string html = fmt::format(
+        "<h2>Light and darkness</h2><p>Light for {}: {} of it aligned (measured where it belongs, and verified), {} to "
+        "be "
+        "looked at. {} updates.</p>",
+        duration(facts.lit_s), duration(facts.aligned_s), duration(facts.look_s), facts.updates);
+    if (facts.dark.empty()) return html + "<p>While the plan was followed it was never dark by itself.</p>";
+    std::vector<std::pair<std::string, std::pair<int, double>>> dark(facts.dark.begin(), facts.dark.end());
+    std::sort(dark.begin(), dark.end(), [](const auto& a, const auto& b) { return a.second.second > b.second.second; });
+    html += "<table><tr><th>Dark by itself, because</th><th>times</th><th>for</th></tr>";
+    constexpr std::size_t kMost = 8;
+    for (std::size_t i = 0; i < std::min(dark.size(), kMost); ++i)
+        html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>", html_escaped(dark[i].first),
+                            dark[i].second.first, duration(dark[i].second.second));
+    if (dark.size() > kMost)
+        html += fmt::format("<tr><td>and {} reasons more</td><td></td><td></td></tr>", dark.size() - kMost);
+    return html + "</table>";
+}
+
+std::string matches_html(const OperationFacts& facts) {
+    std::string html = "<h2>Matches</h2>";
+    if (facts.matches.empty()) return html + "<p>None.</p>";
+    html += "<table><tr><th>Room clock</th><th>Verdict</th><th>Points of skin</th><th>Residual</th><th>Why</th></tr>";
+    for (const OperationMatch& match : facts.matches) {
+        std::string why;
+        for (const std::string& reason : match.reasons) why += (why.empty() ? "" : " ") + reason;
+        html +=
+            fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.2f} mm rms</td><td>{}</td></tr>",
+                        moment_text(match.at_s), match.verdict, match.points, match.residual_rms_mm, html_escaped(why));
+    }
+    return html + "</table>";
+}
+
+std::string events_html(const std::string& title, const std::vector<OperationEvent>& events, std::size_t most) {
+    std::string html = "<h2>" + title + "</h2>";
+    if (events.empty()) return html + "<p>None.</p>";
+    html += "<table>";
+    for (std::size_t i = 0; i < std::min(events.size(), most); ++i)
+        html += fmt::format("<tr><td style=\"width:16%\">{}</td><td>{}</td></tr>", moment_text(events[i].at_s),
+                            html_escaped(events[i].what));
+    html += "</table>";
+    if (events.size() > most)
+        html +=
+            fmt::format("<p class=\"muted\">And {} more, in the figures beside this page.</p>", events.size() - most);
+    return html;
+}
+
+std::string picture_html(const std::string& title, const RgbImage& picture) {
+    return fmt::format("<figure><img alt=\"{}\" src=\"{}\"><figcaption>{}</figcaption></figure>", title,
+                       embedded_png(picture), title);
+}
+
+RgbImage rgb_of(const GrayImage& picture) {
+    RgbImage rgb(picture.width, picture.height);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) rgb.pixels[i].fill(picture.pixels[i]);
+    return rgb;
+}
+
+std::string moment_html(const OperationFacts& facts) {
+    if (!facts.moment) return "<h2>Pictures</h2><p>No frame with light on the skin was kept.</p>";
+    const OperationMoment& m = *facts.moment;
+    std::string html = fmt::format(
+        "<h2>At {} (room clock), {}</h2><div class=\"row\" "
+        "style=\"grid-template-columns:repeat({},1fr)\">",
+        moment_text(m.at_s), m.trust == "aligned" ? "aligned" : "to be looked at", m.light.empty() ? 2 : 3);
+    html += picture_html("Left camera", rgb_of(brightened(m.left)));
+    html += picture_html("Right camera", rgb_of(brightened(m.right)));
+    if (!m.light.empty()) html += picture_html("What the projector was given", m.light);
+    return html + "</div>";
+}
+
+std::string facts_html(const OperationFacts& facts) {
+    const RecordingHead& head = facts.head;
+    const bool titled = head.case_title.find(head.case_code) == std::string::npos;
+    return "<div class=\"two\"><table>" + row("Case", titled ? head.case_title : "") + row("Code", head.case_code) +
+           row("Plan", head.plan_name + (head.plan_version.empty() ? "" : ", version " + head.plan_version)) +
+           row("Room", facts.room) + row("Rig calibrated", utc_text(facts.rig_made_on)) + "</table><table>" +
+           row("Began", utc_text(head.began_utc)) + row("Lasted", duration(facts.lasted_s) + " (room clock)") +
+           row("Operator", head.operator_name) + row("Computer", head.computer) +
+           row("Program", "Planlight " + head.program) + "</table></div>";
+}
+
+std::string hashes_html(const OperationFacts& facts) {
+    return "<h2>Hashes (XXH3-128)</h2><table>" + row("Recording", facts.file + ": " + facts.recording_hash) +
+           row("Volume", facts.head.volume_hash) + row("Skin", facts.head.mesh_hash) +
+           row("Plan", facts.head.plan_hash) + row("Rig", facts.rig_hash) + row("Program", facts.head.program_hash) +
+           "</table>";
+}
+
+std::string verdict_html(const OperationVerdict& verdict) {
+    const char* kind = verdict.kind == OperationVerdict::Kind::good   ? "good"
+                       : verdict.kind == OperationVerdict::Kind::look ? "look"
+                                                                      : "stop";
+    const char* sign = verdict.kind == OperationVerdict::Kind::good   ? "&#10003;"
+                       : verdict.kind == OperationVerdict::Kind::look ? "&#9888;"
+                                                                      : "&#10007;";
+    std::string html = fmt::format("<div class=\"verdict {}\">{} {}</div>", kind, sign, html_escaped(verdict.sentence));
+    if (verdict.reasons.empty()) return html;
+    html += "<ul>";
+    for (const std::string& reason : verdict.reasons) html += "<li>" + html_escaped(reason) + "</li>";
+    return html + "</ul>";
+}
+
+Json json_of(const Distribution& d) {
+    if (d.count == 0) return {{"count", 0}, {"median", nullptr}, {"p95", nullptr}, {"worst", nullptr}};
+    return {{"count", d.count}, {"median", d.median}, {"p95", d.p95}, {"worst", d.worst}};
+}
+
+Json json_of(const std::vector<OperationEvent>& events) {
+    Json json = Json::array();
+    for (const OperationEvent& event : events)
+        json.push_back(
+            {{"at_s", event.at_s}, {"utc", event.utc.empty() ? Json() : Json(event.utc)}, {"what", event.what}});
+    return json;
+}
+
+/// Readable by its owner only, as the recording is: it shows the patient.
+void keep_to_owner(const fs::path& file) {
+    std::error_code ignored;
+    fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write, ignored);
+}
+
+}  // namespace
+
+OperationVerdict verdict_of(const OperationFacts& facts) {
+    using Kind = OperationVerdict::Kind;
+    OperationVerdict verdict;
+    verdict.kind = Kind::good;
+    const auto lower = [&](Kind to, const std::string& reason) {
+        verdict.kind = std::max(verdict.kind, to);
+        verdict.reasons.push_back(reason);
+    };
+    if (facts.simulated) verdict.reasons.push_back("A simulated room: no patient was there.");
+    for (const OperationItem& item : facts.items) {
+        const Distribution d = distribution_of(item.measured_mm);
+        if (d.count > 0 && d.p95 > kLook_mm)
+            lower(d.p95 > kStop_mm ? Kind::stop : Kind::look,
+                  fmt::format("{} lay {:.1f} mm off in the worst twentieth of what was measured.", item.name, d.p95));
+        if (d.count == 0 && item.shown_s > 0)
+            lower(Kind::look, item.name + " was shown, and its light was never seen by the cameras.");
+        if (item.shown.empty()) lower(Kind::look, item.name + " was not shown.");
+    }
+    if (facts.stops > 0)
+        lower(Kind::look, fmt::format("The light was stopped by the system {}.",
+                                      facts.stops == 1 ? "once" : fmt::format("{} times", facts.stops)));
+    if (facts.lit_s > 0 && facts.verified == 0) lower(Kind::look, "Nobody said that the light on landmarks is right.");
+    for (const OperationMatch& match : facts.matches)
+        if (match.verdict == "ask")
+            lower(Kind::look, "A match was doubtful and used on a person's word alone, if at all.");
+    if (facts.lit_s > 0 && facts.aligned_s < 0.8 * facts.lit_s)
+        lower(Kind::look,
+              fmt::format("Only {:.0f} % of the time of light was it aligned.", 100 * facts.aligned_s / facts.lit_s));
+    if (!facts.ended.empty()) lower(Kind::look, facts.ended);
+    if (facts.lost_chunks > 0)
+        lower(Kind::look,
+              fmt::format("{} pieces are missing in the recording: the disk was too slow or full.", facts.lost_chunks));
+    if (facts.updates == 0 || facts.lit_s <= 0) {
+        verdict.kind = Kind::look;
+        verdict.sentence = "No light of the plan was shown.";
+    } else {
+        const Distribution d = distribution_of(facts.light_off_mm);
+        verdict.sentence = fmt::format(
+            "The plan was shown for {}, aligned for {:.0f} % of it{}.", duration(facts.lit_s),
+            100 * facts.aligned_s / facts.lit_s,
+            d.count > 0 ? fmt::format("; the light lay within {:.2f} mm (median), {:.2f} mm (95 %)", d.median, d.p95)
+                        : "");
+    }
+    return verdict;
+}
+
+std::string operation_json(const OperationFacts& facts) {
+    const OperationVerdict verdict = verdict_of(facts);
+    constexpr const char* kKinds[] = {"good", "look", "stop"};
+    const RecordingHead& head = facts.head;
+    Json json = {{"format", "planlight operation"},
+                 {"version", 1},
+                 {"verdict", kKinds[static_cast<std::size_t>(verdict.kind)]},
+                 {"sentence", verdict.sentence},
+                 {"reasons", verdict.reasons},
+                 {"case", head.case_code},
+                 {"title", head.case_title},
+                 {"plan", head.plan_name},
+                 {"plan_version", head.plan_version},
+                 {"room", facts.room},
+                 {"simulated", facts.simulated},
+                 {"began", head.began_utc},
+                 {"operator", head.operator_name},
+                 {"computer", head.computer},
+                 {"program", head.program},
+                 {"rig_made_on", facts.rig_made_on},
+                 {"serials", facts.serials},
+                 {"hashes",
+                  {{"recording", facts.recording_hash},
+                   {"volume", head.volume_hash},
+                   {"skin", head.mesh_hash},
+                   {"plan", head.plan_hash},
+                   {"rig", facts.rig_hash},
+                   {"program", head.program_hash}}},
+                 {"lasted_s", facts.lasted_s},
+                 {"lit_s", facts.lit_s},
+                 {"aligned_s", facts.aligned_s},
+                 {"look_s", facts.look_s},
+                 {"updates", facts.updates},
+                 {"verified", facts.verified},
+                 {"stops", facts.stops},
+                 {"light_off_mm", json_of(distribution_of(facts.light_off_mm))}};
+    json["items"] = Json::array();
+    for (const OperationItem& item : facts.items) {
+        Json shown = Json::array();
+        for (const auto& [from, to] : item.shown) shown.push_back({from, to});
+        json["items"].push_back({{"name", item.name},
+                                 {"shown_s", item.shown_s},
+                                 {"shown", shown},
+                                 {"predicted_mm", item.predicted_mm ? Json(*item.predicted_mm) : Json()},
+                                 {"measured_mm", json_of(distribution_of(item.measured_mm))}});
+    }
+    json["matches"] = Json::array();
+    for (const OperationMatch& match : facts.matches)
+        json["matches"].push_back({{"at_s", match.at_s},
+                                   {"utc", match.utc},
+                                   {"verdict", match.verdict},
+                                   {"reasons", match.reasons},
+                                   {"residual_rms_mm", match.residual_rms_mm},
+                                   {"points", match.points}});
+    json["dark"] = Json::array();
+    for (const auto& [reason, how] : facts.dark)
+        json["dark"].push_back({{"reason", reason}, {"times", how.first}, {"seconds", how.second}});
+    json["said"] = json_of(facts.said);
+    json["refusals"] = json_of(facts.refusals);
+    json["recording"] = {{"file", facts.file},   {"record", word_of(head.mode)}, {"chunks", facts.chunks},
+                         {"bytes", facts.bytes}, {"frames", facts.kept_frames},  {"lost_chunks", facts.lost_chunks},
+                         {"ended", facts.ended}};
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void write_operation_report(const OperationFacts& facts, const std::string& json, const fs::path& file) {
+    constexpr std::size_t kMostEvents = 14, kMostRefusals = 6;
+    const std::string title = "Operation: " + facts.head.case_title;
+    const std::string body =
+        fmt::format("<section class=\"sheet\"><h1>{}</h1>{}{}{}{}</section>", html_escaped(title),
+                    verdict_html(verdict_of(facts)), facts_html(facts), items_html(facts), time_html(facts)) +
+        fmt::format(
+            "<section class=\"sheet\">{}{}{}{}{}<div class=\"sign\"><span>Name</span><span>Date</span>"
+            "<span>Signature</span></div></section>",
+            moment_html(facts), matches_html(facts), events_html("What people said and did", facts.said, kMostEvents),
+            events_html("Refused, or failed", facts.refusals, kMostRefusals), hashes_html(facts));
+    write_safely(file,
+                 paper_page(title, body,
+                            fmt::format("Case {}, {}. Planlight {}. For research; not a medical device.",
+                                        facts.head.case_code, utc_text(facts.head.began_utc), facts.head.program)));
+    keep_to_owner(file);
+    const fs::path figures = fs::path(file).replace_extension(".json");
+    write_safely(figures, json);
+    keep_to_owner(figures);
+}
+
+}  // namespace planlight
