@@ -7,6 +7,14 @@ namespace planlight {
 
 using Kind = RecordedInput::Kind;
 
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& file) {
+    throw DamagedFileError(file, "what its devices answered cannot be understood", "Copy the file again.");
+}
+
+}  // namespace
+
 std::string packed(const std::vector<RecordedInput>& inputs) {
     FieldWriter fields;
     for (const RecordedInput& input : inputs) {
@@ -29,7 +37,7 @@ std::vector<RecordedInput> unpacked_inputs(std::string_view payload, const std::
         while (fields.left() > 0) {
             RecordedInput input;
             const auto kind = fields.next<std::uint8_t>();
-            if (kind < 1 || kind > 6) throw DamagedFileError(file, "unknown", "Copy it again.");
+            if (kind < 1 || kind > 6) refuse(file);
             input.kind = static_cast<Kind>(kind);
             if (input.kind == Kind::clock || input.kind == Kind::shown || input.kind == Kind::frame)
                 input.at = Instant(fields.next<std::int64_t>());
@@ -42,7 +50,7 @@ std::vector<RecordedInput> unpacked_inputs(std::string_view payload, const std::
         }
         return inputs;
     } catch (const DamagedFileError&) {
-        throw DamagedFileError(file, "what its devices answered cannot be understood", "Copy the file again.");
+        refuse(file);
     }
 }
 

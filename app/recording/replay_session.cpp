@@ -313,9 +313,9 @@ void check_belongs(const RecordingHead& head, const Case& the_case, const fs::pa
 
 void check_holds_frames(const RecordingHead& head, const fs::path& recording) {
     if (head.mode == RecordMode::all) return;
-    throw InputError(recording,
-                     fmt::format("was recorded with --record {}, which does not keep every frame", word_of(head.mode)),
-                     "Record with --record all what is to be replayed; `planlight report` needs no frames.");
+    throw InputError(
+        recording, fmt::format("was recorded with --record {}, which does not keep every frame", word_of(head.mode)),
+        "What is to be replayed is recorded by `planlight session --record all`; `planlight report` needs no frames.");
 }
 
 }  // namespace

@@ -29,7 +29,8 @@ std::uint32_t crc_of(std::string_view a, std::string_view b = {}) {
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& doing) {
     throw DiskError(file, doing + ": " + std::strerror(errno),
-                    "Make room on the disk, name another folder with --recordings, or do without (--record none).");
+                    "Make room on the disk, name another folder with `planlight session --recordings`, or do without: "
+                    "`planlight session --record none`.");
 }
 
 /// The folder is for its owner only; one that is there already stays as it is.

@@ -26,9 +26,10 @@ T number_at(const char* bytes) {
 
 RecordingReader::RecordingReader(const std::filesystem::path& file) : file_(file) {
     std::error_code fault;
+    if (!std::filesystem::exists(file, fault))
+        throw InputError(file, "does not exist", "Name a recording: a file that ends in .plrec.");
     if (!std::filesystem::is_regular_file(file, fault))
-        throw InputError(file, std::filesystem::exists(file, fault) ? "is no file" : "does not exist",
-                         "Name a recording: a file that ends in .plrec.");
+        throw InputError(file, "is no file", "Name a recording: a file that ends in .plrec.");
     bytes_ = std::filesystem::file_size(file, fault);
     in_.open(file, std::ios::binary);
     std::array<char, kRecordingHeaderBytes> header{};

@@ -103,7 +103,7 @@ TEST_F(Operation, TellsWhatWasShownWhenAndHowFarOff) {
     EXPECT_EQ(*line.predicted_mm, 0.5);
     EXPECT_FALSE(hole.predicted_mm) << "null is not known, never 0";
     EXPECT_EQ(line.measured_mm.size(), 31u);
-    EXPECT_EQ(line.measured_mm[20], 0.3);
+    EXPECT_NEAR(line.measured_mm[20], 0.3, 1e-12);
     EXPECT_NEAR(f.lit_s, 3.0, 1e-9) << "20 steps of the first light, 10 of the second";
     EXPECT_NEAR(f.aligned_s, 2.0, 1e-9);
     EXPECT_NEAR(f.look_s, 1.0, 1e-9);

@@ -56,6 +56,7 @@ protected:
 TEST_F(Replay, OfASessionWithAMovingHeadIsAlikeToTheLastDigit) {
     PlayedSession how;
     how.check_skin = true;
+    how.updates = 30;
     expect_alike(how);
 }
 
