@@ -9,7 +9,7 @@ namespace planlight {
 
 /// Which frames `--record events` keeps.
 struct FrameChoiceSettings {
-    double bytes_per_s = 220e3;                     ///< of pictures on the disk, in the long run: 0.8 GB an hour
+    double bytes_per_s = 175e3;                     ///< of pictures on the disk, in the long run: 0.6 GB an hour
     double bytes_ahead = 50e6;                      ///< that may be used up at once, and come back at that rate
     Instant usual_every = std::chrono::seconds(2);  ///< a frame, while nothing happens and half of that is left
     std::size_t before = 12, after = 12;            ///< frames round an event

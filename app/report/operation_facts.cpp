@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "app/recording/recording_head.h"
 #include "app/report/operation_report.h"
@@ -165,7 +166,7 @@ private:
     }
 
     void take_check(const Json& check) {
-        if (check.value("seen", 0) > 0) facts_.light_off_mm.push_back(number(check.at("off_mm")));
+        if (check.value("seen", 0) > 0) facts_.light_off_mm.push_back(off_mm_ = number(check.at("off_mm")));
         const Json& items = check.at("items");
         for (std::size_t i = 0; i < std::min(items.size(), now_.size()); ++i) {
             lit_items_[i] = items[i].at(0).get<bool>();
@@ -195,11 +196,20 @@ private:
         const std::string trust = event.value("trust", "");
         if (lit_ && trust == "aligned") facts_.aligned_s += step_s_;
         if (lit_ && trust == "look") facts_.look_s += step_s_;
+        if (lit_) note_course(trust == "aligned");
         if (event.value("stop", false)) {
             ++facts_.stops;
             say("The light was stopped: " + event.value("headline", ""), event);
         }
         choose_moment(trust);
+    }
+
+    void note_course(bool aligned) {
+        constexpr double kEvery_s = 0.5;
+        if (facts_.course.empty() || update_at_s_ - facts_.course.back().at_s >= kEvery_s ||
+            facts_.course.back().aligned != aligned)
+            facts_.course.push_back({update_at_s_, aligned, -1});
+        facts_.course.back().off_mm = std::max(facts_.course.back().off_mm, std::exchange(off_mm_, -1));
     }
 
     /// The first aligned one; before that, the first that is lit.
@@ -214,7 +224,7 @@ private:
 
     OperationFacts& facts_;
     Instant origin_{}, frame_at_{};
-    double at_s_ = 0, update_at_s_ = 0, step_s_ = 0;
+    double at_s_ = 0, update_at_s_ = 0, step_s_ = 0, off_mm_ = -1;
     bool following_ = false, lit_ = false;
     int landmark_ = -1;
     std::string dark_, utc_of_match_;

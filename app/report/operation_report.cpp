@@ -10,6 +10,7 @@
 #include "app/recording/recording_head.h"
 #include "app/report/html_page.h"
 #include "app/report/paper_page.h"
+#include "app/report/svg_chart.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
@@ -107,6 +108,42 @@ std::string time_html(const OperationFacts& facts) {
     if (dark.size() > kMost)
         html += fmt::format("<tr><td>and {} reasons more</td><td></td><td></td></tr>", dark.size() - kMost);
     return html + "</table>";
+}
+
+/// The light over time: how far off it was measured, over bars that say by height and colour whether it was aligned.
+std::string course_html(const OperationFacts& facts) {
+    if (facts.course.size() < 2) return {};
+    constexpr std::size_t kMostPlaces = 400;
+    constexpr double kBreak_s = 1.5;
+    const bool long_one = facts.lasted_s > 300;
+    const double unit_s = long_one ? 60 : 1;
+    double most_mm = 2.2;
+    for (const auto& sample : facts.course) most_mm = std::max(most_mm, std::min(5.0, sample.off_mm));
+    SvgChart chart({0, std::max(1.0, facts.lasted_s / unit_s), long_one ? "room clock, minutes" : "room clock, s", 8},
+                   {0, most_mm, "light off its place (95 %), mm", 5}, 1100, 250);
+    const std::size_t join = facts.course.size() / kMostPlaces + 1;
+    SvgChart::Points points;
+    for (std::size_t i = 0; i < facts.course.size(); i += join) {
+        const auto& first = facts.course[i];
+        const std::size_t end = std::min(i + join, facts.course.size());
+        double off_mm = -1;
+        bool aligned = true;
+        for (std::size_t k = i; k < end; ++k) {
+            off_mm = std::max(off_mm, facts.course[k].off_mm);
+            aligned &= facts.course[k].aligned;
+        }
+        const double until_s = std::min(end < facts.course.size() ? facts.course[end].at_s : facts.lasted_s,
+                                        facts.course[end - 1].at_s + kBreak_s);
+        chart.bar(first.at_s / unit_s, until_s / unit_s, aligned ? 0.16 : 0.08, aligned ? "#14663a" : "#d08700");
+        if (off_mm >= 0) points.emplace_back(first.at_s / unit_s, std::min(off_mm, most_mm));
+    }
+    chart.line({{0, kLook_mm}, {facts.lasted_s / unit_s, kLook_mm}}, "#d08700", 1);
+    chart.line({{0, kStop_mm}, {facts.lasted_s / unit_s, kStop_mm}}, "#a3121f", 1);
+    chart.dots(points, "#15406b");
+    return "<h2>The light over time</h2>" + chart.text() +
+           "<p class=\"muted\">Points: the worst of half a second or more. Bars at the foot: high and green aligned, "
+           "low and "
+           "amber to be looked at, none dark. Lines: at 1 mm the light is not trusted, at 2 mm it goes out.</p>";
 }
 
 std::string matches_html(const OperationFacts& facts) {
@@ -330,7 +367,8 @@ void write_operation_report(const OperationFacts& facts, const std::string& json
     const std::string title = "Operation: " + facts.head.case_title;
     const std::string body =
         fmt::format("<section class=\"sheet\"><h1>{}</h1>{}{}{}{}</section>", html_escaped(title),
-                    verdict_html(verdict_of(facts)), facts_html(facts), items_html(facts), time_html(facts)) +
+                    verdict_html(verdict_of(facts)), facts_html(facts), items_html(facts),
+                    time_html(facts) + course_html(facts)) +
         fmt::format(
             "<section class=\"sheet\">{}{}{}{}{}<div class=\"sign\"><span>Name</span><span>Date</span>"
             "<span>Signature</span></div></section>",

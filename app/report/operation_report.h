@@ -57,6 +57,14 @@ struct OperationFacts {
     std::vector<OperationEvent> refusals;  ///< of a scan, a match, a check; devices that failed
     std::vector<OperationItem> items;
     std::map<std::string, std::pair<int, double>> dark;  ///< while following: reason, how often, for how many seconds
+    /// Every half second of light at most: when, whether it was aligned, and the largest of `light_off_mm` since the
+    /// last; -1 where it was not measured.
+    struct Sample {
+        double at_s = 0;
+        bool aligned = false;
+        double off_mm = -1;
+    };
+    std::vector<Sample> course;
     std::vector<double> light_off_mm;  ///< of all of the light (95 % of it lies within), each measurement
     std::optional<OperationMoment> moment;
     int updates = 0, verified = 0, stops = 0;

@@ -171,7 +171,7 @@ TEST_F(Operation, EventsThatCannotBeUnderstoodAreRefused) {
     EXPECT_THROW(facts(), DamagedFileError);
 }
 
-TEST(FrameChoice, KeepsAGigabyteAnHourWhateverHappens) {
+TEST(FrameChoice, KeepsWithinItsBudgetWhateverHappens) {
     for (const double bytes : {250e3, 1.4e6})       // of a frame in the paper's room, in a modern one
         for (const int event_every : {0, 25, 1}) {  // frames
             FrameChoice choice;
@@ -181,7 +181,7 @@ TEST(FrameChoice, KeepsAGigabyteAnHourWhateverHappens) {
                 if (event_every > 0 && i % event_every == 0)
                     kept += bytes * static_cast<double>(choice.event(12, bytes));
             }
-            EXPECT_LE(kept, 0.85e9) << bytes << " bytes a frame, an event every " << event_every;
+            EXPECT_LE(kept, 0.69e9) << bytes << " bytes a frame, an event every " << event_every;
             EXPECT_GE(kept, 0.3e9) << bytes << " bytes a frame, an event every " << event_every;
         }
 }

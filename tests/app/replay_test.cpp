@@ -102,7 +102,7 @@ TEST_F(Replay, ADiskThatTakesNothingLeavesTheLightAloneAndIsSaid) {
     // Scan, match and light come to their end while the disk has not taken a byte: nothing of it waited.
     const test::PlayedResult played = test::play_session(how, test::example_case(), &recorder);
     EXPECT_GE(played.updates, 20);
-    EXPECT_GT(recorder.state().dropped_chunks, 100u);
+    EXPECT_GE(recorder.state().dropped_chunks, 40u) << "a scan of 46 pictures and 20 updates, and room for three";
     EXPECT_LE(recorder.state().waiting_bytes, 3'010'000u);
     EXPECT_NE(recorder.trouble().find("the light is not affected"), std::string::npos) << recorder.trouble();
     still = false;
