@@ -4,11 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/recording/recording_cursor.h"
+#include "app/recording/recorded_devices.h"
 #include "app/recording/recording_head.h"
 #include "app/recording/session_events.h"
 #include "planning_io/case/rig_file.h"
-#include "planning_io/recording/packed_pictures.h"
 
 namespace planlight {
 namespace {
@@ -16,86 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 using Kind = RecordedInput::Kind;
-
-/// Thrown where the replay comes to something else.
-struct Differs {
-    std::string what;
-};
-
-constexpr const char* kAsked[] = {"",
-                                  "the time",
-                                  "a picture to be shown",
-                                  "darkness",
-                                  "a frame",
-                                  "a device (which failed)",
-                                  "to go on with a scan (which was stopped)"};
-
-std::string words_of(const RecordingCursor::Next& next) {
-    if (next.event) return "what came of it: " + next.event->substr(0, 120);
-    return kAsked[static_cast<std::size_t>(next.input->kind)];
-}
-
-/// Devices that answer as the recording says.
-class RecordedDevices final : public Projector, public StereoCamera, public Clock {
-public:
-    RecordedDevices(RecordingCursor& cursor, int width, int height, ReplayResult& result)
-        : cursor_(cursor), width_(width), height_(height), result_(result) {}
-
-    int width() const override { return width_; }
-    int height() const override { return height_; }
-    Instant show(const RgbImage& picture, Instant valid_until) override {
-        const RecordedInput input = answer(Kind::shown);
-        if (input.text != hash_of(picture)) throw Differs{"the picture that was handed to the projector"};
-        if (input.until != valid_until)
-            throw Differs{fmt::format("how long a picture was to be shown: {} ns recorded, {} ns now",
-                                      input.until.count(), valid_until.count())};
-        ++result_.pictures;
-        return input.at;
-    }
-    /// In a destructor, too, where nothing may be thrown: what differs is found at the next answer.
-    void go_dark() noexcept override {
-        try {
-            if (const auto& next = cursor_.peek(); next.input && next.input->kind == Kind::dark) cursor_.take();
-        } catch (...) {
-        }
-    }
-    StereoFrame grab(Instant, std::chrono::milliseconds) override {
-        const RecordedInput input = answer(Kind::frame);
-        StereoFrame frame = cursor_.frame(input);
-        last_number_ = frame.number, last_at_ = frame.at;
-        if (result_.frames++ == 0) result_.began = frame.at;
-        return frame;
-    }
-    Instant now() const override { return answer(Kind::clock).at; }
-    /// To be called between two pictures of a scan, where a person may have stopped it.
-    void stop_if_stopped() {
-        const auto& next = cursor_.peek();
-        if (!next.input || next.input->kind != Kind::stopped) return;
-        const RecordedInput input = *cursor_.take().input;
-        throw CheckFailedError(input.text, input.remedy);
-    }
-    std::uint64_t last_number() const { return last_number_; }
-    Instant last_at() const { return last_at_; }
-
-private:
-    RecordedInput answer(Kind kind) const {
-        const auto next = cursor_.take();
-        if (next.input && next.input->kind == Kind::failed) {
-            const auto colon = next.input->text.find(": ");
-            if (colon == std::string::npos) throw DeviceError("Device", next.input->text, next.input->remedy);
-            throw DeviceError(next.input->text.substr(0, colon), next.input->text.substr(colon + 2),
-                              next.input->remedy);
-        }
-        if (next.input && next.input->kind == kind) return *next.input;
-        throw Differs{fmt::format("the order of things: the session now asks for {}, where the recording has {}",
-                                  kAsked[static_cast<std::size_t>(kind)], words_of(next))};
-    }
-    RecordingCursor& cursor_;
-    int width_, height_;
-    ReplayResult& result_;
-    std::uint64_t last_number_ = 0;
-    Instant last_at_{};
-};
 
 /// The names under which two objects of JSON differ, with both values, shortened.
 std::string difference_of(const Json& recorded, const Json& now, const std::string& place) {
@@ -147,10 +66,11 @@ public:
             const std::string now = make();
             const auto next = cursor_.take();
             if (!next.event)
-                throw Differs{fmt::format("the order of things: the session came to {}, where the recording has {}",
-                                          now.substr(0, 120), words_of(next))};
+                throw ReplayDiffers{
+                    fmt::format("the order of things: the session came to {}, where the recording has {}",
+                                now.substr(0, 120), words_of(next))};
             if (*next.event != now)
-                throw Differs{difference_of(Json::parse(*next.event, nullptr, false), Json::parse(now), {})};
+                throw ReplayDiffers{difference_of(Json::parse(*next.event, nullptr, false), Json::parse(now), {})};
             ++alike;
         } catch (...) {
             fault_ = std::current_exception();
@@ -181,7 +101,7 @@ public:
         : cursor_(cursor),
           result_(result),
           comparer_(cursor, result),
-          devices_(cursor, rig.projector.width, rig.projector.height, result),
+          devices_(cursor, rig.projector.width, rig.projector.height),
           session_(the_case, drawing, rig, devices_, devices_, devices_, settings(markers)) {}
 
     /// To the end of the recording or the first difference.
@@ -198,12 +118,15 @@ public:
         } catch (const nlohmann::json::exception&) {
             throw DamagedFileError(cursor_.reader().file(), "what was asked cannot be understood",
                                    "Copy the file again from where it was written.");
-        } catch (const Differs& differs) {
+        } catch (const ReplayDiffers& differs) {
             const bool within = result_.updates + result_.refusals < updates_asked_;
-            result_.difference = {devices_.last_number(), devices_.last_at(), within ? updates_asked_ : result_.updates,
-                                  differs.what};
+            result_.difference = {devices_.given().last_number, devices_.given().last_at,
+                                  within ? updates_asked_ : result_.updates, differs.what};
         }
-        if (result_.frames > 0) result_.recorded_s = seconds(devices_.last_at() - result_.began);
+        const RecordedDevices::Given& given = devices_.given();
+        result_.pictures = given.pictures, result_.frames = given.frames;
+        result_.began = given.first_at;
+        result_.recorded_s = seconds(given.last_at - given.first_at);
     }
 
 private:
@@ -218,8 +141,8 @@ private:
         // The last darkness is that of the session's end, which nobody asks for.
         while (next.input && next.input->kind == Kind::dark) next = cursor_.take();
         if (!next.event)
-            throw Differs{"the order of things: the session asks for nothing, where the recording has " +
-                          words_of(next)};
+            throw ReplayDiffers{"the order of things: the session asks for nothing, where the recording has " +
+                                words_of(next)};
         const Json event = Json::parse(*next.event, nullptr, false);
         const std::string what = event.is_object() ? event.value("what", "") : "";
         SessionCall call{};
@@ -229,7 +152,7 @@ private:
         else if (what == "gate" && session_events::from_word(event.value("call", ""), gate_call))
             ask_gate(gate_call, event, *next.event);
         else
-            throw Differs{"what came of it: nothing now, where the recording has " + next.event->substr(0, 120)};
+            throw ReplayDiffers{"what came of it: nothing now, where the recording has " + next.event->substr(0, 120)};
     }
 
     void ask(SessionCall call, const Json& event) {
@@ -286,7 +209,7 @@ private:
         }
         const LightGate::Ruling ruling = gate_.step(last_.frame.at, last_.overlay.lit, last_.light, last_.causes);
         const std::string now = session_events::gate(call, last_.frame.at, 0, &ruling);
-        if (now != recorded) throw Differs{"the gate's decision, " + difference_of(event, Json::parse(now), {})};
+        if (now != recorded) throw ReplayDiffers{"the gate's decision, " + difference_of(event, Json::parse(now), {})};
         ++result_.rulings;
     }
 

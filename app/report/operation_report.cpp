@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "app/evaluation/distribution.h"
 #include "app/live/scene_of_session.h"
-#include "app/recording/recording_head.h"
 #include "app/report/html_page.h"
 #include "app/report/paper_page.h"
 #include "app/report/svg_chart.h"
@@ -18,17 +16,8 @@ namespace planlight {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
-constexpr double kLook_mm = 1, kStop_mm = 2;  // as the light gate has them
-
-/// "3 min 12 s", "12.4 s".
-std::string duration(double s) {
-    if (s < 60) return fmt::format("{:.1f} s", s);
-    const auto whole = static_cast<long>(s + 0.5);
-    return whole < 3600 ? fmt::format("{} min {:02} s", whole / 60, whole % 60)
-                        : fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
-}
+constexpr double kLook_mm = kOperationLook_mm, kStop_mm = kOperationStop_mm;
 
 /// Of the room's clock: "0:03:12".
 std::string moment_text(double s) {
@@ -80,8 +69,8 @@ std::string items_html(const OperationFacts& facts) {
                                                                marked(d.p95), marked(d.worst))
                                                  : std::string("<td colspan=\"3\">not seen by the cameras</td>");
         html += fmt::format("<tr><td class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}</td>{}<td>{}</td></tr>",
-                            html_escaped(item.name), shown_text(item), duration(item.shown_s), mm(item.predicted_mm),
-                            measured, d.count);
+                            html_escaped(item.name), shown_text(item), duration_text(item.shown_s),
+                            mm(item.predicted_mm), measured, d.count);
     }
     if (facts.items.empty()) html += "<tr><td colspan=\"8\">No match was found: nothing could be shown.</td></tr>";
     return html +
@@ -96,7 +85,7 @@ std::string time_html(const OperationFacts& facts) {
         "<h2>Light and darkness</h2><p>Light for {}: {} of it aligned (measured where it belongs, and verified), {} to "
         "be "
         "looked at. {} updates.</p>",
-        duration(facts.lit_s), duration(facts.aligned_s), duration(facts.look_s), facts.updates);
+        duration_text(facts.lit_s), duration_text(facts.aligned_s), duration_text(facts.look_s), facts.updates);
     if (facts.dark.empty()) return html + "<p>While the plan was followed it was never dark by itself.</p>";
     std::vector<std::pair<std::string, std::pair<int, double>>> dark(facts.dark.begin(), facts.dark.end());
     std::sort(dark.begin(), dark.end(), [](const auto& a, const auto& b) { return a.second.second > b.second.second; });
@@ -104,7 +93,7 @@ std::string time_html(const OperationFacts& facts) {
     constexpr std::size_t kMost = 8;
     for (std::size_t i = 0; i < std::min(dark.size(), kMost); ++i)
         html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>", html_escaped(dark[i].first),
-                            dark[i].second.first, duration(dark[i].second.second));
+                            dark[i].second.first, duration_text(dark[i].second.second));
     if (dark.size() > kMost)
         html += fmt::format("<tr><td>and {} reasons more</td><td></td><td></td></tr>", dark.size() - kMost);
     return html + "</table>";
@@ -204,7 +193,7 @@ std::string facts_html(const OperationFacts& facts) {
     return "<div class=\"two\"><table>" + row("Case", titled ? head.case_title : "") + row("Code", head.case_code) +
            row("Plan", head.plan_name + (head.plan_version.empty() ? "" : ", version " + head.plan_version)) +
            row("Room", facts.room) + row("Rig calibrated", utc_text(facts.rig_made_on)) + "</table><table>" +
-           row("Began", utc_text(head.began_utc)) + row("Lasted", duration(facts.lasted_s) + " (room clock)") +
+           row("Began", utc_text(head.began_utc)) + row("Lasted", duration_text(facts.lasted_s) + " (room clock)") +
            row("Operator", head.operator_name) + row("Computer", head.computer) +
            row("Program", "Planlight " + head.program) + "</table></div>";
 }
@@ -230,19 +219,6 @@ std::string verdict_html(const OperationVerdict& verdict) {
     return html + "</ul>";
 }
 
-Json json_of(const Distribution& d) {
-    if (d.count == 0) return {{"count", 0}, {"median", nullptr}, {"p95", nullptr}, {"worst", nullptr}};
-    return {{"count", d.count}, {"median", d.median}, {"p95", d.p95}, {"worst", d.worst}};
-}
-
-Json json_of(const std::vector<OperationEvent>& events) {
-    Json json = Json::array();
-    for (const OperationEvent& event : events)
-        json.push_back(
-            {{"at_s", event.at_s}, {"utc", event.utc.empty() ? Json() : Json(event.utc)}, {"what", event.what}});
-    return json;
-}
-
 /// Readable by its owner only, as the recording is: it shows the patient.
 void keep_to_owner(const fs::path& file) {
     std::error_code ignored;
@@ -250,117 +226,6 @@ void keep_to_owner(const fs::path& file) {
 }
 
 }  // namespace
-
-OperationVerdict verdict_of(const OperationFacts& facts) {
-    using Kind = OperationVerdict::Kind;
-    OperationVerdict verdict;
-    verdict.kind = Kind::good;
-    const auto lower = [&](Kind to, const std::string& reason) {
-        verdict.kind = std::max(verdict.kind, to);
-        verdict.reasons.push_back(reason);
-    };
-    if (facts.simulated) verdict.reasons.push_back("A simulated room: no patient was there.");
-    for (const OperationItem& item : facts.items) {
-        const Distribution d = distribution_of(item.measured_mm);
-        if (d.count > 0 && d.p95 > kLook_mm)
-            lower(d.p95 > kStop_mm ? Kind::stop : Kind::look,
-                  fmt::format("{} lay {:.1f} mm off in the worst twentieth of what was measured.", item.name, d.p95));
-        if (d.count == 0 && item.shown_s > 0)
-            lower(Kind::look, item.name + " was shown, and its light was never seen by the cameras.");
-        if (item.shown.empty()) lower(Kind::look, item.name + " was not shown.");
-    }
-    if (facts.stops > 0)
-        lower(Kind::look, fmt::format("The light was stopped by the system {}.",
-                                      facts.stops == 1 ? "once" : fmt::format("{} times", facts.stops)));
-    if (facts.lit_s > 0 && facts.verified == 0) lower(Kind::look, "Nobody said that the light on landmarks is right.");
-    for (const OperationMatch& match : facts.matches)
-        if (match.verdict == "ask")
-            lower(Kind::look, "A match was doubtful and used on a person's word alone, if at all.");
-    if (facts.lit_s > 0 && facts.aligned_s < 0.8 * facts.lit_s)
-        lower(Kind::look,
-              fmt::format("Only {:.0f} % of the time of light was it aligned.", 100 * facts.aligned_s / facts.lit_s));
-    if (!facts.ended.empty()) lower(Kind::look, facts.ended);
-    if (facts.lost_chunks > 0)
-        lower(Kind::look,
-              fmt::format("{} pieces are missing in the recording: the disk was too slow or full.", facts.lost_chunks));
-    if (facts.updates == 0 || facts.lit_s <= 0) {
-        verdict.kind = Kind::look;
-        verdict.sentence = "No light of the plan was shown.";
-    } else {
-        const Distribution d = distribution_of(facts.light_off_mm);
-        verdict.sentence = fmt::format(
-            "The plan was shown for {}, aligned for {:.0f} % of it{}.", duration(facts.lit_s),
-            100 * facts.aligned_s / facts.lit_s,
-            d.count > 0 ? fmt::format("; the light lay within {:.2f} mm (median), {:.2f} mm (95 %)", d.median, d.p95)
-                        : "");
-    }
-    return verdict;
-}
-
-std::string operation_json(const OperationFacts& facts) {
-    const OperationVerdict verdict = verdict_of(facts);
-    constexpr const char* kKinds[] = {"good", "look", "stop"};
-    const RecordingHead& head = facts.head;
-    Json json = {{"format", "planlight operation"},
-                 {"version", 1},
-                 {"verdict", kKinds[static_cast<std::size_t>(verdict.kind)]},
-                 {"sentence", verdict.sentence},
-                 {"reasons", verdict.reasons},
-                 {"case", head.case_code},
-                 {"title", head.case_title},
-                 {"plan", head.plan_name},
-                 {"plan_version", head.plan_version},
-                 {"room", facts.room},
-                 {"simulated", facts.simulated},
-                 {"began", head.began_utc},
-                 {"operator", head.operator_name},
-                 {"computer", head.computer},
-                 {"program", head.program},
-                 {"rig_made_on", facts.rig_made_on},
-                 {"serials", facts.serials},
-                 {"hashes",
-                  {{"recording", facts.recording_hash},
-                   {"volume", head.volume_hash},
-                   {"skin", head.mesh_hash},
-                   {"plan", head.plan_hash},
-                   {"rig", facts.rig_hash},
-                   {"program", head.program_hash}}},
-                 {"lasted_s", facts.lasted_s},
-                 {"lit_s", facts.lit_s},
-                 {"aligned_s", facts.aligned_s},
-                 {"look_s", facts.look_s},
-                 {"updates", facts.updates},
-                 {"verified", facts.verified},
-                 {"stops", facts.stops},
-                 {"light_off_mm", json_of(distribution_of(facts.light_off_mm))}};
-    json["items"] = Json::array();
-    for (const OperationItem& item : facts.items) {
-        Json shown = Json::array();
-        for (const auto& [from, to] : item.shown) shown.push_back({from, to});
-        json["items"].push_back({{"name", item.name},
-                                 {"shown_s", item.shown_s},
-                                 {"shown", shown},
-                                 {"predicted_mm", item.predicted_mm ? Json(*item.predicted_mm) : Json()},
-                                 {"measured_mm", json_of(distribution_of(item.measured_mm))}});
-    }
-    json["matches"] = Json::array();
-    for (const OperationMatch& match : facts.matches)
-        json["matches"].push_back({{"at_s", match.at_s},
-                                   {"utc", match.utc},
-                                   {"verdict", match.verdict},
-                                   {"reasons", match.reasons},
-                                   {"residual_rms_mm", match.residual_rms_mm},
-                                   {"points", match.points}});
-    json["dark"] = Json::array();
-    for (const auto& [reason, how] : facts.dark)
-        json["dark"].push_back({{"reason", reason}, {"times", how.first}, {"seconds", how.second}});
-    json["said"] = json_of(facts.said);
-    json["refusals"] = json_of(facts.refusals);
-    json["recording"] = {{"file", facts.file},   {"record", word_of(head.mode)}, {"chunks", facts.chunks},
-                         {"bytes", facts.bytes}, {"frames", facts.kept_frames},  {"lost_chunks", facts.lost_chunks},
-                         {"ended", facts.ended}};
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
-}
 
 void write_operation_report(const OperationFacts& facts, const std::string& json, const fs::path& file) {
     constexpr std::size_t kMostEvents = 14, kMostRefusals = 6;

@@ -76,6 +76,12 @@ struct OperationFacts {
 /// Reads the recording from its beginning to its end. Throws InputError, DamagedFileError.
 OperationFacts facts_of_operation(const std::filesystem::path& recording);
 
+/// Above these the light is not trusted, and goes out, as the light gate has them.
+inline constexpr double kOperationLook_mm = 1, kOperationStop_mm = 2;
+
+/// "3 min 12 s", "12.4 s".
+std::string duration_text(double s);
+
 /// The verdict of a page, first of all that stands on it.
 struct OperationVerdict {
     enum class Kind { good, look, stop } kind = Kind::look;
