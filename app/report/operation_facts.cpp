@@ -151,6 +151,7 @@ private:
         facts_.lasted_s = std::max(facts_.lasted_s, at_s);
         const Json& light = event.at("light");
         lit_ = light.value("lit", false);
+        light_seen_ = false;
         if (const auto check = event.find("check"); check != event.end() && landmark_ < 0) take_check(*check);
         if (lit_) {
             facts_.lit_s += step_s_;
@@ -167,6 +168,7 @@ private:
 
     void take_check(const Json& check) {
         if (check.value("seen", 0) > 0) facts_.light_off_mm.push_back(off_mm_ = number(check.at("off_mm")));
+        light_seen_ = check.value("seen", 0) > 0;
         const Json& items = check.at("items");
         for (std::size_t i = 0; i < std::min(items.size(), now_.size()); ++i) {
             lit_items_[i] = items[i].at(0).get<bool>();
@@ -212,12 +214,13 @@ private:
         facts_.course.back().off_mm = std::max(facts_.course.back().off_mm, std::exchange(off_mm_, -1));
     }
 
-    /// The first aligned one; before that, the first that is lit.
+    /// The first whose light the cameras saw, and that was aligned; before that, what comes next to it.
     void choose_moment(const std::string& trust) {
         if (!lit_ || !frame_ || frame_->at != frame_at_ || landmark_ >= 0) return;
-        const bool better = !moment_frame_ || (trust == "aligned" && moment_trust_ != "aligned") ||
-                            (trust == moment_trust_ && !moment_picture_ && picture_);
-        if (!better) return;
+        // Light is in a frame's pictures where the cameras saw it: in the first frame after darkness it is not yet.
+        const int worth = (light_seen_ ? 2 : 0) + (trust == "aligned" ? 2 : 0) + (picture_ ? 1 : 0);
+        if (moment_frame_ && worth <= moment_worth_) return;
+        moment_worth_ = worth;
         moment_frame_ = frame_, moment_trust_ = trust, moment_at_s_ = update_at_s_;
         moment_picture_ = picture_ && picture_->at >= frame_at_ ? picture_ : std::nullopt;
     }
@@ -232,6 +235,8 @@ private:
     std::vector<bool> lit_items_;
     std::optional<RecordingChunk> frame_, picture_, moment_frame_, moment_picture_;
     std::string moment_trust_;
+    int moment_worth_ = 0;
+    bool light_seen_ = false;  ///< in the last frame
     double moment_at_s_ = 0;
 };
 

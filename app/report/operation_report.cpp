@@ -25,6 +25,15 @@ std::string moment_text(double s) {
     return fmt::format("{}:{:02}:{:02}", whole / 3600, whole % 3600 / 60, whole % 60);
 }
 
+/// Cut where a word ends, as far as there is one; what is cut stands in the figures.
+std::string short_text(const std::string& text, std::size_t most) {
+    if (text.size() <= most) return text;
+    std::size_t end = text.rfind(' ', most);
+    if (end == std::string::npos || end < most / 2) end = most;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // not within a letter of UTF-8
+    return text.substr(0, end) + " …";
+}
+
 std::string utc_text(const std::string& iso) {
     return iso.size() < 19 ? iso : iso.substr(0, 10) + " " + iso.substr(11, 8) + " UTC";
 }
@@ -39,15 +48,8 @@ std::string mm(const std::optional<double>& value) {
 
 std::string shown_text(const OperationItem& item) {
     if (item.shown.empty()) return "not shown";
-    constexpr std::size_t kMost = 3;
-    std::string text;
-    for (std::size_t i = 0; i < std::min(item.shown.size(), kMost); ++i)
-        text += fmt::format("{}{}&ndash;{}", i == 0 ? "" : "<br>", moment_text(item.shown[i].first),
-                            moment_text(item.shown[i].second));
-    if (item.shown.size() > kMost)
-        text += fmt::format("<br>and {} times more, last until {}", item.shown.size() - kMost,
-                            moment_text(item.shown.back().second));
-    return text;
+    const std::string text = moment_text(item.shown.front().first) + "&ndash;" + moment_text(item.shown.back().second);
+    return item.shown.size() == 1 ? text : fmt::format("{}, {} times", text, item.shown.size());
 }
 
 /// A figure beyond what the gate lets pass is marked by a sign and a word, not by its colour alone.
@@ -63,15 +65,20 @@ std::string items_html(const OperationFacts& facts) {
         "<h2>What was shown, and how far off it was</h2><table class=\"plan\"><tr><th>Plan item</th><th>shown (room "
         "clock)</th><th>for</th><th>predicted, 95 %</th><th>measured: median</th><th>95 %</th><th>worst</th>"
         "<th>times</th></tr>";
-    for (const OperationItem& item : facts.items) {
+    constexpr std::size_t kMost = 14;  // of which the page has room; the verdict names every one that was off
+    for (std::size_t i = 0; i < std::min(facts.items.size(), kMost); ++i) {
+        const OperationItem& item = facts.items[i];
         const Distribution d = distribution_of(item.measured_mm);
         const std::string measured = d.count > 0 ? fmt::format("<td>{}</td><td>{}</td><td>{}</td>", marked(d.median),
                                                                marked(d.p95), marked(d.worst))
                                                  : std::string("<td colspan=\"3\">not seen by the cameras</td>");
         html += fmt::format("<tr><td class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}</td>{}<td>{}</td></tr>",
-                            html_escaped(item.name), shown_text(item), duration_text(item.shown_s),
+                            html_escaped(short_text(item.name, 40)), shown_text(item), duration_text(item.shown_s),
                             mm(item.predicted_mm), measured, d.count);
     }
+    if (facts.items.size() > kMost)
+        html += fmt::format("<tr><td colspan=\"8\">and {} items more, in the figures beside this page</td></tr>",
+                            facts.items.size() - kMost);
     if (facts.items.empty()) html += "<tr><td colspan=\"8\">No match was found: nothing could be shown.</td></tr>";
     return html +
            "</table><p class=\"muted\">Predicted: within this in 95 of 100 cases, by the last match. Measured: where "
@@ -90,7 +97,7 @@ std::string time_html(const OperationFacts& facts) {
     std::vector<std::pair<std::string, std::pair<int, double>>> dark(facts.dark.begin(), facts.dark.end());
     std::sort(dark.begin(), dark.end(), [](const auto& a, const auto& b) { return a.second.second > b.second.second; });
     html += "<table><tr><th>Dark by itself, because</th><th>times</th><th>for</th></tr>";
-    constexpr std::size_t kMost = 8;
+    constexpr std::size_t kMost = 5;
     for (std::size_t i = 0; i < std::min(dark.size(), kMost); ++i)
         html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>", html_escaped(dark[i].first),
                             dark[i].second.first, duration_text(dark[i].second.second));
@@ -109,7 +116,7 @@ std::string course_html(const OperationFacts& facts) {
     double most_mm = 2.2;
     for (const auto& sample : facts.course) most_mm = std::max(most_mm, std::min(5.0, sample.off_mm));
     SvgChart chart({0, std::max(1.0, facts.lasted_s / unit_s), long_one ? "room clock, minutes" : "room clock, s", 8},
-                   {0, most_mm, "light off its place (95 %), mm", 5}, 1100, 250);
+                   {0, most_mm, "light off its place (95 %), mm", 5}, 1100, 210);
     const std::size_t join = facts.course.size() / kMostPlaces + 1;
     SvgChart::Points points;
     for (std::size_t i = 0; i < facts.course.size(); i += join) {
@@ -139,13 +146,17 @@ std::string matches_html(const OperationFacts& facts) {
     std::string html = "<h2>Matches</h2>";
     if (facts.matches.empty()) return html + "<p>None.</p>";
     html += "<table><tr><th>Room clock</th><th>Verdict</th><th>Points of skin</th><th>Residual</th><th>Why</th></tr>";
-    for (const OperationMatch& match : facts.matches) {
+    constexpr std::size_t kMost = 3, kLongest = 110;
+    const std::size_t first = facts.matches.size() > kMost ? facts.matches.size() - kMost : 0;
+    for (std::size_t i = first; i < facts.matches.size(); ++i) {
+        const OperationMatch& match = facts.matches[i];
         std::string why;
         for (const std::string& reason : match.reasons) why += (why.empty() ? "" : " ") + reason;
-        html +=
-            fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.2f} mm rms</td><td>{}</td></tr>",
-                        moment_text(match.at_s), match.verdict, match.points, match.residual_rms_mm, html_escaped(why));
+        html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.2f} mm rms</td><td>{}</td></tr>",
+                            moment_text(match.at_s), match.verdict, match.points, match.residual_rms_mm,
+                            html_escaped(short_text(why, kLongest)));
     }
+    if (first > 0) html += fmt::format("<tr><td colspan=\"5\">after {} others</td></tr>", first);
     return html + "</table>";
 }
 
@@ -228,16 +239,16 @@ void keep_to_owner(const fs::path& file) {
 }  // namespace
 
 void write_operation_report(const OperationFacts& facts, const std::string& json, const fs::path& file) {
-    constexpr std::size_t kMostEvents = 14, kMostRefusals = 6;
+    constexpr std::size_t kMostEvents = 7, kMostRefusals = 3;
     const std::string title = "Operation: " + facts.head.case_title;
     const std::string body =
         fmt::format("<section class=\"sheet\"><h1>{}</h1>{}{}{}{}</section>", html_escaped(title),
-                    verdict_html(verdict_of(facts)), facts_html(facts), items_html(facts),
-                    time_html(facts) + course_html(facts)) +
+                    verdict_html(verdict_of(facts)), facts_html(facts), items_html(facts), time_html(facts)) +
         fmt::format(
-            "<section class=\"sheet\">{}{}{}{}{}<div class=\"sign\"><span>Name</span><span>Date</span>"
+            "<section class=\"sheet\">{}{}{}{}{}{}<div class=\"sign\"><span>Name</span><span>Date</span>"
             "<span>Signature</span></div></section>",
-            moment_html(facts), matches_html(facts), events_html("What people said and did", facts.said, kMostEvents),
+            moment_html(facts), course_html(facts), matches_html(facts),
+            events_html("What people said and did", facts.said, kMostEvents),
             events_html("Refused, or failed", facts.refusals, kMostRefusals), hashes_html(facts));
     write_safely(file,
                  paper_page(title, body,

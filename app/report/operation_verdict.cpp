@@ -1,5 +1,6 @@
 // What is to be said first of an operation, and all of its figures.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <functional>
@@ -30,6 +31,24 @@ Json json_of(const std::vector<OperationEvent>& events) {
     return json;
 }
 
+/// The first six; the others are counted, and stand in the figures.
+std::string names_of(const std::vector<std::string>& names) {
+    constexpr std::size_t kMost = 6;
+    const std::vector<std::string> first(names.begin(),
+                                         names.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, names.size())));
+    return fmt::format("{}{}", fmt::join(first, ", "),
+                       names.size() > kMost ? fmt::format(" and {} more", names.size() - kMost) : "");
+}
+
+std::vector<const OperationItem*> worst_first(const std::vector<OperationItem>& items) {
+    std::vector<std::pair<double, const OperationItem*>> by_p95;
+    for (const OperationItem& item : items) by_p95.emplace_back(distribution_of(item.measured_mm).p95, &item);
+    std::stable_sort(by_p95.begin(), by_p95.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<const OperationItem*> sorted;
+    for (const auto& [p95, item] : by_p95) sorted.push_back(item);
+    return sorted;
+}
+
 }  // namespace
 
 std::string duration_text(double s) {
@@ -48,22 +67,30 @@ OperationVerdict verdict_of(const OperationFacts& facts) {
         verdict.reasons.push_back(reason);
     };
     if (facts.simulated) verdict.reasons.push_back("A simulated room: no patient was there.");
-    for (const OperationItem& item : facts.items) {
-        const Distribution d = distribution_of(item.measured_mm);
-        if (d.count > 0 && d.p95 > kLook_mm)
-            lower(d.p95 > kStop_mm ? Kind::stop : Kind::look,
-                  fmt::format("{} lay {:.1f} mm off in the worst twentieth of what was measured.", item.name, d.p95));
-        if (d.count == 0 && item.shown_s > 0)
-            lower(Kind::look, item.name + " was shown, and its light was never seen by the cameras.");
-        if (item.shown.empty()) lower(Kind::look, item.name + " was not shown.");
+    std::vector<std::string> off, unseen, not_shown;
+    for (const OperationItem* item : worst_first(facts.items)) {
+        const Distribution d = distribution_of(item->measured_mm);
+        if (d.count > 0 && d.p95 > kLook_mm) {
+            verdict.kind = std::max(verdict.kind, d.p95 > kStop_mm ? Kind::stop : Kind::look);
+            off.push_back(fmt::format("{} ({:.1f} mm)", item->name, d.p95));
+        }
+        if (item->shown.empty())
+            not_shown.push_back(item->name);
+        else if (d.count == 0)
+            unseen.push_back(item->name);
     }
+    if (!off.empty())
+        lower(Kind::look, fmt::format("More than {:.0f} mm off in the worst twentieth of what was measured: {}.",
+                                      kLook_mm, names_of(off)));
+    if (!unseen.empty()) lower(Kind::look, fmt::format("Shown, and never seen by the cameras: {}.", names_of(unseen)));
+    if (!not_shown.empty()) lower(Kind::look, fmt::format("Not shown: {}.", names_of(not_shown)));
     if (facts.stops > 0)
         lower(Kind::look, fmt::format("The light was stopped by the system {}.",
                                       facts.stops == 1 ? "once" : fmt::format("{} times", facts.stops)));
     if (facts.lit_s > 0 && facts.verified == 0) lower(Kind::look, "Nobody said that the light on landmarks is right.");
-    for (const OperationMatch& match : facts.matches)
-        if (match.verdict == "ask")
-            lower(Kind::look, "A match was doubtful and used on a person's word alone, if at all.");
+    if (std::any_of(facts.matches.begin(), facts.matches.end(),
+                    [](const OperationMatch& match) { return match.verdict == "ask"; }))
+        lower(Kind::look, "A match was doubtful and used on a person's word alone, if at all.");
     if (facts.lit_s > 0 && facts.aligned_s < 0.8 * facts.lit_s)
         lower(Kind::look,
               fmt::format("Only {:.0f} % of the time of light was it aligned.", 100 * facts.aligned_s / facts.lit_s));
