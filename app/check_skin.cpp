@@ -9,7 +9,7 @@
 
 namespace planlight {
 
-SkinCheck Session::check_skin(const std::function<void(int, int)>& progress) {
+SkinCheck Session::measure_skin(const std::function<void(int, int)>& progress) {
     if (!registration_ || registration_->verdict == Verdict::no)
         throw CheckFailedError("there is no match to compare the skin with", "Scan and register first.");
     overlay_.reset();

@@ -51,9 +51,10 @@ Session::Session(const Case& the_case, const CaseDrawing& drawing, const RigCali
       planned_(drawing),
       calibrated_(rig),
       rig_(rig),
-      projector_(projector),
-      cameras_(cameras),
-      clock_(clock),
+      devices_(projector, cameras, clock, settings.observer),
+      projector_(devices_.projector()),
+      cameras_(devices_.cameras()),
+      clock_(devices_.clock()),
       settings_(std::move(settings)),
       tracker_(rig_, settings_.tracking),
       renderer_(std::make_unique<DrawingRenderer>(drawing.skin, rig_.projector)) {
@@ -61,17 +62,17 @@ Session::Session(const Case& the_case, const CaseDrawing& drawing, const RigCali
 }
 
 Session::~Session() {
-    go_dark();
+    darken();
 }
 
-void Session::go_dark() noexcept {
+void Session::darken() noexcept {
     lit_since_ = Instant::max();
     overlay_.reset();
     projector_.go_dark();
 }
 
-const ScanResult& Session::scan(const std::function<void(int, int)>& progress) {
-    go_dark();
+void Session::make_scan(const std::function<void(int, int)>& progress) {
+    darken();
     registration_.reset();
     scanned_.reset();
     rig_state_.reset();
@@ -101,7 +102,6 @@ const ScanResult& Session::scan(const std::function<void(int, int)>& progress) {
     scanned_ = scan_from_exposures(exposures, calibrated_, settings_.scan);
     capture_ = std::move(exposures.front());
     take_rig(*capture_);
-    return *scanned_;
 }
 
 void Session::use_rig(const RigCalibration& rig) {
@@ -163,7 +163,7 @@ double Session::moved_at_the_end_mm() {
     return moved_mm;
 }
 
-const RegistrationResult& Session::find_patient(const std::vector<PointPair>& landmarks) {
+void Session::match(const std::vector<PointPair>& landmarks) {
     if (!scanned_) throw CheckFailedError("there is no scan to find the patient in", "Scan first.");
     RegistrationSettings settings = settings_.registration;
     settings.viewpoint_in_rig = rig_.projector.centre_in_rig();
@@ -176,12 +176,6 @@ const RegistrationResult& Session::find_patient(const std::vector<PointPair>& la
     take_case_and_rig(case_, rig_state_, *registration_);
     if (registration_->verdict != Verdict::no) draw_on_skin_as_found();
     start_overlay();
-    return *registration_;
-}
-
-void Session::confirm() {
-    confirmed_ = true;
-    if (overlay_) overlay_->set_operator_confirmed(true);
 }
 
 /// On the skin as the scan found it, with the labels beside the markers.
@@ -230,13 +224,7 @@ const std::vector<Eigen::Vector3d>& Session::landmarks() {
     return *landmarks_;
 }
 
-void Session::light_landmark(std::optional<std::size_t> which) {
-    if (which == lit_landmark_) return;
-    overlay_.reset();
-    lit_landmark_ = which && *which < landmarks().size() ? which : std::nullopt;
-}
-
-Session::Update Session::update() {
+Session::Update Session::make_update() {
     if (!registration_) throw CheckFailedError("the patient has not been found", "Scan and register first.");
     if (!overlay_) start_overlay();
     Update update;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/observed_devices.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/types/registration_result.h"
 #include "planning_io/types/rig_calibration.h"
@@ -18,6 +19,8 @@
 #include "registration/tracking/track_patient.h"
 
 namespace planlight {
+
+enum class SessionCall;
 
 struct SessionSettings {
     ScanSettings scan;
@@ -40,7 +43,11 @@ struct SessionSettings {
     /// Called between seeing and showing, so that a simulated clock can be told how long the computing took. May be
     /// empty.
     std::function<void()> while_computing;
+    SessionObserver* observer = nullptr;  ///< told of all that goes in and comes out; null: nobody
 };
+
+/// The settings of a session on a patient with such markers.
+SessionSettings settings_for(const MarkerDesign& markers);
 
 /// The drawing machinery of one case: made once, used by every picture.
 struct CaseDrawing {
@@ -133,6 +140,7 @@ public:
     /// Dark now, and no more light until the next `update`.
     void go_dark() noexcept;
 
+    const Plan& plan() const { return case_.plan; }
     /// The rig as the last scan found it, and as it was calibrated before the first.
     const RigCalibration& rig() const { return rig_; }
     const RigState* rig_state() const { return rig_state_ ? &*rig_state_ : nullptr; }
@@ -149,6 +157,14 @@ public:
     int scans_repeated() const { return scans_repeated_; }  ///< in the last `scan`, because the patient moved
 
 private:
+    template <class Do>
+    void told(SessionCall call, const Do& body, const std::vector<PointPair>& landmarks = {}, int which = -1);
+    std::function<void(int, int)> told_when_stopped(const std::function<void(int, int)>& progress) const;
+    void make_scan(const std::function<void(int, int)>& progress);
+    void match(const std::vector<PointPair>& landmarks);
+    Update make_update();
+    SkinCheck measure_skin(const std::function<void(int, int)>& progress);
+    void darken() noexcept;
     void use_rig(const RigCalibration& rig);
     StereoFrame next_frame();
     void name_lost_pose(Update& update);
@@ -172,6 +188,7 @@ private:
     const RigCalibration calibrated_;  ///< rig.json
     RigCalibration rig_;               ///< as the last scan found it: cloud, poses and light are made with it
     std::optional<RigState> rig_state_;
+    ObservedDevices devices_;
     Projector& projector_;
     StereoCamera& cameras_;
     const Clock& clock_;

@@ -30,6 +30,9 @@ Run add_projector(CLI::App& app);
 Run add_projector_window(CLI::App& app);
 Run add_session(CLI::App& app);
 Run add_review(CLI::App& app);
+Run add_replay(CLI::App& app);
+Run add_report(CLI::App& app);
+Run add_forget(CLI::App& app);
 Run add_simulate(CLI::App& app);
 Run add_merge(CLI::App& app);
 

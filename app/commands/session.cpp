@@ -6,6 +6,8 @@
 #include "app/live/real_room.h"
 #include "app/live/simulated_fault.h"
 #include "app/live/simulated_room.h"
+#include "app/recording/recording_head.h"
+#include "app/report/html_page.h"
 #include "app/site_settings.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/case/rig_file.h"
@@ -20,6 +22,8 @@ struct SessionOptions {
     Path case_folder, volume;
     Path room;  ///< room.json of real devices; empty: the simulated room
     Path keep;  ///< folder for every match; empty: CASE/registrations
+    std::string record = "events";
+    Path recordings;  ///< folder; empty: CASE/recordings
     std::string series_uid;
     std::string preset = "paper", projector_monitor, operator_monitor;
     unsigned seed = 1;
@@ -32,7 +36,28 @@ struct SessionOptions {
     Path projector_file;         ///< projector.json of the monitor; empty: none
 };
 
-LiveOptions live_options(const SessionOptions& options, const SiteSettings& site) {
+/// The recording of this session, said where and how much; null with `--record none`.
+std::unique_ptr<SessionRecorder> recorder_of(const SessionOptions& options, const Case& the_case,
+                                             const SiteSettings& site) {
+    const RecordMode mode = record_mode_of(options.record);
+    if (mode == RecordMode::none) {
+        fmt::print("This session is not recorded.\n");
+        return nullptr;
+    }
+    const Path folder = options.recordings.empty() ? options.case_folder / kRecordingsFolder : options.recordings;
+    const Path file = new_recording_name(folder);
+    auto sink = std::make_unique<RecordingFile>(file);
+    std::error_code ignored;
+    fmt::print("Recorded in {}: {}; {:.0f} GB are free. It shows the patient's face, and only {} can read it.\n",
+               file.string(),
+               mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
+                                          : "every frame, about 20 GB an hour in the paper's room",
+               static_cast<double>(std::filesystem::space(folder, ignored).available) / 1e9, operator_name());
+    return std::make_unique<SessionRecorder>(
+        std::move(sink), recording_head(the_case, options.case_folder, mode, drawing_settings(site)));
+}
+
+LiveOptions live_options(const SessionOptions& options, const SiteSettings& site, const SessionRecorder* recorder) {
     LiveOptions live;
     live.projector_monitor = options.projector_monitor.empty() ? site.projector_monitor : options.projector_monitor;
     live.operator_monitor = options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor;
@@ -43,6 +68,7 @@ LiveOptions live_options(const SessionOptions& options, const SiteSettings& site
     live.end_after_s = options.end_after_s;
     live.screenshots = options.screenshots;
     live.keep_matches_in = options.keep.empty() ? options.case_folder / kRegistrationsFolder : options.keep;
+    if (recorder) live.trouble = [recorder] { return recorder->trouble(); };
     return live;
 }
 
@@ -58,9 +84,12 @@ int run_in_simulated_room(const SessionOptions& options, const Case& the_case) {
     simulation::RoomSettings room;
     room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     room.seed = options.seed;
+    const auto recorder = recorder_of(options, the_case, site);
+    LiveOptions live = live_options(options, site, recorder.get());
+    live.observer = recorder.get();
     return run_live_simulated(
         [&] { return std::make_unique<SimulatedRoom>(volume, the_case.plan, room, options.speed_mm_s, options.fault); },
-        the_case, CaseDrawing(the_case, drawing_settings(site)), live_options(options, site));
+        the_case, CaseDrawing(the_case, drawing_settings(site)), live);
 }
 
 int run_in_room(SessionOptions options, const Case& the_case) {
@@ -69,8 +98,11 @@ int run_in_room(SessionOptions options, const Case& the_case) {
     const SiteSettings site = read_site_settings();
     if (options.projector_monitor.empty()) options.projector_monitor = room.monitor;
     if (options.projector_file.empty() && options.light_delay_ms < 0) options.projector_file = room.projector_file;
+    const auto recorder = recorder_of(options, the_case, site);
+    LiveOptions live = live_options(options, site, recorder.get());
+    live.observer = recorder.get();
     return run_live([&](Projector& projector) { return std::make_unique<RealRoom>(room, rig, projector); }, the_case,
-                    CaseDrawing(the_case, drawing_settings(site)), live_options(options, site));
+                    CaseDrawing(the_case, drawing_settings(site)), live);
 }
 
 int run_session(const SessionOptions& options) {
@@ -94,6 +126,12 @@ Run add_session(CLI::App& app) {
         ->excludes(room);
     series_option(sub, o.series_uid);
     sub->add_option("--keep", o.keep, "Folder that keeps every match and its scan (default: CASE/registrations)");
+    sub->add_option("--record", o.record,
+                    "What is recorded: none, events (what happened, and some frames: at most 1 GB an hour), or all "
+                    "(every frame: what `replay` needs)")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"none", "events", "all"}));
+    sub->add_option("--recordings", o.recordings, "Folder for the recording (default: CASE/recordings)");
     preset_option(sub, o.preset)->excludes(room);
     sub->add_option(
         "--projector", o.projector_monitor,

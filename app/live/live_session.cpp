@@ -1,5 +1,7 @@
 #include "app/live/live_session.h"
 
+#include <array>
+
 #include "app/case_model.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/steady_clock.h"
@@ -8,6 +10,10 @@ namespace planlight {
 namespace {
 
 constexpr auto kLostPause = std::chrono::milliseconds(100);
+// For an observer, in the order of their enumerations.
+constexpr std::array kActions{"none", "scan",    "register",      "track",     "stop",
+                              "dark", "quit", "confirm", "use landmarks", "check skin"};
+constexpr std::array kStatusKinds{"ready", "scanning", "matching", "aligned", "check", "refused", "dark", "waiting"};
 
 }  // namespace
 
@@ -53,11 +59,13 @@ Status dark_status() {
 }  // namespace
 
 LiveSession::LiveSession(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
-                         std::filesystem::path keep_matches_in)
+                         std::filesystem::path keep_matches_in, SessionObserver* observer)
     : case_(the_case),
       drawing_(drawing),
       keep_matches_in_(std::move(keep_matches_in)),
-      model_(model_of_case(the_case, drawing)) {
+      observer_(observer),
+      model_(model_of_case(the_case, drawing)),
+      gate_(observer) {
     set_status(StatusKind::waiting, "The room is being made ready.", {"This takes some seconds."});
     show_alive();
     thread_ = std::thread([this, make_room = std::move(make_room)] {
@@ -83,6 +91,7 @@ LiveSession::~LiveSession() {
 
 void LiveSession::post(OperatorAction action) {
     if (action == OperatorAction::none) return;
+    if (observer_) observer_->pressed(kActions.at(static_cast<std::size_t>(action)));
     {
         const std::lock_guard lock(mutex_);
         if (action == OperatorAction::dark || action == OperatorAction::stop) {
@@ -148,6 +157,7 @@ bool LiveSession::light_permitted() const {
 }
 
 void LiveSession::set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details) {
+    if (observer_) observer_->said(kStatusKinds.at(static_cast<std::size_t>(kind)), headline, details);
     change_model([&](OperatorModel& m) { m.status = {kind, headline, std::move(details)}; });
 }
 
@@ -174,10 +184,11 @@ LiveSession::Press LiveSession::next_press(bool wait) {
 void LiveSession::run(const MakeRoom& make_room) {
     const std::unique_ptr<Room> room = make_room();
     LightTap tap(room->projector(), *this);
-    SessionSettings session_settings;
-    session_settings.tracking.design = room->markers();
-    session_settings.tracking.markers.sticker_ratio =
-        session_settings.tracking.design.sticker_diameter_mm / session_settings.tracking.design.disc_diameter_mm;
+    SessionSettings session_settings = settings_for(room->markers());
+    session_settings.observer = observer_;
+    if (observer_)
+        observer_->room_entered({room->name(), room->simulated(), room->markers(), room->rig(), room->notes(),
+                                 room->clock().now()});
     session_settings.while_computing = [&room] { room->computing(); };
     Session session(case_, drawing_, room->rig(), tap, room->cameras(), room->clock(), session_settings);
     set_steps(2);

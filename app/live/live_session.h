@@ -10,12 +10,12 @@
 #include <string>
 #include <thread>
 
+#include "app/live/observed_gate.h"
 #include "app/live/room.h"
 #include "app/session.h"
 #include "app/update_latency.h"
 #include "app/windows/operator_model.h"
 #include "app/windows/operator_window.h"
-#include "projection/light_gate.h"
 
 namespace planlight {
 
@@ -24,9 +24,10 @@ namespace planlight {
 /// The window thread posts what the person wants and takes the newest model and the newest light.
 class LiveSession {
 public:
-    /// `keep_matches_in`: every match and its scan in a folder of its own there; empty: not kept.
+    /// `keep_matches_in`: every match and its scan in a folder of its own there; empty: not kept. `observer` (null:
+    /// nobody) is told of all that happens.
     LiveSession(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
-                std::filesystem::path keep_matches_in);
+                std::filesystem::path keep_matches_in, SessionObserver* observer = nullptr);
     ~LiveSession();
 
     /// Queued; `dark` and `stop` overtake everything that waits.
@@ -95,6 +96,7 @@ private:
     const Case& case_;
     const CaseDrawing& drawing_;
     std::filesystem::path keep_matches_in_;
+    SessionObserver* observer_;
     mutable std::mutex mutex_;
     std::condition_variable wake_;
     std::deque<Press> presses_;
@@ -107,7 +109,7 @@ private:
     std::uint64_t darks_ = 0;           ///< DARK presses so far
     std::uint64_t darks_answered_ = 0;  ///< of these, how many the thread has come to; until then the banner says DARK
     std::uint64_t permitted_ = 0;       ///< `darks_` when the light of now was asked for; it is dark where they differ
-    LightGate gate_;                    ///< of the session's thread
+    ObservedGate gate_;                 ///< of the session's thread
     Instant seen_at_{};                 ///< of the last frame, on the room's clock
     int landmark_ = -1;                 ///< that is lit for a person to look at; -1: the plan is lit
     int landmarks_to_look_at_ = 0;

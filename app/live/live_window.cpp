@@ -134,6 +134,8 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
     while (!asked_to_end) {
         OperatorModel model = session.model();
         if (projector) tell_of_projector(projector->problem(), session, projector_lost, model);
+        if (const std::string trouble = options.trouble ? options.trouble() : ""; !trouble.empty())
+            model.status.details.push_back(trouble);
         const OperatorAction action = window.frame(model);
         if (projector) {
             projector->window_lives();
@@ -195,7 +197,7 @@ int run_live_simulated(MakeRoom make_room, const Case& the_case, const CaseDrawi
         settings.session_patience = std::chrono::milliseconds(2500);
         projector = std::make_unique<ProjectorKeeper>(monitor, settings);
     }
-    LiveSession session(std::move(make_room), the_case, drawing, options.keep_matches_in);
+    LiveSession session(std::move(make_room), the_case, drawing, options.keep_matches_in, options.observer);
     std::unique_ptr<LightKeeper> light;  // dark and gone before the session is
     if (projector) light = std::make_unique<LightKeeper>(*projector, session);
     return told_at_the_end(run_windows(window, session, projector.get(), options, Autoplay(true)), session, options);
@@ -206,7 +208,8 @@ int run_live(const MakeRoomWith& make_room, const Case& the_case, const CaseDraw
     OperatorWindow window(window_settings(options));
     check_monitor(options.projector_monitor, options.projector);
     ProjectorKeeper projector(options.projector_monitor, keeper_settings(options));
-    LiveSession session([&] { return make_room(projector); }, the_case, drawing, options.keep_matches_in);
+    LiveSession session([&] { return make_room(projector); }, the_case, drawing, options.keep_matches_in,
+                        options.observer);
     return told_at_the_end(run_windows(window, session, &projector, options, Autoplay(false)), session, options);
 }
 

@@ -84,15 +84,14 @@ std::string now() {
     return text;
 }
 
-/// The name of the user who is logged in, as the system has it.
+}  // namespace
+
 std::string operator_name() {
     const passwd* user = getpwuid(getuid());
     if (!user) return "unknown";
     const std::string full = user->pw_gecos ? user->pw_gecos : "", name = full.substr(0, full.find(','));
     return name.empty() ? user->pw_name : name;
 }
-
-}  // namespace
 
 std::string embedded_png(const RgbImage& picture) {
     return "data:image/png;base64," + base64(png_bytes(picture));

@@ -20,6 +20,9 @@ struct ReportPicture {
 /// logged in), the date and the program's version are added by `html_page`.
 using ReportFacts = std::vector<std::pair<std::string, std::string>>;
 
+/// The name of the user who is logged in, as the system has it.
+std::string operator_name();
+
 /// Case, patient, volume and plan by their names.
 ReportFacts facts_of(const Case& the_case);
 

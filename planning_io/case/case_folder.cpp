@@ -123,11 +123,12 @@ bool holds_case(const fs::path& folder) {
 
 /// Refuses to replace what cannot be made again: a session's matches, and files that are not the case's.
 void check_nothing_is_lost(const fs::path& folder) {
-    if (fs::exists(folder / kRegistrationsFolder))
-        throw InputError(folder,
-                         std::string("holds matches that sessions kept (") + kRegistrationsFolder +
-                             "), which would be lost with the case that is replaced",
-                         "Move that folder away, or name another folder for the new case.");
+    for (const auto& [name, what] : {std::pair{kRegistrationsFolder, "matches that sessions kept"},
+                                     std::pair{kRecordingsFolder, "recordings of sessions"}})
+        if (fs::exists(folder / name))
+            throw InputError(
+                folder, fmt::format("holds {} ({}), which would be lost with the case that is replaced", what, name),
+                "Move that folder away, or name another folder for the new case.");
     std::string others;
     for (const auto& entry : fs::directory_iterator(folder)) {
         const std::string name = entry.path().filename().string();

@@ -15,6 +15,8 @@ namespace planlight {
 
 /// Where sessions keep their matches, in the case folder.
 constexpr const char* kRegistrationsFolder = "registrations";
+/// Where they are recorded, in the case folder.
+constexpr const char* kRecordingsFolder = "recordings";
 
 /// All that the operating room needs of one patient: case.json (manifest with checksums), skin.ply, skin.lut,
 /// plan.mrk.json.
@@ -49,8 +51,8 @@ void check_case_place(const std::filesystem::path& folder, bool replace);
 /// Writes the folder so that it is whole or not there: into a temporary folder beside it, synced, then renamed. `add`
 /// may write further files into that folder first (the report); checksums are made of all. A link is followed. An
 /// existing case is replaced only with `replace`, and only when the folder holds nothing but a case: any other existing
-/// folder is refused, a case with files that are not its own, and one that holds matches kept by sessions
-/// (`kRegistrationsFolder`).
+/// folder is refused, a case with files that are not its own, and one that holds matches kept by sessions or their
+/// recordings (`kRegistrationsFolder`, `kRecordingsFolder`).
 void write_case(const Case& prepared, const std::filesystem::path& folder, bool replace = false,
                 const std::function<void(const std::filesystem::path& into)>& add = {});
 

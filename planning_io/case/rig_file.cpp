@@ -66,8 +66,7 @@ void check_rig(const RigCalibration& rig, const fs::path& file) {
 
 }  // namespace
 
-void write_rig(const RigCalibration& rig, const fs::path& file) {
-    check_rig(rig, file);
+std::string text_of(const RigCalibration& rig) {
     Json json{{"format", kFormat},
               {"version", kVersion},
               {"made_on", rig.made_on},
@@ -75,7 +74,12 @@ void write_rig(const RigCalibration& rig, const fs::path& file) {
               {"left_camera", json_of(rig.left_camera, rig.serials.left_camera)}};
     if (present(rig.right_camera)) json["right_camera"] = json_of(rig.right_camera, rig.serials.right_camera);
     if (present(rig.projector)) json["projector"] = json_of(rig.projector, rig.serials.projector);
-    write_safely(file, dump(json));
+    return dump(json);
+}
+
+void write_rig(const RigCalibration& rig, const fs::path& file) {
+    check_rig(rig, file);
+    write_safely(file, text_of(rig));
 }
 
 RigCalibration read_rig(const fs::path& file) {
@@ -89,7 +93,11 @@ RigCalibration read_rig(const fs::path& file) {
 }
 
 RigCalibration read_partial_rig(const fs::path& file) {
-    const Json json = parse_json(read_whole(file), file);
+    return rig_of_text(read_whole(file), file);
+}
+
+RigCalibration rig_of_text(const std::string& text, const fs::path& file) {
+    const Json json = parse_json(text, file);
     const JsonValue root(json, file);
     check_format(root, kFormat, kVersion, file);
     root.has_only({"format", "version", "made_on", "reprojection_rms_px", "left_camera", "right_camera", "projector"});

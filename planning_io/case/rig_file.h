@@ -18,6 +18,10 @@ RigCalibration read_rig(const std::filesystem::path& file);
 /// As `read_rig`, but the right camera or the projector may be missing in the file (`present` says so).
 RigCalibration read_partial_rig(const std::filesystem::path& file);
 
+/// What `write_rig` writes, and what `read_partial_rig` makes of it (`file`: for its words).
+std::string text_of(const RigCalibration& rig);
+RigCalibration rig_of_text(const std::string& text, const std::filesystem::path& file);
+
 /// XXH3-128 over the numbers of all devices, hex: two rig files of one calibration have the same.
 std::string hash_of(const RigCalibration& rig);
 

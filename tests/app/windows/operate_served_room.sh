@@ -25,7 +25,7 @@ sed -i 's|"monitor": "DUMMY1"|"monitor": "DUMMY1", "file": "'"$folder"'/projecto
 check "a scan is captured" "$(number "$code == 0")" "exit code $code: $(cat "$folder/errors")"
 "$PLANLIGHT" check "$folder/capture" --rig "$folder/room/rig.json" >"$folder/checked" 2>&1; code=$?
 check "the rig is good by it" "$(number "$code == 0")" "exit code $code: $(cat "$folder/checked")"
-"$PLANLIGHT" session "$folder/case" --room "$folder/room/room.json" --operator DUMMY0 --autoplay --json --end-after-s ${TRACK_S:-10} \
+"$PLANLIGHT" session "$folder/case" --room "$folder/room/room.json" --operator DUMMY0 --autoplay --record all --json --end-after-s ${TRACK_S:-10} \
   --screenshots "$folder/pictures" >"$folder/latency.json" 2>"$folder/errors" & session=$!
 for i in $(seq 600); do
   kill -0 $session 2>/dev/null || break
@@ -37,6 +37,11 @@ check "the session ends by itself without a fault" "$(number "$code == 0")" "exi
 grep -v histogram "$folder/latency.json"; grep -o '^.*worst_ms": [0-9.]*' "$folder/latency.json"
 check "it came to the light" "$(ls "$folder"/pictures/light-*.png 2>/dev/null | wc -l | awk '{print ($1 > 0) ? 1 : 0}')" "no light"
 kill $served; wait $served 2>/dev/null
+"$PLANLIGHT" replay "$folder"/case/recordings/*.plrec --json >"$folder/replayed" 2>"$folder/errors"; code=$?
+check "its recording is replayed to the last digit" "$(number "$code == 0")" "exit code $code: $(cat "$folder/errors")"
+grep -e scans -e updates -e decisions -e ended "$folder/replayed"
+"$PLANLIGHT" report "$folder"/case/recordings/*.plrec --out "$folder/operation.html" 2>"$folder/errors"; code=$?
+check "its report is written" "$(number "$code == 0")" "exit code $code: $(cat "$folder/errors")"
 tail -1 "$folder/served"
 if [ "$(awk '/could not keep up/ {print (10 * $7 > $1) ? 1 : 0}' "$folder/served" | tail -1)" = 1 ] && [ $failed = 1 ]; then
   echo "skipped: this machine is too busy to serve the room in time"; exit 77

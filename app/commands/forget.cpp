@@ -1,0 +1,56 @@
+#include <fmt/format.h>
+
+#include "app/commands/command_line.h"
+#include "app/commands/commands.h"
+#include "app/recording/replay_session.h"
+#include "planning_io/case/case_folder.h"
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What else is known of that session, a line each.
+std::vector<std::string> left_of(const Path& recording, const Path& case_folder) {
+    std::vector<std::string> left;
+    std::error_code ignored;
+    for (const char* ending : {".html", ".json"})
+        if (const Path report = Path(recording).replace_extension(ending); fs::exists(report, ignored))
+            left.push_back(report.string() + " (its report)");
+    if (case_folder.empty()) return left;
+    if (const Path matches = case_folder / kRegistrationsFolder; fs::exists(matches, ignored))
+        left.push_back(matches.string() + " (matches with scans of the skin, of all sessions)");
+    if (fs::exists(case_folder, ignored)) left.push_back(case_folder.string() + " (the case)");
+    return left;
+}
+
+int run_forget(const Path& recording) {
+    Path case_folder;
+    try {
+        case_folder = head_of_recording(recording).case_folder;
+    } catch (const DamagedFileError&) {  // a recording all the same: its first words are
+    }
+    std::error_code fault;
+    if (!fs::remove(recording, fault) || fault)
+        throw DiskError(recording, "cannot be removed: " + fault.message(), "Check the permissions of its folder.");
+    fmt::print("{} is removed.\n", recording.string());
+    const auto left = left_of(recording, case_folder);
+    for (const std::string& what : left) fmt::print("Left: {}\n", what);
+    fmt::print(
+        "Left: copies that somebody made, and until the disk writes over them the bytes themselves, unless it is "
+        "encrypted.\n");
+    return 0;
+}
+
+}  // namespace
+
+Run add_forget(CLI::App& app) {
+    const auto recording = std::make_shared<Path>();
+    auto* sub = add_command(app, "forget", "Removes the recording of a session, and says what is left of it",
+                            "forget case/recordings/2026-03-14T09-30-00Z.plrec");
+    sub->add_option("recording", *recording, "Recording of a session")->required();
+    return [recording] { return run_forget(*recording); };
+}
+
+}  // namespace planlight

@@ -1,0 +1,96 @@
+#include <fmt/format.h>
+
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "app/commands/command_line.h"
+#include "app/commands/commands.h"
+#include "app/console.h"
+#include "app/recording/recording_head.h"
+#include "app/recording/replay_session.h"
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+struct ReplayOptions {
+    Path recording, case_folder;
+    bool json = false;
+};
+
+std::string counts_of(const ReplayResult& r) {
+    return fmt::format("{} scan{}, {} match{}, {} updates with {} decisions of the gate, {} pictures, {} frames",
+                       r.scans, r.scans == 1 ? "" : "s", r.matches, r.matches == 1 ? "" : "es", r.updates, r.rulings,
+                       r.pictures, r.frames);
+}
+
+std::string sentence_of(const ReplayDifference& d, Instant began) {
+    return fmt::format("the replay differs from frame {} on (update {}, {:.3f} s into the recording): {}", d.frame,
+                       d.update, seconds(d.at - began), d.what);
+}
+
+void print_json(const ReplayResult& r) {
+    nlohmann::ordered_json json = {{"alike", !r.difference.has_value()},
+                                   {"whole", r.end == RecordingEnd::whole && r.ended.empty()},
+                                   {"ended", r.ended},
+                                   {"case", r.head.case_code},
+                                   {"program", r.head.program},
+                                   {"same_build", !r.other_program},
+                                   {"scans", r.scans},
+                                   {"matches", r.matches},
+                                   {"updates", r.updates},
+                                   {"decisions", r.rulings},
+                                   {"skin_checks", r.skin_checks},
+                                   {"refusals", r.refusals},
+                                   {"pictures", r.pictures},
+                                   {"frames", r.frames},
+                                   {"recorded_s", r.recorded_s},
+                                   {"difference", nullptr}};
+    if (r.difference)
+        json["difference"] = {{"frame", r.difference->frame},
+                              {"at_ns", r.difference->at.count()},
+                              {"update", r.difference->update},
+                              {"what", r.difference->what}};
+    std::cout << json.dump(2) << '\n';
+}
+
+int run_replay(const ReplayOptions& options) {
+    Path folder = options.case_folder;
+    if (folder.empty()) folder = head_of_recording(options.recording).case_folder;
+    const Case the_case = read_case(folder);
+    ProgressBar bar;
+    const ReplayResult result =
+        replay_session(options.recording, the_case, [&](double share) { bar.show("replay", share); });
+    bar.show("replay", 1);
+    if (options.json)
+        print_json(result);
+    else
+        fmt::print("{}: alike to the last digit ({:.1f} s of the session).\n", counts_of(result), result.recorded_s);
+    if (!result.ended.empty()) warn(result.ended);
+    if (result.difference) {
+        const std::string sentence = sentence_of(*result.difference, result.began);
+        throw CheckFailedError(sentence, result.other_program
+                                             ? "It was recorded by another build of the program: replay it with that."
+                                             : "The same build of the program should not differ: keep the recording, "
+                                               "and report it with the processor's name.");
+    }
+    if (result.end == RecordingEnd::damaged)
+        throw DamagedFileError(options.recording, "is alike up to where it is damaged",
+                               "Copy the file again from where it was written.");
+    return 0;
+}
+
+}  // namespace
+
+Run add_replay(CLI::App& app) {
+    const auto options = std::make_shared<ReplayOptions>();
+    ReplayOptions& o = *options;
+    auto* sub = add_command(app, "replay", "A recorded session through the same program again, compared bit for bit",
+                            "replay case/recordings/2026-03-14T09-30-00Z.plrec");
+    sub->add_option("recording", o.recording, "Recording of a session (`session --record all`)")->required();
+    sub->add_option("--case", o.case_folder, "Case folder (default: where it was when it was recorded)");
+    json_flag(sub, o.json);
+    return [options] { return run_replay(*options); };
+}
+
+}  // namespace planlight

@@ -1,0 +1,49 @@
+#include <fmt/format.h>
+
+#include <iostream>
+
+#include "app/commands/command_line.h"
+#include "app/commands/commands.h"
+#include "app/console.h"
+#include "app/report/operation_report.h"
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+struct ReportOptions {
+    Path recording, out;
+    bool json = false;
+};
+
+int run_report(const ReportOptions& options) {
+    const Path out = options.out.empty() ? Path(options.recording).replace_extension(".html") : options.out;
+    const OperationFacts facts = facts_of_operation(options.recording);
+    const std::string json = operation_json(facts);
+    write_operation_report(facts, json, out);
+    if (options.json)
+        std::cout << json;
+    else
+        fmt::print("{}\n{}\n", verdict_of(facts).sentence, out.string());
+    if (!facts.ended.empty()) warn(facts.ended);
+    if (facts.damaged)
+        throw DamagedFileError(options.recording, "is reported up to where it is damaged",
+                               "Copy the file again from where it was written.");
+    return 0;
+}
+
+}  // namespace
+
+Run add_report(CLI::App& app) {
+    const auto options = std::make_shared<ReportOptions>();
+    ReportOptions& o = *options;
+    auto* sub = add_command(app, "report", "A page on an operation: what was shown, when, and how far off it was",
+                            "report case/recordings/2026-03-14T09-30-00Z.plrec");
+    sub->add_option("recording", o.recording, "Recording of a session")->required();
+    sub->add_option("--out", o.out,
+                    "Page to write (default: beside the recording); its figures stand beside it as .json");
+    json_flag(sub, o.json);
+    return [options] { return run_report(*options); };
+}
+
+}  // namespace planlight

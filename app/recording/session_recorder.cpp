@@ -1,0 +1,246 @@
+#include "app/recording/session_recorder.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+
+#include "app/recording/recording_head.h"
+#include "app/recording/session_events.h"
+#include "planning_io/recording/packed_pictures.h"
+
+namespace planlight {
+
+using Kind = RecordedInput::Kind;
+
+namespace {
+
+constexpr Instant kPictureEvery = std::chrono::seconds(2);  // where every frame is kept: it can be made again
+
+std::size_t bytes_of(const StereoFrame& frame) {
+    return frame.left.pixels.size() + frame.right.pixels.size();
+}
+
+}  // namespace
+
+/// How well pictures of this room pack, as the writer's thread last found it.
+struct SessionRecorder::PackedSize {
+    std::atomic<double> share{0.35};
+};
+
+SessionRecorder::SessionRecorder(std::unique_ptr<RecordingSink> sink, const RecordingHead& head,
+                                 const RecordingWriterSettings& writing, const FrameChoiceSettings& choice)
+    : mode_(head.mode), choice_(choice), packed_(std::make_shared<PackedSize>()), writer_(std::move(sink), writing) {
+    writer_.add({chunk_types::kHead, Instant{}, text_of(head)});
+}
+
+SessionRecorder::~SessionRecorder() {
+    const std::lock_guard lock(mutex_);
+    flush();
+    const RecordingState state = writer_.state();
+    writer_.add(
+        {chunk_types::kDone, now_,
+         fmt::format(R"({{"dropped_chunks": {}, "dropped_bytes": {}}})", state.dropped_chunks, state.dropped_bytes)});
+}
+
+std::string SessionRecorder::trouble() const {
+    const RecordingState state = writer_.state();
+    if (!state.problem.empty())
+        return fmt::format("The recording stands still: {}. {} pieces are missing; the light is not affected.",
+                           state.problem, state.dropped_chunks);
+    if (state.dropped_chunks > 0)
+        return fmt::format("The disk is too slow for the recording: {} pieces are missing; the light is not affected.",
+                           state.dropped_chunks);
+    return {};
+}
+
+void SessionRecorder::input(RecordedInput input) {
+    inputs_.push_back(std::move(input));
+}
+
+/// What the devices answered stands before what came of it.
+void SessionRecorder::flush() {
+    if (inputs_.empty()) return;
+    writer_.add({chunk_types::kInputs, now_, packed(inputs_)});
+    inputs_.clear();
+}
+
+/// A recording that fails (no memory) must not take the session with it.
+template <class MakeText>
+void SessionRecorder::event(const MakeText& make_text) noexcept {
+    try {
+        std::string text = make_text();
+        const std::lock_guard lock(mutex_);
+        flush();
+        writer_.add({chunk_types::kEvent, now_, std::move(text)});
+    } catch (const std::exception&) {
+    }
+}
+
+void SessionRecorder::room_entered(const RoomFacts& room) noexcept {
+    try {
+        const std::lock_guard lock(mutex_);
+        now_ = room.now;
+        writer_.add({chunk_types::kRoom, now_, session_events::room(room)});
+    } catch (const std::exception&) {
+    }
+}
+
+void SessionRecorder::pressed(const std::string& action) noexcept {
+    event([&] { return session_events::pressed(action); });
+}
+
+void SessionRecorder::said(const std::string& kind, const std::string& headline,
+                           const std::vector<std::string>& details) noexcept {
+    try {
+        const std::string now = kind + headline;
+        {
+            const std::lock_guard lock(mutex_);
+            if (now == said_) return;
+            said_ = now;
+        }
+        event([&] { return session_events::said(kind, headline, details); });
+    } catch (const std::exception&) {
+    }
+}
+
+void SessionRecorder::asked(SessionCall call, const std::vector<PointPair>& landmarks, int which) noexcept {
+    event([&] { return session_events::asked(call, landmarks, which); });
+    const std::lock_guard lock(mutex_);
+    scanning_ = first_of_scan_ = call == SessionCall::scan || call == SessionCall::check_skin;
+}
+
+void SessionRecorder::clock_read(Instant now) noexcept {
+    try {
+        const std::lock_guard lock(mutex_);
+        now_ = now;
+        input({Kind::clock, now, {}, 0, {}, {}});
+    } catch (const std::exception&) {
+    }
+}
+
+void SessionRecorder::frame_taken(const StereoFrame& frame) noexcept {
+    try {
+        const std::string hash = hash_of(frame);
+        const auto kept = std::make_shared<const StereoFrame>(frame);
+        const std::lock_guard lock(mutex_);
+        now_ = std::max(now_, frame.at);
+        kept_frame_ = false;
+        if (mode_ == RecordMode::all)
+            write(kept);
+        else
+            choose(kept);
+        input({Kind::frame, frame.at, frame.exposure, frame.number, hash, {}});
+        if (scanning_) flush();
+    } catch (const std::exception&) {
+    }
+}
+
+void SessionRecorder::write(const Frame& frame) {
+    const auto pack = [frame, packed = packed_] {
+        std::string bytes = pack_frame(*frame);
+        if (const std::size_t raw = bytes_of(*frame); raw > 0)
+            packed->share = static_cast<double>(bytes.size()) / static_cast<double>(raw);
+        return bytes;
+    };
+    kept_frame_ = writer_.add_picture(chunk_types::kFrame, frame->at, bytes_of(*frame) + kChunkHeaderBytes, pack);
+}
+
+/// Of a scan the first picture alone, under white light: the stripes tell nothing that the cloud does not.
+void SessionRecorder::choose(const Frame& frame) {
+    const double bytes = packed_->share * static_cast<double>(bytes_of(*frame));
+    if (scanning_) {
+        if (first_of_scan_) write(frame);
+        first_of_scan_ = false;
+        return;
+    }
+    if (choice_.keep(frame->at, bytes)) {
+        write(frame);
+        return;
+    }
+    before_.push_back(frame);
+    if (before_.size() > FrameChoiceSettings{}.before) before_.pop_front();
+}
+
+void SessionRecorder::something_happened() {
+    if (mode_ == RecordMode::all || before_.empty()) return;
+    const double bytes = packed_->share * static_cast<double>(bytes_of(*before_.back()));
+    const std::size_t kept = choice_.event(before_.size(), bytes);
+    for (std::size_t i = before_.size() - kept; i < before_.size(); ++i) write(before_[i]);
+    before_.clear();
+}
+
+void SessionRecorder::picture_shown(const RgbImage& picture, Instant valid_until, Instant lit_from) noexcept {
+    try {
+        std::string hash = hash_of(picture);
+        const std::lock_guard lock(mutex_);
+        input({Kind::shown, lit_from, valid_until, 0, std::move(hash), {}});
+        if (!scanning_ && kept_frame_ && (mode_ == RecordMode::events || now_ - pictured_ > kPictureEvery))
+            keep_picture(picture);
+    } catch (const std::exception&) {
+    }
+}
+
+/// Thin lines on black pack to next to nothing.
+void SessionRecorder::keep_picture(const RgbImage& picture) {
+    pictured_ = now_;
+    const auto kept = std::make_shared<const RgbImage>(picture);
+    writer_.add_picture(chunk_types::kPicture, now_, 3 * picture.pixels.size(), [kept] { return pack_picture(*kept); });
+}
+
+void SessionRecorder::went_dark() noexcept {
+    try {
+        const std::lock_guard lock(mutex_);
+        input({Kind::dark, {}, {}, 0, {}, {}});
+    } catch (const std::exception&) {
+    }
+}
+
+void SessionRecorder::device_failed(const Error& fault) noexcept {
+    try {
+        const std::lock_guard lock(mutex_);
+        input({Kind::failed, {}, {}, 0, fault.what(), fault.remedy});
+    } catch (const std::exception&) {
+    }
+}
+
+void SessionRecorder::stopped(const Error& why) noexcept {
+    try {
+        const std::lock_guard lock(mutex_);
+        input({Kind::stopped, {}, {}, 0, why.what(), why.remedy});
+    } catch (const std::exception&) {
+    }
+}
+
+void SessionRecorder::scanned(const Session& session) noexcept {
+    event([&] { return session_events::scanned(session); });
+}
+
+void SessionRecorder::matched(const Session& session) noexcept {
+    event([&] { return session_events::matched(session); });
+}
+
+void SessionRecorder::updated(const Session& session, const Session::Update& update) noexcept {
+    event([&] { return session_events::updated(session, update); });
+}
+
+void SessionRecorder::skin_checked(const SkinCheck& check) noexcept {
+    event([&] { return session_events::skin_checked(check); });
+}
+
+void SessionRecorder::refused(SessionCall call, const std::exception& why) noexcept {
+    event([&] { return session_events::refused(call, why); });
+}
+
+void SessionRecorder::gate(GateCall call, Instant at, double off_mm, const LightGate::Ruling* ruling) noexcept {
+    event([&] { return session_events::gate(call, at, off_mm, ruling); });
+    if (!ruling) return;
+    try {
+        const std::string now = session_events::word_of(ruling->trust) + ruling->headline;
+        const std::lock_guard lock(mutex_);
+        if (now != happening_) something_happened();
+        happening_ = now;
+    } catch (const std::exception&) {
+    }
+}
+
+}  // namespace planlight

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "app/recording/frame_choice.h"
+#include "app/recording/recorded_inputs.h"
+#include "app/session_observer.h"
+#include "planning_io/recording/recording_writer.h"
+
+namespace planlight {
+
+/// How much of a session is recorded.
+enum class RecordMode {
+    none,
+    events,  ///< all that happened, and as many frames as a gigabyte an hour holds: round events, and now and then
+    all,     ///< every frame as well: what `replay` needs
+};
+
+/// What a recording says of itself first.
+struct RecordingHead {
+    RecordMode mode = RecordMode::events;
+    std::string program, program_hash;  ///< version; XXH3-128 of its file
+    std::string case_code, case_title, volume_hash, mesh_hash, plan_hash, plan_name, plan_version;
+    std::filesystem::path case_folder;  ///< where it was then
+    Eigen::Vector3d up_in_ct{0, 0, 1};  ///< of the drawing's labels
+    std::string began_utc, operator_name, computer;
+};
+
+/// Of this program, this case, this user, now.
+RecordingHead recording_head(const Case& the_case, const std::filesystem::path& case_folder, RecordMode mode,
+                             const DrawingSettings& drawing);
+
+/// Keeps what a session does in a recording, without ever delaying it.
+class SessionRecorder final : public SessionObserver {
+public:
+    SessionRecorder(std::unique_ptr<RecordingSink> sink, const RecordingHead& head,
+                    const RecordingWriterSettings& writing = {}, const FrameChoiceSettings& choice = {});
+    ~SessionRecorder() override;
+
+    RecordingState state() const { return writer_.state(); }
+    /// What a person must hear of it now, one sentence: the disk is full or too slow; empty while all is well.
+    std::string trouble() const;
+
+    void room_entered(const RoomFacts& room) noexcept override;
+    void pressed(const std::string& action) noexcept override;
+    void said(const std::string& kind, const std::string& headline,
+              const std::vector<std::string>& details) noexcept override;
+    void asked(SessionCall call, const std::vector<PointPair>& landmarks, int which) noexcept override;
+    void clock_read(Instant now) noexcept override;
+    void frame_taken(const StereoFrame& frame) noexcept override;
+    void picture_shown(const RgbImage& picture, Instant valid_until, Instant lit_from) noexcept override;
+    void went_dark() noexcept override;
+    void device_failed(const Error& fault) noexcept override;
+    void stopped(const Error& why) noexcept override;
+    void scanned(const Session& session) noexcept override;
+    void matched(const Session& session) noexcept override;
+    void updated(const Session& session, const Session::Update& update) noexcept override;
+    void skin_checked(const SkinCheck& check) noexcept override;
+    void refused(SessionCall call, const std::exception& why) noexcept override;
+    void gate(GateCall call, Instant at, double off_mm, const LightGate::Ruling* ruling) noexcept override;
+
+private:
+    using Frame = std::shared_ptr<const StereoFrame>;
+    struct PackedSize;
+    void input(RecordedInput input);
+    void flush();
+    template <class MakeText>
+    void event(const MakeText& make_text) noexcept;
+    void write(const Frame& frame);
+    void choose(const Frame& frame);
+    void something_happened();
+    void keep_picture(const RgbImage& picture);
+
+    RecordMode mode_;
+    std::mutex mutex_;
+    std::vector<RecordedInput> inputs_;  ///< since the last event
+    Instant now_{}, pictured_{};
+    FrameChoice choice_;
+    std::deque<Frame> before_;            ///< the last frames that were not kept
+    std::shared_ptr<PackedSize> packed_;  ///< of the last frame that was packed
+    bool scanning_ = false, first_of_scan_ = false;
+    bool kept_frame_ = false;  ///< the last one
+    std::string happening_;    ///< what the light was last; another is an event
+    std::string said_;
+    RecordingWriter writer_;
+};
+
+}  // namespace planlight

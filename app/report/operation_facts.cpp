@@ -1,0 +1,267 @@
+// What a recording tells of an operation.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "app/recording/recording_head.h"
+#include "app/report/operation_report.h"
+#include "planning_io/files/content_hash.h"
+#include "planning_io/recording/packed_pictures.h"
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr double kLongestStep_s = 1;  // between two updates that follow each other
+constexpr double kBreak_s = 0.5;      // of light that is the same showing still
+
+/// "the last pose is 83 ms old" and "... 91 ms old" are one reason.
+std::string without_numbers(const std::string& text) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size();) {
+        if (!std::isdigit(static_cast<unsigned char>(text[i]))) {
+            out += text[i++];
+            continue;
+        }
+        while (i < text.size() &&
+               (std::isdigit(static_cast<unsigned char>(text[i])) ||
+                (text[i] == '.' && i + 1 < text.size() && std::isdigit(static_cast<unsigned char>(text[i + 1])))))
+            ++i;
+        out += "…";
+    }
+    return out;
+}
+
+double number(const Json& value) {
+    return value.is_number() ? value.get<double>() : 0;
+}
+
+/// Goes through the events in their order.
+class Teller {
+public:
+    explicit Teller(OperationFacts& facts) : facts_(facts) {}
+
+    void take(const RecordingChunk& chunk) {
+        at_s_ = facts_.room_entered ? seconds(chunk.at - origin_) : 0;
+        if (chunk.type == chunk_types::kRoom)
+            enter_room(Json::parse(chunk.payload), chunk.at);
+        else if (chunk.type == chunk_types::kEvent)
+            take_event(Json::parse(chunk.payload));
+        else if (chunk.type == chunk_types::kFrame)
+            ++facts_.kept_frames, frame_ = chunk;
+        else if (chunk.type == chunk_types::kPicture)
+            picture_ = chunk;
+        else if (chunk.type == chunk_types::kLost)
+            facts_.lost_chunks += Json::parse(chunk.payload).value("chunks", std::uint64_t{0});
+        if (facts_.room_entered) facts_.lasted_s = std::max(facts_.lasted_s, at_s_);
+    }
+
+    /// The pictures of the best moment that was kept.
+    void unpack_moment(const fs::path& file) {
+        if (!moment_frame_) return;
+        OperationMoment moment;
+        moment.at_s = moment_at_s_;
+        moment.trust = moment_trust_;
+        StereoFrame frame = unpack_frame(moment_frame_->payload, file);
+        moment.left = std::move(frame.left), moment.right = std::move(frame.right);
+        if (moment_picture_) moment.light = unpack_picture(moment_picture_->payload, file);
+        facts_.moment = std::move(moment);
+    }
+
+private:
+    void enter_room(const Json& room, Instant at) {
+        facts_.room_entered = true;
+        origin_ = at;
+        at_s_ = 0;
+        facts_.room = room.value("name", "");
+        facts_.simulated = room.value("simulated", false);
+        facts_.rig_hash = room.value("rig_hash", "");
+        facts_.rig_made_on = room.at("rig").value("made_on", "");
+        for (const char* device : {"left_camera", "right_camera", "projector"})
+            facts_.serials.push_back(room.at("rig").value(device, Json::object()).value("serial", ""));
+    }
+
+    void say(const std::string& what, const Json& event) {
+        facts_.said.push_back({at_s_, event.value("utc", ""), what});
+    }
+
+    void take_event(const Json& event) {
+        const std::string what = event.value("what", "");
+        if (what == "updated") take_update(event);
+        if (what == "gate") take_ruling(event);
+        if (what == "matched") take_match(event);
+        if (what == "asked") take_call(event);
+        if (what == "pressed" && event.value("action", "") == "dark") say("DARK was pressed.", event);
+        if (what == "refused")
+            facts_.refusals.push_back({at_s_, "", event.value("call", "") + ": " + event.value("why", "")});
+        if (what == "skin_checked")
+            say(event.value("known", false)
+                    ? fmt::format("The skin was checked: the plan's points lie within {:.1f} mm of where the markers "
+                                  "put them.",
+                                  number(event.at("off_mm")))
+                    : "The skin was checked, without an answer: " + event.value("why_not", "") + ".",
+                event);
+    }
+
+    void take_call(const Json& event) {
+        const std::string call = event.value("call", "");
+        if (call == "find_patient") utc_of_match_ = event.value("utc", "");
+        if (call == "confirm") say("A person looked at the match and said that it fits.", event);
+        if (call == "light_landmark") landmark_ = event.value("which", -1);
+        if (call != "update") following_ = false;
+    }
+
+    void take_match(const Json& event) {
+        OperationMatch match{at_s_,
+                             utc_of_match_,
+                             event.value("verdict", ""),
+                             {},
+                             number(event.at("residual_rms_mm")),
+                             event.value("points", std::size_t{0})};
+        for (const Json& reason : event.at("reasons")) match.reasons.push_back(reason.get<std::string>());
+        facts_.matches.push_back(match);
+        landmark_ = -1;
+        for (OperationItem& item : facts_.items) item.predicted_mm.reset();
+        now_.clear();
+        for (std::size_t i = 0; i < event.at("items").size(); ++i) {
+            const std::string name = event["items"][i].get<std::string>();
+            auto item = std::find_if(facts_.items.begin(), facts_.items.end(),
+                                     [&](const OperationItem& known) { return known.name == name; });
+            if (item == facts_.items.end()) item = facts_.items.insert(item, {name, {}, 0, {}, {}});
+            if (i < event.at("predicted_mm").size() && event["predicted_mm"][i].is_number())
+                item->predicted_mm = event["predicted_mm"][i].get<double>();
+            now_.push_back(static_cast<std::size_t>(item - facts_.items.begin()));
+        }
+        lit_items_.assign(now_.size(), true);
+    }
+
+    void take_update(const Json& event) {
+        ++facts_.updates;
+        frame_at_ = Instant(event.at("at_ns").get<std::int64_t>());
+        const double at_s = seconds(frame_at_ - origin_);
+        step_s_ = following_ ? std::clamp(at_s - update_at_s_, 0.0, kLongestStep_s) : 0;
+        following_ = true;
+        update_at_s_ = at_s;
+        facts_.lasted_s = std::max(facts_.lasted_s, at_s);
+        const Json& light = event.at("light");
+        lit_ = light.value("lit", false);
+        light_seen_ = false;
+        if (const auto check = event.find("check"); check != event.end() && landmark_ < 0) take_check(*check);
+        if (lit_) {
+            facts_.lit_s += step_s_;
+            dark_.clear();
+            if (landmark_ < 0) show_items(at_s);
+            return;
+        }
+        const std::string reason = without_numbers(light.value("dark", ""));
+        auto& [times, for_s] = facts_.dark[reason];
+        times += reason != dark_;
+        for_s += step_s_;
+        dark_ = reason;
+    }
+
+    void take_check(const Json& check) {
+        if (check.value("seen", 0) > 0) facts_.light_off_mm.push_back(off_mm_ = number(check.at("off_mm")));
+        light_seen_ = check.value("seen", 0) > 0;
+        const Json& items = check.at("items");
+        for (std::size_t i = 0; i < std::min(items.size(), now_.size()); ++i) {
+            lit_items_[i] = items[i].at(0).get<bool>();
+            if (items[i].at(2).get<int>() > 0) facts_.items[now_[i]].measured_mm.push_back(number(items[i].at(3)));
+        }
+    }
+
+    void show_items(double at_s) {
+        for (std::size_t i = 0; i < now_.size(); ++i) {
+            if (!lit_items_[i]) continue;
+            OperationItem& item = facts_.items[now_[i]];
+            item.shown_s += step_s_;
+            if (item.shown.empty() || at_s - item.shown.back().second > kBreak_s)
+                item.shown.emplace_back(at_s, at_s);
+            else
+                item.shown.back().second = at_s;
+        }
+    }
+
+    void take_ruling(const Json& event) {
+        const std::string call = event.value("call", "");
+        if (call == "verify") {
+            ++facts_.verified;
+            say("A person looked at the light on landmarks and said that it is right.", event);
+        }
+        if (call != "step") return;
+        const std::string trust = event.value("trust", "");
+        if (lit_ && trust == "aligned") facts_.aligned_s += step_s_;
+        if (lit_ && trust == "look") facts_.look_s += step_s_;
+        if (lit_) note_course(trust == "aligned");
+        if (event.value("stop", false)) {
+            ++facts_.stops;
+            say("The light was stopped: " + event.value("headline", ""), event);
+        }
+        choose_moment(trust);
+    }
+
+    void note_course(bool aligned) {
+        constexpr double kEvery_s = 0.5;
+        if (facts_.course.empty() || update_at_s_ - facts_.course.back().at_s >= kEvery_s ||
+            facts_.course.back().aligned != aligned)
+            facts_.course.push_back({update_at_s_, aligned, -1});
+        facts_.course.back().off_mm = std::max(facts_.course.back().off_mm, std::exchange(off_mm_, -1));
+    }
+
+    /// The first whose light the cameras saw, and that was aligned; before that, what comes next to it.
+    void choose_moment(const std::string& trust) {
+        if (!lit_ || !frame_ || frame_->at != frame_at_ || landmark_ >= 0) return;
+        // Light is in a frame's pictures where the cameras saw it: in the first frame after darkness it is not yet.
+        const int worth = (light_seen_ ? 2 : 0) + (trust == "aligned" ? 2 : 0) + (picture_ ? 1 : 0);
+        if (moment_frame_ && worth <= moment_worth_) return;
+        moment_worth_ = worth;
+        moment_frame_ = frame_, moment_trust_ = trust, moment_at_s_ = update_at_s_;
+        moment_picture_ = picture_ && picture_->at >= frame_at_ ? picture_ : std::nullopt;
+    }
+
+    OperationFacts& facts_;
+    Instant origin_{}, frame_at_{};
+    double at_s_ = 0, update_at_s_ = 0, step_s_ = 0, off_mm_ = -1;
+    bool following_ = false, lit_ = false;
+    int landmark_ = -1;
+    std::string dark_, utc_of_match_;
+    std::vector<std::size_t> now_;  ///< items of the last match, by their place in `facts_`
+    std::vector<bool> lit_items_;
+    std::optional<RecordingChunk> frame_, picture_, moment_frame_, moment_picture_;
+    std::string moment_trust_;
+    int moment_worth_ = 0;
+    bool light_seen_ = false;  ///< in the last frame
+    double moment_at_s_ = 0;
+};
+
+}  // namespace
+
+OperationFacts facts_of_operation(const fs::path& recording) {
+    OperationFacts facts;
+    RecordingReader reader(recording);
+    auto chunk = reader.next();
+    if (!chunk || chunk->type != chunk_types::kHead)
+        throw DamagedFileError(recording, "does not say whose it is", "There is nothing in it to report.");
+    facts.head = head_of(chunk->payload, recording);
+    Teller teller(facts);
+    try {
+        while ((chunk = reader.next())) teller.take(*chunk);
+    } catch (const nlohmann::json::exception&) {
+        throw DamagedFileError(recording, "holds an event that cannot be understood", "Copy the file again.");
+    }
+    teller.unpack_moment(recording);
+    facts.recording_hash = content_hash_of(recording);
+    facts.file = recording.filename().string();
+    facts.chunks = reader.chunks(), facts.bytes = reader.bytes();
+    facts.ended = reader.sentence();
+    facts.damaged = reader.end() == RecordingEnd::damaged;
+    return facts;
+}
+
+}  // namespace planlight

@@ -1,0 +1,263 @@
+#include "app/report/operation_report.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/evaluation/distribution.h"
+#include "app/live/scene_of_session.h"
+#include "app/report/html_page.h"
+#include "app/report/paper_page.h"
+#include "app/report/svg_chart.h"
+#include "planning_io/files/safe_write.h"
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kLook_mm = kOperationLook_mm, kStop_mm = kOperationStop_mm;
+
+/// Of the room's clock: "0:03:12".
+std::string moment_text(double s) {
+    const auto whole = static_cast<long>(s);
+    return fmt::format("{}:{:02}:{:02}", whole / 3600, whole % 3600 / 60, whole % 60);
+}
+
+/// Cut where a word ends, as far as there is one; what is cut stands in the figures.
+std::string short_text(const std::string& text, std::size_t most) {
+    if (text.size() <= most) return text;
+    std::size_t end = text.rfind(' ', most);
+    if (end == std::string::npos || end < most / 2) end = most;
+    while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // not within a letter of UTF-8
+    return text.substr(0, end) + " …";
+}
+
+std::string utc_text(const std::string& iso) {
+    return iso.size() < 19 ? iso : iso.substr(0, 10) + " " + iso.substr(11, 8) + " UTC";
+}
+
+std::string row(const std::string& name, const std::string& value) {
+    return value.empty() ? "" : fmt::format("<tr><td>{}</td><td>{}</td></tr>", name, html_escaped(value));
+}
+
+std::string mm(const std::optional<double>& value) {
+    return value ? fmt::format("{:.2f} mm", *value) : "not known";
+}
+
+std::string shown_text(const OperationItem& item) {
+    if (item.shown.empty()) return "not shown";
+    const std::string text = moment_text(item.shown.front().first) + "&ndash;" + moment_text(item.shown.back().second);
+    return item.shown.size() == 1 ? text : fmt::format("{}, {} times", text, item.shown.size());
+}
+
+/// A figure beyond what the gate lets pass is marked by a sign and a word, not by its colour alone.
+std::string marked(double value_mm) {
+    const char* sign = value_mm > kStop_mm   ? " <span class=\"stop\">&#10007;</span>"
+                       : value_mm > kLook_mm ? " <span class=\"look\">&#9888;</span>"
+                                             : "";
+    return fmt::format("{:.2f}{}", value_mm, sign);
+}
+
+std::string items_html(const OperationFacts& facts) {
+    std::string html =
+        "<h2>What was shown, and how far off it was</h2><table class=\"plan\"><tr><th>Plan item</th><th>shown (room "
+        "clock)</th><th>for</th><th>predicted, 95 %</th><th>measured: median</th><th>95 %</th><th>worst</th>"
+        "<th>times</th></tr>";
+    constexpr std::size_t kMost = 14;  // of which the page has room; the verdict names every one that was off
+    for (std::size_t i = 0; i < std::min(facts.items.size(), kMost); ++i) {
+        const OperationItem& item = facts.items[i];
+        const Distribution d = distribution_of(item.measured_mm);
+        const std::string measured = d.count > 0 ? fmt::format("<td>{}</td><td>{}</td><td>{}</td>", marked(d.median),
+                                                               marked(d.p95), marked(d.worst))
+                                                 : std::string("<td colspan=\"3\">not seen by the cameras</td>");
+        html += fmt::format("<tr><td class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}</td>{}<td>{}</td></tr>",
+                            html_escaped(short_text(item.name, 40)), shown_text(item), duration_text(item.shown_s),
+                            mm(item.predicted_mm), measured, d.count);
+    }
+    if (facts.items.size() > kMost)
+        html += fmt::format("<tr><td colspan=\"8\">and {} items more, in the figures beside this page</td></tr>",
+                            facts.items.size() - kMost);
+    if (facts.items.empty()) html += "<tr><td colspan=\"8\">No match was found: nothing could be shown.</td></tr>";
+    return html +
+           "</table><p class=\"muted\">Predicted: within this in 95 of 100 cases, by the last match. Measured: where "
+           "both "
+           "cameras saw the light, against where it belongs on the skin as the scan found it, mm. What cameras, CT and "
+           "markers share is not seen by either: skin that slid over the bone, markers that moved all together.</p>";
+}
+
+std::string time_html(const OperationFacts& facts) {
+    std::string html = fmt::format(
+        "<h2>Light and darkness</h2><p>Light for {}: {} of it aligned (measured where it belongs, and verified), {} to "
+        "be "
+        "looked at. {} updates.</p>",
+        duration_text(facts.lit_s), duration_text(facts.aligned_s), duration_text(facts.look_s), facts.updates);
+    if (facts.dark.empty()) return html + "<p>While the plan was followed it was never dark by itself.</p>";
+    std::vector<std::pair<std::string, std::pair<int, double>>> dark(facts.dark.begin(), facts.dark.end());
+    std::sort(dark.begin(), dark.end(), [](const auto& a, const auto& b) { return a.second.second > b.second.second; });
+    html += "<table><tr><th>Dark by itself, because</th><th>times</th><th>for</th></tr>";
+    constexpr std::size_t kMost = 5;
+    for (std::size_t i = 0; i < std::min(dark.size(), kMost); ++i)
+        html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>", html_escaped(dark[i].first),
+                            dark[i].second.first, duration_text(dark[i].second.second));
+    if (dark.size() > kMost)
+        html += fmt::format("<tr><td>and {} reasons more</td><td></td><td></td></tr>", dark.size() - kMost);
+    return html + "</table>";
+}
+
+/// The light over time: how far off it was measured, over bars that say by height and colour whether it was aligned.
+std::string course_html(const OperationFacts& facts) {
+    if (facts.course.size() < 2) return {};
+    constexpr std::size_t kMostPlaces = 400;
+    constexpr double kBreak_s = 1.5;
+    const bool long_one = facts.lasted_s > 300;
+    const double unit_s = long_one ? 60 : 1;
+    double most_mm = 2.2;
+    for (const auto& sample : facts.course) most_mm = std::max(most_mm, std::min(5.0, sample.off_mm));
+    SvgChart chart({0, std::max(1.0, facts.lasted_s / unit_s), long_one ? "room clock, minutes" : "room clock, s", 8},
+                   {0, most_mm, "light off its place (95 %), mm", 5}, 1100, 210);
+    const std::size_t join = facts.course.size() / kMostPlaces + 1;
+    SvgChart::Points points;
+    for (std::size_t i = 0; i < facts.course.size(); i += join) {
+        const auto& first = facts.course[i];
+        const std::size_t end = std::min(i + join, facts.course.size());
+        double off_mm = -1;
+        bool aligned = true;
+        for (std::size_t k = i; k < end; ++k) {
+            off_mm = std::max(off_mm, facts.course[k].off_mm);
+            aligned &= facts.course[k].aligned;
+        }
+        const double until_s = std::min(end < facts.course.size() ? facts.course[end].at_s : facts.lasted_s,
+                                        facts.course[end - 1].at_s + kBreak_s);
+        chart.bar(first.at_s / unit_s, until_s / unit_s, aligned ? 0.16 : 0.08, aligned ? "#14663a" : "#d08700");
+        if (off_mm >= 0) points.emplace_back(first.at_s / unit_s, std::min(off_mm, most_mm));
+    }
+    chart.line({{0, kLook_mm}, {facts.lasted_s / unit_s, kLook_mm}}, "#d08700", 1);
+    chart.line({{0, kStop_mm}, {facts.lasted_s / unit_s, kStop_mm}}, "#a3121f", 1);
+    chart.dots(points, "#15406b");
+    return "<h2>The light over time</h2>" + chart.text() +
+           "<p class=\"muted\">Points: the worst of half a second or more. Bars at the foot: high and green aligned, "
+           "low and "
+           "amber to be looked at, none dark. Lines: at 1 mm the light is not trusted, at 2 mm it goes out.</p>";
+}
+
+std::string matches_html(const OperationFacts& facts) {
+    std::string html = "<h2>Matches</h2>";
+    if (facts.matches.empty()) return html + "<p>None.</p>";
+    html += "<table><tr><th>Room clock</th><th>Verdict</th><th>Points of skin</th><th>Residual</th><th>Why</th></tr>";
+    constexpr std::size_t kMost = 3, kLongest = 110;
+    const std::size_t first = facts.matches.size() > kMost ? facts.matches.size() - kMost : 0;
+    for (std::size_t i = first; i < facts.matches.size(); ++i) {
+        const OperationMatch& match = facts.matches[i];
+        std::string why;
+        for (const std::string& reason : match.reasons) why += (why.empty() ? "" : " ") + reason;
+        html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.2f} mm rms</td><td>{}</td></tr>",
+                            moment_text(match.at_s), match.verdict, match.points, match.residual_rms_mm,
+                            html_escaped(short_text(why, kLongest)));
+    }
+    if (first > 0) html += fmt::format("<tr><td colspan=\"5\">after {} others</td></tr>", first);
+    return html + "</table>";
+}
+
+std::string events_html(const std::string& title, const std::vector<OperationEvent>& events, std::size_t most) {
+    std::string html = "<h2>" + title + "</h2>";
+    if (events.empty()) return html + "<p>None.</p>";
+    html += "<table>";
+    for (std::size_t i = 0; i < std::min(events.size(), most); ++i)
+        html += fmt::format("<tr><td style=\"width:16%\">{}</td><td>{}</td></tr>", moment_text(events[i].at_s),
+                            html_escaped(events[i].what));
+    html += "</table>";
+    if (events.size() > most)
+        html +=
+            fmt::format("<p class=\"muted\">And {} more, in the figures beside this page.</p>", events.size() - most);
+    return html;
+}
+
+std::string picture_html(const std::string& title, const RgbImage& picture) {
+    return fmt::format("<figure><img alt=\"{}\" src=\"{}\"><figcaption>{}</figcaption></figure>", title,
+                       embedded_png(picture), title);
+}
+
+RgbImage rgb_of(const GrayImage& picture) {
+    RgbImage rgb(picture.width, picture.height);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) rgb.pixels[i].fill(picture.pixels[i]);
+    return rgb;
+}
+
+std::string moment_html(const OperationFacts& facts) {
+    if (!facts.moment) return "<h2>Pictures</h2><p>No frame with light on the skin was kept.</p>";
+    const OperationMoment& m = *facts.moment;
+    std::string html = fmt::format(
+        "<h2>At {} (room clock), {}</h2><div class=\"row\" "
+        "style=\"grid-template-columns:repeat({},1fr)\">",
+        moment_text(m.at_s), m.trust == "aligned" ? "aligned" : "to be looked at", m.light.empty() ? 2 : 3);
+    html += picture_html("Left camera", rgb_of(brightened(m.left)));
+    html += picture_html("Right camera", rgb_of(brightened(m.right)));
+    if (!m.light.empty()) html += picture_html("What the projector was given", m.light);
+    return html + "</div>";
+}
+
+std::string facts_html(const OperationFacts& facts) {
+    const RecordingHead& head = facts.head;
+    const bool titled = head.case_title.find(head.case_code) == std::string::npos;
+    return "<div class=\"two\"><table>" + row("Case", titled ? head.case_title : "") + row("Code", head.case_code) +
+           row("Plan", head.plan_name + (head.plan_version.empty() ? "" : ", version " + head.plan_version)) +
+           row("Room", facts.room) + row("Rig calibrated", utc_text(facts.rig_made_on)) + "</table><table>" +
+           row("Began", utc_text(head.began_utc)) + row("Lasted", duration_text(facts.lasted_s) + " (room clock)") +
+           row("Operator", head.operator_name) + row("Computer", head.computer) +
+           row("Program", "Planlight " + head.program) + "</table></div>";
+}
+
+std::string hashes_html(const OperationFacts& facts) {
+    return "<h2>Hashes (XXH3-128)</h2><table>" + row("Recording", facts.file + ": " + facts.recording_hash) +
+           row("Volume", facts.head.volume_hash) + row("Skin", facts.head.mesh_hash) +
+           row("Plan", facts.head.plan_hash) + row("Rig", facts.rig_hash) + row("Program", facts.head.program_hash) +
+           "</table>";
+}
+
+std::string verdict_html(const OperationVerdict& verdict) {
+    const char* kind = verdict.kind == OperationVerdict::Kind::good   ? "good"
+                       : verdict.kind == OperationVerdict::Kind::look ? "look"
+                                                                      : "stop";
+    const char* sign = verdict.kind == OperationVerdict::Kind::good   ? "&#10003;"
+                       : verdict.kind == OperationVerdict::Kind::look ? "&#9888;"
+                                                                      : "&#10007;";
+    std::string html = fmt::format("<div class=\"verdict {}\">{} {}</div>", kind, sign, html_escaped(verdict.sentence));
+    if (verdict.reasons.empty()) return html;
+    html += "<ul>";
+    for (const std::string& reason : verdict.reasons) html += "<li>" + html_escaped(reason) + "</li>";
+    return html + "</ul>";
+}
+
+/// Readable by its owner only, as the recording is: it shows the patient.
+void keep_to_owner(const fs::path& file) {
+    std::error_code ignored;
+    fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write, ignored);
+}
+
+}  // namespace
+
+void write_operation_report(const OperationFacts& facts, const std::string& json, const fs::path& file) {
+    constexpr std::size_t kMostEvents = 7, kMostRefusals = 3;
+    const std::string title = "Operation: " + facts.head.case_title;
+    const std::string body =
+        fmt::format("<section class=\"sheet\"><h1>{}</h1>{}{}{}{}</section>", html_escaped(title),
+                    verdict_html(verdict_of(facts)), facts_html(facts), items_html(facts), time_html(facts)) +
+        fmt::format(
+            "<section class=\"sheet\">{}{}{}{}{}{}<div class=\"sign\"><span>Name</span><span>Date</span>"
+            "<span>Signature</span></div></section>",
+            moment_html(facts), course_html(facts), matches_html(facts),
+            events_html("What people said and did", facts.said, kMostEvents),
+            events_html("Refused, or failed", facts.refusals, kMostRefusals), hashes_html(facts));
+    write_safely(file,
+                 paper_page(title, body,
+                            fmt::format("Case {}, {}. Planlight {}. For research; not a medical device.",
+                                        facts.head.case_code, utc_text(facts.head.began_utc), facts.head.program)));
+    keep_to_owner(file);
+    const fs::path figures = fs::path(file).replace_extension(".json");
+    write_safely(figures, json);
+    keep_to_owner(figures);
+}
+
+}  // namespace planlight

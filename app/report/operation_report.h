@@ -1,0 +1,99 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "app/recording/session_recorder.h"
+#include "planning_io/recording/recording_reader.h"
+
+namespace planlight {
+
+/// Of the plan, as a recording tells it. Times are seconds since the room was entered.
+struct OperationItem {
+    std::string name;
+    std::vector<std::pair<double, double>> shown;  ///< from when to when there was light of it
+    double shown_s = 0;
+    std::optional<double>
+        predicted_mm;                 ///< within this in 95 % of cases, by the last match that was used; or not known
+    std::vector<double> measured_mm;  ///< by CHECK, each time that its light was seen
+};
+
+struct OperationMatch {
+    double at_s = 0;
+    std::string utc, verdict;  ///< "yes", "ask", "no"
+    std::vector<std::string> reasons;
+    double residual_rms_mm = 0;
+    std::size_t points = 0;
+};
+
+/// Something that a person said or did, or that went wrong.
+struct OperationEvent {
+    double at_s = 0;
+    std::string utc, what;
+};
+
+/// A moment with its pictures.
+struct OperationMoment {
+    double at_s = 0;
+    std::string trust;  ///< "dark", "look", "aligned"
+    GrayImage left, right;
+    RgbImage light;
+};
+
+/// What a recording tells of an operation.
+struct OperationFacts {
+    RecordingHead head;
+    std::string recording_hash, file;
+    bool room_entered = false, simulated = false;
+    std::string room, rig_hash, rig_made_on;
+    std::vector<std::string> serials;
+    double lasted_s = 0, lit_s = 0, aligned_s = 0, look_s = 0;
+    std::vector<OperationMatch> matches;
+    std::vector<OperationEvent> said;      ///< confirmations, checks of the skin, DARK, stops: in order
+    std::vector<OperationEvent> refusals;  ///< of a scan, a match, a check; devices that failed
+    std::vector<OperationItem> items;
+    std::map<std::string, std::pair<int, double>> dark;  ///< while following: reason, how often, for how many seconds
+    /// Every half second of light at most: when, whether it was aligned, and the largest of `light_off_mm` since the
+    /// last; -1 where it was not measured.
+    struct Sample {
+        double at_s = 0;
+        bool aligned = false;
+        double off_mm = -1;
+    };
+    std::vector<Sample> course;
+    std::vector<double> light_off_mm;  ///< of all of the light (95 % of it lies within), each measurement
+    std::optional<OperationMoment> moment;
+    int updates = 0, verified = 0, stops = 0;
+    std::uint64_t chunks = 0, bytes = 0, lost_chunks = 0, kept_frames = 0;
+    std::string ended;  ///< how the recording ends, in words; empty: it is whole
+    bool damaged = false;
+};
+
+/// Reads the recording from its beginning to its end. Throws InputError, DamagedFileError.
+OperationFacts facts_of_operation(const std::filesystem::path& recording);
+
+/// Above these the light is not trusted, and goes out, as the light gate has them.
+inline constexpr double kOperationLook_mm = 1, kOperationStop_mm = 2;
+
+/// "3 min 12 s", "12.4 s".
+std::string duration_text(double s);
+
+/// The verdict of a page, first of all that stands on it.
+struct OperationVerdict {
+    enum class Kind { good, look, stop } kind = Kind::look;
+    std::string sentence;
+    std::vector<std::string> reasons;
+};
+OperationVerdict verdict_of(const OperationFacts& facts);
+
+/// All figures of the page, and those for which it has no room.
+std::string operation_json(const OperationFacts& facts);
+
+/// The page of two sheets, and `json` beside it (.json); both readable by their owner only.
+void write_operation_report(const OperationFacts& facts, const std::string& json, const std::filesystem::path& file);
+
+}  // namespace planlight

@@ -1,0 +1,180 @@
+// What is to be said first of an operation, and all of its figures.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "app/evaluation/distribution.h"
+#include "app/recording/recording_head.h"
+#include "app/report/operation_report.h"
+
+namespace planlight {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr double kLook_mm = kOperationLook_mm, kStop_mm = kOperationStop_mm;
+
+Json json_of(const Distribution& d) {
+    if (d.count == 0) return {{"count", 0}, {"median", nullptr}, {"p95", nullptr}, {"worst", nullptr}};
+    return {{"count", d.count}, {"median", d.median}, {"p95", d.p95}, {"worst", d.worst}};
+}
+
+Json json_of(const std::vector<OperationEvent>& events) {
+    Json json = Json::array();
+    for (const OperationEvent& event : events)
+        json.push_back(
+            {{"at_s", event.at_s}, {"utc", event.utc.empty() ? Json() : Json(event.utc)}, {"what", event.what}});
+    return json;
+}
+
+/// The first six; the others are counted, and stand in the figures.
+std::string names_of(const std::vector<std::string>& names) {
+    constexpr std::size_t kMost = 6;
+    const std::vector<std::string> first(names.begin(),
+                                         names.begin() + static_cast<std::ptrdiff_t>(std::min(kMost, names.size())));
+    return fmt::format("{}{}", fmt::join(first, ", "),
+                       names.size() > kMost ? fmt::format(" and {} more", names.size() - kMost) : "");
+}
+
+std::vector<const OperationItem*> worst_first(const std::vector<OperationItem>& items) {
+    std::vector<std::pair<double, const OperationItem*>> by_p95;
+    for (const OperationItem& item : items) by_p95.emplace_back(distribution_of(item.measured_mm).p95, &item);
+    std::stable_sort(by_p95.begin(), by_p95.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<const OperationItem*> sorted;
+    for (const auto& [p95, item] : by_p95) sorted.push_back(item);
+    return sorted;
+}
+
+}  // namespace
+
+std::string duration_text(double s) {
+    if (s < 60) return fmt::format("{:.1f} s", s);
+    const auto whole = static_cast<long>(s + 0.5);
+    return whole < 3600 ? fmt::format("{} min {:02} s", whole / 60, whole % 60)
+                        : fmt::format("{} h {:02} min", whole / 3600, whole % 3600 / 60);
+}
+
+OperationVerdict verdict_of(const OperationFacts& facts) {
+    using Kind = OperationVerdict::Kind;
+    OperationVerdict verdict;
+    verdict.kind = Kind::good;
+    const auto lower = [&](Kind to, const std::string& reason) {
+        verdict.kind = std::max(verdict.kind, to);
+        verdict.reasons.push_back(reason);
+    };
+    if (facts.simulated) verdict.reasons.push_back("A simulated room: no patient was there.");
+    std::vector<std::string> off, unseen, not_shown;
+    for (const OperationItem* item : worst_first(facts.items)) {
+        const Distribution d = distribution_of(item->measured_mm);
+        if (d.count > 0 && d.p95 > kLook_mm) {
+            verdict.kind = std::max(verdict.kind, d.p95 > kStop_mm ? Kind::stop : Kind::look);
+            off.push_back(fmt::format("{} ({:.1f} mm)", item->name, d.p95));
+        }
+        if (item->shown.empty())
+            not_shown.push_back(item->name);
+        else if (d.count == 0)
+            unseen.push_back(item->name);
+    }
+    if (!off.empty())
+        lower(Kind::look, fmt::format("More than {:.0f} mm off in the worst twentieth of what was measured: {}.",
+                                      kLook_mm, names_of(off)));
+    if (!unseen.empty()) lower(Kind::look, fmt::format("Shown, and never seen by the cameras: {}.", names_of(unseen)));
+    if (!not_shown.empty()) lower(Kind::look, fmt::format("Not shown: {}.", names_of(not_shown)));
+    if (facts.stops > 0)
+        lower(Kind::look, fmt::format("The light was stopped by the system {}.",
+                                      facts.stops == 1 ? "once" : fmt::format("{} times", facts.stops)));
+    if (facts.lit_s > 0 && facts.verified == 0) lower(Kind::look, "Nobody said that the light on landmarks is right.");
+    if (std::any_of(facts.matches.begin(), facts.matches.end(),
+                    [](const OperationMatch& match) { return match.verdict == "ask"; }))
+        lower(Kind::look, "A match was doubtful and used on a person's word alone, if at all.");
+    if (facts.lit_s > 0 && facts.aligned_s < 0.8 * facts.lit_s)
+        lower(Kind::look,
+              fmt::format("Only {:.0f} % of the time of light was it aligned.", 100 * facts.aligned_s / facts.lit_s));
+    if (!facts.ended.empty()) lower(Kind::look, facts.ended);
+    if (facts.lost_chunks > 0)
+        lower(Kind::look,
+              fmt::format("{} pieces are missing in the recording: the disk was too slow or full.", facts.lost_chunks));
+    if (facts.updates == 0 || facts.lit_s <= 0) {
+        verdict.kind = Kind::look;
+        verdict.sentence = "No light of the plan was shown.";
+    } else {
+        const Distribution d = distribution_of(facts.light_off_mm);
+        verdict.sentence = fmt::format(
+            "The plan was shown for {}, aligned for {:.0f} % of it{}.", duration_text(facts.lit_s),
+            100 * facts.aligned_s / facts.lit_s,
+            d.count > 0 ? fmt::format("; the light lay within {:.2f} mm (median), {:.2f} mm (95 %)", d.median, d.p95)
+                        : "");
+    }
+    return verdict;
+}
+
+std::string operation_json(const OperationFacts& facts) {
+    const OperationVerdict verdict = verdict_of(facts);
+    constexpr const char* kKinds[] = {"good", "look", "stop"};
+    const RecordingHead& head = facts.head;
+    Json json = {{"format", "planlight operation"},
+                 {"version", 1},
+                 {"verdict", kKinds[static_cast<std::size_t>(verdict.kind)]},
+                 {"sentence", verdict.sentence},
+                 {"reasons", verdict.reasons},
+                 {"case", head.case_code},
+                 {"title", head.case_title},
+                 {"plan", head.plan_name},
+                 {"plan_version", head.plan_version},
+                 {"room", facts.room},
+                 {"simulated", facts.simulated},
+                 {"began", head.began_utc},
+                 {"operator", head.operator_name},
+                 {"computer", head.computer},
+                 {"program", head.program},
+                 {"rig_made_on", facts.rig_made_on},
+                 {"serials", facts.serials},
+                 {"hashes",
+                  {{"recording", facts.recording_hash},
+                   {"volume", head.volume_hash},
+                   {"skin", head.mesh_hash},
+                   {"plan", head.plan_hash},
+                   {"rig", facts.rig_hash},
+                   {"program", head.program_hash}}},
+                 {"lasted_s", facts.lasted_s},
+                 {"lit_s", facts.lit_s},
+                 {"aligned_s", facts.aligned_s},
+                 {"look_s", facts.look_s},
+                 {"updates", facts.updates},
+                 {"verified", facts.verified},
+                 {"stops", facts.stops},
+                 {"light_off_mm", json_of(distribution_of(facts.light_off_mm))}};
+    json["items"] = Json::array();
+    for (const OperationItem& item : facts.items) {
+        Json shown = Json::array();
+        for (const auto& [from, to] : item.shown) shown.push_back({from, to});
+        json["items"].push_back({{"name", item.name},
+                                 {"shown_s", item.shown_s},
+                                 {"shown", shown},
+                                 {"predicted_mm", item.predicted_mm ? Json(*item.predicted_mm) : Json()},
+                                 {"measured_mm", json_of(distribution_of(item.measured_mm))}});
+    }
+    json["matches"] = Json::array();
+    for (const OperationMatch& match : facts.matches)
+        json["matches"].push_back({{"at_s", match.at_s},
+                                   {"utc", match.utc},
+                                   {"verdict", match.verdict},
+                                   {"reasons", match.reasons},
+                                   {"residual_rms_mm", match.residual_rms_mm},
+                                   {"points", match.points}});
+    json["dark"] = Json::array();
+    for (const auto& [reason, how] : facts.dark)
+        json["dark"].push_back({{"reason", reason}, {"times", how.first}, {"seconds", how.second}});
+    json["said"] = json_of(facts.said);
+    json["refusals"] = json_of(facts.refusals);
+    json["recording"] = {{"file", facts.file},   {"record", word_of(head.mode)}, {"chunks", facts.chunks},
+                         {"bytes", facts.bytes}, {"frames", facts.kept_frames},  {"lost_chunks", facts.lost_chunks},
+                         {"ended", facts.ended}};
+    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace planlight

@@ -1,0 +1,85 @@
+// What a session can be asked for, told to its observer before and after.
+#include "app/session.h"
+#include "app/session_observer.h"
+
+namespace planlight {
+
+SessionSettings settings_for(const MarkerDesign& markers) {
+    SessionSettings settings;
+    settings.tracking.design = markers;
+    settings.tracking.markers.sticker_ratio = markers.sticker_diameter_mm / markers.disc_diameter_mm;
+    return settings;
+}
+
+template <class Do>
+void Session::told(SessionCall call, const Do& body, const std::vector<PointPair>& landmarks, int which) {
+    if (settings_.observer) settings_.observer->asked(call, landmarks, which);
+    try {
+        body();
+    } catch (const std::exception& why) {
+        if (settings_.observer) settings_.observer->refused(call, why);
+        throw;
+    }
+}
+
+std::function<void(int, int)> Session::told_when_stopped(const std::function<void(int, int)>& progress) const {
+    if (!settings_.observer || !progress) return progress;
+    return [this, &progress](int done, int of) {
+        try {
+            progress(done, of);
+        } catch (const Error& why) {
+            settings_.observer->stopped(why);
+            throw;
+        }
+    };
+}
+
+const ScanResult& Session::scan(const std::function<void(int, int)>& progress) {
+    told(SessionCall::scan, [&] { make_scan(told_when_stopped(progress)); });
+    if (settings_.observer) settings_.observer->scanned(*this);
+    return *scanned_;
+}
+
+const RegistrationResult& Session::find_patient(const std::vector<PointPair>& landmarks) {
+    told(
+        SessionCall::find_patient, [&] { match(landmarks); }, landmarks);
+    if (settings_.observer) settings_.observer->matched(*this);
+    return *registration_;
+}
+
+void Session::confirm() {
+    told(SessionCall::confirm, [&] {
+        confirmed_ = true;
+        if (overlay_) overlay_->set_operator_confirmed(true);
+    });
+}
+
+void Session::light_landmark(std::optional<std::size_t> which) {
+    if (which == lit_landmark_) return;
+    const auto light = [&] {
+        overlay_.reset();
+        lit_landmark_ = which && *which < landmarks().size() ? which : std::nullopt;
+    };
+    told(SessionCall::light_landmark, light, {}, which ? static_cast<int>(*which) : -1);
+}
+
+Session::Update Session::update() {
+    Update update;
+    told(SessionCall::update, [&] { update = make_update(); });
+    if (settings_.observer) settings_.observer->updated(*this, update);
+    return update;
+}
+
+SkinCheck Session::check_skin(const std::function<void(int, int)>& progress) {
+    SkinCheck check;
+    told(SessionCall::check_skin, [&] { check = measure_skin(told_when_stopped(progress)); });
+    if (settings_.observer) settings_.observer->skin_checked(check);
+    return check;
+}
+
+void Session::go_dark() noexcept {
+    if (settings_.observer) settings_.observer->asked(SessionCall::go_dark, {}, -1);
+    darken();
+}
+
+}  // namespace planlight

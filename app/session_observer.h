@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "app/session.h"
+#include "planning_io/types/error.h"
+#include "projection/light_gate.h"
+
+namespace planlight {
+
+/// What a session can be asked for.
+enum class SessionCall { scan, find_patient, confirm, update, check_skin, light_landmark, go_dark };
+
+/// What can be asked of a session's light gate.
+enum class GateCall { step, verify, skin_checked, new_match, restart };
+
+/// Where a session takes place, as far as it goes into what it does.
+struct RoomFacts {
+    std::string name;
+    bool simulated = false;
+    MarkerDesign markers;
+    RigCalibration rig;              ///< as calibrated
+    std::vector<std::string> notes;  ///< of the devices, for a person
+    Instant now{};                   ///< on the room's clock
+};
+
+/// Told of everything that goes into a session and comes out of it, in order and in the session's own thread: whoever
+/// does the same again with the same answers of the devices must come to the same end. None of it may take long.
+class SessionObserver {
+public:
+    virtual ~SessionObserver() = default;
+
+    virtual void room_entered(const RoomFacts& /*room*/) noexcept {}
+    /// A button, the moment it was pressed; from any thread.
+    virtual void pressed(const std::string& /*action*/) noexcept {}
+    /// What the banner says: its colour as a word, its sentence, further ones.
+    virtual void said(const std::string& /*kind*/, const std::string& /*headline*/,
+                      const std::vector<std::string>& /*details*/) noexcept {}
+
+    /// Before the session does it. `which`: of `light_landmark`, -1 for the plan.
+    virtual void asked(SessionCall /*call*/, const std::vector<PointPair>& /*landmarks*/, int /*which*/) noexcept {}
+
+    // What the devices answered.
+    virtual void clock_read(Instant /*now*/) noexcept {}
+    virtual void frame_taken(const StereoFrame& /*frame*/) noexcept {}
+    virtual void picture_shown(const RgbImage& /*picture*/, Instant /*valid_until*/, Instant /*lit_from*/) noexcept {}
+    virtual void went_dark() noexcept {}
+    /// A device threw, or whoever asked ended it from between two pictures of a scan.
+    virtual void device_failed(const Error& /*fault*/) noexcept {}
+    virtual void stopped(const Error& /*why*/) noexcept {}
+
+    // What came of it; of what was refused, `refused` alone.
+    virtual void scanned(const Session& /*session*/) noexcept {}
+    virtual void matched(const Session& /*session*/) noexcept {}
+    virtual void updated(const Session& /*session*/, const Session::Update& /*update*/) noexcept {}
+    virtual void skin_checked(const SkinCheck& /*check*/) noexcept {}
+    virtual void refused(SessionCall /*call*/, const std::exception& /*why*/) noexcept {}
+
+    /// The gate: `at` of a verification, `off_mm` of a check of the skin; `ruling` null for all but `step`.
+    virtual void gate(GateCall /*call*/, Instant /*at*/, double /*off_mm*/,
+                      const LightGate::Ruling* /*ruling*/) noexcept {}
+};
+
+}  // namespace planlight

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+
+#include "planning_io/recording/recording_chunk.h"
+
+namespace planlight {
+
+/// How a recording ends.
+enum class RecordingEnd {
+    open,     ///< not reached yet
+    whole,    ///< the session ended by itself
+    cut,      ///< the program or the computer stopped, or the disk was full: after the last whole chunk there is none
+    damaged,  ///< bytes were changed: whole chunks follow after what cannot be read
+};
+
+/// Reads a recording chunk by chunk, however long it is; only one chunk is held in memory.
+class RecordingReader {
+public:
+    /// Throws InputError when there is no such file or it is no recording, DamagedFileError when its first bytes are
+    /// damaged or of another version.
+    explicit RecordingReader(const std::filesystem::path& file);
+
+    /// The next whole chunk; empty at the end, or where the rest cannot be read (see `end`). Never throws for damage.
+    std::optional<RecordingChunk> next();
+
+    RecordingEnd end() const { return end_; }
+    /// How it ended, in words; empty until then and when it is whole.
+    std::string sentence() const;
+    std::uint64_t chunks() const { return chunks_; }  ///< read so far
+    std::uint64_t bytes_read() const { return at_; }  ///< of whole chunks, with the file's header
+    std::uint64_t bytes() const { return bytes_; }    ///< of the file
+    const std::filesystem::path& file() const { return file_; }
+
+private:
+    std::optional<RecordingChunk> whole_chunk_at(std::uint64_t at, std::optional<std::uint64_t> number);
+    bool whole_chunk_after(std::uint64_t at);
+
+    std::filesystem::path file_;
+    std::ifstream in_;
+    std::uint64_t bytes_ = 0, at_ = 0, chunks_ = 0;
+    bool done_seen_ = false;
+    RecordingEnd end_ = RecordingEnd::open;
+};
+
+}  // namespace planlight

@@ -1,0 +1,224 @@
+// What a recording tells of an operation: figures that were put in by hand come out again.
+#include "app/report/operation_report.h"
+
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "app/recording/frame_choice.h"
+#include "app/recording/recorded_inputs.h"
+#include "app/recording/recording_head.h"
+#include "planning_io/recording/packed_pictures.h"
+#include "planning_io/types/error.h"
+#include "tests/support/test_data.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr Instant kOrigin = std::chrono::seconds(1000), kStep = std::chrono::milliseconds(100);
+
+/// A recording by hand: two items, a match, updates a tenth of a second apart.
+class Operation : public ::testing::Test {
+protected:
+    Operation() {
+        RecordingHead head;
+        head.program = "1", head.case_code = "1a2b", head.case_title = "A <b> title";
+        head.began_utc = "2026-03-14T09:30:00Z", head.operator_name = "Ada";
+        add(chunk_types::kHead, text_of(head));
+        add(chunk_types::kRoom,
+            R"({"name": "Theatre 2", "simulated": false, "rig_hash": "r", "rig": {"made_on": "2026-03-01"}})");
+    }
+    void add(ChunkType type, const std::string& payload) {
+        chunks_.push_back({type, kOrigin + kStep * step_, payload});
+    }
+    void event(const json& event) { add(chunk_types::kEvent, event.dump()); }
+    void match(const std::string& verdict = "yes") {
+        event({{"what", "asked"}, {"call", "find_patient"}, {"utc", "2026-03-14T09:31:00Z"}});
+        event({{"what", "matched"},
+               {"verdict", verdict},
+               {"reasons", json::array()},
+               {"residual_rms_mm", 0.3},
+               {"points", 20000},
+               {"items", {"Line", "Hole"}},
+               {"predicted_mm", {0.5, nullptr}}});
+    }
+    /// A tenth of a second of light of both items (`line_mm` below 0: the line's light was not seen).
+    void lit(double line_mm, double hole_mm, const std::string& trust, bool hole_lit = true) {
+        ++step_;
+        event({{"what", "asked"}, {"call", "update"}});
+        event(
+            {{"what", "updated"},
+             {"at_ns", (kOrigin + kStep * step_).count()},
+             {"light", {{"lit", true}}},
+             {"check",
+              {{"items", {{true, 4, line_mm < 0 ? 0 : 4, std::max(0.0, line_mm), 0.1}, {hole_lit, 2, 2, hole_mm, 0.1}}},
+               {"seen", 6},
+               {"off_mm", hole_mm}}}});
+        event({{"what", "gate"}, {"call", "step"}, {"trust", trust}, {"headline", "x"}});
+    }
+    void dark(const std::string& reason) {
+        ++step_;
+        event({{"what", "asked"}, {"call", "update"}});
+        event({{"what", "updated"},
+               {"at_ns", (kOrigin + kStep * step_).count()},
+               {"light", {{"lit", false}, {"dark", reason}}}});
+    }
+    OperationFacts facts(bool done = true) {
+        if (done) add(chunk_types::kDone, "{}");
+        std::ofstream out(file(), std::ios::binary);
+        out << recording_header();
+        for (std::size_t i = 0; i < chunks_.size(); ++i) out << chunk_bytes(chunks_[i], i);
+        out.close();
+        return facts_of_operation(file());
+    }
+    fs::path file() const { return folder_.path() / "session.plrec"; }
+
+    std::vector<RecordingChunk> chunks_;
+    int step_ = 0;
+    test::TemporaryFolder folder_;
+};
+
+TEST_F(Operation, TellsWhatWasShownWhenAndHowFarOff) {
+    match();
+    event({{"what", "gate"}, {"call", "verify"}, {"utc", "x"}});
+    for (int i = 0; i <= 20; ++i) lit(0.1 + 0.01 * i, 0.4, "aligned");
+    dark("the last pose is 83 ms old (at most 75 ms)");
+    dark("the last pose is 91.5 ms old (at most 75 ms)");
+    for (int i = 0; i < 9; ++i) dark("the patient is not tracked");
+    for (int i = 0; i < 10; ++i) lit(0.2, 0.4, "look", false);
+    const OperationFacts f = facts();
+    ASSERT_EQ(f.items.size(), 2u);
+    const OperationItem &line = f.items[0], &hole = f.items[1];
+    EXPECT_EQ(line.name, "Line");
+    ASSERT_EQ(line.shown.size(), 2u) << "1.1 s of darkness is a break";
+    EXPECT_NEAR(line.shown[0].first, 0.1, 1e-9);
+    EXPECT_NEAR(line.shown[0].second, 2.1, 1e-9);
+    EXPECT_NEAR(line.shown[1].second, 4.2, 1e-9);
+    EXPECT_EQ(hole.shown.size(), 1u) << "the second time its light did not reach the skin";
+    EXPECT_EQ(*line.predicted_mm, 0.5);
+    EXPECT_FALSE(hole.predicted_mm) << "null is not known, never 0";
+    EXPECT_EQ(line.measured_mm.size(), 31u);
+    EXPECT_NEAR(line.measured_mm[20], 0.3, 1e-12);
+    EXPECT_NEAR(f.lit_s, 3.0, 1e-9) << "20 steps of the first light, 10 of the second";
+    EXPECT_NEAR(f.aligned_s, 2.0, 1e-9);
+    EXPECT_NEAR(f.look_s, 1.0, 1e-9);
+    ASSERT_EQ(f.dark.size(), 2u) << "the same reason with other numbers is one reason";
+    EXPECT_EQ(f.dark.at("the last pose is … ms old (at most … ms)").first, 1);
+    EXPECT_NEAR(f.dark.at("the patient is not tracked").second, 0.9, 1e-9);
+    EXPECT_EQ(f.verified, 1);
+    EXPECT_EQ(f.ended, "");
+}
+
+TEST_F(Operation, IsGoodOnlyWhereItWasMeasuredVerifiedAndWhole) {
+    using Kind = OperationVerdict::Kind;
+    const auto verdict_with = [](const std::function<void(OperationFacts&)>& spoil) {
+        OperationFacts f;
+        f.updates = 100, f.lit_s = 10, f.aligned_s = 9.5, f.verified = 1;
+        f.items.push_back({"Line", {{0, 10}}, 10, 0.5, std::vector<double>(50, 0.2)});
+        spoil(f);
+        return verdict_of(f).kind;
+    };
+    EXPECT_EQ(verdict_with([](OperationFacts&) {}), Kind::good);
+    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.verified = 0; }), Kind::look);
+    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.stops = 1; }), Kind::look);
+    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.aligned_s = 5; }), Kind::look);
+    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.ended = "It was cut."; }), Kind::look);
+    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.lost_chunks = 1; }), Kind::look);
+    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.items[0].measured_mm.clear(); }), Kind::look);
+    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.items[0].measured_mm.assign(50, 1.5); }), Kind::look);
+    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.items[0].measured_mm.assign(50, 2.5); }), Kind::stop);
+    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.lit_s = 0; }), Kind::look);
+    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.matches.push_back({0, "", "ask", {}, 0, 0}); }), Kind::look);
+}
+
+TEST_F(Operation, PageAndFiguresStandBesideTheRecordingForItsOwnerOnly) {
+    match();
+    lit(0.1, 0.2, "aligned");
+    lit(0.1, 0.2, "aligned");
+    const OperationFacts f = facts();
+    const fs::path page = folder_.path() / "session.html";
+    write_operation_report(f, operation_json(f), page);
+    std::ifstream in(page);
+    const std::string html{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_NE(html.find("A &lt;b&gt; title"), std::string::npos) << "a title is text, whatever stands in it";
+    EXPECT_NE(html.find(f.recording_hash), std::string::npos);
+    for (const char* name : {"session.html", "session.json"}) {
+        struct stat status {};
+        ASSERT_EQ(::stat((folder_.path() / name).c_str(), &status), 0);
+        EXPECT_EQ(status.st_mode & 0777, 0600u) << name;
+    }
+    std::ifstream figures(folder_.path() / "session.json");
+    EXPECT_EQ(json::parse(figures)["items"][1]["measured_mm"]["p95"], 0.2);
+}
+
+TEST_F(Operation, OfARecordingThatWasCutIsToldUpToThereAndSaysSo) {
+    match();
+    lit(0.1, 0.2, "aligned");
+    lit(0.1, 0.2, "aligned");
+    const OperationFacts f = facts(false);
+    EXPECT_EQ(f.updates, 2);
+    EXPECT_NE(f.ended.find("without a closing word"), std::string::npos) << f.ended;
+    EXPECT_FALSE(f.damaged);
+}
+
+TEST_F(Operation, EventsThatCannotBeUnderstoodAreRefused) {
+    event({{"what", "updated"}, {"at_ns", "soon"}});
+    EXPECT_THROW(facts(), DamagedFileError);
+}
+
+TEST(FrameChoice, KeepsWithinItsBudgetWhateverHappens) {
+    for (const double bytes : {250e3, 1.4e6})       // of a frame in the paper's room, in a modern one
+        for (const int event_every : {0, 25, 1}) {  // frames
+            FrameChoice choice;
+            double kept = 0;
+            for (int i = 0; i < 3600 * 25; ++i) {
+                if (choice.keep(i * std::chrono::milliseconds(40), bytes)) kept += bytes;
+                if (event_every > 0 && i % event_every == 0)
+                    kept += bytes * static_cast<double>(choice.event(12, bytes));
+            }
+            EXPECT_LE(kept, 0.69e9) << bytes << " bytes a frame, an event every " << event_every;
+            EXPECT_GE(kept, 0.3e9) << bytes << " bytes a frame, an event every " << event_every;
+        }
+}
+
+TEST(FrameChoice, KeepsTheFramesRoundAnEvent) {
+    FrameChoice choice;
+    int kept = 0;
+    for (int i = 0; i < 25; ++i) kept += choice.keep(i * std::chrono::milliseconds(40), 250e3);
+    EXPECT_EQ(kept, 1) << "nothing has happened";
+    EXPECT_EQ(choice.event(12, 250e3), 12u);
+    kept = 0;
+    for (int i = 25; i < 50; ++i) kept += choice.keep(i * std::chrono::milliseconds(40), 250e3);
+    EXPECT_EQ(kept, 12);
+}
+
+TEST(RecordedInputs, ComeBackAsTheyWere) {
+    using Kind = RecordedInput::Kind;
+    const std::vector<RecordedInput> inputs{{Kind::clock, Instant(-5), {}, 0, {}, {}},
+                                            {Kind::shown, Instant(7), Instant(9), 0, "hash", {}},
+                                            {Kind::dark, {}, {}, 0, {}, {}},
+                                            {Kind::frame, Instant(1), Instant(2), 77, "other", {}},
+                                            {Kind::failed, {}, {}, 0, "Left camera: is gone", "Plug it in."},
+                                            {Kind::stopped, {}, {}, 0, "DARK", "Scan again."}};
+    const std::string bytes = packed(inputs);
+    const auto again = unpacked_inputs(bytes, "x");
+    ASSERT_EQ(again.size(), inputs.size());
+    EXPECT_EQ(packed(again), bytes);
+    EXPECT_EQ(again[3].number, 77u);
+    EXPECT_EQ(again[4].remedy, "Plug it in.");
+    int refused = 0;
+    for (std::size_t at = 0; at < bytes.size(); ++at) try {
+            static_cast<void>(unpacked_inputs(std::string_view(bytes).substr(0, at), "x"));
+        } catch (const DamagedFileError&) {
+            ++refused;
+        }
+    EXPECT_EQ(refused, static_cast<int>(bytes.size() - inputs.size())) << "only between two entries is a cut an end";
+}
+
+}  // namespace
+}  // namespace planlight

@@ -1,0 +1,206 @@
+#include "tests/app/played_session.h"
+
+#include <atomic>
+#include <chrono>
+#include <stdexcept>
+#include <thread>
+
+#include "app/live/live_session.h"
+#include "app/live/simulated_room.h"
+#include "app/prepare_case.h"
+#include "planning_io/plan/plan_file.h"
+#include "planning_io/volume/read_volume.h"
+#include "tests/support/test_data.h"
+
+namespace planlight::test {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Counts the updates on the way to the observer that is meant, and the time that it takes.
+class Counting final : public SessionObserver {
+public:
+    explicit Counting(SessionObserver* next) : next_(next) {}
+    int updates() const { return updates_; }
+    const std::vector<double>& told_ms() const { return told_ms_; }
+
+    void room_entered(const RoomFacts& room) noexcept override {
+        pass([&](SessionObserver& next) { next.room_entered(room); });
+    }
+    /// From another thread: not timed.
+    void pressed(const std::string& action) noexcept override {
+        if (next_) next_->pressed(action);
+    }
+    void said(const std::string& kind, const std::string& headline,
+              const std::vector<std::string>& details) noexcept override {
+        if (next_) next_->said(kind, headline, details);
+    }
+    void asked(SessionCall call, const std::vector<PointPair>& landmarks, int which) noexcept override {
+        pass([&](SessionObserver& next) { next.asked(call, landmarks, which); });
+    }
+    void clock_read(Instant now) noexcept override {
+        pass([&](SessionObserver& next) { next.clock_read(now); });
+    }
+    void frame_taken(const StereoFrame& frame) noexcept override {
+        pass([&](SessionObserver& next) { next.frame_taken(frame); });
+    }
+    void picture_shown(const RgbImage& picture, Instant valid_until, Instant lit_from) noexcept override {
+        pass([&](SessionObserver& next) { next.picture_shown(picture, valid_until, lit_from); });
+    }
+    void went_dark() noexcept override {
+        pass([&](SessionObserver& next) { next.went_dark(); });
+    }
+    void device_failed(const Error& fault) noexcept override {
+        pass([&](SessionObserver& next) { next.device_failed(fault); });
+    }
+    void stopped(const Error& why) noexcept override {
+        pass([&](SessionObserver& next) { next.stopped(why); });
+    }
+    void scanned(const Session& session) noexcept override {
+        pass([&](SessionObserver& next) { next.scanned(session); });
+    }
+    void matched(const Session& session) noexcept override {
+        pass([&](SessionObserver& next) { next.matched(session); });
+        told_ = {};
+    }
+    void updated(const Session& session, const Session::Update& update) noexcept override {
+        pass([&](SessionObserver& next) { next.updated(session, update); });
+        told_ms_.push_back(1e3 * seconds(told_));
+        told_ = {};
+        ++updates_;
+    }
+    void skin_checked(const SkinCheck& check) noexcept override {
+        pass([&](SessionObserver& next) { next.skin_checked(check); });
+        told_ = {};
+    }
+    void refused(SessionCall call, const std::exception& why) noexcept override {
+        pass([&](SessionObserver& next) { next.refused(call, why); });
+    }
+    void gate(GateCall call, Instant at, double off_mm, const LightGate::Ruling* ruling) noexcept override {
+        pass([&](SessionObserver& next) { next.gate(call, at, off_mm, ruling); });
+    }
+
+private:
+    template <class Tell>
+    void pass(const Tell& tell) noexcept {
+        if (!next_) return;
+        const auto began = std::chrono::steady_clock::now();
+        tell(*next_);
+        told_ += std::chrono::steady_clock::now() - began;
+    }
+    SessionObserver* next_;
+    std::atomic<int> updates_{0};
+    Instant told_{};               ///< since the last update
+    std::vector<double> told_ms_;  ///< of each update
+};
+
+/// Waits until it holds; a session that does not come to it in five minutes is a failure.
+template <class Holds>
+void wait_for(const LiveSession& session, const char* what, Holds holds) {
+    const auto until = std::chrono::steady_clock::now() + 300s;
+    while (!holds(session.model())) {
+        session.rethrow_fault();
+        if (std::chrono::steady_clock::now() > until)
+            throw std::runtime_error(std::string("waited in vain for ") + what + ": " +
+                                     session.model().status.headline);
+        std::this_thread::sleep_for(5ms);
+    }
+}
+
+void press_when_free(LiveSession& session, OperatorAction action, ButtonState OperatorModel::*button,
+                     const char* name) {
+    wait_for(session, name, [&](const OperatorModel& m) { return (m.*button).enabled; });
+    session.post(action);
+}
+
+/// Says that the light is right on each landmark that is lit, as far as it is asked.
+void verify(LiveSession& session, const Counting& counting, int until) {
+    std::string confirmed;
+    while (counting.updates() < until) {
+        const OperatorModel model = session.model();
+        if (model.confirm && model.confirm_words != confirmed) {
+            confirmed = model.confirm_words;
+            session.post(OperatorAction::confirm);
+        }
+        session.rethrow_fault();
+        if (!model.stop.enabled && model.status.kind == StatusKind::refused) return;  // the gate has stopped the light
+        std::this_thread::sleep_for(5ms);
+    }
+}
+
+}  // namespace
+
+const ExampleCase& example_case() {
+    static const ExampleCase made = [] {
+        ExampleCase example;
+        if (!example_patient()) return example;
+        example.there = true;
+        example.volume = read_volume(*example_patient());
+        example.prepared =
+            prepare_case(example.volume, read_plan(std::string(PLANLIGHT_EXAMPLE_FOLDER) + "/frontal_defect.mrk.json"),
+                         {}, {}, "2001-10-14")
+                .prepared;
+        return example;
+    }();
+    return made;
+}
+
+PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, SessionObserver* observer) {
+    Counting counting(observer);
+    simulation::RoomSettings room;
+    room.preset = simulation::Preset::paper;
+    room.seed = how.seed;
+    const CaseDrawing drawing(patient.prepared);
+    PlayedResult result;
+    {
+        LiveSession session(
+            [&] {
+                return std::make_unique<SimulatedRoom>(patient.volume, patient.prepared.plan, room, how.speed_mm_s,
+                                                       how.fault);
+            },
+            patient.prepared, drawing, {}, &counting);
+        press_when_free(session, OperatorAction::scan, &OperatorModel::scan, "Scan");
+        if (how.dark_in_scan) {
+            wait_for(session, "the scan", [](const OperatorModel& m) { return m.status.kind == StatusKind::scanning; });
+            std::this_thread::sleep_for(300ms);
+            session.post(OperatorAction::dark);
+            wait_for(session, "DARK", [](const OperatorModel& m) { return m.status.kind == StatusKind::dark; });
+            session.post(OperatorAction::scan);
+        }
+        wait_for(session, "the end of the scan",
+                 [](const OperatorModel& m) { return m.do_register.enabled && m.status.kind != StatusKind::scanning; });
+        if (how.landmarks)
+            session.post_find_patient({{"nose", {0, 0, 0}, {0, 0, 900}}, {"chin", {0, 10, -60}, {0, 60, 900}}});
+        else
+            session.post(OperatorAction::do_register);
+        wait_for(session, "the match", [](const OperatorModel& m) {
+            return m.track.enabled || m.confirm || m.status.kind == StatusKind::refused;
+        });
+        if (session.model().confirm) session.post(OperatorAction::confirm);
+        result.headline = session.model().status.headline;
+        if (session.model().status.kind == StatusKind::refused) return result;
+        press_when_free(session, OperatorAction::track, &OperatorModel::track, "Track");
+        verify(session, counting, how.updates * 2 / 3);
+        if (how.check_skin) {
+            session.post(OperatorAction::check_skin);
+            std::this_thread::sleep_for(500ms);
+        }
+        session.post(OperatorAction::dark);
+        wait_for(session, "DARK", [](const OperatorModel& m) { return !m.stop.enabled; });
+        session.post(OperatorAction::track);
+        verify(session, counting, how.updates);
+        result.headline = session.model().status.headline;
+    }
+    result.updates = counting.updates();
+    result.told_ms = counting.told_ms();
+    return result;
+}
+
+PlayedResult record_session(const PlayedSession& how, const ExampleCase& patient, RecordMode mode,
+                            const std::filesystem::path& file) {
+    SessionRecorder recorder(std::make_unique<RecordingFile>(file),
+                             recording_head(patient.prepared, file.parent_path(), mode, {}));
+    return play_session(how, patient, &recorder);
+}
+
+}  // namespace planlight::test

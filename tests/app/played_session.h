@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "app/recording/session_recorder.h"
+#include "app/session.h"
+#include "planning_io/types/volume.h"
+
+namespace planlight::test {
+
+/// The example patient, prepared once; `there` is false where its package is not installed.
+struct ExampleCase {
+    bool there = false;
+    Volume volume;
+    Case prepared;
+};
+const ExampleCase& example_case();
+
+/// How a session in the simulated room (the paper's) is played without a window.
+struct PlayedSession {
+    unsigned seed = 1;
+    std::string fault;  ///< of `simulated_faults`; empty: none
+    double speed_mm_s = 20;
+    int updates = 60;           ///< while the plan is followed, about
+    bool dark_in_scan = false;  ///< DARK is pressed in the middle of the first scan
+    bool check_skin = false;
+    bool landmarks = false;  ///< clicked landmarks go into the match
+};
+
+/// How it went.
+struct PlayedResult {
+    std::string headline;  ///< the last words of the banner
+    int updates = 0;
+    std::vector<double> told_ms;  ///< that the observer took of each update's thread
+};
+
+/// Presses the buttons one after the other: scan, register, track, the light on both landmarks, DARK, track again.
+/// `observer` is told of it.
+PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, SessionObserver* observer);
+
+/// The same into a recording.
+PlayedResult record_session(const PlayedSession& how, const ExampleCase& patient, RecordMode mode,
+                            const std::filesystem::path& file);
+
+}  // namespace planlight::test

@@ -1,0 +1,218 @@
+// What was recorded of a session is replayed by the same code to the last digit, and a difference is named.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <fstream>
+#include <thread>
+
+#include "app/recording/recorded_inputs.h"
+#include "app/recording/replay_session.h"
+#include "planning_io/recording/packed_pictures.h"
+#include "planning_io/types/error.h"
+#include "tests/app/played_session.h"
+#include "tests/support/test_data.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+using test::PlayedSession;
+
+class Replay : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (!test::example_case().there) GTEST_SKIP() << "the package invesalius-examples is not installed";
+    }
+    static std::vector<RecordingChunk> chunks_of(const fs::path& file) {
+        RecordingReader reader(file);
+        std::vector<RecordingChunk> chunks;
+        while (auto chunk = reader.next()) chunks.push_back(std::move(*chunk));
+        return chunks;
+    }
+    static void write(const std::vector<RecordingChunk>& chunks, const fs::path& file) {
+        std::ofstream out(file, std::ios::binary);
+        const auto put = [&](const std::string& bytes) {
+            out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        };
+        put(recording_header());
+        for (std::size_t i = 0; i < chunks.size(); ++i) put(chunk_bytes(chunks[i], i));
+    }
+    static void expect_alike(const PlayedSession& how) {
+        const test::TemporaryFolder folder;
+        const fs::path file = folder.path() / "session.plrec";
+        test::record_session(how, test::example_case(), RecordMode::all, file);
+        const ReplayResult replayed = replay_session(file, test::example_case().prepared);
+        EXPECT_FALSE(replayed.difference) << "frame " << replayed.difference->frame << ", update "
+                                          << replayed.difference->update << ": " << replayed.difference->what;
+        EXPECT_EQ(replayed.ended, "");
+        EXPECT_EQ(replayed.end, RecordingEnd::whole);
+        EXPECT_FALSE(replayed.other_program);
+        EXPECT_GE(replayed.scans, 1);
+        EXPECT_EQ(replayed.matches, 1);
+        EXPECT_GE(replayed.updates, how.landmarks ? 0 : how.updates / 2);
+    }
+};
+
+TEST_F(Replay, OfASessionWithAMovingHeadIsAlikeToTheLastDigit) {
+    PlayedSession how;
+    how.check_skin = true;
+    how.updates = 30;
+    expect_alike(how);
+}
+
+TEST_F(Replay, OfAScanThatDarkEndedAndOfAFaultIsAlike) {
+    PlayedSession how;
+    how.seed = 3;
+    how.dark_in_scan = true;
+    how.fault = "late";
+    how.updates = 80;
+    expect_alike(how);
+}
+
+TEST_F(Replay, OfAMatchThatItsLandmarksRefuseIsAlike) {
+    PlayedSession how;
+    how.seed = 4;
+    how.landmarks = true;
+    expect_alike(how);
+}
+
+/// A disk that takes nothing until it is told to.
+class StillDisk final : public RecordingSink {
+public:
+    explicit StillDisk(const std::atomic<bool>& still) : still_(still) {}
+    void append(std::string_view) override {
+        while (still_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    void sync() override {}
+
+private:
+    const std::atomic<bool>& still_;
+};
+
+TEST_F(Replay, ADiskThatTakesNothingLeavesTheLightAloneAndIsSaid) {
+    std::atomic<bool> still{true};
+    RecordingWriterSettings writing;
+    writing.most_waiting_bytes = 3'000'000;
+    writing.spare_bytes = 10'000;
+    SessionRecorder recorder(std::make_unique<StillDisk>(still),
+                             recording_head(test::example_case().prepared, {}, RecordMode::all, {}), writing);
+    PlayedSession how;
+    how.seed = 5;
+    how.updates = 20;
+    // Scan, match and light come to their end while the disk has not taken a byte: nothing of it waited.
+    const test::PlayedResult played = test::play_session(how, test::example_case(), &recorder);
+    EXPECT_GE(played.updates, 20);
+    EXPECT_GE(recorder.state().dropped_chunks, 40u) << "a scan of 46 pictures and 20 updates, and room for three";
+    EXPECT_LE(recorder.state().waiting_bytes, 3'010'000u);
+    EXPECT_NE(recorder.trouble().find("the light is not affected"), std::string::npos) << recorder.trouble();
+    still = false;
+}
+
+/// One recording that is spoilt in many ways.
+class SpoiltRecording : public Replay {
+protected:
+    void SetUp() override {
+        Replay::SetUp();
+        if (IsSkipped() || !chunks_.empty()) return;
+        PlayedSession how;
+        how.seed = 2;
+        how.updates = 24;
+        const fs::path file = folder().path() / "sound.plrec";
+        test::record_session(how, test::example_case(), RecordMode::all, file);
+        chunks_ = chunks_of(file);
+    }
+    static test::TemporaryFolder& folder() {
+        static test::TemporaryFolder made;
+        return made;
+    }
+    static ReplayResult replay(const std::vector<RecordingChunk>& chunks) {
+        const fs::path file = folder().path() / "spoilt.plrec";
+        write(chunks, file);
+        return replay_session(file, test::example_case().prepared);
+    }
+    /// The n-th event of an update.
+    static std::size_t update(int n) {
+        for (std::size_t i = 0; i < chunks_.size(); ++i)
+            if (chunks_[i].payload.starts_with(R"({"what":"updated")") && --n == 0) return i;
+        return 0;
+    }
+    static std::vector<RecordingChunk> chunks_;
+};
+std::vector<RecordingChunk> SpoiltRecording::chunks_;
+
+TEST_F(SpoiltRecording, APoseOfWhichOneDigitIsAnotherIsNamedWithItsFrame) {
+    auto chunks = chunks_;
+    const std::size_t seventh = update(7);
+    ASSERT_GT(seventh, 0u);
+    std::string& text = chunks[seventh].payload;
+    const std::size_t at = text.find("residual_px\":0.") + 15;
+    text[at] = text[at] == '1' ? '2' : '1';
+    const ReplayResult replayed = replay(chunks);
+    ASSERT_TRUE(replayed.difference);
+    EXPECT_EQ(replayed.difference->update, 7);
+    EXPECT_EQ(replayed.updates, 6);
+    EXPECT_NE(replayed.difference->what.find("pose.residual_px"), std::string::npos) << replayed.difference->what;
+}
+
+TEST_F(SpoiltRecording, OneGreyOfOnePixelOfOneFrameIsFoundOut) {
+    auto chunks = chunks_;
+    std::size_t at = update(5);
+    while (chunks[at].type != chunk_types::kFrame) --at;
+    StereoFrame frame = unpack_frame(chunks[at].payload, "x");
+    frame.left.at(100, 100) ^= 1;
+    chunks[at].payload = pack_frame(frame);
+    const ReplayResult replayed = replay(chunks);
+    EXPECT_FALSE(replayed.difference);
+    EXPECT_EQ(replayed.updates, 4) << "its pictures are not those that the session saw";
+    EXPECT_NE(replayed.ended.find("frame " + std::to_string(frame.number)), std::string::npos) << replayed.ended;
+}
+
+TEST_F(SpoiltRecording, AClockThatSaysAnotherTimeGivesAnotherPictureOrWord) {
+    auto chunks = chunks_;
+    std::size_t at = update(6) - 1;
+    ASSERT_EQ(chunks[at].type, chunk_types::kInputs);
+    auto inputs = unpacked_inputs(chunks[at].payload, "x");
+    for (RecordedInput& input : inputs)
+        if (input.kind == RecordedInput::Kind::clock) input.at += std::chrono::milliseconds(3);
+    chunks[at].payload = packed(inputs);
+    EXPECT_TRUE(replay(chunks).difference);
+}
+
+TEST_F(SpoiltRecording, WhatWasDroppedEndsTheReplayWithWords) {
+    auto chunks = chunks_;
+    const std::size_t at = update(4);
+    std::size_t frame = at;
+    while (chunks[frame].type != chunk_types::kFrame) --frame;
+    chunks[frame] = {chunk_types::kLost, chunks[frame].at, R"({"chunks": 1, "bytes": 857000})"};
+    const ReplayResult replayed = replay(chunks);
+    EXPECT_FALSE(replayed.difference);
+    EXPECT_EQ(replayed.updates, 3);
+    EXPECT_NE(replayed.ended.find("pieces are missing"), std::string::npos);
+}
+
+TEST_F(SpoiltRecording, CutAnywhereItIsReplayedUpToThere) {
+    for (const std::size_t length : {std::size_t{3}, std::size_t{40}, update(1), update(9) + 1}) {
+        auto chunks = chunks_;
+        chunks.resize(length);
+        const ReplayResult replayed = replay(chunks);
+        EXPECT_FALSE(replayed.difference) << length << ": " << replayed.difference->what;
+        EXPECT_NE(replayed.ended, "") << length;
+    }
+}
+
+TEST_F(SpoiltRecording, IsRefusedForAnotherCaseAndWithoutItsFrames) {
+    const fs::path file = folder().path() / "other.plrec";
+    write(chunks_, file);
+    Case other = test::example_case().prepared;
+    other.plan_hash = "another";
+    EXPECT_THROW(replay_session(file, other), InputError);
+    auto chunks = chunks_;
+    const std::size_t at = chunks.front().payload.find("\"all\"");
+    ASSERT_NE(at, std::string::npos);
+    chunks.front().payload.replace(at, 5, "\"events\"");
+    write(chunks, file);
+    EXPECT_THROW(replay_session(file, test::example_case().prepared), InputError);
+}
+
+}  // namespace
+}  // namespace planlight

@@ -1,0 +1,348 @@
+// A recording holds what was handed over up to the last whole chunk, whatever happens to program, disk or file.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <fstream>
+#include <random>
+#include <thread>
+
+#include "planning_io/recording/packed_pictures.h"
+#include "planning_io/recording/recording_reader.h"
+#include "planning_io/recording/recording_writer.h"
+#include "planning_io/types/error.h"
+#include "tests/planning_io/recording/kill_writer.h"
+#include "tests/support/test_data.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using test::TemporaryFolder;
+
+StereoFrame noisy_frame(std::uint64_t number, int width = 60, int height = 40) {
+    std::mt19937 random(static_cast<unsigned>(number));
+    StereoFrame frame{GrayImage(width, height), GrayImage(width, height), Instant(1000 * number), Instant(77), number};
+    for (GrayImage* picture : {&frame.left, &frame.right})
+        for (auto& p : picture->pixels) p = static_cast<std::uint8_t>(random());
+    return frame;
+}
+
+std::string text(std::size_t i) {
+    return "chunk " + std::to_string(i) + std::string(i % 300, 'x');
+}
+
+/// A recording of `count` events and the word that it is done.
+void write_recording(const fs::path& file, std::size_t count) {
+    RecordingWriter writer(std::make_unique<RecordingFile>(file));
+    for (std::size_t i = 0; i < count; ++i) writer.add({chunk_types::kEvent, Instant(i), text(i)});
+    writer.add({chunk_types::kDone, Instant(count), "{}"});
+}
+
+std::vector<RecordingChunk> read_all(RecordingReader& reader) {
+    std::vector<RecordingChunk> chunks;
+    while (auto chunk = reader.next()) chunks.push_back(std::move(*chunk));
+    return chunks;
+}
+
+std::string bytes_of(const fs::path& file) {
+    std::ifstream in(file, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+void put_bytes(const fs::path& file, std::string_view bytes) {
+    std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+TEST(Recording, GivesBackWhatWasHandedOverInItsOrder) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "new" / "session.plrec";
+    write_recording(file, 500);
+    RecordingReader reader(file);
+    const auto chunks = read_all(reader);
+    ASSERT_EQ(chunks.size(), 501u);
+    for (std::size_t i = 0; i < 500; ++i) {
+        EXPECT_EQ(chunks[i].payload, text(i));
+        EXPECT_EQ(chunks[i].at, Instant(i));
+    }
+    EXPECT_EQ(reader.end(), RecordingEnd::whole);
+    EXPECT_EQ(reader.sentence(), "");
+}
+
+TEST(Recording, IsReadableByItsOwnerOnlyAndNeverWrittenOver) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "new" / "session.plrec";
+    write_recording(file, 1);
+    struct stat status {};
+    ASSERT_EQ(::stat(file.c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0777, 0600u);
+    ASSERT_EQ(::stat(file.parent_path().c_str(), &status), 0);
+    EXPECT_EQ(status.st_mode & 0777, 0700u);
+    EXPECT_THROW(RecordingFile{file}, DiskError);
+}
+
+TEST(Recording, KeepsEveryPixelAndTimeOfAFrame) {
+    for (const auto& frame : {noisy_frame(3), noisy_frame(4, 1, 1), StereoFrame{}}) {
+        const StereoFrame again = unpack_frame(pack_frame(frame), "x");
+        EXPECT_EQ(again.left.pixels, frame.left.pixels);
+        EXPECT_EQ(again.right.pixels, frame.right.pixels);
+        EXPECT_EQ(again.left.width, frame.left.width);
+        EXPECT_EQ(again.at, frame.at);
+        EXPECT_EQ(again.exposure, frame.exposure);
+        EXPECT_EQ(again.number, frame.number);
+        EXPECT_EQ(hash_of(again), hash_of(frame));
+    }
+    RgbImage light(31, 17, {0, 0, 0});
+    for (int x = 0; x < 31; ++x) light.at(x, 5) = {static_cast<std::uint8_t>(x), 255, 7};
+    EXPECT_EQ(unpack_picture(pack_picture(light), "x").pixels, light.pixels);
+    EXPECT_NE(hash_of(light), hash_of(RgbImage(31, 17)));
+}
+
+TEST(Recording, CutAnywhereItGivesAllWholeChunksBeforeTheCut) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "whole.plrec", cut = folder.path() / "cut.plrec";
+    write_recording(file, 12);
+    const std::string bytes = bytes_of(file);
+    std::vector<std::size_t> ends{kRecordingHeaderBytes};  // of the chunks
+    for (std::size_t i = 0; i < 12; ++i) ends.push_back(ends.back() + kChunkHeaderBytes + text(i).size());
+    for (std::size_t length = kRecordingHeaderBytes; length < bytes.size(); ++length) {
+        put_bytes(cut, std::string_view(bytes).substr(0, length));
+        RecordingReader reader(cut);
+        const auto whole =
+            static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), length) - ends.begin() - 1);
+        EXPECT_EQ(read_all(reader).size(), whole) << "cut at " << length;
+        EXPECT_EQ(reader.end(), RecordingEnd::cut) << "cut at " << length;
+    }
+    for (std::size_t length = 0; length < kRecordingHeaderBytes; ++length) {
+        put_bytes(cut, std::string_view(bytes).substr(0, length));
+        EXPECT_THROW(RecordingReader{cut}, Error) << "cut at " << length;
+    }
+}
+
+TEST(Recording, EveryFlippedBitIsNoticedAndNothingBehindItIsGiven) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "whole.plrec", bad = folder.path() / "bad.plrec";
+    write_recording(file, 5);
+    const std::string bytes = bytes_of(file);
+    RecordingReader sound(file);
+    const auto chunks = read_all(sound);
+    for (std::size_t i = 0; i < bytes.size(); ++i) {
+        std::string spoilt = bytes;
+        spoilt[i] = static_cast<char>(spoilt[i] ^ (1 << (i % 8)));
+        put_bytes(bad, spoilt);
+        if (i < kRecordingHeaderBytes) {
+            EXPECT_THROW(RecordingReader{bad}, Error) << "byte " << i;
+            continue;
+        }
+        RecordingReader reader(bad);
+        const auto read = read_all(reader);
+        ASSERT_LT(read.size(), chunks.size()) << "byte " << i;
+        for (std::size_t k = 0; k < read.size(); ++k) EXPECT_EQ(read[k].payload, chunks[k].payload);
+        EXPECT_NE(reader.end(), RecordingEnd::whole) << "byte " << i;
+        // In the last chunk a changed byte cannot be told from a cut.
+        if (read.size() + 1 < chunks.size()) {
+            EXPECT_EQ(reader.end(), RecordingEnd::damaged) << "byte " << i;
+        }
+    }
+}
+
+TEST(Recording, AChunkTakenOutOrExchangedIsNoticed) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "edited.plrec";
+    const auto chunk = [](std::uint64_t number) {
+        return chunk_bytes({chunk_types::kEvent, Instant(number), text(number)}, number);
+    };
+    put_bytes(file, recording_header() + chunk(0) + chunk(2) + chunk(3));
+    RecordingReader taken_out(file);
+    EXPECT_EQ(read_all(taken_out).size(), 1u);
+    EXPECT_EQ(taken_out.end(), RecordingEnd::damaged);
+    put_bytes(file, recording_header() + chunk(1) + chunk(0));
+    RecordingReader exchanged(file);
+    EXPECT_EQ(read_all(exchanged).size(), 0u);
+    EXPECT_EQ(exchanged.end(), RecordingEnd::damaged);
+}
+
+TEST(Recording, HostileBytesGiveNoChunkOrAWholeOneAndEndSoon) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "hostile.plrec";
+    std::mt19937 random(7);
+    const auto any = [&](unsigned below) { return static_cast<unsigned>(random() % below); };
+    for (int trial = 0; trial < 1000; ++trial) {
+        std::string bytes = recording_header();
+        for (std::uint64_t i = 0; i < 3; ++i)
+            bytes += chunk_bytes({i == 1 ? chunk_types::kFrame : chunk_types::kEvent, Instant(i),
+                                  i == 1 ? pack_frame(noisy_frame(i, 8, 4)) : text(i)},
+                                 i);
+        for (unsigned change = 0; change <= any(4); ++change) {
+            const std::size_t at =
+                kRecordingHeaderBytes + any(static_cast<unsigned>(bytes.size() - kRecordingHeaderBytes));
+            const unsigned kind = any(4);
+            if (kind == 0) bytes[at] = static_cast<char>(random());
+            if (kind == 1) bytes.resize(at);  // cut
+            if (kind == 2) bytes.insert(at, "CHNK");
+            if (kind == 3 && at + 4 <= bytes.size()) bytes.replace(at, 4, "\xff\xff\xff\x7f");  // lengths that lie
+            if (bytes.size() <= kRecordingHeaderBytes) break;
+        }
+        put_bytes(file, bytes);
+        RecordingReader reader(file);
+        for (const RecordingChunk& chunk : read_all(reader))
+            if (chunk.type == chunk_types::kFrame) {
+                EXPECT_EQ(unpack_frame(chunk.payload, file).number, 1u);
+            }
+        EXPECT_NE(reader.end(), RecordingEnd::open);
+        EXPECT_LE(reader.bytes_read(), bytes.size());
+    }
+}
+
+TEST(Recording, AFrameThatLiesAboutItsSizeIsRefusedWithoutAskingForItsMemory) {
+    std::string bytes = pack_frame(noisy_frame(1, 8, 4));
+    for (std::size_t at = 0; at < bytes.size(); ++at) {
+        std::string spoilt = bytes;
+        spoilt[at] = static_cast<char>(spoilt[at] ^ 0x7f);
+        try {
+            const StereoFrame frame = unpack_frame(spoilt, "x");
+            EXPECT_LE(frame.left.pixels.size(), 32u * (1u << 17));
+        } catch (const DamagedFileError&) {
+        }
+        try {
+            static_cast<void>(unpack_frame(std::string_view(bytes).substr(0, at), "x"));
+            ADD_FAILURE() << "cut at " << at;
+        } catch (const DamagedFileError&) {
+        }
+    }
+}
+
+/// A sink that stands still, is slow, or is full, as a test says.
+class FakeDisk final : public RecordingSink {
+public:
+    struct State {
+        std::atomic<bool> still{false}, full{false};
+        std::atomic<std::size_t> appended{0};
+        std::string bytes;
+    };
+    explicit FakeDisk(State& state) : state_(state) {}
+    void append(std::string_view bytes) override {
+        while (state_.still) std::this_thread::sleep_for(1ms);
+        if (state_.full) throw DiskError("x", "is full", "Make room.");
+        state_.bytes += bytes;
+        ++state_.appended;
+    }
+    void sync() override {}
+
+private:
+    State& state_;
+};
+
+TEST(Recording, ADiskThatStandsStillDelaysNobodyAndWhatIsDroppedIsCountedInTheRecording) {
+    const TemporaryFolder folder;
+    FakeDisk::State disk;
+    disk.still = true;
+    RecordingWriterSettings settings;
+    settings.most_waiting_bytes = 10000;
+    settings.spare_bytes = 5000;
+    std::size_t kept = 0, dropped = 0;
+    {
+        RecordingWriter writer(std::make_unique<FakeDisk>(disk), settings);
+        // The disk takes nothing until the last of these calls has come back: none of them can have waited for it.
+        for (std::size_t i = 0; i < 1000; ++i)
+            ++(writer.add_picture(chunk_types::kFrame, Instant(i), 900, [i] { return text(i); }) ? kept : dropped);
+        EXPECT_GE(kept, 10u);
+        EXPECT_LE(kept, 13u) << "more waits than was allowed";
+        EXPECT_EQ(writer.state().dropped_chunks, dropped);
+        // What is no picture still has room.
+        EXPECT_TRUE(writer.add({chunk_types::kEvent, Instant(1000), "still told"}));
+        disk.still = false;
+        while (writer.state().waiting_bytes > 0) std::this_thread::sleep_for(1ms);
+        writer.add({chunk_types::kDone, Instant(1001), "{}"});
+    }
+    const fs::path file = folder.path() / "session.plrec";
+    put_bytes(file, disk.bytes);
+    RecordingReader reader(file);
+    const auto chunks = read_all(reader);
+    ASSERT_EQ(chunks.size(), kept + 3);
+    EXPECT_EQ(chunks[kept].type, chunk_types::kLost);
+    EXPECT_EQ(chunks[kept].payload,
+              "{\"chunks\": " + std::to_string(dropped) + ", \"bytes\": " + std::to_string(900 * dropped) + "}");
+    EXPECT_EQ(chunks[kept + 1].payload, "still told");
+}
+
+TEST(Recording, AFullDiskIsSaidAndTheRecordingGoesOnWhenThereIsRoomAgain) {
+    const TemporaryFolder folder;
+    FakeDisk::State disk;
+    RecordingWriterSettings settings;
+    settings.retry_after = 1ms;
+    {
+        RecordingWriter writer(std::make_unique<FakeDisk>(disk), settings);
+        writer.add({chunk_types::kEvent, Instant(0), "before"});
+        while (writer.state().written_chunks < 1) std::this_thread::sleep_for(1ms);
+        disk.full = true;
+        writer.add({chunk_types::kEvent, Instant(1), "waits"});
+        while (writer.state().problem.empty()) std::this_thread::sleep_for(1ms);
+        EXPECT_EQ(writer.state().problem, "x: is full");
+        disk.full = false;
+        while (writer.state().written_chunks < 2) std::this_thread::sleep_for(1ms);
+        EXPECT_EQ(writer.state().problem, "");
+    }
+    const fs::path file = folder.path() / "session.plrec";
+    put_bytes(file, disk.bytes);
+    RecordingReader reader(file);
+    EXPECT_EQ(read_all(reader).size(), 2u);
+}
+
+TEST(Recording, ALimitOnTheFilesSizeLeavesWholeChunksAndEndsNothing) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "session.plrec";
+    constexpr rlim_t kLimit = 20000;
+    const pid_t child = ::fork();
+    if (child == 0) {
+        const rlimit limit{kLimit, kLimit};
+        ::setrlimit(RLIMIT_FSIZE, &limit);
+        int code = 0;
+        {
+            RecordingWriterSettings settings;
+            settings.retry_after = 1ms;
+            RecordingWriter writer(std::make_unique<RecordingFile>(file), settings);
+            for (std::size_t i = 0; i < 400; ++i) writer.add({chunk_types::kEvent, Instant(i), text(i)});
+            while (writer.state().problem.empty()) std::this_thread::sleep_for(1ms);
+            if (writer.state().problem.find("File too large") == std::string::npos) code = 1;
+        }
+        ::_exit(code);
+    }
+    int status = 0;
+    ASSERT_EQ(::waitpid(child, &status, 0), child);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+    RecordingReader reader(file);
+    const auto chunks = read_all(reader);
+    EXPECT_GT(chunks.size(), 20u);
+    for (std::size_t i = 0; i < chunks.size(); ++i) EXPECT_EQ(chunks[i].payload, text(i));
+    EXPECT_EQ(reader.end(), RecordingEnd::cut);
+    EXPECT_EQ(reader.bytes_read(), reader.bytes()) << "half a chunk was left behind";
+}
+
+TEST(Recording, KilledAtAnyInstantItOpensAndHoldsAllThatWasWritten) {
+    const TemporaryFolder folder;
+    const test::KilledWriters killed = test::kill_writers(folder.path(), 30, 1);
+    EXPECT_EQ(killed.opened, 30);
+    EXPECT_EQ(killed.fault, "");
+    EXPECT_GT(killed.chunks, 30u) << "nothing was written before the end";
+}
+
+TEST(Recording, AFileThatIsNoneIsRefusedByName) {
+    const TemporaryFolder folder;
+    EXPECT_THROW(RecordingReader{folder.path() / "none.plrec"}, InputError);
+    EXPECT_THROW(RecordingReader{folder.path()}, InputError);
+    put_bytes(folder.path() / "text.plrec", "This is a letter to the editor.");
+    EXPECT_THROW(RecordingReader{folder.path() / "text.plrec"}, InputError);
+    std::string newer = recording_header();
+    newer[8] = 2;
+    put_bytes(folder.path() / "newer.plrec", newer);
+    EXPECT_THROW(RecordingReader{folder.path() / "newer.plrec"}, DamagedFileError);
+}
+
+}  // namespace
+}  // namespace planlight
