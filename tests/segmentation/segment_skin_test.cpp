@@ -200,7 +200,7 @@ TEST(SegmentSkin, RefusesVolumesWithoutSkin) {
     EXPECT_THROW(segment_skin(pea), InputError);
 }
 
-TEST(SegmentSkin, APhantomKeepsItsThinSkullAndNotItsThickInsertAlone) {
+TEST(SegmentSkin, APhantomOfBoneAloneIsFoundWithItsThinSkull) {
     // A shell of 4 mm round a ball of 25 mm, that a rod of 3 mm holds.
     Volume volume;
     volume.modality = "CT";
