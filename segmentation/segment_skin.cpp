@@ -52,7 +52,8 @@ SkinMask segment_skin(const Volume& volume, const SkinSettings& settings, const 
     if (volume.modality == "MR") return segment_mr_skin(volume, settings, progress);
     const VoxelGrid grid = grid_of(volume);
     SkinMask result;
-    result.threshold = result.threshold_said = settings.threshold != 0 ? settings.threshold : skin_threshold(volume);
+    result.threshold = result.threshold_said =
+        settings.threshold != 0 ? settings.threshold : skin_threshold(volume, settings.phantom);
     Mask dense(grid.count());
     for (std::size_t i = 0; i < dense.size(); ++i) dense[i] = volume.values[i] >= static_cast<float>(result.threshold);
     report(0.1);

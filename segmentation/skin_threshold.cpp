@@ -81,13 +81,17 @@ std::size_t otsu(const Histogram& h) {
 
 }  // namespace
 
-double skin_threshold(const Volume& volume) {
+double skin_threshold(const Volume& volume, bool phantom) {
     const auto count = static_cast<double>(volume.values.size());
     if (volume.is_hu) {
-        const Histogram h = histogram_of(volume.values, -1100, 400, 150);
-        const std::size_t air_end = h.bin(-705), soft_start = h.bin(-95), soft_end = h.bin(145);
+        // A phantom may be of plastic or of bone, and small in its volume.
+        const Histogram h =
+            phantom ? histogram_of(volume.values, -1100, 3100, 420) : histogram_of(volume.values, -1100, 400, 150);
+        const std::size_t air_end = h.bin(-705), soft_start = h.bin(phantom ? -395 : -95),
+                          soft_end = h.bin(phantom ? 3095 : 145);
         if (sum_of(h, 0, air_end) < 0.005 * count) refuse("no air");
-        if (sum_of(h, soft_start, soft_end) < 0.005 * count) refuse("no soft tissue");
+        if (const double soft = sum_of(h, soft_start, soft_end); phantom ? soft <= 0 : soft < 0.005 * count)
+            refuse(phantom ? "nothing in the air" : "no soft tissue");
         return std::clamp((peak(h, 0, air_end) + peak(h, soft_start, soft_end)) / 2, -500.0, -150.0);
     }
     float low = INFINITY, high = -INFINITY;
