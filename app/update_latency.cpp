@@ -13,7 +13,7 @@ void UpdateLatency::add(const Session::Update& update) {
     ++updates;
     const Instant since = update.frame.at - last_at_;
     if (last_at_ > Instant{} && since > Instant{} && since < kPause && update.frame.number > last_number_) {
-        interval_ = interval_ == Instant{} ? since : std::min(since, interval_ + interval_ / 8);
+        interval_ = interval_ == Instant{} ? since : std::min(since, interval_ + interval_ / 32);
         const auto exposures = static_cast<std::size_t>(std::llround(seconds(since) / seconds(interval_)));
         const std::size_t pairs = update.frame.number - last_number_;
         skipped += pairs - 1;

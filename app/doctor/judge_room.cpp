@@ -81,10 +81,10 @@ DoctorLine judge_clock(const CameraFigures& camera) {
                     "Look at who sets its clock (PTP), or exchange the camera.");
     const Health health = std::max(rising(std::abs(camera.clock_drift), kUsual, kMost),
                                    rising(camera.clock_sigma_ms, kSure_ms, kUnsure_ms));
-    return line(
-        subject, health,
-        fmt::format("drifts by {:.0f} millionths, known to {:.1f} ms", 1e6 * camera.clock_drift, camera.clock_sigma_ms),
-        "Close other programs: frames that come late blur its clock. If it stays, exchange the camera.");
+    return line(subject, health,
+                fmt::format("runs {:.0f} millionths {}, known to {:.1f} ms", 1e6 * std::abs(camera.clock_drift),
+                            camera.clock_drift > 0 ? "slow" : "fast", camera.clock_sigma_ms),
+                "Close other programs: frames that come late blur its clock. If it stays, exchange the camera.");
 }
 
 }  // namespace

@@ -43,6 +43,20 @@ bool DeviceClock::steps_evenly(Instant by_device) {
     return even;
 }
 
+/// Whether what is late becomes later all the time: a camera that is behind stays so far behind, a clock that runs slow
+/// does not. By the quickest frame of each second.
+bool DeviceClock::lateness_grows(Instant by_device, Instant off) {
+    constexpr Instant kBlock = std::chrono::seconds(1), kGrows = std::chrono::milliseconds(3);
+    block_least_ = std::min(block_least_, off);
+    if (by_device - block_since_ < kBlock) return growing_blocks_ >= 2;
+    const bool grows = last_block_least_ > Instant{} && block_least_ - last_block_least_ > kGrows;
+    growing_blocks_ = grows ? growing_blocks_ + 1 : 0;
+    last_block_least_ = block_least_;
+    block_least_ = off;
+    block_since_ = by_device;
+    return growing_blocks_ >= 2;
+}
+
 /// Whether the clock was set, by a frame that came `off` later than it should.
 bool DeviceClock::was_set(Instant by_device, Instant off) {
     constexpr int kEven = 20;  // in a row: its times can be judged by their steps
@@ -59,12 +73,16 @@ bool DeviceClock::was_set(Instant by_device, Instant off) {
     const bool first = late_since_ < Instant{};
     if (first) {
         late_since_ = by_device;
-        least_late_ = off;
+        least_late_ = block_least_ = off;
+        last_block_least_ = {};
+        block_since_ = by_device;
+        growing_blocks_ = 0;
         behind_ = judged && even && off - last_off_ > settings_.largest_jump / 2;
     }
     ++late_in_a_row_;
     least_late_ = std::min(least_late_, off);
-    if (first && judged && !even) return true;
+    if (judged && !even) return true;
+    if (behind_ && lateness_grows(by_device, off)) behind_ = false;
     return !behind_ && by_device - late_since_ > settings_.late_for;
 }
 

@@ -56,6 +56,7 @@ private:
     bool was_set(Instant by_device, Instant off);
     void begin_anew(Instant off);
     bool steps_evenly(Instant by_device);
+    bool lateness_grows(Instant by_device, Instant off);
 
     DeviceClockSettings settings_;
     std::deque<Frame> frames_;
@@ -66,6 +67,8 @@ private:
     int late_in_a_row_ = 0;
     Instant least_late_{};
     bool behind_ = false;  ///< it came late all at once, and its own times ran on evenly
+    Instant block_since_{}, block_least_{}, last_block_least_{};
+    int growing_blocks_ = 0;
     Instant last_jump_{}, last_off_{};
     double runs_wrong_ = 0;
     Instant last_by_device_{-1}, usual_step_{};

@@ -84,7 +84,7 @@ TEST(DeviceClock, AClockThatIsSetStumblesAndIsToldAtOnce) {
         for (; t < seconds(15); t += milliseconds(40)) clock.add(source.by_device(t), t + source.late());
         source.offset += jump;
         EXPECT_FALSE(clock.add(source.by_device(t), t + source.late())) << "by the first frame";
-        EXPECT_NEAR(planlight::seconds(clock.last_jump()), planlight::seconds(jump), 0.03) << "less than its lateness";
+        EXPECT_NEAR(planlight::seconds(clock.last_jump()), planlight::seconds(jump), 0.15) << "but for how late it came";
     }
 }
 
@@ -127,7 +127,7 @@ TEST(DeviceClock, AClockThatRunsWrongIsToldAndAGoodOneNever) {
         }
         source.drift = wrong;
         source.offset -= Instant(static_cast<Instant::rep>(static_cast<double>(t.count()) * (wrong - 100e-6)));
-        const Instant until = t + seconds(8);
+        const Instant until = t + seconds(20);
         double told = 0;
         for (; t < until && told == 0; t += milliseconds(40)) {
             clock.add(source.by_device(t), t + source.late());
