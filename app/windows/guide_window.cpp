@@ -73,7 +73,8 @@ struct GuideWindow::Parts {
         const ButtonState free{!model.result.empty(), "when it is finished"};
         GuideAction wanted = GuideAction::none;
         if (button(pen, {box.x, box.y, width, box.height}, "Keep", free)) wanted = GuideAction::keep;
-        if (button(pen, {box.x + width + gap, box.y, width, box.height}, "Discard", free)) wanted = GuideAction::discard;
+        if (button(pen, {box.x + width + gap, box.y, width, box.height}, "Discard", free))
+            wanted = GuideAction::discard;
         return wanted;
     }
 
