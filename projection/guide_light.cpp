@@ -28,7 +28,8 @@ RgbImage draw_guide_light(const GuideLight& light, int width, int height) {
         const double widest = 0.8 * width / std::max(0.1, text_width(code_points(light.words)));
         write_line(light.words, {width / 2.0, height / 2.0}, std::min(0.16 * height, widest), kFull, mask);
     }
-    const int from = width / 10, to = from + static_cast<int>(std::lround(std::clamp(light.bar_share, 0.0, 1.0) * 0.8 * width)),
+    const int from = width / 10,
+              to = from + static_cast<int>(std::lround(std::clamp(light.bar_share, 0.0, 1.0) * 0.8 * width)),
               top = height * 13 / 20, low = top + std::max(2, height / 40);
     if (light.bar_share > 0)
         for (int y = top; y < low; ++y)

@@ -9,8 +9,8 @@ namespace planlight {
 /// What the light on a calibration board says.
 struct GuideLight {
     enum class Mood { wrong, hold, taken } mood = Mood::wrong;
-    std::string words;       ///< a word or three, across the middle of the picture
-    double bar_share = 0;    ///< 0 to 1: a bar under the words; 0: none
+    std::string words;     ///< a word or three, across the middle of the picture
+    double bar_share = 0;  ///< 0 to 1: a bar under the words; 0: none
     bool operator==(const GuideLight&) const = default;
 };
 

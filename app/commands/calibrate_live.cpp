@@ -170,8 +170,9 @@ std::vector<std::string> beside_former(const RigCalibration& former, const Calib
     const RigOnPoses old = rig_on_poses(former, poses, board, now);
     for (const DeviceName device : kDevices) {
         const auto d = static_cast<std::size_t>(device);
-        words.push_back(fmt::format("On these poses the {} is off by {:.3f} px by the rig of {}, by {:.3f} px by the new one.",
-                                    text_of(device), old.rms_px[d], former.made_on, now.held_out.rms_px[d]));
+        words.push_back(
+            fmt::format("On these poses the {} is off by {:.3f} px by the rig of {}, by {:.3f} px by the new one.",
+                        text_of(device), old.rms_px[d], former.made_on, now.held_out.rms_px[d]));
     }
     return words;
 }
@@ -208,8 +209,7 @@ path write_as_decided(const RigCalibration& rig, const CalibrateOptions& options
         write_rig(rig, file);
         return file;
     }
-    if (std::filesystem::exists(options.out))
-        write_safely(beside(options.out, "-before"), read_whole(options.out));
+    if (std::filesystem::exists(options.out)) write_safely(beside(options.out, "-before"), read_whole(options.out));
     write_rig(rig, options.out);
     return options.out;
 }
@@ -267,6 +267,9 @@ int finish(const CalibrateOptions& options, const GuidedCalibration& guided, con
 
 int run_calibrate_live(const CalibrateOptions& options) {
     const BoardSpec board = parse_board(options.board);
+    if (!board.has_a_top())
+        throw InputError({}, fmt::format("a {} looks the same when turned by half a turn", text_of(board)),
+                         "Use a ChArUco board with --live, or a chessboard with an odd sum of inner corners.");
     check_can_write(options.out);
     if (!options.keep_captures.empty()) check_new_folder(options.keep_captures);
     const RoomFile room = read_room(options.room);

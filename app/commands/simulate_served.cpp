@@ -93,7 +93,9 @@ int run_simulate_served_board(const SimulateOptions& options, simulation::Simula
     const simulation::ServeSettings settings = serve_settings(options);
     MonitorPicture monitor(options.serve);
     check_monitor(monitor, options.serve, room.projector());
-    room.let_person_carry();
+    simulation::PersonSettings person;
+    person.time_goes_on = true;
+    room.let_person_carry(person);
     serve(options, settings, monitor,
           {room.projector(), room.cameras(), room.clock(), [&](Instant duration) { room.wait(duration); }},
           [&] { write_safely(options.out / "truth.json", room.truth_json() + "\n"); });

@@ -76,7 +76,8 @@ GuideModel guide_model_of(const GuideState& state, const std::string& title, con
     model.title = title;
     model.subtitle = subtitle;
     model.left = {"Left", state.left, state.left_corners.pixels, cells_of(state.coverage, DeviceName::left_camera)};
-    model.right = {"Right", state.right, state.right_corners.pixels, cells_of(state.coverage, DeviceName::right_camera)};
+    model.right = {"Right", state.right, state.right_corners.pixels,
+                   cells_of(state.coverage, DeviceName::right_camera)};
     model.projector = cells_of(state.coverage, DeviceName::projector);
     tell_mood(state, model);
     model.tilts = state.coverage.tilts;

@@ -19,7 +19,7 @@ constexpr auto kFramePatience = 2000ms;
 constexpr Instant kLightValid = 3s, kLightRenewed = 1s;  ///< of a guiding light: it is shown again before it ends
 constexpr Instant kLightLeast = 300ms;                   ///< words that change faster cannot be read
 constexpr Instant kLookEvery = 100ms;  ///< to find a board takes a processor its while; a person is slower
-constexpr Instant kLaterStep = 60ms, kLatest = 300ms;    ///< of a light whose delay is not known
+constexpr Instant kLaterStep = 60ms, kLatest = 300ms;  ///< of a light whose delay is not known
 constexpr double kLitGrey = 8;
 
 /// Why a capture was given up in its middle.
@@ -257,7 +257,8 @@ void GuidedCalibration::capture(const BoardSighting& sighting) {
     pose.left = observe_board(pictures.left, stripes_, board_);
     pose.right = right.get();
     if (pose.left.corners.size() == 0 || pose.right.corners.size() == 0) {
-        given_up(PoseFault::in_part, "The board was not seen to the end.", "Leave it where it is while the light flickers.");
+        given_up(PoseFault::in_part, "The board was not seen to the end.",
+                 "Leave it where it is while the light flickers.");
         return;
     }
     constexpr double kMoved_px = 0.25;
@@ -269,7 +270,8 @@ void GuidedCalibration::capture(const BoardSighting& sighting) {
     }
     if (!pose.left.wrong_sequence.empty() || !pose.right.wrong_sequence.empty()) {
         later_ = std::min(later_ + kLaterStep, kLatest);
-        given_up(PoseFault::none, "The light came later than this projector is said to be, so that pictures were mixed up.",
+        given_up(PoseFault::none,
+                 "The light came later than this projector is said to be, so that pictures were mixed up.",
                  "Leave the board there: it is captured again, more slowly. `planlight projector` measures the delay.");
         return;
     }
@@ -326,7 +328,8 @@ void GuidedCalibration::collect_estimate() {
         state_.predicted_mm = error;
         state_.coverage = guide_.coverage();
     }
-    tell(GuideEvent::Kind::predicted, PoseFault::none, calibration.refusal ? calibration.refusal->reason + "." : "", "");
+    tell(GuideEvent::Kind::predicted, PoseFault::none, calibration.refusal ? calibration.refusal->reason + "." : "",
+         "");
     if (estimated_poses_ < poses_.size()) estimate();
 }
 

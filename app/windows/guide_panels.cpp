@@ -66,7 +66,8 @@ void draw_guide_camera(const Pen& pen, const Box& box, const GuideModel::Camera&
         }
     }
     const std::string title =
-        camera.title + (camera.corners.empty() ? " · board not seen" : fmt::format(" · {} corners", camera.corners.size()));
+        camera.title +
+        (camera.corners.empty() ? " · board not seen" : fmt::format(" · {} corners", camera.corners.size()));
     const float height = line_height(pen.fonts.small) + 8 * pen.scale,
                 width = std::min(text_width(pen.fonts.small, title) + 20 * pen.scale, box.width);
     pen.list->AddRectFilled({box.x + 1, box.y + 1}, {box.x + width, box.y + height}, IM_COL32(10, 12, 16, 225),
@@ -115,7 +116,7 @@ void draw_guide_tilts(const Pen& pen, const Box& box, const GuideModel& model) {
                               {box.x + 6 * s, middle.y + radius + word / 2 + 2 * s}};
     for (std::size_t i = 0; i < 4; ++i) {
         const std::string text = fmt::format("{} {}", words[i], model.by_edge[i]);
-        const float width = i == 0 ? middle.x - radius - box.x - 12 * s
+        const float width = i == 0   ? middle.x - radius - box.x - 12 * s
                             : i == 1 ? box.right() - places[i].x - 6 * s
                                      : box.width - 12 * s;
         pen.line(pen.fonts.small, text, places[i].x, places[i].y, width,
@@ -161,7 +162,8 @@ void draw_guide_banner(const Pen& pen, const Box& box, const GuideModel& model) 
     if (model.share > 0) {
         const float bar = box.bottom() - 22 * s;
         pen.list->AddRectFilled({x, bar}, {x + width, bar + 10 * s}, theme::kBackground, 5 * s);
-        pen.list->AddRectFilled({x, bar}, {x + width * static_cast<float>(std::clamp(model.share, 0.0, 1.0)), bar + 10 * s},
+        pen.list->AddRectFilled({x, bar},
+                                {x + width * static_cast<float>(std::clamp(model.share, 0.0, 1.0)), bar + 10 * s},
                                 look.edge, 5 * s);
     }
 }
@@ -177,8 +179,7 @@ void draw_guide_progress(const Pen& pen, const Box& box, const GuideModel& model
         for (const std::string& sentence : model.result) paragraph(pen.fonts.small, sentence, theme::kText);
         return;
     }
-    paragraph(pen.fonts.number,
-              fmt::format("{} {}", model.poses, model.poses == 1 ? "pose" : "poses"), theme::kText);
+    paragraph(pen.fonts.number, fmt::format("{} {}", model.poses, model.poses == 1 ? "pose" : "poses"), theme::kText);
     paragraph(pen.fonts.small, fmt::format("{} at least, {} at most", model.least_poses, model.most_poses),
               theme::kQuiet);
     if (model.predicted_mm)

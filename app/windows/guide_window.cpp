@@ -73,7 +73,8 @@ struct GuideWindow::Parts {
         const ButtonState free{!model.result.empty(), "when it is finished"};
         GuideAction wanted = GuideAction::none;
         if (button(pen, {box.x, box.y, width, box.height}, "Keep", free)) wanted = GuideAction::keep;
-        if (button(pen, {box.x + width + gap, box.y, width, box.height}, "Discard", free)) wanted = GuideAction::discard;
+        if (button(pen, {box.x + width + gap, box.y, width, box.height}, "Discard", free))
+            wanted = GuideAction::discard;
         return wanted;
     }
 
@@ -91,7 +92,8 @@ struct GuideWindow::Parts {
         pen.line(pen.fonts.small, model.subtitle, gap + 8 * s, gap + 42 * s, 0.9F * w, theme::kQuiet);
         const float top = gap + title, bottom = h - gap - banner - gap, column = std::max(420.0F, 0.28F * w);
         const float cameras = w - 3 * gap - column, camera_width = (cameras - gap) / 2;
-        const float camera_height = std::min(bottom - top - 240 * s, 0.8F * camera_width);
+        const float below = (model.result.empty() ? 240 : 430) * s;  // the result has more words
+        const float camera_height = std::min(bottom - top - below, 0.8F * camera_width);
         const auto texture = [](unsigned name) {
             return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(name));
         };

@@ -90,7 +90,8 @@ PoseFault PoseGuide::fault_of_view(const BoardView& view, const char* camera, Po
     };
     const double share = static_cast<double>(view.corners.size()) / board_.corner_count();
     if (share < settings_.least_corners)
-        return fault(PoseFault::in_part, fmt::format("The {} camera sees only {:.0f} % of the board.", camera, 100 * share),
+        return fault(PoseFault::in_part,
+                     fmt::format("The {} camera sees only {:.0f} % of the board.", camera, 100 * share),
                      fmt::format("Bring it farther into the {} picture, and let nothing cover it.", camera),
                      "MORE INTO THE PICTURE");
     if (view.saturated_share > settings_.max_saturated)
@@ -141,8 +142,9 @@ PoseFault PoseGuide::fault_of_stance(const BoardStance& stance, PoseAdvice& advi
             const bool far = off_mm > 0;
             advice.why = fmt::format("It is {:.0f} cm {} the poses so far: out of the working volume.",
                                      std::abs(off_mm) / 10, far ? "behind" : "before");
-            advice.what = fmt::format("Bring it {}, by about {:.0f} cm.", far ? "nearer to the cameras" : "farther away",
-                                      (std::abs(off_mm) - 0.5 * settings_.max_depth_share * usual) / 10);
+            advice.what =
+                fmt::format("Bring it {}, by about {:.0f} cm.", far ? "nearer to the cameras" : "farther away",
+                            (std::abs(off_mm) - 0.5 * settings_.max_depth_share * usual) / 10);
             advice.in_light = far ? "NEARER" : "FARTHER";
             return far ? PoseFault::too_far : PoseFault::too_near;
         }

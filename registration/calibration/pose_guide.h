@@ -21,16 +21,16 @@ struct BoardSighting {
 
 /// What is good enough for a pose, and for a calibration.
 struct PoseGuideSettings {
-    double still_px = 0.3;                            ///< corners of a board at rest move less (median),
+    double still_px = 0.3;                               ///< corners of a board at rest move less (median),
     Instant still_for = std::chrono::milliseconds(500);  ///< for so long
-    std::size_t still_frames = 4;                     ///< and in so many frames
-    double least_corners = 0.35;                      ///< share of the board's corners that either camera must see
-    double least_contrast_grey = 15;                  ///< of the print
-    double max_saturated = 0.05;                      ///< share of the board
-    double max_blur_px = 2.5;                         ///< sigma
-    double least_tilt = 0.14;                         ///< radians (8 degrees): below it the board is flat on
-    double steepest = 1.05;                           ///< radians (60 degrees): to either camera
-    double alike_angle = 0.14, alike_mm = 25;         ///< nearer to a pose that is there: nothing new
+    std::size_t still_frames = 4;                        ///< and in so many frames
+    double least_corners = 0.35;                         ///< share of the board's corners that either camera must see
+    double least_contrast_grey = 15;                     ///< of the print
+    double max_saturated = 0.05;                         ///< share of the board
+    double max_blur_px = 2.5;                            ///< sigma
+    double least_tilt = 0.14;                            ///< radians (8 degrees): below it the board is flat on
+    double steepest = 1.05;                              ///< radians (60 degrees): to either camera
+    double alike_angle = 0.14, alike_mm = 25;            ///< nearer to a pose that is there: nothing new
     double max_depth_share = 0.25;  ///< of the distance; the working volume's half depth about the poses so far
     double least_in_light = 0.5;    ///< share of the board in the projector's picture, once the projector is known
     double useful_tilt = 0.2;       ///< radians (11 degrees): counts as tilted that way
@@ -64,10 +64,10 @@ inline constexpr std::array kBoardEdges{BoardEdge::left, BoardEdge::right, Board
 /// What one look says: why not, what to do, and whether to capture now.
 struct PoseAdvice {
     PoseFault fault = PoseFault::not_seen;
-    std::string why;       ///< a sentence; empty without a fault
-    std::string what;      ///< what to do, a sentence
-    std::string in_light;  ///< the same in a word or three, for the light on the board
-    bool still = false;    ///< what is seen of it has been at rest for long enough
+    std::string why;         ///< a sentence; empty without a fault
+    std::string what;        ///< what to do, a sentence
+    std::string in_light;    ///< the same in a word or three, for the light on the board
+    bool still = false;      ///< what is seen of it has been at rest for long enough
     double still_share = 0;  ///< 0 to 1: how much of that time
     bool capture = false;    ///< good and still: now
     std::optional<BoardStance> stance;
@@ -80,7 +80,7 @@ struct PoseCoverage {
     std::array<Cells, 3> cells{};  ///< by DeviceName
     std::vector<Eigen::Vector2d> tilts;
     std::vector<double> distances_mm;
-    std::array<int, 4> by_edge{};  ///< poses tilted with that edge nearer, by BoardEdge
+    std::array<int, 4> by_edge{};           ///< poses tilted with that edge nearer, by BoardEdge
     double share(DeviceName device) const;  ///< of the cells that were hit
 };
 

@@ -40,9 +40,19 @@ void hit(PoseCoverage::Cells& cells, const Vector2d& pixel, int width, int heigh
 }  // namespace
 
 const char* text_of(PoseFault fault) {
-    constexpr std::array kWords{"good",      "not seen", "seen by one camera", "seen in part only", "too dark",
-                                "too bright", "blurred",  "flat on",            "too far aslant",    "as a pose that is there",
-                                "too near",   "too far",  "outside the projector's light"};
+    constexpr std::array kWords{"good",
+                                "not seen",
+                                "seen by one camera",
+                                "seen in part only",
+                                "too dark",
+                                "too bright",
+                                "blurred",
+                                "flat on",
+                                "too far aslant",
+                                "as a pose that is there",
+                                "too near",
+                                "too far",
+                                "outside the projector's light"};
     return kWords[static_cast<std::size_t>(fault)];
 }
 

@@ -20,7 +20,9 @@ struct BoardStop {
 struct PersonSettings {
     Instant hold = std::chrono::milliseconds(3500);     ///< at rest without flickering light
     Instant reaction = std::chrono::milliseconds(500);  ///< after the flicker has ended
-    int steps = 4;                                      ///< places on the way from one stop to the next, the stop included
+    /// The room's time goes on while a place is drawn (the board is shaken about meanwhile): for a room that is served.
+    bool time_goes_on = false;
+    int steps = 4;  ///< places on the way from one stop to the next, the stop included
 };
 
 /// A person who carries a board from stop to stop, lays it down there, and does not touch it while the light on it
@@ -42,6 +44,7 @@ public:
     /// The board is where `next_place` said; at the stop it is at rest from then on.
     void arrive(Instant at);
 
+    bool time_goes_on() const { return settings_.time_goes_on; }
     bool at_rest() const { return step_ == 0; }
     /// True when the next place is the stop itself.
     bool at_last_step() const { return step_ + 1 == settings_.steps; }

@@ -218,7 +218,7 @@ bool SimulatedBoardRoom::Room::follow_person(Instant at) {
     if (!on_the_way.valid()) {
         if (!person->leaves(at)) return false;
         carry_on();
-    } else if (on_the_way.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    } else if (!person->time_goes_on() || on_the_way.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
         const auto views = on_the_way.get();
         left_view = std::move(views->left);
         right_view = std::move(views->right);

@@ -18,16 +18,15 @@ GuidedRoom guide_in_room(simulation::Preset preset, unsigned seed, const PoseGui
     GuidedRoom result;
     GuidedSettings guided_settings;
     guided_settings.guide = settings;
-    GuidedCalibration guided(room.projector(), room.cameras(), room.clock(), board, guided_settings,
-                             [&](const GuideEvent& event) {
-                                 result.took_s = seconds(event.at);
-                                 result.predicted_mm = event.predicted_mm;
-                                 if (event.kind != GuideEvent::Kind::refused) return;
-                                 const bool by_pose = event.fault != PoseFault::none;
-                                 ++result.refused[by_pose ? text_of(event.fault) : "its pictures"];
-                                 result.every_reason_said =
-                                     result.every_reason_said && !event.why.empty() && !event.what.empty();
-                             });
+    GuidedCalibration guided(
+        room.projector(), room.cameras(), room.clock(), board, guided_settings, [&](const GuideEvent& event) {
+            result.took_s = seconds(event.at);
+            result.predicted_mm = event.predicted_mm;
+            if (event.kind != GuideEvent::Kind::refused) return;
+            const bool by_pose = event.fault != PoseFault::none;
+            ++result.refused[by_pose ? text_of(event.fault) : "its pictures"];
+            result.every_reason_said = result.every_reason_said && !event.why.empty() && !event.what.empty();
+        });
     guided.run({});
     result.poses = guided.poses().size();
     result.calibration = guided.calibrate();

@@ -1,5 +1,6 @@
-// measure_guided paper|modern FIRST_SEED ROOMS: guided calibrations in simulated rooms, without a wire, of a board that a person carries
-// about with mistakes: poses, time by the room's clock, what was refused, and the rig against the truth.
+// measure_guided paper|modern FIRST_SEED ROOMS: guided calibrations in simulated rooms, without a wire, of a board that
+// a person carries about with mistakes: poses, time by the room's clock, what was refused, and the rig against the
+// truth.
 #include <fmt/format.h>
 
 #include "planning_io/types/statistics.h"
@@ -29,11 +30,15 @@ int main(int argc, char** argv) {
         light.push_back(quantile(room.error.light_mm, 0.95));
         took.push_back(room.took_s);
         poses.push_back(static_cast<double>(room.poses));
-        fmt::print("seed {}: {} poses in {:.0f} s; predicted {:.4f} mm; true 95 %: points {:.4f} mm, light {:.4f} mm; sent on:{}\n",
-                   seed, room.poses, room.took_s, room.predicted_mm.value_or(0), points.back(), light.back(), why);
+        fmt::print(
+            "seed {}: {} poses in {:.0f} s; predicted {:.4f} mm; true 95 %: points {:.4f} mm, light {:.4f} mm; sent "
+            "on:{}\n",
+            seed, room.poses, room.took_s, room.predicted_mm.value_or(0), points.back(), light.back(), why);
     }
     if (points.empty()) return 1;
-    fmt::print("{} rooms, {} refused; median / worst: poses {:.0f} / {:.0f}, time {:.0f} / {:.0f} s, points {:.4f} / {:.4f} mm, light {:.4f} / {:.4f} mm (95 % of the volume)\n",
-               points.size(), refused, median(poses), quantile(poses, 1), median(took), quantile(took, 1),
-               median(points), quantile(points, 1), median(light), quantile(light, 1));
+    fmt::print(
+        "{} rooms, {} refused; median / worst: poses {:.0f} / {:.0f}, time {:.0f} / {:.0f} s, points {:.4f} / {:.4f} "
+        "mm, light {:.4f} / {:.4f} mm (95 % of the volume)\n",
+        points.size(), refused, median(poses), quantile(poses, 1), median(took), quantile(took, 1), median(points),
+        quantile(points, 1), median(light), quantile(light, 1));
 }

@@ -1,7 +1,8 @@
-// compare_rig RIG TRUTH EVENTS SECONDS: a rig that a guided calibration found against the simulator's truth.json, and what its events say.
-// Points: the corners of the board in the truth's own poses, seen without noise by the true rig, placed by the found one; a common turn and
-// shift is taken out, for it cancels between scan and light. Exit code 0 when scanned points and light are within the goals (0.1 mm and
-// 0.25 mm, 95 %), at least eight poses were taken and every refusal has a reason.
+// compare_rig RIG TRUTH EVENTS SECONDS: a rig that a guided calibration found against the simulator's truth.json, and
+// what its events say. Points: the corners of the board in the truth's own poses, seen without noise by the true rig,
+// placed by the found one; a common turn and shift is taken out, for it cancels between scan and light. Exit code 0
+// when scanned points and light are within the goals (0.1 mm and 0.25 mm, 95 %), at least eight poses were taken and
+// every refusal has a reason.
 #include <fmt/format.h>
 
 #include <fstream>
@@ -58,7 +59,8 @@ std::vector<Vector3d> points_of(const nlohmann::json& truth) {
     for (const auto& rows : truth.at("rig_from_board")) {
         RigidTransform pose = RigidTransform::Identity();
         for (int r = 0; r < 3; ++r)
-            for (int c = 0; c < 4; ++c) pose(r, c) = rows.at(static_cast<std::size_t>(r)).at(static_cast<std::size_t>(c));
+            for (int c = 0; c < 4; ++c)
+                pose(r, c) = rows.at(static_cast<std::size_t>(r)).at(static_cast<std::size_t>(c));
         test::add_board_points(pose, points);
     }
     return points;
@@ -93,8 +95,9 @@ int main(int argc, char** argv) {
     std::map<std::string, int> refused;
     read_events(argv[3], poses, refused);
     const double points = quantile(errors.points_mm, 0.95), light = quantile(errors.light_mm, 0.95);
-    fmt::print("     true error: points {:.4f} mm, light {:.4f} mm (95 % of {} places; medians {:.4f}, {:.4f}); {} s in all\n",
-               points, light, errors.points_mm.size(), median(errors.points_mm), median(errors.light_mm), argv[4]);
+    fmt::print(
+        "     true error: points {:.4f} mm, light {:.4f} mm (95 % of {} places; medians {:.4f}, {:.4f}); {} s in all\n",
+        points, light, errors.points_mm.size(), median(errors.points_mm), median(errors.light_mm), argv[4]);
     expect(points < 0.1 && light < 0.25, "the rig is as true as the goals want");
     expect(poses >= 8, "eight poses or more were taken");
     return failed;

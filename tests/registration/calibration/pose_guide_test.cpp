@@ -57,7 +57,8 @@ struct Scene {
         return sighting;
     }
     /// Held there for a second.
-    PoseAdvice hold(PoseGuide& guide, const RigidTransform& pose, const std::function<void(BoardSighting&)>& spoil = {}) {
+    PoseAdvice hold(PoseGuide& guide, const RigidTransform& pose,
+                    const std::function<void(BoardSighting&)>& spoil = {}) {
         PoseAdvice advice;
         for (int i = 0; i < 25; ++i) {
             BoardSighting seen = sighting(pose);
@@ -132,8 +133,9 @@ TEST(PoseGuide, ABoardThatCreepsIsNotCaptured) {
     Scene scene;
     PoseGuide guide(scene.room.board);
     for (int i = 0; i < 60; ++i)
-        EXPECT_FALSE(guide.look(scene.sighting(posed(scene.room.board, tilted(25, 20), kPlace + Vector3d(0.1 * i, 0, 0))))
-                         .capture);
+        EXPECT_FALSE(
+            guide.look(scene.sighting(posed(scene.room.board, tilted(25, 20), kPlace + Vector3d(0.1 * i, 0, 0))))
+                .capture);
 }
 
 /// Each is refused for what it is, with a reason and something to do; nothing of it is captured.
@@ -183,7 +185,7 @@ TEST(PoseGuide, WhoFollowsTheWordsIsDoneInTenPosesOrFewer) {
         for (const auto& [word, degrees] : edges)
             if (advice.what.find(std::string(word) + " edge") != std::string::npos) towards = degrees;
         ASSERT_GE(towards, 0) << advice.what;
-        const double nearer = advice.what.find("nearer, by") != std::string::npos   ? 50
+        const double nearer = advice.what.find("nearer, by") != std::string::npos     ? 50
                               : advice.what.find("farther away") != std::string::npos ? -50
                                                                                       : 0;
         const RigidTransform pose = posed(scene.room.board, tilted(22 + looks, towards + 7 * looks),
