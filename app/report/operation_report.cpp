@@ -34,6 +34,17 @@ std::string short_text(const std::string& text, std::size_t most) {
     return text.substr(0, end) + " …";
 }
 
+/// On one line of the table: names of a plan differ at their beginnings or at their ends.
+std::string short_name(const std::string& name) {
+    constexpr std::size_t kMost = 27, kFirst = 13, kLast = 11;
+    const auto within_letter = [&](std::size_t i) { return (static_cast<unsigned char>(name[i]) & 0xC0) == 0x80; };
+    if (name.size() <= kMost) return name;
+    std::size_t first = kFirst, last = name.size() - kLast;
+    while (within_letter(first)) --first;
+    while (last < name.size() && within_letter(last)) ++last;
+    return name.substr(0, first) + "…" + name.substr(last);
+}
+
 std::string utc_text(const std::string& iso) {
     return iso.size() < 19 ? iso : iso.substr(0, 10) + " " + iso.substr(11, 8) + " UTC";
 }
@@ -54,8 +65,8 @@ std::string shown_text(const OperationItem& item) {
 
 /// A figure beyond what the gate lets pass is marked by a sign and a word, not by its colour alone.
 std::string marked(double value_mm) {
-    const char* sign = value_mm > kStop_mm   ? " <span class=\"stop\">&#10007;</span>"
-                       : value_mm > kLook_mm ? " <span class=\"look\">&#9888;</span>"
+    const char* sign = value_mm > kStop_mm   ? "&nbsp;<span class=\"stop\">&#10007;</span>"
+                       : value_mm > kLook_mm ? "&nbsp;<span class=\"look\">&#9888;</span>"
                                              : "";
     return fmt::format("{:.2f}{}", value_mm, sign);
 }
@@ -65,7 +76,7 @@ std::string items_html(const OperationFacts& facts) {
         "<h2>What was shown, and how far off it was</h2><table class=\"plan\"><tr><th>Plan item</th><th>shown (room "
         "clock)</th><th>for</th><th>predicted, 95 %</th><th>measured: median</th><th>95 %</th><th>worst</th>"
         "<th>times</th></tr>";
-    constexpr std::size_t kMost = 14;  // of which the page has room; the verdict names every one that was off
+    constexpr std::size_t kMost = 12;  // of which the page has room; the verdict names every one that was off
     for (std::size_t i = 0; i < std::min(facts.items.size(), kMost); ++i) {
         const OperationItem& item = facts.items[i];
         const Distribution d = distribution_of(item.measured_mm);
@@ -73,7 +84,7 @@ std::string items_html(const OperationFacts& facts) {
                                                                marked(d.p95), marked(d.worst))
                                                  : std::string("<td colspan=\"3\">not seen by the cameras</td>");
         html += fmt::format("<tr><td class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}</td>{}<td>{}</td></tr>",
-                            html_escaped(short_text(item.name, 40)), shown_text(item), duration_text(item.shown_s),
+                            html_escaped(short_name(item.name)), shown_text(item), duration_text(item.shown_s),
                             mm(item.predicted_mm), measured, d.count);
     }
     if (facts.items.size() > kMost)
@@ -116,7 +127,7 @@ std::string course_html(const OperationFacts& facts) {
     double most_mm = 2.2;
     for (const auto& sample : facts.course) most_mm = std::max(most_mm, std::min(5.0, sample.off_mm));
     SvgChart chart({0, std::max(1.0, facts.lasted_s / unit_s), long_one ? "room clock, minutes" : "room clock, s", 8},
-                   {0, most_mm, "light off its place (95 %), mm", 5}, 1100, 210);
+                   {0, most_mm, "light off its place (95 %), mm", 5}, 1100, 185);
     const std::size_t join = facts.course.size() / kMostPlaces + 1;
     SvgChart::Points points;
     for (std::size_t i = 0; i < facts.course.size(); i += join) {
@@ -146,7 +157,7 @@ std::string matches_html(const OperationFacts& facts) {
     std::string html = "<h2>Matches</h2>";
     if (facts.matches.empty()) return html + "<p>None.</p>";
     html += "<table><tr><th>Room clock</th><th>Verdict</th><th>Points of skin</th><th>Residual</th><th>Why</th></tr>";
-    constexpr std::size_t kMost = 3, kLongest = 110;
+    constexpr std::size_t kMost = 2, kLongest = 110;
     const std::size_t first = facts.matches.size() > kMost ? facts.matches.size() - kMost : 0;
     for (std::size_t i = first; i < facts.matches.size(); ++i) {
         const OperationMatch& match = facts.matches[i];
@@ -210,10 +221,10 @@ std::string facts_html(const OperationFacts& facts) {
 }
 
 std::string hashes_html(const OperationFacts& facts) {
-    return "<h2>Hashes (XXH3-128)</h2><table>" + row("Recording", facts.file + ": " + facts.recording_hash) +
-           row("Volume", facts.head.volume_hash) + row("Skin", facts.head.mesh_hash) +
-           row("Plan", facts.head.plan_hash) + row("Rig", facts.rig_hash) + row("Program", facts.head.program_hash) +
-           "</table>";
+    return "<h2>Hashes (XXH3-128)</h2><p>" + html_escaped(facts.file + ": " + facts.recording_hash) +
+           "</p><div class=\"two\"><table>" + row("Volume", facts.head.volume_hash) +
+           row("Skin", facts.head.mesh_hash) + row("Plan", facts.head.plan_hash) + "</table><table>" +
+           row("Rig", facts.rig_hash) + row("Program", facts.head.program_hash) + "</table></div>";
 }
 
 std::string verdict_html(const OperationVerdict& verdict) {
@@ -239,7 +250,7 @@ void keep_to_owner(const fs::path& file) {
 }  // namespace
 
 void write_operation_report(const OperationFacts& facts, const std::string& json, const fs::path& file) {
-    constexpr std::size_t kMostEvents = 7, kMostRefusals = 3;
+    constexpr std::size_t kMostEvents = 5, kMostRefusals = 2;
     const std::string title = "Operation: " + facts.head.case_title;
     const std::string body =
         fmt::format("<section class=\"sheet\"><h1>{}</h1>{}{}{}{}</section>", html_escaped(title),

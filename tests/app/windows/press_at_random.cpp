@@ -1,8 +1,8 @@
 // DARK at random moments of scan, match, verification, tracking and checks of the skin, in the pixels of the monitor.
 // Run by two_monitors.sh: `press_at_random FOLDER`, with PRESSES how often DARK is pressed (default 20), SEED, and
 // FAULTS=1 to stop and kill the projector process now and then. Between the presses of DARK other buttons are pressed
-// at random by two threads, and the model and the light are read as the window reads them. Exit code 0 when each light
-// was dark in 100 ms and stayed so, and the banner said so at once.
+// at random by two threads, and the model and the light are read as the window reads them; all of it is recorded. Exit
+// code 0 when each light was dark in 100 ms and stayed so, and the banner said so at once.
 //
 // The same source, with the threads of the product, is built with ThreadSanitizer as race_session.
 #include <fmt/format.h>
@@ -21,6 +21,7 @@
 #include "app/live/live_session.h"
 #include "app/live/simulated_room.h"
 #include "app/prepare_case.h"
+#include "app/recording/session_recorder.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
@@ -145,8 +146,11 @@ int run(const std::string& monitor_name, const Monitor& monitor) {
     simulation::RoomSettings room;
     room.preset = simulation::Preset::paper;
     room.seed = seed;
+    const test::TemporaryFolder folder;
+    SessionRecorder recorder(std::make_unique<RecordingFile>(folder.path() / "session.plrec"),
+                             recording_head(prepared.prepared, {}, RecordMode::all, {}));
     LiveSession session([&] { return std::make_unique<SimulatedRoom>(volume, prepared.prepared.plan, room, 20); },
-                        prepared.prepared, drawing, {});
+                        prepared.prepared, drawing, {}, &recorder);
     const LightKeeper copy(keeper, session);
     const Eye eye(monitor);
     std::mt19937 random(seed);
