@@ -105,6 +105,7 @@ bool DeviceClock::add(Instant by_device, Instant arrived) {
         const bool backwards = by_device < frames_.back().by_device;
         const bool learning = frames_.size() < kFewFrames && !backwards;
         if (was_set(by_device, off) || backwards) {
+            if (even_steps_ == 0 || backwards) recent_.clear();  // it was set, and does not just run otherwise
             begin_anew(off);
             if (learning)  // the first frames came late, that is all
                 --jumps_;
@@ -112,6 +113,7 @@ bool DeviceClock::add(Instant by_device, Instant arrived) {
                 steady = false;
         } else if (off > settings_.largest_jump) {
             last_off_ = off;
+            judge_run(by_device, arrived);
             return true;  // it tells nothing of the clock
         }
     }
@@ -119,20 +121,21 @@ bool DeviceClock::add(Instant by_device, Instant arrived) {
     frames_.push_back({by_device, arrived - by_device});
     while (by_device - frames_.front().by_device > settings_.window) frames_.pop_front();
     fit();
-    judge_run();
+    judge_run(by_device, arrived);
     return steady;
 }
 
 /// The trend of the quickest frames of the last seconds: a straight line that is surely steeper than any clock runs.
-void DeviceClock::judge_run() {
+void DeviceClock::judge_run(Instant by_device, Instant arrived) {
     constexpr double kSure = 6, kBeyond = 4;  // standard deviations; times the largest drift
-    const Instant over = settings_.drift_known_after, first = frames_.back().by_device - over;
+    const Instant over = settings_.drift_known_after, first = by_device - over;
+    recent_.push_back({by_device, arrived - by_device});
     runs_wrong_ = 0;
-    if (span() < over) return;
+    if (recent_.front().by_device > first) return;
+    while (recent_.front().by_device < first) recent_.pop_front();
     std::vector<double> x, y;
     Instant part_ends{};
-    for (const Frame& frame : frames_) {
-        if (frame.by_device < first) continue;
+    for (const Frame& frame : recent_) {
         if (x.empty() || frame.by_device >= part_ends) {
             part_ends = frame.by_device + over / static_cast<Instant::rep>(kParts);
             x.push_back(seconds(frame.by_device - first));

@@ -52,7 +52,7 @@ private:
         Instant by_device, late;  ///< arrived - by_device
     };
     void fit();
-    void judge_run();
+    void judge_run(Instant by_device, Instant arrived);
     bool was_set(Instant by_device, Instant off);
     void begin_anew(Instant off);
     bool steps_evenly(Instant by_device);
@@ -60,6 +60,7 @@ private:
 
     DeviceClockSettings settings_;
     std::deque<Frame> frames_;
+    std::deque<Frame> recent_;  ///< of the last seconds, those that came late as well
     Instant origin_{}, offset_{}, sigma_{};
     double drift_ = 0;
     std::size_t jumps_ = 0;
