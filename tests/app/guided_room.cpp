@@ -14,7 +14,9 @@ GuidedRoom guide_in_room(simulation::Preset preset, unsigned seed, const PoseGui
     room_settings.preset = preset;
     room_settings.seed = seed;
     simulation::SimulatedBoardRoom room(sheet, room_settings);
-    room.let_person_carry();
+    simulation::PersonSettings person;
+    person.hold = std::chrono::milliseconds(1500);  // by a clock that costs computing: no longer than it takes
+    room.let_person_carry(person);
     GuidedRoom result;
     GuidedSettings guided_settings;
     guided_settings.guide = settings;
