@@ -51,7 +51,7 @@ std::unique_ptr<SessionRecorder> recorder_of(const SessionOptions& options, cons
     fmt::print("Recorded in {}: {}; {:.0f} GB are free. It shows the patient's face, and only {} can read it.\n",
                file.string(),
                mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
-                                          : "every frame, about 20 GB an hour in the paper's room",
+                                          : "every frame, about 23 GB an hour in the paper's room",
                static_cast<double>(std::filesystem::space(folder, ignored).available) / 1e9, operator_name());
     return std::make_unique<SessionRecorder>(
         std::move(sink), recording_head(the_case, options.case_folder, mode, drawing_settings(site)));

@@ -11,8 +11,8 @@ namespace {
 
 constexpr auto kLostPause = std::chrono::milliseconds(100);
 // For an observer, in the order of their enumerations.
-constexpr std::array kActions{"none", "scan",    "register",      "track",     "stop",
-                              "dark", "quit", "confirm", "use landmarks", "check skin"};
+constexpr std::array kActions{"none", "scan", "register", "track",         "stop",
+                              "dark", "quit", "confirm",  "use landmarks", "check skin"};
 constexpr std::array kStatusKinds{"ready", "scanning", "matching", "aligned", "check", "refused", "dark", "waiting"};
 
 }  // namespace
@@ -187,8 +187,8 @@ void LiveSession::run(const MakeRoom& make_room) {
     SessionSettings session_settings = settings_for(room->markers());
     session_settings.observer = observer_;
     if (observer_)
-        observer_->room_entered({room->name(), room->simulated(), room->markers(), room->rig(), room->notes(),
-                                 room->clock().now()});
+        observer_->room_entered(
+            {room->name(), room->simulated(), room->markers(), room->rig(), room->notes(), room->clock().now()});
     session_settings.while_computing = [&room] { room->computing(); };
     Session session(case_, drawing_, room->rig(), tap, room->cameras(), room->clock(), session_settings);
     set_steps(2);
