@@ -152,9 +152,9 @@ std::optional<RigCalibration> previous_rig(const std::filesystem::path& file) {
 Run add_calibrate(CLI::App& app) {
     const auto options = std::make_shared<CalibrateOptions>();
     CalibrateOptions& o = *options;
-    auto* sub =
-        add_command(app, "calibrate", "A board under coded light, captured or in your hands -> rig.json, or a refusal (exit 6)",
-                    "calibrate captures --board \"charuco 10x7 25 mm\" --out rig.json");
+    auto* sub = add_command(app, "calibrate",
+                            "A board under coded light, captured or in your hands -> rig.json, or a refusal (exit 6)",
+                            "calibrate captures --board \"charuco 10x7 25 mm\" --out rig.json");
     sub->add_option("captures", o.captures, "Folder with one folder a pose");
     sub->add_option("--board", o.board,
                     "The board, its square as measured: \"charuco 10x7 24.98 mm\" or \"chessboard 9x6 25 mm\"")

@@ -111,9 +111,10 @@ Run add_simulate(CLI::App& app) {
     auto* sub = add_command(app, "simulate", "Captures of a simulated room, with ground truth in a file of its own",
                             "simulate Cranium.inv3 --plan frontal_defect.mrk.json --preset paper --seed 3 --out room");
     sub->add_option("volume", o.volume, "The patient: DICOM folder or file, or InVesalius project");
-    sub->add_option("--board", o.board,
-                    "Instead of a patient a calibration board, as for `calibrate`; writes captures/ and truth.json. Served: "
-                    "a person carries it about");
+    sub->add_option(
+        "--board", o.board,
+        "Instead of a patient a calibration board, as for `calibrate`; writes captures/ and truth.json. Served: "
+        "a person carries it about");
     sub->add_option("--poses", o.poses, "Of the board")->capture_default_str()->check(CLI::Range(1, 1000));
     sub->add_option("--plan", o.plan, "Plan, so that markers keep clear of it");
     series_option(sub, o.series_uid);

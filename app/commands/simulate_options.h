@@ -24,8 +24,8 @@ struct SimulateOptions {
     double wet = 0;                 ///< skin, 0 to 1
     std::string serve;  ///< monitor whose picture is the light: the room is served as hardware; empty: written to files
     std::vector<std::string> addresses{"127.0.0.1", "127.0.0.2"};  ///< of the served cameras
-    double lose_packets = 0;  ///< share of the left served camera's
-    int right_behind = 0;     ///< frames that the right served camera is behind
+    double lose_packets = 0;                                       ///< share of the left served camera's
+    int right_behind = 0;                                          ///< frames that the right served camera is behind
     bool json = false;
 };
 /// With `serve` given: two GigE Vision cameras and that monitor, until it is ended.

@@ -40,8 +40,8 @@ struct RegistrationSettings {
     /// Points anywhere within 1.5 mm have an rms of 0.87 mm: a fit as loose as that, of not nearly all, and not by the
     /// scan's noise alone: ask.
     double loose_residual_rms_mm = 0.75, loose_shape_rms_mm = 0.5, loose_inlier_fraction = 0.9;
-    /// Skin of another shape than the CT's, at a place that is not well determined: cloth that follows the head, or skin
-    /// that was pulled along. Both above: ask.
+    /// Skin of another shape than the CT's, at a place that is not well determined: cloth that follows the head, or
+    /// skin that was pulled along. Both above: ask.
     double max_shape_rms_mm = 0.5, weak_sigma_mm = 0.65;
     int min_agreeing_bases = 2;
     double max_weakest_sigma_mm = 1.25;  ///< of the movement 80 mm from the scan's centre; above: ask

@@ -177,7 +177,8 @@ std::vector<BoardStop> SimulatedBoardRoom::Room::stops_of_a_person(std::mt19937&
                 stops.push_back({posed(0, 64 * kRadians, 0, {0, 0, 0}), "too aslant"});
                 break;
             case 2:
-                stops.push_back({posed(0, 0.35, 0, {sign * aside, 0, -0.25 * rig.working_distance_mm}), "seen by one camera"});
+                stops.push_back(
+                    {posed(0, 0.35, 0, {sign * aside, 0, -0.25 * rig.working_distance_mm}), "seen by one camera"});
                 break;
             case 3:
                 stops.push_back(stops.back());

@@ -7,7 +7,8 @@ namespace planlight {
 namespace {
 
 /// The first places to which the person brings the board: useful, too aslant, useful, before one camera only, useful,
-/// as before. Four poses are enough for a rig that is good to a tenth of a millimetre (predicted after four poses: 0.006 to 0.007).
+/// as before. Four poses are enough for a rig that is good to a tenth of a millimetre (predicted after four poses:
+/// 0.006 to 0.007).
 TEST(GuidedCalibration, DISABLED_ASimulatedPersonIsLedToARigAndEveryBadPlaceIsRefusedWithItsReason) {
     PoseGuideSettings settings;
     settings.least_poses = 3;

@@ -1,7 +1,6 @@
 // How well a check of the skin tells that all markers slid together, which the light cannot: rooms of other seeds, each
-// matched once; then the cap of markers slides along the skin by 0, 1, 2 and 3 mm in a direction drawn at random, and the
-// short scan says how far off the plan lies.
-// measure_skin_check paper|modern FIRST_ROOM ROOMS DRAWS_A_SLIDE
+// matched once; then the cap of markers slides along the skin by 0, 1, 2 and 3 mm in a direction drawn at random, and
+// the short scan says how far off the plan lies. measure_skin_check paper|modern FIRST_ROOM ROOMS DRAWS_A_SLIDE
 #include <fmt/format.h>
 
 #include <random>
@@ -33,7 +32,8 @@ Vector3d any_slide(const SimulatedRig& rig, std::mt19937& random) {
     Vector3d middle = Vector3d::Zero();
     for (const Vector3d& m : markers) middle += m / static_cast<double>(markers.size());
     const RigidTransform rig_from_ct = rig.true_rig_from_ct(rig.clock().now());
-    const Vector3d towards = (rig_from_ct.inverse() * rig.calibration().projector.centre_in_rig() - middle).normalized();
+    const Vector3d towards =
+        (rig_from_ct.inverse() * rig.calibration().projector.centre_in_rig() - middle).normalized();
     const auto skin = rig.true_skin_along(middle + 40 * towards, -towards);
     const Vector3d normal = skin ? skin->normal_in_ct : towards;
     std::normal_distribution<double> gauss;
@@ -85,9 +85,10 @@ int main(int argc, char** argv) {
             }
         fmt::print(stderr, "room {} of {}\n", k + 1, rooms);
     }
-    fmt::print("{} rooms, seeds {} to {}\nslide, mm | checks | not known | said to be off, mm (median / 95 % / worst) | "
-               "wrong by, mm (median / 95 % / worst) | CHECK | REFUSED\n",
-               preset, first, first + rooms - 1);
+    fmt::print(
+        "{} rooms, seeds {} to {}\nslide, mm | checks | not known | said to be off, mm (median / 95 % / worst) | "
+        "wrong by, mm (median / 95 % / worst) | CHECK | REFUSED\n",
+        preset, first, first + rooms - 1);
     for (const auto& [slide_mm, s] : sums) {
         const Distribution found = distribution_of(s.found_mm), wrong = distribution_of(s.wrong_mm);
         fmt::print("{} | {} | {} | {:.2f} / {:.2f} / {:.2f} | {:.2f} / {:.2f} / {:.2f} | {} | {}\n", slide_mm, s.draws,

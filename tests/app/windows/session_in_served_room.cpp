@@ -1,8 +1,9 @@
 // A whole session through the wire: the simulated room served as two GigE Vision cameras and a projector whose light is
 // what stands on the second monitor; scan, match and light by the same devices that real hardware has, against the same
 // room without a wire. Run by two_monitors.sh: `session_in_served_room FOLDER`, with PLANLIGHT the program (for its
-// projector process) and SEEDS how many rooms (default 1), GUIDED a folder of guided calibrations of these rooms (default: the room's own). Exit code 0 when every patient was found, the light at rest
-// is within 0.1 mm (95 %) of that without a wire, and each fault was noticed by name and dark; 77: skipped.
+// projector process) and SEEDS how many rooms (default 1), GUIDED a folder of guided calibrations of these rooms
+// (default: the room's own). Exit code 0 when every patient was found, the light at rest is within 0.1 mm (95 %) of
+// that without a wire, and each fault was noticed by name and dark; 77: skipped.
 #include <fmt/format.h>
 
 #include <atomic>
@@ -50,8 +51,8 @@ simulation::RoomSettings room_of(unsigned seed, double threshold) {
     return room;
 }
 
-/// Of a guided calibration of that room ($GUIDED/guided-SEED.json, as calibrate_served_room.sh leaves it), laid into the
-/// frame of `calibration` by the left camera; else `calibration` itself.
+/// Of a guided calibration of that room ($GUIDED/guided-SEED.json, as calibrate_served_room.sh leaves it), laid into
+/// the frame of `calibration` by the left camera; else `calibration` itself.
 RigCalibration rig_to_operate_with(const RigCalibration& calibration, unsigned seed) {
     const char* folder = std::getenv("GUIDED");
     if (!folder) return calibration;

@@ -84,7 +84,8 @@ TEST(DeviceClock, AClockThatIsSetStumblesAndIsToldAtOnce) {
         for (; t < seconds(15); t += milliseconds(40)) clock.add(source.by_device(t), t + source.late());
         source.offset += jump;
         EXPECT_FALSE(clock.add(source.by_device(t), t + source.late())) << "by the first frame";
-        EXPECT_NEAR(planlight::seconds(clock.last_jump()), planlight::seconds(jump), 0.15) << "but for how late it came";
+        EXPECT_NEAR(planlight::seconds(clock.last_jump()), planlight::seconds(jump), 0.15)
+            << "but for how late it came";
     }
 }
 

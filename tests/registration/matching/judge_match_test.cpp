@@ -16,8 +16,8 @@ Verdict verdict_of(double shape_rms_mm, double weakest_sigma_mm) {
     return result.verdict;
 }
 
-// A sheet that followed a head 14 mm over it lay within 0.57 mm (rms) of the skin 14 mm beside its place, where it could
-// slide by 0.87 mm: neither is much, both together are.
+// A sheet that followed a head 14 mm over it lay within 0.57 mm (rms) of the skin 14 mm beside its place, where it
+// could slide by 0.87 mm: neither is much, both together are.
 TEST(JudgeMatch, AnotherShapeAtAPlaceThatCouldSlideIsAskedAbout) {
     EXPECT_EQ(verdict_of(0.57, 0.87), Verdict::ask);
     EXPECT_EQ(verdict_of(0.57, 0.3), Verdict::yes) << "well determined";

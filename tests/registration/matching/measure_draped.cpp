@@ -1,8 +1,8 @@
 // Is the patient found among cloth, hands and instruments, and is what is not the patient refused there?
-// measure_draped [TRIALS [SEED]] [--ch2 FILE] [--mannequin FILE] [--ct-head FOLDER] [--volume FILE]... [--log FILE] [--to-refuse]
-// Default 1000 trials, seed 1. With a log the run can be cut and goes on; the tables are of all trials in the log. One
-// trial in five must be refused: the face of another patient, a mirrored face, or the cloth without anybody under it;
-// with --to-refuse all are such.
+// measure_draped [TRIALS [SEED]] [--ch2 FILE] [--mannequin FILE] [--ct-head FOLDER] [--volume FILE]... [--log FILE]
+// [--to-refuse] Default 1000 trials, seed 1. With a log the run can be cut and goes on; the tables are of all trials in
+// the log. One trial in five must be refused: the face of another patient, a mirrored face, or the cloth without
+// anybody under it; with --to-refuse all are such.
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>

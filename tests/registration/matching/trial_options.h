@@ -8,8 +8,8 @@ namespace planlight::test {
 
 /// The command line of the measuring programs: [TRIALS [SEED]] [--ch2 FILE] [--mannequin FILE] [--ct-head FOLDER]
 /// [--volume FILE]... [--log FILE]
-/// [--picture FILE] [--plain] [--to-refuse]. The mannequin and the CT head are also looked for among the third-party data. Exits with
-/// 2 and the usage on anything else.
+/// [--picture FILE] [--plain] [--to-refuse]. The mannequin and the CT head are also looked for among the third-party
+/// data. Exits with 2 and the usage on anything else.
 struct TrialOptions {
     unsigned trials = 0, seed = 1;
     TrialHeadFiles files;
