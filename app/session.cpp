@@ -196,7 +196,7 @@ void Session::start_overlay() {
     overlay_ =
         std::make_unique<OverlayLoop>(projector_, clock_, *renderer_, lit_drawing(), *registration_, settings_.overlay);
     if (confirmed_) overlay_->set_operator_confirmed(true);
-    overlay_->set_light_delay(settings_.overlay.light_delay + found_delay_);
+    overlay_->set_found_delay(found_delay_);
     checker_.emplace(lit_landmark_ ? only(lit_drawing(), *lit_landmark_) : drawing(), skin_of_light(), rig_,
                      settings_.check_light);
     watch_.emplace(rig_, settings_.light_cause);
@@ -315,12 +315,10 @@ void Session::watch_light(Update& update) {
 void Session::correct_delay(std::vector<LightCause>& causes) {
     if (causes.empty() || causes.front().fault != LightFault::late_picture) return;
     const Instant more = from_seconds(causes.front().size / 1e3);
-    if (found_delay_ + more > settings_.most_delay_corrected ||
-        settings_.overlay.light_delay + found_delay_ + more < Instant{})
-        return;
+    if (found_delay_ + more > settings_.most_delay_corrected || overlay_->light_delay() + more < Instant{}) return;
     causes.front().drawn_ahead = true;
     found_delay_ += more;
-    overlay_->set_light_delay(settings_.overlay.light_delay + found_delay_);
+    overlay_->set_found_delay(found_delay_);
     watch_->forget();
     shown_.clear();
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace planlight {
@@ -62,6 +63,8 @@ struct OverlayLoop::Parts {
     Eigen::Vector3d centre_in_patient;
     std::optional<Instant> shown_last{};  ///< the last picture; empty after darkness
     Instant usual_life{};                 ///< of a picture until the next; 0: not known
+    std::optional<Instant> promised{};    ///< from the pose to light, as the projector promised of the last pictures
+    Instant found_delay{};                ///< beyond its promises
 
     OverlayStep dark(std::string reason) {
         projector.go_dark();
@@ -74,12 +77,18 @@ struct OverlayLoop::Parts {
     std::optional<RigidTransform> pose_at_light(const TrackedPose& pose, Instant now) {
         if (!settings.predict) return pose.rig_from_patient;
         predictor.add(pose, centre_in_patient);
-        return predictor.rig_from_patient_at(now + settings.light_delay +
-                                             std::min(usual_life / 2, settings.most_ahead));
+        const Instant light = now + light_delay() + std::min(usual_life / 2, settings.most_ahead);
+        // Light that comes later than a pose can be predicted is drawn for as late as it can; CHECK sees what is left.
+        return predictor.rig_from_patient_at(std::min(light, pose.at + PredictionSettings{}.max_ahead));
     }
-    /// A slow mean, so that one late picture does not move the light.
+    Instant light_delay() const { return promised.value_or(settings.light_delay) + found_delay; }
+    static constexpr int kSlow = 8;  ///< means, so that one late picture does not move the light
+    void note_promise(Instant delay) {
+        constexpr Instant kMost = std::chrono::milliseconds(500);
+        delay = std::clamp(delay, Instant{}, kMost);
+        promised = promised ? *promised + (delay - *promised) / kSlow : delay;
+    }
     void note_shown(Instant now) {
-        constexpr int kSlow = 8;
         if (shown_last) {
             const Instant life = std::min(now - *shown_last, 2 * settings.most_ahead);
             usual_life = usual_life == Instant{} ? life : usual_life + (life - usual_life) / kSlow;
@@ -107,6 +116,7 @@ OverlayStep OverlayLoop::Parts::draw(const TrackedPose& pose) {
     step.lit_from = projector.show(step.picture, shown + settings.picture_validity);
     step.lit = true;
     note_shown(shown);
+    note_promise(step.lit_from - now);
     return step;
 }
 
@@ -134,8 +144,12 @@ void OverlayLoop::set_operator_confirmed(bool confirmed) {
     parts_->settings.operator_confirmed = confirmed;
 }
 
-void OverlayLoop::set_light_delay(Instant delay) {
-    parts_->settings.light_delay = delay;
+void OverlayLoop::set_found_delay(Instant later) {
+    parts_->found_delay = later;
+}
+
+Instant OverlayLoop::light_delay() const {
+    return parts_->light_delay();
 }
 
 OverlayStep OverlayLoop::step(const TrackedPose& pose) {

@@ -16,8 +16,9 @@ namespace planlight {
 struct OverlaySettings {
     Instant max_pose_age = std::chrono::milliseconds(75);  ///< an older pose is not drawn
     Instant picture_validity = std::chrono::milliseconds(75);
-    Instant light_delay = std::chrono::milliseconds(25);  ///< from show to light, for the prediction
-    double max_predicted_error_mm = 1.0;                  ///< above: dark
+    /// From the pose to light, for the prediction, until the projector's own promises of the last pictures tell it.
+    Instant light_delay = std::chrono::milliseconds(25);
+    double max_predicted_error_mm = 1.0;  ///< above: dark
     bool predict = true;
     /// The picture is drawn for the middle of the time that it will be light, as the last pictures tell it: until the
     /// next one comes. At most so far past its beginning; 0: for its beginning.
@@ -51,8 +52,11 @@ public:
     /// The operator's word on the overlay (`OverlaySettings::operator_confirmed`) while the loop runs.
     void set_operator_confirmed(bool confirmed);
 
-    /// `OverlaySettings::light_delay` from now on, when it was found to be another.
-    void set_light_delay(Instant delay);
+    /// Light was found to come so much later than the projector promises; negative: earlier.
+    void set_found_delay(Instant later);
+
+    /// From the pose to light, as the last pictures tell it, with what was found.
+    Instant light_delay() const;
 
 private:
     struct Parts;
