@@ -112,7 +112,7 @@ private:
     void take_call(const Json& event) {
         const std::string call = event.value("call", "");
         if (call == "find_patient") utc_of_match_ = event.value("utc", "");
-        if (call == "confirm") say("A person looked at the match and said that it fits.", event);
+        if (call == "confirm") say("By a press the match was said to fit.", event);
         if (call == "light_landmark") landmark_ = event.value("which", -1);
         if (call != "update") following_ = false;
     }
@@ -192,7 +192,7 @@ private:
         const std::string call = event.value("call", "");
         if (call == "verify") {
             ++facts_.verified;
-            say("A person looked at the light on landmarks and said that it is right.", event);
+            say("By a press the light on landmarks was said to be right.", event);
         }
         if (call != "step") return;
         const std::string trust = event.value("trust", "");
