@@ -231,13 +231,13 @@ void check_belongs(const RecordingHead& head, const Case& the_case, const fs::pa
     throw InputError(recording,
                      fmt::format("is of the case {}, and this is the case {}{}", head.case_code, name.code,
                                  head.case_code == name.code ? ", whose skin or plan is another" : ""),
-                     "Name the case that was used with --case.");
+                     "Name the case that was used: `planlight replay --case CASE`.");
 }
 
 void check_holds_frames(const RecordingHead& head, const fs::path& recording) {
     if (head.mode == RecordMode::all) return;
     throw InputError(
-        recording, fmt::format("was recorded with --record {}, which does not keep every frame", word_of(head.mode)),
+        recording, fmt::format("was recorded in the way \"{}\", which does not keep every frame", word_of(head.mode)),
         "What is to be replayed is recorded by `planlight session --record all`; `planlight report` needs no frames.");
 }
 
