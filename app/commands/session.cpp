@@ -48,7 +48,8 @@ std::unique_ptr<SessionRecorder> recorder_of(const SessionOptions& options, cons
     const Path file = new_recording_name(folder);
     auto sink = std::make_unique<RecordingFile>(file);
     std::error_code ignored;
-    fmt::print("Recorded in {}: {}; {:.0f} GB are free. It shows the patient's face, and only {} can read it.\n",
+    fmt::print(stderr,
+               "Recorded in {}: {}; {:.0f} GB are free. It shows the patient's face, and only {} can read it.\n",
                file.string(),
                mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
                                           : "every frame, about 23 GB an hour in the paper's room",
