@@ -268,8 +268,9 @@ int finish(const CalibrateOptions& options, const GuidedCalibration& guided, con
 int run_calibrate_live(const CalibrateOptions& options) {
     const BoardSpec board = parse_board(options.board);
     if (!board.has_a_top())
-        throw InputError({}, fmt::format("a {} looks the same when turned by half a turn", text_of(board)),
-                         "Use a ChArUco board for a guided calibration, or a chessboard with an odd sum of inner corners.");
+        throw InputError(
+            {}, fmt::format("a {} looks the same when turned by half a turn", text_of(board)),
+            "Use a ChArUco board for a guided calibration, or a chessboard with an odd sum of inner corners.");
     check_can_write(options.out);
     if (!options.keep_captures.empty()) check_new_folder(options.keep_captures);
     const RoomFile room = read_room(options.room);
