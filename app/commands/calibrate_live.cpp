@@ -84,7 +84,7 @@ public:
         : calibration_(calibration), subtitle_(std::move(subtitle)), screenshots_(options.screenshots) {
         for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
         if (options.headless) return;
-        OperatorWindowSettings settings;
+        WindowSettings settings;
         settings.title = "Planlight calibration";
         if (!options.operator_monitor.empty()) settings.monitor = options.operator_monitor;
         window_ = std::make_unique<GuideWindow>(settings);
@@ -129,7 +129,7 @@ private:
         }
         const GuideAction wanted = window_->frame(model);
         take_picture(model.word);
-        std::this_thread::sleep_for(80ms);
+        window_->rest(0.08);
         return wanted;
     }
     /// One for every word, when it has stood for some frames.

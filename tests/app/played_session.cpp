@@ -154,7 +154,7 @@ PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, 
     PlayedResult result;
     {
         LiveSession session(
-            [&] {
+            [&](const RoomProgress&) {
                 return std::make_unique<SimulatedRoom>(patient.volume, patient.prepared.plan, room, how.speed_mm_s,
                                                        how.fault);
             },
