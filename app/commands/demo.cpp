@@ -95,7 +95,8 @@ int run_demo(const DemoOptions& options) {
         const auto make_room = [&](const RoomProgress&) {
             return std::make_unique<SimulatedRoom>(volume, prepared.prepared.plan, room, kSpeed_mm_s);
         };
-        return run_live_simulated(make_room, prepared.prepared, drawing, live);
+        SessionWindow window("");
+        return run_live_simulated(window, make_room, prepared.prepared, drawing, live);
     }
     return 0;
 }

@@ -31,6 +31,7 @@ struct SessionOptions {
     std::string fault;
     bool autoplay = false, json = false;
     double end_after_s = 0;  ///< wall time; 0 = until the window is closed
+    double idle_first_s = 0;
     Path screenshots;
     double light_delay_ms = -1;  ///< of the projector window; below 0: the default, or what `projector_file` says
     Path projector_file;         ///< projector.json of the monitor; empty: none
@@ -65,6 +66,7 @@ LiveOptions live_options(const SessionOptions& options, const SiteSettings& site
     if (!options.projector_file.empty()) live.projector = read_projector_file(options.projector_file);
     if (options.light_delay_ms >= 0) live.projector.light_delay = from_seconds(options.light_delay_ms / 1e3);
     live.autoplay = options.autoplay;
+    live.idle_first_s = options.idle_first_s;
     live.json = options.json;
     live.end_after_s = options.end_after_s;
     live.screenshots = options.screenshots;
@@ -73,49 +75,59 @@ LiveOptions live_options(const SessionOptions& options, const SiteSettings& site
     return live;
 }
 
-int run_in_simulated_room(const SessionOptions& options, const Case& the_case) {
+int run_in_simulated_room(const SessionOptions& options, const Case& the_case, const SiteSettings& site,
+                          SessionWindow& window) {
     if (options.volume.empty())
         throw InputError({}, "neither a room nor a simulated patient was named",
                          "Give --room room.json for real devices, or --volume VOLUME for the simulated room.");
-    const Volume volume = read_volume(options.volume, options.series_uid);
+    const Volume volume = window.while_made("The volume of the simulated patient is being read.", 0.3,
+                                            [&] { return read_volume(options.volume, options.series_uid); });
     if (hash_of(volume) != the_case.volume_hash)
         throw InputError(options.volume, "this is not the volume that the case was made from",
                          "Give the volume of this case, or prepare a case from this volume.");
-    const SiteSettings site = read_site_settings();
     simulation::RoomSettings room;
     room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     room.seed = options.seed;
     const auto recorder = recorder_of(options, the_case, site);
     LiveOptions live = live_options(options, site, recorder.get());
     live.observer = recorder.get();
+    const auto drawing = window.while_made("The plan is being drawn on the skin.", 0.7,
+                                           [&] { return CaseDrawing(the_case, drawing_settings(site)); });
     return run_live_simulated(
+        window,
         [&](const RoomProgress& progress) {
             progress("The simulated room is being built.", std::nullopt);
             return std::make_unique<SimulatedRoom>(volume, the_case.plan, room, options.speed_mm_s, options.fault);
         },
-        the_case, CaseDrawing(the_case, drawing_settings(site)), live);
+        the_case, drawing, live);
 }
 
-int run_in_room(SessionOptions options, const Case& the_case) {
+int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings& site, SessionWindow& window) {
     const RoomFile room = read_room(options.room);
     const RigCalibration rig = read_rig(room.rig);
-    const SiteSettings site = read_site_settings();
     if (options.projector_monitor.empty()) options.projector_monitor = room.monitor;
     if (options.projector_file.empty() && options.light_delay_ms < 0) options.projector_file = room.projector_file;
     const auto recorder = recorder_of(options, the_case, site);
     LiveOptions live = live_options(options, site, recorder.get());
     live.observer = recorder.get();
+    const auto drawing = window.while_made("The plan is being drawn on the skin.", 0.7,
+                                           [&] { return CaseDrawing(the_case, drawing_settings(site)); });
     return run_live(
+        window,
         [&](Projector& projector, const RoomProgress& progress) {
             return std::make_unique<RealRoom>(room, rig, projector, progress);
         },
-        the_case, CaseDrawing(the_case, drawing_settings(site)), live);
+        the_case, drawing, live);
 }
 
 int run_session(const SessionOptions& options) {
-    const Case the_case = read_case(options.case_folder);
+    const SiteSettings site = read_site_settings();
+    SessionWindow window(options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor);
+    const Case the_case =
+        window.while_made("The case is being read.", 0.1, [&] { return read_case(options.case_folder); });
     if (!options.json) fmt::print("{}\n", title_of(the_case));
-    return options.room.empty() ? run_in_simulated_room(options, the_case) : run_in_room(options, the_case);
+    return options.room.empty() ? run_in_simulated_room(options, the_case, site, window)
+                                : run_in_room(options, the_case, site, window);
 }
 
 }  // namespace
@@ -161,6 +173,8 @@ Run add_session(CLI::App& app) {
         ->check(CLI::IsMember(simulated_faults()));
     sub->add_flag("--autoplay", o.autoplay,
                   "Scan, register and track by itself; that the light is right is said in the simulated room only");
+    sub->add_option("--idle-first-s", o.idle_first_s,
+                    "With --autoplay: wait so long before the first press; --json then says what the window cost");
     sub->add_option("--end-after-s", o.end_after_s, "Close after this many seconds of tracking");
     sub->add_option("--screenshots", o.screenshots, "Folder for screenshots of every step");
     json_flag(sub, o.json);

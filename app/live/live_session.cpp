@@ -241,9 +241,9 @@ void LiveSession::keep_refused_pictures(const Session& session) {
     if (session.capture() == nullptr || session.capture()->left.empty()) return;
     const ScanCapture& capture = *session.capture();
     SeenPicture left{std::make_shared<GrayImage>(capture.left.front()),
-                     found_markers(session.tracker().seen_left(), true)};
+                     found_markers(session.tracker().seen_left(), true), true};
     SeenPicture right{std::make_shared<GrayImage>(capture.right.front()),
-                      found_markers(session.tracker().seen_right(), true)};
+                      found_markers(session.tracker().seen_right(), true), true};
     change_model([&](OperatorModel& m) {
         m.left.refused = left;
         m.right.refused = right;
@@ -270,7 +270,8 @@ void LiveSession::run(const MakeRoom& make_room) {
     const std::vector<std::string> notes = room->notes();
     happened(SessionHappening::room_made, [&](OperatorModel& m) {
         m.status.details.insert(m.status.details.end(), notes.begin(), notes.end());
-        m.case_subtitle = (room->simulated() ? "SIMULATED ROOM" : room->name()) + " \u00b7 " + m.case_subtitle;
+        m.simulated = room->simulated();
+        m.case_subtitle = room->name() + " \u00b7 " + m.case_subtitle;
     });
     for (;;) {
         const Press press = next_press(following_ ? Instant{} : room->look_interval());

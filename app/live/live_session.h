@@ -18,6 +18,7 @@
 #include "app/session.h"
 #include "app/update_latency.h"
 #include "app/windows/operator_model.h"
+#include "planning_io/types/steady_clock.h"
 
 namespace planlight {
 
@@ -110,7 +111,8 @@ private:
     const CaseDrawing& drawing_;
     std::filesystem::path keep_matches_in_;
     SessionObserver* observer_;
-    LiveView view_;
+    const SteadyClock wall_;
+    LiveView view_{wall_};
     mutable std::mutex mutex_;
     SessionState state_ = SessionState::opening;
     const OperatorModel blank_;  ///< of the case alone

@@ -22,7 +22,8 @@ void LiveView::take(const StereoFrame& frame) {
         const std::lock_guard lock(mutex_);
         if (left_.picture && now - taken_ < kShortest) return;
     }
-    SeenPicture left{std::make_shared<GrayImage>(frame.left), {}}, right{std::make_shared<GrayImage>(frame.right), {}};
+    SeenPicture left{std::make_shared<GrayImage>(frame.left), {}, false},
+        right{std::make_shared<GrayImage>(frame.right), {}, false};
     const std::lock_guard lock(mutex_);
     left_ = std::move(left);
     right_ = std::move(right);
@@ -37,6 +38,7 @@ void LiveView::found(Instant at, std::vector<FoundMarker> left, std::vector<Foun
     if (at != at_) return;
     left_.found = std::move(left);
     right_.found = std::move(right);
+    left_.searched = right_.searched = true;
 }
 
 void LiveView::failed(const std::string& why) {

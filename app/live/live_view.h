@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/windows/operator_model.h"
-#include "planning_io/types/steady_clock.h"
+#include "planning_io/types/time.h"
 #include "registration/devices/stereo_camera.h"
 
 namespace planlight {
@@ -13,6 +13,9 @@ namespace planlight {
 /// The newest pictures of both cameras, for a window; from any thread.
 class LiveView {
 public:
+    /// `clock`: of the wall; it outlives this.
+    explicit LiveView(const Clock& clock) : clock_(clock) {}
+
     /// `old_after`: from then on a picture is not called live any more, wall time.
     void set_old_after(Instant old_after);
 
@@ -28,10 +31,10 @@ public:
 
 private:
     mutable std::mutex mutex_;
-    SteadyClock clock_;
+    const Clock& clock_;
     SeenPicture left_, right_;
     Instant at_{};                      ///< of the frame, on the room's clock
-    Instant taken_{}, looked_since_{};  ///< on the wall's
+    Instant taken_{};                  ///< on the wall's
     Instant old_after_ = std::chrono::milliseconds(1500);
     std::string left_note_, right_note_;
 };

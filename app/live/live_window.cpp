@@ -7,12 +7,14 @@
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <thread>
 
 #include "app/case_model.h"
 #include "app/console.h"
 #include "app/live/light_keeper.h"
 #include "app/live/live_session.h"
 #include "app/live/projector_keeper.h"
+#include "app/live/window_meter.h"
 #include "app/windows/operator_window.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/types/error.h"
@@ -118,7 +120,41 @@ void tell_of_projector(const ProjectorProblem& problem, LiveSession& session, bo
                     {problem.remedy, "It is looked for every second. Scan and match are kept."}};
 }
 
+/// What a look at the session counts as.
+WindowMeter::Phase phase_of(const OperatorModel& model) {
+    if (model.light_on) return WindowMeter::Phase::following;
+    return model.next == OperatorAction::none ? WindowMeter::Phase::other : WindowMeter::Phase::idle;
+}
+
 }  // namespace
+
+SessionWindow::SessionWindow(const std::string& operator_monitor) : monitor_(operator_monitor) {
+    if (!display_is_there()) return;
+    window();
+    show("Planlight starts.", 0);
+}
+
+OperatorWindow& SessionWindow::window() {
+    WindowSettings settings;
+    if (!monitor_.empty()) settings.monitor = monitor_;
+    if (!window_) window_ = std::make_unique<OperatorWindow>(settings);
+    return *window_;
+}
+
+void SessionWindow::show(const std::string& words, double share) {
+    if (!window_) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        return;
+    }
+    OperatorModel model;
+    model.case_title = "Planlight";
+    model.status = {StatusKind::waiting, words, {"The projector is dark."}, share};
+    for (auto* button : {&model.scan, &model.do_register, &model.track, &model.stop})
+        *button = {false, "the case is being read"};
+    model.left.note = model.right.note = "when the room is there";
+    if (window_->frame(model) == OperatorAction::quit) closed_ = true;
+    window_->rest(kLongestRest_s);
+}
 
 bool display_is_there() {
     return std::getenv("DISPLAY") != nullptr && *std::getenv("DISPLAY") != '\0';
@@ -128,7 +164,7 @@ namespace {
 
 /// The windows' loop, until the operator window is closed; `projector` is null where there is none.
 int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* projector, const LiveOptions& options,
-                Autoplay autoplay) {
+                Autoplay autoplay, WindowMeter& meter) {
     bool projector_lost = false;
     Screenshots screenshots(options.screenshots);
     std::optional<std::chrono::steady_clock::time_point> projecting_since;
@@ -151,10 +187,11 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
             window.say(session.post_find_patient(window.landmarks()));
         else
             window.say(session.post(action));
-        if (options.autoplay) session.post(autoplay.next(model));
+        if (options.autoplay && meter.idle_s() >= options.idle_first_s) session.post(autoplay.next(model));
         screenshots.take(window, model, session);
         session.rethrow_fault();
         window.rest(kLongestRest_s);
+        meter.note(phase_of(model), window.frames_drawn());
         const auto now = std::chrono::steady_clock::now();
         if (session.projecting() && !projecting_since) projecting_since = now;
         if (options.end_after_s > 0 && projecting_since &&
@@ -164,21 +201,20 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
     return 0;
 }
 
-/// How late the light was, for whoever asked, and for the log.
-int told_at_the_end(int code, const LiveSession& session, const LiveOptions& options) {
+/// How late the light was and what the window cost, for whoever asked, and for the log.
+int told_at_the_end(int code, const LiveSession& session, const WindowMeter& meter, const LiveOptions& options) {
     const UpdateLatency latency = session.latency();
-    if (options.json)
-        std::cout << latency.json() << std::flush;
-    else if (latency.lit > 0)
+    if (options.json) {
+        std::string json = latency.json();
+        json.resize(json.find_last_of('}'));
+        std::cout << json.substr(0, json.find_last_not_of('\n') + 1) << ",\n  \"window\": " << meter.json() << "\n}\n"
+                  << std::flush;
+    } else if (latency.lit > 0) {
         fmt::print("{}.\n", latency.sentence());
-    log_line(latency.sentence());
+    }
+    for (const std::string& sentence : {latency.sentence(), meter.sentence()})
+        if (!sentence.empty()) log_line(sentence);
     return code;
-}
-
-WindowSettings window_settings(const LiveOptions& options) {
-    WindowSettings settings;
-    if (!options.operator_monitor.empty()) settings.monitor = options.operator_monitor;
-    return settings;
 }
 
 ProjectorKeeperSettings keeper_settings(const LiveOptions& options) {
@@ -189,9 +225,10 @@ ProjectorKeeperSettings keeper_settings(const LiveOptions& options) {
 
 }  // namespace
 
-int run_live_simulated(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
+int run_live_simulated(SessionWindow& screen, MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
                        const LiveOptions& options) {
-    OperatorWindow window(window_settings(options));
+    OperatorWindow& window = screen.window();
+    if (screen.closed()) return 0;
     std::unique_ptr<ProjectorKeeper> projector;
     if (const std::string monitor = light_monitor(options); !monitor.empty()) {
         check_monitor(monitor, options.projector);
@@ -203,17 +240,22 @@ int run_live_simulated(MakeRoom make_room, const Case& the_case, const CaseDrawi
     LiveSession session(std::move(make_room), the_case, drawing, options.keep_matches_in, options.observer);
     std::unique_ptr<LightKeeper> light;  // dark and gone before the session is
     if (projector) light = std::make_unique<LightKeeper>(*projector, session);
-    return told_at_the_end(run_windows(window, session, projector.get(), options, Autoplay(true)), session, options);
+    WindowMeter meter;
+    const int code = run_windows(window, session, projector.get(), options, Autoplay(true), meter);
+    return told_at_the_end(code, session, meter, options);
 }
 
-int run_live(const MakeRoomWith& make_room, const Case& the_case, const CaseDrawing& drawing,
+int run_live(SessionWindow& screen, const MakeRoomWith& make_room, const Case& the_case, const CaseDrawing& drawing,
              const LiveOptions& options) {
-    OperatorWindow window(window_settings(options));
+    OperatorWindow& window = screen.window();
+    if (screen.closed()) return 0;
     check_monitor(options.projector_monitor, options.projector);
     ProjectorKeeper projector(options.projector_monitor, keeper_settings(options));
     LiveSession session([&](const RoomProgress& progress) { return make_room(projector, progress); }, the_case, drawing,
                         options.keep_matches_in, options.observer);
-    return told_at_the_end(run_windows(window, session, &projector, options, Autoplay(false)), session, options);
+    WindowMeter meter;
+    const int code = run_windows(window, session, &projector, options, Autoplay(false), meter);
+    return told_at_the_end(code, session, meter, options);
 }
 
 void show_model(const OperatorModel& model, FitView view) {

@@ -20,9 +20,9 @@ void draw_button(const Pen& pen, const Box& box, const std::string& label, const
     if (state.enabled) {
         const bool fits = text_width(pen.fonts.title, label) <= box.width - 2 * pad;
         pen.line(fits ? pen.fonts.title : pen.fonts.strong, label, box.x + pad,
-                 box.y + (look.key.empty() ? 0.5F : 0.42F) * box.height, box.width - 2 * pad, theme::kText,
+                 box.y + (look.key.empty() ? 0.5F : 0.40F) * box.height, box.width - 2 * pad, theme::kText,
                  Pen::Side::centre);
-        pen.line(pen.fonts.small, look.key, box.x + pad, box.y + 0.80F * box.height, box.width - 2 * pad,
+        pen.line(pen.fonts.small, look.key, box.x + pad, box.y + 0.77F * box.height, box.width - 2 * pad,
                  look.leads_on ? theme::kText : theme::kQuiet, Pen::Side::centre);
         return;
     }

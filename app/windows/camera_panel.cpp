@@ -71,15 +71,12 @@ void draw_camera(const Pen& pen, const Box& box, const CameraPicture& camera, bo
     pen.list->AddImageRounded(texture, low, {low.x + zoom * width, low.y + zoom * height}, {0, 0}, {1, 1},
                               old ? kGreyed : IM_COL32_WHITE, 10 * s);
     if (!old) draw_found(pen, seen.found, low, zoom);
-    const std::string title = camera.title +
-                              (refused ? ", refused · "
-                               : old   ? ""
-                                       : " · ") +
-                              (old ? std::string{} : counted(seen.found));
+    std::string title = camera.title + (refused ? " · refused" : old ? "" : " · live");
+    if (!old && seen.searched) title += " · " + counted(seen.found);
     draw_strip(pen, box, title, IM_COL32(10, 12, 16, 225), theme::kText, false);
     if (refused) draw_strip(pen, box, "Press for the live picture", IM_COL32(70, 18, 20, 235), theme::kText, true);
     if (!refused && camera.refused)
-        draw_strip(pen, box, "Live. Press for the refused picture", IM_COL32(10, 12, 16, 225), theme::kText, true);
+        draw_strip(pen, box, "Press for the refused picture", IM_COL32(10, 12, 16, 225), theme::kText, true);
     if (!old) return;
     const std::string age = camera.old_s < 100 ? std::to_string(camera.old_s) + " s OLD" : "OLD";
     pen.line(pen.fonts.number, age, box.x, box.y + box.height / 2, box.width, theme::kAmber, Pen::Side::centre);

@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::array<const char*, 6> kSteps{"Case", "Rig", "Scan", "Match", "Verify", "Project"};
 
+const std::string kSimulated = "SIMULATED ROOM";
+
 void draw_step(const Pen& pen, const Box& chip, std::size_t index, StepState state) {
     const bool active = state == StepState::active;
     pen.panel(chip, active ? theme::kActive : theme::kPanel, active ? theme::kBlue : theme::kEdge, active ? 2 : 1);
@@ -52,13 +54,15 @@ void draw_header(const Pen& pen, const WindowLayout& place, const OperatorModel&
     Box title = place.title;
     title.width -= draw_side(pen, title, model.case_side);
     const float large = line_height(pen.fonts.title), small = line_height(pen.fonts.small);
-    const float plan = model.case_plan.empty() ? 0 : small, rest = model.case_subtitle.empty() ? 0 : small;
+    const std::string& last = model.simulated ? kSimulated : model.case_subtitle;
+    const float plan = model.case_plan.empty() ? 0 : small, rest = last.empty() ? 0 : small;
     float y = title.y + std::max(0.0F, (title.height - large - plan - rest) / 2);
     pen.line(pen.fonts.title, model.case_title, title.x, y + large / 2, title.width, theme::kText);
     y += large;
     pen.line(pen.fonts.small, model.case_plan, title.x, y + plan / 2, title.width, theme::kText);
     y += plan;
-    pen.line(pen.fonts.small, model.case_subtitle, title.x, y + rest / 2, title.width, theme::kQuiet);
+    pen.line(model.simulated ? pen.fonts.strong : pen.fonts.small, last, title.x, y + rest / 2, title.width,
+             model.simulated ? theme::kAmber : theme::kQuiet);
 
     const Box& steps = place.steps;
     const float gap = 8 * pen.scale, chip_height = std::min(steps.height, std::round(60 * pen.scale));

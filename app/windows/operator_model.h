@@ -105,6 +105,7 @@ struct FoundMarker {
 struct SeenPicture {
     std::shared_ptr<const GrayImage> picture;  ///< another pointer = another picture; null = none
     std::vector<FoundMarker> found;
+    bool searched = true;  ///< for markers; false: nobody looked
 
     bool operator==(const SeenPicture&) const = default;
 };
@@ -165,6 +166,7 @@ struct OperatorModel {
     std::string case_plan;             ///< plan, its version, date of the series
     std::string case_subtitle;         ///< further words
     std::string case_side;             ///< "RIGHT", in large letters; empty: not known
+    bool simulated = false;            ///< nothing is real: said in large letters
     std::array<StepState, 6> steps{};  ///< Case, Rig, Scan, Match, Verify, Project
     SceneModel scene;
     std::optional<LandmarkViews> landmarks;  ///< there is a scan: landmarks can be clicked on it

@@ -239,6 +239,7 @@ OperatorAction OperatorWindow::frame(const OperatorModel& model) {
     OperatorAction wanted = OperatorAction::none;
     if (parts.must_draw(model)) {
         const OperatorAction by_key = parts.take_key(model);
+        if (by_key != OperatorAction::none) parts.notice.clear();
         if (steady_clock::now() > parts.notice_until) parts.notice.clear();
         parts.gui.frame([&](const Pen& pen, float width, float height) {
             parts.place = layout_of(static_cast<int>(width), static_cast<int>(height));
@@ -255,6 +256,15 @@ OperatorAction OperatorWindow::frame(const OperatorModel& model) {
 void OperatorWindow::say(const std::string& answer) {
     if (answer.empty()) return;
     parts_->say(answer);
+    parts_->drawn.reset();
+}
+
+const std::string& OperatorWindow::answer() const {
+    return parts_->notice;
+}
+
+void OperatorWindow::open_evidence() {
+    parts_->middle->press(KeyMeaning::evidence, {});
     parts_->drawn.reset();
 }
 

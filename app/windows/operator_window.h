@@ -29,6 +29,9 @@ public:
     /// An answer to the last press, shown for some seconds; empty: nothing.
     void say(const std::string& answer);
 
+    /// Why the last press did nothing, as it stands in the window; empty: it did something, or some seconds ago.
+    const std::string& answer() const;
+
     /// Waits until the person does something, `longest_s` at most. A loop that draws no more than it must calls this
     /// after every frame.
     void rest(double longest_s);
@@ -49,6 +52,8 @@ public:
     /// Shows the skin from CT and the scan side by side, to click landmarks on both, with `pairs` already there; in the
     /// next frames whose model has landmarks. The person opens it by the button "Landmarks".
     void open_landmarks(const std::vector<PointPair>& pairs = {});
+    /// Shows the page of the plan and the evidence; the person opens it by a press on the table.
+    void open_evidence();
     /// What has been clicked on both sides, of the scan that the last frame's model had; empty before.
     std::vector<PointPair> landmarks() const;
 

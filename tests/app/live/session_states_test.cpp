@@ -27,7 +27,8 @@ std::string name(SessionState state) {
 
 /// The model of a session in which everything is known and lit, then entered into `state`.
 OperatorModel entered(SessionState state) {
-    OperatorModel blank = test::fake_model(), model = blank;
+    static const OperatorModel full = test::fake_model();
+    OperatorModel blank = full, model = full;
     blank.scene.cloud = nullptr;
     blank.scene.cloud_distance_mm = nullptr;
     blank.scene.markers = nullptr;
@@ -89,8 +90,9 @@ TEST(SessionStates, NoSentenceSpeaksOfAButtonThatIsNotEnabled) {
 
 TEST(SessionStates, WhatLeadsOnIsEnabled) {
     for (const SessionState state : kSessionStates)
-        if (const OperatorAction next = entered(state).next; next != OperatorAction::none)
+        if (const OperatorAction next = entered(state).next; next != OperatorAction::none) {
             EXPECT_TRUE(after_press(state, next)) << name(state);
+        }
 }
 
 TEST(SessionStates, DarkAndStopLeadFromEverywhereToAStateWithoutLightFiguresOrQuestions) {
