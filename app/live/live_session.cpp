@@ -91,7 +91,6 @@ LiveSession::~LiveSession() {
 
 void LiveSession::post(OperatorAction action) {
     if (action == OperatorAction::none) return;
-    if (observer_) observer_->pressed(kActions.at(static_cast<std::size_t>(action)));
     {
         const std::lock_guard lock(mutex_);
         if (action == OperatorAction::dark || action == OperatorAction::stop) {
@@ -102,6 +101,7 @@ void LiveSession::post(OperatorAction action) {
         presses_.push_back({action, darks_});
     }
     wake_.notify_all();
+    if (observer_) observer_->pressed(kActions.at(static_cast<std::size_t>(action)));
 }
 
 void LiveSession::post_find_patient(std::vector<PointPair> landmarks) {

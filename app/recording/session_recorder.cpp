@@ -195,6 +195,14 @@ void SessionRecorder::went_dark() noexcept {
     }
 }
 
+void SessionRecorder::cameras_doubted(const std::string& doubt) noexcept {
+    try {
+        const std::lock_guard lock(mutex_);
+        input({Kind::doubt, {}, {}, 0, doubt, {}});
+    } catch (const std::exception&) {
+    }
+}
+
 void SessionRecorder::device_failed(const Error& fault) noexcept {
     try {
         const std::lock_guard lock(mutex_);

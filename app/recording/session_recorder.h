@@ -53,6 +53,7 @@ public:
     void frame_taken(const StereoFrame& frame) noexcept override;
     void picture_shown(const RgbImage& picture, Instant valid_until, Instant lit_from) noexcept override;
     void went_dark() noexcept override;
+    void cameras_doubted(const std::string& doubt) noexcept override;
     void device_failed(const Error& fault) noexcept override;
     void stopped(const Error& why) noexcept override;
     void scanned(const Session& session) noexcept override;
