@@ -41,6 +41,10 @@ private:
     GError* error_ = nullptr;
 };
 
+bool another_exposure(double now, double was) {
+    return std::abs(now / was - 1) > 0.02;
+}
+
 bool another_gain(double gain, double than) {
     return std::abs(gain - than) > 0.02 * std::max(1.0, std::abs(than));
 }
@@ -153,21 +157,28 @@ void GenicamCamera::set_format_and_region() {
     if (failure.happened()) refuse(fmt::format("the region {} {} {} {}", x, y, width, height), failure.text());
 }
 
-/// As told, or as at the first opening: what another program set meanwhile, or a camera forgot, is set back.
+/// As told; what was not told as at the first opening: what another program set meanwhile, or a camera forgot, is set
+/// back. Where that cannot be set, it must be what it was.
 void GenicamCamera::set_exposure_and_gain() {
     ArvCamera* camera = device_->camera.get();
     Failure failure;
     const bool opened_before = exposure_ > Instant{};
-    if (settings_.exposure_ms || opened_before) {
-        const double wanted_us = settings_.exposure_ms ? 1e3 * *settings_.exposure_ms : 1e6 * seconds(exposure_);
-        arv_camera_set_exposure_time(camera, wanted_us, failure.slot());
-        if (failure.happened()) refuse(fmt::format("an exposure of {:.3f} ms", wanted_us / 1e3), failure.text());
+    if (settings_.exposure_ms) {
+        arv_camera_set_exposure_time(camera, 1e3 * *settings_.exposure_ms, failure.slot());
+        if (failure.happened()) refuse(fmt::format("an exposure of {} ms", *settings_.exposure_ms), failure.text());
+    } else if (opened_before) {
+        const double was_us = 1e6 * seconds(exposure_);
+        arv_camera_set_exposure_time(camera, was_us, failure.slot());
+        const double now_us = arv_camera_get_exposure_time(camera, failure.slot());
+        if (failure.happened() || another_exposure(now_us, was_us))
+            refuse(fmt::format("the exposure that it had, {:.2f} ms", was_us / 1e3),
+                   fmt::format("it is {:.2f} ms", now_us / 1e3));
     }
     if (settings_.gain) {
         arv_camera_set_gain(camera, *settings_.gain, failure.slot());
         if (failure.happened()) refuse(fmt::format("a gain of {}", *settings_.gain), failure.text());
     } else if (opened_before && arv_camera_is_gain_available(camera, failure.slot())) {
-        arv_camera_set_gain(camera, gain_, failure.slot());  // one that cannot be set is judged by what it is
+        arv_camera_set_gain(camera, gain_, failure.slot());
         const double gain = arv_camera_get_gain(camera, failure.slot());
         if (failure.happened() || another_gain(gain, gain_))
             refuse(fmt::format("the gain that it had, {:.1f}", gain_), fmt::format("it is {:.1f}", gain));
@@ -199,7 +210,7 @@ GenicamCamera::Setup GenicamCamera::configure() {
     const double exposure_us = arv_camera_get_exposure_time(camera, failure.slot());
     if (failure.happened() || !(exposure_us > 0)) refuse("a question for its exposure", failure.text());
     exposure_ = from_seconds(exposure_us / 1e6);
-    if (settings_.exposure_ms && std::abs(exposure_us / (1e3 * *settings_.exposure_ms) - 1) > 0.02)
+    if (settings_.exposure_ms && another_exposure(exposure_us, 1e3 * *settings_.exposure_ms))
         setup.notes.push_back(
             fmt::format("its exposure is {:.3f} ms, {:.3f} was asked for", exposure_us / 1e3, *settings_.exposure_ms));
     gain_ = arv_camera_is_gain_available(camera, failure.slot()) ? arv_camera_get_gain(camera, failure.slot()) : 0;
@@ -309,7 +320,7 @@ bool GenicamCamera::still_as_set() {
     Failure failure;
     const double exposure_us = arv_camera_get_exposure_time(device_->camera.get(), failure.slot());
     if (failure.happened()) return true;  // a lost camera tells by itself
-    if (std::abs(exposure_us / 1e6 / seconds(exposure_) - 1) > 0.02) {
+    if (another_exposure(exposure_us, 1e6 * seconds(exposure_))) {
         frames_.fail({fmt::format("its exposure was changed from {:.2f} to {:.2f} ms by somebody else",
                                   1e3 * seconds(exposure_), exposure_us / 1e3),
                       "End the other program that uses this camera; it is set again by itself."});
