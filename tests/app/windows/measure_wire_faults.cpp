@@ -47,13 +47,7 @@ public:
           drawing_(the_case_),
           monitor_("DUMMY1"),
           rig_(volume, points_of(the_case_.plan), room_settings(prepared.threshold)) {
-        simulation::ServeSettings serve;
-        serve.left.serial = "SIM-L";
-        serve.right.serial = "SIM-R";
-        serve.right.address = "127.0.0.2";
-        serve.left.clock_offset = 17h;
-        serve.left.clock_drift = 100e-6;
-        serve.right.clock_drift = -50e-6;
+        const simulation::ServeSettings serve = test::cameras_with_their_own_clocks();
         served_ = std::make_unique<simulation::ServedRoom>(
             rig_, [this] { return look(); }, serve);
         room_.together = true;

@@ -15,6 +15,18 @@ namespace planlight::test {
 
 constexpr int kSkipped = 77;  ///< the exit code by which CTest knows a test that could not be run here
 
+/// Two cameras with clocks of their own: hours apart, drifting by 100 and -50 ppm.
+inline simulation::ServeSettings cameras_with_their_own_clocks() {
+    simulation::ServeSettings serve;
+    serve.left.serial = "SIM-L";
+    serve.right.serial = "SIM-R";
+    serve.right.address = "127.0.0.2";
+    serve.left.clock_offset = std::chrono::hours(17);
+    serve.left.clock_drift = 100e-6;
+    serve.right.clock_drift = -50e-6;
+    return serve;
+}
+
 /// Whether more than a tenth of the cameras' pictures were late: then a failure says nothing about the program.
 inline bool too_busy_to_serve(const simulation::ServedRoom& served) {
     if (10 * served.late() <= served.made()) return false;

@@ -171,14 +171,7 @@ int run(const std::string& program, unsigned seeds) {
             without = operate(the_case, session, rig.clock(), truth);
         }
         simulation::SimulatedRig rig(volume, points_of(the_case.plan), room_of(seed, prepared.threshold));
-        simulation::ServeSettings serve;
-        serve.left.serial = "SIM-L";
-        serve.right.serial = "SIM-R";
-        serve.right.address = "127.0.0.2";
-        // Clocks of their own: hours apart, drifting by 100 ppm.
-        serve.left.clock_offset = 17h;
-        serve.left.clock_drift = 100e-6;
-        serve.right.clock_drift = -50e-6;
+        const simulation::ServeSettings serve = test::cameras_with_their_own_clocks();
         std::unique_ptr<simulation::ServedRoom> served;
         try {
             served = std::make_unique<simulation::ServedRoom>(
