@@ -148,6 +148,7 @@ public:
     const ScanResult* scanned() const { return scanned_ ? &*scanned_ : nullptr; }
     const RegistrationResult* registration() const { return registration_ ? &*registration_ : nullptr; }
     const PatientTracker& tracker() const { return tracker_; }
+    const TrackingSettings& tracking_settings() const { return settings_.tracking; }
     const DrawingRenderer& renderer() const { return *renderer_; }
     /// The plan as this session draws it, on the skin as the scan found it: labels lie beside the markers, so that none
     /// is cut by the darkness round them.

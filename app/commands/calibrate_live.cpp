@@ -81,7 +81,7 @@ public:
         : calibration_(calibration), subtitle_(std::move(subtitle)), screenshots_(options.screenshots) {
         note_end_signals();
         if (options.headless) return;
-        OperatorWindowSettings settings;
+        WindowSettings settings;
         settings.title = "Planlight calibration";
         if (!options.operator_monitor.empty()) settings.monitor = options.operator_monitor;
         window_ = std::make_unique<GuideWindow>(settings);
@@ -126,7 +126,7 @@ private:
         }
         const GuideAction wanted = window_->frame(model);
         take_picture(model.word);
-        std::this_thread::sleep_for(80ms);
+        window_->rest(0.08);
         return wanted;
     }
     /// One for every word, when it has stood for some frames.

@@ -89,7 +89,10 @@ int run_in_simulated_room(const SessionOptions& options, const Case& the_case) {
     LiveOptions live = live_options(options, site, recorder.get());
     live.observer = recorder.get();
     return run_live_simulated(
-        [&] { return std::make_unique<SimulatedRoom>(volume, the_case.plan, room, options.speed_mm_s, options.fault); },
+        [&](const RoomProgress& progress) {
+            progress("The simulated room is being built.", std::nullopt);
+            return std::make_unique<SimulatedRoom>(volume, the_case.plan, room, options.speed_mm_s, options.fault);
+        },
         the_case, CaseDrawing(the_case, drawing_settings(site)), live);
 }
 
@@ -102,8 +105,11 @@ int run_in_room(SessionOptions options, const Case& the_case) {
     const auto recorder = recorder_of(options, the_case, site);
     LiveOptions live = live_options(options, site, recorder.get());
     live.observer = recorder.get();
-    return run_live([&](Projector& projector) { return std::make_unique<RealRoom>(room, rig, projector); }, the_case,
-                    CaseDrawing(the_case, drawing_settings(site)), live);
+    return run_live(
+        [&](Projector& projector, const RoomProgress& progress) {
+            return std::make_unique<RealRoom>(room, rig, projector, progress);
+        },
+        the_case, CaseDrawing(the_case, drawing_settings(site)), live);
 }
 
 int run_session(const SessionOptions& options) {

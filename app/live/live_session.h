@@ -5,17 +5,19 @@
 #include <deque>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
 
+#include "app/live/live_view.h"
 #include "app/live/observed_gate.h"
 #include "app/live/room.h"
+#include "app/live/session_states.h"
 #include "app/session.h"
 #include "app/update_latency.h"
 #include "app/windows/operator_model.h"
-#include "app/windows/operator_window.h"
 
 namespace planlight {
 
@@ -30,11 +32,12 @@ public:
                 std::filesystem::path keep_matches_in, SessionObserver* observer = nullptr);
     ~LiveSession();
 
-    /// Queued; `dark` and `stop` overtake everything that waits.
-    void post(OperatorAction action);
+    /// Queued; `dark` and `stop` overtake everything that waits. The model says so at once. Returns why it does nothing
+    /// in the state of now, as a sentence; empty: it is taken.
+    std::string post(OperatorAction action);
 
     /// Finding the patient with these landmarks (none: without), clicked on the last scan; queued.
-    void post_find_patient(std::vector<PointPair> landmarks);
+    std::string post_find_patient(std::vector<PointPair> landmarks);
 
     OperatorModel model() const;
 
@@ -83,7 +86,17 @@ private:
     void stop_light(Session& session, const LightGate::Ruling& ruling);
     void set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details = {});
     void set_steps(int active, StepState state = StepState::active);
-    Press next_press(bool wait);
+    /// What came of something: it leads on, and `change` is made with it; nothing of both where DARK was pressed
+    /// meanwhile and has led elsewhere.
+    void happened(SessionHappening happening, const std::function<void(OperatorModel&)>& change = {});
+    bool still_wanted(const Press& press) const;
+    void set_progress(const std::string& headline, double share);
+    void said();
+    std::uint64_t darks_now() const;
+    std::string refused_press(OperatorAction action) const;
+    void keep_refused_pictures(const Session& session);
+    void look(const Session& session, Room& room);
+    Press next_press(Instant longest);
     void permit_light(const Press& press);
     bool light_permitted() const;
     void show_alive();
@@ -97,7 +110,10 @@ private:
     const CaseDrawing& drawing_;
     std::filesystem::path keep_matches_in_;
     SessionObserver* observer_;
+    LiveView view_;
     mutable std::mutex mutex_;
+    SessionState state_ = SessionState::opening;
+    const OperatorModel blank_;  ///< of the case alone
     std::condition_variable wake_;
     std::deque<Press> presses_;
     std::vector<PointPair> landmarks_;  ///< of the last `post_find_patient`

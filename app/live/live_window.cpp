@@ -20,6 +20,8 @@
 namespace planlight {
 namespace {
 
+constexpr double kLongestRest_s = 0.03;  ///< between two looks at the session
+
 /// Set by Ctrl-C or a polite kill: the loop ends as if the window had been closed, and everything is dark on the way
 /// out.
 /// The monitor for the light: as asked for, else the first that is not the primary one; empty when there is only one.
@@ -143,12 +145,13 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         // Landmarks that stand in the window count for every match of their scan: a match that they refuse stays
         // refused.
         if (action == OperatorAction::do_register || action == OperatorAction::use_landmarks)
-            session.post_find_patient(window.landmarks());
+            window.say(session.post_find_patient(window.landmarks()));
         else
-            session.post(action);
+            window.say(session.post(action));
         if (options.autoplay) session.post(autoplay.next(model));
         screenshots.take(window, model, session);
         session.rethrow_fault();
+        window.rest(kLongestRest_s);
         const auto now = std::chrono::steady_clock::now();
         if (session.projecting() && !projecting_since) projecting_since = now;
         if (options.end_after_s > 0 && projecting_since &&
@@ -169,8 +172,8 @@ int told_at_the_end(int code, const LiveSession& session, const LiveOptions& opt
     return code;
 }
 
-OperatorWindowSettings window_settings(const LiveOptions& options) {
-    OperatorWindowSettings settings;
+WindowSettings window_settings(const LiveOptions& options) {
+    WindowSettings settings;
     if (!options.operator_monitor.empty()) settings.monitor = options.operator_monitor;
     return settings;
 }
@@ -205,16 +208,15 @@ int run_live(const MakeRoomWith& make_room, const Case& the_case, const CaseDraw
     OperatorWindow window(window_settings(options));
     check_monitor(options.projector_monitor, options.projector);
     ProjectorKeeper projector(options.projector_monitor, keeper_settings(options));
-    LiveSession session([&] { return make_room(projector); }, the_case, drawing, options.keep_matches_in,
-                        options.observer);
+    LiveSession session([&](const RoomProgress& progress) { return make_room(projector, progress); }, the_case, drawing,
+                        options.keep_matches_in, options.observer);
     return told_at_the_end(run_windows(window, session, &projector, options, Autoplay(false)), session, options);
 }
 
 void show_model(const OperatorModel& model, FitView view) {
     OperatorWindow window;
     window.set_fit_view(view);
-    while (window.frame(model) != OperatorAction::quit) {
-    }
+    while (window.frame(model) != OperatorAction::quit) window.rest(kLongestRest_s);
 }
 
 std::vector<PointPair> click_landmarks(const OperatorModel& model, const std::vector<PointPair>& already) {
@@ -223,6 +225,7 @@ std::vector<PointPair> click_landmarks(const OperatorModel& model, const std::ve
     for (;;) {
         const OperatorAction action = window.frame(model);
         if (action == OperatorAction::quit || action == OperatorAction::use_landmarks) return window.landmarks();
+        window.rest(kLongestRest_s);
     }
 }
 

@@ -32,7 +32,7 @@ struct LiveOptions {
 bool display_is_there();
 
 /// Makes the room of a session; a real one lights the projector that it is given, a simulated one has its own.
-using MakeRoomWith = std::function<std::unique_ptr<Room>(Projector& projector)>;
+using MakeRoomWith = std::function<std::unique_ptr<Room>(Projector& projector, const RoomProgress& progress)>;
 
 /// Both windows on a live session in the simulated room, until the operator window is closed. Gives the exit code.
 /// Throws DeviceError when a monitor is missing or a window does not land where it should.

@@ -1,10 +1,5 @@
 #include "app/live/scene_of_session.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-
 namespace planlight {
 
 std::shared_ptr<const std::vector<SceneMarker>> markers_in_ct(const PatientTracker& tracker,
@@ -37,24 +32,11 @@ std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing
     return lines;
 }
 
-GrayImage brightened(const GrayImage& picture) {
-    std::array<std::size_t, 256> count{};
-    for (const auto value : picture.pixels) ++count[value];
-    std::size_t white = 255;
-    for (std::size_t above = 0; white > 16; --white) {
-        above += count[white];
-        if (above > picture.pixels.size() / 200) break;
-    }
-    GrayImage bright = picture;
-    for (auto& value : bright.pixels)
-        value = static_cast<std::uint8_t>(std::min<std::size_t>(255, value * 255 / white));
-    return bright;
-}
-
-std::vector<FoundMarker> found_markers(const std::vector<PatientTracker::Seen>& seen) {
+std::vector<FoundMarker> found_markers(const std::vector<PatientTracker::Seen>& seen, bool all) {
     std::vector<FoundMarker> found;
     for (const auto& one : seen)
-        if (one.marker >= 0) found.push_back({one.left_or_right.pixel, one.left_or_right.radius_px});
+        if (all || one.marker >= 0)
+            found.push_back({one.left_or_right.pixel, one.left_or_right.radius_px, one.marker >= 0});
     return found;
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "app/evaluation/distribution.h"
-#include "app/live/scene_of_session.h"
+#include "app/windows/camera_picture.h"
 #include "app/report/html_page.h"
 #include "app/report/paper_page.h"
 #include "app/report/svg_chart.h"

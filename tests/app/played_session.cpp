@@ -200,7 +200,7 @@ PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, 
     PlayedResult result;
     {
         LiveSession session(
-            [&]() -> std::unique_ptr<Room> {
+            [&](const RoomProgress&) -> std::unique_ptr<Room> {
                 auto simulated = std::make_unique<SimulatedRoom>(patient.volume, patient.prepared.plan, room,
                                                                  how.speed_mm_s, how.fault);
                 if (how.doubt.empty()) return simulated;

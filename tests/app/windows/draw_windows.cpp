@@ -16,7 +16,7 @@ int main(int argc, char** argv) {
         test::write_picture(argv[2], render_scene(model.scene, view, 1280, 960));
         return 0;
     }
-    OperatorWindowSettings settings;
+    WindowSettings settings;
     if (argc > 4) settings.width = std::stoi(argv[3]), settings.height = std::stoi(argv[4]);
     if (argc > 5) model = test::fake_model_with(static_cast<StatusKind>(std::stoi(argv[5])));
     OperatorWindow window(settings);
