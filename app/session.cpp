@@ -232,13 +232,13 @@ Session::Update Session::make_update() {
     update.received_at = clock_.now();
     const auto began = std::chrono::steady_clock::now();
     update.pose = tracker_.update(update.frame);
-    name_lost_pose(update);
     update.times.track_s = elapsed_s(began);
     if (settings_.while_computing) settings_.while_computing();
     const auto drawing_began = std::chrono::steady_clock::now();
     update.overlay = overlay_->step(update.pose);
     update.times.draw_s = elapsed_s(drawing_began);
     if (update.overlay.lit) update.swapped_at = clock_.now();
+    name_lost_pose(update);
     update.camera_doubt = cameras_.doubt();
     if (!update.overlay.lit && !update.camera_doubt.empty()) update.overlay.reason += "; " + update.camera_doubt;
     const auto checking_began = std::chrono::steady_clock::now();
@@ -263,7 +263,7 @@ StereoFrame Session::next_frame() {
     return frame;
 }
 
-/// Without a pose now and then: are the cameras exchanged?
+/// Without a pose now and then: are the cameras exchanged? It takes as long as an update, so the light is dark before.
 void Session::name_lost_pose(Update& update) {
     constexpr int kEvery = 10;
     if (update.pose.rig_from_patient)
@@ -271,7 +271,8 @@ void Session::name_lost_pose(Update& update) {
     else if (lost_poses_++ % kEvery == 0)
         exchanged_ = cameras_seem_exchanged(tracker_, update.frame);
     if (lost_poses_ > 0 && exchanged_)
-        update.pose.reason = "left and right camera are exchanged: connect them as they were calibrated";
+        update.overlay.reason = update.pose.reason =
+            "left and right camera are exchanged: connect them as they were calibrated";
 }
 
 void Session::note_shown(const OverlayStep& overlay) {
@@ -316,7 +317,7 @@ void Session::correct_delay(std::vector<LightCause>& causes) {
     if (causes.empty() || causes.front().fault != LightFault::late_picture) return;
     const Instant more = from_seconds(causes.front().size / 1e3);
     if (found_delay_ + more > settings_.most_delay_corrected || overlay_->light_delay() + more < Instant{}) return;
-    causes.front().drawn_ahead = true;
+    causes.front().drawn_ahead = more <= overlay_->spare_time();
     found_delay_ += more;
     overlay_->set_found_delay(found_delay_);
     watch_->forget();

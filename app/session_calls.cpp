@@ -78,6 +78,7 @@ SkinCheck Session::check_skin(const std::function<void(int, int)>& progress) {
 }
 
 void Session::go_dark() noexcept {
+    devices_.darken_first();
     if (settings_.observer) settings_.observer->asked(SessionCall::go_dark, {}, -1);
     darken();
 }

@@ -47,6 +47,8 @@ public:
     virtual void frame_taken(const StereoFrame& /*frame*/) noexcept {}
     virtual void picture_shown(const RgbImage& /*picture*/, Instant /*valid_until*/, Instant /*lit_from*/) noexcept {}
     virtual void went_dark() noexcept {}
+    /// What is wrong with the cameras (StereoCamera::doubt), when it changes; empty: nothing any more.
+    virtual void cameras_doubted(const std::string& /*doubt*/) noexcept {}
     /// A device threw, or whoever asked ended it from between two pictures of a scan.
     virtual void device_failed(const Error& /*fault*/) noexcept {}
     virtual void stopped(const Error& /*why*/) noexcept {}

@@ -2,6 +2,7 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/console.h"
 #include "app/live/live_window.h"
 #include "app/live/real_room.h"
 #include "app/live/simulated_fault.h"
@@ -37,12 +38,24 @@ struct SessionOptions {
     Path projector_file;         ///< projector.json of the monitor; empty: none
 };
 
+/// Ends the recording when the session ends, in whatever way, and says what it lacks.
+struct EndRecording {
+    void operator()(SessionRecorder* recorder) const {
+        const std::unique_ptr<SessionRecorder> owned(recorder);
+        try {
+            if (const std::string lacks = recorder->finish(); !lacks.empty()) warn(lacks);
+        } catch (const std::exception& fault) {
+            warn(std::string("The recording could not be ended: ") + fault.what());
+        }
+    }
+};
+using Recorder = std::unique_ptr<SessionRecorder, EndRecording>;
+
 /// The recording of this session, said where and how much; null with `--record none`.
-std::unique_ptr<SessionRecorder> recorder_of(const SessionOptions& options, const Case& the_case,
-                                             const SiteSettings& site) {
+Recorder recorder_of(const SessionOptions& options, const Case& the_case, const SiteSettings& site) {
     const RecordMode mode = record_mode_of(options.record);
     if (mode == RecordMode::none) {
-        fmt::print("This session is not recorded.\n");
+        fmt::print(stderr, "This session is not recorded.\n");
         return nullptr;
     }
     const Path folder = options.recordings.empty() ? options.case_folder / kRecordingsFolder : options.recordings;
@@ -55,8 +68,8 @@ std::unique_ptr<SessionRecorder> recorder_of(const SessionOptions& options, cons
                mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
                                           : "every frame, about 23 GB an hour in the paper's room",
                static_cast<double>(std::filesystem::space(folder, ignored).available) / 1e9, operator_name());
-    return std::make_unique<SessionRecorder>(
-        std::move(sink), recording_head(the_case, options.case_folder, mode, drawing_settings(site)));
+    return Recorder(new SessionRecorder(std::move(sink),
+                                        recording_head(the_case, options.case_folder, mode, drawing_settings(site))));
 }
 
 LiveOptions live_options(const SessionOptions& options, const SiteSettings& site, const SessionRecorder* recorder) {

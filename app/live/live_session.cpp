@@ -98,7 +98,6 @@ std::string LiveSession::refused_press(OperatorAction action) const {
 
 std::string LiveSession::post(OperatorAction action) {
     if (action == OperatorAction::none) return {};
-    if (observer_) observer_->pressed(kActions.at(static_cast<std::size_t>(action)));
     {
         const std::lock_guard lock(mutex_);
         if (std::string why = refused_press(action); !why.empty()) return why;
@@ -117,6 +116,7 @@ std::string LiveSession::post(OperatorAction action) {
         presses_.push_back({action, darks_});
     }
     wake_.notify_all();
+    if (observer_) observer_->pressed(kActions.at(static_cast<std::size_t>(action)));
     return {};
 }
 

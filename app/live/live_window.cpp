@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
@@ -27,8 +26,6 @@ constexpr double kLongestRest_s = 0.03;  ///< between two looks at the session
 
 /// Set by Ctrl-C or a polite kill: the loop ends as if the window had been closed, and everything is dark on the way
 /// out.
-volatile std::sig_atomic_t asked_to_end = 0;
-
 /// The monitor for the light: as asked for, else the first that is not the primary one; empty when there is only one.
 std::string light_monitor(const LiveOptions& options) {
     if (!options.projector_monitor.empty()) return options.projector_monitor;
@@ -168,8 +165,8 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
     bool projector_lost = false;
     Screenshots screenshots(options.screenshots);
     std::optional<std::chrono::steady_clock::time_point> projecting_since;
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
-    while (!asked_to_end) {
+    note_end_signals();
+    while (!asked_to_end()) {
         OperatorModel model = session.model();
         if (projector) tell_of_projector(projector->problem(), session, projector_lost, model);
         if (const std::string trouble = options.trouble ? options.trouble() : ""; !trouble.empty())

@@ -34,7 +34,7 @@ void draw_found(const Pen& pen, const std::vector<FoundMarker>& found, ImVec2 lo
 std::string counted(const std::vector<FoundMarker>& found) {
     const auto alone = std::count_if(found.begin(), found.end(), [](const FoundMarker& m) { return !m.used; });
     std::string words = std::to_string(found.size()) + (found.size() == 1 ? " marker" : " markers");
-    if (alone > 0) words += ", " + std::to_string(alone) + " of them here alone";
+    if (alone > 0) words += ", " + std::to_string(alone) + " here alone";
     return words;
 }
 
@@ -73,6 +73,10 @@ void draw_camera(const Pen& pen, const Box& box, const CameraPicture& camera, bo
     if (!old) draw_found(pen, seen.found, low, zoom);
     std::string title = camera.title + (refused ? " · refused" : old ? "" : " · live");
     if (!old && seen.searched) title += " · " + counted(seen.found);
+    const std::string camera_word = " camera";  // is said by the place where it stands
+    if (const auto at = title.find(camera_word);
+        text_width(pen.fonts.small, title) > box.width - 22 * s && at != std::string::npos)
+        title.erase(at, camera_word.size());
     draw_strip(pen, box, title, IM_COL32(10, 12, 16, 225), theme::kText, false);
     if (refused) draw_strip(pen, box, "Press for the live picture", IM_COL32(70, 18, 20, 235), theme::kText, true);
     if (!refused && camera.refused)

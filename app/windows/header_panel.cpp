@@ -38,12 +38,14 @@ void draw_step(const Pen& pen, const Box& chip, std::size_t index, StepState sta
 /// The side in large letters at the right end of the box; returns the width that it takes.
 float draw_side(const Pen& pen, const Box& box, const std::string& side) {
     if (side.empty()) return 0;
-    const float pad = 16 * pen.scale, width = text_width(pen.fonts.number, side) + 2 * pad;
+    const std::string caption = "side of the plan";
+    const float pad = 12 * pen.scale;
+    const float width = std::max(text_width(pen.fonts.number, side), text_width(pen.fonts.small, caption)) + 2 * pad;
     const Box badge{box.right() - width, box.y + 0.08F * box.height, width, 0.84F * box.height};
     pen.panel(badge, IM_COL32(222, 226, 234, 255), IM_COL32_WHITE, 2);
     pen.line(pen.fonts.number, side, badge.x, badge.y + 0.42F * badge.height, badge.width, IM_COL32(12, 14, 18, 255),
              Pen::Side::centre);
-    pen.line(pen.fonts.small, "side of the plan", badge.x + 2, badge.y + 0.82F * badge.height, badge.width - 4,
+    pen.line(pen.fonts.small, caption, badge.x + 2, badge.y + 0.82F * badge.height, badge.width - 4,
              IM_COL32(52, 58, 70, 255), Pen::Side::centre);
     return width + pad;
 }
