@@ -85,8 +85,6 @@ private:
     std::optional<double> lit_per_s(const Session::Update& update);
     void play_fault(const LightGate::Ruling& ruling, Room& room);
     void stop_light(Session& session, const LightGate::Ruling& ruling);
-    void set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details = {});
-    void set_steps(int active, StepState state = StepState::active);
     /// What came of something: it leads on, and `change` is made with it; nothing of both where DARK was pressed
     /// meanwhile and has led elsewhere.
     void happened(SessionHappening happening, const std::function<void(OperatorModel&)>& change = {});
@@ -95,7 +93,7 @@ private:
     void said();
     std::uint64_t darks_now() const;
     std::string refused_press(OperatorAction action) const;
-    void keep_refused_pictures(const Session& session);
+    void begin(const Press& press);
     void look(const Session& session, Room& room);
     Press next_press(Instant longest);
     void permit_light(const Press& press);
