@@ -50,6 +50,7 @@ private:
 /// A picture for the window while nothing else is made of it; what a camera lacks is said in its place.
 void LiveSession::look(const Session& session, Room& room) {
     constexpr auto kPatience = std::chrono::milliseconds(250);
+    view_.expect_found(true);
     try {
         const StereoFrame frame = CameraTap(room.cameras(), view_).newest(room.clock().now() - kPatience, kPatience);
         const auto found = [&](const GrayImage& picture) {
@@ -159,6 +160,8 @@ void LiveSession::begin(const Press& press) {
 void LiveSession::act(const Press& press, Session& session, Room& room) {
     if (!still_wanted(press)) return;
     begin(press);
+    // A scan's pictures are stripes, in which nobody looks for markers.
+    view_.expect_found(press.action != OperatorAction::scan && press.action != OperatorAction::check_skin);
     switch (press.action) {
         case OperatorAction::scan:
             following_ = projecting_ = false;

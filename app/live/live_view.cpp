@@ -16,29 +16,35 @@ void LiveView::set_old_after(Instant old_after) {
     old_after_ = old_after;
 }
 
+void LiveView::expect_found(bool expect) {
+    const std::lock_guard lock(mutex_);
+    expect_found_ = expect;
+}
+
 void LiveView::take(const StereoFrame& frame) {
     const Instant now = clock_.now();
     {
         const std::lock_guard lock(mutex_);
-        if (left_.picture && now - taken_ < kShortest) return;
+        if (next_.left.picture && now - next_.taken < kShortest) return;
     }
-    SeenPicture left{std::make_shared<GrayImage>(frame.left), {}, false},
-        right{std::make_shared<GrayImage>(frame.right), {}, false};
+    Pair pair{{std::make_shared<GrayImage>(frame.left), {}, false},
+              {std::make_shared<GrayImage>(frame.right), {}, false},
+              frame.at,
+              now};
     const std::lock_guard lock(mutex_);
-    left_ = std::move(left);
-    right_ = std::move(right);
-    at_ = frame.at;
-    taken_ = now;
+    next_ = std::move(pair);
+    if (!expect_found_) shown_ = next_;
     left_note_.clear();
     right_note_.clear();
 }
 
 void LiveView::found(Instant at, std::vector<FoundMarker> left, std::vector<FoundMarker> right) {
     const std::lock_guard lock(mutex_);
-    if (at != at_) return;
-    left_.found = std::move(left);
-    right_.found = std::move(right);
-    left_.searched = right_.searched = true;
+    if (at != next_.at || !next_.left.picture) return;
+    next_.left.found = std::move(left);
+    next_.right.found = std::move(right);
+    next_.left.searched = next_.right.searched = true;
+    shown_ = next_;
 }
 
 void LiveView::failed(const std::string& why) {
@@ -50,11 +56,11 @@ void LiveView::failed(const std::string& why) {
 
 void LiveView::put_into(OperatorModel& model) const {
     const std::lock_guard lock(mutex_);
-    if (!left_.picture) return;
-    const Instant age = clock_.now() - taken_;
+    if (!shown_.left.picture) return;
+    const Instant age = clock_.now() - shown_.taken;
     const int old_s = age < old_after_ ? 0 : std::max(1, static_cast<int>(seconds(age)));
-    model.left.live = left_;
-    model.right.live = right_;
+    model.left.live = shown_.left;
+    model.right.live = shown_.right;
     model.left.old_s = model.right.old_s = old_s;
     model.left.note = left_note_;
     model.right.note = right_note_;

@@ -171,7 +171,9 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         if (projector) tell_of_projector(projector->problem(), session, projector_lost, model);
         if (const std::string trouble = options.trouble ? options.trouble() : ""; !trouble.empty())
             model.status.details.push_back(trouble);
+        const auto frame_began = std::chrono::steady_clock::now();
         const OperatorAction action = window.frame(model);
+        const double rest_s = rest_after(std::chrono::steady_clock::now() - frame_began);
         if (projector) {
             projector->window_lives();
             projector->session_lives(session.alive_at());
@@ -187,7 +189,7 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         if (options.autoplay && meter.idle_s() >= options.idle_first_s) session.post(autoplay.next(model));
         screenshots.take(window, model, session);
         session.rethrow_fault();
-        window.rest(kLongestRest_s);
+        window.rest(rest_s);
         meter.note(phase_of(model), window.frames_drawn());
         const auto now = std::chrono::steady_clock::now();
         if (session.projecting() && !projecting_since) projecting_since = now;

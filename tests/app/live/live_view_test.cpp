@@ -54,6 +54,21 @@ TEST_F(LiveViewTest, WhatWasFoundInAnotherFrameIsNotDrawnOverThisOne) {
     EXPECT_TRUE(shown().left.live.found.empty()) << "they were found in the frame before";
 }
 
+TEST_F(LiveViewTest, APictureWaitsForItsMarkersWhereTheyAreLookedFor) {
+    view.expect_found(true);
+    view.take(frame_at(1s, 10));
+    EXPECT_EQ(shown().left.live.picture, nullptr) << "else the rings would flicker";
+    view.found(1s, {{{3, 3}, 2}}, {});
+    clock.time += 1s;
+    view.take(frame_at(2s, 20));
+    EXPECT_EQ(shown().left.live.picture->at(0, 0), 10);
+    EXPECT_EQ(shown().left.live.found.size(), 1U);
+    view.found(2s, {}, {});
+    EXPECT_EQ(shown().left.live.picture->at(0, 0), 20);
+    EXPECT_TRUE(shown().left.live.found.empty());
+    EXPECT_TRUE(shown().left.live.searched);
+}
+
 TEST_F(LiveViewTest, APictureThatIsNotRenewedSaysItsAgeAndWhy) {
     view.take(frame_at(1s, 10));
     clock.time += 1400ms;
