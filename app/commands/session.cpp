@@ -2,6 +2,7 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/surgeon_option.h"
 #include "app/live/live_window.h"
 #include "app/live/real_room.h"
 #include "app/live/simulated_fault.h"
@@ -25,6 +26,7 @@ struct SessionOptions {
     std::string record = "events";
     Path recordings;  ///< folder; empty: CASE/recordings
     std::string series_uid;
+    std::string surgeon;  ///< where he stands; empty: as the site says
     std::string preset = "paper", projector_monitor, operator_monitor;
     unsigned seed = 1;
     double speed_mm_s = 20;
@@ -81,7 +83,7 @@ int run_in_simulated_room(const SessionOptions& options, const Case& the_case) {
     if (hash_of(volume) != the_case.volume_hash)
         throw InputError(options.volume, "this is not the volume that the case was made from",
                          "Give the volume of this case, or prepare a case from this volume.");
-    const SiteSettings site = read_site_settings();
+    const SiteSettings site = site_with(options.surgeon);
     simulation::RoomSettings room;
     room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     room.seed = options.seed;
@@ -96,7 +98,7 @@ int run_in_simulated_room(const SessionOptions& options, const Case& the_case) {
 int run_in_room(SessionOptions options, const Case& the_case) {
     const RoomFile room = read_room(options.room);
     const RigCalibration rig = read_rig(room.rig);
-    const SiteSettings site = read_site_settings();
+    const SiteSettings site = site_with(options.surgeon);
     if (options.projector_monitor.empty()) options.projector_monitor = room.monitor;
     if (options.projector_file.empty() && options.light_delay_ms < 0) options.projector_file = room.projector_file;
     const auto recorder = recorder_of(options, the_case, site);
@@ -145,6 +147,7 @@ Run add_session(CLI::App& app) {
                     "refused (exit 6)")
         ->excludes(delay);
     sub->add_option("--operator", o.operator_monitor, "Monitor of the operator window (default: the primary one)");
+    surgeon_option(sub, o.surgeon);
     sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str()->excludes(room);
     sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")
         ->capture_default_str()
