@@ -18,6 +18,7 @@ namespace {
 /// The drawing without the strokes of other items, for a check of that one alone.
 PlanDrawing only(PlanDrawing drawing, std::size_t item) {
     std::erase_if(drawing.strokes, [&](const Stroke& stroke) { return stroke.item != static_cast<int>(item); });
+    std::erase_if(drawing.labels, [&](const Label& label) { return label.item != static_cast<int>(item); });
     return drawing;
 }
 
@@ -43,6 +44,15 @@ CaseDrawing::CaseDrawing(const Case& the_case, const CaseDrawing& planned, const
       settings(how),
       drawing(draw_plan(the_case.plan, planned.skin, skin, settings)) {
     warn_of_unscanned(found, drawing);
+}
+
+DrawingSettings lit_by(const RigCalibration& rig, const RigidTransform& rig_from_ct, DrawingSettings settings) {
+    settings.light = LightView{rig.projector, rig_from_ct};
+    const Eigen::Vector3d up_in_camera(0, -1, 0);
+    if (settings.up_in_ct.isZero())
+        settings.up_in_ct =
+            rig_from_ct.inverse().linear() * (rig.left_camera.device_from_rig.inverse().linear() * up_in_camera);
+    return settings;
 }
 
 Session::Session(const Case& the_case, const CaseDrawing& drawing, const RigCalibration& rig, Projector& projector,
@@ -180,7 +190,7 @@ void Session::match(const std::vector<PointPair>& landmarks) {
 
 /// On the skin as the scan found it, with the labels beside the markers.
 void Session::draw_on_skin_as_found() {
-    DrawingSettings drawing = planned_.settings;
+    DrawingSettings drawing = lit_by(rig_, registration_->patient_from_ct, planned_.settings);
     const RigidTransform ct_from_patient = registration_->patient_from_ct.inverse();
     for (const auto& marker : tracker_.markers())
         drawing.keep_clear_in_ct.push_back(ct_from_patient * marker.centre_in_patient);
@@ -193,11 +203,14 @@ void Session::start_overlay() {
     keep_dark.clear();
     for (const auto& marker : tracker_.markers()) keep_dark.push_back(marker.centre_in_patient);
     settings_.overlay.render.only_item = lit_landmark_ ? static_cast<int>(*lit_landmark_) : -1;
+    settings_.overlay.render.item_of_moment =
+        item_of_moment_ && !lit_landmark_ ? static_cast<int>(*item_of_moment_) : -1;
     overlay_ =
         std::make_unique<OverlayLoop>(projector_, clock_, *renderer_, lit_drawing(), *registration_, settings_.overlay);
     if (confirmed_) overlay_->set_operator_confirmed(true);
     overlay_->set_found_delay(found_delay_);
-    checker_.emplace(lit_landmark_ ? only(lit_drawing(), *lit_landmark_) : drawing(), skin_of_light(), rig_,
+    const auto looked_at = lit_landmark_ ? lit_landmark_ : item_of_moment_;
+    checker_.emplace(looked_at ? only(lit_drawing(), *looked_at) : drawing(), skin_of_light(), rig_,
                      settings_.check_light);
     watch_.emplace(rig_, settings_.light_cause);
     jumps_.emplace(rig_);

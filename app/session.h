@@ -66,6 +66,10 @@ private:
                 const DrawingSettings& how);
 };
 
+/// How a plan is drawn for a head found at this pose: labels where this rig's light can reach all of them, upright as
+/// the settings say, or as the left camera sees them.
+DrawingSettings lit_by(const RigCalibration& rig, const RigidTransform& rig_from_ct, DrawingSettings settings);
+
 /// Where the skin lies against where the markers put it, by a short scan.
 struct SkinCheck {
     bool known = false;
@@ -131,6 +135,10 @@ public:
     const std::vector<Eigen::Vector3d>& landmarks();
     /// From the next `update` on this landmark alone is lit, as a ring with a cross; empty: the plan.
     void light_landmark(std::optional<std::size_t> which);
+    /// From the next `update` on this item of the plan is bright, with its label, and the others are dim
+    /// (`RenderSettings::others`); the light is measured on it alone. Empty: all are bright.
+    void light_item(std::optional<std::size_t> which);
+    std::optional<std::size_t> item_of_moment() const { return item_of_moment_; }
     /// What is lit: the plan, or the landmarks.
     const PlanDrawing& lit_drawing() const { return lit_landmark_ ? landmark_drawing_ : drawing(); }
 
@@ -211,7 +219,7 @@ private:
     bool exchanged_ = false;                ///< the cameras, when that was last looked at
     std::optional<std::vector<Eigen::Vector3d>> landmarks_;
     PlanDrawing landmark_drawing_;
-    std::optional<std::size_t> lit_landmark_;
+    std::optional<std::size_t> lit_landmark_, item_of_moment_;
     Instant lit_since_ = Instant::max();  ///< light without a break; max: it is dark
     int updates_ = 0;
     bool confirmed_ = false;  ///< the last match, by the operator

@@ -2,6 +2,7 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/surgeon_option.h"
 #include "app/console.h"
 #include "app/live/live_window.h"
 #include "app/live/real_room.h"
@@ -26,6 +27,7 @@ struct SessionOptions {
     std::string record = "events";
     Path recordings;  ///< folder; empty: CASE/recordings
     std::string series_uid;
+    std::string surgeon;  ///< where he stands; empty: as the site says
     std::string preset = "paper", projector_monitor, operator_monitor;
     unsigned seed = 1;
     double speed_mm_s = 20;
@@ -134,7 +136,7 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
 }
 
 int run_session(const SessionOptions& options) {
-    const SiteSettings site = read_site_settings();
+    const SiteSettings site = site_with(options.surgeon);
     SessionWindow window(options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor);
     const Case the_case =
         window.while_made("The case is being read.", 0.1, [&] { return read_case(options.case_folder); });
@@ -176,6 +178,7 @@ Run add_session(CLI::App& app) {
                     "refused (exit 6)")
         ->excludes(delay);
     sub->add_option("--operator", o.operator_monitor, "Monitor of the operator window (default: the primary one)");
+    surgeon_option(sub, o.surgeon);
     sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str()->excludes(room);
     sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")
         ->capture_default_str()

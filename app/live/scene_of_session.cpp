@@ -19,15 +19,22 @@ std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing
                                                                const simulation::SimulatedRig& rig) {
     auto lines = std::make_shared<std::vector<LightLine>>();
     if (!overlay.lit) return lines;
-    for (const auto& stroke : drawing.strokes) {
+    const auto add = [&](const std::vector<Eigen::Vector3d>& wanted_in_ct, bool closed) {
         LightLine line;
-        line.closed = stroke.closed;
-        for (const auto& p_in_ct : stroke.points_in_ct) {
+        line.closed = closed;
+        for (const auto& p_in_ct : wanted_in_ct) {
             const auto pixel = project(calibration.projector, overlay.rig_from_ct * p_in_ct);
             const auto lit = pixel ? rig.true_light(*pixel, overlay.lit_from) : std::nullopt;
             if (lit) line.points_in_ct.push_back(lit->p_in_ct);
         }
         if (line.points_in_ct.size() > 1) lines->push_back(std::move(line));
+    };
+    for (const auto& stroke : drawing.strokes) add(stroke.points_in_ct, stroke.closed);
+    const auto& whole = overlay.counts.labels_lit;
+    for (const Label& label : drawing.labels) {
+        if (label.of_moment || std::find(whole.begin(), whole.end(), label.item) == whole.end()) continue;
+        for (const auto& sign : label.signs_in_ct)
+            for (const auto& outline : sign) add(outline, true);
     }
     return lines;
 }
