@@ -96,7 +96,7 @@ bool Search::is_close_to_another(const TextFrame& frame) const {
 
 /// True when all of the text's outline lies on skin that is free, flat and lit.
 bool Search::is_free(const TextFrame& frame) const {
-    constexpr double kApart_mm = 2.2, kFlat = 0.7;
+    constexpr double kApart_mm = 2.2, kFlat = 0.85;
     if (is_close_to_another(frame)) return false;
     const int nx = std::max(1, static_cast<int>(std::ceil(block_.width_mm / kApart_mm)));
     const int ny = std::max(1, static_cast<int>(std::ceil(block_.height_mm / kApart_mm)));
@@ -214,7 +214,8 @@ std::optional<Label> place_label(const LabelWish& wish, const SkinSurface& skin,
     if (!found) return std::nullopt;
     auto label = draw_label(skin, found->frame, block, wish.item, settings.text_height_mm);
     if (!label) return std::nullopt;
-    if (found->leader.size() > 1)
+    constexpr std::size_t kLongEnoughToBeSeen = 5;  // points, half a millimetre apart
+    if (found->leader.size() >= kLongEnoughToBeSeen)
         for (const Point& p : found->leader) {
             label->leader.points_in_ct.push_back(p.p_in_ct);
             label->leader.normals_in_ct.push_back(p.normal_in_ct);

@@ -65,6 +65,38 @@ double between(const GrayImage& picture, const Vector2d& at) {
     return sum;
 }
 
+/// As an eye evens out what lies in less light: against the mean and the spread of 5 mm round about; with a bright rim.
+GrayImage dark_on_bright(const std::vector<double>& values, int width, int height) {
+    constexpr int kRound_px = 40, kRim_px = 24;
+    std::vector<double> sum(static_cast<std::size_t>((width + 1) * (height + 1)), 0), squares = sum;
+    const auto at = [&](int x, int y) { return static_cast<std::size_t>(y * (width + 1) + x); };
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const double v = values[static_cast<std::size_t>(y * width + x)];
+            sum[at(x + 1, y + 1)] = v + sum[at(x, y + 1)] + sum[at(x + 1, y)] - sum[at(x, y)];
+            squares[at(x + 1, y + 1)] = v * v + squares[at(x, y + 1)] + squares[at(x + 1, y)] - squares[at(x, y)];
+        }
+    const auto spread_in = [&](int x0, int y0, int x1, int y1, double& mean) {
+        const double n = (x1 - x0) * (y1 - y0);
+        const auto box = [&](const auto& t) { return t[at(x1, y1)] - t[at(x0, y1)] - t[at(x1, y0)] + t[at(x0, y0)]; };
+        mean = box(sum) / n;
+        return std::sqrt(std::max(0.0, box(squares) / n - mean * mean));
+    };
+    double mean = 0;
+    const double all = spread_in(0, 0, width, height, mean);
+    GrayImage picture(width + 2 * kRim_px, height + 2 * kRim_px);
+    std::fill(picture.pixels.begin(), picture.pixels.end(), std::uint8_t{255});
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const double spread = spread_in(std::max(0, x - kRound_px), std::max(0, y - kRound_px),
+                                            std::min(width, x + kRound_px), std::min(height, y + kRound_px), mean);
+            const double v =
+                (values[static_cast<std::size_t>(y * width + x)] - mean) / (0.7 * spread + 0.3 * all + 1e-9);
+            picture.at(x + kRim_px, y + kRim_px) = static_cast<std::uint8_t>(std::clamp(200 - 110 * v, 0.0, 255.0));
+        }
+    return picture;
+}
+
 }  // namespace
 
 void LabelsRead::append(const LabelsRead& more) {
@@ -117,7 +149,7 @@ Reading compare(const std::string& written, const std::string& read) {
 
 GrayImage upright(const Label& label, const GrayImage& seen, const CameraModel& camera,
                   const RigidTransform& rig_from_ct) {
-    constexpr double kPixel_mm = 0.125, kMargin_mm = 2.5;
+    constexpr double kPixel_mm = 0.125, kMargin_mm = 1.2;
     Vector3d middle = Vector3d::Zero(), normal = Vector3d::Zero();
     for (std::size_t i = 0; i < label.field_in_ct.size(); ++i) {
         middle += label.field_in_ct[i] / static_cast<double>(label.field_in_ct.size());
@@ -146,13 +178,7 @@ GrayImage upright(const Label& label, const GrayImage& seen, const CameraModel& 
             if (!pixel || !in_picture(camera, *pixel)) return {};
             values.push_back(between(seen, *pixel));
         }
-    std::vector<double> sorted = values;
-    std::sort(sorted.begin(), sorted.end());
-    const double dark = sorted[sorted.size() / 4], bright = sorted[sorted.size() * 97 / 100];
-    for (std::size_t i = 0; i < values.size(); ++i)
-        picture.pixels[i] = static_cast<std::uint8_t>(
-            std::clamp(255 - 255 * (values[i] - dark) / std::max(1.0, bright - dark), 0.0, 255.0));
-    return picture;
+    return dark_on_bright(values, picture.width, picture.height);
 }
 
 struct LabelledHead::Parts {
