@@ -113,9 +113,12 @@ bool Search::is_free(const TextFrame& frame) const {
 
 double Search::cost_of(std::size_t anchor, double angle, double gap_mm, const Point& middle) const {
     const Point& from = wish_.anchors[anchor];
+    Vector3d facing = wish_.facing_in_ct.value_or(from.normal_in_ct);
+    if (settings_.light)
+        facing = (settings_.light->rig_from_ct.inverse() * settings_.light->projector.centre_in_rig() - middle.p_in_ct)
+                     .normalized();
     double cost = gap_mm + 0.3 * static_cast<double>(anchor) + 2 * std::abs(std::sin(angle)) +
-                  (std::cos(angle) < -0.1 ? 0.5 : 0) +
-                  30 * (1 - middle.normal_in_ct.dot(wish_.facing_in_ct.value_or(from.normal_in_ct)));
+                  (std::cos(angle) < -0.1 ? 0.5 : 0) + 30 * (1 - middle.normal_in_ct.dot(facing));
     if (wish_.away_from_in_ct &&
         (middle.p_in_ct - *wish_.away_from_in_ct).norm() < (from.p_in_ct - *wish_.away_from_in_ct).norm())
         cost += 15;
