@@ -96,7 +96,7 @@ bool Search::is_close_to_another(const TextFrame& frame) const {
 
 /// True when all of the text's outline lies on skin that is free, flat and lit.
 bool Search::is_free(const TextFrame& frame) const {
-    constexpr double kApart_mm = 2.2, kFlat = 0.7;
+    constexpr double kApart_mm = 2.2, kFlat = 0.85;
     if (is_close_to_another(frame)) return false;
     const int nx = std::max(1, static_cast<int>(std::ceil(block_.width_mm / kApart_mm)));
     const int ny = std::max(1, static_cast<int>(std::ceil(block_.height_mm / kApart_mm)));
@@ -113,9 +113,12 @@ bool Search::is_free(const TextFrame& frame) const {
 
 double Search::cost_of(std::size_t anchor, double angle, double gap_mm, const Point& middle) const {
     const Point& from = wish_.anchors[anchor];
+    Vector3d facing = wish_.facing_in_ct.value_or(from.normal_in_ct);
+    if (settings_.light)
+        facing = (settings_.light->rig_from_ct.inverse() * settings_.light->projector.centre_in_rig() - middle.p_in_ct)
+                     .normalized();
     double cost = gap_mm + 0.3 * static_cast<double>(anchor) + 2 * std::abs(std::sin(angle)) +
-                  (std::cos(angle) < -0.1 ? 0.5 : 0) +
-                  30 * (1 - middle.normal_in_ct.dot(wish_.facing_in_ct.value_or(from.normal_in_ct)));
+                  (std::cos(angle) < -0.1 ? 0.5 : 0) + 30 * (1 - middle.normal_in_ct.dot(facing));
     if (wish_.away_from_in_ct &&
         (middle.p_in_ct - *wish_.away_from_in_ct).norm() < (from.p_in_ct - *wish_.away_from_in_ct).norm())
         cost += 15;
@@ -214,7 +217,8 @@ std::optional<Label> place_label(const LabelWish& wish, const SkinSurface& skin,
     if (!found) return std::nullopt;
     auto label = draw_label(skin, found->frame, block, wish.item, settings.text_height_mm);
     if (!label) return std::nullopt;
-    if (found->leader.size() > 1)
+    constexpr std::size_t kLongEnoughToBeSeen = 5;  // points, half a millimetre apart
+    if (found->leader.size() >= kLongEnoughToBeSeen)
         for (const Point& p : found->leader) {
             label->leader.points_in_ct.push_back(p.p_in_ct);
             label->leader.normals_in_ct.push_back(p.normal_in_ct);

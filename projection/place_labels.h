@@ -51,7 +51,7 @@ struct LabelWish {
         double half_size_mm;
     };
     std::vector<Other> others = {};
-    int but_of = OccupiedSkin::kNobody;              ///< whose labels may lie there
+    int but_of = OccupiedSkin::kNobody;  ///< whose labels may lie there
 };
 
 /// The label where it overlaps nothing, the skin is flat and, where the light is known, all of it can be lit: the
