@@ -161,12 +161,13 @@ void Drawer::wish_along(int item_index, const std::string& figure, const SkinLin
 }
 
 void Drawer::draw(const OsteotomyLine& line) {
-    std::vector<Point> on_skin;
+    std::vector<Point> on_ct_skin, on_skin;
     double far_mm = 0;
     if (finite(line))
         for (const Vector3d& p : line.points_in_ct) {
             const Point planned = ct_skin_.nearest(p);
             far_mm = std::max(far_mm, (planned.p_in_ct - p).norm());
+            on_ct_skin.push_back(planned);
             on_skin.push_back(skin_.same_place(ct_skin_, planned));
         }
     const int i =
@@ -179,7 +180,11 @@ void Drawer::draw(const OsteotomyLine& line) {
     const Rgb colour = chosen(line.colour, kOsteotomyGreen);
     add(StrokeKind::osteotomy_line, i, colour, settings_.line_width_mm, way);
     add_ticks(i, colour, way);
-    wish_along(i, fmt::format("{:.0f} mm", length_mm(way)), way);
+    // The plan's own length, as every page and window has it; the skin as it is now may make it a millimetre another.
+    const double planned_mm = &ct_skin_ == &skin_
+                                  ? length_mm(way)
+                                  : length_mm(join(ct_skin_, on_ct_skin, line.closed, settings_.max_segment_mm));
+    wish_along(i, fmt::format("{:.0f} mm", planned_mm), way);
 }
 
 void Drawer::draw(const Borehole& hole) {
