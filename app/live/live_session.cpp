@@ -58,7 +58,7 @@ std::string LiveSession::refused_press(OperatorAction action) const {
     return {};
 }
 
-std::string LiveSession::post(OperatorAction action) {
+std::string LiveSession::post(OperatorAction action, AskedBy by) {
     if (action == OperatorAction::none) return {};
     {
         const std::lock_guard lock(mutex_);
@@ -78,7 +78,8 @@ std::string LiveSession::post(OperatorAction action) {
         presses_.push_back({action, darks_});
     }
     wake_.notify_all();
-    if (observer_) observer_->pressed(kActions.at(static_cast<std::size_t>(action)));
+    if (observer_ && by == AskedBy::person) observer_->pressed(kActions.at(static_cast<std::size_t>(action)));
+    if (observer_ && by == AskedBy::lost_projector) observer_->pressed("projector_lost");
     return {};
 }
 

@@ -22,6 +22,10 @@
 
 namespace planlight {
 
+/// Who asks for what a button does. A person's press is recorded as theirs; what the program does by itself is recorded
+/// by what comes of it, and darkness because the projector was lost by that name.
+enum class AskedBy { person, program, lost_projector };
+
 /// A session in a room that runs in a thread of its own, so that the windows answer while it computes.
 ///
 /// The window thread posts what the person wants and takes the newest model and the newest light.
@@ -35,7 +39,7 @@ public:
 
     /// Queued; `dark` and `stop` overtake everything that waits. The model says so at once. Returns why it does nothing
     /// in the state of now, as a sentence; empty: it is taken.
-    std::string post(OperatorAction action);
+    std::string post(OperatorAction action, AskedBy by = AskedBy::person);
 
     /// Finding the patient with these landmarks (none: without), clicked on the last scan; queued.
     std::string post_find_patient(std::vector<PointPair> landmarks);

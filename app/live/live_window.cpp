@@ -110,7 +110,7 @@ void tell_of_projector(const ProjectorProblem& problem, LiveSession& session, bo
         lost = false;
         return;
     }
-    if (!lost) session.post(OperatorAction::dark);
+    if (!lost) session.post(OperatorAction::dark, AskedBy::lost_projector);
     lost = true;
     model.status = {StatusKind::dark,
                     "No projector: " + problem.what + ".",
@@ -186,7 +186,8 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
             window.say(session.post_find_patient(window.landmarks()));
         else
             window.say(session.post(action));
-        if (options.autoplay && meter.idle_s() >= options.idle_first_s) session.post(autoplay.next(model));
+        if (options.autoplay && meter.idle_s() >= options.idle_first_s)
+            session.post(autoplay.next(model), AskedBy::program);
         screenshots.take(window, model, session);
         session.rethrow_fault();
         window.rest(rest_s);

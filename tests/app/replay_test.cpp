@@ -100,11 +100,16 @@ private:
 
 TEST_F(Replay, ADiskThatTakesNothingLeavesTheLightAloneAndIsSaid) {
     std::atomic<bool> still{true};
+    struct LetGo {  // whatever ends the test: the recorder waits for its disk
+        std::atomic<bool>& still;
+        ~LetGo() { still = false; }
+    };
     RecordingWriterSettings writing;
     writing.most_waiting_bytes = 3'000'000;
     writing.spare_bytes = 10'000;
     SessionRecorder recorder(std::make_unique<StillDisk>(still),
                              recording_head(test::example_case().prepared, {}, RecordMode::all, {}), writing);
+    const LetGo let_go{still};
     PlayedSession how;
     how.seed = 5;
     how.updates = 20;
@@ -114,7 +119,6 @@ TEST_F(Replay, ADiskThatTakesNothingLeavesTheLightAloneAndIsSaid) {
     EXPECT_GE(recorder.state().dropped_chunks, 40u) << "a scan of 46 pictures and 20 updates, and room for three";
     EXPECT_LE(recorder.state().waiting_bytes, 3'010'000u);
     EXPECT_NE(recorder.trouble().find("the light is not affected"), std::string::npos) << recorder.trouble();
-    still = false;
 }
 
 /// One recording that is spoilt in many ways.
@@ -126,6 +130,7 @@ protected:
         PlayedSession how;
         how.seed = 2;
         how.updates = 24;
+        how.dark_in_scan = true;  // a refusal that is none of an update
         const fs::path file = folder().path() / "sound.plrec";
         test::record_session(how, test::example_case(), RecordMode::all, file);
         chunks_ = chunks_of(file);
@@ -221,6 +226,45 @@ TEST_F(SpoiltRecording, IsRefusedForAnotherCaseAndWithoutItsFrames) {
     chunks.front().payload.replace(at, 5, "\"events\"");
     write(chunks, file);
     EXPECT_THROW(replay_session(file, test::example_case().prepared), InputError);
+}
+
+TEST_F(SpoiltRecording, IsRefusedWhereItDoesNotSayItsMarkersOrTheWayItWasRecorded) {
+    for (const auto& [name, other] :
+         {std::pair{"\"disc_mm\"", "\"disk_mm\""}, {"\"sticker_mm\":", "\"sticker_mm\":\"\",\"x\":"}}) {
+        auto chunks = chunks_;
+        std::string& room = chunks[1].payload;
+        ASSERT_NE(room.find(name), std::string::npos);
+        room.replace(room.find(name), std::string(name).size(), other);
+        EXPECT_THROW(replay(chunks), InputError) << other;
+    }
+    auto chunks = chunks_;
+    std::string& head = chunks.front().payload;
+    head.replace(head.find("\"all\""), 5, "\"alles\"");
+    EXPECT_THROW(replay(chunks), InputError);
+}
+
+/// A fault of ours in the session is compared as any other refusal: it does not end the replay without its counts.
+TEST_F(SpoiltRecording, AFaultOfOursIsComparedToo) {
+    auto chunks = chunks_;
+    const std::size_t fifth = update(5);
+    std::size_t at = fifth;
+    while (chunks[at].type != chunk_types::kFrame) --at;
+    StereoFrame frame = unpack_frame(chunks[at].payload, "x");
+    const std::string hash = hash_of(frame);
+    frame.left = frame.right = GrayImage();
+    chunks[at].payload = pack_frame(frame);
+    for (std::size_t i = at; i < fifth; ++i) {
+        if (chunks[i].type != chunk_types::kInputs) continue;
+        auto inputs = unpacked_inputs(chunks[i].payload, "x");
+        for (RecordedInput& input : inputs)
+            if (input.text == hash) input.text = hash_of(frame);
+        chunks[i].payload = packed(inputs);
+    }
+    ReplayResult replayed;
+    ASSERT_NO_THROW(replayed = replay(chunks));
+    ASSERT_TRUE(replayed.difference);
+    std::cout << replayed.difference->what << "\n";
+    EXPECT_EQ(replayed.updates, 4);
 }
 
 }  // namespace
