@@ -1,6 +1,7 @@
 #include "app/live/live_view.h"
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 
@@ -8,6 +9,39 @@ namespace planlight {
 namespace {
 
 constexpr Instant kShortest = std::chrono::milliseconds(45);
+constexpr int kAcross = 32, kDown = 24;  // blocks in which two pictures are compared
+constexpr double kSameGrey = 2.5;        // grey values of a block's mean: noise is far less, a finger far more
+constexpr double kSamePlace_px = 1.5;    // of a marker
+
+/// The mean of every block, from every third pixel of it.
+std::vector<double> block_means(const GrayImage& picture) {
+    std::vector<double> means;
+    for (int row = 0; row < kDown; ++row)
+        for (int column = 0; column < kAcross; ++column) {
+            double sum = 0, count = 0;
+            for (int y = row * picture.height / kDown; y < (row + 1) * picture.height / kDown; y += 3)
+                for (int x = column * picture.width / kAcross; x < (column + 1) * picture.width / kAcross; x += 3)
+                    sum += picture.at(x, y), ++count;
+            means.push_back(count > 0 ? sum / count : 0);
+        }
+    return means;
+}
+
+/// A person would not see the difference: then the window need not be drawn again for it.
+bool alike(const SeenPicture& a, const SeenPicture& b) {
+    if (!a.picture || !b.picture || a.picture->width != b.picture->width || a.picture->height != b.picture->height)
+        return false;
+    if (a.searched != b.searched || a.found.size() != b.found.size()) return false;
+    for (const FoundMarker& one : a.found)
+        if (std::none_of(b.found.begin(), b.found.end(), [&](const FoundMarker& other) {
+                return (other.pixel - one.pixel).norm() < kSamePlace_px && other.used == one.used;
+            }))
+            return false;
+    const std::vector<double> of_a = block_means(*a.picture), of_b = block_means(*b.picture);
+    for (std::size_t i = 0; i < of_a.size(); ++i)
+        if (std::abs(of_a[i] - of_b[i]) > kSameGrey) return false;
+    return true;
+}
 
 }  // namespace
 
@@ -44,7 +78,10 @@ void LiveView::found(Instant at, std::vector<FoundMarker> left, std::vector<Foun
     next_.left.found = std::move(left);
     next_.right.found = std::move(right);
     next_.left.searched = next_.right.searched = true;
-    shown_ = next_;
+    if (alike(next_.left, shown_.left) && alike(next_.right, shown_.right))
+        shown_.taken = next_.taken;  // it is as live as the new one
+    else
+        shown_ = next_;
 }
 
 void LiveView::failed(const std::string& why) {
