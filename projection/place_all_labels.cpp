@@ -107,7 +107,7 @@ void AllLabels::tell_of_others() {
 bool AllLabels::put(const LabelWish& wish) {
     auto label = place_label(wish, skin_, settings_, occupied_);
     if (!label) return false;
-    occupied_.take_away_label(wish.item);
+    if (const auto former = put_.find(wish.item); former != put_.end()) vacate(former->second, occupied_);
     occupy(*label, occupied_);
     put_.insert_or_assign(wish.item, std::move(*label));
     return true;

@@ -182,8 +182,9 @@ void OccupiedSkin::add(const Vector3d& p_in_ct, int owner) {
     cell.push_back({p_in_ct, owner});
 }
 
-void OccupiedSkin::take_away_label(int item) {
-    for (auto& [key, cell] : cells_) std::erase_if(cell, [&](const Taken& q) { return q.owner == item; });
+void OccupiedSkin::take_away(const Vector3d& p_in_ct, int owner) {
+    const auto cell = cells_.find(key((p_in_ct / kCell_mm).array().floor().cast<int>()));
+    if (cell != cells_.end()) std::erase_if(cell->second, [&](const Taken& q) { return q.owner == owner; });
 }
 
 bool OccupiedSkin::within(const Vector3d& p_in_ct, double distance_mm, int but_of) const {
@@ -201,12 +202,25 @@ bool OccupiedSkin::within(const Vector3d& p_in_ct, double distance_mm, int but_o
     return false;
 }
 
-void occupy(const Label& label, OccupiedSkin& occupied) {
-    for (const Vector3d& p : label.field_in_ct) occupied.add(p, label.item);
+namespace {
+
+template <class Visit>
+void each_point(const Label& label, const Visit& visit) {
+    for (const Vector3d& p : label.field_in_ct) visit(p);
     for (const auto& sign : label.signs_in_ct)
         for (const auto& outline : sign)
-            for (const Vector3d& p : outline) occupied.add(p, label.item);
-    for (const Vector3d& p : label.leader.points_in_ct) occupied.add(p, label.item);
+            for (const Vector3d& p : outline) visit(p);
+    for (const Vector3d& p : label.leader.points_in_ct) visit(p);
+}
+
+}  // namespace
+
+void occupy(const Label& label, OccupiedSkin& occupied) {
+    each_point(label, [&](const Vector3d& p) { occupied.add(p, label.item); });
+}
+
+void vacate(const Label& label, OccupiedSkin& occupied) {
+    each_point(label, [&](const Vector3d& p) { occupied.take_away(p, label.item); });
 }
 
 std::optional<Label> place_label(const LabelWish& wish, const SkinSurface& skin, const DrawingSettings& settings,

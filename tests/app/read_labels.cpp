@@ -419,11 +419,19 @@ LabelsRead LabelledHead::read(simulation::Preset preset, unsigned seed, bool eye
                 if (!rig.truly_seen(camera, {label.field_in_ct[i], label.field_normals_in_ct[i]}, lit)) return false;
             return true;
         };
-        const bool left = sees(simulation::SimulatedRig::Camera::left);
-        if (!left && !sees(simulation::SimulatedRig::Camera::right)) {
+        // From where it is seen best, as a person would look.
+        const bool by_left = sees(simulation::SimulatedRig::Camera::left),
+                   by_right = sees(simulation::SimulatedRig::Camera::right);
+        if (!by_left && !by_right) {
             ++result.unseen;
             continue;
         }
+        const auto facing = [&](const CameraModel& one) {
+            const std::size_t k = label.field_in_ct.size() / 2;
+            const Vector3d way = rig_from_ct.inverse() * one.centre_in_rig() - label.field_in_ct[k];
+            return way.normalized().dot(label.field_normals_in_ct[k]);
+        };
+        const bool left = by_left && (!by_right || facing(truth.left_camera) > facing(truth.right_camera));
         const CameraModel& camera = left ? truth.left_camera : truth.right_camera;
         const GrayImage& picture = left ? frame.left : frame.right;
         const Seen seen = eye ? seen_by_eye(rig, light, camera, lit)
