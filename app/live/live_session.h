@@ -133,6 +133,7 @@ private:
     Instant seen_at_{};                 ///< of the last frame, on the room's clock
     int landmark_ = -1;                 ///< that is lit for a person to look at; -1: the plan is lit
     int landmarks_to_look_at_ = 0;
+    std::string landmark_place_;  ///< of the one that is lit, in words: "front, left, high"
     std::deque<Instant> lit_at_;  ///< of the last pictures, on the room's clock
     int good_updates_ = 0;        ///< ALIGNED so often; then the simulated fault begins
     bool ending_ = false, following_ = false;

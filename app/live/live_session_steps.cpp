@@ -9,6 +9,7 @@
 #include "app/live/live_session.h"
 #include "app/live/scene_of_session.h"
 #include "app/report/registration_certificate.h"
+#include "app/verify_landmarks.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -110,6 +111,7 @@ void LiveSession::confirm_light(Session& session) {
     landmarks_to_look_at_ = static_cast<int>(session.landmarks().size());
     if (++landmark_ < landmarks_to_look_at_) {
         session.light_landmark(static_cast<std::size_t>(landmark_));
+        landmark_place_ = words_of_place(drawing_.skin, session.landmarks()[static_cast<std::size_t>(landmark_)]);
     } else {
         end_verification(session);
         gate_.verify(seen_at_);
@@ -135,9 +137,11 @@ void LiveSession::show_verification(const Session::Update& update, LightGate::Ru
     });
     ruling.headline =
         fmt::format("LOOK: is the ring of light on landmark {} of {}?", landmark_ + 1, landmarks_to_look_at_);
-    ruling.details.insert(ruling.details.begin(),
-                          "The picture of the head shows where it belongs. If it lies elsewhere on the patient, press "
-                          "Stop, and scan again.");
+    ruling.details.insert(
+        ruling.details.begin(),
+        (landmark_place_.empty() ? "The picture of the head shows where it belongs."
+                                 : "It belongs there: " + landmark_place_ + " (see the picture of the head).") +
+            " If it lies elsewhere on the patient, press Stop, and scan again.");
 }
 
 /// The short scan, and what it means for the light.
