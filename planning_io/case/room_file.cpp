@@ -80,6 +80,10 @@ Json json_of(const RoomCamera& camera) {
 }  // namespace
 
 RoomFile read_room(const std::filesystem::path& file) {
+    if (std::error_code ignored; !std::filesystem::exists(file, ignored))
+        throw InputError(
+            file, "does not exist",
+            "Check its name; `planlight devices --out room.json` writes a first one where cameras answer.");
     const Json json = parse_file(file, kFormat);
     const JsonValue root(json, file);
     root.has_only({"format", "version", "name", "rig", "projector", "cameras", "markers"});
