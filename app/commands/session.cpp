@@ -24,6 +24,7 @@ struct SessionOptions {
     Path keep;  ///< folder for every match; empty: CASE/registrations
     std::string record = "events";
     Path recordings;  ///< folder; empty: CASE/recordings
+    Path resume;      ///< recording of the session to go on with; empty: the last one is offered
     std::string series_uid;
     std::string preset = "paper", projector_monitor, operator_monitor;
     unsigned seed = 1;
@@ -36,6 +37,28 @@ struct SessionOptions {
     Path projector_file;         ///< projector.json of the monitor; empty: none
 };
 
+Path recordings_folder(const SessionOptions& options) {
+    return options.recordings.empty() ? options.case_folder / kRecordingsFolder : options.recordings;
+}
+
+/// What the session may go on with. What was asked for and cannot be is refused; what would merely be offered is said.
+/// `rig`: null where it is not known yet.
+std::optional<ResumeOffer> resume_of(const SessionOptions& options, const Case& the_case, const RigCalibration* rig) {
+    if (!options.resume.empty()) {
+        ResumeOffer offer = resume_offer(options.resume, the_case, rig);
+        offer.at_once = true;
+        return offer;
+    }
+    const auto last = newest_recording(recordings_folder(options));
+    if (!last) return std::nullopt;
+    try {
+        return resume_offer(*last, the_case, rig);
+    } catch (const Error& why_not) {
+        fmt::print(stderr, "The last session cannot be gone on with: {}.\n", why_not.what());
+        return std::nullopt;
+    }
+}
+
 /// The recording of this session, said where and how much; null with `--record none`.
 std::unique_ptr<SessionRecorder> recorder_of(const SessionOptions& options, const Case& the_case,
                                              const SiteSettings& site) {
@@ -44,16 +67,15 @@ std::unique_ptr<SessionRecorder> recorder_of(const SessionOptions& options, cons
         fmt::print("This session is not recorded.\n");
         return nullptr;
     }
-    const Path folder = options.recordings.empty() ? options.case_folder / kRecordingsFolder : options.recordings;
-    const Path file = new_recording_name(folder);
+    const Path file = new_recording_name(recordings_folder(options));
     auto sink = std::make_unique<RecordingFile>(file);
     std::error_code ignored;
-    fmt::print(stderr,
-               "Recorded in {}: {}; {:.0f} GB are free. It shows the patient's face, and only {} can read it.\n",
-               file.string(),
-               mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
-                                          : "every frame, about 23 GB an hour in the paper's room",
-               static_cast<double>(std::filesystem::space(folder, ignored).available) / 1e9, operator_name());
+    fmt::print(
+        stderr, "Recorded in {}: {}; {:.0f} GB are free. It shows the patient's face, and only {} can read it.\n",
+        file.string(),
+        mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
+                                   : "every frame, about 23 GB an hour in the paper's room",
+        static_cast<double>(std::filesystem::space(file.parent_path(), ignored).available) / 1e9, operator_name());
     return std::make_unique<SessionRecorder>(
         std::move(sink), recording_head(the_case, options.case_folder, mode, drawing_settings(site)));
 }
@@ -85,9 +107,11 @@ int run_in_simulated_room(const SessionOptions& options, const Case& the_case) {
     simulation::RoomSettings room;
     room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     room.seed = options.seed;
+    auto resume = resume_of(options, the_case, nullptr);
     const auto recorder = recorder_of(options, the_case, site);
     LiveOptions live = live_options(options, site, recorder.get());
     live.observer = recorder.get();
+    live.resume = std::move(resume);
     return run_live_simulated(
         [&] { return std::make_unique<SimulatedRoom>(volume, the_case.plan, room, options.speed_mm_s, options.fault); },
         the_case, CaseDrawing(the_case, drawing_settings(site)), live);
@@ -99,9 +123,11 @@ int run_in_room(SessionOptions options, const Case& the_case) {
     const SiteSettings site = read_site_settings();
     if (options.projector_monitor.empty()) options.projector_monitor = room.monitor;
     if (options.projector_file.empty() && options.light_delay_ms < 0) options.projector_file = room.projector_file;
+    auto resume = resume_of(options, the_case, &rig);
     const auto recorder = recorder_of(options, the_case, site);
     LiveOptions live = live_options(options, site, recorder.get());
     live.observer = recorder.get();
+    live.resume = std::move(resume);
     return run_live([&](Projector& projector) { return std::make_unique<RealRoom>(room, rig, projector); }, the_case,
                     CaseDrawing(the_case, drawing_settings(site)), live);
 }
@@ -133,6 +159,9 @@ Run add_session(CLI::App& app) {
         ->capture_default_str()
         ->check(CLI::IsMember({"none", "events", "all"}));
     sub->add_option("--recordings", o.recordings, "Folder for the recording (default: CASE/recordings)");
+    sub->add_option("--resume", o.resume,
+                    "Recording of a session that was cut short: goes on with its last match, without a press, if "
+                    "markers, rig and skin agree with it (otherwise the newest recording is offered in the window)");
     preset_option(sub, o.preset)->excludes(room);
     sub->add_option(
         "--projector", o.projector_monitor,

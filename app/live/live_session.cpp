@@ -59,13 +59,15 @@ Status dark_status() {
 }  // namespace
 
 LiveSession::LiveSession(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
-                         std::filesystem::path keep_matches_in, SessionObserver* observer)
+                         std::filesystem::path keep_matches_in, SessionObserver* observer,
+                         std::optional<ResumeOffer> offer)
     : case_(the_case),
       drawing_(drawing),
       keep_matches_in_(std::move(keep_matches_in)),
       observer_(observer),
       model_(model_of_case(the_case, drawing)),
-      gate_(observer) {
+      gate_(observer),
+      offer_(std::move(offer)) {
     set_status(StatusKind::waiting, "The room is being made ready.", {"This takes some seconds."});
     show_alive();
     thread_ = std::thread([this, make_room = std::move(make_room)] {
@@ -206,6 +208,7 @@ void LiveSession::run(const MakeRoom& make_room) {
         m.track = {false, "register first"};
         m.stop = {false, "nothing runs"};
     });
+    offer_to_resume();
     for (;;) {
         const Press press = next_press(!following_);
         show_alive();
@@ -230,6 +233,8 @@ void LiveSession::run(const MakeRoom& make_room) {
 void LiveSession::act(const Press& press, Session& session, Room& room) {
     switch (press.action) {
         case OperatorAction::scan:
+            offer_.reset();
+            look_first_ = false;
             following_ = projecting_ = false;
             permit_light(press);
             room.let_patient_move(false);
@@ -247,13 +252,18 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
             break;
         case OperatorAction::track:
             permit_light(press);
+            look_again(session);
             gate_.restart();
             end_verification(session);
             following_ = true;
             room.let_patient_move(true);
             break;
         case OperatorAction::confirm:
-            confirm(session);
+            permit_light(press);
+            if (offer_)
+                resume(session);
+            else
+                confirm(session);
             return;
         case OperatorAction::dark:
         case OperatorAction::stop:
@@ -263,7 +273,8 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
                 darks_answered_ = press.darks;
                 m.status = dark_status();
                 m.scene.light = nullptr;
-                m.confirm = m.check_skin = false;
+                m.confirm = offer_.has_value();
+                m.check_skin = false;
                 m.stop = {false, "nothing runs"};
             });
             return;

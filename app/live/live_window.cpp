@@ -58,7 +58,9 @@ void check_monitor(const std::string& name, const ProjectorFacts& facts) {
 class Autoplay {
 public:
     /// That light or a match is right is a person's word: only in the simulated room is it said without one.
-    explicit Autoplay(bool says_it_is_right) : says_it_is_right_(says_it_is_right) {}
+    /// `resumes`: the session goes on with a match by itself, and Track is what comes next.
+    explicit Autoplay(bool says_it_is_right, bool resumes = false)
+        : says_it_is_right_(says_it_is_right), step_(resumes ? 2 : 0) {}
 
     OperatorAction next(const OperatorModel& model) {
         if (step_ == 0 && model.scan.enabled) return advance(OperatorAction::scan);
@@ -76,7 +78,7 @@ private:
         return action;
     }
     bool says_it_is_right_;
-    int step_ = 0;
+    int step_;
     std::string confirmed_;  ///< the words on the button that was pressed last
 };
 
@@ -109,7 +111,10 @@ void tell_of_projector(const ProjectorProblem& problem, LiveSession& session, bo
         lost = false;
         return;
     }
-    if (!lost) session.post(OperatorAction::dark);
+    if (!lost) {
+        session.post(OperatorAction::dark);
+        session.look_before_light();
+    }
     lost = true;
     model.status = {StatusKind::dark,
                     "No projector: " + problem.what + ".",
@@ -197,10 +202,13 @@ int run_live_simulated(MakeRoom make_room, const Case& the_case, const CaseDrawi
         settings.session_patience = std::chrono::milliseconds(2500);
         projector = std::make_unique<ProjectorKeeper>(monitor, settings);
     }
-    LiveSession session(std::move(make_room), the_case, drawing, options.keep_matches_in, options.observer);
+    LiveSession session(std::move(make_room), the_case, drawing, options.keep_matches_in, options.observer,
+                        options.resume);
     std::unique_ptr<LightKeeper> light;  // dark and gone before the session is
     if (projector) light = std::make_unique<LightKeeper>(*projector, session);
-    return told_at_the_end(run_windows(window, session, projector.get(), options, Autoplay(true)), session, options);
+    return told_at_the_end(run_windows(window, session, projector.get(), options,
+                                       Autoplay(true, options.resume && options.resume->at_once)),
+                           session, options);
 }
 
 int run_live(const MakeRoomWith& make_room, const Case& the_case, const CaseDrawing& drawing,
@@ -209,8 +217,10 @@ int run_live(const MakeRoomWith& make_room, const Case& the_case, const CaseDraw
     check_monitor(options.projector_monitor, options.projector);
     ProjectorKeeper projector(options.projector_monitor, keeper_settings(options));
     LiveSession session([&] { return make_room(projector); }, the_case, drawing, options.keep_matches_in,
-                        options.observer);
-    return told_at_the_end(run_windows(window, session, &projector, options, Autoplay(false)), session, options);
+                        options.observer, options.resume);
+    return told_at_the_end(
+        run_windows(window, session, &projector, options, Autoplay(false, options.resume && options.resume->at_once)),
+        session, options);
 }
 
 void show_model(const OperatorModel& model, FitView view) {

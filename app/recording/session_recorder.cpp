@@ -4,6 +4,7 @@
 
 #include <atomic>
 
+#include "app/console.h"
 #include "app/recording/recording_head.h"
 #include "app/recording/session_events.h"
 #include "planning_io/recording/packed_pictures.h"
@@ -106,7 +107,8 @@ void SessionRecorder::said(const std::string& kind, const std::string& headline,
 void SessionRecorder::asked(SessionCall call, const std::vector<PointPair>& landmarks, int which) noexcept {
     event([&] { return session_events::asked(call, landmarks, which); });
     const std::lock_guard lock(mutex_);
-    scanning_ = first_of_scan_ = call == SessionCall::scan || call == SessionCall::check_skin;
+    scanning_ = first_of_scan_ =
+        call == SessionCall::scan || call == SessionCall::check_skin || call == SessionCall::resume;
 }
 
 void SessionRecorder::clock_read(Instant now) noexcept {
@@ -217,6 +219,32 @@ void SessionRecorder::scanned(const Session& session) noexcept {
 
 void SessionRecorder::matched(const Session& session) noexcept {
     event([&] { return session_events::matched(session); });
+    try {
+        if (auto match = session.kept_match()) {
+            match->made_utc = today();
+            keep(*match);
+        }
+    } catch (const std::exception&) {
+    }
+}
+
+/// All that it takes to go on with this match after whatever ends this session.
+void SessionRecorder::keep(const KeptMatch& match) {
+    std::string text = text_of(match);
+    const std::lock_guard lock(mutex_);
+    flush();
+    writer_.add({chunk_types::kMatch, now_, std::move(text)});
+}
+
+void SessionRecorder::match_offered(const KeptMatch& match) noexcept {
+    try {
+        keep(match);
+    } catch (const std::exception&) {
+    }
+}
+
+void SessionRecorder::resumed(const Session& session, const ResumeCheck& check) noexcept {
+    event([&] { return session_events::resumed(session, check); });
 }
 
 void SessionRecorder::updated(const Session& session, const Session::Update& update) noexcept {

@@ -59,6 +59,8 @@ public:
     void matched(const Session& session) noexcept override;
     void updated(const Session& session, const Session::Update& update) noexcept override;
     void skin_checked(const SkinCheck& check) noexcept override;
+    void match_offered(const KeptMatch& match) noexcept override;
+    void resumed(const Session& session, const ResumeCheck& check) noexcept override;
     void refused(SessionCall call, const std::exception& why) noexcept override;
     void gate(GateCall call, Instant at, double off_mm, const LightGate::Ruling* ruling) noexcept override;
 
@@ -67,6 +69,7 @@ private:
     struct PackedSize;
     void input(RecordedInput input);
     void flush();
+    void keep(const KeptMatch& match);
     template <class MakeText>
     void event(const MakeText& make_text) noexcept;
     void write(const Frame& frame);

@@ -96,6 +96,7 @@ private:
         if (what == "updated") take_update(event);
         if (what == "gate") take_ruling(event);
         if (what == "matched") take_match(event);
+        if (what == "resumed") take_resumption(event);
         if (what == "asked") take_call(event);
         if (what == "pressed" && event.value("action", "") == "dark") say("DARK was pressed.", event);
         if (what == "refused")
@@ -126,6 +127,20 @@ private:
                              event.value("points", std::size_t{0})};
         for (const Json& reason : event.at("reasons")) match.reasons.push_back(reason.get<std::string>());
         facts_.matches.push_back(match);
+        take_items(event);
+    }
+
+    /// A match of an earlier session that this one went on with.
+    void take_resumption(const Json& event) {
+        say(fmt::format(
+                "The match of an earlier session was gone on with: {} markers, and the plan's skin within {:.1f} "
+                "mm of where they put it.",
+                event.value("markers", 0), number(event.at("skin_off_mm"))),
+            event);
+        take_items(event);
+    }
+
+    void take_items(const Json& event) {
         landmark_ = -1;
         for (OperationItem& item : facts_.items) item.predicted_mm.reset();
         now_.clear();

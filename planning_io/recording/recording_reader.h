@@ -5,6 +5,8 @@
 #include <fstream>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "planning_io/recording/recording_chunk.h"
 
@@ -25,6 +27,10 @@ public:
     /// damaged or of another version.
     explicit RecordingReader(const std::filesystem::path& file);
 
+    /// From now on `next` gives chunks of these types only. The others are passed over by their headers, so that an
+    /// hour's pictures cost no time; that what they hold is whole is then not looked at.
+    void want_only(std::vector<ChunkType> types) { wanted_ = std::move(types); }
+
     /// The next whole chunk; empty at the end, or where the rest cannot be read (see `end`). Never throws for damage.
     std::optional<RecordingChunk> next();
 
@@ -40,7 +46,10 @@ private:
     std::optional<RecordingChunk> whole_chunk_at(std::uint64_t at, std::optional<std::uint64_t> number);
     bool whole_chunk_after(std::uint64_t at);
 
+    bool pass_over();
+
     std::filesystem::path file_;
+    std::vector<ChunkType> wanted_;  ///< empty: all
     std::ifstream in_;
     std::uint64_t bytes_ = 0, at_ = 0, chunks_ = 0;
     bool done_seen_ = false;
