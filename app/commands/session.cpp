@@ -23,8 +23,9 @@ struct SessionOptions {
     Path room;  ///< room.json of real devices; empty: the simulated room
     Path keep;  ///< folder for every match; empty: CASE/registrations
     std::string record = "events";
-    Path recordings;  ///< folder; empty: CASE/recordings
-    Path resume;      ///< recording of the session to go on with; empty: the last one is offered
+    bool anonymous = false;  ///< the recording
+    Path recordings;         ///< folder; empty: CASE/recordings
+    Path resume;             ///< recording of the session to go on with; empty: the last one is offered
     std::string series_uid;
     std::string preset = "paper", projector_monitor, operator_monitor;
     unsigned seed = 1;
@@ -67,8 +68,21 @@ std::unique_ptr<SessionRecorder> recorder_of(const SessionOptions& options, cons
         fmt::print("This session is not recorded.\n");
         return nullptr;
     }
+    if (options.anonymous && mode == RecordMode::all)
+        throw Error(ExitCode::usage, "what is recorded to be replayed cannot be anonymous",
+                    "Give --record events with --anonymous.");
     const Path file = new_recording_name(recordings_folder(options));
     auto sink = std::make_unique<RecordingFile>(file);
+    const RecordingHead head = recording_head(the_case, options.case_folder, mode, drawing_settings(site));
+    if (options.anonymous) {
+        fmt::print(
+            stderr,
+            "Recorded in {}, without names, and blurred but for the plan's surroundings; no later session can go "
+            "on with its match. Matches with the scan of the face are still kept ({}).\n",
+            file.string(), options.keep.empty() ? "see --keep" : options.keep.string());
+        return std::make_unique<SessionRecorder>(std::move(sink), without_names(head), RecordingWriterSettings{},
+                                                 FrameChoiceSettings{}, NamesLeftOut(the_case));
+    }
     std::error_code ignored;
     fmt::print(
         stderr, "Recorded in {}: {}; {:.0f} GB are free. It shows the patient's face, and only {} can read it.\n",
@@ -76,8 +90,7 @@ std::unique_ptr<SessionRecorder> recorder_of(const SessionOptions& options, cons
         mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
                                    : "every frame, about 23 GB an hour in the paper's room",
         static_cast<double>(std::filesystem::space(file.parent_path(), ignored).available) / 1e9, operator_name());
-    return std::make_unique<SessionRecorder>(
-        std::move(sink), recording_head(the_case, options.case_folder, mode, drawing_settings(site)));
+    return std::make_unique<SessionRecorder>(std::move(sink), head);
 }
 
 LiveOptions live_options(const SessionOptions& options, const SiteSettings& site, const SessionRecorder* recorder) {
@@ -162,6 +175,8 @@ Run add_session(CLI::App& app) {
     sub->add_option("--resume", o.resume,
                     "Recording of a session that was cut short: goes on with its last match, without a press, if "
                     "markers, rig and skin agree with it (otherwise the newest recording is offered in the window)");
+    sub->add_flag("--anonymous", o.anonymous,
+                  "The recording holds no names, and its pictures are blurred but for the plan's surroundings");
     preset_option(sub, o.preset)->excludes(room);
     sub->add_option(
         "--projector", o.projector_monitor,

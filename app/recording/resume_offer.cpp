@@ -17,14 +17,15 @@ constexpr const char* kScan = "Begin the session without it: scan and register t
 /// What the events after a match say of it.
 struct Fate {
     std::string match;  ///< its chunk; empty: none
-    std::string why_none = "nobody was found in that session";
+    std::string found;  ///< the last one
+    std::string why_none = "nobody was found in that session, or it was recorded without what that takes (--anonymous)";
     bool confirmed = false;
     std::string stopped;  ///< why its light was stopped, and not asked for again
 
     void take(const RecordingChunk& chunk) {
         const std::string& text = chunk.payload;
         if (chunk.type == chunk_types::kMatch) {
-            match = text;
+            match = found = text;
             confirmed = false;
             stopped.clear();
         } else if (text.starts_with(R"({"what":"asked","call":"scan")")) {
@@ -62,7 +63,9 @@ void check_names(const LastMatch& last, const Case& the_case, const fs::path& re
 
 LastMatch last_match_of(const fs::path& recording) {
     RecordingReader reader(recording);
-    reader.want_only({chunk_types::kHead, chunk_types::kEvent, chunk_types::kMatch});
+    reader.want_only([](const ChunkType& type, Instant) {
+        return type == chunk_types::kHead || type == chunk_types::kEvent || type == chunk_types::kMatch;
+    });
     LastMatch last;
     Fate fate;
     bool headed = false;
@@ -77,6 +80,7 @@ LastMatch last_match_of(const fs::path& recording) {
     if (!headed)
         throw DamagedFileError(recording, "does not say whose it is",
                                "It ends before its first chunk: there is nothing in it.");
+    if (!fate.found.empty()) last.found = kept_match_of(fate.found, recording);
     if (fate.match.empty()) {
         last.why_none = fate.why_none;
     } else if (!fate.stopped.empty()) {

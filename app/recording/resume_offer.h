@@ -21,7 +21,8 @@ struct ResumeOffer {
 struct LastMatch {
     RecordingHead head;
     std::optional<KeptMatch> match;
-    std::string why_none;  ///< in words, where there is none
+    std::string why_none;            ///< in words, where there is none
+    std::optional<KeptMatch> found;  ///< the last one that was found, whatever became of it
 };
 LastMatch last_match_of(const std::filesystem::path& recording);
 

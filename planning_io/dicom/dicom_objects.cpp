@@ -74,6 +74,7 @@ Elements set_head(vtkDICOMMetaData* meta, const DicomStudy& study, const DicomOb
     set.text(DC::ReferringPhysicianName, vtkDICOMVR::PN, study.referring_physician);
     if (!study.study_description.empty()) set.name(DC::StudyDescription, study.study_description);
     set.text(DC::Modality, vtkDICOMVR::CS, modality);
+    set.text(DC::BodyPartExamined, vtkDICOMVR::CS, "HEAD");
     set.text(DC::SeriesNumber, vtkDICOMVR::IS, std::to_string(name.series_number));
     set.name(DC::SeriesDescription, name.description);
     set.text(DC::InstanceNumber, vtkDICOMVR::IS, std::to_string(name.number));
@@ -189,7 +190,8 @@ void write_secondary_capture(const DicomStudy& study, const DicomObjectName& nam
     std::string pixels(3 * picture.pixels.size(), '\0');
     for (std::size_t i = 0; i < picture.pixels.size(); ++i)
         for (std::size_t k = 0; k < 3; ++k) pixels[3 * i + k] = static_cast<char>(picture.pixels[i][k]);
-    write_safely(file, compile(meta, kExplicitLittleEndian, file, &pixels));
+    set.bytes(DC::PixelData, pixels.size() % 2 == 0 ? pixels : pixels + '\0');
+    write_safely(file, compile(meta, kExplicitLittleEndian, file));
 }
 
 }  // namespace planlight

@@ -59,8 +59,7 @@ std::string digits_of(const std::string& iso, std::size_t from, std::size_t coun
 }
 
 /// vtk-dicom writes to files only.
-std::string compile(vtkDICOMMetaData* meta, const char* transfer_syntax, const fs::path& file,
-                    const std::string* pixels) {
+std::string compile(vtkDICOMMetaData* meta, const char* transfer_syntax, const fs::path& file) {
     std::string name = (fs::temp_directory_path() / "planlight-dicom-XXXXXX").string();
     const int fd = mkstemp(name.data());
     if (fd < 0)
@@ -75,9 +74,9 @@ std::string compile(vtkDICOMMetaData* meta, const char* transfer_syntax, const f
     compiler->SetStudyInstanceUID(meta->Get(DC::StudyInstanceUID).AsString().c_str());
     compiler->SetTransferSyntaxUID(transfer_syntax);
     compiler->WriteHeader();
-    if (pixels)
-        compiler->WritePixelData(reinterpret_cast<const unsigned char*>(pixels->data()),
-                                 static_cast<vtkIdType>(pixels->size()));
+    // Of pixels the header holds the length alone.
+    if (const vtkDICOMValue& pixels = meta->Get(DC::PixelData); pixels.IsValid())
+        compiler->WritePixelData(pixels.GetUnsignedCharData(), static_cast<vtkIdType>(pixels.GetNumberOfValues()));
     compiler->Close();
     const bool good = compiler->GetErrorCode() == 0;
     const std::string bytes = good ? read_whole(name) : std::string();

@@ -28,9 +28,8 @@ vtkDICOMSequence sequence_of(const vtkDICOMItem& item);
 /// Of an ISO 8601 date with time: so many digits from that one on; empty where there are fewer.
 std::string digits_of(const std::string& iso, std::size_t from, std::size_t count);
 
-/// The file's bytes: what `meta` holds, which names its SOP instance, series and study, and then the pixels, if there
-/// are any. `file`: for the words of a DiskError.
-std::string compile(vtkDICOMMetaData* meta, const char* transfer_syntax, const std::filesystem::path& file,
-                    const std::string* pixels = nullptr);
+/// The file's bytes: what `meta` holds, which names its SOP instance, series and study. `file`: for the words of a
+/// DiskError.
+std::string compile(vtkDICOMMetaData* meta, const char* transfer_syntax, const std::filesystem::path& file);
 
 }  // namespace planlight::dicom_write

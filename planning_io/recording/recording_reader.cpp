@@ -96,7 +96,7 @@ bool RecordingReader::whole_chunk_after(std::uint64_t at) {
 /// Past a chunk that nobody wants, as far as its header tells; false where it is wanted, or is to be read to be judged:
 /// the last one in the file is.
 bool RecordingReader::pass_over() {
-    if (wanted_.empty() || at_ > bytes_ || bytes_ - at_ < kChunkHeaderBytes) return false;
+    if (!wanted_ || at_ > bytes_ || bytes_ - at_ < kChunkHeaderBytes) return false;
     std::array<char, kChunkHeaderBytes> header{};
     in_.clear();
     in_.seekg(static_cast<std::streamoff>(at_));
@@ -104,7 +104,7 @@ bool RecordingReader::pass_over() {
     if (number_at<std::uint64_t>(header.data() + 8) != chunks_) return false;
     ChunkType type{};
     std::copy_n(header.data() + 4, 4, type.begin());
-    if (type == chunk_types::kDone || std::find(wanted_.begin(), wanted_.end(), type) != wanted_.end()) return false;
+    if (type == chunk_types::kDone || wanted_(type, Instant(number_at<std::int64_t>(header.data() + 16)))) return false;
     const std::uint64_t size = number_at<std::uint32_t>(header.data() + 24);
     if (size > kMostPayloadBytes || size + kChunkHeaderBytes >= bytes_ - at_) return false;
     at_ += kChunkHeaderBytes + size;
@@ -122,7 +122,7 @@ std::optional<RecordingChunk> RecordingReader::next() {
         at_ += kChunkHeaderBytes + chunk->payload.size();
         ++chunks_;
         done_seen_ = chunk->type == chunk_types::kDone;
-        if (wanted_.empty() || std::find(wanted_.begin(), wanted_.end(), chunk->type) != wanted_.end()) return chunk;
+        if (!wanted_ || wanted_(chunk->type, chunk->at)) return chunk;
         return next();  // the last, or DONE
     }
     if (at_ == bytes_)

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "planning_io/recording/recording_chunk.h"
 
@@ -27,9 +27,10 @@ public:
     /// damaged or of another version.
     explicit RecordingReader(const std::filesystem::path& file);
 
-    /// From now on `next` gives chunks of these types only. The others are passed over by their headers, so that an
-    /// hour's pictures cost no time; that what they hold is whole is then not looked at.
-    void want_only(std::vector<ChunkType> types) { wanted_ = std::move(types); }
+    /// From now on `next` gives the chunks that are wanted, by type and time, only. The others are passed over by their
+    /// headers, so that an hour's pictures cost no time; that what they hold is whole is then not looked at.
+    using Wanted = std::function<bool(const ChunkType&, Instant)>;
+    void want_only(Wanted wanted) { wanted_ = std::move(wanted); }
 
     /// The next whole chunk; empty at the end, or where the rest cannot be read (see `end`). Never throws for damage.
     std::optional<RecordingChunk> next();
@@ -49,7 +50,7 @@ private:
     bool pass_over();
 
     std::filesystem::path file_;
-    std::vector<ChunkType> wanted_;  ///< empty: all
+    Wanted wanted_;  ///< empty: all
     std::ifstream in_;
     std::uint64_t bytes_ = 0, at_ = 0, chunks_ = 0;
     bool done_seen_ = false;
