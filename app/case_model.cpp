@@ -26,6 +26,8 @@ std::vector<PlanRow> rows_of(const Plan& plan, const PlanDrawing& drawing) {
         const DrawnItem& item = drawing.items[i];
         PlanRow row;
         row.name = item.label.empty() ? item.name : item.label;
+        if (!item.lit_name.empty() && item.lit_name.front() == '#' && item.lit_name != item.name)
+            row.name = item.lit_name + "  " + row.name;  // what the light calls it
         row.depth_mm = depth_of(plan, item);
         for (const auto& stroke : drawing.strokes)
             if (stroke.item == static_cast<int>(i) && stroke.kind == item.kind) {
@@ -37,18 +39,56 @@ std::vector<PlanRow> rows_of(const Plan& plan, const PlanDrawing& drawing) {
     return rows;
 }
 
+/// Where the plan meets the skin, or begins: not the targets in the depth, which may lie across the middle.
+std::vector<Eigen::Vector3d> points_on_skin(const Plan& plan) {
+    std::vector<Eigen::Vector3d> points;
+    for (const auto& line : plan.osteotomy_lines)
+        points.insert(points.end(), line.points_in_ct.begin(), line.points_in_ct.end());
+    for (const auto& b : plan.boreholes) points.push_back(b.position_in_ct);
+    for (const auto& t : plan.trajectories) points.push_back(t.entry_in_ct);
+    for (const auto& c : plan.cut_planes) points.push_back(c.origin_in_ct);
+    return points;
+}
+
 }  // namespace
+
+std::string side_of_plan(const Case& the_case) {
+    constexpr double kMiddle_mm = 10;                   // so near to the middle nothing is said to lie on a side
+    constexpr double kEdge_mm = 2, kMostAtEdge = 0.04;  // more of the skin there: the volume was cut off
+    const auto& skin = the_case.skin.vertices_in_ct;
+    const std::vector<Eigen::Vector3d> points = points_on_skin(the_case.plan);
+    if (points.empty() || skin.empty()) return {};
+    const auto [low, high] = std::minmax_element(
+        skin.begin(), skin.end(), [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a.x() < b.x(); });
+    for (const double edge : {low->x(), high->x()}) {
+        const auto at_edge = std::count_if(skin.begin(), skin.end(),
+                                           [&](const Eigen::Vector3d& p) { return std::abs(p.x() - edge) < kEdge_mm; });
+        if (static_cast<double>(at_edge) > kMostAtEdge * static_cast<double>(skin.size())) return {};
+    }
+    const double middle = (low->x() + high->x()) / 2;
+    bool left = false, right = false;
+    for (const auto& p : points) {
+        left = left || p.x() > middle + kMiddle_mm;  // +x is the patient's left
+        right = right || p.x() < middle - kMiddle_mm;
+    }
+    return left && right ? "BOTH SIDES" : left ? "LEFT" : right ? "RIGHT" : "MIDDLE";
+}
 
 OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing) {
     OperatorModel model;
     const Plan& plan = the_case.plan;
-    model.case_title = title_of(the_case);
+    const CaseNames& names = the_case.names;
+    model.case_title = names.patient.empty() ? "Case " + the_case.code : names.patient;
+    model.case_plan = names.title.empty() ? names.plan : names.title;
+    if (model.case_plan.empty()) model.case_plan = "Plan without a name";
+    if (!names.plan_version.empty()) model.case_plan += ", version " + names.plan_version;
+    if (!names.series_date.empty()) model.case_plan += " \u00b7 series of " + names.series_date;
+    model.case_side = side_of_plan(the_case);
     const auto counted = [](std::size_t count, const char* one, const char* many) {
         return fmt::format("{} {}", count, count == 1 ? one : many);
     };
     model.case_subtitle =
-        fmt::format("Case {} \u00b7 {}{} \u00b7 {}, {}, {}", the_case.code, the_case.created.substr(0, 10),
-                    the_case.names.series_date.empty() ? "" : " of a scan of " + the_case.names.series_date,
+        fmt::format("{} of {} \u00b7 {}, {}, {}", the_case.code, the_case.created.substr(0, 10),
                     counted(plan.osteotomy_lines.size() + plan.cut_planes.size(), "cutting line", "cutting lines"),
                     counted(plan.boreholes.size(), "borehole", "boreholes"),
                     counted(plan.trajectories.size(), "trajectory", "trajectories"));

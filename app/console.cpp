@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <cstring>
 #include <ctime>
@@ -168,6 +169,20 @@ int run_and_explain(const std::function<int()>& command) {
     }
     add_to_log(fmt::format("exit {}", code));
     return code;
+}
+
+namespace {
+volatile std::sig_atomic_t end_signal = 0;
+}
+
+void note_end_signals() {
+    struct sigaction action {};
+    action.sa_handler = [](int) { end_signal = 1; };
+    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
+}
+
+bool asked_to_end() {
+    return end_signal != 0;
 }
 
 }  // namespace planlight

@@ -47,6 +47,12 @@ private:
 /// One line on stderr that begins with "warning: ".
 void warn(const std::string& text);
 
+/// From now on SIGINT, SIGTERM and SIGHUP are only noted, so that what runs can end in order. A read from the terminal
+/// that waits is broken off by them.
+void note_end_signals();
+/// Whether one of them came since.
+bool asked_to_end();
+
 /// The present moment, UTC, ISO 8601.
 std::string today();
 

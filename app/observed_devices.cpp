@@ -40,6 +40,13 @@ StereoFrame ObservedDevices::ObservedCameras::newest(Instant not_before, std::ch
     return frame;
 }
 
+std::string ObservedDevices::ObservedCameras::doubt() const {
+    std::string doubt = device_.doubt();
+    if (observer_ && doubt != told_doubt_) observer_->cameras_doubted(doubt);
+    told_doubt_ = doubt;
+    return doubt;
+}
+
 Instant ObservedDevices::ObservedClock::now() const {
     const Instant now = device_.now();
     if (observer_) observer_->clock_read(now);

@@ -20,6 +20,9 @@ public:
     StereoCamera& cameras() { return cameras_; }
     const Clock& clock() const { return clock_; }
 
+    /// Darkness before the observer hears of anything.
+    void darken_first() noexcept { projector_.darken_untold(); }
+
 private:
     class ObservedProjector final : public Projector {
     public:
@@ -28,6 +31,7 @@ private:
         int height() const override { return device_.height(); }
         Instant show(const RgbImage& picture, Instant valid_until) override;
         void go_dark() noexcept override;
+        void darken_untold() noexcept { device_.go_dark(); }
 
     private:
         Projector& device_;
@@ -38,10 +42,12 @@ private:
         ObservedCameras(StereoCamera& device, SessionObserver* observer) : device_(device), observer_(observer) {}
         StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override;
         StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) override;
+        std::string doubt() const override;
 
     private:
         StereoCamera& device_;
         SessionObserver* observer_;
+        mutable std::string told_doubt_;  ///< what the observer heard last
     };
     class ObservedClock final : public Clock {
     public:

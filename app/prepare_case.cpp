@@ -15,6 +15,7 @@
 #include "planning_io/types/spare_memory.h"
 #include "planning_io/volume/read_volume.h"
 #include "projection/check_plan.h"
+#include "projection/label_names.h"
 
 namespace planlight {
 namespace {
@@ -86,6 +87,27 @@ void judge(const Volume& volume, const SkinSettings& skin, const PreparationWatc
         add_warnings({doubt.finding + ". " + doubt.remedy}, watcher, the_case);
 }
 
+/// Items that have no skin for their name, or for nothing at all.
+void warn_of_labels(const PlanDrawing& drawing, const PreparationWatcher& watcher, Case& the_case) {
+    const auto bare =
+        std::count_if(drawing.items.begin(), drawing.items.end(), [](auto& item) { return !item.labelled; });
+    const auto by_number = std::count_if(drawing.labels.begin(), drawing.labels.end(), [&](const Label& label) {
+        return !label.of_moment && label.words == number_of(label.item) &&
+               drawing.items[static_cast<std::size_t>(label.item)].lit_name != label.words;
+    });
+    if (by_number > 0)
+        add_warnings(
+            {fmt::format("the plan is crowded: {} of {} items are lit with their number in the plan (#1 is the "
+                         "first) in place of the name",
+                         by_number, drawing.items.size())},
+            watcher, the_case);
+    if (bare > 0)
+        add_warnings({fmt::format("the plan is crowded: the names of {} of {} items find no free skin, and are not "
+                                  "written there",
+                                  bare, drawing.items.size())},
+                     watcher, the_case);
+}
+
 /// The LUT, and the plan checked: of a case that has its skin.
 void finish(Preparation& done, const Volume& volume, const LutSettings& lut, const PreparationWatcher& watcher) {
     Case& the_case = done.prepared;
@@ -95,14 +117,9 @@ void finish(Preparation& done, const Volume& volume, const LutSettings& lut, con
         add_warnings(of_plan.warnings, watcher, the_case);
         refuse_misfit(of_plan, done.judgement);
         done.drawing = draw_plan(the_case.plan, surface);
+        add_warnings(check_names(the_case.plan, DrawingSettings{}.text_height_mm), watcher, the_case);
     }
-    const auto bare = std::count_if(done.drawing.items.begin(), done.drawing.items.end(),
-                                    [](const DrawnItem& item) { return !item.labelled; });
-    if (bare > 0)
-        add_warnings({fmt::format("the plan is crowded: the names of {} of {} items find no free skin, and are not "
-                                  "written there",
-                                  bare, done.drawing.items.size())},
-                     watcher, the_case);
+    warn_of_labels(done.drawing, watcher, the_case);
     done.lut_s =
         timed("table", watcher, [&](const auto& share) { the_case.lut = build_skin_lut(the_case.skin, lut, share); });
     the_case.lut.volume_hash = the_case.volume_hash;

@@ -106,7 +106,7 @@ std::optional<KeptMatch> Session::kept_match() const {
 ResumeCheck Session::take_up(const KeptMatch& match, const std::function<void(int, int)>& progress) {
     darken();
     registration_.reset(), scanned_.reset(), capture_.reset(), rig_state_.reset();
-    landmarks_.reset(), lit_landmark_.reset();
+    landmarks_.reset(), lit_landmark_.reset(), item_of_moment_.reset();
     confirmed_ = false;
     found_delay_ = {};
     check_belongs(match, case_, calibrated_);

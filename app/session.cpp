@@ -18,6 +18,7 @@ namespace {
 /// The drawing without the strokes of other items, for a check of that one alone.
 PlanDrawing only(PlanDrawing drawing, std::size_t item) {
     std::erase_if(drawing.strokes, [&](const Stroke& stroke) { return stroke.item != static_cast<int>(item); });
+    std::erase_if(drawing.labels, [&](const Label& label) { return label.item != static_cast<int>(item); });
     return drawing;
 }
 
@@ -43,6 +44,15 @@ CaseDrawing::CaseDrawing(const Case& the_case, const CaseDrawing& planned, const
       settings(how),
       drawing(draw_plan(the_case.plan, planned.skin, skin, settings)) {
     warn_of_unscanned(found, drawing);
+}
+
+DrawingSettings lit_by(const RigCalibration& rig, const RigidTransform& rig_from_ct, DrawingSettings settings) {
+    settings.light = LightView{rig.projector, rig_from_ct};
+    const Eigen::Vector3d up_in_camera(0, -1, 0);
+    if (settings.up_in_ct.isZero())
+        settings.up_in_ct =
+            rig_from_ct.inverse().linear() * (rig.left_camera.device_from_rig.inverse().linear() * up_in_camera);
+    return settings;
 }
 
 Session::Session(const Case& the_case, const CaseDrawing& drawing, const RigCalibration& rig, Projector& projector,
@@ -180,7 +190,7 @@ void Session::match(const std::vector<PointPair>& landmarks) {
 
 /// On the skin as the scan found it, with the labels beside the markers.
 void Session::draw_on_skin_as_found() {
-    DrawingSettings drawing = planned_.settings;
+    DrawingSettings drawing = lit_by(rig_, registration_->patient_from_ct, planned_.settings);
     const RigidTransform ct_from_patient = registration_->patient_from_ct.inverse();
     for (const auto& marker : tracker_.markers())
         drawing.keep_clear_in_ct.push_back(ct_from_patient * marker.centre_in_patient);
@@ -193,11 +203,14 @@ void Session::start_overlay() {
     keep_dark.clear();
     for (const auto& marker : tracker_.markers()) keep_dark.push_back(marker.centre_in_patient);
     settings_.overlay.render.only_item = lit_landmark_ ? static_cast<int>(*lit_landmark_) : -1;
+    settings_.overlay.render.item_of_moment =
+        item_of_moment_ && !lit_landmark_ ? static_cast<int>(*item_of_moment_) : -1;
     overlay_ =
         std::make_unique<OverlayLoop>(projector_, clock_, *renderer_, lit_drawing(), *registration_, settings_.overlay);
     if (confirmed_) overlay_->set_operator_confirmed(true);
     overlay_->set_found_delay(found_delay_);
-    checker_.emplace(lit_landmark_ ? only(lit_drawing(), *lit_landmark_) : drawing(), skin_of_light(), rig_,
+    const auto looked_at = lit_landmark_ ? lit_landmark_ : item_of_moment_;
+    checker_.emplace(looked_at ? only(lit_drawing(), *looked_at) : drawing(), skin_of_light(), rig_,
                      settings_.check_light);
     watch_.emplace(rig_, settings_.light_cause);
     jumps_.emplace(rig_);
@@ -232,13 +245,13 @@ Session::Update Session::make_update() {
     update.received_at = clock_.now();
     const auto began = std::chrono::steady_clock::now();
     update.pose = tracker_.update(update.frame);
-    name_lost_pose(update);
     update.times.track_s = elapsed_s(began);
     if (settings_.while_computing) settings_.while_computing();
     const auto drawing_began = std::chrono::steady_clock::now();
     update.overlay = overlay_->step(update.pose);
     update.times.draw_s = elapsed_s(drawing_began);
     if (update.overlay.lit) update.swapped_at = clock_.now();
+    name_lost_pose(update);
     update.camera_doubt = cameras_.doubt();
     if (!update.overlay.lit && !update.camera_doubt.empty()) update.overlay.reason += "; " + update.camera_doubt;
     const auto checking_began = std::chrono::steady_clock::now();
@@ -263,7 +276,7 @@ StereoFrame Session::next_frame() {
     return frame;
 }
 
-/// Without a pose now and then: are the cameras exchanged?
+/// Without a pose now and then: are the cameras exchanged? It takes as long as an update, so the light is dark before.
 void Session::name_lost_pose(Update& update) {
     constexpr int kEvery = 10;
     if (update.pose.rig_from_patient)
@@ -271,7 +284,8 @@ void Session::name_lost_pose(Update& update) {
     else if (lost_poses_++ % kEvery == 0)
         exchanged_ = cameras_seem_exchanged(tracker_, update.frame);
     if (lost_poses_ > 0 && exchanged_)
-        update.pose.reason = "left and right camera are exchanged: connect them as they were calibrated";
+        update.overlay.reason = update.pose.reason =
+            "left and right camera are exchanged: connect them as they were calibrated";
 }
 
 void Session::note_shown(const OverlayStep& overlay) {
@@ -316,7 +330,7 @@ void Session::correct_delay(std::vector<LightCause>& causes) {
     if (causes.empty() || causes.front().fault != LightFault::late_picture) return;
     const Instant more = from_seconds(causes.front().size / 1e3);
     if (found_delay_ + more > settings_.most_delay_corrected || overlay_->light_delay() + more < Instant{}) return;
-    causes.front().drawn_ahead = true;
+    causes.front().drawn_ahead = more <= overlay_->spare_time();
     found_delay_ += more;
     overlay_->set_found_delay(found_delay_);
     watch_->forget();

@@ -68,6 +68,10 @@ private:
                 const DrawingSettings& how);
 };
 
+/// How a plan is drawn for a head found at this pose: labels where this rig's light can reach all of them, upright as
+/// the settings say, or as the left camera sees them.
+DrawingSettings lit_by(const RigCalibration& rig, const RigidTransform& rig_from_ct, DrawingSettings settings);
+
 /// Where the skin lies against where the markers put it, by a short scan.
 struct SkinCheck {
     bool known = false;
@@ -140,6 +144,10 @@ public:
     const std::vector<Eigen::Vector3d>& landmarks();
     /// From the next `update` on this landmark alone is lit, as a ring with a cross; empty: the plan.
     void light_landmark(std::optional<std::size_t> which);
+    /// From the next `update` on this item of the plan is bright, with its label, and the others are dim
+    /// (`RenderSettings::others`); the light is measured on it alone. Empty: all are bright.
+    void light_item(std::optional<std::size_t> which);
+    std::optional<std::size_t> item_of_moment() const { return item_of_moment_; }
     /// What is lit: the plan, or the landmarks.
     const PlanDrawing& lit_drawing() const { return lit_landmark_ ? landmark_drawing_ : drawing(); }
 
@@ -157,6 +165,7 @@ public:
     const ScanResult* scanned() const { return scanned_ ? &*scanned_ : nullptr; }
     const RegistrationResult* registration() const { return registration_ ? &*registration_ : nullptr; }
     const PatientTracker& tracker() const { return tracker_; }
+    const TrackingSettings& tracking_settings() const { return settings_.tracking; }
     const DrawingRenderer& renderer() const { return *renderer_; }
     /// The plan as this session draws it, on the skin as the scan found it: labels lie beside the markers, so that none
     /// is cut by the darkness round them.
@@ -223,7 +232,7 @@ private:
     bool exchanged_ = false;                ///< the cameras, when that was last looked at
     std::optional<std::vector<Eigen::Vector3d>> landmarks_;
     PlanDrawing landmark_drawing_;
-    std::optional<std::size_t> lit_landmark_;
+    std::optional<std::size_t> lit_landmark_, item_of_moment_;
     Instant lit_since_ = Instant::max();  ///< light without a break; max: it is dark
     int updates_ = 0;
     bool confirmed_ = false;  ///< the last match, by the operator

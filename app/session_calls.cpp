@@ -63,6 +63,15 @@ void Session::light_landmark(std::optional<std::size_t> which) {
     told(SessionCall::light_landmark, light, {}, which ? static_cast<int>(*which) : -1);
 }
 
+void Session::light_item(std::optional<std::size_t> which) {
+    if (which == item_of_moment_) return;
+    const auto light = [&] {
+        overlay_.reset();
+        item_of_moment_ = which && *which < drawing().items.size() ? which : std::nullopt;
+    };
+    told(SessionCall::light_item, light, {}, which ? static_cast<int>(*which) : -1);
+}
+
 Session::Update Session::update() {
     Update update;
     told(SessionCall::update, [&] { update = make_update(); });
@@ -86,6 +95,7 @@ ResumeCheck Session::resume(const KeptMatch& match, const std::function<void(int
 }
 
 void Session::go_dark() noexcept {
+    devices_.darken_first();
     if (settings_.observer) settings_.observer->asked(SessionCall::go_dark, {}, -1);
     darken();
 }

@@ -11,7 +11,7 @@
 namespace planlight {
 
 /// What a session can be asked for.
-enum class SessionCall { scan, find_patient, confirm, update, check_skin, light_landmark, go_dark, resume };
+enum class SessionCall { scan, find_patient, confirm, update, check_skin, light_landmark, go_dark, light_item, resume };
 
 /// What can be asked of a session's light gate.
 enum class GateCall { step, verify, skin_checked, new_match, restart };
@@ -39,7 +39,7 @@ public:
     virtual void said(const std::string& /*kind*/, const std::string& /*headline*/,
                       const std::vector<std::string>& /*details*/) noexcept {}
 
-    /// Before the session does it. `which`: of `light_landmark`, -1 for the plan.
+    /// Before the session does it. `which`: of `light_landmark` and `light_item`, -1 for the plan.
     virtual void asked(SessionCall /*call*/, const std::vector<PointPair>& /*landmarks*/, int /*which*/) noexcept {}
 
     /// Before `resume` is asked for: what the session is to go on with.
@@ -50,6 +50,8 @@ public:
     virtual void frame_taken(const StereoFrame& /*frame*/) noexcept {}
     virtual void picture_shown(const RgbImage& /*picture*/, Instant /*valid_until*/, Instant /*lit_from*/) noexcept {}
     virtual void went_dark() noexcept {}
+    /// What is wrong with the cameras (StereoCamera::doubt), when it changes; empty: nothing any more.
+    virtual void cameras_doubted(const std::string& /*doubt*/) noexcept {}
     /// A device threw, or whoever asked ended it from between two pictures of a scan.
     virtual void device_failed(const Error& /*fault*/) noexcept {}
     virtual void stopped(const Error& /*why*/) noexcept {}

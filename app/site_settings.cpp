@@ -19,9 +19,9 @@ struct Unit {
 };
 const std::map<std::string, Unit> kUnits{{"mm", {1, 1}}, {"cm", {10, 2}}, {"inch", {25.4, 3}}};
 
-/// Away from the surgeon, in ct (LPS): where the letters' tops point.
+/// Away from the surgeon, in ct (LPS): where the letters' tops point. Zero: only a match tells.
 const std::map<std::string, Eigen::Vector3d> kSides{
-    {"feet", {0, 0, 1}}, {"head", {0, 0, -1}}, {"left", {-1, 0, 0}}, {"right", {1, 0, 0}}};
+    {"feet", {0, 0, 1}}, {"head", {0, 0, -1}}, {"left", {-1, 0, 0}}, {"right", {1, 0, 0}}, {"view", {0, 0, 0}}};
 
 template <class Value>
 std::string one_of(const JsonValue& value, const std::map<std::string, Value>& known) {
@@ -64,6 +64,12 @@ SiteSettings read_site_settings() {
     }
     site.read_from = file;
     return site;
+}
+
+std::vector<std::string> surgeon_sides() {
+    std::vector<std::string> words;
+    for (const auto& side : kSides) words.push_back(side.first);
+    return words;
 }
 
 DrawingSettings drawing_settings(const SiteSettings& site) {

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "projection/draw_plan.h"
 
@@ -9,11 +10,12 @@ namespace planlight {
 
 /// What a site sets once, in planlight/config.json under $XDG_CONFIG_HOME (~/.config where that is not set):
 /// {"format": "planlight config", "version": 1, "units": "mm" | "cm" | "inch", "surgeon_side": "feet" | "head" | "left"
-/// | "right", "monitors": {"operator": "DP-1", "projector": "HDMI-2"}}. Every name but the first two may be missing.
+/// | "right" | "view", "monitors": {"operator": "DP-1", "projector": "HDMI-2"}}. Every name but the first two may be missing.
 struct SiteSettings {
     /// Unit of the lengths that commands print for a person. Files, JSON, windows and the light stay in mm.
     std::string units = "mm";
-    /// Where the surgeon stands: labels on the skin are upright for somebody there.
+    /// Where the surgeon stands: labels on the skin are upright for somebody there; "view": as the left camera, and so
+    /// the operator's window, sees them at the match.
     std::string surgeon_side = "feet";
     std::string operator_monitor, projector_monitor;  ///< names; empty: not set. An option of a command overrides them
     std::filesystem::path read_from;                  ///< empty: there is no such file, and these are the defaults
@@ -25,7 +27,10 @@ SiteSettings read_site_settings();
 /// Where that file is looked for; empty without a home.
 std::filesystem::path site_settings_file();
 
-/// How a plan is drawn on this site: labels upright for the surgeon.
+/// The words for `surgeon_side`.
+std::vector<std::string> surgeon_sides();
+
+/// How a plan is drawn on this site: labels upright for the surgeon ("view": `up_in_ct` is zero, see `lit_by`).
 DrawingSettings drawing_settings(const SiteSettings& site);
 
 /// A length in the site's unit, for a person: "1.2 mm", "0.12 cm", "0.047 inch".

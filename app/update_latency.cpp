@@ -4,8 +4,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace planlight {
+
+namespace {
+
+/// Alike for all figures.
+std::string without_figures(const std::string& reason) {
+    std::string words;
+    for (const char c : reason) {
+        const bool digit = c >= '0' && c <= '9';
+        const bool in_figure = !words.empty() && words.back() == '#' && (digit || c == '.');
+        if (!in_figure) words += digit ? '#' : c;
+    }
+    return words;
+}
+
+}  // namespace
 
 void UpdateLatency::add(const Session::Update& update) {
     constexpr Instant kPause = std::chrono::seconds(1);  // more is no frame that is missing, but a session that paused
@@ -21,7 +37,10 @@ void UpdateLatency::add(const Session::Update& update) {
     }
     last_at_ = update.frame.at;
     last_number_ = update.frame.number;
-    if (!update.overlay.lit) return;
+    if (!update.overlay.lit) {
+        ++dark[without_figures(update.overlay.reason)];
+        return;
+    }
     ++lit;
     const Instant worked = update.swapped_at - update.received_at;
     late += worked > kLate;
@@ -44,10 +63,13 @@ std::string UpdateLatency::json() const {
         return fmt::format(R"({{"median_ms": {:.2f}, "p99_ms": {:.2f}, "worst_ms": {:.2f}, "histogram": "{}"}})",
                            of.quantile(0.5), of.quantile(0.99), of.distribution().worst, of.text());
     };
+    nlohmann::json reasons = nlohmann::json::object();
+    for (const auto& [reason, times] : dark) reasons[reason] = times;
     return fmt::format(
         "{{\n  \"updates\": {},\n  \"lit\": {},\n  \"skipped\": {},\n  \"missed\": {},\n  \"later_than_30_ms\": {},\n  "
-        "\"later_than_a_frame\": {},\n  \"mid_exposure_to_display\": {},\n  \"arrival_to_display\": {}\n}}\n",
-        updates, lit, skipped, missed, late, overtaken, part(to_swap_ms), part(from_arrival_ms));
+        "\"later_than_a_frame\": {},\n  \"dark\": {},\n  \"mid_exposure_to_display\": {},\n  \"arrival_to_display\": "
+        "{}\n}}\n",
+        updates, lit, skipped, missed, late, overtaken, reasons.dump(), part(to_swap_ms), part(from_arrival_ms));
 }
 
 }  // namespace planlight

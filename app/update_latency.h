@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 
 #include "app/evaluation/log_histogram.h"
@@ -15,10 +16,12 @@ public:
     void add(const Session::Update& update);
 
     std::size_t updates = 0, lit = 0;
-    std::size_t skipped = 0;       ///< pairs that came and were not used, for a newer one was there
-    std::size_t missed = 0;        ///< exposures of which no pair came
-    std::size_t late = 0;          ///< drawn more than 30 ms after the pair had come
-    std::size_t overtaken = 0;     ///< drawn more than a frame's interval after it had come
+    std::size_t skipped = 0;    ///< pairs that came and were not used, for a newer one was there
+    std::size_t missed = 0;     ///< exposures of which no pair came
+    std::size_t late = 0;       ///< drawn more than 30 ms after the pair had come
+    std::size_t overtaken = 0;  ///< drawn more than a frame's interval after it had come
+    /// Why the others were dark, and how often; figures in a reason are left out ("the last pose is # ms old").
+    std::map<std::string, std::size_t> dark;
     LogHistogram to_swap_ms;       ///< of what was lit: from mid-exposure to the display
     LogHistogram from_arrival_ms;  ///< of what was lit: from the arrival of the pair to the display
 

@@ -1,5 +1,6 @@
 #include "app/verify_landmarks.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -64,6 +65,22 @@ std::vector<Vector3d> landmarks_to_verify(const SkinSurface& skin, const RigCali
         if (found.size() == 2) break;
     }
     return found;
+}
+
+std::string words_of_place(const SkinSurface& skin, const Vector3d& place_in_ct) {
+    constexpr double kClearly = 0.35;  // of the way from the middle to the farthest skin
+    Eigen::AlignedBox3d box;
+    for (const auto& vertex : skin.mesh().vertices_in_ct) box.extend(Vector3d(vertex));
+    const Vector3d off = (place_in_ct - box.center()).cwiseQuotient(box.sizes() / 2);  // LPS
+    std::string words;
+    const auto add = [&](double share, const char* positive, const char* negative) {
+        if (std::abs(share) < kClearly) return;
+        words += (words.empty() ? "" : ", ") + std::string(share > 0 ? positive : negative);
+    };
+    add(off.y(), "back", "front");
+    add(off.x(), "left", "right");
+    add(off.z(), "high", "low");
+    return words;
 }
 
 }  // namespace planlight

@@ -7,7 +7,8 @@
 #include <cmath>
 
 #include "projection/check_items.h"
-#include "projection/place_labels.h"
+#include "projection/label_names.h"
+#include "projection/place_all_labels.h"
 #include "projection/skin_paths.h"
 
 namespace planlight {
@@ -20,6 +21,7 @@ constexpr Rgb kOsteotomyGreen{40, 255, 70};
 constexpr Rgb kBoreholeCyan{0, 210, 255};
 constexpr Rgb kTrajectoryAmber{255, 180, 0};
 constexpr Rgb kCutPlaneMagenta{255, 60, 255};
+constexpr double kPlaneGap_mm = 2.4;  // about each tick
 constexpr double kSymbolRadius_mm =
     3;  // of a trajectory's ring when the instrument's diameter is not given, or is smaller
 
@@ -59,7 +61,8 @@ public:
     void draw(const Borehole& hole);
     void draw(const Trajectory& trajectory);
     void draw(const CutPlane& plane);
-    void draw_labels();
+    void name_items(const Plan& plan);
+    void draw_labels() { place_all_labels(std::move(wishes_), skin_, settings_, drawing); }
     PlanDrawing drawing;
 
 private:
@@ -73,18 +76,22 @@ private:
     void add_bar(StrokeKind kind, int item_index, Rgb colour, const Point& at, const Vector3d& direction,
                  double back_mm, double ahead_mm);
     void add_ticks(int item_index, Rgb colour, const SkinLine& line);
-    void wish(int item_index, std::vector<Point> anchors, double keep_off_mm, std::optional<Vector3d> away_from = {});
-    void wish_along(int item_index, const SkinLine& line);
+    void wish(int item_index, std::vector<std::string> figures, std::vector<Point> anchors, double keep_off_mm,
+              std::optional<Vector3d> away_from = {});
+    void wish_along(int item_index, const std::string& figure, const SkinLine& line);
 
     const SkinSurface& ct_skin_;  ///< on which was planned
     const SkinSurface& skin_;     ///< as it is now: what is drawn on
     const DrawingSettings& settings_;
+    std::vector<LitName> names_;  ///< in the order of the items
     std::vector<LabelWish> wishes_;
 };
 
 int Drawer::begin(StrokeKind kind, const std::string& name, const Vector3d& anchor, double distance_mm,
                   std::vector<std::string> warnings) {
-    drawing.items.push_back({kind, name, name, anchor, distance_mm, std::move(warnings)});
+    const LitName& lit = names_[drawing.items.size()];
+    if (!lit.warning.empty()) warnings.push_back(lit.warning);
+    drawing.items.push_back({kind, name, name, anchor, distance_mm, std::move(warnings), true, lit.name});
     return static_cast<int>(drawing.items.size()) - 1;
 }
 
@@ -117,11 +124,22 @@ void Drawer::add_ticks(int item_index, Rgb colour, const SkinLine& line) {
     }
 }
 
-void Drawer::wish(int item_index, std::vector<Point> anchors, double keep_off_mm, std::optional<Vector3d> away_from) {
-    wishes_.push_back({item_index, item(item_index).label, std::move(anchors), keep_off_mm, away_from, {}});
+/// A label beside one of the anchors: the item's name, and figures with their units.
+void Drawer::wish(int item_index, std::vector<std::string> figures, std::vector<Point> anchors, double keep_off_mm,
+                  std::optional<Vector3d> away_from) {
+    DrawnItem& named = item(item_index);
+    for (const std::string& figure : figures) named.label += "  " + figure;
+    if (named.lit_name.empty() && figures.empty()) return;
+    wishes_.push_back({item_index,
+                       {named.lit_name, std::move(figures)},
+                       number_of(item_index),
+                       std::move(anchors),
+                       keep_off_mm,
+                       away_from,
+                       {}});
 }
 
-void Drawer::wish_along(int item_index, const SkinLine& line) {
+void Drawer::wish_along(int item_index, const std::string& figure, const SkinLine& line) {
     constexpr int kAnchors = 12;
     std::vector<Point> anchors;
     const double whole_mm = length_mm(line);
@@ -134,7 +152,7 @@ void Drawer::wish_along(int item_index, const SkinLine& line) {
         middle = Vector3d::Zero();
         for (const Point& p : line.points) *middle += p.p_in_ct / static_cast<double>(line.points.size());
     }
-    wish(item_index, std::move(anchors), settings_.tick_length_mm, middle);
+    wish(item_index, {figure}, std::move(anchors), settings_.tick_length_mm, middle);
 }
 
 void Drawer::draw(const OsteotomyLine& line) {
@@ -152,11 +170,11 @@ void Drawer::draw(const OsteotomyLine& line) {
     if (on_skin.size() < 2 || too_far(item(i))) return;
     const SkinLine way = join(skin_, on_skin, line.closed, settings_.max_segment_mm);
     if (way.points.size() < 2) return;
-    item(i).label = fmt::format("{}  {:.0f} mm", line.name.empty() ? "Osteotomy" : line.name, length_mm(way));
+    item(i).label = line.name.empty() ? "Osteotomy" : line.name;
     const Rgb colour = chosen(line.colour, kOsteotomyGreen);
     add(StrokeKind::osteotomy_line, i, colour, settings_.line_width_mm, way);
     add_ticks(i, colour, way);
-    wish_along(i, way);
+    wish_along(i, fmt::format("{:.0f} mm", length_mm(way)), way);
 }
 
 void Drawer::draw(const Borehole& hole) {
@@ -173,17 +191,19 @@ void Drawer::draw(const Borehole& hole) {
     if (too_far(item(i))) return;
     const Rgb colour = chosen(hole.colour, kBoreholeCyan);
     const double radius_mm = std::max(hole.diameter_mm / 2, 0.0);
+    std::vector<std::string> figures;
     if (radius_mm > 0) {
         add(StrokeKind::borehole, i, colour, settings_.line_width_mm,
             circle(skin_, at, radius_mm, settings_.max_segment_mm));
-        item(i).label += fmt::format("  ⌀{}", mm(hole.diameter_mm));
+        figures.push_back(fmt::format("⌀{}", mm(hole.diameter_mm)));
     }
-    if (hole.depth_mm > 0) item(i).label += fmt::format("  {} mm deep", mm(hole.depth_mm));
+    if (hole.depth_mm > 0) figures.push_back(fmt::format("{} mm deep", mm(hole.depth_mm)));
     const TextFrame frame = text_frame(at, settings_.up_in_ct);
-    const double arm_mm = radius_mm > 0 ? std::min(1.5, 0.5 * radius_mm) : 1.5;
+    // As long as the ring's own light can still be told from it by the cameras (`segments_of`).
+    const double arm_mm = radius_mm > 0 ? std::max(std::min(1.5, 0.5 * radius_mm), std::min(5.0, radius_mm - 2.5)) : 1.5;
     add_bar(StrokeKind::borehole, i, colour, at, frame.right_in_ct, arm_mm, arm_mm);
     add_bar(StrokeKind::borehole, i, colour, at, frame.up_in_ct, arm_mm, arm_mm);
-    wish(i, {at}, std::max(radius_mm, arm_mm));
+    wish(i, std::move(figures), {at}, std::max(radius_mm, arm_mm));
 }
 
 void Drawer::draw(const Trajectory& t) {
@@ -199,8 +219,9 @@ void Drawer::draw(const Trajectory& t) {
     const int i = begin(StrokeKind::trajectory, t.name, at.p_in_ct, (nearest.p_in_ct - t.entry_in_ct).norm(),
                         faults(t, ct_skin_, settings_));
     if (too_far(item(i))) return;
-    item(i).label = fmt::format("{}{}  {} mm", t.name, t.diameter_mm > 0 ? fmt::format("  ⌀{}", mm(t.diameter_mm)) : "",
-                                mm(t.length_mm()));
+    std::vector<std::string> figures;
+    if (t.diameter_mm > 0) figures.push_back(fmt::format("⌀{}", mm(t.diameter_mm)));
+    figures.push_back(fmt::format("{} mm", mm(t.length_mm())));
     const Rgb colour = chosen(t.colour, kTrajectoryAmber);
     const double radius_mm = std::max(t.diameter_mm / 2, kSymbolRadius_mm), arm_mm = radius_mm + 2.5;
     add(StrokeKind::trajectory, i, colour, settings_.line_width_mm,
@@ -214,7 +235,7 @@ void Drawer::draw(const Trajectory& t) {
     if (shadow.norm() > 0.05 && shadow_mm > radius_mm + 1)
         add(StrokeKind::trajectory, i, colour, settings_.line_width_mm,
             bar(skin_, at, shadow, -radius_mm, shadow_mm, settings_.max_segment_mm));
-    wish(i, {at}, arm_mm);
+    wish(i, std::move(figures), {at}, arm_mm);
 }
 
 void Drawer::draw(const CutPlane& plane) {
@@ -227,41 +248,21 @@ void Drawer::draw(const CutPlane& plane) {
     const int i = begin(StrokeKind::cut_plane, plane.name,
                         lines.empty() ? Vector3d::Zero() : lines.front().points.front().p_in_ct, 0, warnings);
     if (lines.empty()) return;
-    item(i).label = fmt::format("{}  {:.0f} mm", plane.name.empty() ? "Cut" : plane.name, length_mm(lines.front()));
+    item(i).label = plane.name.empty() ? "Cut" : plane.name;
     const Rgb colour = chosen(plane.colour, kCutPlaneMagenta);
     for (const SkinLine& line : lines) {
         add(StrokeKind::cut_plane, i, colour, settings_.line_width_mm, line);
+        // In dashes from tick to tick: no osteotomy line to whoever sees no colours.
+        drawing.strokes.back().gap_every_mm = settings_.tick_every_mm;
+        drawing.strokes.back().gap_mm = kPlaneGap_mm;
         add_ticks(i, colour, line);
     }
-    wish_along(i, lines.front());
+    wish_along(i, fmt::format("{:.0f} mm", length_mm(lines.front())), lines.front());
 }
 
-void Drawer::draw_labels() {
-    OccupiedSkin occupied;
-    for (const Stroke& stroke : drawing.strokes)
-        for (const Vector3d& p : stroke.points_in_ct) occupied.add(p);
-    // The projector stands where the whole plan can be lit: labels keep to skin that faces as the plan does on average.
-    Vector3d facing = Vector3d::Zero();
-    for (const Stroke& stroke : drawing.strokes)
-        for (const Vector3d& n : stroke.normals_in_ct) facing += n;
-    if (facing.norm() > 1e-9)
-        for (LabelWish& w : wishes_) w.facing_in_ct = facing.normalized();
-    for (const Vector3d& marker : settings_.keep_clear_in_ct) {
-        const Point centre = skin_.nearest(marker);
-        for (double r = 1; r <= settings_.keep_clear_radius_mm; r += 1)
-            for (const Point& p : circle(skin_, centre, r, 1).points) occupied.add(p.p_in_ct);
-    }
-    // Points can be labelled in fewer places than lines: they choose first.
-    std::stable_sort(wishes_.begin(), wishes_.end(),
-                     [](const auto& a, const auto& b) { return a.anchors.size() < b.anchors.size(); });
-    // Of many labels over each other none could be read: from here on there is a free place for one, or none is drawn.
-    constexpr std::size_t kCrowded = 40;
-    for (LabelWish& w : wishes_) {
-        w.may_overlap = wishes_.size() <= kCrowded;
-        const auto strokes = place_label(w, skin_, settings_, occupied);
-        item(w.item).labelled = !strokes.empty();
-        drawing.strokes.insert(drawing.strokes.end(), strokes.begin(), strokes.end());
-    }
+/// What the light calls each item; warned of where it is not the plan's name.
+void Drawer::name_items(const Plan& plan) {
+    names_ = lit_names(names_of(plan), settings_.text_height_mm);
 }
 
 }  // namespace
@@ -273,6 +274,7 @@ PlanDrawing draw_plan(const Plan& plan, const SkinSurface& skin, const DrawingSe
 PlanDrawing draw_plan(const Plan& plan, const SkinSurface& ct_skin, const SkinSurface& skin_now,
                       const DrawingSettings& settings) {
     Drawer drawer(ct_skin, skin_now, settings);
+    drawer.name_items(plan);
     for (const auto& line : plan.osteotomy_lines) drawer.draw(line);
     for (const auto& hole : plan.boreholes) drawer.draw(hole);
     for (const auto& trajectory : plan.trajectories) drawer.draw(trajectory);

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "planning_io/types/camera_model.h"
 #include "planning_io/types/image.h"
 #include "planning_io/types/plan.h"
+#include "planning_io/types/rigid_transform.h"
 #include "projection/skin_surface.h"
 
 namespace planlight {
@@ -21,6 +25,28 @@ struct Stroke {
     bool closed = false;
     std::vector<Eigen::Vector3d> points_in_ct;   ///< on the skin, at most `max_segment_mm` apart
     std::vector<Eigen::Vector3d> normals_in_ct;  ///< outward, one per point
+    /// Not lit for `gap_mm` about every whole multiple of this way along it from its first point (not about that
+    /// point itself); 0: all of it is lit.
+    double gap_every_mm = 0, gap_mm = 0;
+
+    bool in_gap(double way_mm, double margin_mm = 0) const {
+        if (!(gap_mm > 0) || !(gap_every_mm > gap_mm) || way_mm < gap_every_mm / 2) return false;
+        return std::abs(std::remainder(way_mm, gap_every_mm)) < gap_mm / 2 + margin_mm;
+    }
+};
+
+/// A label on the skin, lit whole or not at all.
+struct Label {
+    int item = -1;      ///< index into PlanDrawing::items
+    std::string words;  ///< as it can be read, lines parted by a line feed
+    Rgb colour{235, 235, 235};
+    /// Of one sign of the text: closed lines, filled together (a hole runs the other way round); on the skin.
+    using Outlines = std::vector<std::vector<Eigen::Vector3d>>;
+    std::vector<Outlines> signs_in_ct;
+    std::vector<Eigen::Vector3d> field_in_ct;          ///< the skin under it, 3 mm apart: all of it must be lit
+    std::vector<Eigen::Vector3d> field_normals_in_ct;  ///< outward
+    Stroke leader;                                     ///< from the item to a label far from it; no points where near
+    bool of_moment = false;  ///< drawn while its item is the item of the moment, and then alone
 };
 
 /// One plan item as drawn: where it was wanted and what is said about it.
@@ -32,22 +58,35 @@ struct DrawnItem {
     double distance_to_skin_mm = 0;     ///< of the plan's point(s) to the skin, largest
     std::vector<std::string> warnings;  ///< in words, with the item's name
     bool labelled = true;               ///< false where a crowded plan left no free skin for its label
+    std::string lit_name;               ///< the name as the light has it: whole, shortened, or "#3" for the third item
 };
 
 /// The plan in the skin's own metric: what is light on the skin, independent of projector and pose.
 struct PlanDrawing {
     std::vector<DrawnItem> items;
     std::vector<Stroke> strokes;
+    std::vector<Label> labels;
+};
+
+/// From where the light will come: labels are put where all of them can be lit.
+struct LightView {
+    CameraModel projector;
+    RigidTransform rig_from_ct = RigidTransform::Identity();
+    double steepest = 1.05;  ///< radians (60 degrees) between the skin under a label and the light
+    double margin_px = 6;    ///< to the edge of the picture
 };
 
 /// How a plan becomes lines on the skin; lengths in mm on the skin.
 struct DrawingSettings {
     double line_width_mm = 0.8;
     double max_segment_mm = 0.5;
-    double text_height_mm = 5;
+    double text_height_mm = 5;                      ///< of capitals and digits, along the skin
     double tick_every_mm = 10, tick_length_mm = 2;  ///< along osteotomy lines; 0 = none
-    Eigen::Vector3d up_in_ct{0, 0, 1};              ///< which way text stands up
-    double max_distance_to_skin_mm = 10;            ///< a plan point farther from skin is warned of, by name
+    Eigen::Vector3d up_in_ct{0, 0, 1};              ///< which way text stands up; zero: +z, as nobody said
+    std::optional<LightView> light;                 ///< where it is not known, labels may lie where no light comes
+    /// So much of the light's area at most is text: beyond it labels say the name alone, then the number, then nothing.
+    double most_text = 0.85;
+    double max_distance_to_skin_mm = 10;  ///< a plan point farther from skin is warned of, by name
     bool labels = true;
     std::vector<Eigen::Vector3d>
         keep_clear_in_ct;  ///< marker centres: labels are not put within `keep_clear_radius_mm`
@@ -55,6 +94,7 @@ struct DrawingSettings {
 };
 
 /// Draws every item of the plan on the skin: lengths along geodesics, circles of their diameter, labels upright.
+/// A label is put where it overlaps nothing and can be lit whole, or it is left out.
 ///
 /// Items come in the order osteotomy lines, boreholes, trajectories, cut planes. One that is not finite, or lies more
 /// than three times `max_distance_to_skin_mm` from the skin, has no strokes, and a warning.

@@ -66,12 +66,12 @@ struct LightCauseSettings {
 /// A cause with its size, likeliest first.
 struct LightCause {
     LightFault fault = LightFault::light_off;
-    double size = 0;               ///< ms of a late picture; else mm on the skin; share seen of light that is not seen
-    double low = 0, high = 0;      ///< of a delay, ms: all in between explain the frames alike
-    int marker = -1;               ///< that slipped
-    double share = 0;              ///< of what is unexplained, explained; 1 where it is seen directly
-    bool light_is_wrong = true;    ///< false: it is noticed and dealt with, and the light lies where it belongs
-    bool drawn_ahead = false;      ///< of a late picture: the next ones allow for it
+    double size = 0;             ///< ms of a late picture; else mm on the skin; share seen of light that is not seen
+    double low = 0, high = 0;    ///< of a delay, ms: all in between explain the frames alike
+    int marker = -1;             ///< that slipped
+    double share = 0;            ///< of what is unexplained, explained; 1 where it is seen directly
+    bool light_is_wrong = true;  ///< false: it is noticed and dealt with, and the light lies where it belongs
+    bool drawn_ahead = false;    ///< of a late picture: the next ones are drawn for the moment when they will be light
     std::string headline() const;  ///< a few words for the banner
     std::string sentence() const;
     std::string remedy() const;

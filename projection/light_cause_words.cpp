@@ -68,8 +68,8 @@ std::string LightCause::remedy() const {
     switch (fault) {
         case LightFault::late_picture:
             return drawn_ahead ? "It is drawn ahead by that much; measure the delay anew with `planlight projector`."
-                               : "That is too much to be drawn ahead: keep the head still, end what else uses the "
-                                 "computer, and measure the delay anew with `planlight projector`.";
+                               : "Keep the head still, end what else uses the computer, and measure the delay anew "
+                                 "with `planlight projector`.";
         case LightFault::projector_moved:
             return "Fix the projector and its picture, then press Scan: the scan finds where it stands now.";
         case LightFault::left_camera_moved:

@@ -38,6 +38,13 @@ std::string pose_refusal(const TrackedPose& pose, Instant now, const OverlaySett
     return "";
 }
 
+/// How far a head gets between two poses, mm, on a ball of its own size about `centre_in_patient`.
+double way_mm(const RigidTransform& from, const RigidTransform& to, const Eigen::Vector3d& centre_in_patient) {
+    constexpr double kHeadRadius_mm = 90;
+    const double turned = Eigen::AngleAxisd(Eigen::Matrix3d(to.linear() * from.linear().transpose())).angle();
+    return (to * centre_in_patient - from * centre_in_patient).norm() + kHeadRadius_mm * turned;
+}
+
 /// The middle of what is drawn: the prediction turns the head about it.
 Eigen::Vector3d middle_in_ct(const PlanDrawing& drawing) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -65,6 +72,7 @@ struct OverlayLoop::Parts {
     Instant usual_life{};                 ///< of a picture until the next; 0: not known
     std::optional<Instant> promised{};    ///< from the pose to light, as the projector promised of the last pictures
     Instant found_delay{};                ///< beyond its promises
+    Instant spare_time{};                 ///< that the last light could have come later and still be predicted
 
     OverlayStep dark(std::string reason) {
         projector.go_dark();
@@ -74,12 +82,26 @@ struct OverlayLoop::Parts {
         step.picture = RgbImage(renderer.width(), renderer.height());
         return step;
     }
-    std::optional<RigidTransform> pose_at_light(const TrackedPose& pose, Instant now) {
+    /// Light that comes later than a pose can be predicted is drawn for as late as it can where the head lies still
+    /// enough; else `why_not` says so.
+    std::optional<RigidTransform> pose_at_light(const TrackedPose& pose, Instant now, std::string& why_not) {
         if (!settings.predict) return pose.rig_from_patient;
+        why_not = "where the patient will be when the light arrives is not known";
         predictor.add(pose, centre_in_patient);
         const Instant light = now + light_delay() + std::min(usual_life / 2, settings.most_ahead);
-        // Light that comes later than a pose can be predicted is drawn for as late as it can; CHECK sees what is left.
-        return predictor.rig_from_patient_at(std::min(light, pose.at + PredictionSettings{}.max_ahead));
+        const Instant last = pose.at + settings.prediction.max_ahead;
+        spare_time = last - light;
+        if (light <= last) return predictor.rig_from_patient_at(light);
+        const auto at_last = predictor.rig_from_patient_at(last), measured = predictor.rig_from_patient_at(pose.at);
+        if (!at_last || !measured) return std::nullopt;
+        const double share = seconds(light - last) / seconds(settings.prediction.max_ahead);
+        if (share * way_mm(*measured, *at_last, centre_in_patient) > settings.most_unpredicted_mm) {
+            why_not = fmt::format(
+                "the head moves, and light comes {:.0f} ms after it was seen (drawn ahead for {:.0f} ms at most)",
+                ms(light - pose.at), ms(settings.prediction.max_ahead));
+            return std::nullopt;
+        }
+        return at_last;
     }
     Instant light_delay() const { return promised.value_or(settings.light_delay) + found_delay; }
     static constexpr int kSlow = 8;  ///< means, so that one late picture does not move the light
@@ -103,9 +125,10 @@ OverlayStep OverlayLoop::Parts::draw(const TrackedPose& pose) {
         return dark(std::move(reason));
     const Instant now = clock.now();
     if (auto reason = pose_refusal(pose, now, settings); !reason.empty()) return dark(std::move(reason));
-    const auto rig_from_patient = pose_at_light(pose, now);
-    if (!rig_from_patient || !is_rigid(rig_from_patient->matrix()))
-        return dark("where the patient will be when the light arrives is not known");
+    std::string why_not;
+    const auto rig_from_patient = pose_at_light(pose, now, why_not);
+    if (!rig_from_patient) return dark(std::move(why_not));
+    if (!is_rigid(rig_from_patient->matrix())) return dark("the predicted pose is not a rigid transform");
     OverlayStep step;
     step.rig_from_ct = *rig_from_patient * registration.patient_from_ct;  // T_global = T_cur T_ini
     step.counts = renderer.render_into(step.picture, drawing, step.rig_from_ct, *rig_from_patient, settings.render);
@@ -129,7 +152,7 @@ OverlayLoop::OverlayLoop(Projector& projector, const Clock& clock, const Drawing
                        drawing,
                        registration,
                        settings,
-                       PosePredictor(),
+                       PosePredictor(settings.prediction),
                        registration.patient_from_ct * middle_in_ct(drawing),
                        {},
                        {}}) {
@@ -150,6 +173,10 @@ void OverlayLoop::set_found_delay(Instant later) {
 
 Instant OverlayLoop::light_delay() const {
     return parts_->light_delay();
+}
+
+Instant OverlayLoop::spare_time() const {
+    return parts_->spare_time;
 }
 
 OverlayStep OverlayLoop::step(const TrackedPose& pose) {

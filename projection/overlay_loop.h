@@ -20,6 +20,10 @@ struct OverlaySettings {
     Instant light_delay = std::chrono::milliseconds(25);
     double max_predicted_error_mm = 1.0;  ///< above: dark
     bool predict = true;
+    PredictionSettings prediction;
+    /// Light that comes later than `prediction.max_ahead` after its pose is dark where the head gets farther than this
+    /// in the time that is left over.
+    double most_unpredicted_mm = 0.5;
     /// The picture is drawn for the middle of the time that it will be light, as the last pictures tell it: until the
     /// next one comes. At most so far past its beginning; 0: for its beginning.
     Instant most_ahead = std::chrono::milliseconds(30);
@@ -57,6 +61,9 @@ public:
 
     /// From the pose to light, as the last pictures tell it, with what was found.
     Instant light_delay() const;
+
+    /// How much later the last light could have come and still be drawn ahead; negative: it came later than that.
+    Instant spare_time() const;
 
 private:
     struct Parts;

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "projection/stroke_font.h"
+#include "projection/stroke_places.h"
 
 namespace planlight {
 namespace {
@@ -15,17 +15,15 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Point = SkinSurface::Point;
 
-constexpr double kLineSpacing = 1.65;  // of the text height
-constexpr double kMaxWidth_mm = 44;  // of a text line: its ends are 22 mm from its middle, where the map is still true
-constexpr Rgb kWhite{235, 235, 235};
-constexpr double kClear_mm = 2.6;  // between a text's outline and anything drawn
+constexpr double kClear_mm = 2.6;      // between a text's outline and anything drawn
+constexpr double kLeaderClear_mm = 1;  // between a leader and anything drawn
+constexpr double kLeaderFrom_mm = 3;   // a text farther from its item has a leader
+constexpr double kOffItem_mm = 0.8;    // between what is drawn at the anchor and the leader
 
 struct Candidate {
     TextFrame frame;
     double cost = 1e300;
-    int overlaps = 1 << 20;
-    double gap_mm = 0;
-    Point anchor;
+    std::vector<Point> leader;
 };
 
 /// The skin point at (x, y) mm of the text's own plane, by a straight way.
@@ -33,140 +31,137 @@ std::optional<Point> on_skin(const SkinSurface& skin, const TextFrame& f, const 
     return skin.walk(f.at, xy.x() * f.right_in_ct + xy.y() * f.up_in_ct);
 }
 
-/// How many places of the text's outline are taken, bent away, or no skin.
-int count_overlaps(const SkinSurface& skin, const TextFrame& f, const TextBlock& block, const OccupiedSkin& occupied,
-                   int give_up) {
-    int bad = 0;
-    const int nx = std::max(1, static_cast<int>(std::ceil(block.width_mm / 2.2)));
-    const int ny = std::max(1, static_cast<int>(std::ceil(block.height_mm / 2.2)));
+/// Looks for the best place of one label.
+class Search {
+public:
+    Search(const LabelWish& wish, const SkinSurface& skin, const DrawingSettings& settings,
+           const OccupiedSkin& occupied, const TextBlock& block)
+        : wish_(wish), skin_(skin), settings_(settings), occupied_(occupied), block_(block) {}
+
+    std::optional<Candidate> best() {
+        for (const double gap_mm : {0.0, 3.0, 7.0, 12.0, 18.0, 26.0}) {
+            for (std::size_t a = 0; a < wish_.anchors.size(); ++a) try_round(a, gap_mm);
+            if (best_) return best_;
+        }
+        return std::nullopt;
+    }
+
+private:
+    void try_round(std::size_t anchor, double gap_mm);
+    double cost_of(std::size_t anchor, double angle, double gap_mm, const Point& middle) const;
+    bool lit(const Point& p) const;
+    bool is_free(const TextFrame& frame) const;
+    bool is_close_to_another(const TextFrame& frame) const;
+    std::optional<std::vector<Point>> leader(const Point& anchor, const TextFrame& frame) const;
+    /// How far the middle of the text must be from a point so that its outline is clear of it in direction `angle`.
+    double reach_mm(double angle) const {
+        const double c = std::abs(std::cos(angle)), s = std::abs(std::sin(angle));
+        return std::min(c > 1e-9 ? block_.width_mm / 2 / c : 1e9, s > 1e-9 ? block_.height_mm / 2 / s : 1e9);
+    }
+
+    const LabelWish& wish_;
+    const SkinSurface& skin_;
+    const DrawingSettings& settings_;
+    const OccupiedSkin& occupied_;
+    const TextBlock& block_;
+    std::optional<Candidate> best_;
+};
+
+bool Search::lit(const Point& p) const {
+    if (!settings_.light) return true;
+    const LightView& light = *settings_.light;
+    const auto pixel = project(light.projector, light.rig_from_ct * p.p_in_ct);
+    if (!pixel || pixel->x() < light.margin_px || pixel->y() < light.margin_px ||
+        pixel->x() > light.projector.width - 1 - light.margin_px ||
+        pixel->y() > light.projector.height - 1 - light.margin_px)
+        return false;
+    StrokePlace place;
+    place.p_in_ct = p.p_in_ct;
+    place.normal_in_ct = p.normal_in_ct;
+    return freely_seen(place, skin_, light.projector, light.rig_from_ct, light.steepest);
+}
+
+bool Search::is_close_to_another(const TextFrame& frame) const {
+    constexpr double kClose_mm = 4.5;
+    const Vector2d half(block_.width_mm / 2, block_.height_mm / 2);
+    for (const LabelWish::Other& other : wish_.others) {
+        const Vector3d way = other.p_in_ct - frame.at.p_in_ct;
+        const Vector2d xy(way.dot(frame.right_in_ct), way.dot(frame.up_in_ct));
+        const double off_skin_mm = way.dot(frame.at.normal_in_ct);
+        const double from_text_mm = (xy.cwiseAbs() - half).cwiseMax(0).norm();
+        if (std::hypot(from_text_mm, std::min(0.0, off_skin_mm + 20)) < other.half_size_mm + kClose_mm) return true;
+    }
+    return false;
+}
+
+/// True when all of the text's outline lies on skin that is free, flat and lit.
+bool Search::is_free(const TextFrame& frame) const {
+    constexpr double kApart_mm = 2.2, kFlat = 0.7;
+    if (is_close_to_another(frame)) return false;
+    const int nx = std::max(1, static_cast<int>(std::ceil(block_.width_mm / kApart_mm)));
+    const int ny = std::max(1, static_cast<int>(std::ceil(block_.height_mm / kApart_mm)));
     for (int ix = 0; ix <= nx; ++ix)
-        for (int iy = 0; iy <= ny && bad < give_up; ++iy) {
-            const Vector2d xy(block.width_mm * (static_cast<double>(ix) / nx - 0.5),
-                              block.height_mm * (static_cast<double>(iy) / ny - 0.5));
-            const auto p = on_skin(skin, f, xy);
-            const bool good = p && skin.real_skin(*p) && p->normal_in_ct.dot(f.at.normal_in_ct) > 0.7 &&
-                              !occupied.within(p->p_in_ct, kClear_mm);
-            bad += good ? 0 : 1;
+        for (int iy = 0; iy <= ny; ++iy) {
+            const Vector2d xy(block_.width_mm * (static_cast<double>(ix) / nx - 0.5),
+                              block_.height_mm * (static_cast<double>(iy) / ny - 0.5));
+            const auto p = on_skin(skin_, frame, xy);
+            if (!p || !skin_.real_skin(*p) || p->normal_in_ct.dot(frame.at.normal_in_ct) < kFlat) return false;
+            if (occupied_.within(p->p_in_ct, kClear_mm, wish_.but_of) || !lit(*p)) return false;
         }
-    return bad;
+    return true;
 }
 
-/// Lines that would be too wide are broken at blanks, and inside a word only when it alone is too wide.
-void add_wrapped(const std::u32string& part, double text_height_mm, std::vector<std::u32string>& lines) {
-    std::u32string rest = part;
-    while (!rest.empty()) {
-        std::size_t fits = 1;
-        while (fits < rest.size() && text_width(rest.substr(0, fits + 1)) * text_height_mm <= kMaxWidth_mm) ++fits;
-        if (fits < rest.size()) {
-            const auto blank = rest.rfind(U' ', fits);
-            if (blank != std::u32string::npos && blank > 0) fits = blank;
-        }
-        lines.push_back(rest.substr(0, fits));
-        rest = rest.substr(fits);
-        while (!rest.empty() && rest.front() == U' ') rest.erase(rest.begin());
-    }
+double Search::cost_of(std::size_t anchor, double angle, double gap_mm, const Point& middle) const {
+    const Point& from = wish_.anchors[anchor];
+    double cost = gap_mm + 0.3 * static_cast<double>(anchor) + 2 * std::abs(std::sin(angle)) +
+                  (std::cos(angle) < -0.1 ? 0.5 : 0) +
+                  30 * (1 - middle.normal_in_ct.dot(wish_.facing_in_ct.value_or(from.normal_in_ct)));
+    if (wish_.away_from_in_ct &&
+        (middle.p_in_ct - *wish_.away_from_in_ct).norm() < (from.p_in_ct - *wish_.away_from_in_ct).norm())
+        cost += 15;
+    return cost;
 }
 
-void add_stroke(const std::vector<Point>& points, int item, double width_mm, std::vector<Stroke>& strokes) {
-    if (points.size() < 2) return;
-    Stroke stroke{StrokeKind::label, item, kWhite, width_mm, false, {}, {}};
-    for (const Point& p : points) {
-        stroke.points_in_ct.push_back(p.p_in_ct);
-        stroke.normals_in_ct.push_back(p.normal_in_ct);
-    }
-    strokes.push_back(std::move(stroke));
-}
-
-/// One sign on its own little map round its middle, `middle_xy` mm from the text's.
-void draw_glyph(const SkinSurface& skin, const TextFrame& text, const Glyph& g, const Vector2d& middle_xy,
-                const DrawingSettings& settings, int item, std::vector<Stroke>& strokes) {
-    const Vector3d way_there = middle_xy.x() * text.right_in_ct + middle_xy.y() * text.up_in_ct;
-    const auto way = skin.walk_way(text.at, way_there, 1e9);
-    if (!way) return;
-    TextFrame f{way->points.back(), text.right_in_ct, text.up_in_ct};
-    if (middle_xy.norm() > 1e-9) {  // the frame carried along the way: its angle to the way stays the same
-        const Vector3d ahead = way->direction_at_end_in_ct, aside = f.at.normal_in_ct.cross(ahead);
-        const Vector2d along = middle_xy.normalized();
-        f.right_in_ct = along.x() * ahead - along.y() * aside;
-        f.up_in_ct = along.y() * ahead + along.x() * aside;
-    }
-    const double h = settings.text_height_mm;
-    for (const auto& line : g.lines) {
-        std::vector<Point> points;
-        for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-            const Vector2d a = h * (line[i] - Vector2d(g.width / 2, 0.5)),
-                           b = h * (line[i + 1] - Vector2d(g.width / 2, 0.5));
-            const int n = std::max(1, static_cast<int>(std::ceil((b - a).norm() / settings.max_segment_mm)));
-            for (int k = i == 0 ? 0 : 1; k <= n; ++k)
-                if (const auto p = on_skin(skin, f, a + (b - a) * k / n)) points.push_back(*p);
-        }
-        add_stroke(points, item, 0.11 * h, strokes);
-    }
-}
-
-std::vector<Stroke> draw_text(const SkinSurface& skin, const TextFrame& frame, const TextBlock& block,
-                              const DrawingSettings& settings, int item) {
-    std::vector<Stroke> strokes;
-    const double h = settings.text_height_mm;
-    double y = block.height_mm / 2 - h / 2;  // middle of the first line's capitals
-    for (const auto& line : block.lines) {
-        double x = -text_width(line) * h / 2;
-        for (const char32_t code : line) {
-            const Glyph g = glyph(code);
-            draw_glyph(skin, frame, g, {x + g.width * h / 2, y}, settings, item, strokes);
-            x += g.advance * h;
-        }
-        y -= kLineSpacing * h;
-    }
-    return strokes;
-}
-
-/// How far the middle of a text must be from a point so that its outline is clear of it in direction `angle`.
-double reach_mm(const TextBlock& block, double angle) {
-    const double c = std::abs(std::cos(angle)), s = std::abs(std::sin(angle));
-    return std::min(c > 1e-9 ? block.width_mm / 2 / c : 1e9, s > 1e-9 ? block.height_mm / 2 / s : 1e9);
-}
-
-/// The best place at `gap_mm` beyond what is drawn at the anchors.
-void try_ring(const LabelWish& wish, const SkinSurface& skin, const DrawingSettings& settings,
-              const OccupiedSkin& occupied, const TextBlock& block, double gap_mm, Candidate& best) {
+/// The places at `gap_mm` beyond what is drawn at the anchor.
+void Search::try_round(std::size_t anchor, double gap_mm) {
     constexpr int kDirections = 16;
-    for (std::size_t a = 0; a < wish.anchors.size(); ++a) {
-        const TextFrame at_anchor = text_frame(wish.anchors[a], settings.up_in_ct);
-        for (int d = 0; d < kDirections; ++d) {
-            const double angle = 2 * std::numbers::pi * d / kDirections;
-            const double way_mm = wish.keep_off_mm + kClear_mm + 0.8 + gap_mm + reach_mm(block, angle);
-            const auto middle = on_skin(skin, at_anchor, way_mm * Vector2d(std::cos(angle), std::sin(angle)));
-            if (!middle) continue;
-            const Vector3d& from = wish.anchors[a].p_in_ct;
-            double cost = gap_mm + 0.3 * static_cast<double>(a) + 2 * std::abs(std::sin(angle)) +
-                          (std::cos(angle) < -0.1 ? 0.5 : 0) +
-                          30 * (1 - middle->normal_in_ct.dot(wish.facing_in_ct.value_or(wish.anchors[a].normal_in_ct)));
-            if (wish.away_from_in_ct &&
-                (middle->p_in_ct - *wish.away_from_in_ct).norm() < (from - *wish.away_from_in_ct).norm())
-                cost += 15;
-            if (best.overlaps == 0 && cost >= best.cost) continue;
-            const TextFrame frame = text_frame(*middle, settings.up_in_ct);
-            const int overlaps = count_overlaps(skin, frame, block, occupied, best.overlaps + 1);
-            if (overlaps < best.overlaps || (overlaps == best.overlaps && cost < best.cost))
-                best = {frame, cost, overlaps, gap_mm, wish.anchors[a]};
+    const TextFrame at_anchor = text_frame(wish_.anchors[anchor], settings_.up_in_ct);
+    for (int d = 0; d < kDirections; ++d) {
+        const double angle = 2 * std::numbers::pi * d / kDirections;
+        const double way_mm = wish_.keep_off_mm + kClear_mm + kOffItem_mm + gap_mm + reach_mm(angle);
+        const auto middle = on_skin(skin_, at_anchor, way_mm * Vector2d(std::cos(angle), std::sin(angle)));
+        if (!middle) continue;
+        const double cost = cost_of(anchor, angle, gap_mm, *middle);
+        if (best_ && cost >= best_->cost) continue;
+        const TextFrame frame = text_frame(*middle, settings_.up_in_ct);
+        if (!is_free(frame)) continue;
+        std::vector<Point> way;
+        if (gap_mm >= kLeaderFrom_mm) {
+            auto found = leader(wish_.anchors[anchor], frame);
+            if (!found) continue;
+            way = std::move(*found);
         }
+        best_ = Candidate{frame, cost, std::move(way)};
     }
 }
 
-/// A thin line from what is named to the text, when they are far apart.
-void add_leader(const SkinSurface& skin, const LabelWish& wish, const Candidate& chosen, const TextBlock& block,
-                const DrawingSettings& settings, std::vector<Stroke>& strokes) {
-    if (chosen.gap_mm < 6) return;
-    const SkinLine line = straight_way(skin, chosen.anchor, chosen.frame.at, settings.max_segment_mm);
+/// A straight way from what is named to the text; empty when it would cross anything or lie in no light.
+std::optional<std::vector<Point>> Search::leader(const Point& anchor, const TextFrame& frame) const {
+    constexpr double kBefore_mm = 1.2;
+    const SkinLine line = straight_way(skin_, anchor, frame.at, settings_.max_segment_mm);
     std::vector<Point> points;
     for (const Point& p : line.points) {
-        const Vector3d from_text = p.p_in_ct - chosen.frame.at.p_in_ct;
-        const bool in_text = std::abs(from_text.dot(chosen.frame.right_in_ct)) < block.width_mm / 2 + 1.2 &&
-                             std::abs(from_text.dot(chosen.frame.up_in_ct)) < block.height_mm / 2 + 1.2;
-        if (!in_text && (p.p_in_ct - chosen.anchor.p_in_ct).norm() > wish.keep_off_mm + 0.8) points.push_back(p);
+        const Vector3d from_text = p.p_in_ct - frame.at.p_in_ct;
+        const bool in_text = std::abs(from_text.dot(frame.right_in_ct)) < block_.width_mm / 2 + kBefore_mm &&
+                             std::abs(from_text.dot(frame.up_in_ct)) < block_.height_mm / 2 + kBefore_mm;
+        if (in_text) break;
+        if ((p.p_in_ct - anchor.p_in_ct).norm() < wish_.keep_off_mm + kOffItem_mm) continue;
+        const double own_mm = (p.p_in_ct - anchor.p_in_ct).norm() - wish_.keep_off_mm;
+        const double clear_mm = std::min(kLeaderClear_mm, 0.7 * own_mm);  // its own item is near where it begins
+        if (occupied_.within(p.p_in_ct, clear_mm, wish_.but_of) || !lit(p)) return std::nullopt;
+        points.push_back(p);
     }
-    add_stroke(points, wish.item, 0.4, strokes);
+    return points;
 }
 
 }  // namespace
@@ -175,74 +170,56 @@ std::int64_t OccupiedSkin::key(const Eigen::Vector3i& cell) {
     return (static_cast<std::int64_t>(cell.x()) * 2097169 + cell.y()) * 2097169 + cell.z();
 }
 
-void OccupiedSkin::add(const Vector3d& p_in_ct) {
+void OccupiedSkin::add(const Vector3d& p_in_ct, int owner) {
     auto& cell = cells_[key((p_in_ct / kCell_mm).array().floor().cast<int>())];
     // Where a crowded plan is drawn over itself a cell would grow without end, and each look into it with it.
     constexpr double kSame_mm = 0.2;
-    for (const Vector3d& q : cell)
-        if ((q - p_in_ct).squaredNorm() < kSame_mm * kSame_mm) return;
-    cell.push_back(p_in_ct);
+    for (const Taken& q : cell)
+        if (q.owner == owner && (q.p_in_ct - p_in_ct).squaredNorm() < kSame_mm * kSame_mm) return;
+    cell.push_back({p_in_ct, owner});
 }
 
-bool OccupiedSkin::within(const Vector3d& p_in_ct, double distance_mm) const {
+void OccupiedSkin::take_away_label(int item) {
+    for (auto& [key, cell] : cells_) std::erase_if(cell, [&](const Taken& q) { return q.owner == item; });
+}
+
+bool OccupiedSkin::within(const Vector3d& p_in_ct, double distance_mm, int but_of) const {
     const Eigen::Vector3i cell = (p_in_ct / kCell_mm).array().floor().cast<int>();
     for (int dx = -1; dx <= 1; ++dx)
         for (int dy = -1; dy <= 1; ++dy)
             for (int dz = -1; dz <= 1; ++dz) {
                 const auto found = cells_.find(key(cell + Eigen::Vector3i(dx, dy, dz)));
                 if (found == cells_.end()) continue;
-                for (const Vector3d& q : found->second)
-                    if ((q - p_in_ct).squaredNorm() < distance_mm * distance_mm) return true;
+                for (const Taken& q : found->second) {
+                    if (q.owner != kPlan && (but_of == kAllLabels || but_of == q.owner)) continue;
+                    if ((q.p_in_ct - p_in_ct).squaredNorm() < distance_mm * distance_mm) return true;
+                }
             }
     return false;
 }
 
-TextBlock lay_out(const std::string& text, double text_height_mm) {
-    TextBlock block;
-    std::size_t from = 0;
-    while (from <= text.size()) {
-        const auto two_blanks = std::min(text.find("  ", from), text.size());
-        const std::u32string part = code_points(text.substr(from, two_blanks - from));
-        const bool joins =
-            !block.lines.empty() && text_width(block.lines.back() + U" " + part) * text_height_mm < 0.75 * kMaxWidth_mm;
-        if (joins)
-            block.lines.back() += U" " + part;
-        else
-            add_wrapped(part, text_height_mm, block.lines);
-        from = two_blanks + 2;
-    }
-    for (const auto& line : block.lines) block.width_mm = std::max(block.width_mm, text_width(line) * text_height_mm);
-    block.height_mm = text_height_mm * (1 + kLineSpacing * (static_cast<double>(block.lines.size()) - 1));
-    return block;
+void occupy(const Label& label, OccupiedSkin& occupied) {
+    for (const Vector3d& p : label.field_in_ct) occupied.add(p, label.item);
+    for (const auto& sign : label.signs_in_ct)
+        for (const auto& outline : sign)
+            for (const Vector3d& p : outline) occupied.add(p, label.item);
+    for (const Vector3d& p : label.leader.points_in_ct) occupied.add(p, label.item);
 }
 
-TextFrame text_frame(const Point& at, const Vector3d& up_in_ct) {
-    const auto tangent = [&](const Vector3d& v) { return Vector3d(v - v.dot(at.normal_in_ct) * at.normal_in_ct); };
-    Vector3d up = tangent(up_in_ct.normalized());
-    if (up.norm() <
-        0.25) {  // on top of the head: read by someone who stands before the face (ct is LPS: +y is posterior)
-        const Vector3d back = std::abs(up_in_ct.normalized().y()) > 0.9 ? Vector3d(0, 0, -1) : Vector3d(0, 1, 0);
-        up = tangent(at.normal_in_ct.dot(up_in_ct) > 0 ? back : Vector3d(-back));
-    }
-    up.normalize();
-    return {at, up.cross(at.normal_in_ct), up};
-}
-
-std::vector<Stroke> place_label(const LabelWish& wish, const SkinSurface& skin, const DrawingSettings& settings,
-                                OccupiedSkin& occupied) {
+std::optional<Label> place_label(const LabelWish& wish, const SkinSurface& skin, const DrawingSettings& settings,
+                                 const OccupiedSkin& occupied) {
     const TextBlock block = lay_out(wish.text, settings.text_height_mm);
-    Candidate best;
-    if (!wish.may_overlap) best.overlaps = 1;
-    for (const double gap_mm : {0.0, 3.0, 7.0, 12.0, 18.0, 26.0}) {
-        try_ring(wish, skin, settings, occupied, block, gap_mm, best);
-        if (best.overlaps == 0) break;
-    }
-    if (best.frame.at.triangle < 0) return {};
-    std::vector<Stroke> strokes = draw_text(skin, best.frame, block, settings, wish.item);
-    add_leader(skin, wish, best, block, settings, strokes);
-    for (const Stroke& stroke : strokes)
-        for (const Vector3d& p : stroke.points_in_ct) occupied.add(p);
-    return strokes;
+    if (block.lines.empty()) return std::nullopt;
+    const auto found = Search(wish, skin, settings, occupied, block).best();
+    if (!found) return std::nullopt;
+    auto label = draw_label(skin, found->frame, block, wish.item, settings.text_height_mm);
+    if (!label) return std::nullopt;
+    if (found->leader.size() > 1)
+        for (const Point& p : found->leader) {
+            label->leader.points_in_ct.push_back(p.p_in_ct);
+            label->leader.normals_in_ct.push_back(p.normal_in_ct);
+        }
+    return label;
 }
 
 }  // namespace planlight

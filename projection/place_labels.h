@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
 
 #include "projection/draw_plan.h"
+#include "projection/lay_out_label.h"
 #include "projection/skin_paths.h"
 
 namespace planlight {
@@ -13,42 +15,55 @@ namespace planlight {
 /// The skin that is already drawn on, so that labels keep clear of it.
 class OccupiedSkin {
 public:
-    void add(const Eigen::Vector3d& p_in_ct);
-    bool within(const Eigen::Vector3d& p_in_ct, double distance_mm) const;  ///< `distance_mm` up to the cell size
+    static constexpr int kPlan = -1;       ///< lines, ticks, markers
+    static constexpr int kNobody = -2;     ///< as `but_of`: nothing is overlooked
+    static constexpr int kAllLabels = -3;  ///< as `but_of`: only the plan counts
+
+    /// `owner`: `kPlan`, or the item whose label it is.
+    void add(const Eigen::Vector3d& p_in_ct, int owner = kPlan);
+    void take_away_label(int item);
+    /// `distance_mm` up to the cell size. What belongs to `but_of` is overlooked.
+    bool within(const Eigen::Vector3d& p_in_ct, double distance_mm, int but_of = kNobody) const;
 
     static constexpr double kCell_mm = 3;
 
 private:
+    struct Taken {
+        Eigen::Vector3d p_in_ct;
+        int owner;
+    };
     static std::int64_t key(const Eigen::Vector3i& cell);
-    std::unordered_map<std::int64_t, std::vector<Eigen::Vector3d>> cells_;
+    std::unordered_map<std::int64_t, std::vector<Taken>> cells_;
 };
 
 /// A text to be put beside something.
 struct LabelWish {
     int item = -1;
-    std::string text;                         ///< parts that may stand on lines of their own are parted by two blanks
-    std::vector<SkinSurface::Point> anchors;  ///< places it may stand beside, best first
-    double keep_off_mm = 1.5;                 ///< half size of what is drawn at the anchor
+    LabelText text;
+    std::string number;                              ///< "#3": where there is no room for the name
+    std::vector<SkinSurface::Point> anchors;         ///< places it may stand beside, best first
+    double keep_off_mm = 1.5;                        ///< half size of what is drawn at the anchor
     std::optional<Eigen::Vector3d> away_from_in_ct;  ///< the side that is left free: the middle of a closed line
     std::optional<Eigen::Vector3d> facing_in_ct;     ///< unit: skin that faces this way is preferred
-    bool may_overlap = true;  ///< where nothing is free the least taken place will do; else there is no text then
+    /// Holes and ways in of other items: a text close to one would be taken for its name.
+    struct Other {
+        Eigen::Vector3d p_in_ct;
+        double half_size_mm;
+    };
+    std::vector<Other> others = {};
+    int but_of = OccupiedSkin::kNobody;              ///< whose labels may lie there
 };
 
-/// The text's strokes where they overlap nothing and the skin is flat, the anchor's own surroundings first; a thin line
-/// leads to it when it had to go far. Adds them to `occupied`. Letters are mapped one by one by straight ways from the
+/// The label where it overlaps nothing, the skin is flat and, where the light is known, all of it can be lit: the
+/// anchor's own surroundings first; from far away a thin line leads to it, which crosses nothing. Empty where there is
+/// no such place, and for a text that cannot be laid out. Letters are mapped one by one by straight ways from the
 /// middle of the text (exponential map, at most half the text's width), so that they keep their size and shape on the
 /// skin.
-std::vector<Stroke> place_label(const LabelWish& wish, const SkinSurface& skin, const DrawingSettings& settings,
-                                OccupiedSkin& occupied);
+std::optional<Label> place_label(const LabelWish& wish, const SkinSurface& skin, const DrawingSettings& settings,
+                                 const OccupiedSkin& occupied);
 
-/// The text's lines, and their outline on the skin.
-struct TextBlock {
-    std::vector<std::u32string> lines;
-    double width_mm = 0, height_mm = 0;
-};
-
-/// Lines of the text, and the size of their block with letters of this height.
-TextBlock lay_out(const std::string& text, double text_height_mm);
+/// Takes the skin under the label and its leader.
+void occupy(const Label& label, OccupiedSkin& occupied);
 
 /// A skin point with the directions in which text runs and stands there, read from outside.
 struct TextFrame {
@@ -58,5 +73,9 @@ struct TextFrame {
 
 /// The plane that touches the skin at `at`, upright along `up_in_ct` as far as the skin lets it.
 TextFrame text_frame(const SkinSurface::Point& at, const Eigen::Vector3d& up_in_ct);
+
+/// The block's outlines on the skin, with its middle at the frame's. Empty when the skin ends under it.
+std::optional<Label> draw_label(const SkinSurface& skin, const TextFrame& frame, const TextBlock& block, int item,
+                                double text_height_mm);
 
 }  // namespace planlight

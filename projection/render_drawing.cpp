@@ -35,9 +35,18 @@ Rgb dimmed(Rgb colour, double brightness) {
     return colour;
 }
 
-/// The discs that no light may touch, black. A disc faces the projector, so that a sticker at any slant is covered.
-void darken_markers(const CameraModel& projector, const RigidTransform& rig_from_patient, const RenderSettings& s,
-                    RgbImage& picture) {
+/// A disc that no light may touch, in the projector's picture. It faces the projector, so that a sticker at any slant
+/// is covered.
+struct DarkDisc {
+    Vector2d centre;
+    Eigen::Matrix2d disc_by_pixel;
+    double reach = 0;
+    bool covers(const Vector2d& pixel) const { return (disc_by_pixel * (pixel - centre)).squaredNorm() < 1; }
+};
+
+std::vector<DarkDisc> dark_discs(const CameraModel& projector, const RigidTransform& rig_from_patient,
+                                 const RenderSettings& s) {
+    std::vector<DarkDisc> discs;
     const double radius_mm = s.keep_dark_radius_mm + s.halo_mm;
     for (const Vector3d& marker : s.keep_dark_in_patient) {
         const Vector3d p = rig_from_patient * marker;
@@ -47,17 +56,28 @@ void darken_markers(const CameraModel& projector, const RigidTransform& rig_from
         const Vector3d towards = (projector.centre_in_rig() - p).normalized(), first = towards.unitOrthogonal();
         Eigen::Matrix2d pixel_by_disc;
         pixel_by_disc << pixel_by_rig * first * radius_mm, pixel_by_rig * towards.cross(first) * radius_mm;
-        const Eigen::Matrix2d disc_by_pixel = pixel_by_disc.inverse();
-        const double reach = pixel_by_disc.norm() + 1;
-        if (!disc_by_pixel.allFinite() || !(centre->norm() + reach < 1e6)) continue;
-        const int x0 = std::max(0, static_cast<int>(centre->x() - reach)),
-                  x1 = std::min(picture.width - 1, static_cast<int>(centre->x() + reach) + 1);
-        const int y0 = std::max(0, static_cast<int>(centre->y() - reach)),
-                  y1 = std::min(picture.height - 1, static_cast<int>(centre->y() + reach) + 1);
+        const DarkDisc disc{*centre, pixel_by_disc.inverse(), pixel_by_disc.norm() + 1};
+        if (disc.disc_by_pixel.allFinite() && centre->norm() + disc.reach < 1e6) discs.push_back(disc);
+    }
+    return discs;
+}
+
+void darken(const std::vector<DarkDisc>& discs, RgbImage& picture) {
+    for (const DarkDisc& disc : discs) {
+        const int x0 = std::max(0, static_cast<int>(disc.centre.x() - disc.reach)),
+                  x1 = std::min(picture.width - 1, static_cast<int>(disc.centre.x() + disc.reach) + 1);
+        const int y0 = std::max(0, static_cast<int>(disc.centre.y() - disc.reach)),
+                  y1 = std::min(picture.height - 1, static_cast<int>(disc.centre.y() + disc.reach) + 1);
         for (int y = y0; y <= y1; ++y)
             for (int x = x0; x <= x1; ++x)
-                if ((disc_by_pixel * (Vector2d(x, y) - *centre)).squaredNorm() < 1) picture.at(x, y) = {0, 0, 0};
+                if (disc.covers(Vector2d(x, y))) picture.at(x, y) = {0, 0, 0};
     }
+}
+
+/// How bright an item is.
+double share_of(int item, const RenderSettings& s) {
+    const bool other = s.item_of_moment >= 0 && item != s.item_of_moment;
+    return s.brightness * (other ? std::clamp(s.others, 0.0, 1.0) : 1);
 }
 
 }  // namespace
@@ -70,6 +90,10 @@ struct DrawingRenderer::Parts {
     LitPoint light_point(const Vector3d& p_in_ct, const Vector3d& normal_in_ct, double steepest_cosine,
                          RenderCounts& counts) const;
     void add_ribbon(const Stroke& stroke, bool broken);
+    void draw_stroke(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts, RgbImage& picture);
+    bool can_be_lit_whole(const Label& label, const RenderSettings& settings, const std::vector<DarkDisc>& discs);
+    void draw_label(const Label& label, const RenderSettings& settings, const std::vector<DarkDisc>& discs,
+                    RenderCounts& counts, RgbImage& picture);
     /// True when the stroke is a circle that is lit in part; `counts` is told.
     bool is_partly_lit_ring(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts) const;
     /// The two edge points of the ribbon at one end of a segment.
@@ -84,6 +108,7 @@ struct DrawingRenderer::Parts {
     DepthPicture depth;
     StrokeRaster raster;
     std::vector<LitPoint> points;
+    std::vector<std::vector<Vector2d>> outlines;
 };
 
 LitPoint DrawingRenderer::Parts::light_point(const Vector3d& p, const Vector3d& normal, double steepest_cosine,
@@ -149,8 +174,12 @@ void DrawingRenderer::Parts::add_ribbon(const Stroke& stroke, bool broken) {
             (stroke.points_in_ct[(segment + 1) % count] - stroke.points_in_ct[segment % count]).normalized());
     };
     const double segment_mm = (stroke.points_in_ct[1] - stroke.points_in_ct[0]).norm();
+    double way_mm = 0;
     for (std::size_t i = 0; i < segments; ++i) {
         const std::size_t j = (i + 1) % count;
+        const double step_mm = stroke.gap_mm > 0 ? (stroke.points_in_ct[j] - stroke.points_in_ct[i]).norm() : 0;
+        way_mm += step_mm;
+        if (stroke.in_gap(way_mm - step_mm / 2)) continue;
         if (!points[i].lit || !points[j].lit) continue;
         if (broken && static_cast<int>(static_cast<double>(i) * segment_mm / kBroken_mm) % 2 != 0) continue;
         const Vector3d along = direction(i);
@@ -161,6 +190,68 @@ void DrawingRenderer::Parts::add_ribbon(const Stroke& stroke, bool broken) {
         const auto end = edges(stroke, j, along, i + 1 < segments || stroke.closed ? &after : nullptr, 1);
         raster.add_quad({start[0], end[0], end[1], start[1]});
     }
+}
+
+void DrawingRenderer::Parts::draw_stroke(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts,
+                                         RgbImage& picture) {
+    if (stroke.normals_in_ct.size() != stroke.points_in_ct.size())
+        throw InputError("", "a stroke of the drawing has not one normal per point", "Draw the plan again.");
+    const double brightness = share_of(stroke.item, settings);
+    if (stroke.points_in_ct.size() < 2 || !(stroke.width_mm > 0) || !(brightness > 0)) return;
+    light_points(stroke, settings, counts);
+    add_ribbon(stroke, is_partly_lit_ring(stroke, settings, counts));
+    raster.flush(dimmed(stroke.colour, brightness), picture);
+}
+
+/// Half a word, or half a number, would be read as another.
+bool DrawingRenderer::Parts::can_be_lit_whole(const Label& label, const RenderSettings& settings,
+                                              const std::vector<DarkDisc>& discs) {
+    const double steepest_cosine = std::cos(std::clamp(std::min(settings.steepest, settings.steepest_text), 0.0, 1.55));
+    RenderCounts not_of_lines;
+    const auto lit = [&](const Vector3d& p, const Vector3d& normal) {
+        const LitPoint point = light_point(p, normal, steepest_cosine, not_of_lines);
+        return point.lit &&
+               std::none_of(discs.begin(), discs.end(), [&](const DarkDisc& disc) { return disc.covers(point.pixel); });
+    };
+    for (std::size_t i = 0; i < label.field_in_ct.size(); ++i)
+        if (!lit(label.field_in_ct[i], label.field_normals_in_ct[i])) return false;
+    for (std::size_t i = 0; i < label.leader.points_in_ct.size(); ++i)
+        if (!lit(label.leader.points_in_ct[i], label.leader.normals_in_ct[i])) return false;
+    return !label.field_in_ct.empty();
+}
+
+void DrawingRenderer::Parts::draw_label(const Label& label, const RenderSettings& settings,
+                                        const std::vector<DarkDisc>& discs, RenderCounts& counts, RgbImage& picture) {
+    if (label.field_normals_in_ct.size() != label.field_in_ct.size())
+        throw InputError("", "a label of the drawing has not one normal per point", "Draw the plan again.");
+    if (!can_be_lit_whole(label, settings, discs)) {
+        counts.labels_left_out.push_back(label.item);
+        return;
+    }
+    counts.labels_lit.push_back(label.item);
+    for (const Label::Outlines& sign : label.signs_in_ct) {
+        outlines.resize(sign.size());
+        for (std::size_t k = 0; k < sign.size(); ++k) {
+            outlines[k].clear();
+            for (const Vector3d& p : sign[k])
+                if (const auto pixel = project(projector_from_ct, p)) outlines[k].push_back(*pixel);
+        }
+        raster.add_outlines(outlines);
+    }
+    raster.flush(dimmed(label.colour, settings.brightness), picture);
+    RenderCounts not_of_lines;
+    if (!label.leader.points_in_ct.empty()) draw_stroke(label.leader, settings, not_of_lines, picture);
+}
+
+std::string sentence_of_labels(const RenderCounts& counts, const PlanDrawing& drawing) {
+    std::string names;
+    for (const int item : counts.labels_left_out)
+        names += (names.empty() ? "" : ", ") + drawing.items.at(static_cast<std::size_t>(item)).name;
+    if (names.empty()) return {};
+    return fmt::format(
+        "Left out because not all of it can be lit from here: the label of {}. Turn the patient or the "
+        "projector, or read it in the operator's window.",
+        names);
 }
 
 bool DrawingRenderer::Parts::is_partly_lit_ring(const Stroke& stroke, const RenderSettings& settings,
@@ -226,16 +317,17 @@ RenderCounts DrawingRenderer::render_into(RgbImage& picture, const PlanDrawing& 
     parts.light_in_ct = parts.projector_from_ct.centre_in_rig();
     parts.depth.draw(parts.projector_from_ct);
     RenderCounts counts;
-    for (const Stroke& stroke : drawing.strokes) {
-        if (settings.only_item >= 0 && stroke.item != settings.only_item) continue;
-        if (stroke.normals_in_ct.size() != stroke.points_in_ct.size())
-            throw InputError("", "a stroke of the drawing has not one normal per point", "Draw the plan again.");
-        if (stroke.points_in_ct.size() < 2 || !(stroke.width_mm > 0)) continue;
-        parts.light_points(stroke, settings, counts);
-        parts.add_ribbon(stroke, parts.is_partly_lit_ring(stroke, settings, counts));
-        parts.raster.flush(dimmed(stroke.colour, settings.brightness), picture);
+    const std::vector<DarkDisc> discs = dark_discs(parts.projector, rig_from_patient, settings);
+    for (const Stroke& stroke : drawing.strokes)
+        if (settings.only_item < 0 || stroke.item == settings.only_item)
+            parts.draw_stroke(stroke, settings, counts, picture);
+    for (const Label& label : drawing.labels) {
+        const bool wanted =
+            settings.item_of_moment < 0 ? !label.of_moment : label.of_moment && label.item == settings.item_of_moment;
+        if (wanted && (settings.only_item < 0 || label.item == settings.only_item))
+            parts.draw_label(label, settings, discs, counts, picture);
     }
-    darken_markers(parts.projector, rig_from_patient, settings, picture);
+    darken(discs, picture);
     return counts;
 }
 

@@ -18,6 +18,10 @@ struct RenderSettings {
     double keep_dark_radius_mm = 9;
     double whole_ring = 0.85;  ///< circles of which less of the rim can be lit are drawn broken
     int only_item = -1;        ///< draw one item alone (for measuring); -1 draws all
+    /// The item that is worked on: bright, with its whole label; no other label is drawn then. -1: none.
+    int item_of_moment = -1;
+    double others = 0.25;         ///< brightness of the other items then; 0 hides them
+    double steepest_text = 1.13;  ///< radians (65 degrees): a label of which a part is steeper is left out whole
 };
 
 /// A circle of which only a part can be lit: an arc of it looks like a circle elsewhere. It is drawn broken.
@@ -34,10 +38,14 @@ struct RenderCounts {
     std::size_t hidden = 0;     ///< other skin stands in the light's way
     std::size_t outside = 0;    ///< out of the projector's picture
     std::vector<PartlyLitRing> partly_lit;
+    std::vector<int> labels_lit, labels_left_out;  ///< items; a label is left out when not all of it can be lit
 };
 
 /// One sentence for every circle of which only a part can be lit.
 std::vector<std::string> sentences(const std::vector<PartlyLitRing>& rings, const PlanDrawing& drawing);
+
+/// One sentence that names the items whose labels cannot be lit whole; empty when all can.
+std::string sentence_of_labels(const RenderCounts& counts, const PlanDrawing& drawing);
 
 /// Renders drawings for the projector's view: true occlusion by the skin, lens distortion, anti-aliased strokes.
 /// Holds the depth mesh, so that a picture a frame costs only the strokes. Keeps a reference to `skin`. May be called

@@ -177,6 +177,11 @@ Glyph glyph(char32_t code) {
     return g;
 }
 
+bool is_known_glyph(char32_t code) {
+    return code == ' ' || code == 0xA0 || code == 0xD8 || code == 0xF8 || code == 0x2205 || composed().contains(code) ||
+           shapes().contains(code);
+}
+
 std::u32string code_points(const std::string& utf8) {
     std::u32string out;
     for (std::size_t i = 0; i < utf8.size();) {

@@ -19,6 +19,9 @@ struct Glyph {
 /// An unknown one is drawn as a question mark, so that it is seen to be missing.
 Glyph glyph(char32_t code);
 
+/// True when the font has a sign for it.
+bool is_known_glyph(char32_t code);
+
 /// The code points of UTF-8 text; a damaged byte becomes U+FFFD.
 std::u32string code_points(const std::string& utf8);
 

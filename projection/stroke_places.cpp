@@ -14,6 +14,12 @@ public:
     StrokesNear(const PlanDrawing& drawing, double reach_mm) : drawing_(drawing), reach_mm_(reach_mm) {
         for (std::size_t s = 0; s < drawing.strokes.size(); ++s)
             for (const Vector3d& p : drawing.strokes[s].points_in_ct) cells_[key(cell(p))].push_back({s, p});
+        for (const Label& label : drawing.labels) {
+            for (const Label::Outlines& sign : label.signs_in_ct)
+                for (const auto& outline : sign)
+                    for (const Vector3d& p : outline) cells_[key(cell(p))].push_back({kLabel, p});
+            for (const Vector3d& p : label.leader.points_in_ct) cells_[key(cell(p))].push_back({kLabel, p});
+        }
     }
     /// How far to both sides of a place no light but this stroke's is wanted, mm, at most the reach: another stroke, or
     /// a part of the same that comes back beside itself.
@@ -37,10 +43,13 @@ public:
     }
 
 private:
+    static constexpr std::size_t kLabel = static_cast<std::size_t>(-1);  // in place of a stroke's number
+    static constexpr double kLabelLine_mm = 0.5;                         // what its outline is taken to be wide
     static constexpr double kBesideLine = 0.75;  // of the width: a tick's arm begins so far from the middle of its line
 
     /// True of a tick and the line that it is a tick of.
     bool crossed_by(std::size_t tick, std::size_t line) const {
+        if (line == kLabel) return false;
         const Stroke &a = drawing_.strokes[tick], &b = drawing_.strokes[line];
         return a.kind == StrokeKind::tick && a.item == b.item &&
                (b.kind == StrokeKind::osteotomy_line || b.kind == StrokeKind::cut_plane);
@@ -58,11 +67,14 @@ private:
     }
     double free_of_mm(std::size_t other, const Vector3d& p, std::size_t stroke, const StrokePlace& at) const {
         const Vector3d way = p - at.p_in_ct;
-        const double widths_mm = (at.width_mm + drawing_.strokes[other].width_mm) / 2;
+        const double widths_mm = (at.width_mm + width_mm(other)) / 2;
         const double aside_mm = std::abs(way.dot(at.sideways_in_ct)), along_mm = std::abs(way.dot(at.along_in_ct));
         if (along_mm > 2 * widths_mm || way.norm() > 2 * reach_mm_) return reach_mm_;
         if (other == stroke && aside_mm < 2 * widths_mm) return reach_mm_;  // the stroke itself
         return aside_mm - widths_mm;
+    }
+    double width_mm(std::size_t stroke) const {
+        return stroke == kLabel ? kLabelLine_mm : drawing_.strokes[stroke].width_mm;
     }
     Eigen::Vector3i cell(const Vector3d& p) const { return (p / reach_mm_).array().floor().matrix().cast<int>(); }
     static std::int64_t key(const Eigen::Vector3i& c) {
@@ -81,7 +93,8 @@ private:
 std::vector<StrokePlace> places_of(const Stroke& stroke, double spacing_mm) {
     std::vector<StrokePlace> places;
     const std::size_t n = stroke.points_in_ct.size(), segments = stroke.closed ? n : n - 1;
-    double wait_mm = 0;
+    constexpr double kBesideGap_mm = 0.7;  // light that ends is not the same all along the profile
+    double wait_mm = 0, way_mm = 0;
     for (std::size_t i = 0; n > 1 && i < segments; ++i) {
         const Vector3d a = stroke.points_in_ct[i], way = stroke.points_in_ct[(i + 1) % n] - a;
         const double length_mm = way.norm();
@@ -93,9 +106,11 @@ std::vector<StrokePlace> places_of(const Stroke& stroke, double spacing_mm) {
             place.sideways_in_ct = place.normal_in_ct.cross(way / length_mm).normalized();
             place.along_in_ct = place.sideways_in_ct.cross(place.normal_in_ct);
             place.width_mm = stroke.width_mm;
+            place.lit = !stroke.in_gap(way_mm + wait_mm, kBesideGap_mm);
             places.push_back(place);
         }
         wait_mm -= length_mm;
+        way_mm += length_mm;
     }
     return places;
 }
@@ -129,7 +144,7 @@ void add_segments(const PlanDrawing& drawing, std::size_t s, const StrokesNear& 
         segment = none;
     };
     for (const StrokePlace& place : places_of(stroke, spacing_mm)) {
-        const double free_mm = near.free_mm(s, place);
+        const double free_mm = place.lit ? near.free_mm(s, place) : 0;
         if (free_mm < settings.least_search_mm) {
             if (!tick) close((most + 1) / 2);
             continue;

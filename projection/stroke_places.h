@@ -10,6 +10,7 @@ namespace planlight {
 struct StrokePlace {
     Eigen::Vector3d p_in_ct, normal_in_ct, along_in_ct, sideways_in_ct;  ///< directions: unit, square to each other
     double width_mm = 0;                                                 ///< of the stroke
+    bool lit = true;  ///< false in the gaps of a dashed stroke and beside their ends
 };
 
 /// Some millimetres of one stroke.

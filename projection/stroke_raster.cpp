@@ -48,13 +48,21 @@ void StrokeRaster::add_edge(Eigen::Vector2d from, Eigen::Vector2d to) {
     }
 }
 
-void StrokeRaster::add_quad(const std::array<Eigen::Vector2d, 4>& corners) {
-    Eigen::Vector2d low = corners[0], high = corners[0];
-    for (const auto& c : corners) {
-        if (!c.allFinite()) return;
-        low = low.cwiseMin(c);
-        high = high.cwiseMax(c);
-    }
+void StrokeRaster::add(std::span<const Eigen::Vector2d> outline, std::span<const std::vector<Eigen::Vector2d>> more) {
+    const auto each_outline = [&](const auto& visit) {
+        if (!outline.empty()) visit(outline);
+        for (const auto& other : more) visit(std::span<const Eigen::Vector2d>(other));
+    };
+    Eigen::Vector2d low(1e300, 1e300), high = -low;
+    bool finite = true;
+    each_outline([&](std::span<const Eigen::Vector2d> corners) {
+        for (const auto& c : corners) {
+            finite = finite && c.allFinite();
+            low = low.cwiseMin(c);
+            high = high.cwiseMax(c);
+        }
+    });
+    if (!finite || !(low.x() <= high.x())) return;
     const Eigen::Vector2d half(0.5, 0.5);  // to corner-origin pixels
     low += half;
     high += half;
@@ -67,7 +75,10 @@ void StrokeRaster::add_quad(const std::array<Eigen::Vector2d, 4>& corners) {
     if (area_height_ <= 0) return;
     area_.assign(static_cast<std::size_t>(area_width_) * static_cast<std::size_t>(area_height_), 0.0f);
     const Eigen::Vector2d origin(left, top);
-    for (std::size_t i = 0; i < 4; ++i) add_edge(corners[i] + half - origin, corners[(i + 1) % 4] + half - origin);
+    each_outline([&](std::span<const Eigen::Vector2d> corners) {
+        for (std::size_t i = 0; i < corners.size(); ++i)
+            add_edge(corners[i] + half - origin, corners[(i + 1) % corners.size()] + half - origin);
+    });
     for (int y = std::max(0, -top); y < std::min(area_height_, height_ - top); ++y) {
         const float* row = area_.data() + static_cast<std::ptrdiff_t>(y) * area_width_;
         float sum = 0;
@@ -78,7 +89,7 @@ void StrokeRaster::add_quad(const std::array<Eigen::Vector2d, 4>& corners) {
             const auto i =
                 static_cast<std::size_t>(top + y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
             if (coverage_[i] == 0) touched_.push_back(i);
-            coverage_[i] += std::abs(sum);
+            coverage_[i] += std::min(1.0f, std::abs(sum));
         }
     }
 }

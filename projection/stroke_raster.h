@@ -2,13 +2,14 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <span>
 #include <vector>
 
 #include "planning_io/types/image.h"
 
 namespace planlight {
 
-/// Fills small four-sided shapes with exact pixel coverage. Shapes of one stroke add up (shared edges leave no seam),
+/// Fills small shapes with exact pixel coverage. Shapes of one stroke add up (shared edges leave no seam),
 /// and are then laid on the picture as one.
 ///
 /// Pixel (0,0) is the centre of the top-left pixel: a pixel covers half a pixel to each side of its centre.
@@ -16,11 +17,14 @@ class StrokeRaster {
 public:
     StrokeRaster(int width, int height);
 
-    void add_quad(const std::array<Eigen::Vector2d, 4>& corners);
+    void add_quad(const std::array<Eigen::Vector2d, 4>& corners) { add(corners, {}); }
+    /// Closed outlines filled together: one that runs the other way round cuts a hole.
+    void add_outlines(const std::vector<std::vector<Eigen::Vector2d>>& outlines) { add({}, outlines); }
     /// Lays what was added on `picture` (brighter channel wins) and starts anew. Returns how many pixels it touched.
     std::size_t flush(Rgb colour, RgbImage& picture);
 
 private:
+    void add(std::span<const Eigen::Vector2d> outline, std::span<const std::vector<Eigen::Vector2d>> more);
     void add_edge(Eigen::Vector2d from, Eigen::Vector2d to);
 
     int width_, height_;

@@ -95,18 +95,7 @@ Observed observe_captures(const CalibrateOptions& options, const BoardSpec& boar
     return observed;
 }
 
-/// Which of its two kinds the command is asked for.
-void check_kind(const CalibrateOptions& options) {
-    if (options.live && options.room.empty())
-        throw InputError({}, "--live needs the room", "Name its room.json with --room (see `planlight devices`).");
-    if (options.live && !options.captures.empty())
-        throw InputError({}, "--live takes its captures itself", "Leave the folder of captures out.");
-    if (!options.live && options.captures.empty())
-        throw InputError({}, "no captures are named", "Name their folder, or say --live --room room.json.");
-}
-
 int run_calibrate(const CalibrateOptions& options) {
-    check_kind(options);
     if (options.live) return run_calibrate_live(options);
     const BoardSpec board = parse_board(options.board);
     check_can_write(options.out);  // before minutes of work, not after
@@ -155,21 +144,23 @@ Run add_calibrate(CLI::App& app) {
     auto* sub = add_command(app, "calibrate",
                             "A board under coded light, captured or in your hands -> rig.json, or a refusal (exit 6)",
                             "calibrate captures --board \"charuco 10x7 25 mm\" --out rig.json");
-    sub->add_option("captures", o.captures, "Folder with one folder a pose");
+    auto* captures = sub->add_option("captures", o.captures, "Folder with one folder a pose");
     sub->add_option("--board", o.board,
                     "The board, its square as measured: \"charuco 10x7 24.98 mm\" or \"chessboard 9x6 25 mm\"")
         ->required();
-    sub->add_option("--serial-left", o.serial_left,
-                    "Serial of the left camera, kept in rig.json (default: as capture.json says)");
-    sub->add_option("--serial-right", o.serial_right, "Of the right camera");
+    auto* left = sub->add_option("--serial-left", o.serial_left,
+                                 "Serial of the left camera, kept in rig.json (default: as capture.json says)");
+    auto* right = sub->add_option("--serial-right", o.serial_right, "Of the right camera");
     sub->add_option("--serial-projector", o.serial_projector,
                     "Of the projector; `projector --identify` tells it where the monitor does");
     sub->add_option("--out", o.out, "rig.json to write; the report stands beside it")->capture_default_str();
     json_flag(sub, o.json);
-    sub->add_flag("--live", o.live,
-                  "Guided, with the board in your hands: watches both cameras, says how to hold it, captures by itself "
-                  "when it lies still, and ends when it is good enough");
-    sub->add_option("--room", o.room, "Of --live: room.json (see `devices`)");
+    auto* live = sub->add_flag(
+        "--live", o.live,
+        "Guided, with the board in your hands: watches both cameras, says how to hold it, captures by itself "
+        "when it lies still, and ends when it is good enough");
+    live->excludes(captures, left, right);  // it takes its captures, and asks the cameras
+    live->needs(sub->add_option("--room", o.room, "Of --live: room.json (see `devices`)"));
     sub->add_option("--keep", o.keep,
                     "Of --live, the new rig: ask (in the window or at the terminal; where nobody can be asked it is "
                     "written beside, as RIG-new.json), yes, no. The former one stays as RIG-before.json")
@@ -184,6 +175,13 @@ Run add_calibrate(CLI::App& app) {
     sub->add_flag("--headless", o.headless, "Of --live: in words on the terminal, without a window");
     sub->add_option("--operator", o.operator_monitor, "Of --live: monitor of the window (default: the primary one)");
     sub->add_option("--screenshots", o.screenshots, "Of --live: folder for pictures of the window");
+    for (const char* name : {"--room", "--keep", "--keep-captures", "--most-poses", "--good-enough-mm", "--headless",
+                             "--operator", "--screenshots"})
+        sub->get_option(name)->needs(live);
+    sub->parse_complete_callback([live, captures] {
+        if (live->count() == 0 && captures->count() == 0)
+            throw CLI::RequiredError("captures (their folder), or --live with --room room.json,");
+    });
     return [options] { return run_calibrate(*options); };
 }
 

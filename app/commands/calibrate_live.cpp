@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <csignal>
 #include <future>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -28,8 +27,6 @@ namespace {
 using namespace std::chrono_literals;
 using Json = nlohmann::ordered_json;
 using std::filesystem::path;
-
-volatile std::sig_atomic_t asked_to_end = 0;
 
 const char* name_of(GuideEvent::Kind kind) {
     constexpr std::array kNames{"advice", "refused", "capturing", "captured", "predicted", "trouble", "done"};
@@ -82,9 +79,9 @@ class Screen {
 public:
     Screen(const CalibrateOptions& options, const GuidedCalibration& calibration, std::string subtitle)
         : calibration_(calibration), subtitle_(std::move(subtitle)), screenshots_(options.screenshots) {
-        for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
+        note_end_signals();
         if (options.headless) return;
-        OperatorWindowSettings settings;
+        WindowSettings settings;
         settings.title = "Planlight calibration";
         if (!options.operator_monitor.empty()) settings.monitor = options.operator_monitor;
         window_ = std::make_unique<GuideWindow>(settings);
@@ -97,7 +94,7 @@ public:
     template <typename Ready>
     bool wait(const Ready& ready, const std::string& computing = {}) {
         while (!ready()) {
-            if (asked_to_end) return false;
+            if (asked_to_end()) return false;
             if (frame(computing) == GuideAction::quit) return false;
         }
         return true;
@@ -107,7 +104,7 @@ public:
         result_ = result;
         for (;;) {
             const GuideAction wanted = frame({});
-            if (asked_to_end) return GuideAction::quit;
+            if (asked_to_end()) return GuideAction::quit;
             if (wanted != GuideAction::none) return wanted;
         }
     }
@@ -129,7 +126,7 @@ private:
         }
         const GuideAction wanted = window_->frame(model);
         take_picture(model.word);
-        std::this_thread::sleep_for(80ms);
+        window_->rest(0.08);
         return wanted;
     }
     /// One for every word, when it has stood for some frames.
@@ -150,17 +147,25 @@ private:
     int stood_ = 0, pictures_ = 0;
 };
 
+CheckFailedError ended_by_hand(const GuidedCalibration& calibration) {
+    return {fmt::format("ended by hand after {} poses; no rig was made", calibration.poses().size()),
+            "Begin again when there is time; ten poses take some minutes."};
+}
+
 /// Guides in a thread of its own, so that this one can see to signals and the window.
 void guide(GuidedCalibration& calibration, Screen& screen) {
     std::stop_source stop;
     auto run = std::async(std::launch::async, [&] { calibration.run(stop.get_token()); });
+    // Whatever is thrown here, the future waits for an end that somebody must have asked for.
+    struct AskToStop {
+        std::stop_source& stop;
+        ~AskToStop() { stop.request_stop(); }
+    } ask{stop};
     const auto ready = [&] { return run.wait_for(0ms) == std::future_status::ready; };
     const bool wanted = screen.wait(ready);
     stop.request_stop();
     run.get();
-    if (!wanted)
-        throw CheckFailedError(fmt::format("ended by hand after {} poses; no rig was made", calibration.poses().size()),
-                               "Begin again when there is time; ten poses take some minutes.");
+    if (!wanted) throw ended_by_hand(calibration);
 }
 
 /// The two rigs on the poses that were just captured.
@@ -173,6 +178,11 @@ std::vector<std::string> beside_former(const RigCalibration& former, const Calib
         words.push_back(
             fmt::format("On these poses the {} is off by {:.3f} px by the rig of {}, by {:.3f} px by the new one.",
                         text_of(device), old.rms_px[d], former.made_on, now.held_out.rms_px[d]));
+        if (old.left_out[d] > 0.2)
+            words.push_back(
+                fmt::format("By the former rig {:.0f} % of the {}'s points fit not at all, and are not in "
+                            "that figure: it was moved or changed.",
+                            100 * old.left_out[d], text_of(device)));
     }
     return words;
 }
@@ -181,6 +191,13 @@ path beside(const path& file, const std::string& end) {
     path other = file;
     other.replace_extension();
     return other += end + file.extension().string();
+}
+
+/// A rig that worked is never written over, however often one calibrates.
+path unused(const path& file, const std::string& end) {
+    path other = beside(file, end);
+    for (int i = 2; std::filesystem::exists(other); ++i) other = beside(file, fmt::format("{}-{}", end, i));
+    return other;
 }
 
 bool ask_at_terminal() {
@@ -209,7 +226,7 @@ path write_as_decided(const RigCalibration& rig, const CalibrateOptions& options
         write_rig(rig, file);
         return file;
     }
-    if (std::filesystem::exists(options.out)) write_safely(beside(options.out, "-before"), read_whole(options.out));
+    if (std::filesystem::exists(options.out)) write_safely(unused(options.out, "-before"), read_whole(options.out));
     write_rig(rig, options.out);
     return options.out;
 }
@@ -226,8 +243,9 @@ std::vector<std::string> sentences_of(const CalibrationReport& report) {
 int finish(const CalibrateOptions& options, const GuidedCalibration& guided, const BoardSpec& board,
            const DeviceSerials& serials, Screen& screen) {
     auto computed = std::async(std::launch::async, [&] { return guided.calibrate(); });
-    screen.wait([&] { return computed.wait_for(0ms) == std::future_status::ready; },
-                "The rig is computed, and judged on poses that it has not seen.");
+    if (!screen.wait([&] { return computed.wait_for(0ms) == std::future_status::ready; },
+                     "The rig is computed, and judged on poses that it has not seen."))
+        throw ended_by_hand(guided);
     const Calibration calibration = computed.get();
     if (calibration.refusal) throw CheckFailedError(calibration.refusal->reason, calibration.refusal->remedy);
     CalibrationReport report{calibration, guided.poses(), board, today(), options.out, {}, serials};

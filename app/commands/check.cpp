@@ -93,9 +93,6 @@ ScanCapture live_capture(const RoomFile& room, const RigCalibration& rig) {
 }
 
 int run_check(CheckOptions options) {
-    if (options.live != options.capture.empty() || options.live != !options.room.empty())
-        throw InputError({}, "there is nothing to check",
-                         "Give a capture folder with --rig rig.json, or --live with --room room.json.");
     std::optional<RoomFile> room;
     if (options.live) room = read_room(options.room);
     if (options.rig.empty() && room) options.rig = room->rig;
@@ -161,7 +158,12 @@ Run add_check(CLI::App& app) {
     sub->add_option("--rig", o.rig, "rig.json (default of --live: that of the room)");
     auto* live = sub->add_flag("--live", o.live, "Take the scan now, of whatever lies in the light of --room")
                      ->excludes(capture);
-    sub->add_option("--room", o.room, "room.json of the real devices (see `devices`)")->needs(live);
+    auto* room = sub->add_option("--room", o.room, "room.json of the real devices (see `devices`)")->needs(live);
+    live->needs(room);
+    sub->parse_complete_callback([live, capture] {
+        if (live->count() == 0 && capture->count() == 0)
+            throw CLI::RequiredError("capture (a folder) with --rig rig.json, or --live with --room room.json,");
+    });
     sub->add_option("--log", o.log, "Where the checks are kept for the trend (default: beside rig.json)");
     json_flag(sub, o.json);
     return [options] { return run_check(*options); };

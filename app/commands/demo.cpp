@@ -92,10 +92,11 @@ int run_demo(const DemoOptions& options) {
         room.preset = presets_of(options).front();
         room.seed = options.seed;
         constexpr double kSpeed_mm_s = 20;
-        const auto make_room = [&] {
+        const auto make_room = [&](const RoomProgress&) {
             return std::make_unique<SimulatedRoom>(volume, prepared.prepared.plan, room, kSpeed_mm_s);
         };
-        return run_live_simulated(make_room, prepared.prepared, drawing, live);
+        SessionWindow window("");
+        return run_live_simulated(window, make_room, prepared.prepared, drawing, live);
     }
     return 0;
 }

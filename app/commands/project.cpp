@@ -7,6 +7,7 @@
 #include "app/belonging.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/surgeon_option.h"
 #include "app/console.h"
 #include "app/session.h"
 #include "app/site_settings.h"
@@ -22,6 +23,7 @@ namespace {
 struct ProjectOptions {
     Path case_folder, rig, registration, poses, out;
     int frame = -1;  ///< of the poses; -1: the last
+    std::string surgeon, item, others = "dim";
     bool confirmed = false, json = false;
 };
 
@@ -62,6 +64,22 @@ void check_belonging(const ProjectOptions& options, const Case& the_case, const 
     for (const std::string& what : unknown) warn(what);
 }
 
+/// The item of the moment by its name, and what becomes of the others.
+RenderSettings brightness(const ProjectOptions& options, const PlanDrawing& drawing) {
+    RenderSettings settings;
+    if (options.item.empty()) return settings;
+    std::string names;
+    for (std::size_t i = 0; i < drawing.items.size(); ++i) {
+        if (drawing.items[i].name == options.item) settings.item_of_moment = static_cast<int>(i);
+        names += (i == 0 ? "\"" : ", \"") + drawing.items[i].name + "\"";
+    }
+    if (settings.item_of_moment < 0)
+        throw InputError(options.case_folder, fmt::format("the plan has no item \"{}\"", options.item),
+                         "Give --item one of " + names + ".");
+    if (options.others == "hidden") settings.others = 0;
+    return settings;
+}
+
 int run_project(const ProjectOptions& options) {
     const Case the_case = read_case(options.case_folder);
     const RigCalibration calibrated = read_rig(options.rig);
@@ -70,12 +88,14 @@ int run_project(const ProjectOptions& options) {
     check_verdict(registration, options);
     const RigCalibration rig = rig_of_light(registration, calibrated, options.confirmed);
     const RigidTransform rig_from_patient = pose_to_draw(options);
-    const CaseDrawing planned(the_case, drawing_settings(read_site_settings()));
-    const CaseDrawing drawing(the_case, planned, registration.skin);  // on the skin as the scan found it
+    const CaseDrawing planned(the_case, drawing_settings(site_with(options.surgeon)));
+    const CaseDrawing drawing(the_case, planned, registration.skin,  // on the skin as the scan found it
+                              lit_by(rig, registration.patient_from_ct, planned.settings));
     const DrawingRenderer renderer(drawing.skin, rig.projector);
     RgbImage picture;
-    const RenderCounts light = renderer.render_into(
-        picture, drawing.drawing, rig_from_patient * registration.patient_from_ct, rig_from_patient);  // T_global
+    const RenderCounts light =
+        renderer.render_into(picture, drawing.drawing, rig_from_patient * registration.patient_from_ct,  // T_global
+                             rig_from_patient, brightness(options, drawing.drawing));
     const auto lit = std::count_if(picture.pixels.begin(), picture.pixels.end(),
                                    [](const Rgb& p) { return p[0] + p[1] + p[2] > 0; });
     if (lit == 0)
@@ -89,6 +109,7 @@ int run_project(const ProjectOptions& options) {
     for (const auto& item : drawing.drawing.items) {
         items.push_back({{"name", item.name},
                          {"label", item.label},
+                         {"lit_name", item.lit_name},
                          {"distance_to_skin_mm", item.distance_to_skin_mm},
                          {"warnings", item.warnings}});
         for (const auto& warning : item.warnings) warn(warning);
@@ -101,6 +122,7 @@ int run_project(const ProjectOptions& options) {
     for (const PartlyLitRing& ring : light.partly_lit)
         if (ring.item >= 0) items[static_cast<std::size_t>(ring.item)]["lit_share_of_circle"] = ring.lit_share;
     for (const auto& sentence : sentences(light.partly_lit, drawing.drawing)) warn(sentence);
+    if (const auto sentence = sentence_of_labels(light, drawing.drawing); !sentence.empty()) warn(sentence);
     if (options.json)
         std::cout << nlohmann::json{{"case", the_case.code},
                                     {"title", title_of(the_case)},
@@ -128,6 +150,12 @@ Run add_project(CLI::App& app) {
     sub->add_option("--poses", o.poses, "poses.json (default: the patient has not moved since the scan)");
     sub->add_option("--frame", o.frame, "Which pose (default: the last)");
     sub->add_flag("--confirmed", o.confirmed, "The overlay was looked at on landmarks (for the verdict `ask`)");
+    surgeon_option(sub, o.surgeon);
+    auto* item = sub->add_option("--item", o.item, "Name of the item that is worked on: bright, with its whole label");
+    sub->add_option("--others", o.others, "The other items then: dim or hidden")
+        ->capture_default_str()
+        ->check(CLI::IsMember({"dim", "hidden"}))
+        ->needs(item);
     sub->add_option("--out", o.out, "Picture to write (.png)")->required();
     json_flag(sub, o.json);
     return [options] { return run_project(*options); };

@@ -18,8 +18,23 @@ struct ReportOptions {
     bool json = false;
 };
 
+/// Neither the page nor its figures may stand where a recording does, or in each other's place.
+void check_out(const Path& out, const Path& recording) {
+    const auto refuse = [&](const Path& file, const std::string& problem) {
+        throw InputError(file, problem, "Name a page: `planlight report RECORDING --out report.html`.");
+    };
+    std::error_code not_there;
+    for (const Path& file : {out, Path(out).replace_extension(".json")})
+        if (std::filesystem::equivalent(file, recording, not_there))
+            refuse(file, "is the recording itself, and a report would take its place");
+    if (out.extension() == ".plrec") refuse(out, "is the name of a recording, not of a page");
+    if (out.extension() == ".json") refuse(out, "is where the figures of the page go, not the page");
+}
+
 int run_report(const ReportOptions& options) {
     const Path out = options.out.empty() ? Path(options.recording).replace_extension(".html") : options.out;
+    check_out(out, options.recording);
+    check_can_write(out);
     const OperationFacts facts = facts_of_operation(options.recording);
     const std::string json = operation_json(facts);
     write_operation_report(facts, json, out);

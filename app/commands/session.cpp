@@ -2,6 +2,8 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/surgeon_option.h"
+#include "app/console.h"
 #include "app/live/live_window.h"
 #include "app/live/real_room.h"
 #include "app/live/simulated_fault.h"
@@ -27,12 +29,14 @@ struct SessionOptions {
     Path recordings;         ///< folder; empty: CASE/recordings
     Path resume;             ///< recording of the session to go on with; empty: the last one is offered
     std::string series_uid;
+    std::string surgeon;  ///< where he stands; empty: as the site says
     std::string preset = "paper", projector_monitor, operator_monitor;
     unsigned seed = 1;
     double speed_mm_s = 20;
     std::string fault;
     bool autoplay = false, json = false;
     double end_after_s = 0;  ///< wall time; 0 = until the window is closed
+    double idle_first_s = 0;
     Path screenshots;
     double light_delay_ms = -1;  ///< of the projector window; below 0: the default, or what `projector_file` says
     Path projector_file;         ///< projector.json of the monitor; empty: none
@@ -60,12 +64,24 @@ std::optional<ResumeOffer> resume_of(const SessionOptions& options, const Case& 
     }
 }
 
+/// Ends the recording when the session ends, in whatever way, and says what it lacks.
+struct EndRecording {
+    void operator()(SessionRecorder* recorder) const {
+        const std::unique_ptr<SessionRecorder> owned(recorder);
+        try {
+            if (const std::string lacks = recorder->finish(); !lacks.empty()) warn(lacks);
+        } catch (const std::exception& fault) {
+            warn(std::string("The recording could not be ended: ") + fault.what());
+        }
+    }
+};
+using Recorder = std::unique_ptr<SessionRecorder, EndRecording>;
+
 /// The recording of this session, said where and how much; null with `--record none`.
-std::unique_ptr<SessionRecorder> recorder_of(const SessionOptions& options, const Case& the_case,
-                                             const SiteSettings& site) {
+Recorder recorder_of(const SessionOptions& options, const Case& the_case, const SiteSettings& site) {
     const RecordMode mode = record_mode_of(options.record);
     if (mode == RecordMode::none) {
-        fmt::print("This session is not recorded.\n");
+        fmt::print(stderr, "This session is not recorded.\n");
         return nullptr;
     }
     if (options.anonymous && mode == RecordMode::all)
@@ -80,8 +96,8 @@ std::unique_ptr<SessionRecorder> recorder_of(const SessionOptions& options, cons
             "Recorded in {}, without names, and blurred but for the plan's surroundings; no later session can go "
             "on with its match. Matches with the scan of the face are still kept ({}).\n",
             file.string(), options.keep.empty() ? "see --keep" : options.keep.string());
-        return std::make_unique<SessionRecorder>(std::move(sink), without_names(head), RecordingWriterSettings{},
-                                                 FrameChoiceSettings{}, NamesLeftOut(the_case));
+        return Recorder(new SessionRecorder(std::move(sink), without_names(head), RecordingWriterSettings{},
+                                            FrameChoiceSettings{}, NamesLeftOut(the_case)));
     }
     std::error_code ignored;
     fmt::print(
@@ -90,7 +106,7 @@ std::unique_ptr<SessionRecorder> recorder_of(const SessionOptions& options, cons
         mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
                                    : "every frame, about 23 GB an hour in the paper's room",
         static_cast<double>(std::filesystem::space(file.parent_path(), ignored).available) / 1e9, operator_name());
-    return std::make_unique<SessionRecorder>(std::move(sink), head);
+    return Recorder(new SessionRecorder(std::move(sink), head));
 }
 
 LiveOptions live_options(const SessionOptions& options, const SiteSettings& site, const SessionRecorder* recorder) {
@@ -100,6 +116,7 @@ LiveOptions live_options(const SessionOptions& options, const SiteSettings& site
     if (!options.projector_file.empty()) live.projector = read_projector_file(options.projector_file);
     if (options.light_delay_ms >= 0) live.projector.light_delay = from_seconds(options.light_delay_ms / 1e3);
     live.autoplay = options.autoplay;
+    live.idle_first_s = options.idle_first_s;
     live.json = options.json;
     live.end_after_s = options.end_after_s;
     live.screenshots = options.screenshots;
@@ -108,15 +125,16 @@ LiveOptions live_options(const SessionOptions& options, const SiteSettings& site
     return live;
 }
 
-int run_in_simulated_room(const SessionOptions& options, const Case& the_case) {
+int run_in_simulated_room(const SessionOptions& options, const Case& the_case, const SiteSettings& site,
+                          SessionWindow& window) {
     if (options.volume.empty())
         throw InputError({}, "neither a room nor a simulated patient was named",
                          "Give --room room.json for real devices, or --volume VOLUME for the simulated room.");
-    const Volume volume = read_volume(options.volume, options.series_uid);
+    const Volume volume = window.while_made("The volume of the simulated patient is being read.", 0.3,
+                                            [&] { return read_volume(options.volume, options.series_uid); });
     if (hash_of(volume) != the_case.volume_hash)
         throw InputError(options.volume, "this is not the volume that the case was made from",
                          "Give the volume of this case, or prepare a case from this volume.");
-    const SiteSettings site = read_site_settings();
     simulation::RoomSettings room;
     room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     room.seed = options.seed;
@@ -125,15 +143,20 @@ int run_in_simulated_room(const SessionOptions& options, const Case& the_case) {
     LiveOptions live = live_options(options, site, recorder.get());
     live.observer = recorder.get();
     live.resume = std::move(resume);
+    const auto drawing = window.while_made("The plan is being drawn on the skin.", 0.7,
+                                           [&] { return CaseDrawing(the_case, drawing_settings(site)); });
     return run_live_simulated(
-        [&] { return std::make_unique<SimulatedRoom>(volume, the_case.plan, room, options.speed_mm_s, options.fault); },
-        the_case, CaseDrawing(the_case, drawing_settings(site)), live);
+        window,
+        [&](const RoomProgress& progress) {
+            progress("The simulated room is being built.", std::nullopt);
+            return std::make_unique<SimulatedRoom>(volume, the_case.plan, room, options.speed_mm_s, options.fault);
+        },
+        the_case, drawing, live);
 }
 
-int run_in_room(SessionOptions options, const Case& the_case) {
+int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings& site, SessionWindow& window) {
     const RoomFile room = read_room(options.room);
     const RigCalibration rig = read_rig(room.rig);
-    const SiteSettings site = read_site_settings();
     if (options.projector_monitor.empty()) options.projector_monitor = room.monitor;
     if (options.projector_file.empty() && options.light_delay_ms < 0) options.projector_file = room.projector_file;
     auto resume = resume_of(options, the_case, &rig);
@@ -141,14 +164,24 @@ int run_in_room(SessionOptions options, const Case& the_case) {
     LiveOptions live = live_options(options, site, recorder.get());
     live.observer = recorder.get();
     live.resume = std::move(resume);
-    return run_live([&](Projector& projector) { return std::make_unique<RealRoom>(room, rig, projector); }, the_case,
-                    CaseDrawing(the_case, drawing_settings(site)), live);
+    const auto drawing = window.while_made("The plan is being drawn on the skin.", 0.7,
+                                           [&] { return CaseDrawing(the_case, drawing_settings(site)); });
+    return run_live(
+        window,
+        [&](Projector& projector, const RoomProgress& progress) {
+            return std::make_unique<RealRoom>(room, rig, projector, progress);
+        },
+        the_case, drawing, live);
 }
 
 int run_session(const SessionOptions& options) {
-    const Case the_case = read_case(options.case_folder);
+    const SiteSettings site = site_with(options.surgeon);
+    SessionWindow window(options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor);
+    const Case the_case =
+        window.while_made("The case is being read.", 0.1, [&] { return read_case(options.case_folder); });
     if (!options.json) fmt::print("{}\n", title_of(the_case));
-    return options.room.empty() ? run_in_simulated_room(options, the_case) : run_in_room(options, the_case);
+    return options.room.empty() ? run_in_simulated_room(options, the_case, site, window)
+                                : run_in_room(options, the_case, site, window);
 }
 
 }  // namespace
@@ -189,6 +222,7 @@ Run add_session(CLI::App& app) {
                     "refused (exit 6)")
         ->excludes(delay);
     sub->add_option("--operator", o.operator_monitor, "Monitor of the operator window (default: the primary one)");
+    surgeon_option(sub, o.surgeon);
     sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str()->excludes(room);
     sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")
         ->capture_default_str()
@@ -199,6 +233,8 @@ Run add_session(CLI::App& app) {
         ->check(CLI::IsMember(simulated_faults()));
     sub->add_flag("--autoplay", o.autoplay,
                   "Scan, register and track by itself; that the light is right is said in the simulated room only");
+    sub->add_option("--idle-first-s", o.idle_first_s,
+                    "With --autoplay: wait so long before the first press; --json then says what the window cost");
     sub->add_option("--end-after-s", o.end_after_s, "Close after this many seconds of tracking");
     sub->add_option("--screenshots", o.screenshots, "Folder for screenshots of every step");
     json_flag(sub, o.json);

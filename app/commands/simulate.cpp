@@ -138,17 +138,21 @@ Run add_simulate(CLI::App& app) {
     sub->add_option("--wet", o.wet, "Wet skin: 0 dry to 1, with the highlights of a film of water")
         ->capture_default_str()
         ->check(CLI::Range(0.0, 1.0));
-    sub->add_option("--serve", o.serve,
-                    "Serve the room as hardware until Ctrl-C: two GigE Vision cameras, and the light of this monitor; "
-                    "writes room.json, rig.json, truth.json");
+    auto* serve = sub->add_option(
+        "--serve", o.serve,
+        "Serve the room as hardware until Ctrl-C: two GigE Vision cameras, and the light of this monitor; "
+        "writes room.json, rig.json, truth.json");
     sub->add_option("--addresses", o.addresses, "Of the served cameras, one each, of this machine")
         ->delimiter(',')
-        ->capture_default_str();
+        ->capture_default_str()
+        ->needs(serve);
     sub->add_option("--lose-packets", o.lose_packets,
                     "Share of its packets that the left served camera loses, and never sends again")
-        ->check(CLI::Range(0.0, 1.0));
+        ->check(CLI::Range(0.0, 1.0))
+        ->needs(serve);
     sub->add_option("--right-behind", o.right_behind, "The right served camera sends each picture so many frames late")
-        ->check(CLI::Range(0, 10));
+        ->check(CLI::Range(0, 10))
+        ->needs(serve);
     sub->add_option("--out", o.out, "Folder to write: rig.json, capture/, frames/, truth.json")->required();
     json_flag(sub, o.json);
     return [options, sub] {

@@ -1,9 +1,9 @@
 #include <fmt/format.h>
 
-#include <csignal>
 #include <thread>
 
 #include "app/commands/simulate_options.h"
+#include "app/console.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/case/room_file.h"
 #include "planning_io/files/safe_write.h"
@@ -13,8 +13,6 @@
 
 namespace planlight {
 namespace {
-
-volatile std::sig_atomic_t asked_to_end = 0;
 
 /// room.json for whoever operates in this room.
 void write_room_file(const SimulateOptions& options, const simulation::ServeSettings& served) {
@@ -60,8 +58,9 @@ simulation::ServeSettings serve_settings(const SimulateOptions& options) {
 
 /// Serves until somebody ends it.
 void serve(const SimulateOptions& options, const simulation::ServeSettings& settings, MonitorPicture& monitor,
-           const simulation::ServedDevices& devices, const std::function<void()>& write_files) {
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
+           const simulation::ServedDevices& devices, const std::string& files,
+           const std::function<void()>& write_files) {
+    note_end_signals();
     simulation::ServedRoom room(
         devices, [&] { return monitor.look(); }, settings);
     room.left().lose_packets(options.lose_packets);
@@ -69,10 +68,10 @@ void serve(const SimulateOptions& options, const simulation::ServeSettings& sett
     std::filesystem::create_directories(options.out);
     write_files();
     write_room_file(options, settings);
-    fmt::print("{}: room.json, truth.json. Two cameras answer on {} and {}; the projector is {}. Ctrl-C ends it.\n",
-               options.out.string(), options.addresses[0], options.addresses[1], options.serve);
+    fmt::print("{}: room.json, {}. Two cameras answer on {} and {}; the projector is {}. Ctrl-C ends it.\n",
+               options.out.string(), files, options.addresses[0], options.addresses[1], options.serve);
     std::fflush(stdout);
-    while (!asked_to_end) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    while (!asked_to_end()) std::this_thread::sleep_for(std::chrono::milliseconds(100));
     fmt::print("{} pictures a camera were sent; {} times it could not keep up.\n", room.made(), room.late());
 }
 
@@ -85,7 +84,7 @@ int run_simulate_served(const SimulateOptions& options, simulation::SimulatedRig
     if (options.speed_mm_s > 0) rig.set_motion({options.speed_mm_s, rig.clock().now()});
     serve(options, settings, monitor,
           {rig.projector(), rig.cameras(), rig.clock(), [&](Instant duration) { rig.wait(duration); }},
-          [&] { write_rig_files(options, rig, settings); });
+          "rig.json, truth.json", [&] { write_rig_files(options, rig, settings); });
     return 0;
 }
 
@@ -98,6 +97,7 @@ int run_simulate_served_board(const SimulateOptions& options, simulation::Simula
     room.let_person_carry(person);
     serve(options, settings, monitor,
           {room.projector(), room.cameras(), room.clock(), [&](Instant duration) { room.wait(duration); }},
+          "truth.json (rig.json is what the calibration makes)",
           [&] { write_safely(options.out / "truth.json", room.truth_json() + "\n"); });
     fmt::print("The person laid the board down in {} places.\n", room.person()->stops_made());
     return 0;

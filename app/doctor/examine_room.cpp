@@ -44,11 +44,8 @@ void note_clock(Camera& camera, const CameraCounts& before, CameraFigures& figur
     figures.clock_jumps = now.clock_jumps - before.clock_jumps;
 }
 
-CameraModel size_of(const CameraFigures& camera) {
-    CameraModel model;
-    model.width = camera.width;
-    model.height = camera.height;
-    return model;
+bool same_size(const CameraFigures& camera, const CameraModel& calibrated) {
+    return camera.width == calibrated.width && camera.height == calibrated.height;
 }
 
 /// Of one camera's tiles alone.
@@ -110,6 +107,9 @@ private:
             step();
         } catch (const Error& error) {
             lines_.push_back({subject, Health::stop, error.what(), error.remedy});
+        } catch (const std::exception& error) {  // one that we did not foresee must not take the other lines with it
+            lines_.push_back({subject, Health::stop, std::string("it could not be examined: ") + error.what(),
+                              "Mend what the other lines name, then run this again; if it stays, report it."});
         }
     }
 
@@ -139,9 +139,8 @@ private:
         CameraFigures &left = watched_->left, &right = watched_->right;
         note_clock(cameras_->pair().left(), left_before_, left);
         note_clock(cameras_->pair().right(), right_before_, right);
-        const RigCalibration& rig = rig_ ? *rig_ : unknown_;
-        add(judge_camera(left, rig.serials.left_camera, rig_ ? rig.left_camera : size_of(left)));
-        add(judge_camera(right, rig.serials.right_camera, rig_ ? rig.right_camera : size_of(right)));
+        add(judge_camera(left, rig_ ? rig_->serials.left_camera : "", rig_ ? &rig_->left_camera : nullptr));
+        add(judge_camera(right, rig_ ? rig_->serials.right_camera : "", rig_ ? &rig_->right_camera : nullptr));
         for (Camera* camera : {&cameras_->pair().left(), &cameras_->pair().right()}) {
             const CameraLink link = camera->link();
             add(judge_network({camera == &cameras_->pair().left() ? left.side : right.side, link.packet_bytes,
@@ -175,7 +174,10 @@ private:
             add(judge_picture({right ? "right camera" : "left camera", exposure.lit_share, exposure.saturated_share,
                                exposure.brightest_lit_grey, fringe_share(pictures, stripes), stripes.phase_period_px}));
         }
-        if (!rig_) return;
+        // Another size is a line of its own already.
+        if (!rig_ || !same_size(watched_->left, rig_->left_camera) || !same_size(watched_->right, rig_->right_camera) ||
+            stripes.width != rig_->projector.width || stripes.height != rig_->projector.height)
+            return;
         add(judge_rig(check_drift(scan_from_capture(capture, *rig_), *rig_), days_since(rig_->made_on)));
     }
 
@@ -184,7 +186,6 @@ private:
     SteadyClock clock_;
     std::vector<DoctorLine> lines_;
     std::optional<RigCalibration> rig_;
-    const RigCalibration unknown_;
     std::optional<MonitorFigures> monitor_;
     std::unique_ptr<RoomCameras> cameras_;
     CameraCounts left_before_, right_before_;  ///< when they were opened and their clocks known
@@ -203,12 +204,11 @@ WatchedCameras watch_cameras(PairedCameras& cameras, const RoomFile& room, const
     const CameraCounts left = cameras.left().frames().counts(), right = cameras.right().frames().counts();
     const Instant began = clock.now();
     std::vector<double> apart_ms;
-    Instant seen_until = began, exposure{};
+    Instant seen_until = began;
     try {
         while (clock.now() - began < how_long) {
             const StereoFrame frame = cameras.grab(seen_until, std::chrono::milliseconds(1000));
             seen_until = frame.at + frame.exposure / 2;
-            exposure = frame.exposure;
             ++watched.pairs.pairs;
             apart_ms.push_back(1e3 * seconds(cameras.counts().apart));
         }
@@ -222,10 +222,7 @@ WatchedCameras watch_cameras(PairedCameras& cameras, const RoomFile& room, const
     watched.pairs.left = watched.left.received;
     watched.pairs.right = watched.right.received;
     if (!apart_ms.empty()) watched.pairs.apart_ms = median(apart_ms);
-    const double faster_hz = std::max(watched.left.rate_hz, watched.right.rate_hz);
-    watched.pairs.allowed_ms = room.together && faster_hz > 0
-                                   ? std::min(10.0, 1e3 / faster_hz / 3)
-                                   : std::max(0.2, std::min(room.max_apart_ms, 1e2 * seconds(exposure)));
+    watched.pairs.allowed_ms = 1e3 * seconds(cameras.counts().allowed);
     return watched;
 }
 

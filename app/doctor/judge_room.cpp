@@ -100,12 +100,15 @@ Health worst_of(const std::vector<DoctorLine>& lines) {
 }
 
 std::vector<DoctorLine> judge_camera(const CameraFigures& camera, const std::string& calibrated_serial,
-                                     const CameraModel& calibrated) {
-    std::vector<DoctorLine> lines{judge_identity(camera, calibrated_serial, calibrated), judge_rate(camera),
-                                  judge_loss(camera), judge_clock(camera)};
+                                     const CameraModel* calibrated) {
+    std::vector<DoctorLine> lines;
+    if (calibrated) lines.push_back(judge_identity(camera, calibrated_serial, *calibrated));
+    for (const auto& judge : {judge_rate, judge_loss, judge_clock}) lines.push_back(judge(camera));
     for (const std::string& note : camera.notes)
-        lines.push_back(line(camera.side + ", settings", Health::look, note,
-                             "Switch it off in the camera's own program; it changes pictures between two of a scan."));
+        lines.push_back(
+            line(camera.side + ", settings", Health::look, note,
+                 "Set it in the camera's own program, or in room.json: pictures of a scan must be alike in all but the "
+                 "light."));
     return lines;
 }
 
@@ -232,6 +235,8 @@ std::vector<DoctorLine> judge_monitor(const MonitorFigures& monitor, const Camer
 
 std::vector<DoctorLine> judge_delay(const DelayFigures& delay) {
     constexpr double kOff_ms = 8, kFarOff_ms = 25;  // half a picture of 60 Hz; at 20 mm/s half a millimetre
+    // A pose is carried on by 160 ms, and is some 50 ms old when it is drawn with. Beyond, a head that moves is dark.
+    constexpr double kSlow_ms = 100, kFarTooSlow_ms = 250;
     const std::string subject = "projector, delay";
     if (!delay.problem.empty()) return {line(subject, Health::stop, delay.problem, delay.remedy)};
     std::vector<DoctorLine> lines;
@@ -247,6 +252,12 @@ std::vector<DoctorLine> judge_delay(const DelayFigures& delay) {
                              measured + fmt::format(", projector.json says {:.0f}", *delay.told_ms),
                              "Look whether the projector's picture mode was changed, then measure it anew: `planlight "
                              "projector --room room.json --out projector.json`."));
+    const Health slow = rising(delay.measured_ms - 2 * delay.sigma_ms, kSlow_ms, kFarTooSlow_ms);
+    if (slow != Health::good)
+        lines.push_back(line("projector, speed", slow,
+                             measured + ": light cannot follow a head that moves, and goes out when it does",
+                             "Switch off what the projector does to its picture (keystone, noise reduction, motion), "
+                             "choose its game mode, or take another projector."));
     if (delay.right_later_ms && delay.frame_interval_ms > 0) {
         const double apart = std::abs(*delay.right_later_ms);
         const bool frame = apart > delay.frame_interval_ms / 2;

@@ -45,9 +45,9 @@ struct CameraFigures {
     std::vector<std::string> notes;  ///< what it does by itself
 };
 
-/// Serial and resolution against the rig file, rate, loss, clock, what it does by itself.
+/// Serial and resolution against the rig file (null: there is none to compare with), rate, loss, clock, its notes.
 std::vector<DoctorLine> judge_camera(const CameraFigures& camera, const std::string& calibrated_serial,
-                                     const CameraModel& calibrated);
+                                     const CameraModel* calibrated);
 
 /// The link of a camera on the network, and what the system allows.
 struct NetworkFigures {
@@ -103,7 +103,6 @@ struct DelayFigures {
     std::optional<double> told_ms;         ///< projector.json; empty: there is none
     std::optional<double> right_later_ms;  ///< the same light in the right camera's frames less in the left's
     double frame_interval_ms = 0;
-    double exposure_ms = 0;
 };
 
 std::vector<DoctorLine> judge_delay(const DelayFigures& delay);

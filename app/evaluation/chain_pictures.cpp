@@ -7,6 +7,7 @@
 
 #include "app/case_model.h"
 #include "app/live/scene_of_session.h"
+#include "app/windows/camera_picture.h"
 #include "app/windows/scene_view.h"
 
 namespace planlight {

@@ -200,11 +200,18 @@ Vector3d direction_of(const Light& light) {
     return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatter).eigenvectors().col(2);
 }
 
-void measure_right_angles(const std::vector<Vector3d>& arms, OverlayErrors& errors) {
+double length_mm(const Stroke& stroke) {
+    double length = 0;
+    for (std::size_t i = 0; i + 1 < stroke.points_in_ct.size(); ++i)
+        length += (stroke.points_in_ct[i + 1] - stroke.points_in_ct[i]).norm();
+    return length;
+}
+
+void measure_right_angles(const std::vector<Vector3d>& arms, std::vector<double>& angles_deg) {
     for (std::size_t i = 0; i < arms.size(); ++i)
         for (std::size_t j = i + 1; j < arms.size(); ++j) {
             const double angle_deg = std::acos(std::min(1.0, std::abs(arms[i].dot(arms[j])))) * 180 / std::numbers::pi;
-            if (angle_deg > 45) errors.angle_deg.push_back(90 - angle_deg);
+            if (angle_deg > 45) angles_deg.push_back(90 - angle_deg);
         }
 }
 
@@ -230,6 +237,7 @@ void OverlayErrors::append(const OverlayErrors& more) {
     diameter_percent.insert(diameter_percent.end(), more.diameter_percent.begin(), more.diameter_percent.end());
     tick_mm.insert(tick_mm.end(), more.tick_mm.begin(), more.tick_mm.end());
     angle_deg.insert(angle_deg.end(), more.angle_deg.begin(), more.angle_deg.end());
+    long_angle_deg.insert(long_angle_deg.end(), more.long_angle_deg.begin(), more.long_angle_deg.end());
     places.insert(places.end(), more.places.begin(), more.places.end());
     unseen_strokes += more.unseen_strokes;
 }
@@ -237,12 +245,13 @@ void OverlayErrors::append(const OverlayErrors& more) {
 OverlayErrors measure_overlay(const simulation::SimulatedRig& rig, const Plan& plan, const PlanDrawing& drawing,
                               const DrawingRenderer& renderer, const RenderSettings& render,
                               const DrawnPicture& picture, bool shapes) {
-    constexpr double kTickEvery_mm = 10;
+    constexpr double kTickEvery_mm = 10, kLongCross_mm = 8;
     OverlayErrors errors;
     for (std::size_t index = 0; index < drawing.items.size(); ++index) {
         const DrawnItem& item = drawing.items[index];
         std::vector<Light> ticks;
-        std::vector<Vector3d> arms;
+        std::vector<Vector3d> arms, long_arms;
+        int crosses = 0;
         std::optional<WantedLine> line;
         if (const auto osteotomy = named(plan.osteotomy_lines, item.name);
             item.kind == StrokeKind::osteotomy_line && osteotomy != plan.osteotomy_lines.end())
@@ -274,18 +283,24 @@ OverlayErrors measure_overlay(const simulation::SimulatedRig& rig, const Plan& p
                                  wanted_place(hole->position_in_ct, hole->axis_in_ct, rig), hole->diameter_mm, shapes,
                                  errors);
                 else if (shapes)
-                    arms.push_back(direction_of(light));
+                    (length_mm(stroke) >= kLongCross_mm ? long_arms : arms).push_back(direction_of(light));
             } else if (stroke.kind == StrokeKind::trajectory && stroke.closed) {
                 const auto trajectory = named(plan.trajectories, item.name);
+                crosses = 0;
                 if (trajectory != plan.trajectories.end())
                     measure_ring(
                         light, stroke.kind, item.name,
                         wanted_place(trajectory->entry_in_ct, trajectory->target_in_ct - trajectory->entry_in_ct, rig),
                         trajectory->diameter_mm >= 6 ? trajectory->diameter_mm : 0, shapes, errors);
+            } else if (stroke.kind == StrokeKind::trajectory && shapes && crosses < 2) {
+                ++crosses;  // the two bars of its cross come before the shadow of its way
+                long_arms.push_back(direction_of(light));
             }
         }
         if (line) measure_ticks(ticks, *line, kTickEvery_mm, errors);
-        measure_right_angles(arms, errors);
+        measure_right_angles(arms, errors.angle_deg);
+        measure_right_angles(long_arms, errors.angle_deg);
+        measure_right_angles(long_arms, errors.long_angle_deg);
     }
     return errors;
 }

@@ -4,10 +4,10 @@
 
 #include "app/case_model.h"
 #include "app/console.h"
-#include "app/live/scene_of_session.h"
 #include "app/report/operation_pdf.h"
 #include "app/session.h"
 #include "app/site_settings.h"
+#include "app/windows/camera_picture.h"
 #include "app/windows/scene_view.h"
 #include "planning_io/case/slicer_scene.h"
 #include "planning_io/dicom/dicom_objects.h"
@@ -22,7 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 DicomStudy study_of_case(const Case& the_case, const fs::path& series_folder, const std::string& series) {
-    if (the_case.frame_of_reference_uid.empty())
+    // A case that was prepared without names has no frame of reference either: then the voxels say whose it is.
+    if (the_case.frame_of_reference_uid.empty() && !the_case.source.starts_with("DICOM"))
         throw InputError({},
                          fmt::format("the case {} was made from {}, which names no DICOM frame of reference: there is "
                                      "no study to put anything into",
@@ -33,7 +34,8 @@ DicomStudy study_of_case(const Case& the_case, const fs::path& series_folder, co
         throw InputError(series_folder, "is not the series that the case was made from: " + what,
                          "Name the folder of the planning series.");
     };
-    if (study.frame_of_reference_uid != the_case.frame_of_reference_uid) other("its frame of reference is another");
+    if (!the_case.frame_of_reference_uid.empty() && study.frame_of_reference_uid != the_case.frame_of_reference_uid)
+        other("its frame of reference is another");
     if (hash_of(read_volume(series_folder, series, SliceGaps::resampled)) != the_case.volume_hash)
         other("its voxels are others");
     return study;
@@ -94,8 +96,11 @@ std::vector<std::string> export_into_study(const Case& the_case, const ExportedO
             return into / file;
         };
         name.series = "registration", name.series_number = 9101, name.description = "Planlight: match of patient";
-        write_spatial_registration(study, name, patient_from_ct.inverse(), dicom_uid_of("planlight rig" + name.id),
-                                   next("registration.dcm"));
+        if (study.frame_of_reference_uid.empty())
+            warn("the planning series names no frame of reference: the match is not written as Spatial Registration");
+        else
+            write_spatial_registration(study, name, patient_from_ct.inverse(), dicom_uid_of("planlight rig" + name.id),
+                                       next("registration.dcm"));
         if (operation.facts) {
             name.series = "report", name.series_number = 9102, name.description = "Planlight: report of operation";
             write_encapsulated_pdf(study, name, "Operation: " + operation.facts->head.case_title,

@@ -21,8 +21,9 @@ struct ExportedOperation {
 };
 
 /// The match as Spatial Registration, the operation's report as Encapsulated PDF and pictures as Secondary Capture,
-/// into the study of the planning series: new files in a new folder; gives their names. Throws InputError where the
-/// case is of no DICOM series, or `series_folder` holds another one than the case was made from.
+/// into the study of the planning series: new files in a new folder; gives their names. A series without a frame of
+/// reference gets no Spatial Registration, which is warned of. Throws InputError where the case is of no DICOM series,
+/// or `series_folder` holds another one than the case was made from.
 std::vector<std::string> export_into_study(const Case& the_case, const ExportedOperation& operation,
                                            const std::filesystem::path& series_folder, const std::string& series,
                                            const std::filesystem::path& folder);

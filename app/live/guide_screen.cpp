@@ -47,13 +47,19 @@ void tell_mood(const GuideState& state, GuideModel& model) {
         model.mood = GuideModel::Mood::wrong;
         model.word = "WAIT";
         model.why = state.trouble;
-        model.what = "A device does not answer; it is looked for.";
-    } else if (!state.step.empty()) {
+        model.what = state.trouble_remedy;
+    } else if (state.step != GuideState::Step::watching) {
+        const bool capturing = state.step == GuideState::Step::capturing;
         model.mood = GuideModel::Mood::busy;
-        model.word = state.step == "Capturing" ? "CAPTURING" : "LOOKING";
-        model.what = state.step == "Capturing" ? "Leave the board as it is." : "You may take it on.";
+        model.word = capturing ? "CAPTURING" : "LOOKING";
+        model.what = capturing ? "Leave the board as it is." : "You may take it on.";
         model.why.clear();
         model.share = state.step_share;
+    } else if (!state.given_up_why.empty() && state.advice.fault == PoseFault::none) {
+        model.mood = GuideModel::Mood::wrong;
+        model.word = "AGAIN";
+        model.why = state.given_up_why;
+        model.what = state.given_up_what;
     } else if (state.advice.fault == PoseFault::none) {
         model.mood = GuideModel::Mood::hold;
         model.word = word_of(PoseFault::none);
@@ -82,6 +88,7 @@ GuideModel guide_model_of(const GuideState& state, const std::string& title, con
     tell_mood(state, model);
     model.tilts = state.coverage.tilts;
     model.by_edge = state.coverage.by_edge;
+    model.useful_tilt = state.useful_tilt;
     model.distances_mm = state.coverage.distances_mm;
     if (state.advice.stance) {
         model.tilt_now = state.advice.stance->tilt;

@@ -50,9 +50,9 @@ double lit_share(const GrayImage& white, const GrayImage& black, const BoardCorn
 }
 
 /// Looks at the white and the black picture, which come first: a board beside the light is not captured to the end.
-class WatchedCameras final : public StereoCamera {
+class LitBoardCameras final : public StereoCamera {
 public:
-    WatchedCameras(StereoCamera& cameras, const BoardSighting& sighting, double least_lit, Instant later)
+    LitBoardCameras(StereoCamera& cameras, const BoardSighting& sighting, double least_lit, Instant later)
         : cameras_(cameras), sighting_(sighting), least_lit_(least_lit), later_(later) {}
 
     StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override {
@@ -70,6 +70,7 @@ public:
         }
         return frame;
     }
+    std::string doubt() const override { return cameras_.doubt(); }
 
 private:
     /// The least share of the board that is brighter under white light than under black.
@@ -108,6 +109,7 @@ GuidedCalibration::GuidedCalibration(Projector& projector, StereoCamera& cameras
     state_.least_poses = settings.guide.least_poses;
     state_.most_poses = settings.guide.most_poses;
     state_.good_enough_mm = settings.guide.good_enough_mm;
+    state_.useful_tilt = settings.guide.useful_tilt;
     state_.wanted = guide_.wanted();
 }
 
@@ -115,7 +117,7 @@ void GuidedCalibration::tell(GuideEvent::Kind kind, PoseFault fault, const std::
     if (tell_) tell_({kind, clock_.now() - began_, fault, why, what, poses_.size(), predicted_mm_});
 }
 
-void GuidedCalibration::set_step(const std::string& step, double share) {
+void GuidedCalibration::set_step(GuideState::Step step, double share) {
     const std::lock_guard lock(mutex_);
     state_.step = step;
     state_.step_share = share;
@@ -123,9 +125,7 @@ void GuidedCalibration::set_step(const std::string& step, double share) {
 
 GuideState GuidedCalibration::state() const {
     const std::lock_guard lock(mutex_);
-    GuideState state = state_;
-    state.since = clock_.now() - began_;
-    return state;
+    return state_;
 }
 
 void GuidedCalibration::run(const std::stop_token& stop) {
@@ -141,18 +141,19 @@ void GuidedCalibration::run(const std::stop_token& stop) {
             state_.trouble.clear();
         } catch (const DeviceError& error) {
             if (clock_.now() - good_at > settings_.camera_patience) throw;
-            set_step("", 0);
+            set_step(GuideState::Step::watching, 0);
             const std::string trouble = fmt::format("{}.", error.what());
             if (state().trouble != trouble) tell(GuideEvent::Kind::trouble, PoseFault::none, trouble, error.remedy);
             {
                 const std::lock_guard lock(mutex_);
                 state_.trouble = trouble;
+                state_.trouble_remedy = error.remedy;
             }
             light_ = {};
             std::this_thread::sleep_for(500ms);
         }
     }
-    tell(GuideEvent::Kind::done, PoseFault::none, "", "");
+    if (guide_.done(predicted_mm_)) tell(GuideEvent::Kind::done, PoseFault::none, "", "");
 }
 
 /// One look at the newest pictures, and what follows from it.
@@ -182,6 +183,11 @@ void GuidedCalibration::look() {
 /// By light at once; by events when it is new, and once for every place where the board was laid in vain.
 void GuidedCalibration::say(const PoseAdvice& advice) {
     if (!advice.still) refused_here_ = advice.still_share > 0.5 && refused_here_;
+    if (!refused_here_) {
+        const std::lock_guard lock(mutex_);
+        state_.given_up_why.clear();
+        state_.given_up_what.clear();
+    }
     const bool good = advice.fault == PoseFault::none;
     if (advice.still && !good && !refused_here_ && advice.fault != PoseFault::not_seen) {
         refused_here_ = true;
@@ -223,75 +229,92 @@ bool GuidedCalibration::moved_since(const BoardSighting& before) {
     return false;
 }
 
-/// The pose, if its pictures are good; the reason if not.
-void GuidedCalibration::capture(const BoardSighting& sighting) {
-    tell(GuideEvent::Kind::capturing, PoseFault::none, "", "Leave it as it is.");
-    const auto given_up = [&](PoseFault fault, const std::string& why, const std::string& what) {
-        ++refused_;
-        refused_here_ = true;
-        not_before_ = clock_.now() + 1s;
-        set_step("", 0);
-        tell(GuideEvent::Kind::refused, fault, why, what);
-        light_ = {};
-        shone_at_ = {};
-        shine({GuideLight::Mood::wrong, "AGAIN", 0});
-    };
-    ScanCapture pictures;
-    try {
-        WatchedCameras watched(cameras_, sighting, settings_.guide.least_in_light, later_);
-        pictures = capture_scan(projector_, watched, clock_, stripes_, [&](int done, int of) {
-            set_step("Capturing", static_cast<double>(done) / of);
-            if (stop_.stop_requested()) throw Ended{};
-        });
-    } catch (const Ended&) {
-        return;
-    } catch (const PoseLeft& left) {
-        given_up(left.fault, left.why, left.what);
-        return;
+void GuidedCalibration::give_up(PoseFault fault, const std::string& why, const std::string& what) {
+    ++refused_;
+    refused_here_ = true;
+    not_before_ = clock_.now() + 1s;
+    set_step(GuideState::Step::watching, 0);
+    {
+        const std::lock_guard lock(mutex_);
+        state_.given_up_why = why;
+        state_.given_up_what = what;
     }
+    tell(GuideEvent::Kind::refused, fault, why, what);
+    light_ = {};
     shone_at_ = {};
-    shine({GuideLight::Mood::taken, "TAKEN", 0});
-    set_step("Looking at the pictures", 1);
+    shine({GuideLight::Mood::wrong, "AGAIN", 0});
+}
+
+/// Throws PoseLeft, or Ended.
+ScanCapture GuidedCalibration::take_pictures(const BoardSighting& sighting) {
+    LitBoardCameras watched(cameras_, sighting, settings_.guide.least_in_light, later_);
+    return capture_scan(projector_, watched, clock_, stripes_, [&](int done, int of) {
+        set_step(GuideState::Step::capturing, static_cast<double>(done) / of);
+        if (stop_.stop_requested()) throw Ended{};
+    });
+}
+
+PoseObservation GuidedCalibration::observe(const ScanCapture& pictures) const {
     PoseObservation pose{fmt::format("pose-{:02}", poses_.size() + 1), {}, {}};
     auto right = std::async(std::launch::async, [&] { return observe_board(pictures.right, stripes_, board_); });
     pose.left = observe_board(pictures.left, stripes_, board_);
     pose.right = right.get();
-    if (pose.left.corners.size() == 0 || pose.right.corners.size() == 0) {
-        given_up(PoseFault::in_part, "The board was not seen to the end.",
-                 "Leave it where it is while the light flickers.");
-        return;
-    }
+    return pose;
+}
+
+/// Throws PoseLeft where its pictures are no good: by what the person did rather than by what the pictures show.
+void GuidedCalibration::refuse_bad(const PoseObservation& pose, const BoardSighting& sighting) {
+    if (pose.left.corners.size() == 0 || pose.right.corners.size() == 0)
+        throw PoseLeft{PoseFault::in_part, "The board was not seen to the end.",
+                       "Leave it where it is while the light flickers."};
     constexpr double kMoved_px = 0.25;
-    const bool wrong = judge_pose_pictures(pose, board_).has_value();
-    if (wrong && (std::max(pose.left.moved_px, pose.right.moved_px) > kMoved_px || moved_since(sighting))) {
-        given_up(PoseFault::none, "It was moved while the light flickered.",
-                 "Lay it down, or lean your hands on something, until the light says TAKEN.");
-        return;
-    }
+    const auto refusal = judge_pose_pictures(pose, board_);
+    if (refusal && (std::max(pose.left.moved_px, pose.right.moved_px) > kMoved_px || moved_since(sighting)))
+        throw PoseLeft{PoseFault::none, "It was moved while the light flickered.",
+                       "Lay it down, or lean your hands on something, until the light says TAKEN."};
     if (!pose.left.wrong_sequence.empty() || !pose.right.wrong_sequence.empty()) {
         later_ = std::min(later_ + kLaterStep, kLatest);
-        given_up(PoseFault::none,
-                 "The light came later than this projector is said to be, so that pictures were mixed up.",
-                 "Leave the board there: it is captured again, more slowly. `planlight projector` measures the delay.");
-        return;
+        throw PoseLeft{PoseFault::none,
+                       "The light came later than this projector is said to be, so that pictures were mixed up.",
+                       "Leave the board there: it is captured again, more slowly. `planlight projector` measures the "
+                       "delay."};
     }
-    if (const auto refusal = judge_pose_pictures(pose, board_)) {
-        given_up(PoseFault::none, refusal->reason + ".", refusal->remedy);
-        return;
-    }
-    keep_pictures(pictures);
+    if (refusal) throw PoseLeft{PoseFault::none, refusal->reason + ".", refusal->remedy};
+}
+
+void GuidedCalibration::keep_pose(PoseObservation pose) {
     guide_.add(pose, stripes_.width, stripes_.height);
     poses_.push_back(std::move(pose));
     refused_here_ = true;
-    set_step("", 0);
+    set_step(GuideState::Step::watching, 0);
     estimate();
     {
         const std::lock_guard lock(mutex_);
         state_.poses = poses_.size();
         state_.coverage = guide_.coverage();
         state_.wanted = guide_.wanted();
+        state_.given_up_why.clear();
+        state_.given_up_what.clear();
     }
     tell(GuideEvent::Kind::captured, PoseFault::none, "", "");
+}
+
+/// The pose, if its pictures are good; the reason if not.
+void GuidedCalibration::capture(const BoardSighting& sighting) {
+    tell(GuideEvent::Kind::capturing, PoseFault::none, "", "Leave it as it is.");
+    try {
+        const ScanCapture pictures = take_pictures(sighting);
+        shone_at_ = {};
+        shine({GuideLight::Mood::taken, "TAKEN", 0});
+        set_step(GuideState::Step::looking, 1);
+        PoseObservation pose = observe(pictures);
+        refuse_bad(pose, sighting);
+        keep_pictures(pictures);
+        keep_pose(std::move(pose));
+    } catch (const Ended&) {
+    } catch (const PoseLeft& left) {
+        give_up(left.fault, left.why, left.what);
+    }
 }
 
 void GuidedCalibration::keep_pictures(const ScanCapture& capture) const {
@@ -321,15 +344,16 @@ void GuidedCalibration::estimate() {
 void GuidedCalibration::collect_estimate() {
     if (!estimate_.valid() || estimate_.wait_for(0s) != std::future_status::ready) return;
     const Calibration calibration = estimate_.get();
-    if (const auto error = predicted(calibration)) {
-        predicted_mm_ = error;
-        guide_.use_rig(calibration.bundle.rig);
+    predicted_mm_ = predicted(calibration);  // one that is refused now says that the last was too good
+    if (predicted_mm_) guide_.use_rig(calibration.bundle.rig);
+    {
         const std::lock_guard lock(mutex_);
-        state_.predicted_mm = error;
+        state_.predicted_mm = predicted_mm_;
         state_.coverage = guide_.coverage();
     }
-    tell(GuideEvent::Kind::predicted, PoseFault::none, calibration.refusal ? calibration.refusal->reason + "." : "",
-         "");
+    if (tell_)
+        tell_({GuideEvent::Kind::predicted, clock_.now() - began_, PoseFault::none,
+               calibration.refusal ? calibration.refusal->reason + "." : "", "", estimated_poses_, predicted_mm_});
     if (estimated_poses_ < poses_.size()) estimate();
 }
 

@@ -31,25 +31,26 @@ struct GuideEvent {
     Instant at{};                        ///< since the beginning
     PoseFault fault = PoseFault::none;   ///< of advice and refusals by the pose
     std::string why, what;               ///< sentences; may be empty
-    std::size_t poses = 0;               ///< that count so far
+    std::size_t poses = 0;               ///< that count so far; of `predicted`: that it was made of
     std::optional<double> predicted_mm;  ///< 95 % of the working volume, by the poses so far
 };
 
 /// For a window: all that a person should see now.
 struct GuideState {
+    enum class Step { watching, capturing, looking } step = Step::watching;
     std::shared_ptr<const GrayImage> left, right;
     BoardCorners left_corners, right_corners;
     PoseAdvice advice;
     PoseCoverage coverage;
     std::vector<std::string> wanted;
     GuideLight light;
-    std::string step;       ///< "Capturing", "Looking at the pictures"; empty: watching
-    double step_share = 0;  ///< 0 to 1
-    std::string trouble;    ///< with a device; empty: none
+    double step_share = 0;                    ///< 0 to 1
+    std::string trouble, trouble_remedy;      ///< with a device; empty: none
+    std::string given_up_why, given_up_what;  ///< of the capture that came to nothing here; empty: none did
     std::size_t poses = 0, least_poses = 0, most_poses = 0;
     std::optional<double> predicted_mm;
     double good_enough_mm = 0;
-    Instant since{};  ///< the beginning
+    double useful_tilt = 0;  ///< radians, of PoseGuideSettings
 };
 
 /// A calibration by hand: a person carries the board about, the program watches both live pictures, says what to do,
@@ -75,12 +76,17 @@ private:
     void say(const PoseAdvice& advice);
     void shine(const GuideLight& light);
     void capture(const BoardSighting& sighting);
+    ScanCapture take_pictures(const BoardSighting& sighting);
+    PoseObservation observe(const ScanCapture& pictures) const;
+    void refuse_bad(const PoseObservation& pose, const BoardSighting& sighting);
+    void give_up(PoseFault fault, const std::string& why, const std::string& what);
+    void keep_pose(PoseObservation pose);
     bool moved_since(const BoardSighting& before);
     void keep_pictures(const ScanCapture& capture) const;
     void estimate();
     void collect_estimate();
     void tell(GuideEvent::Kind kind, PoseFault fault, const std::string& why, const std::string& what);
-    void set_step(const std::string& step, double share);
+    void set_step(GuideState::Step step, double share);
 
     Projector& projector_;
     StereoCamera& cameras_;

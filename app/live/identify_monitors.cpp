@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <csignal>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -11,11 +10,7 @@
 #include "projection/monitor_card.h"
 
 namespace planlight {
-namespace {
-
-volatile std::sig_atomic_t asked_to_end = 0;
-
-}  // namespace
+namespace {}  // namespace
 
 int identify_monitors(const ProjectorOptions& options) {
     const std::vector<Monitor> monitors = list_monitors();
@@ -45,10 +40,9 @@ int identify_monitors(const ProjectorOptions& options) {
                "Every monitor shows its name for {:g} s, then goes dark. Nobody may lie under the projector. Ctrl-C "
                "ends it.\n",
                options.seconds);
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
+    note_end_signals();
     const SteadyClock clock;
-    for (const std::string& why : show_monitor_cards(clock, options.seconds, [] { return asked_to_end != 0; }))
-        warn(why);
+    for (const std::string& why : show_monitor_cards(clock, options.seconds, [] { return asked_to_end(); })) warn(why);
     return 0;
 }
 

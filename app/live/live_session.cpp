@@ -1,15 +1,19 @@
 #include "app/live/live_session.h"
 
+#include <algorithm>
 #include <array>
 
 #include "app/case_model.h"
+#include "app/live/scene_of_session.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/steady_clock.h"
+#include "registration/tracking/find_markers.h"
 
 namespace planlight {
 namespace {
 
 constexpr auto kLostPause = std::chrono::milliseconds(100);
+constexpr auto kOldAfter = std::chrono::milliseconds(1500);  // a picture is not called live any more
 // For an observer, in the order of their enumerations.
 constexpr std::array kActions{"none", "scan", "register", "track",         "stop",
                               "dark", "quit", "confirm",  "use landmarks", "check skin"};
@@ -50,14 +54,6 @@ private:
     LiveSession& session_;
 };
 
-namespace {
-
-Status dark_status() {
-    return {StatusKind::dark, "Dark: no light on the patient.", {"Press Track to show the plan again."}};
-}
-
-}  // namespace
-
 LiveSession::LiveSession(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
                          std::filesystem::path keep_matches_in, SessionObserver* observer,
                          std::optional<ResumeOffer> offer)
@@ -65,10 +61,12 @@ LiveSession::LiveSession(MakeRoom make_room, const Case& the_case, const CaseDra
       drawing_(drawing),
       keep_matches_in_(std::move(keep_matches_in)),
       observer_(observer),
-      model_(model_of_case(the_case, drawing)),
+      blank_(model_of_case(the_case, drawing)),
+      model_(blank_),
       gate_(observer),
       offer_(std::move(offer)) {
-    set_status(StatusKind::waiting, "The room is being made ready.", {"This takes some seconds."});
+    enter(state_, blank_, model_);
+    said();
     show_alive();
     thread_ = std::thread([this, make_room = std::move(make_room)] {
         try {
@@ -91,37 +89,76 @@ LiveSession::~LiveSession() {
     thread_.join();
 }
 
-void LiveSession::post(OperatorAction action) {
-    if (action == OperatorAction::none) return;
-    if (observer_) observer_->pressed(kActions.at(static_cast<std::size_t>(action)));
+/// Under the lock: why the press does nothing now; empty: it is taken.
+std::string LiveSession::refused_press(OperatorAction action) const {
+    if (const std::string why = why_not(state_, action);
+        !why.empty() && action != OperatorAction::stop && action != OperatorAction::dark)
+        return why;
+    if (action == OperatorAction::confirm && !model_.confirm) return why_not(SessionState::ready, action);
+    return {};
+}
+
+std::string LiveSession::post(OperatorAction action) {
+    if (action == OperatorAction::none) return {};
     {
         const std::lock_guard lock(mutex_);
-        if (action == OperatorAction::dark || action == OperatorAction::stop) {
+        if (std::string why = refused_press(action); !why.empty()) return why;
+        const bool dark = action == OperatorAction::dark || action == OperatorAction::stop;
+        if (dark) {
             presses_.clear();
             ++darks_;
             light_ = {nullptr, light_.number + 1};
         }
+        const SessionState next = after_press(state_, action).value_or(state_);
+        if (next != state_ && !(next == SessionState::verifying || state_ == SessionState::unsure))
+            enter(next, blank_, model_);
+        state_ = next;
+        if (dark) model_.status = dark_status(state_);
+        if (action == OperatorAction::confirm) model_.confirm = false;  // until there is something new to look at
         presses_.push_back({action, darks_});
     }
     wake_.notify_all();
+    if (observer_) observer_->pressed(kActions.at(static_cast<std::size_t>(action)));
+    return {};
 }
 
-void LiveSession::post_find_patient(std::vector<PointPair> landmarks) {
+std::string LiveSession::post_find_patient(std::vector<PointPair> landmarks) {
     {
         const std::lock_guard lock(mutex_);
         landmarks_ = std::move(landmarks);
     }
-    post(OperatorAction::do_register);
+    return post(OperatorAction::do_register);
+}
+
+void LiveSession::happened(SessionHappening happening, const std::function<void(OperatorModel&)>& change) {
+    {
+        const std::lock_guard lock(mutex_);
+        if (view_of(state_).lights && permitted_ != darks_) return;
+        const SessionState next = after(state_, happening);
+        if (next == state_) return;
+        state_ = next;
+        enter(next, blank_, model_);
+        if (change) change(model_);
+    }
+    said();
+}
+
+/// Tells the observer what the banner says.
+void LiveSession::said() {
+    if (!observer_) return;
+    const Status status = model().status;
+    observer_->said(kStatusKinds.at(static_cast<std::size_t>(status.kind)), status.headline, status.details);
 }
 
 OperatorModel LiveSession::model() const {
     const std::lock_guard lock(mutex_);
-    if (darks_answered_ == darks_) return model_;
-    OperatorModel dark = model_;  // DARK was pressed, and the thread is still at something else
-    dark.status = dark_status();
-    dark.scene.light = nullptr;
-    dark.confirm = dark.check_skin = false;
-    return dark;
+    OperatorModel now = model_;
+    view_.put_into(now);
+    if (darks_answered_ == darks_) return now;
+    now.status = dark_status(state_);  // DARK was pressed, and the thread is still at something else
+    now.scene.light = nullptr;
+    now.confirm = now.check_skin = false;
+    return now;
 }
 
 LiveSession::Light LiveSession::light() const {
@@ -173,9 +210,10 @@ void LiveSession::set_steps(int active, StepState state) {
     });
 }
 
-LiveSession::Press LiveSession::next_press(bool wait) {
+/// Waits for one, `longest` at most; 0: not at all.
+LiveSession::Press LiveSession::next_press(Instant longest) {
     std::unique_lock lock(mutex_);
-    if (wait) wake_.wait(lock, [&] { return ending_ || !presses_.empty(); });
+    if (longest > Instant{}) wake_.wait_for(lock, longest, [&] { return ending_ || !presses_.empty(); });
     if (ending_) return {OperatorAction::quit, darks_};
     if (presses_.empty()) return {OperatorAction::none, darks_};
     const Press press = presses_.front();
@@ -183,57 +221,124 @@ LiveSession::Press LiveSession::next_press(bool wait) {
     return press;
 }
 
+/// A picture for the window while nothing else is made of it; what a camera lacks is said in its place.
+void LiveSession::look(const Session& session, Room& room) {
+    constexpr auto kPatience = std::chrono::milliseconds(250);
+    try {
+        const StereoFrame frame = CameraTap(room.cameras(), view_).newest(room.clock().now() - kPatience, kPatience);
+        const auto found = [&](const GrayImage& picture) {
+            std::vector<FoundMarker> shown;
+            for (const auto& marker : find_markers(picture, session.tracking_settings().markers))
+                shown.push_back({marker.pixel, marker.radius_px});
+            return shown;
+        };
+        view_.found(frame.at, found(frame.left), found(frame.right));
+    } catch (const DeviceError& fault) {
+        view_.failed(std::string(fault.what()) + ". " + fault.remedy);
+    }
+}
+
+/// The scan's even pictures with what was found in them, as long as the refusal stands.
+void LiveSession::keep_refused_pictures(const Session& session) {
+    if (session.capture() == nullptr || session.capture()->left.empty()) return;
+    const ScanCapture& capture = *session.capture();
+    SeenPicture left{std::make_shared<GrayImage>(capture.left.front()),
+                     found_markers(session.tracker().seen_left(), true), true};
+    SeenPicture right{std::make_shared<GrayImage>(capture.right.front()),
+                      found_markers(session.tracker().seen_right(), true), true};
+    change_model([&](OperatorModel& m) {
+        m.left.refused = left;
+        m.right.refused = right;
+    });
+}
+
 void LiveSession::run(const MakeRoom& make_room) {
-    const std::unique_ptr<Room> room = make_room();
+    const std::unique_ptr<Room> room = make_room([this](const std::string& doing, std::optional<double> share) {
+        show_alive();
+        change_model([&](OperatorModel& m) {
+            if (state_ == SessionState::opening) m.status.headline = doing, m.status.share = share;
+        });
+    });
     LightTap tap(room->projector(), *this);
+    CameraTap cameras(room->cameras(), view_);
+    view_.set_old_after(std::max<Instant>(kOldAfter, 3 * room->look_interval()));
     SessionSettings session_settings = settings_for(room->markers());
     session_settings.observer = observer_;
     if (observer_)
         observer_->room_entered(
             {room->name(), room->simulated(), room->markers(), room->rig(), room->notes(), room->clock().now()});
     session_settings.while_computing = [&room] { room->computing(); };
-    Session session(case_, drawing_, room->rig(), tap, room->cameras(), room->clock(), session_settings);
-    set_steps(2);
-    std::vector<std::string> details{"The projector is dark."};
+    Session session(case_, drawing_, room->rig(), tap, cameras, room->clock(), session_settings);
     const std::vector<std::string> notes = room->notes();
-    details.insert(details.end(), notes.begin(), notes.end());
-    set_status(StatusKind::ready, "Ready to scan.", std::move(details));
-    change_model([&](OperatorModel& m) {
-        if (room->simulated())
-            m.case_title = "SIMULATED ROOM: " + m.case_title;
-        else
-            m.case_subtitle = room->name() + " · " + m.case_subtitle;
-        m.scan = {true, {}};
-        m.do_register = {false, "scan first"};
-        m.track = {false, "register first"};
-        m.stop = {false, "nothing runs"};
+    happened(SessionHappening::room_made, [&](OperatorModel& m) {
+        m.status.details.insert(m.status.details.end(), notes.begin(), notes.end());
+        m.simulated = room->simulated();
+        m.case_subtitle = room->name() + " \u00b7 " + m.case_subtitle;
     });
     offer_to_resume();
     for (;;) {
-        const Press press = next_press(!following_);
+        const Press press = next_press(following_ ? Instant{} : room->look_interval());
         show_alive();
         if (press.action == OperatorAction::quit) return;
+        if (press.action == OperatorAction::none && !following_) {
+            look(session, *room);
+            continue;
+        }
         try {
             act(press, session, *room);
         } catch (const DeviceError& lost) {
             // What is lost comes back by itself: the patient is still where the scan and the match say.
             projecting_ = false;
             session.go_dark();
+            view_.failed(lost.what());
+            happened(following_ ? SessionHappening::skin_checked : SessionHappening::failed);
             set_status(StatusKind::dark, std::string("Dark: ") + lost.what() + ".",
                        {lost.remedy, following_ ? "The light comes back by itself." : "Press the button again."});
             if (following_) std::this_thread::sleep_for(kLostPause);
         } catch (const Error& refusal) {
+            const bool scanning = press.action == OperatorAction::scan;
             following_ = projecting_ = false;
             session.go_dark();
+            happened(SessionHappening::failed);
+            if (press.darks != darks_now()) continue;  // it was ended by DARK, and that has been said
+            if (scanning) keep_refused_pictures(session);
             set_status(StatusKind::refused, std::string(refusal.what()) + ".", {refusal.remedy});
         }
     }
 }
 
+std::uint64_t LiveSession::darks_now() const {
+    const std::lock_guard lock(mutex_);
+    return darks_;
+}
+
+/// A press is given up when what it led to has ended before its turn came: the light was stopped, say.
+bool LiveSession::still_wanted(const Press& press) const {
+    const std::lock_guard lock(mutex_);
+    switch (press.action) {
+        case OperatorAction::scan:
+            return state_ == SessionState::scanning;
+        case OperatorAction::do_register:
+        case OperatorAction::use_landmarks:
+            return state_ == SessionState::matching;
+        case OperatorAction::check_skin:
+            return state_ == SessionState::checking_skin;
+        case OperatorAction::track:
+            return state_ == SessionState::following;
+        case OperatorAction::confirm:
+            return state_ == SessionState::found || state_ == SessionState::verifying ||
+                   state_ == SessionState::looking_again;
+        default:
+            return true;
+    }
+}
+
 void LiveSession::act(const Press& press, Session& session, Room& room) {
+    if (!still_wanted(press)) return;
     switch (press.action) {
         case OperatorAction::scan:
             offer_.reset();
+            away_.reset();
             look_first_ = false;
             following_ = projecting_ = false;
             permit_light(press);
@@ -252,6 +357,7 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
             break;
         case OperatorAction::track:
             permit_light(press);
+            if (look_first_) room.let_patient_move(false);  // was asked to lie still
             look_again(session);
             gate_.restart();
             end_verification(session);
@@ -271,11 +377,8 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
             session.go_dark();
             change_model([&](OperatorModel& m) {
                 darks_answered_ = press.darks;
-                m.status = dark_status();
                 m.scene.light = nullptr;
-                m.confirm = offer_.has_value();
-                m.check_skin = false;
-                m.stop = {false, "nothing runs"};
+                if (darks_ == press.darks && !view_of(state_).lights) m.status = dark_status(state_);
             });
             return;
         case OperatorAction::none:

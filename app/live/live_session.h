@@ -5,18 +5,21 @@
 #include <deque>
 #include <exception>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
 
+#include "app/live/live_view.h"
 #include "app/live/observed_gate.h"
 #include "app/live/room.h"
+#include "app/live/session_states.h"
 #include "app/recording/resume_offer.h"
 #include "app/session.h"
 #include "app/update_latency.h"
 #include "app/windows/operator_model.h"
-#include "app/windows/operator_window.h"
+#include "planning_io/types/steady_clock.h"
 
 namespace planlight {
 
@@ -32,11 +35,12 @@ public:
                 std::optional<ResumeOffer> offer = {});
     ~LiveSession();
 
-    /// Queued; `dark` and `stop` overtake everything that waits.
-    void post(OperatorAction action);
+    /// Queued; `dark` and `stop` overtake everything that waits. The model says so at once. Returns why it does nothing
+    /// in the state of now, as a sentence; empty: it is taken.
+    std::string post(OperatorAction action);
 
     /// Finding the patient with these landmarks (none: without), clicked on the last scan; queued.
-    void post_find_patient(std::vector<PointPair> landmarks);
+    std::string post_find_patient(std::vector<PointPair> landmarks);
 
     /// The projector was away: before the plan is lit again a short scan looks whether all is as it was.
     void look_before_light();
@@ -75,6 +79,7 @@ private:
     void confirm_light(Session& session);
     void offer_to_resume();
     void resume(Session& session);
+    ResumeCheck look_whether_it_holds(Session& session, const KeptMatch& match);
     void look_again(Session& session);
     void check_skin(Session& session);
     void show_verification(const Session::Update& update, LightGate::Ruling& ruling);
@@ -91,7 +96,17 @@ private:
     void stop_light(Session& session, const LightGate::Ruling& ruling);
     void set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details = {});
     void set_steps(int active, StepState state = StepState::active);
-    Press next_press(bool wait);
+    /// What came of something: it leads on, and `change` is made with it; nothing of both where DARK was pressed
+    /// meanwhile and has led elsewhere.
+    void happened(SessionHappening happening, const std::function<void(OperatorModel&)>& change = {});
+    bool still_wanted(const Press& press) const;
+    void set_progress(const std::string& headline, double share);
+    void said();
+    std::uint64_t darks_now() const;
+    std::string refused_press(OperatorAction action) const;
+    void keep_refused_pictures(const Session& session);
+    void look(const Session& session, Room& room);
+    Press next_press(Instant longest);
     void permit_light(const Press& press);
     bool light_permitted() const;
     void show_alive();
@@ -105,7 +120,11 @@ private:
     const CaseDrawing& drawing_;
     std::filesystem::path keep_matches_in_;
     SessionObserver* observer_;
+    const SteadyClock wall_;
+    LiveView view_{wall_};
     mutable std::mutex mutex_;
+    SessionState state_ = SessionState::opening;
+    const OperatorModel blank_;  ///< of the case alone
     std::condition_variable wake_;
     std::deque<Press> presses_;
     std::vector<PointPair> landmarks_;  ///< of the last `post_find_patient`
@@ -125,6 +144,7 @@ private:
     int good_updates_ = 0;              ///< ALIGNED so often; then the simulated fault begins
     std::optional<ResumeOffer> offer_;  ///< of the session's thread
     std::atomic<bool> look_first_{false};
+    std::optional<KeptMatch> away_;  ///< this session's own, while it is not known whether it still holds
     bool ending_ = false, following_ = false;
     std::atomic<bool> projecting_{false};
     std::atomic<Instant::rep> alive_at_{0};

@@ -18,35 +18,26 @@ void LiveSession::scan(Session& session) {
         const std::lock_guard lock(mutex_);
         landmarks_.clear();  // they were clicked on the last scan
     }
-    set_steps(2);
-    set_status(StatusKind::scanning, "Scanning: keep the patient still.");
-    change_model([](OperatorModel& m) {
-        m.scene.cloud = nullptr;
-        m.scene.light = nullptr;
-        m.scene.markers = nullptr;
-        m.fit = std::nullopt;
-        m.landmarks = std::nullopt;
-        m.confirm = m.check_skin = false;
-        m.track = {false, "register first"};
-    });
+    said();
     const ScanResult& scan = session.scan([&](int done, int of) {
         if (!light_permitted()) throw CheckFailedError("The scan was ended by DARK", "Press Scan to begin again.");
-        set_status(StatusKind::scanning, fmt::format("Scanning: picture {} of {}.", done, of),
-                   {"Keep the patient still."});
+        set_progress(fmt::format("Scanning: keep the patient still. Picture {} of {}.", done, of),
+                     static_cast<double>(done) / std::max(1, of));
     });
-    const ScanCapture& capture = *session.capture();
     const auto clickable = clickable_scan(scan.clean.kept, &session.rig().left_camera);
-    change_model([&](OperatorModel& m) {
-        m.left.picture = std::make_shared<GrayImage>(capture.left.front());
-        m.right.picture = std::make_shared<GrayImage>(capture.right.front());
-        m.left.found = found_markers(session.tracker().seen_left());
-        m.right.found = found_markers(session.tracker().seen_right());
-        m.do_register = {true, {}};
+    happened(SessionHappening::scan_done, [&](OperatorModel& m) {
         if (clickable) m.landmarks = LandmarkViews{&drawing_.skin, clickable};
+        m.status.headline = fmt::format("{} points of skin are scanned.", scan.clean.kept.size());
     });
-    set_steps(3);
-    set_status(StatusKind::ready, fmt::format("{} points of skin scanned.", scan.clean.kept.size()),
-               {"Register next."});
+}
+
+/// Of what is being done, while it is not overtaken by DARK.
+void LiveSession::set_progress(const std::string& headline, double share) {
+    change_model([&](OperatorModel& m) {
+        if (permitted_ != darks_) return;
+        m.status.headline = headline;
+        m.status.share = share;
+    });
 }
 
 std::vector<PointPair> LiveSession::newest_landmarks() const {
@@ -57,39 +48,32 @@ std::vector<PointPair> LiveSession::newest_landmarks() const {
 void LiveSession::find_patient(Session& session, const std::vector<PointPair>& landmarks) {
     following_ = projecting_ = false;
     session.go_dark();
-    set_status(StatusKind::matching, landmarks.empty()
-                                         ? "Finding the patient."
-                                         : fmt::format("Finding the patient, with {} landmarks.", landmarks.size()));
+    said();
     const RegistrationResult& found = session.find_patient(landmarks);
-    OperatorModel shown = model();
-    show_match(case_, found, std::make_shared<PointCloud>(session.scanned()->clean.kept), shown);
     gate_.new_match();
     landmark_ = -1;
-    shown.check_skin = false;
-    shown.confirm = found.verdict == Verdict::ask;
-    shown.confirm_words = "It fits: use it";
-    shown.scene.light = nullptr;
-    shown.stop = {false, "nothing runs"};
-    shown.track = {false, "register first"};
+    OperatorModel shown = blank_;
+    show_match(case_, found, std::make_shared<PointCloud>(session.scanned()->clean.kept), shown);
     if (found.verdict != Verdict::no) {
         shown.scene.markers = markers_in_ct(session.tracker(), shown.scene.ct_from_rig);
         shown.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
         for (const DrawnItem& item : session.drawing().items)
             shown.evidence.insert(shown.evidence.end(), item.warnings.begin(), item.warnings.end());
-        shown.track = {found.verdict == Verdict::yes, found.verdict == Verdict::yes ? "" : "look at the fit first"};
     }
     shown.evidence.push_back(keep(found, session.scanned()->clean.kept, landmarks));
-    change_model([&](OperatorModel& m) { m = std::move(shown); });
-    set_steps(3, found.verdict == Verdict::yes ? StepState::done : StepState::attention);
-    if (found.verdict == Verdict::yes) {
-        set_steps(4);
-        set_status(StatusKind::ready, "The patient is found.", {"Look at the scan on the skin, then press Track."});
-    } else {
-        set_status(found.verdict == Verdict::ask ? StatusKind::check : StatusKind::refused,
-                   found.verdict == Verdict::ask ? "Not sure: look whether the scan fits the skin, or scan again."
-                                                 : "The patient was not found: scan again, or click landmarks.",
-                   found.reasons);
-    }
+    shown.evidence.insert(shown.evidence.end(), blank_.evidence.begin(), blank_.evidence.end());
+    const auto happening = found.verdict == Verdict::yes   ? SessionHappening::match_found
+                           : found.verdict == Verdict::ask ? SessionHappening::match_unsure
+                                                           : SessionHappening::match_refused;
+    happened(happening, [&](OperatorModel& m) {
+        m.scene = shown.scene;
+        m.rows = shown.rows;
+        m.fit = shown.fit;
+        m.evidence = shown.evidence;
+        if (state_ != SessionState::found)
+            m.status.details.insert(m.status.details.end(), found.reasons.begin(), found.reasons.end());
+    });
+    if (found.verdict == Verdict::no) keep_refused_pictures(session);
 }
 
 /// Keeps the match and its scan; what became of it, in a sentence. A full disk does not end a session.
@@ -110,14 +94,14 @@ void LiveSession::confirm(Session& session) {
     }
     if (session.registration() == nullptr || session.registration()->verdict != Verdict::ask) return;
     session.confirm();
-    change_model([](OperatorModel& m) {
-        m.confirm = false;
-        m.track = {true, {}};
+    change_model([&](OperatorModel& m) {
+        enter(state_, blank_, m);
         m.evidence.insert(m.evidence.begin(), "Confirmed by the operator, who looked at the fit.");
+        m.status = {StatusKind::ready,
+                    "The match is used on your word.",
+                    {"Press Track, and look at the light on two landmarks before you use it."}};
     });
-    set_steps(4);
-    set_status(StatusKind::ready, "The match is used on your word.",
-               {"Press Track, and look at the light on two landmarks before you use it."});
+    said();
 }
 
 /// One press lights the first landmark, each further one says that the light on it is right; after the last the plan is
@@ -129,6 +113,7 @@ void LiveSession::confirm_light(Session& session) {
     } else {
         end_verification(session);
         gate_.verify(seen_at_);
+        happened(SessionHappening::landmarks_seen);
     }
     change_model([&](OperatorModel& m) {
         m.confirm = false;  // until the light of this is there to be looked at
@@ -154,17 +139,18 @@ void LiveSession::show_verification(const Session::Update& update, LightGate::Ru
 
 /// The short scan, and what it means for the light.
 void LiveSession::check_skin(Session& session) {
-    set_status(StatusKind::scanning, "Checking the skin: keep the patient still.");
-    const SkinCheck check = session.check_skin([&](int, int) {
+    const SkinCheck check = session.check_skin([&](int done, int of) {
         if (!light_permitted()) throw CheckFailedError("The check was ended by DARK", "Press Track to go on.");
+        set_progress(view_of(SessionState::checking_skin).headline, static_cast<double>(done) / std::max(1, of));
     });
-    std::string said = "Skin checked: " + check.why_not + "; check it again.";
+    std::string words = "Skin checked: " + check.why_not + "; check it again.";
     if (check.known) {
         gate_.skin_checked(check.off_mm);
-        said = fmt::format("Skin checked: the plan's points lie within {:.1f} mm of where the markers put them.",
-                           check.off_mm);
+        words = fmt::format("Skin checked: the plan's points lie within {:.1f} mm of where the markers put them.",
+                            check.off_mm);
     }
-    change_model([&](OperatorModel& m) { m.evidence.insert(m.evidence.begin(), said); });
+    happened(SessionHappening::skin_checked);
+    change_model([&](OperatorModel& m) { m.evidence.insert(m.evidence.begin(), words); });
 }
 
 void LiveSession::follow(Session& session, Room& room) {
@@ -190,10 +176,11 @@ void LiveSession::play_fault(const LightGate::Ruling& ruling, Room& room) {
 void LiveSession::stop_light(Session& session, const LightGate::Ruling& ruling) {
     following_ = projecting_ = false;
     session.go_dark();
-    change_model([](OperatorModel& m) {
-        m.scene.light = nullptr;
-        m.confirm = m.check_skin = false;
-        m.stop = {false, "nothing runs"};
+    happened(SessionHappening::failed, [&](OperatorModel& m) {  // what was seen then stays to be looked at
+        OperatorModel seen;
+        view_.put_into(seen);
+        m.left.refused = seen.left.live;
+        m.right.refused = seen.right.live;
     });
     set_steps(4, StepState::attention);
     set_status(StatusKind::refused, ruling.headline, ruling.details);
@@ -251,11 +238,14 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
     if (!update.overlay.lit) figures.delay_to_light_ms.reset();
     figures.overlay_error_mm = ruling.off_mm;
     set_steps(gate_.verified() ? 5 : 4, gate_.verified() ? StepState::active : StepState::attention);
+    view_.found(update.frame.at, found_markers(session.tracker().seen_left()),
+                found_markers(session.tracker().seen_right()));
     change_model([&](OperatorModel& m) {
         note_latency(update, m);
+        if (permitted_ != darks_) return;  // DARK was pressed meanwhile
         m.confirm = update.overlay.lit && ruling.ask_to_verify;
+        m.next = m.confirm ? OperatorAction::confirm : OperatorAction::none;
         m.confirm_words = landmark_ >= 0 ? fmt::format("Light {} is right", landmark_ + 1) : "Show landmarks";
-        m.check_skin = true;
         for (std::size_t i = 0;
              landmark_ < 0 && update.light && i < std::min(m.rows.size(), update.light->items.size()); ++i) {
             const ItemLight& item = update.light->items[i];
@@ -263,11 +253,6 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
         }
         m.figures = figures;
         m.scene.light = light;
-        m.left.picture = std::make_shared<GrayImage>(brightened(update.frame.left));
-        m.right.picture = std::make_shared<GrayImage>(brightened(update.frame.right));
-        m.left.found = found_markers(session.tracker().seen_left());
-        m.right.found = found_markers(session.tracker().seen_right());
-        m.stop = {true, {}};
     });
     std::vector<std::string> details = sentences(update.overlay.counts.partly_lit, session.lit_drawing());
     details.insert(details.end(), ruling.details.begin(), ruling.details.end());

@@ -3,16 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <cstdlib>
 #include <iostream>
 #include <memory>
+#include <thread>
 
 #include "app/case_model.h"
 #include "app/console.h"
 #include "app/live/light_keeper.h"
 #include "app/live/live_session.h"
 #include "app/live/projector_keeper.h"
+#include "app/live/window_meter.h"
 #include "app/windows/operator_window.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/types/error.h"
@@ -21,10 +22,10 @@
 namespace planlight {
 namespace {
 
+constexpr double kLongestRest_s = 0.03;  ///< between two looks at the session
+
 /// Set by Ctrl-C or a polite kill: the loop ends as if the window had been closed, and everything is dark on the way
 /// out.
-volatile std::sig_atomic_t asked_to_end = 0;
-
 /// The monitor for the light: as asked for, else the first that is not the primary one; empty when there is only one.
 std::string light_monitor(const LiveOptions& options) {
     if (!options.projector_monitor.empty()) return options.projector_monitor;
@@ -121,7 +122,41 @@ void tell_of_projector(const ProjectorProblem& problem, LiveSession& session, bo
                     {problem.remedy, "It is looked for every second. Scan and match are kept."}};
 }
 
+/// What a look at the session counts as.
+WindowMeter::Phase phase_of(const OperatorModel& model) {
+    if (model.light_on) return WindowMeter::Phase::following;
+    return model.next == OperatorAction::none ? WindowMeter::Phase::other : WindowMeter::Phase::idle;
+}
+
 }  // namespace
+
+SessionWindow::SessionWindow(const std::string& operator_monitor) : monitor_(operator_monitor) {
+    if (!display_is_there()) return;
+    window();
+    show("Planlight starts.", 0);
+}
+
+OperatorWindow& SessionWindow::window() {
+    WindowSettings settings;
+    if (!monitor_.empty()) settings.monitor = monitor_;
+    if (!window_) window_ = std::make_unique<OperatorWindow>(settings);
+    return *window_;
+}
+
+void SessionWindow::show(const std::string& words, double share) {
+    if (!window_) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        return;
+    }
+    OperatorModel model;
+    model.case_title = "Planlight";
+    model.status = {StatusKind::waiting, words, {"The projector is dark."}, share};
+    for (auto* button : {&model.scan, &model.do_register, &model.track, &model.stop})
+        *button = {false, "the case is being read"};
+    model.left.note = model.right.note = "when the room is there";
+    if (window_->frame(model) == OperatorAction::quit) closed_ = true;
+    window_->rest(kLongestRest_s);
+}
 
 bool display_is_there() {
     return std::getenv("DISPLAY") != nullptr && *std::getenv("DISPLAY") != '\0';
@@ -131,12 +166,12 @@ namespace {
 
 /// The windows' loop, until the operator window is closed; `projector` is null where there is none.
 int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* projector, const LiveOptions& options,
-                Autoplay autoplay) {
+                Autoplay autoplay, WindowMeter& meter) {
     bool projector_lost = false;
     Screenshots screenshots(options.screenshots);
     std::optional<std::chrono::steady_clock::time_point> projecting_since;
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
-    while (!asked_to_end) {
+    note_end_signals();
+    while (!asked_to_end()) {
         OperatorModel model = session.model();
         if (projector) tell_of_projector(projector->problem(), session, projector_lost, model);
         if (const std::string trouble = options.trouble ? options.trouble() : ""; !trouble.empty())
@@ -151,12 +186,14 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         // Landmarks that stand in the window count for every match of their scan: a match that they refuse stays
         // refused.
         if (action == OperatorAction::do_register || action == OperatorAction::use_landmarks)
-            session.post_find_patient(window.landmarks());
+            window.say(session.post_find_patient(window.landmarks()));
         else
-            session.post(action);
-        if (options.autoplay) session.post(autoplay.next(model));
+            window.say(session.post(action));
+        if (options.autoplay && meter.idle_s() >= options.idle_first_s) session.post(autoplay.next(model));
         screenshots.take(window, model, session);
         session.rethrow_fault();
+        window.rest(kLongestRest_s);
+        meter.note(phase_of(model), window.frames_drawn());
         const auto now = std::chrono::steady_clock::now();
         if (session.projecting() && !projecting_since) projecting_since = now;
         if (options.end_after_s > 0 && projecting_since &&
@@ -166,21 +203,20 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
     return 0;
 }
 
-/// How late the light was, for whoever asked, and for the log.
-int told_at_the_end(int code, const LiveSession& session, const LiveOptions& options) {
+/// How late the light was and what the window cost, for whoever asked, and for the log.
+int told_at_the_end(int code, const LiveSession& session, const WindowMeter& meter, const LiveOptions& options) {
     const UpdateLatency latency = session.latency();
-    if (options.json)
-        std::cout << latency.json() << std::flush;
-    else if (latency.lit > 0)
+    if (options.json) {
+        std::string json = latency.json();
+        json.resize(json.find_last_of('}'));
+        std::cout << json.substr(0, json.find_last_not_of('\n') + 1) << ",\n  \"window\": " << meter.json() << "\n}\n"
+                  << std::flush;
+    } else if (latency.lit > 0) {
         fmt::print("{}.\n", latency.sentence());
-    log_line(latency.sentence());
+    }
+    for (const std::string& sentence : {latency.sentence(), meter.sentence()})
+        if (!sentence.empty()) log_line(sentence);
     return code;
-}
-
-OperatorWindowSettings window_settings(const LiveOptions& options) {
-    OperatorWindowSettings settings;
-    if (!options.operator_monitor.empty()) settings.monitor = options.operator_monitor;
-    return settings;
 }
 
 ProjectorKeeperSettings keeper_settings(const LiveOptions& options) {
@@ -191,9 +227,10 @@ ProjectorKeeperSettings keeper_settings(const LiveOptions& options) {
 
 }  // namespace
 
-int run_live_simulated(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
+int run_live_simulated(SessionWindow& screen, MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
                        const LiveOptions& options) {
-    OperatorWindow window(window_settings(options));
+    OperatorWindow& window = screen.window();
+    if (screen.closed()) return 0;
     std::unique_ptr<ProjectorKeeper> projector;
     if (const std::string monitor = light_monitor(options); !monitor.empty()) {
         check_monitor(monitor, options.projector);
@@ -206,28 +243,30 @@ int run_live_simulated(MakeRoom make_room, const Case& the_case, const CaseDrawi
                         options.resume);
     std::unique_ptr<LightKeeper> light;  // dark and gone before the session is
     if (projector) light = std::make_unique<LightKeeper>(*projector, session);
-    return told_at_the_end(run_windows(window, session, projector.get(), options,
-                                       Autoplay(true, options.resume && options.resume->at_once)),
-                           session, options);
+    WindowMeter meter;
+    const int code = run_windows(window, session, projector.get(), options,
+                                 Autoplay(true, options.resume && options.resume->at_once), meter);
+    return told_at_the_end(code, session, meter, options);
 }
 
-int run_live(const MakeRoomWith& make_room, const Case& the_case, const CaseDrawing& drawing,
+int run_live(SessionWindow& screen, const MakeRoomWith& make_room, const Case& the_case, const CaseDrawing& drawing,
              const LiveOptions& options) {
-    OperatorWindow window(window_settings(options));
+    OperatorWindow& window = screen.window();
+    if (screen.closed()) return 0;
     check_monitor(options.projector_monitor, options.projector);
     ProjectorKeeper projector(options.projector_monitor, keeper_settings(options));
-    LiveSession session([&] { return make_room(projector); }, the_case, drawing, options.keep_matches_in,
-                        options.observer, options.resume);
-    return told_at_the_end(
-        run_windows(window, session, &projector, options, Autoplay(false, options.resume && options.resume->at_once)),
-        session, options);
+    LiveSession session([&](const RoomProgress& progress) { return make_room(projector, progress); }, the_case, drawing,
+                        options.keep_matches_in, options.observer, options.resume);
+    WindowMeter meter;
+    const int code = run_windows(window, session, &projector, options,
+                                 Autoplay(false, options.resume && options.resume->at_once), meter);
+    return told_at_the_end(code, session, meter, options);
 }
 
 void show_model(const OperatorModel& model, FitView view) {
     OperatorWindow window;
     window.set_fit_view(view);
-    while (window.frame(model) != OperatorAction::quit) {
-    }
+    while (window.frame(model) != OperatorAction::quit) window.rest(kLongestRest_s);
 }
 
 std::vector<PointPair> click_landmarks(const OperatorModel& model, const std::vector<PointPair>& already) {
@@ -236,6 +275,7 @@ std::vector<PointPair> click_landmarks(const OperatorModel& model, const std::ve
     for (;;) {
         const OperatorAction action = window.frame(model);
         if (action == OperatorAction::quit || action == OperatorAction::use_landmarks) return window.landmarks();
+        window.rest(kLongestRest_s);
     }
 }
 

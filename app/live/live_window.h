@@ -1,14 +1,17 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <functional>
+#include <future>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "app/live/room.h"
 #include "app/recording/resume_offer.h"
 #include "app/session.h"
-#include "app/windows/operator_model.h"
+#include "app/windows/operator_window.h"
 #include "planning_io/case/light_file.h"
 #include "planning_io/types/point_pair.h"
 
@@ -21,6 +24,7 @@ struct LiveOptions {
     ProjectorFacts projector;               ///< what was measured of the projector; empty fields are not compared
     std::string operator_monitor;           ///< empty: the primary one
     bool autoplay = false;                  ///< scan, register and track without a person
+    double idle_first_s = 0;                ///< so long after the room is there nothing is pressed by itself
     double end_after_s = 0;                 ///< of projecting, wall time; 0 = until the window is closed
     std::filesystem::path keep_matches_in;  ///< folder for every match and its scan; empty = none
     bool json = false;                      ///< at the end print how late the light was, as JSON
@@ -33,16 +37,42 @@ struct LiveOptions {
 /// True when a window could be opened.
 bool display_is_there();
 
+/// The operator window of a session, from before there is one: it says what is being made, and how far that is.
+class SessionWindow {
+public:
+    /// Opens it where there is a display. `operator_monitor` empty: the primary one. Throws DeviceError.
+    explicit SessionWindow(const std::string& operator_monitor);
+
+    /// What `make` makes in a thread of its own, while the window says so. Throws what it throws.
+    template <class Make>
+    auto while_made(const std::string& words, double share, Make make) {
+        auto made = std::async(std::launch::async, std::move(make));
+        while (made.wait_for(std::chrono::seconds(0)) != std::future_status::ready) show(words, share);
+        return made.get();
+    }
+
+    /// Throws DeviceError without a display.
+    OperatorWindow& window();
+    bool closed() const { return closed_; }  ///< by the person, meanwhile
+
+private:
+    void show(const std::string& words, double share);
+
+    std::string monitor_;
+    std::unique_ptr<OperatorWindow> window_;
+    bool closed_ = false;
+};
+
 /// Makes the room of a session; a real one lights the projector that it is given, a simulated one has its own.
-using MakeRoomWith = std::function<std::unique_ptr<Room>(Projector& projector)>;
+using MakeRoomWith = std::function<std::unique_ptr<Room>(Projector& projector, const RoomProgress& progress)>;
 
 /// Both windows on a live session in the simulated room, until the operator window is closed. Gives the exit code.
 /// Throws DeviceError when a monitor is missing or a window does not land where it should.
-int run_live_simulated(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
+int run_live_simulated(SessionWindow& screen, MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
                        const LiveOptions& options);
 
 /// The same in a real room, whose light is that of the projector's monitor.
-int run_live(const MakeRoomWith& make_room, const Case& the_case, const CaseDrawing& drawing,
+int run_live(SessionWindow& screen, const MakeRoomWith& make_room, const Case& the_case, const CaseDrawing& drawing,
              const LiveOptions& options);
 
 /// The operator window on a model that does not change, until it is closed. Throws DeviceError without a display.

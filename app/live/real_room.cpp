@@ -29,8 +29,8 @@ void check_serials(const std::string& left, const std::string& right, const Devi
 
 }  // namespace
 
-RealRoom::RealRoom(const RoomFile& room, const RigCalibration& rig, Projector& projector)
-    : room_(room), rig_(rig), projector_(projector), cameras_(room, clock_) {
+RealRoom::RealRoom(const RoomFile& room, const RigCalibration& rig, Projector& projector, const RoomProgress& progress)
+    : room_(room), rig_(rig), projector_(projector), cameras_(room, clock_, progress) {
     check_size("the projector", projector.width(), projector.height(), rig.projector);
     const Camera &left = cameras_.left(), &right = cameras_.right();
     check_size(left.name(), left.width(), left.height(), rig.left_camera);

@@ -16,7 +16,7 @@ public:
     /// Opens the cameras. Throws DeviceError when one does not answer or does not take its settings, CheckFailedError
     /// when they or the projector are not those of the rig file: another resolution, other serials, left and right
     /// exchanged.
-    RealRoom(const RoomFile& room, const RigCalibration& rig, Projector& projector);
+    RealRoom(const RoomFile& room, const RigCalibration& rig, Projector& projector, const RoomProgress& progress = {});
 
     std::string name() const override { return room_.name.empty() ? "the room" : room_.name; }
     const RigCalibration& rig() const override { return rig_; }

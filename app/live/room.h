@@ -24,6 +24,8 @@ public:
 
     /// What a person should know of the devices, a sentence each.
     virtual std::vector<std::string> notes() const { return {}; }
+    /// How often a picture is taken for the window while nothing else wants one.
+    virtual Instant look_interval() const { return std::chrono::milliseconds(100); }
     /// True where nothing is real: the window says so in large letters, and its projector window shows a copy of the
     /// light.
     virtual bool simulated() const { return false; }
@@ -38,7 +40,10 @@ public:
     }
 };
 
+/// Told what is being done, as a sentence, and how far it is, 0 to 1 (empty: nobody knows).
+using RoomProgress = std::function<void(const std::string& doing, std::optional<double> share)>;
+
 /// Makes the room in the session's own thread, for that may take seconds.
-using MakeRoom = std::function<std::unique_ptr<Room>()>;
+using MakeRoom = std::function<std::unique_ptr<Room>(const RoomProgress& progress)>;
 
 }  // namespace planlight

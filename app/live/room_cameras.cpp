@@ -1,5 +1,7 @@
 #include "app/live/room_cameras.h"
 
+#include <algorithm>
+
 #include "planning_io/case/light_file.h"
 #include "planning_io/types/error.h"
 #include "registration/devices/genicam_camera.h"
@@ -42,7 +44,12 @@ std::unique_ptr<Camera> opened(const RoomCamera& camera, const std::string& name
 
 }  // namespace
 
-RoomCameras::RoomCameras(const RoomFile& room, const Clock& clock) {
+RoomCameras::RoomCameras(const RoomFile& room, const Clock& clock,
+                         const std::function<void(const std::string&, std::optional<double>)>& progress) {
+    const auto tell = [&](const std::string& doing, std::optional<double> share) {
+        if (progress) progress(doing, share);
+    };
+    tell("The cameras are being opened.", std::nullopt);
     auto left = opened(room.left, "Left camera", bell_, clock),
          right = opened(room.right, "Right camera", bell_, clock);
     left_ = left.get();
@@ -50,16 +57,19 @@ RoomCameras::RoomCameras(const RoomFile& room, const Clock& clock) {
     PairSettings pairs;
     pairs.together = room.together;
     pairs.most_apart = from_seconds(room.max_apart_ms / 1e3);
-    learn_clocks(clock);
+    learn_clocks(clock, [&](double share) { tell("The clocks of the cameras are being learnt.", share); });
     pair_ = std::make_unique<PairedCameras>(std::move(left), std::move(right), bell_, clock, pairs);
 }
 
 /// A frame's time is as good as the quickest frame so far: the first ones may have come late.
-void RoomCameras::learn_clocks(const Clock& clock) {
+void RoomCameras::learn_clocks(const Clock& clock, const std::function<void(double)>& progress) {
     constexpr std::size_t kFrames = 20;
     constexpr Instant kLeast = std::chrono::seconds(1), kMost = std::chrono::seconds(10);
     const Instant began = clock.now();
     const auto known = [](Camera& camera) { return camera.frames().counts().received >= kFrames; };
+    const auto share = [&](Camera& camera) {
+        return std::min(1.0, static_cast<double>(camera.frames().counts().received) / kFrames);
+    };
     while (clock.now() - began < kLeast || !known(*left_) || !known(*right_)) {
         if (clock.now() - began > kMost) {  // a camera that stumbles at its start is opened again by itself until then
             Camera& slow = known(*left_) ? *right_ : *left_;
@@ -67,6 +77,7 @@ void RoomCameras::learn_clocks(const Clock& clock) {
             throw DeviceError(slow.name(), "it sent too few frames in ten seconds",
                               "Look at its trigger, its frame rate and the network.");
         }
+        progress(std::min({share(*left_), share(*right_), seconds(clock.now() - began) / seconds(kLeast)}));
         std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
     left_->frames().take_all();

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -17,7 +19,9 @@ class RoomCameras {
 public:
     /// Opens them, and looks at their frames for a second or two, until their clocks are known. Throws DeviceError when
     /// one does not answer, does not take its settings, or sends nothing.
-    RoomCameras(const RoomFile& room, const Clock& clock);
+    /// `progress`: told what is done, and how far; may be empty.
+    RoomCameras(const RoomFile& room, const Clock& clock,
+                const std::function<void(const std::string&, std::optional<double>)>& progress = {});
 
     PairedCameras& pair() { return *pair_; }
     const Camera& left() const { return *left_; }
@@ -26,7 +30,7 @@ public:
     std::vector<std::string> notes() const;
 
 private:
-    void learn_clocks(const Clock& clock);
+    void learn_clocks(const Clock& clock, const std::function<void(double)>& progress);
 
     FrameBell bell_;
     Camera *left_ = nullptr, *right_ = nullptr;  ///< of `pair_`

@@ -1,10 +1,5 @@
 #include "app/live/scene_of_session.h"
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-
 namespace planlight {
 
 std::shared_ptr<const std::vector<SceneMarker>> markers_in_ct(const PatientTracker& tracker,
@@ -24,37 +19,31 @@ std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing
                                                                const simulation::SimulatedRig& rig) {
     auto lines = std::make_shared<std::vector<LightLine>>();
     if (!overlay.lit) return lines;
-    for (const auto& stroke : drawing.strokes) {
+    const auto add = [&](const std::vector<Eigen::Vector3d>& wanted_in_ct, bool closed) {
         LightLine line;
-        line.closed = stroke.closed;
-        for (const auto& p_in_ct : stroke.points_in_ct) {
+        line.closed = closed;
+        for (const auto& p_in_ct : wanted_in_ct) {
             const auto pixel = project(calibration.projector, overlay.rig_from_ct * p_in_ct);
             const auto lit = pixel ? rig.true_light(*pixel, overlay.lit_from) : std::nullopt;
             if (lit) line.points_in_ct.push_back(lit->p_in_ct);
         }
         if (line.points_in_ct.size() > 1) lines->push_back(std::move(line));
+    };
+    for (const auto& stroke : drawing.strokes) add(stroke.points_in_ct, stroke.closed);
+    const auto& whole = overlay.counts.labels_lit;
+    for (const Label& label : drawing.labels) {
+        if (label.of_moment || std::find(whole.begin(), whole.end(), label.item) == whole.end()) continue;
+        for (const auto& sign : label.signs_in_ct)
+            for (const auto& outline : sign) add(outline, true);
     }
     return lines;
 }
 
-GrayImage brightened(const GrayImage& picture) {
-    std::array<std::size_t, 256> count{};
-    for (const auto value : picture.pixels) ++count[value];
-    std::size_t white = 255;
-    for (std::size_t above = 0; white > 16; --white) {
-        above += count[white];
-        if (above > picture.pixels.size() / 200) break;
-    }
-    GrayImage bright = picture;
-    for (auto& value : bright.pixels)
-        value = static_cast<std::uint8_t>(std::min<std::size_t>(255, value * 255 / white));
-    return bright;
-}
-
-std::vector<FoundMarker> found_markers(const std::vector<PatientTracker::Seen>& seen) {
+std::vector<FoundMarker> found_markers(const std::vector<PatientTracker::Seen>& seen, bool all) {
     std::vector<FoundMarker> found;
     for (const auto& one : seen)
-        if (one.marker >= 0) found.push_back({one.left_or_right.pixel, one.left_or_right.radius_px});
+        if (all || one.marker >= 0)
+            found.push_back({one.left_or_right.pixel, one.left_or_right.radius_px, one.marker >= 0});
     return found;
 }
 

@@ -21,10 +21,7 @@ std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing
                                                                const OverlayStep& overlay,
                                                                const simulation::SimulatedRig& rig);
 
-/// The picture as a person wants to see it: what is brighter than all but the brightest half per cent becomes white.
-GrayImage brightened(const GrayImage& picture);
-
-/// The discs that the tracker found, for the camera pictures.
-std::vector<FoundMarker> found_markers(const std::vector<PatientTracker::Seen>& seen);
+/// The discs that the tracker found, for the camera pictures; `all`: also those that are none of the patient's markers.
+std::vector<FoundMarker> found_markers(const std::vector<PatientTracker::Seen>& seen, bool all = false);
 
 }  // namespace planlight

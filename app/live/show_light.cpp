@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <csignal>
 #include <iostream>
 #include <thread>
 
@@ -18,8 +17,6 @@
 namespace planlight {
 namespace {
 
-volatile std::sig_atomic_t asked_to_end = 0;
-
 /// Passes time as cameras of that frame rate would, and keeps the window alive meanwhile. Its frames are empty.
 class Pace final : public StereoCamera {
 public:
@@ -28,7 +25,7 @@ public:
 
     void wait_until(Instant at) {
         do {
-            if (asked_to_end)
+            if (asked_to_end())
                 throw DeviceError("Projector window", "the showing was ended", "Start it again for a whole recording.");
             window_.refresh();
             std::this_thread::sleep_for(
@@ -57,7 +54,7 @@ int show_light(const ProjectorOptions& options) {
     if (options.monitor.empty() || options.keep.empty())
         throw InputError({}, "showing needs the projector's monitor and a folder for the orders",
                          "Give --monitor NAME and --keep FOLDER.");
-    for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, [](int) { asked_to_end = 1; });
+    note_end_signals();
     const SteadyClock clock;
     ProjectorWindowSettings settings;
     if (options.configured_delay_ms >= 0) settings.light_delay = from_seconds(options.configured_delay_ms / 1e3);

@@ -20,6 +20,8 @@ public:
     StereoCamera& cameras() override { return rig_.cameras(); }
     const Clock& clock() const override { return rig_.clock(); }
     bool simulated() const override { return true; }
+    /// Each is computed, and nothing in it moves by itself.
+    Instant look_interval() const override { return std::chrono::seconds(2); }
     void computing() override { rig_.wait(std::chrono::milliseconds(10)); }
     void let_patient_move(bool moves) override;
     void begin_fault() override;

@@ -17,7 +17,8 @@ constexpr const char* kAsked[] = {"",
                                   "darkness",
                                   "a frame",
                                   "a device (which failed)",
-                                  "to go on with a scan (which was stopped)"};
+                                  "to go on with a scan (which was stopped)",
+                                  "what the cameras say of themselves"};
 
 /// As it was thrown then: "Left camera: it sends nothing".
 DeviceError failed(const RecordedInput& input) {
@@ -64,6 +65,13 @@ StereoFrame RecordedDevices::grab(Instant, std::chrono::milliseconds) {
     if (given_.frames++ == 0) given_.first_at = frame.at;
     given_.last_number = frame.number, given_.last_at = frame.at;
     return frame;
+}
+
+/// Recorded where it changed.
+std::string RecordedDevices::doubt() const {
+    if (const auto& next = cursor_.peek(); next.input && next.input->kind == Kind::doubt)
+        doubt_ = cursor_.take().input->text;
+    return doubt_;
 }
 
 Instant RecordedDevices::now() const {

@@ -37,7 +37,7 @@ std::vector<RecordedInput> unpacked_inputs(std::string_view payload, const std::
         while (fields.left() > 0) {
             RecordedInput input;
             const auto kind = fields.next<std::uint8_t>();
-            if (kind < 1 || kind > 6) refuse(file);
+            if (kind < 1 || kind > 7) refuse(file);
             input.kind = static_cast<Kind>(kind);
             if (input.kind == Kind::clock || input.kind == Kind::shown || input.kind == Kind::frame)
                 input.at = Instant(fields.next<std::int64_t>());

@@ -13,12 +13,13 @@ namespace planlight {
 /// One answer of a session's devices, as a recording keeps it.
 struct RecordedInput {
     enum class Kind : std::uint8_t {
-        clock = 1,   ///< it was `at`
-        shown = 2,   ///< a picture of that hash until `until`; it is light from `at` on
-        dark = 3,    ///< the projector was told to be dark
-        frame = 4,   ///< exposed about `at` for `until`, with that number; its pictures have that hash
-        failed = 5,  ///< a device threw `text`, with `remedy`
-        stopped = 6  ///< whoever asked ended the scan, saying `text`, `remedy`
+        clock = 1,    ///< it was `at`
+        shown = 2,    ///< a picture of that hash until `until`; it is light from `at` on
+        dark = 3,     ///< the projector was told to be dark
+        frame = 4,    ///< exposed about `at` for `until`, with that number; its pictures have that hash
+        failed = 5,   ///< a device threw `text`, with `remedy`
+        stopped = 6,  ///< whoever asked ended the scan, saying `text`, `remedy`
+        doubt = 7     ///< the cameras say of themselves `text`; empty: nothing any more
     };
     Kind kind = Kind::clock;
     Instant at{}, until{};

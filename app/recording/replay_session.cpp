@@ -187,6 +187,11 @@ private:
                     session_.light_landmark(which < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(which)));
                     break;
                 }
+                case SessionCall::light_item: {
+                    const int which = event.value("which", -1);
+                    session_.light_item(which < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(which)));
+                    break;
+                }
                 case SessionCall::go_dark:
                     session_.go_dark();
                     break;

@@ -33,6 +33,7 @@ SessionRecorder::SessionRecorder(std::unique_ptr<RecordingSink> sink, const Reco
                                  std::optional<NamesLeftOut> anonymous)
     : mode_(head.mode),
       choice_(choice),
+      most_before_(choice.before),
       packed_(std::make_shared<PackedSize>()),
       anonymous_(std::move(anonymous)),
       writer_(std::move(sink), writing) {
@@ -40,12 +41,24 @@ SessionRecorder::SessionRecorder(std::unique_ptr<RecordingSink> sink, const Reco
 }
 
 SessionRecorder::~SessionRecorder() {
+    try {
+        finish();
+    } catch (const std::exception&) {  // no memory: it ends without its last word
+    }
+}
+
+std::string SessionRecorder::finish() {
     const std::lock_guard lock(mutex_);
     flush();
-    const RecordingState state = writer_.state();
-    writer_.add(
-        {chunk_types::kDone, now_,
-         fmt::format(R"({{"dropped_chunks": {}, "dropped_bytes": {}}})", state.dropped_chunks, state.dropped_bytes)});
+    const RecordingState state = writer_.finish(now_);
+    std::string text;
+    if (state.dropped_chunks > 0)
+        text = fmt::format("{} pieces of the recording are missing: {}.", state.dropped_chunks,
+                           state.problem.empty() ? "the disk was too slow" : state.problem);
+    if (!state.sync_problem.empty())
+        text += fmt::format("{}The disk did not confirm the recording: {}. Look whether it can be read.",
+                            text.empty() ? "" : " ", state.sync_problem);
+    return text;
 }
 
 std::string SessionRecorder::trouble() const {
@@ -53,6 +66,9 @@ std::string SessionRecorder::trouble() const {
     if (!state.problem.empty())
         return fmt::format("The recording stands still: {}. {} pieces are missing; the light is not affected.",
                            state.problem, state.dropped_chunks);
+    if (!state.sync_problem.empty())
+        return fmt::format("The disk did not confirm the recording: {}; the light is not affected.",
+                           state.sync_problem);
     if (state.dropped_chunks > 0)
         return fmt::format("The disk is too slow for the recording: {} pieces are missing; the light is not affected.",
                            state.dropped_chunks);
@@ -175,7 +191,7 @@ void SessionRecorder::choose(const Frame& frame) {
         return;
     }
     before_.push_back(frame);
-    if (before_.size() > FrameChoiceSettings{}.before) before_.pop_front();
+    if (before_.size() > most_before_) before_.pop_front();
 }
 
 void SessionRecorder::something_happened() {
@@ -208,6 +224,14 @@ void SessionRecorder::went_dark() noexcept {
     try {
         const std::lock_guard lock(mutex_);
         input({Kind::dark, {}, {}, 0, {}, {}});
+    } catch (const std::exception&) {
+    }
+}
+
+void SessionRecorder::cameras_doubted(const std::string& doubt) noexcept {
+    try {
+        const std::lock_guard lock(mutex_);
+        input({Kind::doubt, {}, {}, 0, doubt, {}});
     } catch (const std::exception&) {
     }
 }

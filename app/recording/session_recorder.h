@@ -44,11 +44,13 @@ public:
     SessionRecorder(std::unique_ptr<RecordingSink> sink, const RecordingHead& head,
                     const RecordingWriterSettings& writing = {}, const FrameChoiceSettings& choice = {},
                     std::optional<NamesLeftOut> anonymous = {});
-    ~SessionRecorder() override;
+    ~SessionRecorder() override;  ///< as `finish` does
 
     RecordingState state() const { return writer_.state(); }
     /// What a person must hear of it now, one sentence: the disk is full or too slow; empty while all is well.
     std::string trouble() const;
+    /// Ends the recording. What is missing in it, or may be, in one sentence; empty when all of it is on the disk.
+    std::string finish();
 
     void room_entered(const RoomFacts& room) noexcept override;
     void pressed(const std::string& action) noexcept override;
@@ -59,6 +61,7 @@ public:
     void frame_taken(const StereoFrame& frame) noexcept override;
     void picture_shown(const RgbImage& picture, Instant valid_until, Instant lit_from) noexcept override;
     void went_dark() noexcept override;
+    void cameras_doubted(const std::string& doubt) noexcept override;
     void device_failed(const Error& fault) noexcept override;
     void stopped(const Error& why) noexcept override;
     void scanned(const Session& session) noexcept override;
@@ -93,6 +96,7 @@ private:
     std::vector<RecordedInput> inputs_;  ///< since the last event
     Instant now_{}, pictured_{};
     FrameChoice choice_;
+    std::size_t most_before_;
     std::deque<Frame> before_;            ///< the last frames that were not kept
     std::shared_ptr<PackedSize> packed_;  ///< of the last frame that was packed
     bool scanning_ = false, first_of_scan_ = false;

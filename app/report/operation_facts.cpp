@@ -38,8 +38,9 @@ std::string without_numbers(const std::string& text) {
     return out;
 }
 
-double number(const Json& value) {
-    return value.is_number() ? value.get<double>() : 0;
+/// Null is not known, never 0.
+std::optional<double> number(const Json& value) {
+    return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
 }
 
 /// Goes through the events in their order.
@@ -59,6 +60,9 @@ public:
             picture_ = chunk;
         else if (chunk.type == chunk_types::kLost)
             facts_.lost_chunks += Json::parse(chunk.payload).value("chunks", std::uint64_t{0});
+        else if (chunk.type == chunk_types::kDone)
+            facts_.lost_chunks =
+                std::max(facts_.lost_chunks, Json::parse(chunk.payload).value("dropped_chunks", std::uint64_t{0}));
         if (facts_.room_entered) facts_.lasted_s = std::max(facts_.lasted_s, at_s_);
     }
 
@@ -87,8 +91,8 @@ private:
             facts_.serials.push_back(room.at("rig").value(device, Json::object()).value("serial", ""));
     }
 
-    void say(const std::string& what, const Json& event) {
-        facts_.said.push_back({at_s_, event.value("utc", ""), what});
+    void say(const std::string& what, const Json& event, bool grave = false) {
+        facts_.said.push_back({at_s_, event.value("utc", ""), what, grave});
     }
 
     void take_event(const Json& event) {
@@ -100,20 +104,26 @@ private:
         if (what == "asked") take_call(event);
         if (what == "pressed" && event.value("action", "") == "dark") say("DARK was pressed.", event);
         if (what == "refused")
-            facts_.refusals.push_back({at_s_, "", event.value("call", "") + ": " + event.value("why", "")});
-        if (what == "skin_checked")
-            say(event.value("known", false)
-                    ? fmt::format("The skin was checked: the plan's points lie within {:.1f} mm of where the markers "
-                                  "put them.",
-                                  number(event.at("off_mm")))
-                    : "The skin was checked, without an answer: " + event.value("why_not", "") + ".",
-                event);
+            facts_.refusals.push_back({at_s_, "", event.value("call", "") + ": " + event.value("why", ""), false});
+        if (what == "skin_checked") take_skin_check(event);
+    }
+
+    void take_skin_check(const Json& event) {
+        const std::optional<double> off_mm = event.value("known", false) ? number(event.at("off_mm")) : std::nullopt;
+        if (!off_mm) return say("The skin was checked, without an answer: " + event.value("why_not", "") + ".", event);
+        facts_.skin_off_mm = std::max(facts_.skin_off_mm.value_or(0), *off_mm);
+        say(fmt::format("The skin was checked: the plan's points lie within {:.1f} mm of where the markers put them.",
+                        *off_mm),
+            event, *off_mm > kOperationLook_mm);
     }
 
     void take_call(const Json& event) {
         const std::string call = event.value("call", "");
         if (call == "find_patient") utc_of_match_ = event.value("utc", "");
-        if (call == "confirm") say("By a press the match was said to fit.", event);
+        if (call == "confirm") {
+            use_match();
+            say("By a press the match was said to fit.", event);
+        }
         if (call == "light_landmark") landmark_ = event.value("which", -1);
         if (call != "update") following_ = false;
     }
@@ -128,6 +138,7 @@ private:
         for (const Json& reason : event.at("reasons")) match.reasons.push_back(reason.get<std::string>());
         facts_.matches.push_back(match);
         take_items(event);
+        if (match.verdict == "yes") use_match();
     }
 
     /// A match of an earlier session that this one went on with.
@@ -135,25 +146,38 @@ private:
         say(fmt::format(
                 "The match of an earlier session was gone on with: {} markers, and the plan's skin within {:.1f} "
                 "mm of where they put it.",
-                event.value("markers", 0), number(event.at("skin_off_mm"))),
+                event.value("markers", 0), number(event.at("skin_off_mm")).value_or(0)),
             event);
         take_items(event);
+        use_match();
     }
 
     void take_items(const Json& event) {
         landmark_ = -1;
-        for (OperationItem& item : facts_.items) item.predicted_mm.reset();
         now_.clear();
+        predicted_.clear();
+        std::map<std::string, int> met;  // two items of a name are told apart by their order
         for (std::size_t i = 0; i < event.at("items").size(); ++i) {
             const std::string name = event["items"][i].get<std::string>();
-            auto item = std::find_if(facts_.items.begin(), facts_.items.end(),
-                                     [&](const OperationItem& known) { return known.name == name; });
-            if (item == facts_.items.end()) item = facts_.items.insert(item, {name, {}, 0, {}, {}});
-            if (i < event.at("predicted_mm").size() && event["predicted_mm"][i].is_number())
-                item->predicted_mm = event["predicted_mm"][i].get<double>();
-            now_.push_back(static_cast<std::size_t>(item - facts_.items.begin()));
+            now_.push_back(item_of(name, met[name]++));
+            predicted_.push_back(i < event.at("predicted_mm").size() ? number(event["predicted_mm"][i]) : std::nullopt);
         }
-        lit_items_.assign(now_.size(), true);
+        reached_.assign(now_.size(), false);
+        forget_showing();
+    }
+
+    /// The n-th of that name, from 0, among the items of all matches.
+    std::size_t item_of(const std::string& name, int n) {
+        for (std::size_t i = 0; i < facts_.items.size(); ++i)
+            if (facts_.items[i].name == name && n-- == 0) return i;
+        facts_.items.push_back({name, {}, 0, {}, {}, false});
+        return facts_.items.size() - 1;
+    }
+
+    /// A match that is refused, or doubtful and not confirmed, leaves standing what was predicted of the one before.
+    void use_match() {
+        for (OperationItem& item : facts_.items) item.predicted_mm.reset();
+        for (std::size_t i = 0; i < now_.size(); ++i) facts_.items[now_[i]].predicted_mm = predicted_[i];
     }
 
     void take_update(const Json& event) {
@@ -168,12 +192,13 @@ private:
         lit_ = light.value("lit", false);
         light_seen_ = false;
         if (const auto check = event.find("check"); check != event.end() && landmark_ < 0) take_check(*check);
-        if (lit_) {
+        plan_lit_ = lit_ && landmark_ < 0;
+        if (!plan_lit_) forget_showing();
+        if (plan_lit_) {
             facts_.lit_s += step_s_;
-            dark_.clear();
-            if (landmark_ < 0) show_items(at_s);
-            return;
+            show_items(at_s);
         }
+        if (lit_) return dark_.clear();
         const std::string reason = without_numbers(light.value("dark", ""));
         auto& [times, for_s] = facts_.dark[reason];
         times += reason != dark_;
@@ -182,25 +207,41 @@ private:
     }
 
     void take_check(const Json& check) {
-        if (check.value("seen", 0) > 0) facts_.light_off_mm.push_back(off_mm_ = number(check.at("off_mm")));
         light_seen_ = check.value("seen", 0) > 0;
+        if (light_seen_)
+            if (const auto off_mm = number(check.at("off_mm"))) facts_.light_off_mm.push_back(off_mm_ = *off_mm);
         const Json& items = check.at("items");
         for (std::size_t i = 0; i < std::min(items.size(), now_.size()); ++i) {
-            lit_items_[i] = items[i].at(0).get<bool>();
-            if (items[i].at(2).get<int>() > 0) facts_.items[now_[i]].measured_mm.push_back(number(items[i].at(3)));
+            OperationItem& item = facts_.items[now_[i]];
+            item.looked_at = true;
+            reached_[i] = items[i].at(0).get<bool>();
+            if (items[i].at(2).get<int>() == 0) continue;
+            if (const auto off_mm = number(items[i].at(3))) item.measured_mm.push_back(*off_mm);
         }
+        looked_ = true;
     }
 
+    /// Which items the light reaches is told by the first CHECK of a showing: what came before it waits for that.
     void show_items(double at_s) {
-        for (std::size_t i = 0; i < now_.size(); ++i) {
-            if (!lit_items_[i]) continue;
-            OperationItem& item = facts_.items[now_[i]];
-            item.shown_s += step_s_;
-            if (item.shown.empty() || at_s - item.shown.back().second > kBreak_s)
-                item.shown.emplace_back(at_s, at_s);
-            else
-                item.shown.back().second = at_s;
-        }
+        unlooked_.emplace_back(at_s, step_s_);
+        if (!looked_) return;
+        for (std::size_t i = 0; i < now_.size(); ++i)
+            for (const auto& [time_s, for_s] : unlooked_)
+                if (reached_[i]) show(facts_.items[now_[i]], time_s, for_s);
+        unlooked_.clear();
+    }
+
+    static void show(OperationItem& item, double at_s, double for_s) {
+        item.shown_s += for_s;
+        if (item.shown.empty() || at_s - item.shown.back().second > kBreak_s)
+            item.shown.emplace_back(at_s, at_s);
+        else
+            item.shown.back().second = at_s;
+    }
+
+    void forget_showing() {
+        looked_ = false;
+        unlooked_.clear();
     }
 
     void take_ruling(const Json& event) {
@@ -211,12 +252,12 @@ private:
         }
         if (call != "step") return;
         const std::string trust = event.value("trust", "");
-        if (lit_ && trust == "aligned") facts_.aligned_s += step_s_;
-        if (lit_ && trust == "look") facts_.look_s += step_s_;
-        if (lit_) note_course(trust == "aligned");
+        if (plan_lit_ && trust == "aligned") facts_.aligned_s += step_s_;
+        if (plan_lit_ && trust == "look") facts_.look_s += step_s_;
+        if (plan_lit_) note_course(trust == "aligned");
         if (event.value("stop", false)) {
             ++facts_.stops;
-            say("The light was stopped: " + event.value("headline", ""), event);
+            say("The light was stopped: " + event.value("headline", ""), event, true);
         }
         choose_moment(trust);
     }
@@ -231,23 +272,28 @@ private:
 
     /// The first whose light the cameras saw, and that was aligned; before that, what comes next to it.
     void choose_moment(const std::string& trust) {
-        if (!lit_ || !frame_ || frame_->at != frame_at_ || landmark_ >= 0) return;
+        if (!plan_lit_ || !frame_ || frame_->at != frame_at_) return;
         // Light is in a frame's pictures where the cameras saw it: in the first frame after darkness it is not yet.
-        const int worth = (light_seen_ ? 2 : 0) + (trust == "aligned" ? 2 : 0) + (picture_ ? 1 : 0);
+        const bool fresh = picture_ && picture_->at >= frame_at_;
+        const int worth = (light_seen_ ? 2 : 0) + (trust == "aligned" ? 2 : 0) + (fresh ? 1 : 0);
         if (moment_frame_ && worth <= moment_worth_) return;
         moment_worth_ = worth;
         moment_frame_ = frame_, moment_trust_ = trust, moment_at_s_ = update_at_s_;
-        moment_picture_ = picture_ && picture_->at >= frame_at_ ? picture_ : std::nullopt;
+        moment_picture_ = fresh ? picture_ : std::nullopt;
     }
 
     OperationFacts& facts_;
     Instant origin_{}, frame_at_{};
     double at_s_ = 0, update_at_s_ = 0, step_s_ = 0, off_mm_ = -1;
     bool following_ = false, lit_ = false;
+    bool plan_lit_ = false;  ///< not a landmark
     int landmark_ = -1;
     std::string dark_, utc_of_match_;
     std::vector<std::size_t> now_;  ///< items of the last match, by their place in `facts_`
-    std::vector<bool> lit_items_;
+    std::vector<std::optional<double>> predicted_;
+    std::vector<bool> reached_;                        ///< by the light, as the last CHECK told of each of them
+    bool looked_ = false;                              ///< CHECK has told since there is light
+    std::vector<std::pair<double, double>> unlooked_;  ///< updates with light before that: when, for how long
     std::optional<RecordingChunk> frame_, picture_, moment_frame_, moment_picture_;
     std::string moment_trust_;
     int moment_worth_ = 0;

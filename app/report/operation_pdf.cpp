@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "app/evaluation/distribution.h"
-#include "app/live/scene_of_session.h"
 #include "app/report/pdf_page.h"
+#include "app/windows/camera_picture.h"
 
 namespace planlight {
 namespace {
@@ -36,7 +36,6 @@ void add_facts(PdfPages& pdf, const OperationFacts& facts) {
     row("Began", head.began_utc + ", lasted " + duration_text(facts.lasted_s) + " (room clock)");
     row("Operator, computer", head.operator_name + ", " + head.computer);
     row("Program", "Planlight " + head.program);
-    rows.erase(rows.begin());
     pdf.table(rows, {0.22, 0.78});
 }
 
@@ -49,7 +48,7 @@ void add_items(PdfPages& pdf, const OperationFacts& facts) {
         const auto mm = [&](double value) { return d.count > 0 ? fmt::format("{:.2f}", value) : std::string("-"); };
         rows.push_back(
             {item.name,
-             item.shown.empty() ? "not shown"
+             item.shown.empty() ? (item.looked_at ? "not shown" : "no camera looked")
                                 : clock_text(item.shown.front().first) + " to " + clock_text(item.shown.back().second),
              duration_text(item.shown_s), item.predicted_mm ? fmt::format("{:.2f}", *item.predicted_mm) : "not known",
              mm(d.median), mm(d.p95), mm(d.worst), std::to_string(d.count)});
@@ -77,7 +76,7 @@ void add_course(PdfPages& pdf, const OperationFacts& facts) {
         if (sample.off_mm >= 0) chart.dots.emplace_back(sample.at_s / unit_s, sample.off_mm);
     }
     chart.levels = {{kOperationLook_mm, {208, 135, 0}}, {kOperationStop_mm, {163, 18, 31}}};
-    pdf.heading("The light over time");
+    pdf.heading("The light over time", 160);
     pdf.chart(chart);
 }
 
@@ -108,7 +107,7 @@ std::string operation_pdf(const OperationFacts& facts) {
                               facts.updates));
     add_course(pdf, facts);
     if (facts.moment) {
-        pdf.heading("At " + clock_text(facts.moment->at_s) + " (room clock)");
+        pdf.heading("At " + clock_text(facts.moment->at_s) + " (room clock)", 180);
         std::vector<std::pair<std::string, RgbImage>> row{{"Left camera", rgb_of(brightened(facts.moment->left))},
                                                           {"Right camera", rgb_of(brightened(facts.moment->right))}};
         if (!facts.moment->light.empty()) row.emplace_back("What the projector was given", facts.moment->light);
@@ -132,6 +131,8 @@ std::string operation_pdf(const OperationFacts& facts) {
                {"Rig", facts.rig_hash},
                {"Program", facts.head.program_hash}},
               {0.22, 0.78});
+    pdf.heading(" ", 30);
+    pdf.paragraph("Name  ____________________      Date  ______________      Signature  ____________________");
     return pdf.bytes();
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "app/evaluation/distribution.h"
-#include "app/live/scene_of_session.h"
+#include "app/windows/camera_picture.h"
 #include "app/report/html_page.h"
 #include "app/report/paper_page.h"
 #include "app/report/svg_chart.h"
@@ -57,8 +57,8 @@ std::string mm(const std::optional<double>& value) {
     return value ? fmt::format("{:.2f} mm", *value) : "not known";
 }
 
-std::string shown_text(const OperationItem& item) {
-    if (item.shown.empty()) return "not shown";
+std::string shown_text(const OperationItem& item, const OperationFacts& facts) {
+    if (item.shown.empty()) return item.looked_at || facts.lit_s <= 0 ? "not shown" : "not known";
     const std::string text = moment_text(item.shown.front().first) + "&ndash;" + moment_text(item.shown.back().second);
     return item.shown.size() == 1 ? text : fmt::format("{}, {} times", text, item.shown.size());
 }
@@ -76,20 +76,24 @@ std::string items_html(const OperationFacts& facts) {
         "<h2>What was shown, and how far off it was</h2><table class=\"plan\"><tr><th>Plan item</th><th>shown (room "
         "clock)</th><th>for</th><th>predicted, 95 %</th><th>measured: median</th><th>95 %</th><th>worst</th>"
         "<th>times</th></tr>";
-    constexpr std::size_t kMost = 12;  // of which the page has room; the verdict names every one that was off
+    constexpr std::size_t kMost = 12;  // of which the page has room: where there are more, the worst
+    const bool all = facts.items.size() <= kMost;
+    const std::vector<const OperationItem*> worst = worst_first(facts.items);
     for (std::size_t i = 0; i < std::min(facts.items.size(), kMost); ++i) {
-        const OperationItem& item = facts.items[i];
+        const OperationItem& item = all ? facts.items[i] : *worst[i];
         const Distribution d = distribution_of(item.measured_mm);
         const std::string measured = d.count > 0 ? fmt::format("<td>{}</td><td>{}</td><td>{}</td>", marked(d.median),
                                                                marked(d.p95), marked(d.worst))
                                                  : std::string("<td colspan=\"3\">not seen by the cameras</td>");
         html += fmt::format("<tr><td class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}</td>{}<td>{}</td></tr>",
-                            html_escaped(short_name(item.name)), shown_text(item), duration_text(item.shown_s),
+                            html_escaped(short_name(item.name)), shown_text(item, facts), duration_text(item.shown_s),
                             mm(item.predicted_mm), measured, d.count);
     }
     if (facts.items.size() > kMost)
-        html += fmt::format("<tr><td colspan=\"8\">and {} items more, in the figures beside this page</td></tr>",
-                            facts.items.size() - kMost);
+        html += fmt::format(
+            "<tr><td colspan=\"8\">and {} items more, none of them farther off, in the figures beside this "
+            "page</td></tr>",
+            facts.items.size() - kMost);
     if (facts.items.empty()) html += "<tr><td colspan=\"8\">No match was found: nothing could be shown.</td></tr>";
     return html +
            "</table><p class=\"muted\">Predicted: within this in 95 of 100 cases, by the last match. Measured: where "
@@ -163,21 +167,32 @@ std::string matches_html(const OperationFacts& facts) {
         const OperationMatch& match = facts.matches[i];
         std::string why;
         for (const std::string& reason : match.reasons) why += (why.empty() ? "" : " ") + reason;
-        html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.2f} mm rms</td><td>{}</td></tr>",
-                            moment_text(match.at_s), match.verdict, match.points, match.residual_rms_mm,
+        html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>", moment_text(match.at_s),
+                            html_escaped(match.verdict), match.points,
+                            match.residual_rms_mm ? mm(match.residual_rms_mm) + " rms" : mm({}),
                             html_escaped(short_text(why, kLongest)));
     }
     if (first > 0) html += fmt::format("<tr><td colspan=\"5\">after {} others</td></tr>", first);
     return html + "</table>";
 }
 
+/// As many as there is room for, in their order: of too many the grave ones before all others.
+std::vector<const OperationEvent*> chosen_of(const std::vector<OperationEvent>& events, std::size_t most) {
+    std::vector<const OperationEvent*> chosen;
+    for (const bool grave : {true, false})
+        for (const OperationEvent& event : events)
+            if (event.grave == grave && chosen.size() < most) chosen.push_back(&event);
+    std::sort(chosen.begin(), chosen.end());  // as they lie in `events`
+    return chosen;
+}
+
 std::string events_html(const std::string& title, const std::vector<OperationEvent>& events, std::size_t most) {
     std::string html = "<h2>" + title + "</h2>";
     if (events.empty()) return html + "<p>None.</p>";
     html += "<table>";
-    for (std::size_t i = 0; i < std::min(events.size(), most); ++i)
-        html += fmt::format("<tr><td style=\"width:16%\">{}</td><td>{}</td></tr>", moment_text(events[i].at_s),
-                            html_escaped(events[i].what));
+    for (const OperationEvent* event : chosen_of(events, most))
+        html += fmt::format("<tr><td style=\"width:16%\">{}</td><td>{}</td></tr>", moment_text(event->at_s),
+                            html_escaped(event->what));
     html += "</table>";
     if (events.size() > most)
         html +=
@@ -241,12 +256,6 @@ std::string verdict_html(const OperationVerdict& verdict) {
     return html + "</ul>";
 }
 
-/// Readable by its owner only, as the recording is: it shows the patient.
-void keep_to_owner(const fs::path& file) {
-    std::error_code ignored;
-    fs::permissions(file, fs::perms::owner_read | fs::perms::owner_write, ignored);
-}
-
 }  // namespace
 
 void write_operation_report(const OperationFacts& facts, const std::string& json, const fs::path& file) {
@@ -261,14 +270,13 @@ void write_operation_report(const OperationFacts& facts, const std::string& json
             moment_html(facts), course_html(facts), matches_html(facts),
             events_html("What people said and did", facts.said, kMostEvents),
             events_html("Refused, or failed", facts.refusals, kMostRefusals), hashes_html(facts));
+    // As the recording is: it shows the patient.
     write_safely(file,
                  paper_page(title, body,
                             fmt::format("Case {}, {}. Planlight {}. For research; not a medical device.",
-                                        facts.head.case_code, utc_text(facts.head.began_utc), facts.head.program)));
-    keep_to_owner(file);
-    const fs::path figures = fs::path(file).replace_extension(".json");
-    write_safely(figures, json);
-    keep_to_owner(figures);
+                                        facts.head.case_code, utc_text(facts.head.began_utc), facts.head.program)),
+                 ReadableBy::owner);
+    write_safely(fs::path(file).replace_extension(".json"), json, ReadableBy::owner);
 }
 
 }  // namespace planlight

@@ -14,19 +14,20 @@ namespace planlight {
 
 /// Of the plan, as a recording tells it. Times are seconds since the room was entered.
 struct OperationItem {
-    std::string name;
-    std::vector<std::pair<double, double>> shown;  ///< from when to when there was light of it
+    std::string name;                              ///< not always another's: the plan may have two of a name
+    std::vector<std::pair<double, double>> shown;  ///< from when to when there was light of it, as CHECK told
     double shown_s = 0;
     std::optional<double>
         predicted_mm;                 ///< within this in 95 % of cases, by the last match that was used; or not known
     std::vector<double> measured_mm;  ///< by CHECK, each time that its light was seen
+    bool looked_at = false;           ///< CHECK told at least once whether the light reached it
 };
 
 struct OperationMatch {
     double at_s = 0;
     std::string utc, verdict;  ///< "yes", "ask", "no"
     std::vector<std::string> reasons;
-    double residual_rms_mm = 0;
+    std::optional<double> residual_rms_mm;
     std::size_t points = 0;
 };
 
@@ -34,6 +35,7 @@ struct OperationMatch {
 struct OperationEvent {
     double at_s = 0;
     std::string utc, what;
+    bool grave = false;  ///< the light was stopped, or the skin does not lie where it should: told before all others
 };
 
 /// A moment with its pictures.
@@ -51,7 +53,8 @@ struct OperationFacts {
     bool room_entered = false, simulated = false;
     std::string room, rig_hash, rig_made_on;
     std::vector<std::string> serials;
-    double lasted_s = 0, lit_s = 0, aligned_s = 0, look_s = 0;
+    double lasted_s = 0;
+    double lit_s = 0, aligned_s = 0, look_s = 0;  ///< light of the plan; that of a single landmark does not count
     std::vector<OperationMatch> matches;
     std::vector<OperationEvent> said;      ///< confirmations, checks of the skin, DARK, stops: in order
     std::vector<OperationEvent> refusals;  ///< of a scan, a match, a check; devices that failed
@@ -65,11 +68,13 @@ struct OperationFacts {
         double off_mm = -1;
     };
     std::vector<Sample> course;
-    std::vector<double> light_off_mm;  ///< of all of the light (95 % of it lies within), each measurement
+    std::optional<double> skin_off_mm;  ///< of the checks of the skin the worst; empty: none gave an answer
+    std::vector<double> light_off_mm;   ///< of all of the light (95 % of it lies within), each measurement
     std::optional<OperationMoment> moment;
     int updates = 0, verified = 0, stops = 0;
-    std::uint64_t chunks = 0, bytes = 0, lost_chunks = 0, kept_frames = 0;
-    std::string ended;  ///< how the recording ends, in words; empty: it is whole
+    std::uint64_t chunks = 0, bytes = 0, kept_frames = 0;
+    std::uint64_t lost_chunks = 0;  ///< that the disk did not take, by LOST and by the recording's last word
+    std::string ended;              ///< how the recording ends, in words; empty: it is whole
     bool damaged = false;
 };
 
@@ -89,6 +94,9 @@ struct OperationVerdict {
     std::vector<std::string> reasons;
 };
 OperationVerdict verdict_of(const OperationFacts& facts);
+
+/// Those that were off first, by how far, then those that were shown and never seen; the rest as in the plan.
+std::vector<const OperationItem*> worst_first(const std::vector<OperationItem>& items);
 
 /// All figures of the page, and those for which it has no room.
 std::string operation_json(const OperationFacts& facts);

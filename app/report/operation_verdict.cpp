@@ -40,16 +40,20 @@ std::string names_of(const std::vector<std::string>& names) {
                        names.size() > kMost ? fmt::format(" and {} more", names.size() - kMost) : "");
 }
 
+}  // namespace
+
 std::vector<const OperationItem*> worst_first(const std::vector<OperationItem>& items) {
-    std::vector<std::pair<double, const OperationItem*>> by_p95;
-    for (const OperationItem& item : items) by_p95.emplace_back(distribution_of(item.measured_mm).p95, &item);
-    std::stable_sort(by_p95.begin(), by_p95.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    std::vector<std::pair<double, const OperationItem*>> by_rank;
+    for (const OperationItem& item : items) {
+        const Distribution d = distribution_of(item.measured_mm);
+        const bool unseen = d.count == 0 && !item.shown.empty();
+        by_rank.emplace_back(unseen ? kLook_mm : d.p95 > kLook_mm ? d.p95 : 0, &item);
+    }
+    std::stable_sort(by_rank.begin(), by_rank.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<const OperationItem*> sorted;
-    for (const auto& [p95, item] : by_p95) sorted.push_back(item);
+    for (const auto& [rank, item] : by_rank) sorted.push_back(item);
     return sorted;
 }
-
-}  // namespace
 
 std::string duration_text(double s) {
     if (s < 60) return fmt::format("{:.1f} s", s);
@@ -67,7 +71,7 @@ OperationVerdict verdict_of(const OperationFacts& facts) {
         verdict.reasons.push_back(reason);
     };
     if (facts.simulated) verdict.reasons.push_back("A simulated room: no patient was there.");
-    std::vector<std::string> off, unseen, not_shown;
+    std::vector<std::string> off, unseen, not_shown, not_known;
     for (const OperationItem* item : worst_first(facts.items)) {
         const Distribution d = distribution_of(item->measured_mm);
         if (d.count > 0 && d.p95 > kLook_mm) {
@@ -75,7 +79,7 @@ OperationVerdict verdict_of(const OperationFacts& facts) {
             off.push_back(fmt::format("{} ({:.1f} mm)", item->name, d.p95));
         }
         if (item->shown.empty())
-            not_shown.push_back(item->name);
+            (item->looked_at || facts.lit_s <= 0 ? not_shown : not_known).push_back(item->name);
         else if (d.count == 0)
             unseen.push_back(item->name);
     }
@@ -84,6 +88,13 @@ OperationVerdict verdict_of(const OperationFacts& facts) {
                                       kLook_mm, names_of(off)));
     if (!unseen.empty()) lower(Kind::look, fmt::format("Shown, and never seen by the cameras: {}.", names_of(unseen)));
     if (!not_shown.empty()) lower(Kind::look, fmt::format("Not shown: {}.", names_of(not_shown)));
+    if (!not_known.empty())
+        lower(Kind::look,
+              fmt::format("Whether the light reached it is not known, for no camera looked: {}.", names_of(not_known)));
+    if (facts.skin_off_mm && *facts.skin_off_mm > kLook_mm)
+        lower(*facts.skin_off_mm > kStop_mm ? Kind::stop : Kind::look,
+              fmt::format("A check of the skin found the plan {:.1f} mm beside where the markers put it.",
+                          *facts.skin_off_mm));
     if (facts.stops > 0)
         lower(Kind::look, fmt::format("The light was stopped by the system {}.",
                                       facts.stops == 1 ? "once" : fmt::format("{} times", facts.stops)));
@@ -99,7 +110,7 @@ OperationVerdict verdict_of(const OperationFacts& facts) {
         lower(Kind::look,
               fmt::format("{} pieces are missing in the recording: the disk was too slow or full.", facts.lost_chunks));
     if (facts.updates == 0 || facts.lit_s <= 0) {
-        verdict.kind = Kind::look;
+        verdict.kind = std::max(verdict.kind, Kind::look);
         verdict.sentence = "No light of the plan was shown.";
     } else {
         const Distribution d = distribution_of(facts.light_off_mm);
@@ -147,6 +158,7 @@ std::string operation_json(const OperationFacts& facts) {
                  {"updates", facts.updates},
                  {"verified", facts.verified},
                  {"stops", facts.stops},
+                 {"skin_off_mm", facts.skin_off_mm ? Json(*facts.skin_off_mm) : Json()},
                  {"light_off_mm", json_of(distribution_of(facts.light_off_mm))}};
     json["items"] = Json::array();
     for (const OperationItem& item : facts.items) {
@@ -154,7 +166,7 @@ std::string operation_json(const OperationFacts& facts) {
         for (const auto& [from, to] : item.shown) shown.push_back({from, to});
         json["items"].push_back({{"name", item.name},
                                  {"shown_s", item.shown_s},
-                                 {"shown", shown},
+                                 {"shown", item.looked_at || facts.lit_s <= 0 ? shown : Json()},
                                  {"predicted_mm", item.predicted_mm ? Json(*item.predicted_mm) : Json()},
                                  {"measured_mm", json_of(distribution_of(item.measured_mm))}});
     }
@@ -164,7 +176,7 @@ std::string operation_json(const OperationFacts& facts) {
                                    {"utc", match.utc},
                                    {"verdict", match.verdict},
                                    {"reasons", match.reasons},
-                                   {"residual_rms_mm", match.residual_rms_mm},
+                                   {"residual_rms_mm", match.residual_rms_mm ? Json(*match.residual_rms_mm) : Json()},
                                    {"points", match.points}});
     json["dark"] = Json::array();
     for (const auto& [reason, how] : facts.dark)

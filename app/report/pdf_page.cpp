@@ -39,6 +39,14 @@ std::vector<std::string> words_of(const std::string& text) {
     return words;
 }
 
+/// 1, 2 or 5 times a power of ten, for some eight ticks.
+double round_step(double range) {
+    const double raw = range / 8, power = std::pow(10, std::floor(std::log10(raw)));
+    for (const double factor : {1.0, 2.0, 5.0})
+        if (raw <= factor * power * 1.001) return factor * power;
+    return 10 * power;
+}
+
 }  // namespace
 
 struct PdfPages::Parts {
@@ -147,9 +155,9 @@ struct PdfPages::Parts {
 PdfPages::PdfPages(const std::string& title, const std::string& foot) : parts_(std::make_unique<Parts>(title, foot)) {}
 PdfPages::~PdfPages() = default;
 
-void PdfPages::heading(const std::string& text) {
+void PdfPages::heading(const std::string& text, double with) {
     Parts& p = *parts_;
-    p.need(kHeading * 3);
+    p.need(kHeading * 3 + static_cast<float>(with));
     p.y -= 7;
     p.text(p.bold, kHeading, Parts::kInk, kLeft, text, kRight - kLeft);
     p.y -= 2;
@@ -243,9 +251,8 @@ void PdfPages::chart(const Chart& chart) {
         HPDF_Page_Fill(p.page);
     }
     p.rule(left, kRight, bottom, Parts::kQuiet);
-    constexpr int kTicks = 8;
-    for (int i = 0; i <= kTicks; ++i) {
-        const double x = chart.from_x + (chart.to_x - chart.from_x) * i / kTicks;
+    const double step = round_step(chart.to_x - chart.from_x);
+    for (double x = std::ceil(chart.from_x / step) * step; x <= chart.to_x + 1e-9; x += step) {
         const std::string words = fmt::format("{:.3g}", x);
         p.y = bottom - 10;
         p.line_of(p.regular, kSmall, Parts::kQuiet, at_x(x) - p.width(p.regular, kSmall, words) / 2, words);

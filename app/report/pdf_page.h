@@ -17,7 +17,8 @@ public:
     PdfPages(const std::string& title, const std::string& foot);
     ~PdfPages();
 
-    void heading(const std::string& text);
+    /// On the same sheet as what follows, which is so high at least.
+    void heading(const std::string& text, double with = 0);
     void paragraph(const std::string& text);
     /// `shares`: of the width, one a column. The first row is the heading's.
     void table(const std::vector<std::vector<std::string>>& rows, const std::vector<double>& shares);

@@ -8,11 +8,11 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "app/live/scene_of_session.h"
 #include "app/recording/recording_head.h"
 #include "app/report/html_page.h"
 #include "app/report/operation_report.h"
 #include "app/report/svg_chart.h"
+#include "app/windows/camera_picture.h"
 #include "planning_io/recording/packed_pictures.h"
 #include "planning_io/recording/recording_reader.h"
 #include "planning_io/types/error.h"
@@ -270,8 +270,8 @@ std::string review_page(const RecordingTimeLine& line,
                             html_escaped(file), html_escaped(caption));
     body += "<h2>What happened</h2><table><tr><th>s</th><th></th></tr>";
     for (std::size_t i = 0; i < std::min(kMostEvents, line.events.size()); ++i)
-        body +=
-            fmt::format("<tr><td>{:.2f}</td><td>{}</td></tr>", line.events[i].at_s, html_escaped(line.events[i].what));
+        body += fmt::format("<tr><td>{:.2f}</td><td style=\"text-align:left\">{}</td></tr>", line.events[i].at_s,
+                            html_escaped(line.events[i].what));
     body += "</table>";
     if (line.events.size() > kMostEvents)
         body += fmt::format("<p>And {} more, in review.json.</p>", line.events.size() - kMostEvents);

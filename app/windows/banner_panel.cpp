@@ -2,6 +2,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include "app/windows/number_text.h"
 #include "app/windows/panels.h"
@@ -75,25 +77,63 @@ void draw_shape(const Pen& pen, StatusKind kind, ImVec2 middle, float radius, co
     }
 }
 
-std::array<std::pair<const char*, std::string>, 4> figures_of(const Figures& f) {
-    const bool moved = f.head_moved_mm || f.head_turned_deg;
-    return {{{"Overlay error now", number_text(f.overlay_error_mm, "mm")},
-             {"Updates", number_text(f.updates_per_s, "/ s")},
-             {"Head moved since scan",
-              moved ? number_text(f.head_moved_mm, "mm") + " · " + number_text(f.head_turned_deg, "°") : "–"},
-             {"Delay to light, predicted", number_text(f.delay_to_light_ms, "ms")}}};
+/// Value and the words that make a sentence of it; only what is known.
+std::vector<std::pair<std::string, const char*>> figures_of(const Figures& f) {
+    std::vector<std::pair<std::string, const char*>> said;
+    const auto add = [&](const std::optional<double>& value, const std::string& text, const char* words) {
+        if (value && std::isfinite(*value)) said.emplace_back(text, words);
+    };
+    add(f.overlay_error_mm, number_text(f.overlay_error_mm, "mm"), "is the light beside the plan");
+    add(f.updates_per_s, number_text(f.updates_per_s, "/ s"), "pictures reach the skin");
+    add(f.head_moved_mm, number_text(f.head_moved_mm, "mm") + " · " + number_text(f.head_turned_deg, "°"),
+        "has the head moved since the scan");
+    add(f.delay_to_light_ms, number_text(f.delay_to_light_ms, "ms"), "from camera to light, drawn ahead");
+    return said;
 }
 
-void draw_figures(const Pen& pen, const Box& box, const Figures& figures, const Look& look) {
+/// Returns the width that was used; 0: there is nothing to show.
+float draw_figures(const Pen& pen, const Box& box, const Figures& figures, const Look& look) {
     const auto rows = figures_of(figures);
-    const float step = box.height / static_cast<float>(rows.size());
-    float widest = 150 * pen.scale;
-    for (const auto& [label, value] : rows) widest = std::max(widest, text_width(pen.fonts.number, value));
+    if (rows.empty()) return 0;
+    const float gap = 12 * pen.scale, step = box.height / 4;
+    float values = 0, words = 0;
+    for (const auto& [value, sentence] : rows) {
+        values = std::max(values, text_width(pen.fonts.number, value));
+        words = std::max(words, text_width(pen.fonts.body, sentence));
+    }
+    words = std::min(words, box.width - values - gap);
+    const float top = box.y + (box.height - step * static_cast<float>(rows.size())) / 2;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        const float y = box.y + step * (static_cast<float>(i) + 0.5F);
-        pen.line(pen.fonts.number, rows[i].second, box.right() - widest, y, widest + 1, IM_COL32_WHITE);
-        pen.line(pen.fonts.body, rows[i].first, box.x, y, box.width - widest - 16 * pen.scale, look.text,
-                 Pen::Side::right);
+        const float y = top + step * (static_cast<float>(i) + 0.5F), x = box.right() - words;
+        pen.line(pen.fonts.number, rows[i].first, x - gap - values, y, values + 1, IM_COL32_WHITE, Pen::Side::right);
+        pen.line(pen.fonts.body, rows[i].second, x, y, words + 1, look.text);
+    }
+    return values + gap + words;
+}
+
+void draw_bar(const Pen& pen, const Box& banner, double share, const Look& look) {
+    const float pad = 18 * pen.scale, height = 12 * pen.scale, y = banner.bottom() - pad / 2 - height;
+    const float width = banner.width - 2 * pad;
+    pen.list->AddRectFilled({banner.x + pad, y}, {banner.x + pad + width, y + height}, theme::kBackground, height / 2);
+    const float done = width * static_cast<float>(std::clamp(share, 0.0, 1.0));
+    pen.list->AddRectFilled({banner.x + pad, y}, {banner.x + pad + std::max(done, height), y + height}, look.shape,
+                            height / 2);
+}
+
+/// In the middle of the box where there is room to spare, else from its top.
+void draw_sentences(const Pen& pen, Box rest, const Status& status, const Look& look) {
+    const float bottom = rest.bottom() + 9 * pen.scale;
+    const auto lines = [&](const ImFont* font, const std::string& t) {
+        return line_height(font) * static_cast<float>(broken(font, t, rest.width, 9).size());
+    };
+    float all = lines(pen.fonts.strong, status.headline);
+    for (const std::string& detail : status.details) all += lines(pen.fonts.body, detail);
+    if (all < rest.height) rest.y += (rest.height - all) / 2;
+    rest.height = bottom - rest.y;
+    rest.y += pen.paragraph(pen.fonts.strong, status.headline, rest, IM_COL32_WHITE);
+    for (const std::string& detail : status.details) {
+        rest.height = bottom - rest.y;
+        rest.y += pen.paragraph(pen.fonts.body, detail, rest, look.text);
     }
 }
 
@@ -103,7 +143,7 @@ const char* status_word(StatusKind kind) {
     return look_of(kind).word;
 }
 
-void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model) {
+void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model, const std::string& notice) {
     const Look& look = look_of(model.status.kind);
     const float s = pen.scale, pad = 18 * s;
     pen.panel(box, look.fill, look.edge, 3);
@@ -114,26 +154,24 @@ void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model) {
     const float word_x = middle.x + 1.15F * radius + 1.2F * pad, word = text_width(pen.fonts.word, look.word);
     pen.line(pen.fonts.word, look.word, word_x, middle_y, 0, look.text);
 
-    const float figures_width = 570 * s;
+    const float figures_width = 600 * s;
     const Box figures{box.right() - 1.6F * pad - figures_width, box.y + 0.6F * pad, figures_width,
                       box.height - 1.2F * pad};
-    draw_figures(pen, figures, model.figures, look);
+    const float used = draw_figures(pen, figures, model.figures, look);
+    if (model.status.share) draw_bar(pen, box, *model.status.share, look);
 
-    const float text_x = word_x + word + 2 * pad;
-    Box rest{text_x, box.y + pad, figures.x - pad - text_x, box.height - 2 * pad};
-    const auto lines = [&](const ImFont* font, const std::string& t) {
-        return line_height(font) * static_cast<float>(broken(font, t, rest.width, 9).size());
-    };
-    float all = lines(pen.fonts.strong, model.status.headline);
-    for (const std::string& detail : model.status.details) all += lines(pen.fonts.body, detail);
-    if (all < rest.height) rest.y += (rest.height - all) / 2;
-    const float bottom = box.bottom() - pad / 2;
-    rest.height = bottom - rest.y;
-    rest.y += pen.paragraph(pen.fonts.strong, model.status.headline, rest, IM_COL32_WHITE);
-    for (const std::string& detail : model.status.details) {
-        rest.height = bottom - rest.y;
-        rest.y += pen.paragraph(pen.fonts.body, detail, rest, look.text);
+    const float text_x = word_x + word + 2 * pad, right = box.right() - 1.6F * pad - (used > 0 ? used + pad : 0);
+    Box rest{text_x, box.y + pad, right - text_x, box.height - 2 * pad};
+    if (!notice.empty()) {
+        const float height = line_height(pen.fonts.strong);
+        pen.panel({rest.x - pad / 2, rest.y - pad / 2, rest.width + pad / 2, height + pad / 2},
+                  IM_COL32(62, 46, 8, 255), theme::kAmber, 2);
+        pen.line(pen.fonts.strong, notice, rest.x, rest.y + height / 2 - pad / 4, rest.width - pad / 2,
+                 IM_COL32(255, 240, 205, 255));
+        rest.y += height + pad / 2;
+        rest.height -= height + pad / 2;
     }
+    draw_sentences(pen, rest, model.status, look);
 }
 
 }  // namespace planlight

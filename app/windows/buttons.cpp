@@ -5,17 +5,25 @@
 namespace planlight {
 namespace {
 
-void draw_button(const Pen& pen, const Box& box, const std::string& label, const ButtonState& state, bool hovered,
-                 bool held) {
+void draw_button(const Pen& pen, const Box& box, const std::string& label, const ButtonState& state,
+                 const ButtonLook& look, bool hovered, bool held) {
+    const bool blue = held || look.chosen || look.leads_on;
     const ImU32 fill = !state.enabled ? IM_COL32(22, 25, 32, 255)
-                       : held         ? theme::kActive
                        : hovered      ? theme::kHovered
+                       : blue         ? theme::kActive
                                       : theme::kControl;
-    pen.panel(box, fill, state.enabled ? IM_COL32(96, 112, 140, 255) : theme::kEdge, state.enabled ? 2 : 1);
+    const ImU32 edge = !state.enabled  ? theme::kEdge
+                       : look.leads_on ? IM_COL32(130, 190, 255, 255)
+                                       : IM_COL32(96, 112, 140, 255);
+    pen.panel(box, fill, edge, !state.enabled ? 1 : look.leads_on ? 4 : 2);
     const float pad = 8 * pen.scale;
     if (state.enabled) {
-        pen.line(pen.fonts.title, label, box.x + pad, box.y + box.height / 2, box.width - 2 * pad, theme::kText,
+        const bool fits = text_width(pen.fonts.title, label) <= box.width - 2 * pad;
+        pen.line(fits ? pen.fonts.title : pen.fonts.strong, label, box.x + pad,
+                 box.y + (look.key.empty() ? 0.5F : 0.40F) * box.height, box.width - 2 * pad, theme::kText,
                  Pen::Side::centre);
+        pen.line(pen.fonts.small, look.key, box.x + pad, box.y + 0.77F * box.height, box.width - 2 * pad,
+                 look.leads_on ? theme::kText : theme::kQuiet, Pen::Side::centre);
         return;
     }
     const float height = line_height(pen.fonts.small);
@@ -31,14 +39,15 @@ void draw_button(const Pen& pen, const Box& box, const std::string& label, const
 
 }  // namespace
 
-bool button(const Pen& pen, const Box& box, const std::string& label, const ButtonState& state, bool chosen) {
+bool button(const Pen& pen, const Box& box, const std::string& label, const ButtonState& state,
+            const ButtonLook& look) {
     ImGui::SetCursorScreenPos({box.x, box.y});
     const bool pressed = ImGui::InvisibleButton(label.c_str(), {box.width, box.height});
-    draw_button(pen, box, label, state, ImGui::IsItemHovered(), chosen || ImGui::IsItemActive());
+    draw_button(pen, box, label, state, look, ImGui::IsItemHovered(), ImGui::IsItemActive());
     return pressed && state.enabled;
 }
 
-void draw_dark_button(const Pen& pen, const Box& box, bool hovered, bool held) {
+void draw_dark_button(const Pen& pen, const Box& box, bool hovered, bool held, const std::string& keys) {
     pen.panel(box,
               held      ? IM_COL32(150, 156, 168, 255)
               : hovered ? IM_COL32_WHITE
@@ -46,8 +55,8 @@ void draw_dark_button(const Pen& pen, const Box& box, bool hovered, bool held) {
               IM_COL32_WHITE, 2);
     const float top = box.y + 0.38F * box.height;
     pen.line(pen.fonts.number, "DARK", box.x, top, box.width, IM_COL32(12, 14, 18, 255), Pen::Side::centre);
-    pen.line(pen.fonts.small, "Space · B · Esc", box.x, box.y + 0.78F * box.height, box.width,
-             IM_COL32(52, 58, 70, 255), Pen::Side::centre);
+    pen.line(pen.fonts.small, keys, box.x, box.y + 0.78F * box.height, box.width, IM_COL32(52, 58, 70, 255),
+             Pen::Side::centre);
 }
 
 }  // namespace planlight

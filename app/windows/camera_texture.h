@@ -1,25 +1,29 @@
 #pragma once
 
+#include <imgui.h>
+
 #include <memory>
 
 #include "planning_io/types/image.h"
 
 namespace planlight {
 
-/// A grey picture on the graphics card; uploaded again only when it is another one.
+/// A camera's picture as an OpenGL texture, made anew only for another picture: as small as it is shown, and as bright
+/// as a person wants to see it (what is brighter than all but the brightest half per cent becomes white). The context
+/// must be current.
 class CameraTexture {
 public:
-    CameraTexture() = default;
-    CameraTexture(const CameraTexture&) = delete;
-    CameraTexture& operator=(const CameraTexture&) = delete;
-    /// Gives the texture back; needs the window's context, so before the window ends.
+    /// For a place `pixels` wide; 0 when there is no picture.
+    unsigned take(const std::shared_ptr<const GrayImage>& picture, int pixels);
     void release();
-    /// The texture's GL name for this picture; 0 when there is none. Needs the window's context.
-    unsigned take(const std::shared_ptr<const GrayImage>& picture);
 
 private:
     std::shared_ptr<const GrayImage> shown_;
     unsigned texture_ = 0;
+    int pixels_ = 0;
 };
+
+/// As Dear ImGui takes textures.
+ImTextureID texture_id(unsigned texture);
 
 }  // namespace planlight

@@ -31,7 +31,7 @@ struct GuideModel {
     Cells projector;
 
     Mood mood = Mood::wrong;
-    std::string word;       ///< "MOVE IT", in capital letters without accents
+    std::string word;       ///< "TILT IT", in capital letters without accents
     std::string why, what;  ///< sentences
     double share = 0;       ///< 0 to 1, of holding still or of capturing; 0: no bar
 
@@ -39,7 +39,7 @@ struct GuideModel {
     std::vector<Eigen::Vector2d> tilts;
     std::optional<Eigen::Vector2d> tilt_now;
     std::array<int, 4> by_edge{};  ///< poses with that edge nearer: left, right, upper, lower
-    double least_tilt = 0.2;       ///< radians: from where on it counts
+    double useful_tilt = 0;        ///< radians: from where on it counts
     std::vector<double> distances_mm;
     std::optional<double> distance_now_mm;
 

@@ -108,7 +108,7 @@ void draw_guide_tilts(const Pen& pen, const Box& box, const GuideModel& model) {
         pen.list->PathFillConvex(model.by_edge[i] > 0 ? IM_COL32(20, 62, 44, 255) : IM_COL32(58, 44, 14, 255));
     }
     pen.list->AddCircle(middle, radius, theme::kEdge, 48, 2);
-    pen.list->AddCircleFilled(middle, radius * static_cast<float>(model.least_tilt / kRim), theme::kPanel, 48);
+    pen.list->AddCircleFilled(middle, radius * static_cast<float>(model.useful_tilt / kRim), theme::kPanel, 48);
     const char* words[4] = {"left", "right", "upper", "lower"};
     const ImVec2 places[4] = {{box.x + 6 * s, middle.y},
                               {middle.x + radius + 6 * s, middle.y},

@@ -1,22 +1,24 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
+#include "app/windows/window_settings.h"
 #include "app/windows/guide_model.h"
-#include "app/windows/operator_window.h"
 
 namespace planlight {
 
 /// The window of a guided calibration. All members are called from the main thread.
 class GuideWindow {
 public:
-    /// Throws DeviceError as `OperatorWindow` does.
-    explicit GuideWindow(const OperatorWindowSettings& settings = {});
+    /// Throws DeviceError when there is no display, no such monitor, no OpenGL 3.3, or no font.
+    explicit GuideWindow(const WindowSettings& settings = {});
     ~GuideWindow();
 
     /// Draws the model and says what the person wants: Enter keeps, Delete discards, Escape or closing it is `quit`.
     GuideAction frame(const GuideModel& model);
+
+    /// Waits until the person does something, `longest_s` at most.
+    void rest(double longest_s);
 
     /// What the last frame showed.
     RgbImage screenshot();

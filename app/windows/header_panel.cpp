@@ -9,6 +9,8 @@ namespace {
 
 constexpr std::array<const char*, 6> kSteps{"Case", "Rig", "Scan", "Match", "Verify", "Project"};
 
+const std::string kSimulated = "SIMULATED ROOM";
+
 void draw_step(const Pen& pen, const Box& chip, std::size_t index, StepState state) {
     const bool active = state == StepState::active;
     pen.panel(chip, active ? theme::kActive : theme::kPanel, active ? theme::kBlue : theme::kEdge, active ? 2 : 1);
@@ -33,18 +35,36 @@ void draw_step(const Pen& pen, const Box& chip, std::size_t index, StepState sta
              waiting ? theme::kQuiet : theme::kText);
 }
 
+/// The side in large letters at the right end of the box; returns the width that it takes.
+float draw_side(const Pen& pen, const Box& box, const std::string& side) {
+    if (side.empty()) return 0;
+    const std::string caption = "side of the plan";
+    const float pad = 12 * pen.scale;
+    const float width = std::max(text_width(pen.fonts.number, side), text_width(pen.fonts.small, caption)) + 2 * pad;
+    const Box badge{box.right() - width, box.y + 0.08F * box.height, width, 0.84F * box.height};
+    pen.panel(badge, IM_COL32(222, 226, 234, 255), IM_COL32_WHITE, 2);
+    pen.line(pen.fonts.number, side, badge.x, badge.y + 0.42F * badge.height, badge.width, IM_COL32(12, 14, 18, 255),
+             Pen::Side::centre);
+    pen.line(pen.fonts.small, caption, badge.x + 2, badge.y + 0.82F * badge.height, badge.width - 4,
+             IM_COL32(52, 58, 70, 255), Pen::Side::centre);
+    return width + pad;
+}
+
 }  // namespace
 
 void draw_header(const Pen& pen, const WindowLayout& place, const OperatorModel& model) {
-    const Box& title = place.title;
-    const bool two_lines = broken(pen.fonts.small, model.case_subtitle, title.width, 2).size() > 1;
-    const float title_height = line_height(pen.fonts.title);
-    const float first =
-        two_lines ? title.y + title_height / 2 - 2 * pen.scale : title.y + (title.height - title_height) / 2;
-    pen.line(pen.fonts.title, model.case_title, title.x, first, title.width, theme::kText);
-    const float top = first + title_height / 2;
-    pen.paragraph(pen.fonts.small, model.case_subtitle,
-                  {title.x, top, title.width, title.bottom() + 4 * pen.scale - top}, theme::kQuiet);
+    Box title = place.title;
+    title.width -= draw_side(pen, title, model.case_side);
+    const float large = line_height(pen.fonts.title), small = line_height(pen.fonts.small);
+    const std::string& last = model.simulated ? kSimulated : model.case_subtitle;
+    const float plan = model.case_plan.empty() ? 0 : small, rest = last.empty() ? 0 : small;
+    float y = title.y + std::max(0.0F, (title.height - large - plan - rest) / 2);
+    pen.line(pen.fonts.title, model.case_title, title.x, y + large / 2, title.width, theme::kText);
+    y += large;
+    pen.line(pen.fonts.small, model.case_plan, title.x, y + plan / 2, title.width, theme::kText);
+    y += plan;
+    pen.line(model.simulated ? pen.fonts.strong : pen.fonts.small, last, title.x, y + rest / 2, title.width,
+             model.simulated ? theme::kAmber : theme::kQuiet);
 
     const Box& steps = place.steps;
     const float gap = 8 * pen.scale, chip_height = std::min(steps.height, std::round(60 * pen.scale));

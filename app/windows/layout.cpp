@@ -15,7 +15,7 @@ WindowLayout layout_of(int width, int height) {
     const float top = button + 2 * std::round(10 * s);
 
     place.dark = {w - gap - 250 * s, std::round(10 * s), 250 * s, button};
-    place.title = {gap + 8 * s, std::round(10 * s), std::round(0.27F * w), button};
+    place.title = {gap + 8 * s, std::round(10 * s), std::round(0.34F * w), button};
     place.steps = {place.title.right() + gap, std::round(10 * s), place.dark.x - place.title.right() - 2 * gap, button};
     place.banner = {gap, h - gap - banner, w - 2 * gap, banner};
 

@@ -16,7 +16,7 @@ struct WindowLayout {
     Box title, steps, dark, scene, left_camera, right_camera, table, buttons, banner;
 };
 
-/// For a window of that size, at least 1280 x 800. Buttons are never lower than 72 pixels (20 mm on a 24 inch screen).
+/// For a window of that size, at least 1280 x 720. Buttons are never lower than 72 pixels (20 mm on a 24 inch screen).
 WindowLayout layout_of(int width, int height);
 
 }  // namespace planlight

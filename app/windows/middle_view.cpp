@@ -1,7 +1,10 @@
 #include "app/windows/middle_view.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <tuple>
 #include <utility>
 
@@ -37,13 +40,45 @@ OperatorAction MiddleView::draw(const Pen& pen, const Box& place, const Operator
     if (!model.fit) fit_view = FitView::after;
     if (landmarks_ && model.landmarks) landmarks_->follow(*model.landmarks);
     landmarks_open_ = landmarks_open_ && model.landmarks;
+    if (evidence_open_) {
+        evidence_open_ = !evidence_.draw(pen, place, model);
+        places_["close"] = evidence_.close_button();
+        return OperatorAction::none;
+    }
     if (landmarks_open_) return draw_landmarks(pen, place, model);
     draw_scene(pen, place, model);
     if (model.fit) draw_fit_buttons(pen, fit_row(pen, place));
     return draw_corner_buttons(pen, corner_of(pen, place), model);
 }
 
+OperatorAction MiddleView::press(KeyMeaning key, const OperatorModel& model) {
+    why_not_.clear();
+    const auto look_at = [&](FitView view) {
+        if (model.fit)
+            fit_view = view;
+        else
+            why_not_ = "There is no match to look at yet.";
+    };
+    if (key == KeyMeaning::before) look_at(FitView::before);
+    if (key == KeyMeaning::after) look_at(FitView::after);
+    if (key == KeyMeaning::error) look_at(FitView::predicted_error);
+    if (key == KeyMeaning::evidence) evidence_open_ = !evidence_open_;
+    if (key == KeyMeaning::landmarks) {
+        if (model.landmarks)
+            open_landmarks();
+        else
+            why_not_ = "Landmarks are clicked on a scan, and there is none.";
+    }
+    // Only what is seen is pressed: not under another page.
+    if (key == KeyMeaning::confirm && model.confirm && places_.contains("confirm")) return OperatorAction::confirm;
+    if (key == KeyMeaning::confirm) why_not_ = "There is nothing to say yes to now.";
+    if (key == KeyMeaning::check_skin && model.check_skin) return OperatorAction::check_skin;
+    if (key == KeyMeaning::check_skin) why_not_ = "The skin is checked while the light follows the patient.";
+    return OperatorAction::none;
+}
+
 LandmarkPanel& MiddleView::open_landmarks() {
+    evidence_open_ = false;
     landmarks_open_ = true;
     if (!landmarks_) {
         landmarks_ = std::make_unique<LandmarkPanel>(fonts_, make_current_);
@@ -65,7 +100,7 @@ void MiddleView::draw_scene(const Pen& pen, const Box& place, const OperatorMode
     const float strip = button_height(pen) + 24 * pen.scale;  // of buttons, which a finger must meet at once
     const float above = model.fit ? strip : 0;
     const float below =
-        (model.landmarks ? strip : 0) + (model.fit && model.confirm ? strip : 0) + (model.check_skin ? strip : 0);
+        (model.landmarks ? strip : 0) + (model.confirm ? strip : 0) + (model.check_skin ? strip : 0);
     scene_.take_mouse("scene", {place.x, place.y + above, place.width, place.height - above - below});
     scene_.draw(pen, place, shown);
     draw_title(pen, place, model, shown);
@@ -74,28 +109,36 @@ void MiddleView::draw_scene(const Pen& pen, const Box& place, const OperatorMode
 void MiddleView::draw_title(const Pen& pen, const Box& place, const OperatorModel& model,
                             const SceneModel& shown) const {
     std::string title = "Skin from CT";
-    if (shown.skin_error_mm) title += " coloured by how far off the match may be";
-    if (shown.cloud) title += shown.cloud_distance_mm ? " · scan coloured by distance" : " · scan";
-    if (model.fit && fit_view == FitView::before) title += " before the fine match";
-    if (shown.plan) title += " · plan";
-    if (shown.light) title += " · light as it falls (white)";
+    if (shown.plan) title += ", with the plan";
+    title += ".";
+    if (model.fit && fit_view == FitView::before)
+        title += " BEFORE: the scan where the first, rough match put it, coloured by its distance.";
+    else if (shown.cloud && shown.cloud_distance_mm)
+        title += " AFTER: the scan where the fine match put it; green lies on the skin.";
+    else if (shown.cloud)
+        title += " The scan.";
+    if (shown.cloud_distance_mm && std::abs(shown.skin_offset_mm) >= 0.05)
+        title += fmt::format(" The skin lies {:.1f} mm {} that of the CT; distances are counted from there.",
+                             std::abs(shown.skin_offset_mm), shown.skin_offset_mm < 0 ? "inside of" : "outside of");
+    if (shown.skin_error_mm) title += " ERROR: how far off the light may be at each place.";
+    if (shown.light) title += " White: the light as it falls.";
     const float indent = 18 * pen.scale;
     pen.paragraph(
         pen.fonts.small, title,
-        {place.x + indent, place.y + 14 * pen.scale, 0.44F * place.width - indent, 2.2F * line_height(pen.fonts.small)},
+        {place.x + indent, place.y + 14 * pen.scale, 0.44F * place.width - indent, 4.2F * line_height(pen.fonts.small)},
         theme::kText);
 }
 
 void MiddleView::draw_fit_buttons(const Pen& pen, const Box& row) {
-    const std::array<std::tuple<FitView, const char*, const char*>, 3> views{
-        {{FitView::before, "Before", "before"},
-         {FitView::after, "After", "after"},
-         {FitView::predicted_error, "Error", "error"}}};
+    const std::array<std::tuple<FitView, const char*, const char*, KeyMeaning>, 3> views{
+        {{FitView::before, "Before", "before", KeyMeaning::before},
+         {FitView::after, "After", "after", KeyMeaning::after},
+         {FitView::predicted_error, "Error", "error", KeyMeaning::error}}};
     const float gap = 8 * pen.scale;
     Box box{row.x, row.y, (row.width - 2 * gap) / 3, row.height};
-    for (const auto& [view, label, word] : views) {
+    for (const auto& [view, label, word, key] : views) {
         places_[word] = box;
-        if (button(pen, box, label, {true, {}}, fit_view == view)) fit_view = view;
+        if (button(pen, box, label, {true, {}}, {fit_view == view, false, key_text(key)})) fit_view = view;
         box.x += box.width + gap;
     }
 }
@@ -103,18 +146,22 @@ void MiddleView::draw_fit_buttons(const Pen& pen, const Box& row) {
 OperatorAction MiddleView::draw_corner_buttons(const Pen& pen, Box corner, const OperatorModel& model) {
     if (model.landmarks) {
         places_["landmarks"] = corner;
-        if (button(pen, corner, "Landmarks", {true, {}})) open_landmarks();
+        if (button(pen, corner, "Landmarks", {true, {}}, {false, false, key_text(KeyMeaning::landmarks)}))
+            open_landmarks();
         corner.y -= corner.height + 12 * pen.scale;
     }
     OperatorAction wanted = OperatorAction::none;
     if (model.check_skin) {
         places_["check-skin"] = corner;
-        if (button(pen, corner, "Check skin", {true, {}})) wanted = OperatorAction::check_skin;
+        if (button(pen, corner, "Check skin", {true, {}}, {false, false, key_text(KeyMeaning::check_skin)}))
+            wanted = OperatorAction::check_skin;
         corner.y -= corner.height + 12 * pen.scale;
     }
-    if (!model.fit || !model.confirm) return wanted;
+    if (!model.confirm) return wanted;
     places_["confirm"] = corner;
-    return button(pen, corner, model.confirm_words, {true, {}}) ? OperatorAction::confirm : wanted;
+    const bool leads_on = model.next == OperatorAction::confirm;
+    const ButtonLook look{false, leads_on, key_text(KeyMeaning::confirm) + (leads_on ? " · Enter" : "")};
+    return button(pen, corner, model.confirm_words, {true, {}}, look) ? OperatorAction::confirm : wanted;
 }
 
 Box MiddleView::place_of(const std::string& button) const {

@@ -5,19 +5,29 @@
 #include <memory>
 #include <string>
 
+#include "app/windows/evidence_page.h"
 #include "app/windows/landmark_panel.h"
-#include "app/windows/operator_window.h"
+#include "app/windows/operator_keys.h"
+#include "app/windows/operator_model.h"
 #include "app/windows/scene_pane.h"
 
 namespace planlight {
 
-/// The large place in the middle of the window: the 3-D view with the buttons over it, or the landmarks instead.
+/// The large place in the middle of the window: the 3-D view with the buttons over it, or the landmarks, or the page of
+/// the evidence instead.
 class MiddleView {
 public:
     MiddleView(const FontFiles& fonts, std::function<void()> make_current);
 
-    /// `confirm`, `use_landmarks` or nothing.
+    /// `confirm`, `check_skin`, `use_landmarks` or nothing.
     OperatorAction draw(const Pen& pen, const Box& place, const OperatorModel& model);
+
+    /// What a key does here; `why_not` says why it did nothing, and is empty where it did something.
+    OperatorAction press(KeyMeaning key, const OperatorModel& model);
+    const std::string& why_not() const { return why_not_; }
+
+    /// The 3-D view is behind the model and is to be drawn again soon.
+    bool wants_frame() const { return scene_.wants_frame(); }
 
     /// From the next frame on; a frame whose model has no landmarks closes them.
     LandmarkPanel& open_landmarks();
@@ -38,7 +48,9 @@ private:
     std::function<void()> make_current_;
     ScenePane scene_;
     std::unique_ptr<LandmarkPanel> landmarks_;  ///< from the first time it was opened
-    bool landmarks_open_ = false;
+    EvidencePage evidence_;
+    bool landmarks_open_ = false, evidence_open_ = false;
+    std::string why_not_;
     std::map<std::string, Box> places_;
 };
 

@@ -48,6 +48,8 @@ struct SceneModel {
     /// Per vertex of the skin, how far off it may be (95 %), mm; null: the skin has its own colour.
     std::shared_ptr<const std::vector<float>> skin_error_mm;
     double warn_above_mm = 1, stop_above_mm = 2;  ///< its colours: green, amber above, red above
+
+    bool operator==(const SceneModel& other) const;
 };
 
 /// What the 3-D view shows of a match.
@@ -58,6 +60,8 @@ struct FitViews {
     RigidTransform before_ct_from_rig = RigidTransform::Identity();  ///< of the initial match
     std::shared_ptr<const std::vector<float>> before_distance_mm;    ///< per point of the cloud
     std::shared_ptr<const std::vector<float>> predicted_mm;          ///< per vertex of the skin, 95 %
+
+    bool operator==(const FitViews& other) const;
 };
 
 /// A scan as a surface to be clicked on, in a frame `shown` in which it is looked at as a face is in ct: x to the
@@ -71,6 +75,8 @@ struct ClickableScan {
 struct LandmarkViews {
     const SkinSurface* skin = nullptr;  ///< outlives the frames that show it
     std::shared_ptr<const ClickableScan> scan;
+
+    bool operator==(const LandmarkViews&) const = default;
 };
 
 /// From where the head is looked at. Turning never tilts it: S stays up.
@@ -79,6 +85,8 @@ struct SceneView {
     double elevation = 0.28;  ///< radians, positive = from above; at most 1.5
     double zoom = 1;          ///< 1 = the skin fills the view
     Eigen::Vector2d shift_mm = Eigen::Vector2d::Zero();  ///< of the picture's middle, along the view's right and up
+
+    bool operator==(const SceneView&) const = default;
 };
 
 /// Of a step in the list of the session's steps; `attention` wants the operator before it goes on.
@@ -88,13 +96,30 @@ enum class StepState { waiting, active, done, attention };
 struct FoundMarker {
     Eigen::Vector2d pixel;
     double radius_px = 0;
+    bool used = true;  ///< both cameras have it; false: this one alone
+
+    bool operator==(const FoundMarker&) const = default;
+};
+
+/// A picture and what was found in it.
+struct SeenPicture {
+    std::shared_ptr<const GrayImage> picture;  ///< another pointer = another picture; null = none
+    std::vector<FoundMarker> found;
+    bool searched = true;  ///< for markers; false: nobody looked
+
+    bool operator==(const SeenPicture&) const = default;
 };
 
 struct CameraPicture {
-    std::string title;                         ///< "Left camera"
-    std::shared_ptr<const GrayImage> picture;  ///< another pointer = another picture; null = none yet
-    std::vector<FoundMarker> found;
-    std::string note;  ///< in place of a picture that is not there: why
+    std::string title;  ///< "Left camera"
+    SeenPicture live;   ///< the newest
+    /// Whole seconds since it was taken, when that is too long for it to be called live; 0: it is live.
+    int old_s = 0;
+    std::string note;  ///< why there is no picture, or no newer one
+    /// The picture that a refusal came from; shown in place of the live one until the person presses on it.
+    std::optional<SeenPicture> refused;
+
+    bool operator==(const CameraPicture&) const = default;
 };
 
 /// A plan item in the table. Values in mm; empty is shown as a dash.
@@ -102,6 +127,8 @@ struct PlanRow {
     Rgb colour{255, 255, 255};
     std::string name;  ///< "Borehole 1, ⌀7.0 mm"
     std::optional<double> depth_mm, predicted_error_mm, light_off_mm;
+
+    bool operator==(const PlanRow&) const = default;
 };
 
 /// What the banner says; only `aligned` is green, and `dark` is the operator's or the gate's.
@@ -111,27 +138,41 @@ struct Status {
     StatusKind kind = StatusKind::dark;
     std::string headline;              ///< one sentence: may the light be trusted, or why not
     std::vector<std::string> details;  ///< further sentences
+    std::optional<double> share = {};  ///< 0 to 1: how far it is, of what is being done; empty: no bar
+
+    bool operator==(const Status&) const = default;
 };
 
 /// Shown beside the status; empty is shown as a dash.
 struct Figures {
     std::optional<double> overlay_error_mm, updates_per_s, head_moved_mm, head_turned_deg, delay_to_light_ms;
+
+    bool operator==(const Figures&) const = default;
 };
 
 struct ButtonState {
     bool enabled = false;
     std::string why_not;  ///< a few words, shown in the button while it is not enabled: "scan first"
+
+    bool operator==(const ButtonState&) const = default;
 };
+
+/// What the operator pressed, by mouse, key or pedal.
+enum class OperatorAction { none, scan, do_register, track, stop, dark, quit, confirm, use_landmarks, check_skin };
 
 /// All that the operator window shows, as values: the window draws it and knows nothing else.
 struct OperatorModel {
-    std::string case_title, case_subtitle;
+    std::string case_title;            ///< whose head: the patient, as the site names them
+    std::string case_plan;             ///< plan, its version, date of the series
+    std::string case_subtitle;         ///< further words
+    std::string case_side;             ///< "RIGHT", in large letters; empty: not known
+    bool simulated = false;            ///< nothing is real: said in large letters
     std::array<StepState, 6> steps{};  ///< Case, Rig, Scan, Match, Verify, Project
     SceneModel scene;
     std::optional<LandmarkViews> landmarks;  ///< there is a scan: landmarks can be clicked on it
     std::optional<FitViews> fit;             ///< there is a match to be looked at: the 3-D view gets buttons for it
-    CameraPicture left{"Left camera", nullptr, {}, "no picture yet"};
-    CameraPicture right{"Right camera", nullptr, {}, "no picture yet"};
+    CameraPicture left{"Left camera", {}, 0, "no picture yet", {}};
+    CameraPicture right{"Right camera", {}, 0, "no picture yet", {}};
     std::vector<PlanRow> rows;
     double warn_above_mm = 1;           ///< a larger error in the table is amber and marked
     double stop_above_mm = 2;           ///< a larger one red and marked
@@ -143,6 +184,10 @@ struct OperatorModel {
     bool check_skin = false;                      ///< a short scan may be asked for: a button over the 3-D view
     bool confirm = false;  ///< the match, or its light, needs a person's look: a button says that it is right
     std::string confirm_words = "It fits: use it";  ///< on that button
+    OperatorAction next = OperatorAction::none;     ///< what leads on: its button stands out; none: nothing does
+    bool light_on = false;                          ///< light may be on the patient: closing the window asks first
+
+    bool operator==(const OperatorModel&) const = default;
 };
 
 /// The scene as that view shows it. Without a match it is the scene as it is.

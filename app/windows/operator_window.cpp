@@ -1,26 +1,25 @@
-#define GLFW_INCLUDE_GLCOREARB
-#define GL_GLEXT_PROTOTYPES
 #include "app/windows/operator_window.h"
 
-#include <GLFW/glfw3.h>
-#include <backends/imgui_impl_glfw.h>
-#include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
 #include <algorithm>
-#include <cmath>
+#include <chrono>
 #include <map>
-#include <tuple>
 #include <utility>
 
 #include "app/windows/camera_texture.h"
+#include "app/windows/gui_window.h"
+#include "app/windows/layout.h"
 #include "app/windows/middle_view.h"
-#include "app/windows/open_window.h"
+#include "app/windows/operator_keys.h"
 #include "app/windows/panels.h"
-#include "projection/glfw_session.h"
 
 namespace planlight {
 namespace {
+
+using std::chrono::steady_clock;
+
+constexpr auto kNoticeStands = std::chrono::seconds(4);
 
 std::array<int, 4> whole_pixels(const Box& box) {
     return {static_cast<int>(box.x), static_cast<int>(box.y), static_cast<int>(box.width),
@@ -31,183 +30,254 @@ bool inside(const Box& box, double x, double y) {
     return x >= box.x && x < box.right() && y >= box.y && y < box.bottom();
 }
 
+/// The four buttons of a session's way.
+struct WayButton {
+    OperatorAction action;
+    const char* label;
+    KeyMeaning key;
+    ButtonState OperatorModel::*state;
+};
+constexpr WayButton kWay[] = {
+    {OperatorAction::scan, "Scan", KeyMeaning::scan, &OperatorModel::scan},
+    {OperatorAction::do_register, "Register", KeyMeaning::do_register, &OperatorModel::do_register},
+    {OperatorAction::track, "Track", KeyMeaning::track, &OperatorModel::track},
+    {OperatorAction::stop, "Stop", KeyMeaning::stop, &OperatorModel::stop},
+};
+
 }  // namespace
 
 struct OperatorWindow::Parts {
-    std::shared_ptr<void> session = glfw_session();
-    FontFiles font_files = find_fonts();
-    GLFWwindow* window = nullptr;
-    ImGuiContext* gui = nullptr;
+    bool dark_pressed = false;
+    KeyMeaning key = KeyMeaning::none;  ///< pressed last, and not yet acted upon
+    WindowLayout place;
+    GuiWindow gui;
     std::unique_ptr<MiddleView> middle;
     CameraTexture left, right;
-    Pen pen{};
-    WindowLayout place;
-    bool dark_pressed = false;
     float rows_scrolled = 0;
     int rows_shown = 1;
     std::map<OperatorAction, Box> controls;
+    std::map<std::string, Box> places;
+    bool live_instead_of_refused = false;
+    bool asks_to_close = false;
+    std::string notice;  ///< why the last press did nothing
+    steady_clock::time_point notice_until{};
+    std::optional<OperatorModel> drawn;
+    std::size_t frames = 0;
 
-    explicit Parts(const OperatorWindowSettings& settings) : window(open_window(settings)) {
-        glfwMakeContextCurrent(window);
-        glfwSwapInterval(0);  // the loop that follows the patient must not wait for this screen
-        listen();
-        middle = std::make_unique<MiddleView>(font_files, [w = window] { glfwMakeContextCurrent(w); });
-        gui = ImGui::CreateContext();
-        ImGui::SetCurrentContext(gui);
-        ImGui::GetIO().IniFilename = nullptr;
-        ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NoMouseCursorChange;
-        ImGui_ImplGlfw_InitForOpenGL(window, true);
-        ImGui_ImplOpenGL3_Init("#version 330 core");
+    explicit Parts(const WindowSettings& settings) : gui(settings, listener()) {
+        middle = std::make_unique<MiddleView>(gui.font_files(), [this] { gui.make_current(); });
     }
     Parts(const Parts&) = delete;
     Parts& operator=(const Parts&) = delete;
     ~Parts() {
-        glfwMakeContextCurrent(window);
-        ImGui::SetCurrentContext(gui);
-        ImGui_ImplOpenGL3_Shutdown();
-        ImGui_ImplGlfw_Shutdown();
-        ImGui::DestroyContext(gui);
+        gui.make_current();
         left.release();
         right.release();
         middle.reset();
-        glfwDestroyWindow(window);
     }
 
     /// DARK is taken from the events themselves, so that a press shorter than a frame is not lost.
-    void listen() {
-        glfwSetWindowUserPointer(window, this);
-        glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
-            if (action == GLFW_PRESS && (key == GLFW_KEY_SPACE || key == GLFW_KEY_B || key == GLFW_KEY_ESCAPE))
-                static_cast<Parts*>(glfwGetWindowUserPointer(w))->dark_pressed = true;
-        });
-        glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int action, int) {
-            Parts& parts = *static_cast<Parts*>(glfwGetWindowUserPointer(w));
-            double x = 0, y = 0;
-            glfwGetCursorPos(w, &x, &y);
-            if (action == GLFW_PRESS && inside(parts.place.dark, x, y)) parts.dark_pressed = true;
-        });
+    WindowListener listener() {
+        return {[this](int pressed, int) {
+                    const KeyMeaning meaning = meaning_of(pressed);
+                    if (meaning == KeyMeaning::dark)
+                        dark_pressed = true;
+                    else if (meaning != KeyMeaning::none)
+                        key = meaning;
+                },
+                [this](double x, double y) {
+                    if (inside(place.dark, x, y)) dark_pressed = true;
+                }};
     }
 
-    void fit_to(int width, int height) {
-        place = layout_of(width, height);
-        if (pen.scale == place.scale && pen.fonts.body != nullptr) return;
-        ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
-        atlas.Clear();
-        pen.fonts = load_fonts(atlas, font_files, place.scale);
-        ImGui_ImplOpenGL3_DestroyFontsTexture();
-        ImGui_ImplOpenGL3_CreateFontsTexture();
-        pen.scale = place.scale;
+    void say(const std::string& words) {
+        notice = words;
+        notice_until = steady_clock::now() + kNoticeStands;
     }
 
-    OperatorAction draw_buttons(const OperatorModel& model) {
-        const std::array<std::tuple<OperatorAction, const char*, const ButtonState*>, 4> row{
-            {{OperatorAction::scan, "Scan", &model.scan},
-             {OperatorAction::do_register, "Register", &model.do_register},
-             {OperatorAction::track, "Track", &model.track},
-             {OperatorAction::stop, "Stop", &model.stop}}};
+    bool must_draw(const OperatorModel& model) const {
+        return gui.touched() || key != KeyMeaning::none || middle->wants_frame() || !drawn || !(*drawn == model) ||
+               (!notice.empty() && steady_clock::now() > notice_until);
+    }
+
+    /// The action where its button is enabled; else the reason is said.
+    OperatorAction if_enabled(const WayButton& way, const OperatorModel& model) {
+        const ButtonState& state = model.*way.state;
+        if (state.enabled) return way.action;
+        say(std::string(way.label) + " is not possible now: " + state.why_not + ".");
+        return OperatorAction::none;
+    }
+
+    OperatorAction draw_buttons(const Pen& pen, const OperatorModel& model) {
         const float gap = place.gap, width = (place.buttons.width - 3 * gap) / 4;
         OperatorAction wanted = OperatorAction::none;
         Box box = place.buttons;
         box.width = width;
-        for (const auto& [action, label, state] : row) {
-            controls[action] = box;
-            if (button(pen, box, label, *state)) wanted = action;
+        for (const WayButton& way : kWay) {
+            controls[way.action] = box;
+            const bool leads_on = model.next == way.action;
+            const ButtonLook look{false, leads_on, key_text(way.key) + (leads_on ? " · Enter" : "")};
+            if (button(pen, box, way.label, model.*way.state, look)) wanted = way.action;
+            if (!(model.*way.state).enabled && ImGui::IsItemHovered() && ImGui::IsMouseReleased(0))
+                if_enabled(way, model);
             box.x += width + gap;
         }
         controls[OperatorAction::dark] = place.dark;
         const ImVec2 mouse = ImGui::GetIO().MousePos;
         const bool hovered = inside(place.dark, mouse.x, mouse.y);
-        draw_dark_button(pen, place.dark, hovered, hovered && ImGui::GetIO().MouseDown[0]);
+        draw_dark_button(pen, place.dark, hovered, hovered && ImGui::GetIO().MouseDown[0], key_text(KeyMeaning::dark));
         return wanted;
     }
 
-    void draw_plan_table(const OperatorModel& model) {
+    /// A press on the table opens the page with all of it.
+    void draw_plan_table(const Pen& pen, const OperatorModel& model) {
         const ImVec2 mouse = ImGui::GetIO().MousePos;
         const int spare = static_cast<int>(model.rows.size()) - rows_shown;
         if (inside(place.table, mouse.x, mouse.y)) rows_scrolled -= ImGui::GetIO().MouseWheel;
         rows_scrolled = std::clamp(rows_scrolled, 0.0F, static_cast<float>(std::max(0, spare)));
-        const TableShown shown = draw_table(pen, place.table, model, static_cast<int>(rows_scrolled));
-        rows_shown = shown.rows;
-        if (!shown.all_evidence && inside(place.table, mouse.x, mouse.y)) {
-            std::string all;
-            for (const std::string& sentence : model.evidence) all += (all.empty() ? "" : "\n") + sentence;
-            ImGui::SetTooltip("%s", all.c_str());
+        places["evidence"] = place.table;
+        ImGui::SetCursorScreenPos({place.table.x, place.table.y});
+        if (ImGui::InvisibleButton("evidence", {place.table.width, place.table.height}))
+            middle->press(KeyMeaning::evidence, model);
+        rows_shown = draw_table(pen, place.table, model, static_cast<int>(rows_scrolled), ImGui::IsItemHovered());
+    }
+
+    void draw_cameras(const Pen& pen, const OperatorModel& model) {
+        if (!model.left.refused && !model.right.refused) live_instead_of_refused = false;
+        for (const auto& [camera, texture, box, word] :
+             {std::tuple{&model.left, &left, place.left_camera, "left-camera"},
+              std::tuple{&model.right, &right, place.right_camera, "right-camera"}}) {
+            const bool refused = camera->refused && !live_instead_of_refused;
+            const SeenPicture& shown = refused ? *camera->refused : camera->live;
+            draw_camera(pen, box, *camera, refused,
+                        texture_id(texture->take(shown.picture, static_cast<int>(box.width))));
+            places[word] = box;
+            ImGui::SetCursorScreenPos({box.x, box.y});
+            if (ImGui::InvisibleButton(word, {box.width, box.height}) && camera->refused)
+                live_instead_of_refused = !live_instead_of_refused;
         }
     }
 
-    OperatorAction draw(const OperatorModel& model) {
-        const ImGuiIO& io = ImGui::GetIO();
-        ImGui::SetNextWindowPos({0, 0});
-        ImGui::SetNextWindowSize(io.DisplaySize);
-        ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(0, 0));
-        ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);
-        ImGui::Begin("all", nullptr,
-                     ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
-                         ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus);
-        pen.list = ImGui::GetWindowDrawList();
-        const auto texture = [](unsigned name) {
-            return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(name));
-        };
+    /// Over the middle, so that the banner and DARK stay free.
+    OperatorAction draw_question(const Pen& pen) {
+        const Box& scene = place.scene;
+        const float s = pen.scale, height = std::max(72.0F, 84 * s), pad = 24 * s;
+        const Box card{scene.x + 0.08F * scene.width, scene.y + 0.2F * scene.height, 0.84F * scene.width,
+                       height + 5 * line_height(pen.fonts.title) + 2 * pad};
+        pen.panel(card, IM_COL32(38, 30, 8, 255), theme::kAmber, 3);
+        float y = card.y + pad;
+        const float width = card.width - 2 * pad;
+        y += pen.paragraph(pen.fonts.title, "The light is on the patient. Make it dark and close the window?",
+                           {card.x + pad, y, width, 3 * line_height(pen.fonts.title)}, theme::kText);
+        pen.paragraph(pen.fonts.body, "The light goes on until you answer. DARK works as always.",
+                      {card.x + pad, y + 8 * s, width, 2 * line_height(pen.fonts.body)}, theme::kText);
+        const Box row{card.x + pad, card.bottom() - pad - height, (width - pad) / 2, height};
+        const Box other{row.right() + pad, row.y, row.width, height};
+        places["close-window"] = row;
+        places["stay"] = other;
+        if (button(pen, row, "Dark and close", {true, {}}, {false, false, key_text(KeyMeaning::close_window)}))
+            return OperatorAction::quit;
+        if (button(pen, other, "Stay", {true, {}}, {false, true, key_text(KeyMeaning::stay)})) asks_to_close = false;
+        return OperatorAction::none;
+    }
+
+    OperatorAction draw(const Pen& pen, const OperatorModel& model) {
+        places.clear();
         draw_header(pen, place, model);
-        const OperatorAction over_scene = middle->draw(pen, place.scene, model);
-        draw_camera(pen, place.left_camera, model.left, texture(left.take(model.left.picture)));
-        draw_camera(pen, place.right_camera, model.right, texture(right.take(model.right.picture)));
-        draw_plan_table(model);
-        const OperatorAction wanted = draw_buttons(model);
-        draw_banner(pen, place.banner, model);
-        ImGui::End();
-        ImGui::PopStyleVar(2);
+        // While it is asked, what lies under the question must not be pressed instead of the answer.
+        OperatorAction over_scene = OperatorAction::none;
+        if (asks_to_close) {
+            pen.panel(place.scene);
+            over_scene = draw_question(pen);
+        } else {
+            over_scene = middle->draw(pen, place.scene, model);
+        }
+        draw_cameras(pen, model);
+        draw_plan_table(pen, model);
+        const OperatorAction wanted = draw_buttons(pen, model);
+        draw_banner(pen, place.banner, model, steady_clock::now() > notice_until ? std::string{} : notice);
         return wanted == OperatorAction::none ? over_scene : wanted;
     }
 
-    void paint() {
-        int width = 0, height = 0;
-        glfwGetFramebufferSize(window, &width, &height);
-        glBindFramebuffer(GL_FRAMEBUFFER, 0);
-        glViewport(0, 0, width, height);
-        glDisable(GL_SCISSOR_TEST);
-        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-        glClearColor(11 / 255.0F, 13 / 255.0F, 17 / 255.0F, 1);
-        glClear(GL_COLOR_BUFFER_BIT);
-        ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+    /// What the key that was pressed last means now.
+    OperatorAction take_key(const OperatorModel& model) {
+        KeyMeaning pressed = std::exchange(key, KeyMeaning::none);
+        if (asks_to_close) {
+            if (pressed == KeyMeaning::stay) asks_to_close = false;
+            return pressed == KeyMeaning::close_window ? OperatorAction::quit : OperatorAction::none;
+        }
+        if (pressed == KeyMeaning::next) {
+            if (model.next == OperatorAction::confirm) pressed = KeyMeaning::confirm;
+            for (const WayButton& way : kWay)
+                if (model.next == way.action) pressed = way.key;
+            if (pressed == KeyMeaning::next) say("Nothing has to be pressed now.");
+        }
+        for (const WayButton& way : kWay)
+            if (pressed == way.key) return if_enabled(way, model);
+        const OperatorAction wanted = middle->press(pressed, model);
+        if (const std::string why = middle->why_not(); !why.empty()) say(why);
+        return wanted;
+    }
+
+    /// True when the window is to be closed.
+    bool take_close(const OperatorModel& model) {
+        if (!gui.asked_to_close()) return false;
+        if (!model.light_on) return true;
+        gui.keep_open();
+        asks_to_close = true;
+        return false;
     }
 };
 
-OperatorWindow::OperatorWindow(const OperatorWindowSettings& settings) : parts_(std::make_unique<Parts>(settings)) {}
+OperatorWindow::OperatorWindow(const WindowSettings& settings) : parts_(std::make_unique<Parts>(settings)) {}
 OperatorWindow::~OperatorWindow() = default;
 
 OperatorAction OperatorWindow::frame(const OperatorModel& model) {
     Parts& parts = *parts_;
-    glfwMakeContextCurrent(parts.window);
-    ImGui::SetCurrentContext(parts.gui);
-    glfwPollEvents();
-    int width = 0, height = 0;
-    glfwGetFramebufferSize(parts.window, &width, &height);
+    parts.gui.take_input(0);
+    if (parts.take_close(model)) return parts.dark_pressed ? OperatorAction::dark : OperatorAction::quit;
     OperatorAction wanted = OperatorAction::none;
-    if (width > 0 && height > 0) {
-        parts.fit_to(width, height);
-        ImGui_ImplOpenGL3_NewFrame();
-        ImGui_ImplGlfw_NewFrame();
-        ImGui::NewFrame();
-        wanted = parts.draw(model);
-        ImGui::Render();
-        parts.paint();
-        glfwSwapBuffers(parts.window);
+    if (parts.must_draw(model)) {
+        const OperatorAction by_key = parts.take_key(model);
+        if (by_key != OperatorAction::none) parts.notice.clear();
+        if (steady_clock::now() > parts.notice_until) parts.notice.clear();
+        parts.gui.frame([&](const Pen& pen, float width, float height) {
+            parts.place = layout_of(static_cast<int>(width), static_cast<int>(height));
+            wanted = parts.draw(pen, model);
+        });
+        ++parts.frames;
+        parts.drawn = model;
+        if (by_key != OperatorAction::none) wanted = by_key;
     }
     if (std::exchange(parts.dark_pressed, false)) return OperatorAction::dark;
-    if (glfwWindowShouldClose(parts.window) == GLFW_TRUE) return OperatorAction::quit;
     return wanted;
 }
 
+void OperatorWindow::say(const std::string& answer) {
+    if (answer.empty()) return;
+    parts_->say(answer);
+    parts_->drawn.reset();
+}
+
+const std::string& OperatorWindow::answer() const {
+    return parts_->notice;
+}
+
+void OperatorWindow::open_evidence() {
+    parts_->middle->press(KeyMeaning::evidence, {});
+    parts_->drawn.reset();
+}
+
+void OperatorWindow::rest(double longest_s) {
+    if (!parts_->gui.touched()) parts_->gui.take_input(longest_s);
+}
+
+std::size_t OperatorWindow::frames_drawn() const {
+    return parts_->frames;
+}
+
 RgbImage OperatorWindow::screenshot() {
-    Parts& parts = *parts_;
-    glfwMakeContextCurrent(parts.window);
-    ImGui::SetCurrentContext(parts.gui);
-    int width = 0, height = 0;
-    glfwGetFramebufferSize(parts.window, &width, &height);
-    if (ImGui::GetDrawData() == nullptr) return RgbImage(width, height);
-    parts.paint();
-    return read_window(width, height);
+    return parts_->gui.screenshot();
 }
 
 SceneView OperatorWindow::view() const {
@@ -219,7 +289,7 @@ void OperatorWindow::set_view(const SceneView& view) {
 }
 
 void OperatorWindow::open_landmarks(const std::vector<PointPair>& pairs) {
-    glfwMakeContextCurrent(parts_->window);
+    parts_->gui.make_current();
     parts_->middle->open_landmarks().clicks().set_pairs(pairs);
 }
 
@@ -242,7 +312,8 @@ std::array<int, 4> OperatorWindow::place_of(OperatorAction control) const {
 }
 
 std::array<int, 4> OperatorWindow::place_of(const std::string& button) const {
-    return whole_pixels(parts_->middle->place_of(button));
+    const auto own = parts_->places.find(button);
+    return whole_pixels(own == parts_->places.end() ? parts_->middle->place_of(button) : own->second);
 }
 
 }  // namespace planlight

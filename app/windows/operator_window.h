@@ -6,32 +6,37 @@
 #include <vector>
 
 #include "app/windows/operator_model.h"
+#include "app/windows/window_settings.h"
 #include "planning_io/types/point_pair.h"
 
 namespace planlight {
-
-/// What the operator pressed, by mouse, key or pedal.
-enum class OperatorAction { none, scan, do_register, track, stop, dark, quit, confirm, use_landmarks, check_skin };
-
-struct OperatorWindowSettings {
-    std::string title = "Planlight";
-    int width = 1920, height = 1080;     ///< pixels; at most the monitor's, at least 1280 x 800
-    std::optional<std::string> monitor;  ///< name or index as text; the primary one when not given
-    bool fill_monitor = false;           ///< borderless over that whole monitor
-};
 
 /// The window for the person at the trolley. All members are called from the main thread.
 class OperatorWindow {
 public:
     /// Throws DeviceError when there is no display, no such monitor, no OpenGL 3.3, or no font.
-    explicit OperatorWindow(const OperatorWindowSettings& settings = {});
+    explicit OperatorWindow(const WindowSettings& settings = {});
     ~OperatorWindow();
 
-    /// Takes in what was pressed, draws the model, and says what the person wants; `dark` comes before all else.
+    /// Takes in what was pressed, draws the model where that shows anything new, and says what the person wants; `dark`
+    /// comes before all else.
     ///
-    /// DARK acts when it is pressed, not when released, and by the keys Space, B and Escape. Closing the window is
-    /// `quit`.
+    /// DARK acts when it is pressed, not when released, and by the keys Space, B, Escape and Page Up. Every button has
+    /// a key, which stands in it; Page Down and Enter press the one that leads on. Closing the window is `quit`; while
+    /// the model's light is on it is asked first. A press of what is not enabled is answered with the reason.
     OperatorAction frame(const OperatorModel& model);
+
+    /// An answer to the last press, shown for some seconds; empty: nothing.
+    void say(const std::string& answer);
+
+    /// Why the last press did nothing, as it stands in the window; empty: it did something, or some seconds ago.
+    const std::string& answer() const;
+
+    /// Waits until the person does something, `longest_s` at most. A loop that draws no more than it must calls this
+    /// after every frame.
+    void rest(double longest_s);
+    /// How often the window was drawn so far.
+    std::size_t frames_drawn() const;
 
     /// What the last frame showed.
     RgbImage screenshot();
@@ -47,13 +52,17 @@ public:
     /// Shows the skin from CT and the scan side by side, to click landmarks on both, with `pairs` already there; in the
     /// next frames whose model has landmarks. The person opens it by the button "Landmarks".
     void open_landmarks(const std::vector<PointPair>& pairs = {});
+    /// Shows the page of the plan and the evidence; the person opens it by a press on the table.
+    void open_evidence();
     /// What has been clicked on both sides, of the scan that the last frame's model had; empty before.
     std::vector<PointPair> landmarks() const;
 
     /// Where a control is, in window pixels (x, y, width, height), as the last frame drew it; for tests by mouse.
     std::array<int, 4> place_of(OperatorAction control) const;
-    /// The same for a control over the 3-D view by its word: before, after, error, landmarks, check-skin; while these
-    /// are clicked: undo, turn, use, close, skin-view, scan-view. Zeros for what was not drawn.
+    /// The same for other controls by their word: before, after, error, landmarks, check-skin, evidence, left-camera,
+    /// right-camera; while landmarks are clicked: undo, turn, use, close, skin-view, scan-view; on the page of the
+    /// evidence: close; while it is asked whether to close the window: close-window, stay. Zeros for what was not
+    /// drawn.
     std::array<int, 4> place_of(const std::string& button) const;
 
 private:

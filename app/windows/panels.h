@@ -2,32 +2,35 @@
 
 #include "app/windows/operator_model.h"
 #include "app/windows/pen.h"
+#include "app/windows/status_word.h"
 
 namespace planlight {
 
 void draw_header(const Pen& pen, const WindowLayout& place, const OperatorModel& model);
 
-/// The big status: word, shape, colour, sentences and figures.
-void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model);
+/// The big status: word, shape, colour, sentences and figures. `notice`: why the last press did nothing; it stands
+/// above the sentences for a while.
+void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model, const std::string& notice = {});
 
-/// A camera's picture with the found markers drawn over; `texture` is null when there is no picture.
-void draw_camera(const Pen& pen, const Box& box, const CameraPicture& camera, ImTextureID texture);
+/// A camera's picture (the live one, or the refused one) with the found markers drawn over; one that is old is grey and
+/// says its age. `texture` is null when there is no picture.
+void draw_camera(const Pen& pen, const Box& box, const CameraPicture& camera, bool refused, ImTextureID texture);
 
-struct TableShown {
-    int rows = 1;              ///< there was room for
-    bool all_evidence = true;  ///< false: some sentences were cut for want of room
+/// The plan items from row `first_row` on, then as much of the evidence as there is room for. Returns how many rows
+/// there was room for.
+int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int first_row, bool hovered);
+
+struct ButtonLook {
+    bool chosen = false;    ///< it shows what is on, and looks held
+    bool leads_on = false;  ///< it is what comes next, and stands out
+    std::string key;        ///< shown in it
 };
 
-/// The plan items from row `first_row` on, then the evidence.
-TableShown draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int first_row);
-
-/// A button: drawn, and true when it was pressed and is enabled. `chosen`: it shows what is on, and looks held.
-bool button(const Pen& pen, const Box& box, const std::string& label, const ButtonState& state, bool chosen = false);
+/// A button: drawn, and true when it was pressed and is enabled.
+bool button(const Pen& pen, const Box& box, const std::string& label, const ButtonState& state,
+            const ButtonLook& look = {});
 
 /// The button that is always there and always works.
-void draw_dark_button(const Pen& pen, const Box& box, bool hovered, bool held);
-
-/// The word of a status: "ALIGNED".
-const char* status_word(StatusKind kind);
+void draw_dark_button(const Pen& pen, const Box& box, bool hovered, bool held, const std::string& keys);
 
 }  // namespace planlight

@@ -57,10 +57,6 @@ bool replace(T& old, const T& now) {
     return true;
 }
 
-bool same_view(const SceneView& a, const SceneView& b) {
-    return a.azimuth == b.azimuth && a.elevation == b.elevation && a.zoom == b.zoom && a.shift_mm == b.shift_mm;
-}
-
 }  // namespace
 
 struct Scene::Parts {
@@ -172,7 +168,7 @@ bool Scene::update(const SceneModel& scene, const SceneView& view, int width, in
     Parts& parts = *parts_;
     const bool changed = static_cast<int>(parts.take_skin_and_markers(scene)) |
                          static_cast<int>(parts.take_cloud(scene)) | static_cast<int>(parts.take_lines(scene));
-    if (!changed && same_view(view, parts.shown_view) && width == parts.width && height == parts.height) return false;
+    if (!changed && view == parts.shown_view && width == parts.width && height == parts.height) return false;
     if (scene.on_paper)
         parts.renderer->SetBackground(1, 1, 1);
     else

@@ -92,6 +92,11 @@ struct Boxes {
     }
 };
 
+/// Of the legend, pixels.
+int letters_px(double scale) {
+    return std::max(14, static_cast<int>(17 * scale));
+}
+
 }  // namespace
 
 struct SceneOverlay::Parts {
@@ -118,13 +123,13 @@ struct SceneOverlay::Parts {
             boxes.add(x + 24 * scale + i * third, y + 36 * scale, third - 2, 14 * scale,
                       error_colour(examples[static_cast<std::size_t>(i)], scene.warn_above_mm, scene.stop_above_mm),
                       255);
-        title.place("The match may be off by, mm (95 %)", x + w / 2, y + 72 * scale, static_cast<int>(16 * scale));
+        title.place("The light may be off by so much, mm (95 %)", x + w / 2, y + 72 * scale, letters_px(scale));
         const std::array<std::string, 3> words{fmt::format("≤ {:.1f}", scene.warn_above_mm),
                                                fmt::format("≤ {:.1f}", scene.stop_above_mm),
                                                fmt::format("> {:.1f}", scene.stop_above_mm)};
         for (std::size_t i = 0; i < 3; ++i)
             values[i].place(words[i], x + 24 * scale + (static_cast<double>(i) + 0.5) * third, y + 18 * scale,
-                            static_cast<int>(16 * scale));
+                            letters_px(scale));
         values[3].actor->SetVisibility(0);
     }
 
@@ -134,7 +139,8 @@ struct SceneOverlay::Parts {
         title.actor->SetVisibility(shown);
         for (Text& value : values) value.actor->SetVisibility(shown);
         if (!shown) return;
-        const double w = 320 * scale, x = width - w - 16 * scale, y = 16 * scale, bar = w - 48 * scale;
+        const double w = std::max(360 * scale, 20.0 * letters_px(scale)), x = width - w - 16 * scale, y = 16 * scale,
+                     bar = w - 48 * scale;
         if (errors) {
             legend_of_errors(scene, x, y, w, scale);
             return;
@@ -143,14 +149,11 @@ struct SceneOverlay::Parts {
         for (int i = 0; i < kSteps; ++i)
             boxes.add(x + 24 * scale + bar * i / kSteps, y + 36 * scale, bar / kSteps + 0.5, 14 * scale,
                       distance_colour(i + 0.5, kSteps), 255);
-        title.place(std::abs(scene.skin_offset_mm) < 0.05
-                        ? std::string("Distance of the scan to the skin, mm")
-                        : fmt::format("Distance of the scan to the skin {:+.1f} mm", scene.skin_offset_mm),
-                    x + w / 2, y + 72 * scale, static_cast<int>(16 * scale));
+        title.place("The scan lies so far from the skin, mm", x + w / 2, y + 72 * scale, letters_px(scale));
         for (int i = 0; i < 4; ++i)
             values[static_cast<std::size_t>(i)].place(
                 fmt::format("{}{:.1f}", i == 3 ? "≥ " : "", scene.largest_distance_mm * i / 3),
-                x + 24 * scale + bar * i / 3, y + 18 * scale, static_cast<int>(16 * scale));
+                x + 24 * scale + bar * i / 3, y + 18 * scale, letters_px(scale));
     }
 };
 

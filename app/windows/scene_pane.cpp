@@ -51,18 +51,30 @@ std::optional<ImVec2> ScenePane::take_mouse(const char* name, const Box& sensiti
 
 void ScenePane::draw(const Pen& pen, const Box& box, const SceneModel& model) {
     const int width = static_cast<int>(box.width) - 4, height = static_cast<int>(box.height) - 4;
-    if (scene_->update(model, view_, width, height, pen.scale)) {
+    using std::chrono::steady_clock;
+    const auto began = steady_clock::now();
+    const int* const size = target_->GetSize();
+    const bool turned = !(view_ == rendered_view_) || size[0] != width || size[1] != height;
+    behind_ = !turned && began < not_before_;
+    if (!behind_ && scene_->update(model, view_, width, height, pen.scale)) {
         target_->SetSize(width, height);
         target_->GetState()->Reset();
         target_->GetState()->ResetFramebufferBindings();
         target_->Render();
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
+        rendered_view_ = view_;
+        const auto ended = steady_clock::now();
+        not_before_ = ended + 2 * (ended - began);
     }
     const auto texture = target_->GetDisplayFramebuffer()->GetColorAttachmentAsTextureObject(0)->GetHandle();
     corner_ = {box.x + 2, box.y + 2};
     pen.list->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(texture)), corner_,
                               {corner_.x + static_cast<float>(width), corner_.y + static_cast<float>(height)}, {0, 1},
                               {1, 0}, IM_COL32_WHITE, 10 * pen.scale);
+}
+
+bool ScenePane::wants_frame() const {
+    return behind_ && std::chrono::steady_clock::now() >= not_before_;
 }
 
 Ray ScenePane::sight(const ImVec2& pixel) const {

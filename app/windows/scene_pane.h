@@ -4,6 +4,7 @@
 #include <vtkGenericOpenGLRenderWindow.h>
 #include <vtkSmartPointer.h>
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -27,8 +28,12 @@ public:
     /// left button was pressed and released without moving, in window pixels.
     std::optional<ImVec2> take_mouse(const char* name, const Box& sensitive);
 
-    /// Renders what has changed and draws the picture into the box.
+    /// Renders what has changed and draws the picture into the box. Where only the scene changed, not the view, it is
+    /// rendered in a third of the time at most, so that a slow machine has time for the rest; `wants_frame` then.
     void draw(const Pen& pen, const Box& box, const SceneModel& model);
+
+    /// The picture is behind what was drawn last, and may be rendered now.
+    bool wants_frame() const;
 
     /// The line of sight through a window pixel, and the window pixel of a point, in the scene's frame, as last drawn.
     Ray sight(const ImVec2& window_pixel) const;
@@ -41,6 +46,9 @@ private:
     vtkSmartPointer<vtkGenericOpenGLRenderWindow> target_;
     std::unique_ptr<Scene> scene_;
     SceneView view_, first_view_;
+    SceneView rendered_view_;
+    bool behind_ = false;
+    std::chrono::steady_clock::time_point not_before_{};
     ImVec2 corner_{0, 0};  ///< of the picture, window pixels
 };
 

@@ -167,8 +167,18 @@ vtkSmartPointer<vtkPolyData> plan_shape(const PlanDrawing& plan) {
         std::vector<Eigen::Vector3d> points = stroke.points_in_ct;
         for (std::size_t i = 0; i < points.size() && i < stroke.normals_in_ct.size(); ++i)
             points[i] += kAboveSkinMm * stroke.normals_in_ct[i];
-        const bool fine = stroke.kind == StrokeKind::label || stroke.kind == StrokeKind::tick;
+        const bool fine = stroke.kind == StrokeKind::tick;
         add_line(fine ? text : lines, points, stroke.closed, stroke.colour);
+    }
+    for (const Label& label : plan.labels) {
+        if (label.of_moment || label.field_normals_in_ct.empty()) continue;
+        add_line(text, label.leader.points_in_ct, false, label.colour);
+        const Eigen::Vector3d up = kAboveSkinMm * label.field_normals_in_ct[label.field_normals_in_ct.size() / 2];
+        for (const auto& sign : label.signs_in_ct)
+            for (std::vector<Eigen::Vector3d> outline : sign) {
+                for (Eigen::Vector3d& p : outline) p += up;
+                add_line(text, outline, true, label.colour);
+            }
     }
     vtkNew<vtkAppendPolyData> all;
     all->AddInputData(tubes(lines, kPlanRadiusMm));

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "app/windows/number_text.h"
+#include "app/windows/operator_keys.h"
 #include "app/windows/panels.h"
 
 namespace planlight {
@@ -66,22 +67,18 @@ float evidence_height(const Pen& pen, const OperatorModel& model, float width) {
     return line_height(pen.fonts.small) * static_cast<float>(lines);
 }
 
-void draw_evidence(const Pen& pen, const OperatorModel& model, Box box, bool cut) {
-    const float line = line_height(pen.fonts.small);
-    const float bottom = box.bottom() + 1, end = cut ? bottom - line : bottom;
+void draw_evidence(const Pen& pen, const OperatorModel& model, Box box) {
+    const float end = box.bottom() + 1;
     for (const std::string& sentence : model.evidence) {
         box.height = end - box.y;
         box.y += pen.paragraph(pen.fonts.small, sentence, box, theme::kQuiet);
     }
-    if (cut)
-        pen.line(pen.fonts.small, "… hold the mouse here for the rest", box.x, bottom - line / 2, box.width,
-                 theme::kAmber);
 }
 
 }  // namespace
 
-TableShown draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int first_row) {
-    pen.panel(box);
+int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int first_row, bool hovered) {
+    pen.panel(box, theme::kPanel, hovered ? theme::kQuiet : theme::kEdge);
     const float pad = 14 * pen.scale, line = line_height(pen.fonts.small);
     const Columns columns = columns_of(pen, box);
     draw_heading(pen, columns, box.y + pad / 2);
@@ -91,7 +88,7 @@ TableShown draw_table(const Pen& pen, const Box& box, const OperatorModel& model
     const float row_height = std::round(line_height(pen.fonts.body) + 4 * pen.scale);
     const float text_width_px = box.width - 36 * pen.scale;
     const int count = static_cast<int>(model.rows.size());
-    const float both = box.bottom() - pad - rule - pad, wanted = evidence_height(pen, model, text_width_px);
+    const float both = box.bottom() - pad - line - rule - pad, wanted = evidence_height(pen, model, text_width_px);
     const float left_over = std::max(both - static_cast<float>(count) * row_height, std::min(3 * line, 0.4F * both));
     const float evidence = std::min(wanted, std::floor(left_over / line) * line);
     const float room = both - evidence;
@@ -105,12 +102,15 @@ TableShown draw_table(const Pen& pen, const Box& box, const OperatorModel& model
     if (rows < count)
         pen.line(pen.fonts.small,
                  "rows " + std::to_string(first_row + 1) + "–" + std::to_string(first_row + shown) + " of " +
-                     std::to_string(count) + " · turn the mouse wheel for the others",
+                     std::to_string(count),
                  columns.name_x, y + line / 2, text_width_px, theme::kAmber);
 
-    draw_evidence(pen, model, {columns.name_x, box.bottom() - pad - evidence, text_width_px, evidence},
-                  evidence < wanted);
-    return {rows, evidence >= wanted};
+    const float foot = box.bottom() - pad - line;
+    draw_evidence(pen, model, {columns.name_x, foot - evidence, text_width_px, evidence});
+    const std::string all = evidence < wanted || rows < count ? "Press here for all of it" : "Press here for the page";
+    pen.line(pen.fonts.small, all + " (" + key_text(KeyMeaning::evidence) + ")", columns.name_x, foot + line / 2,
+             text_width_px, evidence < wanted || rows < count ? theme::kAmber : theme::kQuiet);
+    return rows;
 }
 
 }  // namespace planlight

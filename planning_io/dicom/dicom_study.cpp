@@ -81,11 +81,9 @@ DicomStudy read_dicom_study(const fs::path& path, const std::string& series) {
     std::sort(study.image_uids.begin(), study.image_uids.end());
     study.image_uids.erase(std::unique(study.image_uids.begin(), study.image_uids.end()), study.image_uids.end());
     std::erase(study.image_uids, std::string());
-    for (const auto& [uid, name] : {std::pair{&study.study_uid, "study (Study Instance UID)"},
-                                    std::pair{&study.frame_of_reference_uid, "frame of reference (its UID)"}})
-        if (uid->empty())
-            throw InputError(path, std::string("does not say its ") + name,
-                             "Export the series again from the scanner or the archive.");
+    if (study.study_uid.empty())
+        throw InputError(path, "does not say its study (Study Instance UID)",
+                         "Export the series again from the scanner or the archive.");
     return study;
 }
 

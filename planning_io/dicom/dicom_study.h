@@ -16,7 +16,7 @@ struct DicomStudy {
 };
 
 /// The study of a series of CT or MR images, as `read_volume` chooses it, read in a child process. Throws InputError
-/// where the path holds no such series, or one that does not say its study or its frame of reference; DamagedFileError.
+/// where the path holds no such series, or one that does not say its study; DamagedFileError.
 DicomStudy read_dicom_study(const std::filesystem::path& folder_or_file, const std::string& series = {});
 
 }  // namespace planlight

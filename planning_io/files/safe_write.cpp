@@ -28,14 +28,14 @@ constexpr const char* kDiskRemedy = "Check the free space and the permissions of
     throw DiskError(file, doing + (code ? std::string(": ") + std::strerror(code) : std::string()), kDiskRemedy);
 }
 
-/// A new empty file (or folder) beside `file`, with the permissions that the user's umask gives.
-fs::path make_temporary_beside(const fs::path& file, bool folder = false) {
+/// A new empty file (or folder) beside `file`, with those of the permissions `mode` that the user's umask gives.
+fs::path make_temporary_beside(const fs::path& file, bool folder = false, mode_t mode = 0666) {
     std::random_device random;
     for (int attempt = 0; attempt < 100; ++attempt) {
         fs::path temporary = file;
         temporary += ".part-" + std::to_string(random());
         const int made = folder ? ::mkdir(temporary.c_str(), 0777)
-                                : ::open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+                                : ::open(temporary.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, mode);
         if (made >= 0) {
             if (!folder) ::close(made);
             return temporary;
@@ -61,6 +61,15 @@ void write_into(const fs::path& path, const fs::path& file, const std::function<
     if (out) write(out);
     out.close();
     if (!out) refuse(file, "cannot be written");
+}
+
+/// A disk that knows no permissions (FAT, some shares) gives a file to everybody, whatever it is asked.
+void check_owner_only(const fs::path& path, const fs::path& file) {
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) refuse(file, "cannot be written");
+    if ((status.st_mode & 0077) == 0) return;
+    throw DiskError(file, "cannot be kept from others: this disk gives it to everybody on the computer",
+                    "Name a folder on a disk that knows permissions.");
 }
 
 struct RemoveUnlessKept {
@@ -92,7 +101,8 @@ fs::path meant_folder(const fs::path& folder) {
 
 }  // namespace
 
-void write_safely(const fs::path& file_or_link, const std::function<void(std::ostream&)>& write) {
+void write_safely(const fs::path& file_or_link, const std::function<void(std::ostream&)>& write,
+                  ReadableBy readable_by) {
     std::error_code ignored;
     const fs::path file =
         fs::is_symlink(file_or_link, ignored) ? fs::weakly_canonical(file_or_link, ignored) : file_or_link;
@@ -100,7 +110,9 @@ void write_safely(const fs::path& file_or_link, const std::function<void(std::os
         if (fs::is_directory(file, ignored)) throw DiskError(file, "is a folder, not a file", "Name a file.");
         return write_into(file, file, write);  // a pipe or a device is written to, never replaced
     }
-    RemoveUnlessKept temporary{make_temporary_beside(file)};
+    const bool owner_only = readable_by == ReadableBy::owner;
+    RemoveUnlessKept temporary{make_temporary_beside(file, false, owner_only ? 0600 : 0666)};
+    if (owner_only) check_owner_only(temporary.path, file);
     write_into(temporary.path, file, write);
     sync(temporary.path, file);
     if (::rename(temporary.path.c_str(), file.c_str()) != 0) refuse(file, "cannot be put in place");
@@ -108,9 +120,10 @@ void write_safely(const fs::path& file_or_link, const std::function<void(std::os
     sync(file.has_parent_path() ? file.parent_path() : fs::path("."), file);
 }
 
-void write_safely(const fs::path& file, const std::string& content) {
-    write_safely(file,
-                 [&](std::ostream& out) { out.write(content.data(), static_cast<std::streamsize>(content.size())); });
+void write_safely(const fs::path& file, const std::string& content, ReadableBy readable_by) {
+    write_safely(
+        file, [&](std::ostream& out) { out.write(content.data(), static_cast<std::streamsize>(content.size())); },
+        readable_by);
 }
 
 void check_can_write(const fs::path& file) {

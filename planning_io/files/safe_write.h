@@ -7,10 +7,15 @@
 
 namespace planlight {
 
-/// Writes a file whole or not at all: temporary file beside it, sync, rename. Throws DiskError; the old file stays
-/// then.
-void write_safely(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write);
-void write_safely(const std::filesystem::path& file, const std::string& content);
+/// Who may read a new file: whoever the user's umask lets, or nobody but its owner (0600, from its first byte on).
+enum class ReadableBy { umask, owner };
+
+/// Writes a file whole or not at all: temporary file beside it, sync, rename. Throws DiskError, also where the disk
+/// cannot keep it to its owner; the old file stays then.
+void write_safely(const std::filesystem::path& file, const std::function<void(std::ostream&)>& write,
+                  ReadableBy readable_by = ReadableBy::umask);
+void write_safely(const std::filesystem::path& file, const std::string& content,
+                  ReadableBy readable_by = ReadableBy::umask);
 
 /// Throws what `write_safely` would where the file cannot be written there (no such folder, no permission, a folder of
 /// that name): to be asked before long work.

@@ -28,15 +28,19 @@ std::uint32_t crc_of(std::string_view a, std::string_view b = {}) {
 }
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& doing) {
-    throw DiskError(file, doing + ": " + std::strerror(errno),
-                    "Make room on the disk, name another folder with `planlight session --recordings`, or do without: "
-                    "`planlight session --record none`.");
+    const int code = errno;
+    const bool no_room = code == ENOSPC || code == EDQUOT || code == EFBIG;
+    throw DiskError(file, doing + ": " + std::strerror(code),
+                    std::string(no_room ? "Make room on the disk" : "Look at the folder and its permissions") +
+                        ", name another folder with `planlight session --recordings`, or do without: "
+                        "`planlight session --record none`.");
 }
 
 /// The folder is for its owner only; one that is there already stays as it is.
 void make_folder(const fs::path& folder) {
-    if (folder.empty() || fs::exists(folder)) return;
-    make_folder(folder.parent_path());
+    std::error_code unknown;  // without permission to look, `mkdir` says why
+    if (folder.empty() || fs::is_directory(folder, unknown)) return;
+    if (folder.has_parent_path() && folder.parent_path() != folder) make_folder(folder.parent_path());
     if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) refuse(folder, "cannot be made");
 }
 

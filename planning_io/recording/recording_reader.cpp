@@ -35,6 +35,7 @@ RecordingReader::RecordingReader(const std::filesystem::path& file) : file_(file
     std::array<char, kRecordingHeaderBytes> header{};
     if (!in_) throw InputError(file, "cannot be read", "A recording can be read by its owner only: ask them.");
     in_.read(header.data(), header.size());
+    if (in_.bad()) unreadable(0);
     const std::string wanted = recording_header();
     const auto got = static_cast<std::size_t>(in_.gcount());
     if (got < 8 || std::string_view(header.data(), 8) != std::string_view(wanted).substr(0, 8))
@@ -51,13 +52,19 @@ RecordingReader::RecordingReader(const std::filesystem::path& file) : file_(file
     at_ = kRecordingHeaderBytes;
 }
 
+/// The file's size says that there are bytes, and the disk does not give them: nothing is known of how it ends.
+void RecordingReader::unreadable(std::uint64_t at) const {
+    throw DiskError(file_, fmt::format("cannot be read at byte {} of {}", at, bytes_),
+                    "Look at the disk or the network that it is on, and read it again, or a copy of it.");
+}
+
 /// `number`: the only one that is taken; empty: any.
 std::optional<RecordingChunk> RecordingReader::whole_chunk_at(std::uint64_t at, std::optional<std::uint64_t> number) {
     if (at > bytes_ || bytes_ - at < kChunkHeaderBytes) return std::nullopt;
     std::array<char, kChunkHeaderBytes> header{};
     in_.clear();
     in_.seekg(static_cast<std::streamoff>(at));
-    if (!in_.read(header.data(), header.size())) return std::nullopt;
+    if (!in_.read(header.data(), header.size())) unreadable(at);
     if (std::string_view(header.data(), 4) != kMarker) return std::nullopt;
     const std::size_t size = number_at<std::uint32_t>(header.data() + 24);
     if (size > kMostPayloadBytes || size > bytes_ - at - kChunkHeaderBytes) return std::nullopt;
@@ -66,25 +73,25 @@ std::optional<RecordingChunk> RecordingReader::whole_chunk_at(std::uint64_t at, 
     std::copy_n(header.data() + 4, 4, chunk.type.begin());
     chunk.at = Instant(number_at<std::int64_t>(header.data() + 16));
     chunk.payload.resize(size);
-    if (size > 0 && !in_.read(chunk.payload.data(), static_cast<std::streamsize>(size))) return std::nullopt;
+    if (size > 0 && !in_.read(chunk.payload.data(), static_cast<std::streamsize>(size))) unreadable(at);
     uLong crc = crc32_z(0, reinterpret_cast<const Bytef*>(header.data()), kChunkHeaderBytes - 4);
     if (size > 0) crc = crc32_z(crc, reinterpret_cast<const Bytef*>(chunk.payload.data()), size);
     if (number_at<std::uint32_t>(header.data() + 28) != static_cast<std::uint32_t>(crc)) return std::nullopt;
     return chunk;
 }
 
-/// Whether any whole chunk stands in the file after that place: then what does not read there was changed, for a
-/// recording that was cut ends there.
-bool RecordingReader::whole_chunk_after(std::uint64_t at) {
+/// Whether any whole chunk stands in the file from that place on, whatever its number: then what does not read there
+/// was changed, for a recording that was cut ends there.
+bool RecordingReader::whole_chunk_from(std::uint64_t at) {
     constexpr std::size_t kBlock = std::size_t{1} << 20;
     constexpr int kMostTried = 1000;  // markers in a hostile file: each would be read whole
     std::string block;
     int tried = 0;
-    for (std::uint64_t from = at + 1; from + kChunkHeaderBytes <= bytes_; from += kBlock) {
+    for (std::uint64_t from = at; from + kChunkHeaderBytes <= bytes_; from += kBlock) {
         block.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBlock + kMarker.size() - 1, bytes_ - from)));
         in_.clear();
         in_.seekg(static_cast<std::streamoff>(from));
-        if (!in_.read(block.data(), static_cast<std::streamsize>(block.size()))) return false;
+        if (!in_.read(block.data(), static_cast<std::streamsize>(block.size()))) unreadable(from);
         for (std::size_t i = block.find(kMarker); i != std::string::npos; i = block.find(kMarker, i + 1)) {
             if (whole_chunk_at(from + i, std::nullopt)) return true;
             if (++tried > kMostTried) return false;
@@ -128,7 +135,7 @@ std::optional<RecordingChunk> RecordingReader::next() {
     if (at_ == bytes_)
         end_ = done_seen_ ? RecordingEnd::whole : RecordingEnd::cut;
     else
-        end_ = done_seen_ || whole_chunk_after(at_) ? RecordingEnd::damaged : RecordingEnd::cut;
+        end_ = done_seen_ || whole_chunk_from(at_) ? RecordingEnd::damaged : RecordingEnd::cut;
     return std::nullopt;
 }
 

@@ -24,7 +24,7 @@ enum class RecordingEnd {
 class RecordingReader {
 public:
     /// Throws InputError when there is no such file or it is no recording, DamagedFileError when its first bytes are
-    /// damaged or of another version.
+    /// damaged or of another version, DiskError when the disk does not give its bytes.
     explicit RecordingReader(const std::filesystem::path& file);
 
     /// From now on `next` gives the chunks that are wanted, by type and time, only. The others are passed over by their
@@ -32,7 +32,8 @@ public:
     using Wanted = std::function<bool(const ChunkType&, Instant)>;
     void want_only(Wanted wanted) { wanted_ = std::move(wanted); }
 
-    /// The next whole chunk; empty at the end, or where the rest cannot be read (see `end`). Never throws for damage.
+    /// The next whole chunk; empty at the end, or where the rest cannot be read (see `end`). Never throws for damage;
+    /// DiskError where the disk does not give the bytes that the file has.
     std::optional<RecordingChunk> next();
 
     RecordingEnd end() const { return end_; }
@@ -45,7 +46,8 @@ public:
 
 private:
     std::optional<RecordingChunk> whole_chunk_at(std::uint64_t at, std::optional<std::uint64_t> number);
-    bool whole_chunk_after(std::uint64_t at);
+    bool whole_chunk_from(std::uint64_t at);
+    [[noreturn]] void unreadable(std::uint64_t at) const;
 
     bool pass_over();
 

@@ -14,8 +14,27 @@ RecordingWriter::RecordingWriter(std::unique_ptr<RecordingSink> sink, const Reco
     : sink_(std::move(sink)), settings_(settings), synced_at_(Wall::now()), thread_([this] { run(); }) {}
 
 RecordingWriter::~RecordingWriter() {
+    end({});
+}
+
+RecordingState RecordingWriter::finish(Instant at) {
+    end([&] {
+        tell_dropped(at);
+        const auto last_word = [this] {
+            const RecordingState now = state();
+            return fmt::format(R"({{"dropped_chunks": {}, "dropped_bytes": {}}})", now.dropped_chunks,
+                               now.dropped_bytes);
+        };
+        waiting_.push_back({{chunk_types::kDone, at, {}}, 0, last_word});
+    });
+    return state();
+}
+
+void RecordingWriter::end(const std::function<void()>& add_last) {
+    if (!thread_.joinable()) return;
     {
         const std::lock_guard lock(mutex_);
+        if (add_last) add_last();
         ending_ = true;
         end_by_ = Wall::now() + settings_.end_patience;
     }
@@ -33,29 +52,37 @@ bool RecordingWriter::add_picture(ChunkType type, Instant at, std::size_t bytes,
     return queue({{type, at, {}}, bytes, std::move(pack)}, settings_.most_waiting_bytes);
 }
 
+RecordingWriter::Waiting RecordingWriter::lost(Instant at, std::uint64_t chunks, std::uint64_t bytes) {
+    return {{chunk_types::kLost, at, fmt::format(R"({{"chunks": {}, "bytes": {}}})", chunks, bytes)}, 0, {}};
+}
+
 /// What was dropped before is told in its place, so that nobody takes what follows for its neighbour.
+void RecordingWriter::tell_dropped(Instant at) {
+    if (state_.dropped_chunks == told_chunks_) return;
+    waiting_.push_back(lost(at, state_.dropped_chunks - told_chunks_, state_.dropped_bytes - told_bytes_));
+    told_chunks_ = state_.dropped_chunks, told_bytes_ = state_.dropped_bytes;
+}
+
 bool RecordingWriter::queue(Waiting piece, std::size_t limit) noexcept {
+    const std::size_t bytes = piece.bytes;
+    const auto refuse = [&] {
+        ++state_.dropped_chunks;
+        state_.dropped_bytes += bytes;
+        return false;
+    };
     try {
         {
             const std::lock_guard lock(mutex_);
-            if (state_.waiting_bytes + piece.bytes > limit) {
-                ++state_.dropped_chunks;
-                state_.dropped_bytes += piece.bytes;
-                return false;
-            }
-            if (state_.dropped_chunks > told_chunks_) {
-                std::string text = fmt::format(R"({{"chunks": {}, "bytes": {}}})", state_.dropped_chunks - told_chunks_,
-                                               state_.dropped_bytes - told_bytes_);
-                waiting_.push_back({{chunk_types::kLost, piece.chunk.at, std::move(text)}, 0, {}});
-                told_chunks_ = state_.dropped_chunks, told_bytes_ = state_.dropped_bytes;
-            }
-            state_.waiting_bytes += piece.bytes;
+            if (ending_ || state_.waiting_bytes + bytes > limit) return refuse();
+            tell_dropped(piece.chunk.at);
             waiting_.push_back(std::move(piece));
+            state_.waiting_bytes += bytes;
         }
         wake_.notify_one();
         return true;
     } catch (const std::exception&) {  // no memory: the light is worth more than its recording
-        return false;
+        const std::lock_guard lock(mutex_);
+        return refuse();
     }
 }
 
@@ -80,40 +107,59 @@ std::optional<RecordingWriter::Waiting> RecordingWriter::next() {
 
 void RecordingWriter::run() {
     for (;;) {
-        std::optional<Waiting> piece = next();
-        const bool nothing_left = !piece;
-        if (piece) write(std::move(*piece));
+        if (std::optional<Waiting> piece = next()) write(std::move(*piece));
         sync_now_and_then();
         const std::lock_guard lock(mutex_);
-        if (ending_ && (nothing_left || Wall::now() > end_by_)) break;
+        // Asked here and not of `next`: while the disk was synced the last pieces may have come.
+        if (ending_ && (waiting_.empty() || gave_up_ || Wall::now() > end_by_)) break;
     }
+    {
+        const std::lock_guard lock(mutex_);
+        for (const Waiting& piece : waiting_) drop(piece);
+        waiting_.clear();
+    }
+    sync();
+}
+
+/// `never`: not because of the disk; no memory to pack it, or it is too large for a chunk.
+RecordingWriter::Written RecordingWriter::try_to_write(Waiting& piece) {
     try {
-        sink_->sync();
+        if (piece.pack) piece.chunk.payload = piece.pack();
+        piece.pack = {};
+        put(piece.chunk);
+        return Written::yes;
+    } catch (const DiskError& fault) {
+        note_problem(fault.what());
+        return Written::not_yet;
     } catch (const std::exception& fault) {
         note_problem(fault.what());
+        return piece.chunk.type == chunk_types::kLost ? Written::not_yet : Written::never;
     }
 }
 
 /// Tries until the disk takes it, for what comes later must not stand before it; more and more is dropped meanwhile.
 void RecordingWriter::write(Waiting piece) {
-    bool written = false;
-    for (bool packed = false; !written;) {
-        try {
-            if (piece.pack && !packed) piece.chunk.payload = piece.pack();
-            packed = true;
-            put(piece.chunk);
-            written = true;
-        } catch (const std::exception& fault) {
-            note_problem(fault.what());
-            if (!packed) break;
-            std::unique_lock lock(mutex_);
-            wake_.wait_for(lock, settings_.retry_after, [&] { return ending_; });
-            if (ending_) break;
+    for (Written written{}; (written = try_to_write(piece)) != Written::yes;) {
+        std::unique_lock lock(mutex_);
+        if (written == Written::never) {  // said in its place
+            drop(piece);
+            ++told_chunks_, told_bytes_ += piece.bytes;
+            piece = lost(piece.chunk.at, 1, piece.bytes);
+            continue;
         }
+        wake_.wait_for(lock, settings_.retry_after, [&] { return ending_; });
+        if (!ending_) continue;
+        gave_up_ = true;
+        drop(piece);
+        return;
     }
     const std::lock_guard lock(mutex_);
     state_.waiting_bytes -= piece.bytes;
-    if (written) return;
+}
+
+/// Asks for the lock.
+void RecordingWriter::drop(const Waiting& piece) {
+    state_.waiting_bytes -= piece.bytes;
     ++state_.dropped_chunks;
     state_.dropped_bytes += piece.bytes;
 }
@@ -137,13 +183,19 @@ void RecordingWriter::put(const RecordingChunk& chunk) {
 
 void RecordingWriter::sync_now_and_then() {
     if (!unsynced_ || Wall::now() - synced_at_ < settings_.sync_every) return;
+    sync();
+    unsynced_ = false;
+    synced_at_ = Wall::now();
+}
+
+/// A sync that failed is never made good by the next: the system may have thrown away what it could not write.
+void RecordingWriter::sync() {
     try {
         sink_->sync();
     } catch (const std::exception& fault) {
-        note_problem(fault.what());
+        const std::lock_guard lock(mutex_);
+        if (state_.sync_problem.empty()) state_.sync_problem = fault.what();
     }
-    unsynced_ = false;
-    synced_at_ = Wall::now();
 }
 
 void RecordingWriter::note_problem(const std::string& problem) {

@@ -24,12 +24,14 @@ struct RecordingWriterSettings {
     Instant end_patience = std::chrono::seconds(10);  ///< at the end, for a disk that is slow
 };
 
-/// How a recording fares. Bytes are those of the chunks.
+/// How a recording fares. `written_bytes` are those in the file; of pictures all others (dropped, waiting) are bytes in
+/// memory, before packing.
 struct RecordingState {
     std::uint64_t written_chunks = 0, written_bytes = 0;
     std::uint64_t dropped_chunks = 0, dropped_bytes = 0;
     std::size_t waiting_bytes = 0;
-    std::string problem;  ///< why nothing is written now, in words; empty while all is well
+    std::string problem;       ///< why nothing is written now, in words; empty while all is well
+    std::string sync_problem;  ///< why what was written may not be on the disk (the first time); empty: it is
 };
 
 /// Writes a recording from a thread of its own, so that no disk, full, slow or gone, ever delays who hands the pieces
@@ -38,7 +40,7 @@ struct RecordingState {
 class RecordingWriter {
 public:
     explicit RecordingWriter(std::unique_ptr<RecordingSink> sink, const RecordingWriterSettings& settings = {});
-    /// Writes what waits, as long as the disk takes it within `end_patience`.
+    /// Writes what waits, as `finish` does, but without the last word.
     ~RecordingWriter();
     RecordingWriter(const RecordingWriter&) = delete;
     RecordingWriter& operator=(const RecordingWriter&) = delete;
@@ -50,18 +52,30 @@ public:
 
     RecordingState state() const;
 
+    /// Ends the recording: writes what waits and then the last word (DONE: what was dropped in all), as long as the
+    /// disk takes it within `end_patience`. What it does not take is dropped with all that comes after it, so that
+    /// nothing stands behind a gap. How it fared in the end; nothing is taken afterwards.
+    RecordingState finish(Instant at);
+
 private:
     struct Waiting {
         RecordingChunk chunk;
         std::size_t bytes = 0;
-        std::function<std::string()> pack;
+        std::function<std::string()> pack;  ///< empty: the chunk holds its payload
     };
+    static Waiting lost(Instant at, std::uint64_t chunks, std::uint64_t bytes);
     bool queue(Waiting piece, std::size_t limit) noexcept;
+    void tell_dropped(Instant at);
+    void end(const std::function<void()>& add_last);
     void run();
     std::optional<Waiting> next();
     void write(Waiting piece);
+    enum class Written { yes, not_yet, never };
+    Written try_to_write(Waiting& piece);
+    void drop(const Waiting& piece);
     void put(const RecordingChunk& chunk);
     void sync_now_and_then();
+    void sync();
     void note_problem(const std::string& problem);
 
     std::unique_ptr<RecordingSink> sink_;
@@ -72,6 +86,7 @@ private:
     RecordingState state_;
     std::uint64_t told_chunks_ = 0, told_bytes_ = 0;  ///< dropped ones that a LOST chunk in the queue speaks of
     bool ending_ = false;
+    bool gave_up_ = false;  ///< at the end: the disk did not take a piece; none after it is written
     std::chrono::steady_clock::time_point end_by_{}, synced_at_{};
     bool unsynced_ = false;
     bool header_written_ = false;

@@ -161,10 +161,10 @@ PoseFault PoseGuide::fault_of_stance(const BoardStance& stance, PoseAdvice& advi
         return PoseFault::flat_on;  // what to do: what is wanted most
     }
     for (std::size_t i = 0; i < poses_.size(); ++i) {
-        const BoardStance& there = poses_[i].stance;
+        const auto& there = poses_[i].stance;
         const Vector3d middle = middle_of(board_);
-        if (angle_between_faces(stance, there) > settings_.alike_angle ||
-            (stance.left_from_board * middle - there.left_from_board * middle).norm() > settings_.alike_mm)
+        if (!there || angle_between_faces(stance, *there) > settings_.alike_angle ||
+            (stance.left_from_board * middle - there->left_from_board * middle).norm() > settings_.alike_mm)
             continue;
         advice.why = fmt::format("It lies as in pose {}: that tells nothing new.", i + 1);
         return PoseFault::alike;

@@ -80,8 +80,7 @@ struct PoseCoverage {
     std::array<Cells, 3> cells{};  ///< by DeviceName
     std::vector<Eigen::Vector2d> tilts;
     std::vector<double> distances_mm;
-    std::array<int, 4> by_edge{};           ///< poses tilted with that edge nearer, by BoardEdge
-    double share(DeviceName device) const;  ///< of the cells that were hit
+    std::array<int, 4> by_edge{};  ///< poses tilted with that edge nearer, by BoardEdge
 };
 
 /// Leads a person with a board from pose to pose. Knows nothing of the cameras at first; `use_rig` tells it what the
@@ -108,7 +107,7 @@ public:
 private:
     struct Kept {
         BoardCorners left, right;
-        BoardStance stance;
+        std::optional<BoardStance> stance;  ///< empty: not known yet
     };
     std::pair<CameraModel, CameraModel> lenses(const BoardSighting& sighting) const;
     PoseFault fault_of(const BoardSighting& sighting, PoseAdvice& advice) const;

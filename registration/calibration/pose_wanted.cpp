@@ -56,12 +56,6 @@ const char* text_of(PoseFault fault) {
     return kWords[static_cast<std::size_t>(fault)];
 }
 
-double PoseCoverage::share(DeviceName device) const {
-    const Cells& of = cells[static_cast<std::size_t>(device)];
-    const auto empty = std::count(of.begin(), of.end(), 0);
-    return 1 - static_cast<double>(empty) / static_cast<double>(of.size());
-}
-
 void PoseGuide::add(const PoseObservation& pose, int projector_width, int projector_height) {
     BoardSighting sighting;
     sighting.left = {pose.left.width, pose.left.height, pose.left.corners};
@@ -70,7 +64,7 @@ void PoseGuide::add(const PoseObservation& pose, int projector_width, int projec
     left_width_ = pose.left.width, left_height_ = pose.left.height;
     right_width_ = pose.right.width, right_height_ = pose.right.height;
     const auto stance = stance_of(pose.left.corners, pose.right.corners, left, right, board_);
-    poses_.push_back({pose.left.corners, pose.right.corners, stance.value_or(BoardStance{})});
+    poses_.push_back({pose.left.corners, pose.right.corners, stance});
     for (const Vector2d& p : pose.left.corners.pixels) hit(coverage_.cells[0], p, left_width_, left_height_);
     for (const Vector2d& p : pose.right.corners.pixels) hit(coverage_.cells[1], p, right_width_, right_height_);
     for (const LightSample& sample : pose.left.light)
@@ -84,7 +78,7 @@ void PoseGuide::use_rig(const RigEstimate& rig) {
     for (Kept& kept : poses_)
         if (const auto stance = stance_of(kept.left, kept.right, *rig.device(DeviceName::left_camera),
                                           *rig.device(DeviceName::right_camera), board_))
-            kept.stance = *stance;
+            kept.stance = stance;
     count();
 }
 
@@ -93,10 +87,11 @@ void PoseGuide::count() {
     coverage_.distances_mm.clear();
     coverage_.by_edge = {};
     for (const Kept& kept : poses_) {
-        coverage_.tilts.push_back(kept.stance.tilt);
-        coverage_.distances_mm.push_back(kept.stance.distance_mm);
-        if (kept.stance.tilt.norm() >= settings_.useful_tilt)
-            ++coverage_.by_edge[static_cast<std::size_t>(nearer_edge(kept.stance.tilt))];
+        if (!kept.stance) continue;
+        coverage_.tilts.push_back(kept.stance->tilt);
+        coverage_.distances_mm.push_back(kept.stance->distance_mm);
+        if (kept.stance->tilt.norm() >= settings_.useful_tilt)
+            ++coverage_.by_edge[static_cast<std::size_t>(nearer_edge(kept.stance->tilt))];
     }
 }
 
@@ -129,8 +124,10 @@ void PoseGuide::advise(PoseAdvice& advice) const {
 
 std::vector<std::string> PoseGuide::wanted() const {
     std::vector<std::string> wanted;
-    if (poses_.size() < settings_.least_poses)
-        wanted.push_back(fmt::format("{} more poses", settings_.least_poses - poses_.size()));
+    if (const std::size_t there = poses_.size(); there < settings_.least_poses)
+        wanted.push_back(settings_.least_poses - there == 1
+                             ? "one more pose"
+                             : fmt::format("{} more poses", settings_.least_poses - there));
     for (const BoardEdge edge : kBoardEdges)
         if (coverage_.by_edge[static_cast<std::size_t>(edge)] == 0)
             wanted.push_back(fmt::format("tilted with the {} edge nearer", text_of(edge)));

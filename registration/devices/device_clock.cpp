@@ -8,7 +8,6 @@ namespace planlight {
 namespace {
 
 constexpr std::size_t kParts = 8;       // of the window, the quickest frame of each makes the line
-constexpr std::size_t kJumpFrames = 3;  // so many late frames in a row are no hiccup of the computer
 constexpr std::size_t kFewFrames = 20;  // of fewer the quickest may still have come late
 constexpr Instant kFewSigma{5'000'000};
 constexpr Instant kArrivalNoise{100'000};  // of the quickest arrivals, one standard deviation
@@ -132,7 +131,7 @@ void DeviceClock::judge_run(Instant by_device, Instant arrived) {
     recent_.push_back({by_device, arrived - by_device});
     runs_wrong_ = 0;
     if (recent_.front().by_device > first) return;
-    while (recent_.front().by_device < first) recent_.pop_front();
+    while (recent_[1].by_device <= first) recent_.pop_front();  // a gap of lost frames must not acquit it
     std::vector<double> x, y;
     Instant part_ends{};
     for (const Frame& frame : recent_) {

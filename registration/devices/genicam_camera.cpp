@@ -41,6 +41,14 @@ private:
     GError* error_ = nullptr;
 };
 
+bool another_exposure(double now, double was) {
+    return std::abs(now / was - 1) > 0.02;
+}
+
+bool another_gain(double gain, double than) {
+    return std::abs(gain - than) > 0.02 * std::max(1.0, std::abs(than));
+}
+
 std::string text_or_empty(const char* text) {
     return text ? text : "";
 }
@@ -97,78 +105,118 @@ std::string GenicamCamera::serial_of_device() const {
     return text_or_empty(arv_camera_get_device_serial_number(device_->camera.get(), Failure().slot()));
 }
 
-GenicamCamera::Setup GenicamCamera::configure() {
+void GenicamCamera::refuse(const std::string& what, const std::string& why) const {
+    throw DeviceError(name_, fmt::format("does not take {} ({})", what, why),
+                      "Give what `planlight devices` lists for it.");
+}
+
+/// What a camera does by itself changes pictures between two of a scan: switched off, and said where it cannot be.
+std::vector<std::string> GenicamCamera::switch_off_automatics() {
     ArvCamera* camera = device_->camera.get();
     Failure failure;
-    Setup setup;
-    const auto refuse = [&](const std::string& what) {
-        throw DeviceError(name_, fmt::format("does not take {} ({})", what, failure.text()),
-                          "Give what `planlight devices` lists for it.");
-    };
-    arv_camera_stop_acquisition(camera, failure.slot());  // of a program that ended badly
-    arv_camera_set_acquisition_mode(camera, ARV_ACQUISITION_MODE_CONTINUOUS, failure.slot());
-    if (failure.happened()) refuse("continuous acquisition");
-    const std::string format = settings_.pixel_format.empty() ? "Mono8" : settings_.pixel_format;
-    arv_camera_set_pixel_format_from_string(camera, format.c_str(), failure.slot());
-    if (failure.happened()) refuse("the pixel format " + format);
-    if (settings_.region) {
-        const auto [x, y, width, height] = *settings_.region;
-        arv_camera_set_region(camera, x, y, width, height, failure.slot());
-        if (failure.happened()) refuse(fmt::format("the region {} {} {} {}", x, y, width, height));
-    }
-    // What a camera does by itself changes pictures between two of a scan.
-    if (arv_camera_is_exposure_auto_available(camera, failure.slot()))
-        arv_camera_set_exposure_time_auto(camera, ARV_AUTO_OFF, failure.slot());
-    if (arv_camera_is_gain_auto_available(camera, failure.slot()))
-        arv_camera_set_gain_auto(camera, ARV_AUTO_OFF, failure.slot());
+    std::vector<std::string> notes;
     if (arv_camera_is_black_level_auto_available(camera, failure.slot()))
         arv_camera_set_black_level_auto(camera, ARV_AUTO_OFF, failure.slot());
     for (const char* name : {"GammaEnable", "GammaEnabled", "SharpnessEnable", "SharpnessEnabled", "LUTEnable"}) {
         if (!arv_camera_is_feature_available(camera, name, failure.slot())) continue;
         arv_camera_set_boolean(camera, name, false, failure.slot());
         if (arv_camera_get_boolean(camera, name, failure.slot()))
-            setup.notes.push_back(fmt::format("{} cannot be switched off", name));
+            notes.push_back(fmt::format("{} cannot be switched off", name));
     }
     if (arv_camera_is_feature_available(camera, "Gamma", failure.slot())) {
         arv_camera_set_float(camera, "Gamma", 1, failure.slot());
         const double gamma = arv_camera_get_float(camera, "Gamma", failure.slot());
         if (!failure.happened() && std::abs(gamma - 1) > 0.01)
-            setup.notes.push_back(fmt::format("its gamma stays at {:.2f}", gamma));
+            notes.push_back(fmt::format("its gamma stays at {:.2f}", gamma));
     }
-    if (arv_camera_is_exposure_auto_available(camera, failure.slot()) &&
-        arv_camera_get_exposure_time_auto(camera, failure.slot()) != ARV_AUTO_OFF)
-        setup.notes.push_back("its automatic exposure cannot be switched off");
-    if (arv_camera_is_gain_auto_available(camera, failure.slot()) &&
-        arv_camera_get_gain_auto(camera, failure.slot()) != ARV_AUTO_OFF)
-        setup.notes.push_back("its automatic gain cannot be switched off");
+    if (arv_camera_is_exposure_auto_available(camera, failure.slot())) {
+        arv_camera_set_exposure_time_auto(camera, ARV_AUTO_OFF, failure.slot());
+        if (arv_camera_get_exposure_time_auto(camera, failure.slot()) != ARV_AUTO_OFF)
+            notes.emplace_back("its automatic exposure cannot be switched off");
+    }
+    if (arv_camera_is_gain_auto_available(camera, failure.slot())) {
+        arv_camera_set_gain_auto(camera, ARV_AUTO_OFF, failure.slot());
+        if (arv_camera_get_gain_auto(camera, failure.slot()) != ARV_AUTO_OFF)
+            notes.emplace_back("its automatic gain cannot be switched off");
+    }
+    return notes;
+}
+
+void GenicamCamera::set_format_and_region() {
+    ArvCamera* camera = device_->camera.get();
+    Failure failure;
+    arv_camera_stop_acquisition(camera, failure.slot());  // of a program that ended badly
+    arv_camera_set_acquisition_mode(camera, ARV_ACQUISITION_MODE_CONTINUOUS, failure.slot());
+    if (failure.happened()) refuse("continuous acquisition", failure.text());
+    const std::string format = settings_.pixel_format.empty() ? "Mono8" : settings_.pixel_format;
+    arv_camera_set_pixel_format_from_string(camera, format.c_str(), failure.slot());
+    if (failure.happened()) refuse("the pixel format " + format, failure.text());
+    if (!settings_.region) return;
+    const auto [x, y, width, height] = *settings_.region;
+    arv_camera_set_region(camera, x, y, width, height, failure.slot());
+    if (failure.happened()) refuse(fmt::format("the region {} {} {} {}", x, y, width, height), failure.text());
+}
+
+/// As told; what was not told as at the first opening: what another program set meanwhile, or a camera forgot, is set
+/// back. Where that cannot be set, it must be what it was.
+void GenicamCamera::set_exposure_and_gain() {
+    ArvCamera* camera = device_->camera.get();
+    Failure failure;
+    const bool opened_before = exposure_ > Instant{};
     if (settings_.exposure_ms) {
         arv_camera_set_exposure_time(camera, 1e3 * *settings_.exposure_ms, failure.slot());
-        if (failure.happened()) refuse(fmt::format("an exposure of {} ms", *settings_.exposure_ms));
+        if (failure.happened()) refuse(fmt::format("an exposure of {} ms", *settings_.exposure_ms), failure.text());
+    } else if (opened_before) {
+        const double was_us = 1e6 * seconds(exposure_);
+        arv_camera_set_exposure_time(camera, was_us, failure.slot());
+        const double now_us = arv_camera_get_exposure_time(camera, failure.slot());
+        if (failure.happened() || another_exposure(now_us, was_us))
+            refuse(fmt::format("the exposure that it had, {:.2f} ms", was_us / 1e3),
+                   fmt::format("it is {:.2f} ms", now_us / 1e3));
     }
     if (settings_.gain) {
         arv_camera_set_gain(camera, *settings_.gain, failure.slot());
-        if (failure.happened()) refuse(fmt::format("a gain of {}", *settings_.gain));
+        if (failure.happened()) refuse(fmt::format("a gain of {}", *settings_.gain), failure.text());
+    } else if (opened_before && arv_camera_is_gain_available(camera, failure.slot())) {
+        arv_camera_set_gain(camera, gain_, failure.slot());
+        const double gain = arv_camera_get_gain(camera, failure.slot());
+        if (failure.happened() || another_gain(gain, gain_))
+            refuse(fmt::format("the gain that it had, {:.1f}", gain_), fmt::format("it is {:.1f}", gain));
     }
-    if (settings_.line.empty()) {
-        arv_camera_clear_triggers(camera, failure.slot());
-        if (settings_.frames_hz) {
-            arv_camera_set_frame_rate(camera, *settings_.frames_hz, failure.slot());
-            if (failure.happened()) refuse(fmt::format("{} frames a second", *settings_.frames_hz));
-        }
-    } else {
+}
+
+void GenicamCamera::set_trigger() {
+    ArvCamera* camera = device_->camera.get();
+    Failure failure;
+    if (!settings_.line.empty()) {
         arv_camera_set_trigger(camera, settings_.line.c_str(), failure.slot());
-        if (failure.happened()) refuse("the trigger " + settings_.line);
+        if (failure.happened()) refuse("the trigger " + settings_.line, failure.text());
+        return;
     }
+    arv_camera_clear_triggers(camera, failure.slot());
+    if (!settings_.frames_hz) return;
+    arv_camera_set_frame_rate(camera, *settings_.frames_hz, failure.slot());
+    if (failure.happened()) refuse(fmt::format("{} frames a second", *settings_.frames_hz), failure.text());
+}
+
+GenicamCamera::Setup GenicamCamera::configure() {
+    ArvCamera* camera = device_->camera.get();
+    Failure failure;
+    Setup setup;
+    set_format_and_region();
+    setup.notes = switch_off_automatics();
+    set_exposure_and_gain();
+    set_trigger();
     const double exposure_us = arv_camera_get_exposure_time(camera, failure.slot());
-    if (failure.happened() || !(exposure_us > 0)) refuse("a question for its exposure");
+    if (failure.happened() || !(exposure_us > 0)) refuse("a question for its exposure", failure.text());
     exposure_ = from_seconds(exposure_us / 1e6);
-    if (settings_.exposure_ms && std::abs(exposure_us / (1e3 * *settings_.exposure_ms) - 1) > 0.02)
+    if (settings_.exposure_ms && another_exposure(exposure_us, 1e3 * *settings_.exposure_ms))
         setup.notes.push_back(
             fmt::format("its exposure is {:.3f} ms, {:.3f} was asked for", exposure_us / 1e3, *settings_.exposure_ms));
     gain_ = arv_camera_is_gain_available(camera, failure.slot()) ? arv_camera_get_gain(camera, failure.slot()) : 0;
     int x = 0, y = 0;
     arv_camera_get_region(camera, &x, &y, &setup.width, &setup.height, failure.slot());
-    if (failure.happened()) refuse("a question for its region");
+    if (failure.happened()) refuse("a question for its region", failure.text());
     return setup;
 }
 
@@ -272,7 +320,7 @@ bool GenicamCamera::still_as_set() {
     Failure failure;
     const double exposure_us = arv_camera_get_exposure_time(device_->camera.get(), failure.slot());
     if (failure.happened()) return true;  // a lost camera tells by itself
-    if (std::abs(exposure_us / 1e6 / seconds(exposure_) - 1) > 0.02) {
+    if (another_exposure(exposure_us, 1e6 * seconds(exposure_))) {
         frames_.fail({fmt::format("its exposure was changed from {:.2f} to {:.2f} ms by somebody else",
                                   1e3 * seconds(exposure_), exposure_us / 1e3),
                       "End the other program that uses this camera; it is set again by itself."});
@@ -280,7 +328,7 @@ bool GenicamCamera::still_as_set() {
     }
     if (!arv_camera_is_gain_available(device_->camera.get(), failure.slot())) return true;
     const double gain = arv_camera_get_gain(device_->camera.get(), failure.slot());
-    if (!failure.happened() && std::abs(gain - gain_) > 0.02 * std::max(1.0, std::abs(gain_))) {
+    if (!failure.happened() && another_gain(gain, gain_)) {
         frames_.fail({fmt::format("its gain was changed from {:.1f} to {:.1f} by somebody else", gain_, gain),
                       "End the other program that uses this camera; it is set again by itself."});
         return false;

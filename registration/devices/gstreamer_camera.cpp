@@ -133,7 +133,13 @@ bool GstreamerCamera::receive() {
         width_ = frame.picture.width;
         height_ = frame.picture.height;
     }
-    if (frame.picture.width != width_ || frame.picture.height != height_) return false;
+    if (frame.picture.width != width_ || frame.picture.height != height_) {
+        problem_ = {fmt::format("it sends {} x {} pixels now, and sent {} x {} at the beginning", frame.picture.width,
+                                frame.picture.height, width_, height_),
+                    "Set its resolution back, or start the session anew."};
+        return false;
+    }
+    problem_ = {};
     frames_.push(std::move(frame));
     return true;
 }
@@ -145,8 +151,12 @@ void GstreamerCamera::run(const std::stop_token& stop) {
             continue;
         }
         const std::string error = pipeline_ ? pipeline_->error() : "";
-        frames_.fail({error.empty() ? "nothing comes from its pipeline" : error,
-                      "Look at its cable. It is opened again every second."});
+        if (!problem_.problem.empty())
+            frames_.fail(problem_);
+        else
+            frames_.fail({error.empty() ? "nothing comes from its pipeline" : error,
+                          "Look at its cable. It is opened again every second."});
+        problem_ = {};
         pipeline_.reset();
         for (int i = 0; i < 10 && !stop.stop_requested(); ++i) std::this_thread::sleep_for(kPatience);
         try {

@@ -49,6 +49,7 @@ private:
     std::unique_ptr<Pipeline> pipeline_;
     Instant heard_at_{}, offset_{};  ///< session's clock less the pipeline's
     int width_ = 0, height_ = 0;     ///< of the first frame, and never changed
+    CameraFault problem_;            ///< of the last frame, which was refused; empty: it was not
     std::jthread thread_;
 };
 

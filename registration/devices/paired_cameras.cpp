@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "planning_io/types/error.h"
 
@@ -62,8 +61,10 @@ std::optional<StereoFrame> PairedCameras::next_pair(Instant not_before) {
     while (!rights_.empty() && begin_of(rights_.front()) < not_before) rights_.pop_front();
     while (!lefts_.empty() && !rights_.empty()) {
         CameraFrame &left = lefts_.front(), &right = rights_.front();
-        const Instant allowed = allowed_apart(left, right);
+        const Instant allowed = counts_.allowed = allowed_apart(left, right);
         counts_.apart = right.at - left.at;
+        const Instant apart_now = std::max(counts_.apart, -counts_.apart);
+        nearest_ = nearest_ ? std::min(*nearest_, apart_now) : apart_now;
         if (counts_.apart > allowed) {
             ++counts_.left_alone;
             lefts_.pop_front();
@@ -77,7 +78,7 @@ std::optional<StereoFrame> PairedCameras::next_pair(Instant not_before) {
         StereoFrame pair;
         pair.at = left.at + counts_.apart / 2;
         // Of what is not together by wire the light must be steady from the first to open to the last to close.
-        const Instant apart = settings_.together ? Instant{} : std::max(counts_.apart, -counts_.apart);
+        const Instant apart = settings_.together ? Instant{} : apart_now;
         pair.exposure = std::max(left.exposure, right.exposure) + apart;
         pair.number = ++counts_.pairs;
         pair.left = std::move(left.picture);
@@ -101,14 +102,22 @@ void PairedCameras::refuse(std::chrono::milliseconds patience) const {
             throw DeviceError(side.camera->name(), fmt::format("no frame came in {} ms", patience.count()),
                               "Look at its cable and its power, and whether its trigger runs.");
     const Side& worse = sides[0].incomplete >= sides[1].incomplete ? sides[0] : sides[1];
-    if (worse.incomplete > 0)
+    if (worse.incomplete > worse.seen)
         throw DeviceError(worse.camera->name(),
                           fmt::format("of its frames {} came whole in {} ms, and {} with packets lost", worse.seen,
                                       patience.count(), worse.incomplete),
                           "Look at the network: its receive buffer (net.core.rmem_max), jumbo frames, other traffic.");
+    for (const Side& side : sides)
+        if (const Instant behind = side.camera->frames().counts().behind; behind > Instant{})
+            throw DeviceError(side.camera->name(),
+                              fmt::format("its pictures come {:.0f} ms late", 1e3 * seconds(behind)),
+                              "Switch that camera off and on, and look at its network for other traffic.");
+    if (!nearest_)
+        throw DeviceError("Cameras", fmt::format("no pair was exposed after the light in {} ms", patience.count()),
+                          "Raise the frame rate of both, and look at the network for other traffic.");
     throw DeviceError("Cameras",
                       fmt::format("the two do not expose together: their nearest exposures are {:.1f} ms apart",
-                                  std::abs(1e3 * seconds(counts_.apart))),
+                                  1e3 * seconds(*nearest_)),
                       "Let one camera trigger the other, or both by one line, and give both the same exposure.");
 }
 
@@ -128,6 +137,7 @@ std::string PairedCameras::doubt() const {
 StereoFrame PairedCameras::wait_for_pair(Instant not_before, std::chrono::milliseconds patience, bool newest) {
     const Instant until = clock_.now() + patience;
     lefts_seen_ = rights_seen_ = 0;
+    nearest_.reset();
     left_incomplete_ = left_->frames().counts().incomplete;
     right_incomplete_ = right_->frames().counts().incomplete;
     for (;;) {

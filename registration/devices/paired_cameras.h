@@ -2,6 +2,7 @@
 
 #include <deque>
 #include <memory>
+#include <optional>
 
 #include "registration/devices/camera.h"
 #include "registration/devices/stereo_camera.h"
@@ -21,7 +22,8 @@ struct PairSettings {
 /// What became of the frames of two cameras.
 struct PairCounts {
     std::size_t pairs = 0, left_alone = 0, right_alone = 0;
-    Instant apart{};  ///< right less left of the last pair, or of the nearest two that made none
+    Instant apart{};    ///< right less left of the last pair, or of the last two that made none
+    Instant allowed{};  ///< how far these might be apart
 };
 
 /// Two cameras that run by themselves, as one that exposes both together: frames are paired by their times.
@@ -60,6 +62,7 @@ private:
     std::size_t lefts_seen_ = 0, rights_seen_ = 0;            ///< in this call
     std::size_t left_incomplete_ = 0, right_incomplete_ = 0;  ///< when it began
     PairCounts counts_;
+    std::optional<Instant> nearest_;    ///< of two that made no pair in this call: how far they were apart
     Instant last_left_{}, interval_{};  ///< of the left camera's frames; 0: not known yet
 };
 

@@ -46,7 +46,8 @@ public:
     int poses() const;
     void lay(int pose);                       ///< puts the board into a pose
     void slip(const Eigen::Vector3d& by_mm);  ///< shifts the board (room frame) from now on, until the next `lay`
-    /// From now on a person carries the board, with mistakes on the way: `useful_stops` and what is wrong between them.
+    /// From now on a person carries the board, with mistakes on the way: places that help, and between them such as do
+    /// not (BoardPerson).
     void let_person_carry(const PersonSettings& person = {});
     /// Who carries it; null: nobody.
     const BoardPerson* person() const;

@@ -9,7 +9,7 @@ namespace planlight {
 
 /// How far a pose is carried on, and how a head moves.
 struct PredictionSettings {
-    Instant max_ahead = std::chrono::milliseconds(120);  ///< a pose is not predicted farther than this
+    Instant max_ahead = std::chrono::milliseconds(160);  ///< a pose is not predicted farther than this
     Instant max_gap = std::chrono::milliseconds(150);    ///< older measurements do not carry a velocity
     double acceleration_sigma_mm_s2 = 400;               ///< process noise of the head's movement
     double measurement_sigma_mm = 0.05;

@@ -201,7 +201,6 @@ TEST_F(Export, WithoutItsDicomSeriesItIsRefusedByName) {
     refused(world().prepared, world().folder.path() / "nothing", "does not exist");
     const fs::path other = world().folder.path() / "other";
     auto slices = test::synthetic_series(test::Grid{});
-    auto changed = test::phantom_values(test::Grid{});
     for (auto& slice : slices) slice.text(0x00200052, "UI", "1.2.3.4");
     test::write_series(slices, other);
     refused(world().prepared, other, "its frame of reference is another");
@@ -210,6 +209,20 @@ TEST_F(Export, WithoutItsDicomSeriesItIsRefusedByName) {
     moved.ct_from_voxel.pretranslate(Vector3d(0, 0, 4));
     test::write_series(test::synthetic_series(moved), shifted);
     refused(world().prepared, shifted, "its voxels are others");
+}
+
+TEST_F(Export, ASeriesWithoutAFrameOfReferenceGetsReportAndPicturesAlone) {
+    const fs::path series = world().folder.path() / "frameless";
+    auto slices = test::synthetic_series(test::Grid{});
+    for (auto& slice : slices) slice.erase(0x00200052);
+    test::write_series(slices, series);
+    Case frameless = world().prepared;
+    frameless.frame_of_reference_uid.clear();
+    frameless.source = read_volume(series).source;
+    const auto files =
+        export_into_study(frameless, world().operation, series, {}, world().folder.path() / "without-a-frame");
+    EXPECT_EQ(std::count(files.begin(), files.end(), "registration.dcm"), 0);
+    EXPECT_EQ(std::count(files.begin(), files.end(), "report.dcm"), 1);
 }
 
 /// The folder for 3D Slicer.

@@ -71,6 +71,7 @@ struct Measured {
     std::vector<OverlayErrors::Place> before, after, known;
     std::vector<double> target_mm, bound_mm;  ///< of the registration at the points of the plan, and as it was stated
     int unscanned = 0;
+    std::vector<double> tick_mm, right_angle_deg, known_tick_mm, known_right_angle_deg;  ///< after, and known
 };
 
 /// The mesh of the CT's skin with every vertex on the true skin, on the side that is looked at.
@@ -113,22 +114,26 @@ Measured measure(const Room& of, const Volume& volume, const Case& the_case, con
     drawing.labels = false;
     const DrawnPicture picture{found.patient_from_ct, RigidTransform::Identity(), capture.began};
     const auto light_on = [&](const SkinSurface& drawn_on, const PlanDrawing& drawn, const CameraModel& projector,
-                              const DrawnPicture& at) {
+                              const DrawnPicture& at, bool shapes) {
         const DrawingRenderer renderer(drawn_on, projector);
-        return measure_overlay(rig, plan, drawn, renderer, {}, at, false).places;
+        return measure_overlay(rig, plan, drawn, renderer, {}, at, shapes);
     };
     const CameraModel& projector = rig.calibration().projector;
-    measured.before = light_on(skin, draw_plan(plan, skin, drawing), projector, picture);
+    measured.before = light_on(skin, draw_plan(plan, skin, drawing), projector, picture, false).places;
     const SkinDisplacementField field(found.skin);
     const SkinSurface skin_now = skin_as_scanned(skin.mesh(), field);
     PlanDrawing drawn = draw_plan(plan, skin, skin_now, drawing);
     warn_of_unscanned(field, drawn);
     for (const auto& item : drawn.items)
         for (const auto& warning : item.warnings) measured.unscanned += warning.find("no skin") != std::string::npos;
-    measured.after = light_on(skin_now, drawn, projector, picture);
+    const OverlayErrors after = light_on(skin_now, drawn, projector, picture, true);
+    measured.after = after.places, measured.tick_mm = after.tick_mm, measured.right_angle_deg = after.long_angle_deg;
     const SkinSurface true_skin = true_skin_of(rig, skin.mesh(), of.towards);
-    measured.known = light_on(true_skin, draw_plan(plan, skin, true_skin, drawing), rig.true_rig().projector,
-                              {truth, RigidTransform::Identity(), capture.began});
+    const OverlayErrors known = light_on(true_skin, draw_plan(plan, skin, true_skin, drawing),
+                                         rig.true_rig().projector, {truth, RigidTransform::Identity(), capture.began},
+                                         true);
+    measured.known = known.places, measured.known_tick_mm = known.tick_mm;
+    measured.known_right_angle_deg = known.long_angle_deg;
     return measured;
 }
 
@@ -212,7 +217,10 @@ void measure_rooms(Preset preset, bool still, int rooms, unsigned first_seed, co
                    const Case& the_case, const SkinSurface& skin) {
     Figures before, after, known;
     std::map<std::string, int> verdicts;
-    std::vector<double> target_mm, bound_mm;
+    std::vector<double> target_mm, bound_mm, tick_mm, angle_deg, known_tick_mm, known_angle_deg;
+    const auto append = [](std::vector<double>& to, const std::vector<double>& more) {
+        to.insert(to.end(), more.begin(), more.end());
+    };
     std::size_t within = 0;
     for (int i = 0; i < rooms; ++i) {
         const Room room = room_of(preset, first_seed + static_cast<unsigned>(i), still);
@@ -220,6 +228,8 @@ void measure_rooms(Preset preset, bool still, int rooms, unsigned first_seed, co
         ++verdicts[m.verdict];
         add(m.before, before), add(m.after, after), add(m.known, known);
         add_diameters_against(m.known, m.before, before), add_diameters_against(m.known, m.after, after);
+        append(tick_mm, m.tick_mm), append(angle_deg, m.right_angle_deg);
+        append(known_tick_mm, m.known_tick_mm), append(known_angle_deg, m.known_right_angle_deg);
         for (std::size_t k = 0; k < m.target_mm.size(); ++k) {
             target_mm.push_back(m.target_mm[k]), bound_mm.push_back(m.bound_mm[k]);
             within += m.target_mm[k] <= m.bound_mm[k];
@@ -236,6 +246,14 @@ void measure_rooms(Preset preset, bool still, int rooms, unsigned first_seed, co
                       still ? "still since the CT" : "moved since the CT", rooms, verdicts["yes"], verdicts["ask"],
                       verdicts["no"]),
           before, after, known);
+    const auto said = [](const std::vector<double>& values) {
+        const Distribution d = distribution_of(values);
+        return fmt::format("{:.2f} / {:.2f} / {:.2f} ({})", d.median, d.p95, d.worst, d.count);
+    };
+    fmt::print(
+        "  median / 95 % / worst (how many): 10 mm between ticks, after {}, known {} mm; right angles of crosses of 8 mm "
+        "and more, after {}, known {} degrees\n",
+        said(tick_mm), said(known_tick_mm), said(angle_deg), said(known_angle_deg));
     const Distribution off = distribution_of(target_mm), stated = distribution_of(bound_mm);
     fmt::print(
         "  registration at the plan's points: median {:.2f}, 95 % {:.2f}, worst {:.2f} mm; stated bound: median "

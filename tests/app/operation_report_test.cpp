@@ -68,8 +68,18 @@ protected:
                {"at_ns", (kOrigin + kStep * step_).count()},
                {"light", {{"lit", false}, {"dark", reason}}}});
     }
-    OperationFacts facts(bool done = true) {
-        if (done) add(chunk_types::kDone, "{}");
+    /// Light that no camera looked at.
+    void unchecked(const std::string& trust) {
+        ++step_;
+        event({{"what", "asked"}, {"call", "update"}});
+        event({{"what", "updated"}, {"at_ns", (kOrigin + kStep * step_).count()}, {"light", {{"lit", true}}}});
+        event({{"what", "gate"}, {"call", "step"}, {"trust", trust}, {"headline", "x"}});
+    }
+    void skin_check(const json& off_mm) {
+        event({{"what", "skin_checked"}, {"known", true}, {"why_not", ""}, {"off_mm", off_mm}});
+    }
+    OperationFacts facts(bool done = true, const std::string& last_word = "{}") {
+        if (done) add(chunk_types::kDone, last_word);
         std::ofstream out(file(), std::ios::binary);
         out << recording_header();
         for (std::size_t i = 0; i < chunks_.size(); ++i) out << chunk_bytes(chunks_[i], i);
@@ -114,12 +124,132 @@ TEST_F(Operation, TellsWhatWasShownWhenAndHowFarOff) {
     EXPECT_EQ(f.ended, "");
 }
 
+/// A borehole at the far side: there is light, and never a ray of it for this one.
+TEST_F(Operation, WhatTheLightNeverReachedIsNotShownNotForAMomentEither) {
+    match();
+    event({{"what", "gate"}, {"call", "verify"}, {"utc", "x"}});
+    unchecked("look");
+    for (int i = 0; i < 50; ++i) lit(0.2, 0.0, "aligned", false);
+    const OperationFacts f = facts();
+    ASSERT_EQ(f.items.size(), 2u);
+    EXPECT_NEAR(f.items[0].shown_s, 5.0, 1e-9);
+    ASSERT_EQ(f.items[0].shown.size(), 1u);
+    EXPECT_NEAR(f.items[0].shown[0].first, 0.1, 1e-9) << "the light before the first look was that of the line";
+    EXPECT_TRUE(f.items[1].shown.empty());
+    const auto reasons = verdict_of(f).reasons;
+    EXPECT_NE(std::find(reasons.begin(), reasons.end(), "Not shown: Hole."), reasons.end());
+}
+
+TEST_F(Operation, WhatNoCameraLookedAtIsNeitherShownNorNotShown) {
+    match();
+    for (int i = 0; i < 50; ++i) unchecked("look");
+    const OperationFacts f = facts();
+    EXPECT_NEAR(f.lit_s, 4.9, 1e-9);
+    EXPECT_TRUE(f.items[0].shown.empty());
+    EXPECT_TRUE(json::parse(operation_json(f))["items"][0]["shown"].is_null());
+    bool told = false;
+    for (const std::string& reason : verdict_of(f).reasons) {
+        told |= reason.starts_with("Whether the light reached it is not known");
+        EXPECT_FALSE(reason.starts_with("Not shown")) << reason;
+    }
+    EXPECT_TRUE(told);
+}
+
+TEST_F(Operation, WhoseSkinSlidIsNotGood) {
+    match();
+    skin_check(0.4), skin_check(1.9), skin_check(0.3);
+    event({{"what", "skin_checked"}, {"known", false}, {"why_not", "it moved"}, {"off_mm", 7.0}});
+    const OperationFacts f = facts();
+    EXPECT_EQ(f.skin_off_mm, 1.9) << "the worst that is known";
+    EXPECT_EQ(json::parse(operation_json(f))["skin_off_mm"], 1.9);
+}
+
+TEST_F(Operation, AFigureThatIsNotKnownIsLeftOutNeverZero) {
+    match();
+    lit(0.5, 0.5, "aligned");
+    const std::size_t at = chunks_.size() - 2;
+    json unknown = json::parse(chunks_[at].payload);
+    unknown["check"]["off_mm"] = nullptr;
+    unknown["check"]["items"][0][3] = nullptr;
+    chunks_[at].payload = unknown.dump();
+    skin_check(nullptr);
+    const OperationFacts f = facts();
+    EXPECT_TRUE(f.light_off_mm.empty());
+    EXPECT_TRUE(f.items[0].measured_mm.empty());
+    EXPECT_EQ(f.items[1].measured_mm, std::vector<double>{0.5});
+    EXPECT_FALSE(f.skin_off_mm);
+}
+
+TEST_F(Operation, LightOnALandmarkIsNoLightOfThePlan) {
+    match();
+    lit(0.1, 0.1, "aligned");
+    for (int i = 0; i < 10; ++i) lit(0.1, 0.1, "aligned");
+    event({{"what", "asked"}, {"call", "light_landmark"}, {"which", 0}});
+    for (int i = 0; i < 100; ++i) lit(0.1, 0.1, "look");
+    event({{"what", "asked"}, {"call", "light_landmark"}, {"which", -1}});
+    for (int i = 0; i < 10; ++i) lit(0.1, 0.1, "aligned");
+    const OperationFacts f = facts();
+    EXPECT_NEAR(f.lit_s, 1.9, 1e-9) << "10 steps before the landmark, 9 after it";
+    EXPECT_NEAR(f.aligned_s, 1.9, 1e-9);
+    EXPECT_NEAR(f.look_s, 0, 1e-9);
+    EXPECT_NEAR(f.items[0].shown_s, 1.9, 1e-9);
+}
+
+TEST_F(Operation, TwoItemsOfOneNameAreTwo) {
+    match();
+    json twice = json::parse(chunks_.back().payload);
+    twice["items"] = {"Hole", "Hole"};
+    twice["predicted_mm"] = {0.5, 0.7};
+    chunks_.back().payload = twice.dump();
+    lit(0.1, 3.0, "aligned");
+    const OperationFacts f = facts();
+    ASSERT_EQ(f.items.size(), 2u);
+    EXPECT_EQ(f.items[0].measured_mm, std::vector<double>{0.1});
+    EXPECT_EQ(f.items[1].measured_mm, std::vector<double>{3.0});
+    EXPECT_EQ(*f.items[1].predicted_mm, 0.7);
+}
+
+TEST_F(Operation, AMatchThatWasNotUsedLeavesWhatWasPredictedOfTheOneBefore) {
+    match("yes");
+    lit(0.1, 0.1, "aligned");
+    match("no");
+    match("ask");
+    EXPECT_EQ(facts().items[0].predicted_mm, 0.5);
+}
+
+TEST_F(Operation, ADoubtfulMatchPredictsFromItsConfirmationOn) {
+    match("ask");
+    EXPECT_FALSE(facts(false).items[0].predicted_mm);
+    event({{"what", "asked"}, {"call", "confirm"}, {"utc", "x"}});
+    EXPECT_EQ(facts(false).items[0].predicted_mm, 0.5);
+}
+
+TEST_F(Operation, ItsLastWordCountsWhatTheDiskDidNotTake) {
+    add(chunk_types::kLost, R"({"chunks": 2, "bytes": 10})");
+    EXPECT_EQ(facts(true, R"({"dropped_chunks": 5, "dropped_bytes": 20})").lost_chunks, 5u);
+}
+
+TEST_F(Operation, OfMoreItemsThanThePageHasRoomForTheWorstAreNamedAndTheGravestWords) {
+    OperationFacts f;
+    f.updates = 100, f.lit_s = 10, f.aligned_s = 9.5, f.verified = 1;
+    for (int i = 0; i < 30; ++i)
+        f.items.push_back({"Item " + std::to_string(i), {{0, 10}}, 10, 0.5, {i == 29 ? 1.7 : 0.2}, true});
+    for (int i = 0; i < 20; ++i) f.said.push_back({1.0 * i, "", "DARK was pressed.", false});
+    f.said.push_back({21, "", "The light was stopped: it lies 3 mm beside.", true});
+    const fs::path page = folder_.path() / "many.html";
+    write_operation_report(f, operation_json(f), page);
+    std::ifstream in(page);
+    const std::string html{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_NE(html.find("<td class=\"name\">Item 29</td>"), std::string::npos);
+    EXPECT_NE(html.find("The light was stopped"), std::string::npos);
+}
+
 TEST_F(Operation, IsGoodOnlyWhereItWasMeasuredVerifiedAndWhole) {
     using Kind = OperationVerdict::Kind;
     const auto verdict_with = [](const std::function<void(OperationFacts&)>& spoil) {
         OperationFacts f;
         f.updates = 100, f.lit_s = 10, f.aligned_s = 9.5, f.verified = 1;
-        f.items.push_back({"Line", {{0, 10}}, 10, 0.5, std::vector<double>(50, 0.2)});
+        f.items.push_back({"Line", {{0, 10}}, 10, 0.5, std::vector<double>(50, 0.2), true});
         spoil(f);
         return verdict_of(f).kind;
     };
@@ -133,6 +263,11 @@ TEST_F(Operation, IsGoodOnlyWhereItWasMeasuredVerifiedAndWhole) {
     EXPECT_EQ(verdict_with([](OperationFacts& f) { f.items[0].measured_mm.assign(50, 1.5); }), Kind::look);
     EXPECT_EQ(verdict_with([](OperationFacts& f) { f.items[0].measured_mm.assign(50, 2.5); }), Kind::stop);
     EXPECT_EQ(verdict_with([](OperationFacts& f) { f.lit_s = 0; }), Kind::look);
+    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.skin_off_mm = 0.9; }), Kind::good);
+    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.skin_off_mm = 1.9; }), Kind::look);
+    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.skin_off_mm = 2.1; }), Kind::stop);
+    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.skin_off_mm = 2.1, f.lit_s = 0; }), Kind::stop)
+        << "what is worst is said, shown or not";
     EXPECT_EQ(verdict_with([](OperationFacts& f) { f.matches.push_back({0, "", "ask", {}, 0, 0}); }), Kind::look);
 }
 

@@ -1,5 +1,6 @@
 #include "tests/app/played_session.h"
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <stdexcept>
@@ -20,8 +21,9 @@ using namespace std::chrono_literals;
 /// Counts the updates on the way to the observer that is meant, and the time that it takes.
 class Counting final : public SessionObserver {
 public:
-    explicit Counting(SessionObserver* next) : next_(next) {}
+    Counting(SessionObserver* next, std::string doubt) : next_(next), doubt_(std::move(doubt)) {}
     int updates() const { return updates_; }
+    int doubted() const { return doubted_; }
     const std::vector<double>& told_ms() const { return told_ms_; }
 
     void room_entered(const RoomFacts& room) noexcept override {
@@ -34,6 +36,9 @@ public:
     void said(const std::string& kind, const std::string& headline,
               const std::vector<std::string>& details) noexcept override {
         if (next_) next_->said(kind, headline, details);
+        if (doubt_.empty()) return;
+        const auto holds = [&](const std::string& words) { return words.find(doubt_) != std::string::npos; };
+        doubted_ += holds(headline) || std::any_of(details.begin(), details.end(), holds);
     }
     void asked(SessionCall call, const std::vector<PointPair>& landmarks, int which) noexcept override {
         pass([&](SessionObserver& next) { next.asked(call, landmarks, which); });
@@ -49,6 +54,9 @@ public:
     }
     void went_dark() noexcept override {
         pass([&](SessionObserver& next) { next.went_dark(); });
+    }
+    void cameras_doubted(const std::string& doubt) noexcept override {
+        pass([&](SessionObserver& next) { next.cameras_doubted(doubt); });
     }
     void device_failed(const Error& fault) noexcept override {
         pass([&](SessionObserver& next) { next.device_failed(fault); });
@@ -89,9 +97,47 @@ private:
         told_ += std::chrono::steady_clock::now() - began;
     }
     SessionObserver* next_;
-    std::atomic<int> updates_{0};
+    std::string doubt_;
+    std::atomic<int> updates_{0}, doubted_{0};
     Instant told_{};               ///< since the last update
     std::vector<double> told_ms_;  ///< of each update
+};
+
+/// The simulated room with cameras that doubt themselves in every second dozen of frames.
+class DoubtfulRoom final : public Room {
+public:
+    DoubtfulRoom(std::unique_ptr<Room> room, std::string doubt)
+        : room_(std::move(room)), cameras_(room_->cameras(), std::move(doubt)) {}
+    std::string name() const override { return room_->name(); }
+    const RigCalibration& rig() const override { return room_->rig(); }
+    Projector& projector() override { return room_->projector(); }
+    StereoCamera& cameras() override { return cameras_; }
+    const Clock& clock() const override { return room_->clock(); }
+    bool simulated() const override { return true; }
+    void computing() override { room_->computing(); }
+    void let_patient_move(bool moves) override { room_->let_patient_move(moves); }
+    void begin_fault() override { room_->begin_fault(); }
+
+private:
+    class Doubtful final : public StereoCamera {
+    public:
+        Doubtful(StereoCamera& cameras, std::string doubt) : cameras_(cameras), doubt_(std::move(doubt)) {}
+        StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override {
+            return cameras_.grab(not_before, patience);
+        }
+        StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) override {
+            ++frames_;
+            return cameras_.newest(not_before, patience);
+        }
+        std::string doubt() const override { return frames_ / 12 % 2 == 1 ? doubt_ : ""; }
+
+    private:
+        StereoCamera& cameras_;
+        std::string doubt_;
+        int frames_ = 0;
+    };
+    std::unique_ptr<Room> room_;
+    Doubtful cameras_;
 };
 
 /// Waits until it holds; a session that does not come to it in five minutes is a failure.
@@ -146,7 +192,7 @@ const ExampleCase& example_case() {
 }
 
 PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, SessionObserver* observer) {
-    Counting counting(observer);
+    Counting counting(observer, how.doubt);
     simulation::RoomSettings room;
     room.preset = simulation::Preset::paper;
     room.seed = how.seed;
@@ -154,9 +200,11 @@ PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, 
     PlayedResult result;
     {
         LiveSession session(
-            [&] {
-                return std::make_unique<SimulatedRoom>(patient.volume, patient.prepared.plan, room, how.speed_mm_s,
-                                                       how.fault);
+            [&](const RoomProgress&) -> std::unique_ptr<Room> {
+                auto simulated = std::make_unique<SimulatedRoom>(patient.volume, patient.prepared.plan, room,
+                                                                 how.speed_mm_s, how.fault);
+                if (how.doubt.empty()) return simulated;
+                return std::make_unique<DoubtfulRoom>(std::move(simulated), how.doubt);
             },
             patient.prepared, drawing, {}, &counting);
         press_when_free(session, OperatorAction::scan, &OperatorModel::scan, "Scan");
@@ -192,6 +240,7 @@ PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, 
         result.headline = session.model().status.headline;
     }
     result.updates = counting.updates();
+    result.doubted = counting.doubted();
     result.told_ms = counting.told_ms();
     return result;
 }

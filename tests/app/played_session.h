@@ -26,12 +26,14 @@ struct PlayedSession {
     bool dark_in_scan = false;  ///< DARK is pressed in the middle of the first scan
     bool check_skin = false;
     bool landmarks = false;  ///< clicked landmarks go into the match
+    std::string doubt;       ///< what the cameras say of themselves while the patient is followed, now and then
 };
 
 /// How it went.
 struct PlayedResult {
     std::string headline;  ///< the last words of the banner
     int updates = 0;
+    int doubted = 0;              ///< updates whose words on the banner hold the doubt
     std::vector<double> told_ms;  ///< that the observer took of each update's thread
 };
 

@@ -37,10 +37,10 @@ protected:
         put(recording_header());
         for (std::size_t i = 0; i < chunks.size(); ++i) put(chunk_bytes(chunks[i], i));
     }
-    static void expect_alike(const PlayedSession& how) {
+    static test::PlayedResult expect_alike(const PlayedSession& how) {
         const test::TemporaryFolder folder;
         const fs::path file = folder.path() / "session.plrec";
-        test::record_session(how, test::example_case(), RecordMode::all, file);
+        test::PlayedResult played = test::record_session(how, test::example_case(), RecordMode::all, file);
         const ReplayResult replayed = replay_session(file, test::example_case().prepared);
         EXPECT_FALSE(replayed.difference) << "frame " << replayed.difference->frame << ", update "
                                           << replayed.difference->update << ": " << replayed.difference->what;
@@ -50,6 +50,7 @@ protected:
         EXPECT_GE(replayed.scans, 1);
         EXPECT_EQ(replayed.matches, 1);
         EXPECT_GE(replayed.updates, how.landmarks ? 0 : how.updates / 2);
+        return played;
     }
 };
 
@@ -74,6 +75,14 @@ TEST_F(Replay, OfAMatchThatItsLandmarksRefuseIsAlike) {
     how.seed = 4;
     how.landmarks = true;
     expect_alike(how);
+}
+
+TEST_F(Replay, WhatTheCamerasSayOfThemselvesReachesThePersonAndTheReplay) {
+    PlayedSession how;
+    how.seed = 6;
+    how.updates = 60;
+    how.doubt = "left camera: its pictures come 40 ms late";
+    EXPECT_GE(expect_alike(how).doubted, 10);
 }
 
 /// A disk that takes nothing until it is told to.

@@ -17,6 +17,7 @@ TEST(SiteSettings, LettersStandUprightForTheSurgeon) {
     EXPECT_EQ(up("head"), Eigen::Vector3d(0, 0, -1));
     EXPECT_EQ(up("left"), Eigen::Vector3d(-1, 0, 0));
     EXPECT_EQ(up("right"), Eigen::Vector3d(1, 0, 0));
+    EXPECT_TRUE(up("view").isZero()) << "only a match tells";
     EXPECT_EQ(drawing_settings({}).up_in_ct, DrawingSettings{}.up_in_ct) << "without settings nothing changes";
 }
 

@@ -55,6 +55,21 @@ TEST(UpdateLatency, ItsJsonIsOne) {
     const auto json = nlohmann::json::parse(latency.json());
     EXPECT_NEAR(json.at("mid_exposure_to_display").at("median_ms").get<double>(), 50, 0.5);
     EXPECT_EQ(json.at("lit"), 1);
+    EXPECT_EQ(json.at("dark").size(), 0u);
+}
+
+TEST(UpdateLatency, CountsDarknessByItsReason) {
+    UpdateLatency latency;
+    for (const char* reason :
+         {"the last pose is 79 ms old (at most 75 ms)", "the last pose is 121.5 ms old (at most 75 ms)",
+          "the patient is not tracked: \"2\" markers"}) {
+        Session::Update dark = update(1, 1000, 10, false);
+        dark.overlay.reason = reason;
+        latency.add(dark);
+    }
+    const auto json = nlohmann::json::parse(latency.json());
+    EXPECT_EQ(json.at("dark").at("the last pose is # ms old (at most # ms)"), 2);
+    EXPECT_EQ(json.at("dark").at("the patient is not tracked: \"#\" markers"), 1);
 }
 
 }  // namespace

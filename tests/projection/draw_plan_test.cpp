@@ -147,22 +147,100 @@ TEST(DrawPlan, TextRunsToTheRightAndStandsUpSeenFromOutside) {
     EXPECT_GT(top.right_in_ct.x(), 0.99);
 }
 
-TEST(DrawPlan, ALettersStrokesAreNotMirrored) {
-    // "L": its long stroke is left of its foot's end, and stands above it, as a viewer outside the ball sees it.
-    Plan plan;
-    plan.osteotomy_lines.push_back({"", {on_ball(0.0, 0.0), on_ball(0.05, 0)}, false, {}});
+/// The signs' outlines in a plane that touches the ball at the label's middle: right and up as seen from outside, mm.
+struct Flat {
+    std::vector<std::vector<Eigen::Vector2d>> outlines;
+    Eigen::Vector2d low{1e9, 1e9}, high{-1e9, -1e9};
+};
+Flat flat(const std::vector<Label::Outlines>& signs) {
+    Vector3d middle = Vector3d::Zero();
+    for (const auto& sign : signs)
+        for (const auto& outline : sign)
+            for (const Vector3d& p : outline) middle += p;
+    const Vector3d out = middle.normalized(), right = Vector3d(0, 0, 1).cross(out).normalized(), up = out.cross(right);
+    Flat drawn;
+    for (const auto& sign : signs)
+        for (const auto& outline : sign) {
+            drawn.outlines.emplace_back();
+            for (const Vector3d& p : outline) {
+                const double far_mm = great_circle_mm(out, p);
+                const Eigen::Vector2d aside = Eigen::Vector2d(p.dot(right), p.dot(up)).normalized();
+                drawn.outlines.back().push_back(far_mm * aside);
+                drawn.low = drawn.low.cwiseMin(far_mm * aside), drawn.high = drawn.high.cwiseMax(far_mm * aside);
+            }
+        }
+    return drawn;
+}
+
+/// A label of one letter, and what `place_label` makes of it on the ball.
+Flat letter_on_ball(const std::string& letter, const DrawingSettings& settings = {}) {
     OccupiedSkin free;
-    const LabelWish wish{0, "L", {ball().nearest(on_ball(0.3, 0.2))}, 1, {}, {}};
-    const auto strokes = place_label(wish, ball(), {}, free);
-    ASSERT_EQ(strokes.size(), 1u);  // the font's L is one stroke: top, corner, foot
-    const auto& p = strokes[0].points_in_ct;
-    const Vector3d outwards = p.front().normalized(), right = Vector3d(0, 0, 1).cross(outwards).normalized();
-    EXPECT_GT((p.back() - p.front()).dot(right), 2);
-    EXPECT_GT(p.front().z() - p.back().z(), 4);
-    EXPECT_NEAR(great_circle_mm(p.front(), p[p.size() / 2 + 2]), 5, 0.6);
-    double height_mm = 0;
-    for (const Vector3d& q : p) height_mm = std::max(height_mm, great_circle_mm(p.front(), q));
-    EXPECT_NEAR(height_mm, 5 * std::sqrt(1 + 16.0 / 36), 0.05);  // diagonal of a capital 5 high, 4/6 as wide
+    LabelWish wish{0, {letter, {}}, "", {ball().nearest(on_ball(0.3, 0.2))}, 1, {}, {}, {}};
+    const auto label = place_label(wish, ball(), settings, free);
+    return label ? flat(label->signs_in_ct) : Flat{};
+}
+
+TEST(DrawPlan, ALetterIsNotMirroredAndStandsUp) {
+    const Flat drawn = letter_on_ball("L");  // its ink: the upright at the left, the foot at the bottom
+    ASSERT_EQ(drawn.outlines.size(), 1u);
+    double rightmost_above = -1e9, highest_right = -1e9;
+    for (const auto& p : drawn.outlines[0]) {
+        if (p.y() > 0) rightmost_above = std::max(rightmost_above, p.x());
+        if (p.x() > 0.5 * drawn.high.x()) highest_right = std::max(highest_right, p.y());
+    }
+    EXPECT_LT(rightmost_above, drawn.low.x() + 0.35 * (drawn.high.x() - drawn.low.x()));
+    EXPECT_LT(highest_right, drawn.low.y() + 0.35 * (drawn.high.y() - drawn.low.y()));
+}
+
+TEST(DrawPlan, CapitalsAndDigitsAreFiveMillimetresHighAlongTheSkin) {
+    for (const char* letter : {"H", "E", "T", "1", "7"}) {
+        const Flat drawn = letter_on_ball(letter);
+        EXPECT_NEAR(drawn.high.y() - drawn.low.y(), 5, 0.1) << letter;
+    }
+    for (const char* letter : {"B", "O", "8", "3"}) {  // round ones overshoot by a fiftieth at each end
+        const Flat drawn = letter_on_ball(letter);
+        EXPECT_NEAR(drawn.high.y() - drawn.low.y(), 5.1, 0.2) << letter;
+    }
+}
+
+TEST(DrawPlan, TextStandsUpForSomebodyAtEachSide) {
+    for (const Vector3d& up : {Vector3d(0, 0, 1), Vector3d(0, 0, -1), Vector3d(0, 1, 0)}) {
+        DrawingSettings settings;
+        settings.up_in_ct = up;
+        OccupiedSkin free;
+        const LabelWish wish{0, {"L", {}}, "", {ball().nearest(on_ball(0.3, 0.2))}, 1, {}, {}, {}};
+        const auto label = place_label(wish, ball(), settings, free);
+        ASSERT_TRUE(label);
+        // The foot of an L is its broad end: the middle of its ink lies below the middle of its height.
+        Vector3d sum = Vector3d::Zero();
+        double low = 1e9, high = -1e9, count = 0;
+        for (const Vector3d& p : label->signs_in_ct[0][0]) {
+            sum += p, ++count;
+            low = std::min(low, p.dot(up)), high = std::max(high, p.dot(up));
+        }
+        EXPECT_LT(sum.dot(up) / count, (low + high) / 2) << up.transpose();
+    }
+}
+
+/// No label's ink or leader lies on the plan's lines or another's label; a leader does not cross either.
+void expect_nothing_overlaps(const PlanDrawing& drawing) {
+    const auto points_of = [](const Label& label) {
+        std::vector<Vector3d> points = label.leader.points_in_ct;
+        for (const auto& sign : label.signs_in_ct)
+            for (const auto& outline : sign) points.insert(points.end(), outline.begin(), outline.end());
+        return points;
+    };
+    OccupiedSkin taken;
+    for (const Stroke& stroke : drawing.strokes)
+        for (const Vector3d& p : stroke.points_in_ct) taken.add(p);
+    for (const Label& label : drawing.labels)
+        if (!label.of_moment)
+            for (const Vector3d& p : points_of(label)) taken.add(p, label.item);
+    for (const Label& label : drawing.labels) {
+        if (label.of_moment) continue;
+        for (const Vector3d& p : points_of(label))
+            ASSERT_FALSE(taken.within(p, 0.5, label.item)) << label.words << " lies over something";
+    }
 }
 
 TEST(DrawPlan, OfACrowdedPlanNoLabelLiesOverAnotherAndTheOthersAreLeftOut) {
@@ -172,16 +250,10 @@ TEST(DrawPlan, OfACrowdedPlanNoLabelLiesOverAnotherAndTheOthersAreLeftOut) {
             {"Hole " + std::to_string(i), on_ball(0.02 * (i % 20), 0.02 * (i / 20.0)), {}, 2, 5, {}});
     const PlanDrawing drawing = draw_plan(plan, ball());
     ASSERT_EQ(drawing.items.size(), 300u);
+    expect_nothing_overlaps(drawing);
     std::set<int> labelled;
-    OccupiedSkin lines;
-    for (const Stroke& stroke : drawing.strokes)
-        if (stroke.kind != StrokeKind::label)
-            for (const Vector3d& p : stroke.points_in_ct) lines.add(p);
-    for (const Stroke& stroke : drawing.strokes) {
-        if (stroke.kind != StrokeKind::label || stroke.width_mm < 0.45) continue;  // leaders may cross
-        labelled.insert(stroke.item);
-        for (const Vector3d& p : stroke.points_in_ct) EXPECT_FALSE(lines.within(p, 1)) << drawing.items[0].label;
-    }
+    for (const Label& label : drawing.labels)
+        if (!label.of_moment) labelled.insert(label.item);
     EXPECT_GT(labelled.size(), 3u);
     EXPECT_LT(labelled.size(), 290u);
     for (int i = 0; i < 300; ++i)
@@ -213,19 +285,9 @@ TEST(DrawPlan, LabelsOverlapNothingOnAHead) {
     const PlanDrawing drawing = draw_plan(forehead_plan(), head);
     ASSERT_EQ(drawing.items.size(), 6u);
     for (const auto& item : drawing.items) EXPECT_TRUE(item.warnings.empty()) << item.warnings.front();
-    double nearest_mm = 1e9;
-    std::size_t text = 0;
-    for (const Stroke& a : drawing.strokes) {
-        if (a.kind != StrokeKind::label) continue;
-        for (const Stroke& b : drawing.strokes) {
-            if (b.kind == StrokeKind::label && b.item == a.item) continue;
-            for (const Vector3d& p : a.points_in_ct)
-                for (const Vector3d& q : b.points_in_ct) nearest_mm = std::min(nearest_mm, (p - q).norm());
-        }
-        ++text;
-    }
-    EXPECT_GT(text, 60u);
-    EXPECT_GT(nearest_mm, 0.9);
+    EXPECT_EQ(std::count_if(drawing.labels.begin(), drawing.labels.end(), [](const Label& l) { return !l.of_moment; }),
+              6);
+    expect_nothing_overlaps(drawing);
 }
 
 TEST(DrawPlan, EveryStrokeLiesOnTheSkinInSmallSteps) {

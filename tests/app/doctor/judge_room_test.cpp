@@ -46,7 +46,8 @@ CameraFigures good_camera() {
     return camera;
 }
 std::vector<DoctorLine> judged(const CameraFigures& camera) {
-    auto lines = judge_camera(camera, "A1", model(744, 576));
+    const CameraModel calibrated = model(744, 576);
+    auto lines = judge_camera(camera, "A1", &calibrated);
     expect_remedies(lines);
     return lines;
 }
@@ -227,6 +228,21 @@ TEST(Doctor, ADelayThatIsNotTheMeasuredOne) {
     delay.problem = "nothing is seen of the projector";
     delay.remedy = "Look whether a lid is on.";
     EXPECT_EQ(worst_of(judge_delay(delay)), Health::stop);
+}
+
+TEST(Doctor, AProjectorTooSlowToFollowAHeadIsSaidThoughItIsAsMeasured) {
+    DelayFigures delay;
+    delay.sigma_ms = 2;
+    for (const auto& [ms, health] : {std::pair{60.0, Health::good}, {110.0, Health::look}, {400.0, Health::stop}}) {
+        delay.measured_ms = ms;
+        delay.told_ms = ms;
+        EXPECT_EQ(worst_of(judge_delay(delay)), health) << ms;
+    }
+}
+
+TEST(Doctor, ACameraOfARigThatCannotBeReadIsNotSaidToBeAnother) {
+    for (const DoctorLine& one : judge_camera(good_camera(), "", nullptr))
+        EXPECT_EQ(one.subject.find("identity"), std::string::npos) << one.said;
 }
 
 TEST(Doctor, ACameraThatRunsAFrameBehindStops) {

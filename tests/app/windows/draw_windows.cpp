@@ -6,7 +6,7 @@
 #include "write_picture.h"
 
 /// draw_windows scene FILE [azimuth elevation], or draw_windows window FILE [width height status [view of the match: 0
-/// to 2]]
+/// to 2 [old, refused, evidence or answer]]]
 int main(int argc, char** argv) {
     using namespace planlight;
     OperatorModel model = test::fake_model();
@@ -16,10 +16,26 @@ int main(int argc, char** argv) {
         test::write_picture(argv[2], render_scene(model.scene, view, 1280, 960));
         return 0;
     }
-    OperatorWindowSettings settings;
+    WindowSettings settings;
     if (argc > 4) settings.width = std::stoi(argv[3]), settings.height = std::stoi(argv[4]);
     if (argc > 5) model = test::fake_model_with(static_cast<StatusKind>(std::stoi(argv[5])));
+    const std::string special = argc > 7 ? argv[7] : "";
+    if (special == "old") {
+        model.left.old_s = model.right.old_s = 7;
+        model.left.note = "Left camera: no frame came for 7 s. Look at its cable and its power.";
+    }
+    if (special == "refused") {
+        model.left.refused = model.left.live;
+        model.right.refused = model.right.live;
+        for (std::size_t i = 3; i < 6; ++i) model.left.refused->found[i].used = false;
+        model.right.refused->found.resize(3);
+        model.status = {StatusKind::refused,
+                        "Only 3 markers were found by both cameras; 5 are needed.",
+                        {"Paste markers where both cameras see them, or turn the light up, and scan again."}};
+    }
     OperatorWindow window(settings);
+    if (special == "evidence") window.open_evidence();
+    if (special == "answer") window.say("Track is not possible now: register first.");
     window.set_view(view);
     if (argc > 6) window.set_fit_view(static_cast<FitView>(std::stoi(argv[6])));
     for (int i = 0; i < 3; ++i) window.frame(model);

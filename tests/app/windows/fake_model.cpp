@@ -45,7 +45,7 @@ GrayImage head_picture(double shift) {
 }
 
 CameraPicture camera(const std::string& title, double shift) {
-    CameraPicture result{title, nullptr, {}, {}};
+    CameraPicture result{title, {}, 0, {}, {}};
     GrayImage picture = head_picture(shift);
     for (int i = 0; i < 6; ++i) {
         const Eigen::Vector2d at(300 + shift + 90 * (i % 3), 190 + 110 * (i / 3) + 20 * (i % 2));
@@ -54,9 +54,9 @@ CameraPicture camera(const std::string& title, double shift) {
                 if (x * x + y * y < 144)
                     picture.at(static_cast<int>(at.x()) + x, static_cast<int>(at.y()) + y) =
                         x * x + y * y < 36 ? 10 : 235;
-        result.found.push_back({at, 6});
+        result.live.found.push_back({at, 6});
     }
-    result.picture = std::make_shared<GrayImage>(std::move(picture));
+    result.live.picture = std::make_shared<GrayImage>(std::move(picture));
     return result;
 }
 
@@ -108,8 +108,10 @@ LandmarkViews landmarks_of(const SceneModel& scene) {
 
 OperatorModel fake_model() {
     OperatorModel model;
-    model.case_title = "Case 0051 · right frontal";
-    model.case_subtitle = "CT 2012-09-14 · plan v3 · 1 osteotomy, 4 boreholes, 1 trajectory";
+    model.case_title = "E. M., 0051";
+    model.case_plan = "Right frontal, version 3 · series of 2012-09-14";
+    model.case_subtitle = "Case 93e8e8b7-93c2 · 1 osteotomy, 4 boreholes, 1 trajectory";
+    model.case_side = "RIGHT";
     model.steps = {StepState::done, StepState::done, StepState::done,
                    StepState::done, StepState::done, StepState::active};
     model.scene = scene();
@@ -162,8 +164,7 @@ OperatorModel fake_model_with(StatusKind kind) {
         model.scene.light = nullptr;
         for (PlanRow& row : model.rows) row.predicted_error_mm = row.light_off_mm = std::nullopt;
         model.figures = {};
-        model.left.picture = nullptr;
-        model.left.found.clear();
+        model.left.live = {};
         model.left.note = "waiting for the first picture";
         model.evidence.clear();
     } else if (kind == StatusKind::refused) {

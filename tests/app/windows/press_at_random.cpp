@@ -149,8 +149,9 @@ int run(const std::string& monitor_name, const Monitor& monitor) {
     const test::TemporaryFolder folder;
     SessionRecorder recorder(std::make_unique<RecordingFile>(folder.path() / "session.plrec"),
                              recording_head(prepared.prepared, {}, RecordMode::all, {}));
-    LiveSession session([&] { return std::make_unique<SimulatedRoom>(volume, prepared.prepared.plan, room, 20); },
-                        prepared.prepared, drawing, {}, &recorder);
+    LiveSession session(
+        [&](const RoomProgress&) { return std::make_unique<SimulatedRoom>(volume, prepared.prepared.plan, room, 20); },
+        prepared.prepared, drawing, {}, &recorder);
     const LightKeeper copy(keeper, session);
     const Eye eye(monitor);
     std::mt19937 random(seed);

@@ -1,6 +1,7 @@
 // Run by press_buttons.sh: shows the operator window with a fake model, writes where its controls are into
-// FOLDER/actions and FOLDER/views (FOLDER/landmarks once these are clicked), and prints every action and landmark,
-// until the window is closed or a minute has passed. Argument: FOLDER.
+// FOLDER/actions and FOLDER/views (FOLDER/landmarks once these are clicked, FOLDER/question once it is asked whether to
+// close it), and prints every action, answer and landmark, until the window is closed or two minutes have passed. A
+// file FOLDER/close makes the window system ask the window to close, as Alt+F4 does. Argument: FOLDER.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -8,13 +9,16 @@
 #include <cstdio>
 #include <fstream>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "app/windows/operator_window.h"
 #include "fake_model.h"
 #include "tests/support/analytic_head.h"
 #include "write_picture.h"
+
+// Last, for its macros.
+#include <X11/Xlib.h>
+#undef Status
 
 namespace {
 
@@ -32,14 +36,52 @@ bool on_the_head(const PointPair& pair) {
            std::abs(test::analytic_head_distance(pair.in_rig)) < 0.5 && pair.in_rig.y() < 0;
 }
 
+/// As a window manager does it for Alt+F4.
+void ask_to_close(const char* title) {
+    Display* const display = XOpenDisplay(nullptr);
+    Window root = 0, parent = 0, *windows = nullptr;
+    unsigned count = 0;
+    XQueryTree(display, DefaultRootWindow(display), &root, &parent, &windows, &count);
+    for (unsigned i = 0; i < count; ++i) {
+        char* name = nullptr;
+        if (XFetchName(display, windows[i], &name) == 0) continue;
+        if (std::string(name) == title) {
+            XEvent event{};
+            event.xclient.type = ClientMessage;
+            event.xclient.window = windows[i];
+            event.xclient.message_type = XInternAtom(display, "WM_PROTOCOLS", False);
+            event.xclient.format = 32;
+            event.xclient.data.l[0] = static_cast<long>(XInternAtom(display, "WM_DELETE_WINDOW", False));
+            XSendEvent(display, windows[i], False, NoEventMask, &event);
+        }
+        XFree(name);
+    }
+    XFree(windows);
+    XCloseDisplay(display);
+}
+
+/// How often the window is drawn while `times` looks find this model.
+std::size_t drawn_in(OperatorWindow& window, const OperatorModel& model, int times) {
+    const std::size_t before = window.frames_drawn();
+    for (int i = 0; i < times; ++i) {
+        window.frame(model);
+        window.rest(0.03);
+    }
+    return window.frames_drawn() - before;
+}
+
 }  // namespace
 
 int main(int, char** argv) {
     using std::chrono::steady_clock;
     const std::string folder = argv[1];
-    const OperatorModel model = test::fake_model();
+    OperatorModel model = test::fake_model();
     OperatorWindow window({"Planlight buttons", 1280, 800, std::nullopt, true});
-    for (int i = 0; i < 3; ++i) window.frame(model);
+    for (int i = 0; i < 30; ++i) window.frame(model);
+    fmt::print("{}\n", drawn_in(window, model, 60) == 0 ? "still" : "drawn without need");
+    model.status.headline += " And more.";
+    fmt::print("{}\n", drawn_in(window, model, 20) == 1 ? "drawn once" : "not drawn once");
+    model.light_on = true;
     test::write_picture(folder + "/operator.ppm", window.screenshot());
     const auto write_places = [&](const std::string& name, const std::vector<std::string>& words) {
         std::ofstream places(folder + "/" + name + ".part");
@@ -58,16 +100,17 @@ int main(int, char** argv) {
             write_place(places, name, window.place_of(action));
         }
     }
-    write_places("views", {"before", "after", "error", "landmarks"});
+    write_places("views", {"before", "after", "error", "landmarks", "evidence"});
     const char* const names[] = {"none", "scan", "register", "track",         "stop",
                                  "dark", "quit", "confirm",  "use landmarks", "check skin"};
     const auto start = steady_clock::now();
     const char* const views[] = {"view after", "view before", "view error"};
     FitView last_view = window.fit_view();
-    bool opened = false;
+    bool opened = false, asked = false, page = false;
+    std::string answer;
     std::size_t clicked = 0;
     double last_azimuth = window.view().azimuth;
-    while (steady_clock::now() - start < std::chrono::seconds(60)) {
+    while (steady_clock::now() - start < std::chrono::seconds(120)) {
         const OperatorAction action = window.frame(model);
         if (action != OperatorAction::none) fmt::print("{}\n", names[static_cast<int>(action)]);
         if (window.view().azimuth != last_azimuth)
@@ -75,6 +118,22 @@ int main(int, char** argv) {
         last_azimuth = window.view().azimuth;
         if (window.fit_view() != last_view) fmt::print("{}\n", views[static_cast<int>(window.fit_view())]);
         last_view = window.fit_view();
+        if (window.answer() != answer && !window.answer().empty()) fmt::print("answer {}\n", window.answer());
+        answer = window.answer();
+        if (const bool now = window.place_of("close")[2] > 0 && window.place_of("undo")[2] == 0; now != page) {
+            page = now;
+            if (page) write_places("page", {"close"});
+            fmt::print("page {}\n", page ? "open" : "closed");
+        }
+        if (std::remove((folder + "/close").c_str()) == 0) ask_to_close("Planlight buttons");
+        if (const bool now = window.place_of("stay")[2] > 0; now != asked) {
+            asked = now;
+            if (asked) {
+                write_places("question", {"close-window", "stay"});
+                test::write_picture(folder + "/question.ppm", window.screenshot());
+            }
+            fmt::print("question {}\n", asked ? "open" : "closed");
+        }
         if (!opened && window.place_of("undo")[2] > 0) {
             opened = true;
             write_places("landmarks", {"undo", "turn", "use", "close", "skin-view", "scan-view"});
@@ -84,7 +143,7 @@ int main(int, char** argv) {
                        pairs.empty() || on_the_head(pairs.back()) ? "on the head" : "off");
         std::fflush(stdout);
         if (action == OperatorAction::quit) return 0;
-        std::this_thread::sleep_for(std::chrono::milliseconds(30));
+        window.rest(0.03);
     }
     return 1;
 }

@@ -8,7 +8,7 @@ if [ "$3" != inside ]; then
   LIBGL_ALWAYS_SOFTWARE=1 exec xvfb-run -a -s "-screen 0 1920x1080x24" "$0" "$program" "$folder" inside
 fi
 failed=0
-timeout 100 "$program" "$folder" >"$folder/said" 2>"$folder/errors" & pid=$!
+timeout 150 "$program" "$folder" >"$folder/said" 2>"$folder/errors" & pid=$!
 trap 'kill $pid 2>/dev/null' EXIT
 for i in $(seq 100); do [ -e "$folder/views" ] && break; kill -0 $pid 2>/dev/null || break; sleep 0.2; done
 [ -e "$folder/views" ] || { echo "FAIL the window did not open"; cat "$folder/errors"; exit 1; }
@@ -24,17 +24,31 @@ wait_for() {  # wait_for WORD WHAT: a line WORD was said since the last look
 }
 silent() { sleep 1; if [ "$(wc -l <"$folder/said")" != "$seen" ]; then echo "FAIL $1: $(tail -1 "$folder/said")"; failed=1; else echo "ok   $1"; fi; seen=$(wc -l <"$folder/said"); }
 click() { xdotool mousemove "$1" "$2"; sleep 0.4; xdotool mousedown 1; sleep 0.4; xdotool mouseup 1; }
-place() { cat "$folder"/{actions,views,landmarks} 2>/dev/null | awk -v n="$1" '$1 == n { print $2, $3 }'; }
+place() { cat "$folder"/{actions,views,landmarks,page,question} 2>/dev/null | awk -v n="$1" '$1 == n { print $2, $3 }'; }
 large_enough() { awk '$4 < 72 || $5 < 72 { print "FAIL " $1 " is " $4 "x" $5 " pixels, less than 72"; bad = 1 } END { exit bad }' "$@" || failed=1; }
 
 seen=0
+wait_for still "what has not changed is not drawn"
+wait_for "drawn once" "what has changed is drawn, once"
 large_enough "$folder/actions" "$folder/views"
 for view in before error after; do click $(place $view); wait_for "view $view" "the view $view"; done
 for control in scan register stop dark confirm; do click $(place $control); wait_for $control "pressing $control"; done
-click $(place track); silent "a button that is not enabled says nothing"
+click $(place track); wait_for "answer Track is not possible now: is running." "a button that is not enabled says why"
+silent "and nothing else"
 xdotool mousemove $(place dark); sleep 0.4; xdotool click 1; wait_for dark "DARK by the shortest click"
-for key in space b Escape; do xdotool key $key; wait_for dark "DARK by the key $key"; done
-xdotool key x; silent "another key says nothing"
+for key in space b Escape Prior; do xdotool key $key; wait_for dark "DARK by the key $key"; done
+for pair in s:scan r:register x:stop c:confirm; do xdotool key ${pair%:*}; wait_for ${pair#*:} "the key ${pair%:*}"; done
+for pair in 1:before 3:error 2:after; do xdotool key ${pair%:*}; wait_for "view ${pair#*:}" "the view ${pair#*:} by its key"; done
+xdotool key t; wait_for "answer Track is not possible now: is running." "the key of a button that is not enabled says why"
+xdotool key k; wait_for "answer The skin is checked while the light follows the patient." "so does one of a button that is not there"
+xdotool key z; silent "another key says nothing"
+click $(place evidence); wait_for "page open" "the evidence by one press"
+for i in $(seq 50); do [ -e "$folder/page" ] && break; sleep 0.2; done
+large_enough "$folder/page"
+xdotool key c; wait_for "answer There is nothing to say yes to now." "what the page hides is not pressed by its key"
+click $(place close); wait_for "page closed" "and closed"
+xdotool key e; wait_for "page open" "the evidence by its key"
+xdotool key e; wait_for "page closed" "and closed by it"
 xdotool mousemove 600 500; sleep 0.4; xdotool mousedown 1; sleep 0.4; xdotool mousemove 700 500; sleep 0.4; xdotool mouseup 1
 wait_for "turned +" "dragging the head to the right shows more of the patient's right"
 silent "and nothing else happens"
@@ -57,5 +71,16 @@ click "$scan_x" $((scan_y + 30)); wait_for "landmarks 3 on the head" "a landmark
 xdotool key space; wait_for dark "DARK by the key while landmarks are clicked"
 click $(place use); wait_for "use landmarks" "using three landmarks"
 click $(place confirm); wait_for confirm "the 3-D view is back"
-xdotool windowclose "$window" 2>/dev/null
+
+touch "$folder/close"; wait_for "question open" "closing the window while light is on asks first"
+for i in $(seq 50); do [ -e "$folder/question" ] && break; sleep 0.2; done
+large_enough "$folder/question"
+xdotool key space; wait_for dark "DARK works while it is asked"
+click $(place dark); wait_for dark "and by the mouse"
+xdotool key Return; silent "Enter answers nothing"
+click $(place stay); wait_for "question closed" "to stay"
+touch "$folder/close"; wait_for "question open" "asked again"
+xdotool key n; wait_for "question closed" "to stay, by its key"
+touch "$folder/close"; wait_for "question open" "and again"
+xdotool key y; wait_for quit "to close"
 exit $failed

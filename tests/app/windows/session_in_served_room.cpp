@@ -18,13 +18,11 @@
 #include "app/session.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/plan/plan_file.h"
-#include "planning_io/types/error.h"
 #include "planning_io/types/statistics.h"
 #include "planning_io/volume/read_volume.h"
 #include "projection/monitor_picture.h"
-#include "registration/simulation/serve/served_room.h"
 #include "root_window.h"
-#include "tests/support/test_data.h"
+#include "served_room_test.h"
 
 namespace {
 
@@ -173,14 +171,7 @@ int run(const std::string& program, unsigned seeds) {
             without = operate(the_case, session, rig.clock(), truth);
         }
         simulation::SimulatedRig rig(volume, points_of(the_case.plan), room_of(seed, prepared.threshold));
-        simulation::ServeSettings serve;
-        serve.left.serial = "SIM-L";
-        serve.right.serial = "SIM-R";
-        serve.right.address = "127.0.0.2";
-        // Clocks of their own: hours apart, drifting by 100 ppm.
-        serve.left.clock_offset = 17h;
-        serve.left.clock_drift = 100e-6;
-        serve.right.clock_drift = -50e-6;
+        const simulation::ServeSettings serve = test::cameras_with_their_own_clocks();
         std::unique_ptr<simulation::ServedRoom> served;
         try {
             served = std::make_unique<simulation::ServedRoom>(
@@ -224,10 +215,7 @@ int run(const std::string& program, unsigned seeds) {
                    served->made(), served->late(), pairs.pairs, pairs.left_alone, pairs.right_alone);
         print("in process", without);
         print("by wire   ", with);
-        if (10 * served->late() > served->made()) {
-            fmt::print("skipped: this machine is too busy to serve the room in time\n");
-            return 77;
-        }
+        if (test::too_busy_to_serve(*served)) return test::kSkipped;
         expect(with.found, "found through the wire");
         expect(with.found && std::abs(with.light_p95_mm - without.light_p95_mm) <= 0.1,
                "the light at rest is as true as without a wire, within 0.1 mm");
@@ -239,17 +227,7 @@ int run(const std::string& program, unsigned seeds) {
 }  // namespace
 
 int main() {
-    if (!test::example_patient()) {
-        fmt::print("skipped: the example patient is not installed\n");
-        return 77;
-    }
-    const char *program = std::getenv("PLANLIGHT"), *seeds = std::getenv("SEEDS");
-    std::setvbuf(stdout, nullptr, _IOLBF, 0);
-    [[maybe_unused]] const int added = std::system("ip address add 127.0.0.2/8 dev lo 2>/dev/null");
-    try {
-        return run(program, seeds ? static_cast<unsigned>(std::atoi(seeds)) : 1);
-    } catch (const planlight::Error& error) {
-        fmt::print("FAIL {} {}\n", error.what(), error.remedy);
-        return 1;
-    }
+    const char* seeds = std::getenv("SEEDS");
+    return planlight::test::main_in_served_room(
+        [&](const std::string& program) { return run(program, seeds ? static_cast<unsigned>(std::atoi(seeds)) : 1); });
 }

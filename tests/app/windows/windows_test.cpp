@@ -6,10 +6,12 @@
 #include <limits>
 #include <vector>
 
+#include "app/windows/camera_picture.h"
 #include "app/windows/distance_colours.h"
 #include "app/windows/fonts.h"
 #include "app/windows/layout.h"
 #include "app/windows/number_text.h"
+#include "app/windows/operator_keys.h"
 #include "app/windows/orientation.h"
 #include "app/windows/panels.h"
 #include "app/windows/scene_view.h"
@@ -106,7 +108,7 @@ bool overlap(const Box& a, const Box& b) {
 
 TEST(Layout, NothingOverlapsOrLeavesTheWindowAtAnySize) {
     for (int width = 1280; width <= 3840; width += 64)
-        for (int height = 800; height <= 2160; height += 56) {
+        for (int height = 720; height <= 2160; height += 48) {
             const WindowLayout p = layout_of(width, height);
             const std::vector<Box> all{p.title,        p.steps, p.dark,    p.scene, p.left_camera,
                                        p.right_camera, p.table, p.buttons, p.banner};
@@ -122,6 +124,57 @@ TEST(Layout, NothingOverlapsOrLeavesTheWindowAtAnySize) {
             }
             EXPECT_GE((p.buttons.width - 3 * p.gap) / 4, 72);
         }
+}
+
+TEST(CameraPicture, IsShrunkToTheMeanOfItsPixels) {
+    GrayImage picture(5, 4, 0);
+    picture.at(0, 0) = 40;
+    picture.at(1, 1) = 20;
+    picture.at(4, 0) = 255;  // left over at the edge
+    const GrayImage small = shrunk(picture, 2);
+    EXPECT_EQ(small.width, 2);
+    EXPECT_EQ(small.height, 2);
+    EXPECT_EQ(small.at(0, 0), 15);
+    EXPECT_EQ(small.at(1, 0), 0);
+}
+
+TEST(CameraPicture, IsBrightenedUntilItsBrightestAreWhiteButNoiseStaysDark) {
+    GrayImage dim(100, 100, 10);
+    for (int x = 0; x < 100; ++x) dim.at(x, 0) = 50;  // one per cent
+    EXPECT_EQ(brightened(dim).at(0, 0), 255);
+    EXPECT_EQ(brightened(dim).at(0, 1), 51);
+    GrayImage noise(100, 100, 0);
+    for (int x = 0; x < 100; ++x) noise.at(x, x) = 2;
+    EXPECT_LE(brightened(noise).at(0, 0), 32) << "at most 16 times brighter";
+}
+
+TEST(OperatorKeys, EveryMeaningHasAKeyThatIsShownAndDarkHasFour) {
+    for (int meaning = 1; meaning <= static_cast<int>(KeyMeaning::stay); ++meaning)
+        EXPECT_NE(key_text(static_cast<KeyMeaning>(meaning)), "") << meaning;
+    EXPECT_EQ(key_text(KeyMeaning::dark), "Space · B · Esc · PgUp");
+    EXPECT_EQ(meaning_of(' '), KeyMeaning::dark);
+    EXPECT_EQ(meaning_of('Z'), KeyMeaning::none);
+}
+
+// What is drawn is decided by this comparison: a model that differs anywhere must not be taken for the former one.
+TEST(OperatorModelComparison, NoticesWhatAPersonWouldSee) {
+    const OperatorModel model;
+    const auto differs = [&](auto change) {
+        OperatorModel other = model;
+        change(other);
+        return !(other == model);
+    };
+    EXPECT_TRUE(model == OperatorModel(model));
+    EXPECT_TRUE(differs([](auto& m) { m.status.headline = "x"; }));
+    EXPECT_TRUE(differs([](auto& m) { m.status.share = 0.5; }));
+    EXPECT_TRUE(differs([](auto& m) { m.left.old_s = 3; }));
+    EXPECT_TRUE(differs([](auto& m) { m.right.live.picture = std::make_shared<GrayImage>(2, 2); }));
+    EXPECT_TRUE(differs([](auto& m) { m.figures.overlay_error_mm = 0.1; }));
+    EXPECT_TRUE(differs([](auto& m) { m.scene.light = std::make_shared<std::vector<LightLine>>(); }));
+    EXPECT_TRUE(differs([](auto& m) { m.scene.ct_from_rig.translation().x() = 1e-9; }));
+    EXPECT_TRUE(differs([](auto& m) { m.fit.emplace(); }));
+    EXPECT_TRUE(differs([](auto& m) { m.stop.enabled = true; }));
+    EXPECT_TRUE(differs([](auto& m) { m.rows.emplace_back(); }));
 }
 
 /// Mean column and row of the pixels for which `like` is true, as fractions of the picture; their count.

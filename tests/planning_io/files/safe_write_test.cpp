@@ -37,5 +37,25 @@ TEST(SafeWrite, AFailedWriteLeavesTheOldFileAndNothingElse) {
     EXPECT_THROW(read_whole(folder.path() / "none"), InputError);
 }
 
+TEST(SafeWrite, AFileForItsOwnerIsSoFromItsFirstByteOnAlsoInPlaceOfOneForAll) {
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.path() / "face.html";
+    write_safely(file, "old");
+    fs::permissions(file, fs::perms(0644));
+    const auto perms = [](const fs::path& of) { return fs::status(of).permissions(); };
+    write_safely(
+        file,
+        [&](std::ostream& out) {
+            out << "a face" << std::flush;
+            for (const auto& entry : fs::directory_iterator(folder.path()))
+                if (entry.path() != file) {
+                    EXPECT_EQ(perms(entry.path()), fs::perms(0600)) << "while it is written";
+                }
+        },
+        ReadableBy::owner);
+    EXPECT_EQ(read_whole(file), "a face");
+    EXPECT_EQ(perms(file), fs::perms(0600));
+}
+
 }  // namespace
 }  // namespace planlight

@@ -86,6 +86,20 @@ TEST(Recording, IsReadableByItsOwnerOnlyAndNeverWrittenOver) {
     EXPECT_THROW(RecordingFile{file}, DiskError);
 }
 
+TEST(Recording, WhoseFolderCannotBeMadeIsRefusedAsTheDisksDoing) {
+    const TemporaryFolder folder;
+    // A name that no file system takes stands for a folder that nobody may look into: root may.
+    EXPECT_THROW(RecordingFile{folder.path() / std::string(300, 'x') / "session.plrec"}, DiskError);
+    put_bytes(folder.path() / "file", "x");
+    EXPECT_THROW(RecordingFile{folder.path() / "file" / "session.plrec"}, DiskError);
+    try {
+        RecordingFile{folder.path() / "file"};
+        ADD_FAILURE();
+    } catch (const DiskError& fault) {
+        EXPECT_EQ(fault.remedy.find("Make room"), std::string::npos) << "there is room: " << fault.remedy;
+    }
+}
+
 TEST(Recording, KeepsEveryPixelAndTimeOfAFrame) {
     for (const auto& frame : {noisy_frame(3), noisy_frame(4, 1, 1), StereoFrame{}}) {
         const StereoFrame again = unpack_frame(pack_frame(frame), "x");
@@ -161,10 +175,30 @@ TEST(Recording, AChunkTakenOutOrExchangedIsNoticed) {
     RecordingReader taken_out(file);
     EXPECT_EQ(read_all(taken_out).size(), 1u);
     EXPECT_EQ(taken_out.end(), RecordingEnd::damaged);
+    put_bytes(file, recording_header() + chunk(0) + chunk(2));
+    RecordingReader before_the_last(file);
+    EXPECT_EQ(read_all(before_the_last).size(), 1u);
+    EXPECT_EQ(before_the_last.end(), RecordingEnd::damaged) << "no cut: the last chunk is whole";
     put_bytes(file, recording_header() + chunk(1) + chunk(0));
     RecordingReader exchanged(file);
     EXPECT_EQ(read_all(exchanged).size(), 0u);
     EXPECT_EQ(exchanged.end(), RecordingEnd::damaged);
+}
+
+TEST(Recording, ADiskThatDoesNotGiveItsBytesIsNoCut) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "session.plrec";
+    write_recording(file, 300);
+    RecordingReader reader(file);
+    // What was there when it was opened is gone, as it is behind a bad block or a network that broke.
+    fs::resize_file(file, fs::file_size(file) / 2);
+    try {
+        read_all(reader);
+        ADD_FAILURE() << "read to " << reader.bytes_read() << " of " << reader.bytes();
+    } catch (const DiskError& fault) {
+        EXPECT_NE(std::string(fault.what()).find("cannot be read at byte"), std::string::npos) << fault.what();
+    }
+    EXPECT_EQ(reader.end(), RecordingEnd::open) << "nothing is known of its end";
 }
 
 TEST(Recording, HostileBytesGiveNoChunkOrAWholeOneAndEndSoon) {
@@ -221,18 +255,23 @@ TEST(Recording, AFrameThatLiesAboutItsSizeIsRefusedWithoutAskingForItsMemory) {
 class FakeDisk final : public RecordingSink {
 public:
     struct State {
-        std::atomic<bool> still{false}, full{false};
-        std::atomic<std::size_t> appended{0};
+        std::atomic<bool> still{false}, full{false}, sync_stands_still{false}, sync_fails{false};
+        std::atomic<std::size_t> appended{0}, room{1000000000}, syncs{0};
         std::string bytes;
     };
     explicit FakeDisk(State& state) : state_(state) {}
     void append(std::string_view bytes) override {
         while (state_.still) std::this_thread::sleep_for(1ms);
-        if (state_.full) throw DiskError("x", "is full", "Make room.");
+        if (state_.full || bytes.size() > state_.room) throw DiskError("x", "is full", "Make room.");
+        state_.room -= bytes.size();
         state_.bytes += bytes;
         ++state_.appended;
     }
-    void sync() override {}
+    void sync() override {
+        ++state_.syncs;
+        while (state_.sync_stands_still) std::this_thread::sleep_for(1ms);
+        if (state_.sync_fails) throw DiskError("x", "cannot be synced to the disk", "Look at the disk.");
+    }
 
 private:
     State& state_;
@@ -292,6 +331,89 @@ TEST(Recording, AFullDiskIsSaidAndTheRecordingGoesOnWhenThereIsRoomAgain) {
     put_bytes(file, disk.bytes);
     RecordingReader reader(file);
     EXPECT_EQ(read_all(reader).size(), 2u);
+}
+
+TEST(Recording, WhatComesWhileTheDiskIsSyncedAtTheEndIsWritten) {
+    const TemporaryFolder folder;
+    FakeDisk::State disk;
+    RecordingWriterSettings settings;
+    settings.sync_every = 1ms;
+    RecordingWriter writer(std::make_unique<FakeDisk>(disk), settings);
+    disk.sync_stands_still = true;
+    writer.add({chunk_types::kEvent, Instant(0), text(0)});
+    while (disk.syncs == 0) std::this_thread::sleep_for(1ms);
+    // The writer's thread has found nothing more to write, and waits for the disk.
+    for (std::size_t i = 1; i < 20; ++i) writer.add({chunk_types::kEvent, Instant(i), text(i)});
+    std::thread ending([&] { writer.finish(Instant(20)); });
+    // From when on nothing is taken the end has begun.
+    while (writer.add({chunk_types::kEvent, Instant(21), "later"})) std::this_thread::sleep_for(1ms);
+    disk.sync_stands_still = false;
+    ending.join();
+    const fs::path file = folder.path() / "session.plrec";
+    put_bytes(file, disk.bytes);
+    RecordingReader reader(file);
+    const auto chunks = read_all(reader);
+    ASSERT_GE(chunks.size(), 21u);
+    for (std::size_t i = 0; i < 20; ++i) EXPECT_EQ(chunks[i].payload, text(i));
+    EXPECT_EQ(reader.end(), RecordingEnd::whole);
+}
+
+TEST(Recording, OfWhichTheDiskDidNotTakeAPieceAtTheEndIsCutThereAndNeverWhole) {
+    const TemporaryFolder folder;
+    FakeDisk::State disk;
+    RecordingState state;
+    {
+        RecordingWriter writer(std::make_unique<FakeDisk>(disk));
+        writer.add({chunk_types::kEvent, Instant(0), "before"});
+        while (writer.state().written_chunks < 1) std::this_thread::sleep_for(1ms);
+        disk.room = 200;  // for the last word, and not for the frame before it
+        writer.add_picture(chunk_types::kFrame, Instant(1), 4800, [] { return pack_frame(noisy_frame(1)); });
+        writer.add({chunk_types::kEvent, Instant(2), "behind a gap"});
+        state = writer.finish(Instant(3));
+    }
+    const fs::path file = folder.path() / "session.plrec";
+    put_bytes(file, disk.bytes);
+    RecordingReader reader(file);
+    EXPECT_EQ(read_all(reader).size(), 1u) << "what stands behind a gap looks like its neighbour";
+    EXPECT_EQ(reader.end(), RecordingEnd::cut);
+    EXPECT_EQ(state.dropped_chunks, 3u);
+    EXPECT_EQ(state.problem, "x: is full");
+}
+
+TEST(Recording, ItsLastWordCountsAllThatWasDroppedWhenItIsWritten) {
+    const TemporaryFolder folder;
+    FakeDisk::State disk;
+    RecordingWriterSettings settings;
+    settings.most_waiting_bytes = 10000;
+    {
+        RecordingWriter writer(std::make_unique<FakeDisk>(disk), settings);
+        writer.add_picture(chunk_types::kFrame, Instant(0), 100000, [] { return text(0); });  // never has room
+        writer.add({chunk_types::kEvent, Instant(1), text(1)});
+        writer.add_picture(chunk_types::kFrame, Instant(2), 50, []() -> std::string { throw std::bad_alloc(); });
+        EXPECT_EQ(writer.finish(Instant(3)).dropped_chunks, 2u);
+    }
+    const fs::path file = folder.path() / "session.plrec";
+    put_bytes(file, disk.bytes);
+    RecordingReader reader(file);
+    const auto chunks = read_all(reader);
+    ASSERT_EQ(chunks.size(), 4u);
+    EXPECT_EQ(chunks[0].payload, R"({"chunks": 1, "bytes": 100000})");
+    EXPECT_EQ(chunks[2].payload, R"({"chunks": 1, "bytes": 50})") << "said where it lacks";
+    EXPECT_EQ(chunks[3].payload, R"({"dropped_chunks": 2, "dropped_bytes": 100050})");
+    EXPECT_EQ(reader.end(), RecordingEnd::whole);
+}
+
+TEST(Recording, ASyncThatFailedIsToldForGood) {
+    FakeDisk::State disk;
+    RecordingWriterSettings settings;
+    settings.sync_every = 1ms;
+    RecordingWriter writer(std::make_unique<FakeDisk>(disk), settings);
+    disk.sync_fails = true;
+    writer.add({chunk_types::kEvent, Instant(0), text(0)});
+    while (writer.state().sync_problem.empty()) std::this_thread::sleep_for(1ms);
+    disk.sync_fails = false;
+    writer.add({chunk_types::kEvent, Instant(1), text(1)});
+    EXPECT_EQ(writer.finish(Instant(2)).sync_problem, "x: cannot be synced to the disk");
 }
 
 TEST(Recording, ALimitOnTheFilesSizeLeavesWholeChunksAndEndsNothing) {

@@ -135,6 +135,11 @@ TEST(DeviceClock, AClockThatRunsWrongIsToldAndAGoodOneNever) {
             told = clock.runs_wrong();
         }
         EXPECT_NEAR(told, wrong, 0.004);
+        for (int frame = 0; frame < 100; ++frame, t += milliseconds(40)) {
+            if (frame % 7 > 4) continue;  // lost on the way
+            clock.add(source.by_device(t), t + source.late());
+            EXPECT_NE(clock.runs_wrong(), 0) << "frames that are missing acquit nobody, frame " << frame;
+        }
     }
 }
 

@@ -132,7 +132,8 @@ TEST(GenicamCamera, ASilentCameraIsAFaultAndComesBackByItself) {
     EXPECT_EQ(opened.frames().counts().lost_connections, 1u);
 }
 
-TEST(GenicamCamera, AnExposureThatSomebodyElseChangedIsAFault) {
+/// By `wanted` ms of exposure as they are told, or by what the camera had when it was opened.
+void change_exposure_of_a_camera(std::optional<double> wanted_ms) {
     const OneAtATime turn;
     ServedCamera camera(small_camera());
     const Source source(camera);
@@ -140,7 +141,7 @@ TEST(GenicamCamera, AnExposureThatSomebodyElseChangedIsAFault) {
     const SteadyClock clock;
     GenicamSettings settings;
     settings.device = "T-17";
-    settings.exposure_ms = 8;
+    settings.exposure_ms = wanted_ms;
     GenicamCamera opened(settings, bell, clock);
     ASSERT_TRUE(within(milliseconds(10000), [&] { return !opened.frames().take_all().empty(); }));
     camera.change_exposure(milliseconds(4));
@@ -151,9 +152,17 @@ TEST(GenicamCamera, AnExposureThatSomebodyElseChangedIsAFault) {
         return fault.has_value();
     }));
     EXPECT_NE(problem.find("its exposure was changed from 8.00 to 4.00 ms"), std::string::npos) << problem;
-    EXPECT_TRUE(within(milliseconds(20000), [&] {
-        return !opened.frames().fault() && !opened.frames().take_all().empty();
-    })) << "it is set again";
+    std::vector<CameraFrame> frames;
+    ASSERT_TRUE(within(milliseconds(20000), [&] {
+        frames = opened.frames().take_all();
+        return !opened.frames().fault() && !frames.empty();
+    }));
+    EXPECT_EQ(frames.back().exposure, milliseconds(8)) << "it is set again";
+}
+
+TEST(GenicamCamera, AnExposureThatSomebodyElseChangedIsAFaultAndSetAgain) {
+    change_exposure_of_a_camera(8);
+    change_exposure_of_a_camera(std::nullopt);
 }
 
 }  // namespace

@@ -146,6 +146,16 @@ TEST_F(PairedCamerasTest, WhoseFramesLosePacketsIsNamedWhetherAnyComeOrNone) {
     EXPECT_EQ(cameras->doubt(), "right camera: its pictures come 40 ms late");
 }
 
+TEST_F(PairedCamerasTest, ACameraThatIsFarBehindIsNamedAndNoOtherCause) {
+    for (int i = 0; i < 4; ++i) {
+        left->expose(40 * i, 1);
+        right->expose(40 * i + 500, 1);
+    }
+    left->frames().count_incomplete();  // one lost packet is not why
+    right->frames().note_clock(0, {}, milliseconds(500));
+    EXPECT_EQ(refusal(), "right camera: its pictures come 500 ms late");
+}
+
 TEST_F(PairedCamerasTest, NoOldPictureIsTakenForALiveOne) {
     for (int i = 0; i < 50; ++i) {
         left->expose(40 * i, static_cast<std::uint8_t>(i));

@@ -117,8 +117,8 @@ TEST(PosePredictor, PredictsNothingBeforeAMeasurementAndNothingPastItsReach) {
     predictor.add(TrackedPose{}, head_centre());
     EXPECT_FALSE(predictor.rig_from_patient_at({}));
     predictor.add(measured(RigidTransform::Identity(), 1, random), head_centre());
-    EXPECT_TRUE(predictor.rig_from_patient_at(milliseconds(1120)));
-    EXPECT_FALSE(predictor.rig_from_patient_at(milliseconds(1121)));
+    EXPECT_TRUE(predictor.rig_from_patient_at(milliseconds(1160)));
+    EXPECT_FALSE(predictor.rig_from_patient_at(milliseconds(1161)));
     predictor.reset();
     EXPECT_FALSE(predictor.rig_from_patient_at(milliseconds(1000)));
 }

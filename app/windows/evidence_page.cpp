@@ -1,0 +1,81 @@
+#include "app/windows/evidence_page.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "app/windows/number_text.h"
+#include "app/windows/operator_keys.h"
+#include "app/windows/panels.h"
+
+namespace planlight {
+namespace {
+
+std::string words_of(const PlanRow& row) {
+    std::string words = row.name;
+    if (row.depth_mm) words += ", " + number_text(row.depth_mm, "mm") + " deep";
+    words += ". ";
+    words += row.predicted_error_mm
+                 ? "By the match it lies within " + number_text(row.predicted_error_mm, "mm") + " (95 %)."
+                 : "How far off it may be is not known yet.";
+    if (row.light_off_mm) words += " Its light was seen " + number_text(row.light_off_mm, "mm") + " beside its place.";
+    return words;
+}
+
+ImU32 colour_for(const PlanRow& row, const OperatorModel& model) {
+    const double worst = std::max(std::abs(row.predicted_error_mm.value_or(0)), std::abs(row.light_off_mm.value_or(0)));
+    return worst > model.stop_above_mm ? theme::kRed : worst > model.warn_above_mm ? theme::kAmber : theme::kText;
+}
+
+}  // namespace
+
+float EvidencePage::draw_items(const Pen& pen, Box box, const OperatorModel& model) const {
+    const float from = box.y, swatch = 30 * pen.scale, size = 8 * pen.scale;
+    box.y += pen.paragraph(pen.fonts.title, "The plan", box, theme::kText);
+    for (const PlanRow& row : model.rows) {
+        const float middle = box.y + line_height(pen.fonts.body) / 2;
+        pen.list->AddRectFilled({box.x, middle - size}, {box.x + 2 * size, middle + size}, colour_of(row.colour),
+                                3 * pen.scale);
+        box.y += pen.paragraph(pen.fonts.body, words_of(row), {box.x + swatch, box.y, box.width - swatch, 1e5F},
+                               colour_for(row, model)) +
+                 6 * pen.scale;
+    }
+    return box.y - from;
+}
+
+float EvidencePage::draw_sentences(const Pen& pen, Box box, const OperatorModel& model) const {
+    const float from = box.y;
+    box.height = 1e5F;
+    box.y += pen.paragraph(pen.fonts.title, "What it is judged by", box, theme::kText);
+    if (model.evidence.empty())
+        box.y += pen.paragraph(pen.fonts.body, "Nothing yet: there is no match.", box, theme::kQuiet);
+    for (const std::string& sentence : model.evidence)
+        box.y += pen.paragraph(pen.fonts.body, sentence, box, theme::kText) + 8 * pen.scale;
+    return box.y - from;
+}
+
+bool EvidencePage::draw(const Pen& pen, const Box& place, const OperatorModel& model) {
+    pen.panel(place);
+    const float pad = 22 * pen.scale, height = std::max(72.0F, 76 * pen.scale);
+    close_ = {place.right() - pad - 260 * pen.scale, place.bottom() - pad / 2 - height, 260 * pen.scale, height};
+    const Box words{place.x + pad, place.y + pad, place.width - 2 * pad, close_.y - place.y - 1.5F * pad};
+
+    ImGui::SetCursorScreenPos({words.x, words.y});
+    ImGui::InvisibleButton("evidence page", {words.width, words.height});
+    const ImGuiIO& io = ImGui::GetIO();
+    if (ImGui::IsItemActive()) scrolled_ -= io.MouseDelta.y;
+    if (ImGui::IsItemHovered()) scrolled_ -= 60 * pen.scale * io.MouseWheel;
+    scrolled_ = std::clamp(scrolled_, 0.0F, std::max(0.0F, height_ - words.height));
+
+    pen.list->PushClipRect({words.x, words.y}, {words.right(), words.bottom()}, true);
+    Box at{words.x, words.y - scrolled_, words.width, 1e5F};
+    const float items = draw_items(pen, at, model) + 14 * pen.scale;
+    at.y += items;
+    height_ = items + draw_sentences(pen, at, model);
+    pen.list->PopClipRect();
+    if (height_ > words.height)
+        pen.line(pen.fonts.small, "Drag, or turn the mouse wheel, for the rest.", place.x + pad,
+                 close_.y + close_.height / 2, close_.x - place.x - 2 * pad, theme::kAmber);
+    return button(pen, close_, "Close", {true, {}}, {false, false, key_text(KeyMeaning::evidence)});
+}
+
+}  // namespace planlight

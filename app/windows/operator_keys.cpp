@@ -1,0 +1,54 @@
+#include "app/windows/operator_keys.h"
+
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
+namespace planlight {
+namespace {
+
+struct Key {
+    int code;
+    KeyMeaning meaning;
+    const char* shown;  ///< empty: it works and is not shown
+};
+
+constexpr Key kKeys[] = {
+    {GLFW_KEY_SPACE, KeyMeaning::dark, "Space"},
+    {GLFW_KEY_B, KeyMeaning::dark, "B"},
+    {GLFW_KEY_ESCAPE, KeyMeaning::dark, "Esc"},
+    {GLFW_KEY_PAGE_UP, KeyMeaning::dark, "PgUp"},
+    {GLFW_KEY_ENTER, KeyMeaning::next, "Enter"},
+    {GLFW_KEY_KP_ENTER, KeyMeaning::next, ""},
+    {GLFW_KEY_PAGE_DOWN, KeyMeaning::next, "PgDn"},
+    {GLFW_KEY_S, KeyMeaning::scan, "S"},
+    {GLFW_KEY_R, KeyMeaning::do_register, "R"},
+    {GLFW_KEY_T, KeyMeaning::track, "T"},
+    {GLFW_KEY_X, KeyMeaning::stop, "X"},
+    {GLFW_KEY_C, KeyMeaning::confirm, "C"},
+    {GLFW_KEY_K, KeyMeaning::check_skin, "K"},
+    {GLFW_KEY_L, KeyMeaning::landmarks, "L"},
+    {GLFW_KEY_E, KeyMeaning::evidence, "E"},
+    {GLFW_KEY_1, KeyMeaning::before, "1"},
+    {GLFW_KEY_2, KeyMeaning::after, "2"},
+    {GLFW_KEY_3, KeyMeaning::error, "3"},
+    {GLFW_KEY_Y, KeyMeaning::close_window, "Y"},
+    {GLFW_KEY_N, KeyMeaning::stay, "N"},
+};
+
+}  // namespace
+
+KeyMeaning meaning_of(int key) {
+    for (const Key& known : kKeys)
+        if (known.code == key) return known.meaning;
+    return KeyMeaning::none;
+}
+
+std::string key_text(KeyMeaning meaning) {
+    std::string text;
+    for (const Key& known : kKeys)
+        if (known.meaning == meaning && *known.shown != '\0')
+            text += (text.empty() ? "" : " · ") + std::string(known.shown);
+    return text;
+}
+
+}  // namespace planlight

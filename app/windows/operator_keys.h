@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+
+namespace planlight {
+
+/// Every key of the operator window, in one place: a foot pedal is a keyboard to the system.
+enum class KeyMeaning {
+    none,
+    dark,
+    next,  ///< the press that leads on
+    scan,
+    do_register,
+    track,
+    stop,
+    confirm,
+    check_skin,
+    landmarks,
+    evidence,
+    before,
+    after,
+    error,
+    close_window,  ///< while that is asked
+    stay,
+};
+
+/// Of a key as GLFW names it (`GLFW_KEY_...`).
+KeyMeaning meaning_of(int key);
+
+/// How that key is shown in a button: "S"; several with a dot between them.
+std::string key_text(KeyMeaning meaning);
+
+}  // namespace planlight

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "projection/lettering.h"
+
+namespace planlight {
+
+/// What a label says: a name, and figures with their units.
+struct LabelText {
+    std::string name;
+    std::vector<std::string> figures;  ///< "⌀7", "6 mm deep": each whole on one line
+};
+
+/// A label's lines, laid out: (0,0) in the middle, x along the lines, y up, mm.
+struct TextBlock {
+    struct Line {
+        TextOutline text;
+        Eigen::Vector2d begins_mm;  ///< its baseline's left end
+    };
+    std::vector<Line> lines;
+    double width_mm = 0, height_mm = 0;  ///< of the ink
+    std::string words;                   ///< as it can be read, lines parted by a line feed
+};
+
+/// The longest line of a label, mm: its ends are so far from its middle that the map to the skin is still true there.
+inline constexpr double kMaxLine_mm = 44;
+
+/// Lines of a label with capitals so high. A name too long for a line stands on two, and is shortened in the middle
+/// where that is not enough; the first figure stands beside a short name; figures are never parted. Nothing when a font
+/// lacks a sign of it.
+TextBlock lay_out(const LabelText& text, double text_height_mm, const Lettering& letters = lettering());
+
+/// The name as a label has it: whole, or shortened in the middle ("Osteotomie lin…temporal").
+std::string shortened(const std::string& name, double text_height_mm, const Lettering& letters = lettering());
+
+}  // namespace planlight

@@ -1,0 +1,197 @@
+#include "projection/place_all_labels.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <map>
+
+namespace planlight {
+namespace {
+
+using Eigen::Vector3d;
+using Point = SkinSurface::Point;
+
+/// What a label says: all, the name alone, or the item's number in the plan where there is no room for its name.
+enum class Form { whole, name, number };
+constexpr std::array kShorter{Form::name, Form::number};
+
+LabelWish in_form(LabelWish wish, Form form) {
+    if (form == Form::whole || wish.text.name.empty()) return wish;
+    wish.text.figures.clear();
+    if (form == Form::number && !wish.number.empty()) wish.text.name = wish.number;
+    return wish;
+}
+
+double length_mm(const Stroke& stroke) {
+    double length = 0;
+    for (std::size_t i = 0; i + 1 < stroke.points_in_ct.size(); ++i)
+        length += (stroke.points_in_ct[i + 1] - stroke.points_in_ct[i]).norm();
+    if (stroke.closed) length += (stroke.points_in_ct.front() - stroke.points_in_ct.back()).norm();
+    return length;
+}
+
+/// Of the ink on the skin; holes count against it.
+double area_mm2(const Label& label) {
+    double area = 0;
+    for (const auto& sign : label.signs_in_ct) {
+        Vector3d twice = Vector3d::Zero();
+        for (const auto& outline : sign)
+            for (std::size_t i = 0; i < outline.size(); ++i)
+                twice += (outline[i] - outline[0]).cross(outline[(i + 1) % outline.size()] - outline[0]);
+        area += twice.norm() / 2;
+    }
+    return area + length_mm(label.leader) * label.leader.width_mm;
+}
+
+class AllLabels {
+public:
+    AllLabels(std::vector<LabelWish> wishes, const SkinSurface& skin, const DrawingSettings& settings,
+              PlanDrawing& drawing)
+        : wishes_(std::move(wishes)), skin_(skin), settings_(settings), drawing_(drawing) {
+        occupy_plan();
+        face_the_light();
+        tell_of_others();
+        // Points can be labelled in fewer places than lines: they choose first.
+        std::stable_sort(wishes_.begin(), wishes_.end(),
+                         [](const auto& a, const auto& b) { return a.anchors.size() < b.anchors.size(); });
+    }
+    void place();
+
+private:
+    void occupy_plan();
+    void face_the_light();
+    void tell_of_others();
+    bool put(const LabelWish& wish);
+    bool put_whole_first();
+    void put_numbers_first();
+    void keep_to_share();
+    void put_of_moment();
+
+    std::vector<LabelWish> wishes_;
+    const SkinSurface& skin_;
+    const DrawingSettings& settings_;
+    PlanDrawing& drawing_;
+    OccupiedSkin plan_, occupied_;
+    std::map<int, Label> put_;
+};
+
+void AllLabels::occupy_plan() {
+    for (const Stroke& stroke : drawing_.strokes)
+        for (const Vector3d& p : stroke.points_in_ct) plan_.add(p);
+    for (const Vector3d& marker : settings_.keep_clear_in_ct) {
+        const Point centre = skin_.nearest(marker);
+        for (double r = 1; r <= settings_.keep_clear_radius_mm; r += 1)
+            for (const Point& p : circle(skin_, centre, r, 1).points) plan_.add(p.p_in_ct);
+    }
+}
+
+/// The projector stands where the whole plan can be lit: labels keep to skin that faces as the plan does on average.
+void AllLabels::face_the_light() {
+    Vector3d facing = Vector3d::Zero();
+    for (const Stroke& stroke : drawing_.strokes)
+        for (const Vector3d& n : stroke.normals_in_ct) facing += n;
+    if (facing.norm() > 1e-9)
+        for (LabelWish& w : wishes_) w.facing_in_ct = facing.normalized();
+}
+
+void AllLabels::tell_of_others() {
+    constexpr double kFar_mm = 150;
+    for (LabelWish& wish : wishes_)
+        for (const LabelWish& other : wishes_)
+            if (other.item != wish.item && other.anchors.size() == 1 &&
+                (other.anchors[0].p_in_ct - wish.anchors[0].p_in_ct).norm() < kFar_mm)
+                wish.others.push_back({other.anchors[0].p_in_ct, other.keep_off_mm});
+}
+
+bool AllLabels::put(const LabelWish& wish) {
+    auto label = place_label(wish, skin_, settings_, occupied_);
+    if (!label) return false;
+    occupied_.take_away_label(wish.item);
+    occupy(*label, occupied_);
+    put_.insert_or_assign(wish.item, std::move(*label));
+    return true;
+}
+
+/// Whole labels, and shorter ones where there is no room. False when an item has not even its name.
+bool AllLabels::put_whole_first() {
+    occupied_ = plan_;
+    put_.clear();
+    bool all = true;
+    for (const LabelWish& wish : wishes_)
+        all = all && (put(in_form(wish, Form::whole)) || put(in_form(wish, Form::name)));
+    return all;
+}
+
+/// A crowded plan: a number for as many as can have one, then names, then figures where room is left.
+void AllLabels::put_numbers_first() {
+    occupied_ = plan_;
+    put_.clear();
+    for (const LabelWish& wish : wishes_) put(in_form(wish, Form::number));
+    for (const Form form : {Form::name, Form::whole})
+        for (const LabelWish& wish : wishes_) {
+            LabelWish longer = in_form(wish, form);
+            longer.but_of = wish.item;  // its own shorter one makes room
+            put(longer);
+        }
+}
+
+/// Shorter labels until no more of the light is text than may be; the last of the plan first.
+void AllLabels::keep_to_share() {
+    double lines_mm2 = 0, text_mm2 = 0;
+    for (const Stroke& stroke : drawing_.strokes) lines_mm2 += length_mm(stroke) * stroke.width_mm;
+    for (const auto& [item, label] : put_) text_mm2 += area_mm2(label);
+    const auto too_much = [&] { return text_mm2 > settings_.most_text * (text_mm2 + lines_mm2); };
+    for (const Form form : kShorter)
+        for (auto wish = wishes_.rbegin(); wish != wishes_.rend() && too_much(); ++wish) {
+            const auto label = put_.find(wish->item);
+            LabelWish shorter = in_form(*wish, form);
+            if (label == put_.end() || wish->text.name.empty()) continue;
+            const double before_mm2 = area_mm2(label->second);
+            shorter.but_of = wish->item;
+            if (put(shorter)) text_mm2 += area_mm2(put_.at(wish->item)) - before_mm2;
+        }
+    for (auto wish = wishes_.rbegin(); wish != wishes_.rend() && too_much(); ++wish) {
+        const auto label = put_.find(wish->item);
+        if (label == put_.end()) continue;
+        text_mm2 -= area_mm2(label->second);
+        put_.erase(label);
+    }
+}
+
+void AllLabels::put_of_moment() {
+    for (LabelWish wish : wishes_) {
+        wish.but_of = OccupiedSkin::kAllLabels;
+        auto label = place_label(wish, skin_, settings_, plan_);
+        if (!label) label = place_label(in_form(wish, Form::name), skin_, settings_, plan_);
+        if (!label) continue;
+        label->of_moment = true;
+        drawing_.labels.push_back(std::move(*label));
+    }
+}
+
+void AllLabels::place() {
+    if (!put_whole_first()) put_numbers_first();
+    keep_to_share();
+    for (const LabelWish& wish : wishes_) {
+        const auto label = put_.find(wish.item);
+        drawing_.items[static_cast<std::size_t>(wish.item)].labelled = label != put_.end();
+        if (label != put_.end()) drawing_.labels.push_back(label->second);
+    }
+    put_of_moment();
+}
+
+}  // namespace
+
+double share_of_text(const PlanDrawing& drawing) {
+    double lines_mm2 = 0, text_mm2 = 0;
+    for (const Stroke& stroke : drawing.strokes) lines_mm2 += length_mm(stroke) * stroke.width_mm;
+    for (const Label& label : drawing.labels) text_mm2 += label.of_moment ? 0 : area_mm2(label);
+    return text_mm2 > 0 ? text_mm2 / (text_mm2 + lines_mm2) : 0;
+}
+
+void place_all_labels(std::vector<LabelWish> wishes, const SkinSurface& skin, const DrawingSettings& settings,
+                      PlanDrawing& drawing) {
+    AllLabels(std::move(wishes), skin, settings, drawing).place();
+}
+
+}  // namespace planlight

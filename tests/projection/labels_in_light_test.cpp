@@ -1,0 +1,197 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "projection/place_all_labels.h"
+#include "projection/render_drawing.h"
+#include "tests/projection/shapes.h"
+#include "tests/support/analytic_head.h"
+
+namespace planlight {
+namespace {
+
+using Eigen::Vector3d;
+using test::ball;
+using test::on_ball;
+
+const CameraModel& projector() {
+    static const CameraModel kProjector = test::projector_looking_at({80, 0, 0}, {1, 0, 0}, 560, {0, 0, 1});
+    return kProjector;
+}
+const DrawingRenderer& renderer() {
+    static const DrawingRenderer kRenderer(ball(), projector());
+    return kRenderer;
+}
+
+Plan plan_of_three() {
+    Plan plan;
+    plan.osteotomy_lines.push_back({"Osteotomy", {on_ball(-0.4, 0.35), on_ball(0.4, 0.35)}, false, {}});
+    plan.boreholes.push_back({"B1", on_ball(-0.2, -0.1), {}, 7, 6, {}});
+    plan.cut_planes.push_back({"C1", {80, 0, -30}, Vector3d::UnitZ(), Vector3d::UnitY(), 60, 60, {}});
+    return plan;
+}
+
+/// How bright the picture is in all.
+double light_of(const RgbImage& picture) {
+    double sum = 0;
+    for (const Rgb& p : picture.pixels) sum += p[0] + p[1] + p[2];
+    return sum;
+}
+
+/// The drawing's labels alone.
+PlanDrawing labels_of(PlanDrawing drawing) {
+    drawing.strokes.clear();
+    return drawing;
+}
+
+TEST(LabelsInLight, ALabelIsLitWholeOrNotAtAllWhereverTheHeadIs) {
+    const PlanDrawing drawing = labels_of(draw_plan(plan_of_three(), ball()));
+    for (std::size_t which = 0; which < 3; ++which) {
+        int whole = 0, none = 0;
+        RenderSettings alone;
+        alone.only_item = static_cast<int>(which);
+        for (double aside_mm = -240; aside_mm <= 240; aside_mm += 6)
+            for (const double turn : {0.0, 0.5, 1.0}) {
+                const RigidTransform pose =
+                    Eigen::Translation3d(0, aside_mm, 0.4 * aside_mm) * Eigen::AngleAxisd(turn, Vector3d::UnitZ());
+                RgbImage picture;
+                const RenderCounts counts = renderer().render_into(picture, drawing, pose, pose, alone);
+                ASSERT_EQ(counts.labels_lit.size() + counts.labels_left_out.size(), 1u);
+                if (counts.labels_lit.empty()) {
+                    ++none;
+                    ASSERT_EQ(light_of(picture), 0);
+                    continue;
+                }
+                ++whole;
+                const auto label = std::find_if(drawing.labels.begin(), drawing.labels.end(), [&](const Label& l) {
+                    return l.item == static_cast<int>(which) && !l.of_moment;
+                });
+                for (const auto& sign : label->signs_in_ct)
+                    for (const auto& outline : sign)
+                        for (const Vector3d& p : outline) {
+                            const auto pixel = project(projector(), pose * p);
+                            ASSERT_TRUE(pixel && in_picture(projector(), *pixel));
+                            const Vector3d to_light = projector().centre_in_rig() - pose * p;
+                            ASSERT_GT((pose.linear() * p.normalized()).dot(to_light.normalized()), std::cos(1.16));
+                        }
+            }
+        EXPECT_GT(whole, 10);
+        EXPECT_GT(none, 10);
+    }
+}
+
+TEST(LabelsInLight, AMarkerThatWouldDarkenAPartOfALabelDarkensAllOfIt) {
+    const PlanDrawing drawing = labels_of(draw_plan(plan_of_three(), ball()));
+    RenderSettings settings;
+    RgbImage picture;
+    ASSERT_EQ(renderer().render_into(picture, drawing, RigidTransform::Identity()).labels_lit.size(), 3u);
+    settings.keep_dark_in_patient = {drawing.labels[0].field_in_ct.front()};
+    const auto counts =
+        renderer().render_into(picture, drawing, RigidTransform::Identity(), RigidTransform::Identity(), settings);
+    EXPECT_EQ(counts.labels_left_out, std::vector<int>{drawing.labels[0].item});
+    EXPECT_NE(
+        sentence_of_labels(counts, drawing).find(drawing.items[static_cast<std::size_t>(drawing.labels[0].item)].name),
+        std::string::npos);
+}
+
+TEST(LabelsInLight, WhereTheLightIsKnownLabelsArePutWhereAllOfThemIsLit) {
+    Plan plan;  // at the rim of what is lit: to one side of each hole the ball turns away
+    for (const double longitude : {-0.95, -0.5, 0.5, 0.95})
+        plan.boreholes.push_back({"Hole at the rim", on_ball(longitude, 0.1), {}, 7, 6, {}});
+    DrawingSettings settings;
+    settings.light = LightView{projector(), RigidTransform::Identity()};
+    RgbImage picture;
+    const auto counts = renderer().render_into(picture, draw_plan(plan, ball(), settings), RigidTransform::Identity());
+    EXPECT_EQ(counts.labels_lit.size(), 4u);
+    EXPECT_TRUE(counts.labels_left_out.empty());
+}
+
+TEST(LabelsInLight, TheItemOfTheMomentIsBrightTheRestDimOrHidden) {
+    const PlanDrawing drawing = draw_plan(plan_of_three(), ball());
+    const auto light_of_item = [&](int item, int of_moment, double others) {
+        RenderSettings settings;
+        settings.only_item = item;
+        settings.item_of_moment = of_moment;
+        settings.others = others;
+        return light_of(renderer().render(drawing, RigidTransform::Identity(), RigidTransform::Identity(), settings));
+    };
+    PlanDrawing lines = drawing;
+    lines.labels.clear();
+    RenderSettings alone;
+    alone.only_item = 0;
+    const double lines_alone =
+        light_of(renderer().render(lines, RigidTransform::Identity(), RigidTransform::Identity(), alone));
+    EXPECT_NEAR(light_of_item(0, 1, 0.25), 0.25 * lines_alone, 0.02 * lines_alone) << "dim, and without its label";
+    EXPECT_EQ(light_of_item(0, 1, 0), 0);
+    EXPECT_NEAR(light_of_item(1, 1, 0.25), light_of_item(1, -1, 0.25), 0.05 * light_of_item(1, -1, 0.25))
+        << "as bright as ever, with its label";
+}
+
+TEST(LabelsInLight, ACutPlaneIsDashedBetweenItsTicksAndAnOsteotomyLineIsNot) {
+    for (const int item : {0, 2}) {
+        PlanDrawing drawing = draw_plan(plan_of_three(), ball());
+        drawing.labels.clear();
+        std::erase_if(drawing.strokes, [&](const Stroke& s) { return s.item != item || s.kind == StrokeKind::tick; });
+        ASSERT_EQ(drawing.strokes.size(), 1u);
+        const RgbImage picture = renderer().render(drawing, RigidTransform::Identity());
+        const auto& points = drawing.strokes[0].points_in_ct;
+        double way_mm = 0;
+        int lit = 0, dark = 0;
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            if (i > 0) way_mm += (points[i] - points[i - 1]).norm();
+            const auto pixel = project(projector(), points[i]);
+            ASSERT_TRUE(pixel);
+            const Rgb& p =
+                picture.at(static_cast<int>(std::lround(pixel->x())), static_cast<int>(std::lround(pixel->y())));
+            const bool is_lit = std::max({p[0], p[1], p[2]}) > 100;
+            const double from_tick_mm = std::abs(std::remainder(way_mm, 10));
+            ++(is_lit ? lit : dark);
+            if (from_tick_mm > 2) {
+                EXPECT_TRUE(is_lit) << item << " at " << way_mm;
+            }
+            if (item == 2 && way_mm > 5 && from_tick_mm < 0.5) {
+                EXPECT_FALSE(is_lit) << "at " << way_mm;
+            }
+        }
+        if (item == 0) {
+            EXPECT_LE(dark, 2) << "the two ends";
+        }
+        if (item == 2) {
+            EXPECT_GT(dark, 10);
+        }
+    }
+}
+
+TEST(LabelsInLight, FortyItemsKeepNamesThatOverlapNothingAndNoMoreTextThanMayBe) {
+    Plan plan;
+    for (int i = 0; i < 40; ++i)
+        plan.boreholes.push_back(
+            {"Bohrung " + std::to_string(i + 1), on_ball(-0.75 + 0.2 * (i % 8), -0.5 + 0.25 * (i / 8)), {}, 4, 6, {}});
+    DrawingSettings settings;
+    settings.light = LightView{projector(), RigidTransform::Identity()};
+    const PlanDrawing drawing = draw_plan(plan, ball(), settings);
+    EXPECT_LE(share_of_text(drawing), settings.most_text);
+    int of_moment = 0;
+    for (const Label& label : drawing.labels) of_moment += label.of_moment;
+    EXPECT_GE(of_moment, 36) << "nearly every item has a label for when it is the item of the moment";
+    RgbImage picture = renderer().render(drawing, RigidTransform::Identity());
+    test::keep_picture(picture, "forty_items.png");
+    RenderSettings moment;
+    moment.item_of_moment = 20;
+    picture = renderer().render(drawing, RigidTransform::Identity(), RigidTransform::Identity(), moment);
+    test::keep_picture(picture, "forty_items_one_of_moment.png");
+}
+
+TEST(LabelsInLight, ANameThatCannotBeDrawnIsNumberedAndTheFiguresStay) {
+    Plan plan;
+    plan.boreholes.push_back({"\U0010FFFD", on_ball(0, 0), {}, 7, 6, {}});
+    const PlanDrawing drawing = draw_plan(plan, ball());
+    ASSERT_FALSE(drawing.labels.empty());
+    EXPECT_EQ(drawing.labels[0].words, "#1  ⌀7\n6 mm deep");
+    EXPECT_EQ(drawing.items[0].name, "\U0010FFFD");
+    ASSERT_EQ(drawing.items[0].warnings.size(), 1u);
+}
+
+}  // namespace
+}  // namespace planlight

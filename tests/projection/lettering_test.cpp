@@ -1,0 +1,157 @@
+#include "projection/lettering.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "projection/label_names.h"
+#include "projection/lay_out_label.h"
+
+namespace planlight {
+namespace {
+
+double ink(const TextOutline& text) {
+    double area = 0;
+    for (const Sign& sign : text.signs) {
+        double twice = 0;
+        for (const auto& o : sign.outlines)
+            for (std::size_t i = 0; i < o.size(); ++i) {
+                const auto &a = o[i], &b = o[(i + 1) % o.size()];
+                twice += a.x() * b.y() - a.y() * b.x();
+            }
+        area += std::abs(twice) / 2;
+    }
+    return area;
+}
+
+TEST(Lettering, CapitalsAreOneHighAndStandOnTheBaseline) {
+    for (const char* letter : {"H", "E", "I", "T"}) {
+        const TextOutline text = lettering().outline(letter);
+        EXPECT_NEAR(text.high, 1, 0.01) << letter;
+        EXPECT_NEAR(text.low, 0, 0.01) << letter;
+    }
+}
+
+TEST(Lettering, LettersOfManyLanguagesHaveOutlines) {
+    for (const char* name : {"Schädelöffnung", "Groß", "Разрез", "Τομή", "额部截骨线", "頭蓋骨", "절골술", "شق", "Łódź",
+                             "Đường cắt", "İğne", "חתך"}) {
+        const TextOutline text = lettering().outline(name);
+        EXPECT_TRUE(text.lacks.empty()) << name;
+        EXPECT_GE(text.signs.size(), 2u) << name;
+        EXPECT_GT(text.width, 1) << name;
+        EXPECT_GT(ink(text), 0.15) << name;
+    }
+}
+
+TEST(Lettering, AnAccentOfItsOwnIsDrawnAsTheLetterWithTheAccent) {
+    const TextOutline one = lettering().outline("Mü\u00e9"), apart = lettering().outline("Mu\u0308e\u0301");
+    EXPECT_TRUE(apart.lacks.empty());
+    EXPECT_NEAR(apart.width, one.width, 0.02);
+    EXPECT_NEAR(apart.high, one.high, 0.05);
+    EXPECT_NEAR(ink(apart), ink(one), 0.03 * ink(one));
+}
+
+TEST(Lettering, ArabicIsJoinedAndRunsFromTheRight) {
+    const TextOutline alone = lettering().outline("ب"), joined = lettering().outline("بب");
+    EXPECT_LT(joined.width, 1.8 * alone.width)
+        << "letters at the beginning of a word are short, and joined to the next";
+    // Alef, beh: the beh, with its dot under the line, is the last and stands at the left.
+    const TextOutline word = lettering().outline("اب");
+    ASSERT_GE(word.signs.size(), 2u);
+    const auto low_of = [](const Sign& sign) {
+        double low = 1e9;
+        for (const auto& outline : sign.outlines)
+            for (const auto& p : outline) low = std::min(low, p.y());
+        return low;
+    };
+    EXPECT_LT(low_of(word.signs.front()), -0.2);
+    EXPECT_GT(low_of(word.signs.back()), -0.2);
+    // Figures in it run from the left.
+    const TextOutline figures = lettering().outline("شق 12"), twelve = lettering().outline("12");
+    EXPECT_TRUE(figures.lacks.empty());
+    EXPECT_GT(figures.width, twelve.width + 0.5);
+}
+
+TEST(Lettering, WhatNoFontHasIsToldAndNothingIsDrawn) {
+    for (const char* name : {"B\U0010FFFD", "\uE123 links", "bad \xFF byte"}) {
+        const TextOutline text = lettering().outline(name);
+        EXPECT_FALSE(text.lacks.empty()) << name;
+        EXPECT_TRUE(text.signs.empty()) << name;
+    }
+}
+
+TEST(Lettering, WithoutAnyFontThePlainLinesHaveWesternEuropeanLettersOnly) {
+    for (const Lettering& none : {Lettering({}), Lettering({{"/no/such/font.ttf", 0, "none"}})}) {
+        EXPECT_TRUE(none.families().empty());
+        EXPECT_TRUE(none.outline("B3 ⌀7 Schädel").lacks.empty());
+        EXPECT_GT(none.outline("B3").signs.size(), 1u);
+        EXPECT_FALSE(none.outline("Разрез").lacks.empty());
+    }
+}
+
+TEST(Lettering, ControlSignsAndMarksOfDirectionLeaveNoInk) {
+    EXPECT_NEAR(lettering().outline("B\u200e3\n").width, lettering().outline("B3").width, 1e-6);
+}
+
+TEST(LayOutLabel, ALongNameIsShortenedInTheMiddleAndTheFigureKept) {
+    const std::string name = "Osteotomiefrontoorbitalbeidseitigmitverlaengerungnachtemporal";
+    const std::string shorter = shortened(name, 5);
+    EXPECT_LT(shorter.size(), 20u);
+    const auto cut = shorter.find("…");
+    ASSERT_NE(cut, std::string::npos);
+    EXPECT_EQ(name.find(shorter.substr(0, cut)), 0u);
+    const std::string end = shorter.substr(cut + std::string("…").size());
+    EXPECT_EQ(name.substr(name.size() - end.size()), end);
+    const TextBlock block = lay_out({name, {"128 mm"}}, 5);
+    EXPECT_EQ(block.words, shorter + "\n128 mm");
+    EXPECT_LE(block.width_mm, kMaxLine_mm + 1e-6);
+}
+
+TEST(LayOutLabel, ANameOfTwoWordsStandsOnTwoLinesWhole) {
+    EXPECT_EQ(lay_out({"Resection margin", {"62 mm"}}, 5).words, "Resection\nmargin\n62 mm");
+    EXPECT_EQ(lay_out({"额部截骨线左侧内缘", {"62 mm"}}, 5).words, "额部截骨线\n左侧内缘\n62 mm");
+}
+
+TEST(LayOutLabel, FiguresStandOnLinesOfTheirOwnSoThatNoTwoAreReadAsOne) {
+    EXPECT_EQ(lay_out({"B3", {"⌀7", "6 mm deep"}}, 5).words, "B3  ⌀7\n6 mm deep");
+    EXPECT_EQ(lay_out({"", {"⌀7", "6 mm deep"}}, 5).words, "⌀7\n6 mm deep");
+}
+
+TEST(LayOutLabel, LinesTouchNeitherEachOtherNorTheBlocksEdge) {
+    for (const char* name : {"Ägypten gyq", "额部截骨线左侧内缘", "شق طويل"}) {
+        const TextBlock block = lay_out({name, {"⌀7", "6 mm deep"}}, 5);
+        double above = 1e9;
+        for (const auto& line : block.lines) {
+            const double high = line.begins_mm.y() + 5 * line.text.high, low = line.begins_mm.y() + 5 * line.text.low;
+            EXPECT_LE(high, block.height_mm / 2 + 1e-6) << name;
+            EXPECT_GE(low, -block.height_mm / 2 - 1e-6) << name;
+            if (line.begins_mm.y() < above - 1) {  // not beside the one before
+                EXPECT_LT(high, above + 5) << name;
+            }
+            above = std::min(above, line.begins_mm.y());
+        }
+    }
+}
+
+TEST(LitNames, WhatCannotBeDrawnIsLeftOutAndTheNumberKept) {
+    const auto names = lit_names({"B1", "\U0010FFFD links", "B3"}, 5);
+    EXPECT_EQ(names[0].name, "B1");
+    EXPECT_TRUE(names[0].warning.empty());
+    EXPECT_EQ(names[1].name, "#2");
+    EXPECT_NE(names[1].warning.find("U+10FFFD"), std::string::npos) << names[1].warning;
+    EXPECT_NE(names[1].warning.find("rename"), std::string::npos) << names[1].warning;
+    EXPECT_EQ(names[2].name, "B3");
+}
+
+TEST(LitNames, NamesThatShorteningMakesTheSameAreNumbered) {
+    const std::string a = "Osteotomiefrontaleinslinksaussen", b = "Osteotomiefrontalzweilinksaussen";
+    const auto names = lit_names({a, b, "B1", "B1"}, 5);
+    EXPECT_EQ(names[0].name, "#1");
+    EXPECT_EQ(names[1].name, "#2");
+    EXPECT_FALSE(names[1].warning.empty());
+    EXPECT_EQ(names[2].name, "B1") << "the plan's own names, even where they are the same";
+    EXPECT_EQ(names[3].name, "B1");
+}
+
+}  // namespace
+}  // namespace planlight
