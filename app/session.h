@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "app/kept_match.h"
 #include "app/observed_devices.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/types/registration_result.h"
@@ -35,7 +36,8 @@ struct SessionSettings {
     double max_motion_in_scan_mm = 0.15;  ///< of any marker between two moments of a scan; above: the scan is repeated
     int max_scans = 3;                    ///< so often at most, then refused
     double max_motion_in_skin_check_mm = 0.3;  ///< of any marker during a check of the skin; above: no answer
-    int min_reference_markers = 5;             ///< found in both pictures at the scan
+    ResumeSettings resume;
+    int min_reference_markers = 5;  ///< found in both pictures at the scan
     std::chrono::milliseconds patience{1000};
     /// While following: without a pair of frames for so long, or for three frame intervals where that is more, the
     /// camera is named.
@@ -131,6 +133,13 @@ public:
     /// projector is dark afterwards until the next `update`. Throws CheckFailedError without a match, DeviceError.
     SkinCheck check_skin(const std::function<void(int, int)>& progress = {});
 
+    /// Goes on with a match of another session, or of this one after its devices were away, if markers, rig and skin
+    /// still agree with it: a short scan of columns and rows, then as after `find_patient`. Whatever does not agree
+    /// throws CheckFailedError that says what; then there is no match, and it is dark. Throws DeviceError.
+    ResumeCheck resume(const KeptMatch& match, const std::function<void(int, int)>& progress = {});
+    /// The match of now, for `resume`; empty without one that may be used. The caller says when it was made.
+    std::optional<KeptMatch> kept_match() const;
+
     /// Places at which a person can judge the light (`landmarks_to_verify`), found anew for each match; ct, mm.
     const std::vector<Eigen::Vector3d>& landmarks();
     /// From the next `update` on this landmark alone is lit, as a ring with a cross; empty: the plan.
@@ -173,6 +182,10 @@ private:
     void match(const std::vector<PointPair>& landmarks);
     Update make_update();
     SkinCheck measure_skin(const std::function<void(int, int)>& progress);
+    ResumeCheck take_up(const KeptMatch& match, const std::function<void(int, int)>& progress);
+    RigidTransform compare_room(const KeptMatch& match, const std::function<void(int, int)>& progress,
+                                ResumeCheck& check);
+    void compare_skin_again(const KeptMatch& match, const RigidTransform& rig_from_patient, ResumeCheck& check) const;
     void darken() noexcept;
     void use_rig(const RigCalibration& rig);
     StereoFrame next_frame();

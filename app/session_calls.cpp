@@ -86,6 +86,14 @@ SkinCheck Session::check_skin(const std::function<void(int, int)>& progress) {
     return check;
 }
 
+ResumeCheck Session::resume(const KeptMatch& match, const std::function<void(int, int)>& progress) {
+    ResumeCheck check;
+    if (settings_.observer) settings_.observer->match_offered(match);
+    told(SessionCall::resume, [&] { check = take_up(match, told_when_stopped(progress)); });
+    if (settings_.observer) settings_.observer->resumed(*this, check);
+    return check;
+}
+
 void Session::go_dark() noexcept {
     devices_.darken_first();
     if (settings_.observer) settings_.observer->asked(SessionCall::go_dark, {}, -1);

@@ -11,7 +11,7 @@
 namespace planlight {
 
 /// What a session can be asked for.
-enum class SessionCall { scan, find_patient, confirm, update, check_skin, light_landmark, go_dark, light_item };
+enum class SessionCall { scan, find_patient, confirm, update, check_skin, light_landmark, go_dark, light_item, resume };
 
 /// What can be asked of a session's light gate.
 enum class GateCall { step, verify, skin_checked, new_match, restart };
@@ -42,6 +42,9 @@ public:
     /// Before the session does it. `which`: of `light_landmark` and `light_item`, -1 for the plan.
     virtual void asked(SessionCall /*call*/, const std::vector<PointPair>& /*landmarks*/, int /*which*/) noexcept {}
 
+    /// Before `resume` is asked for: what the session is to go on with.
+    virtual void match_offered(const KeptMatch& /*match*/) noexcept {}
+
     // What the devices answered.
     virtual void clock_read(Instant /*now*/) noexcept {}
     virtual void frame_taken(const StereoFrame& /*frame*/) noexcept {}
@@ -58,6 +61,7 @@ public:
     virtual void matched(const Session& /*session*/) noexcept {}
     virtual void updated(const Session& /*session*/, const Session::Update& /*update*/) noexcept {}
     virtual void skin_checked(const SkinCheck& /*check*/) noexcept {}
+    virtual void resumed(const Session& /*session*/, const ResumeCheck& /*check*/) noexcept {}
     virtual void refused(SessionCall /*call*/, const std::exception& /*why*/) noexcept {}
 
     /// The gate: `at` of a verification, `off_mm` of a check of the skin; `ruling` null for all but `step`.

@@ -33,6 +33,7 @@ Run add_review(CLI::App& app);
 Run add_replay(CLI::App& app);
 Run add_report(CLI::App& app);
 Run add_forget(CLI::App& app);
+Run add_export(CLI::App& app);
 Run add_simulate(CLI::App& app);
 Run add_merge(CLI::App& app);
 

@@ -41,6 +41,7 @@ void print_json(const ReplayResult& r) {
                                    {"updates", r.updates},
                                    {"decisions", r.rulings},
                                    {"skin_checks", r.skin_checks},
+                                   {"resumptions", r.resumptions},
                                    {"refusals", r.refusals},
                                    {"pictures", r.pictures},
                                    {"frames", r.frames},

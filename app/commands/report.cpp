@@ -5,6 +5,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/console.h"
+#include "app/report/operation_pdf.h"
 #include "app/report/operation_report.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
@@ -13,7 +14,7 @@ namespace planlight {
 namespace {
 
 struct ReportOptions {
-    Path recording, out;
+    Path recording, out, pdf;
     bool json = false;
 };
 
@@ -37,6 +38,11 @@ int run_report(const ReportOptions& options) {
     const OperationFacts facts = facts_of_operation(options.recording);
     const std::string json = operation_json(facts);
     write_operation_report(facts, json, out);
+    if (!options.pdf.empty()) {
+        write_safely(options.pdf, operation_pdf(facts));
+        std::filesystem::permissions(options.pdf,
+                                     std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+    }
     if (options.json)
         std::cout << json;
     else
@@ -58,6 +64,7 @@ Run add_report(CLI::App& app) {
     sub->add_option("recording", o.recording, "Recording of a session")->required();
     sub->add_option("--out", o.out,
                     "Page to write (default: beside the recording); its figures stand beside it as .json");
+    sub->add_option("--pdf", o.pdf, "Write it as PDF as well");
     json_flag(sub, o.json);
     return [options] { return run_report(*options); };
 }

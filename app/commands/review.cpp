@@ -7,6 +7,7 @@
 #include "app/case_model.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/review_recording.h"
 #include "app/console.h"
 #include "app/live/clickable_scan.h"
 #include "app/live/live_window.h"
@@ -29,6 +30,7 @@ struct ReviewOptions {
     Path landmarks;              ///< table to click landmarks into; empty: not wanted
     std::string view = "after";  ///< before, after, error
     bool json = false;
+    RecordingReviewOptions recorded;  ///< where a recording is named in the case's place
 };
 
 void set_status(const RegistrationResult& found, OperatorModel& model) {
@@ -88,6 +90,17 @@ int run_landmarks(const ReviewOptions& options, const CaseDrawing& drawing, cons
 }
 
 int run_review(const ReviewOptions& options) {
+    if (is_recording(options.case_folder)) {
+        if (!options.registration.empty() || !options.cloud.empty() || !options.picture.empty())
+            throw Error(ExitCode::usage, "a recording is looked at by itself", "Leave out what is for a case.");
+        RecordingReviewOptions recorded = options.recorded;
+        recorded.recording = options.case_folder;
+        recorded.json = options.json;
+        return run_recording_review(recorded);
+    }
+    if (!options.recorded.out.empty() || options.recorded.at_s >= 0 || !options.recorded.clip_s.empty())
+        throw Error(ExitCode::usage, "--out, --at and --clip are for a recording (.plrec)",
+                    "Name a recording in the case's place.");
     const Case the_case = read_case(options.case_folder);
     const CaseDrawing drawing(the_case, drawing_settings(read_site_settings()));
     OperatorModel model = model_of_case(the_case, drawing);
@@ -140,9 +153,10 @@ int run_review(const ReviewOptions& options) {
 Run add_review(CLI::App& app) {
     const auto options = std::make_shared<ReviewOptions>();
     ReviewOptions& o = *options;
-    auto* sub = add_command(app, "review", "Look at a prepared case, or at a match on it, in the operator window",
-                            "review case --registration registration.json --cloud cloud.ply");
-    sub->add_option("case", o.case_folder, "Case folder")->required();
+    auto* sub = add_command(
+        app, "review", "Look at a prepared case, or at a match on it, in the operator window; or at a recorded session",
+        "review case --registration registration.json --cloud cloud.ply");
+    sub->add_option("case", o.case_folder, "Case folder, or the recording of a session (.plrec)")->required();
     auto* match =
         sub->add_option("--registration", o.registration, "A match to look at (registration.json of `register`)");
     auto* cloud = sub->add_option(
@@ -158,6 +172,14 @@ Run add_review(CLI::App& app) {
         ->needs(match);
     sub->add_option("--picture", o.picture, "Write a picture (.png) instead of opening a window; needs no display")
         ->excludes(landmarks);
+    sub->add_option(
+        "--out", o.recorded.out,
+        "Of a recording: folder for its page (time line, errors, events) and pictures (default: beside it)");
+    sub->add_option("--at", o.recorded.at_s, "Of a recording: picture of the frame nearest to so many seconds")
+        ->check(CLI::NonNegativeNumber);
+    sub->add_option("--clip", o.recorded.clip_s, "Of a recording: a PNG for each frame kept from .. to .. seconds")
+        ->expected(2)
+        ->check(CLI::NonNegativeNumber);
     json_flag(sub, o.json);
     return [options] { return run_review(*options); };
 }

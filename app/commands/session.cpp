@@ -25,7 +25,9 @@ struct SessionOptions {
     Path room;  ///< room.json of real devices; empty: the simulated room
     Path keep;  ///< folder for every match; empty: CASE/registrations
     std::string record = "events";
-    Path recordings;  ///< folder; empty: CASE/recordings
+    bool anonymous = false;  ///< the recording
+    Path recordings;         ///< folder; empty: CASE/recordings
+    Path resume;             ///< recording of the session to go on with; empty: the last one is offered
     std::string series_uid;
     std::string surgeon;  ///< where he stands; empty: as the site says
     std::string preset = "paper", projector_monitor, operator_monitor;
@@ -39,6 +41,28 @@ struct SessionOptions {
     double light_delay_ms = -1;  ///< of the projector window; below 0: the default, or what `projector_file` says
     Path projector_file;         ///< projector.json of the monitor; empty: none
 };
+
+Path recordings_folder(const SessionOptions& options) {
+    return options.recordings.empty() ? options.case_folder / kRecordingsFolder : options.recordings;
+}
+
+/// What the session may go on with. What was asked for and cannot be is refused; what would merely be offered is said.
+/// `rig`: null where it is not known yet.
+std::optional<ResumeOffer> resume_of(const SessionOptions& options, const Case& the_case, const RigCalibration* rig) {
+    if (!options.resume.empty()) {
+        ResumeOffer offer = resume_offer(options.resume, the_case, rig);
+        offer.at_once = true;
+        return offer;
+    }
+    const auto last = newest_recording(recordings_folder(options));
+    if (!last) return std::nullopt;
+    try {
+        return resume_offer(*last, the_case, rig);
+    } catch (const Error& why_not) {
+        fmt::print(stderr, "The last session cannot be gone on with: {}.\n", why_not.what());
+        return std::nullopt;
+    }
+}
 
 /// Ends the recording when the session ends, in whatever way, and says what it lacks.
 struct EndRecording {
@@ -60,18 +84,29 @@ Recorder recorder_of(const SessionOptions& options, const Case& the_case, const 
         fmt::print(stderr, "This session is not recorded.\n");
         return nullptr;
     }
-    const Path folder = options.recordings.empty() ? options.case_folder / kRecordingsFolder : options.recordings;
-    const Path file = new_recording_name(folder);
+    if (options.anonymous && mode == RecordMode::all)
+        throw Error(ExitCode::usage, "what is recorded to be replayed cannot be anonymous",
+                    "Give --record events with --anonymous.");
+    const Path file = new_recording_name(recordings_folder(options));
     auto sink = std::make_unique<RecordingFile>(file);
+    const RecordingHead head = recording_head(the_case, options.case_folder, mode, drawing_settings(site));
+    if (options.anonymous) {
+        fmt::print(
+            stderr,
+            "Recorded in {}, without names, and blurred but for the plan's surroundings; no later session can go "
+            "on with its match. Matches with the scan of the face are still kept ({}).\n",
+            file.string(), options.keep.empty() ? "see --keep" : options.keep.string());
+        return Recorder(new SessionRecorder(std::move(sink), without_names(head), RecordingWriterSettings{},
+                                            FrameChoiceSettings{}, NamesLeftOut(the_case)));
+    }
     std::error_code ignored;
-    fmt::print(stderr,
-               "Recorded in {}: {}; {:.0f} GB are free. It shows the patient's face, and only {} can read it.\n",
-               file.string(),
-               mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
-                                          : "every frame, about 23 GB an hour in the paper's room",
-               static_cast<double>(std::filesystem::space(folder, ignored).available) / 1e9, operator_name());
-    return Recorder(new SessionRecorder(std::move(sink),
-                                        recording_head(the_case, options.case_folder, mode, drawing_settings(site))));
+    fmt::print(
+        stderr, "Recorded in {}: {}; {:.0f} GB are free. It shows the patient's face, and only {} can read it.\n",
+        file.string(),
+        mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
+                                   : "every frame, about 23 GB an hour in the paper's room",
+        static_cast<double>(std::filesystem::space(file.parent_path(), ignored).available) / 1e9, operator_name());
+    return Recorder(new SessionRecorder(std::move(sink), head));
 }
 
 LiveOptions live_options(const SessionOptions& options, const SiteSettings& site, const SessionRecorder* recorder) {
@@ -103,9 +138,11 @@ int run_in_simulated_room(const SessionOptions& options, const Case& the_case, c
     simulation::RoomSettings room;
     room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     room.seed = options.seed;
+    auto resume = resume_of(options, the_case, nullptr);
     const auto recorder = recorder_of(options, the_case, site);
     LiveOptions live = live_options(options, site, recorder.get());
     live.observer = recorder.get();
+    live.resume = std::move(resume);
     const auto drawing = window.while_made("The plan is being drawn on the skin.", 0.7,
                                            [&] { return CaseDrawing(the_case, drawing_settings(site)); });
     return run_live_simulated(
@@ -122,9 +159,11 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
     const RigCalibration rig = read_rig(room.rig);
     if (options.projector_monitor.empty()) options.projector_monitor = room.monitor;
     if (options.projector_file.empty() && options.light_delay_ms < 0) options.projector_file = room.projector_file;
+    auto resume = resume_of(options, the_case, &rig);
     const auto recorder = recorder_of(options, the_case, site);
     LiveOptions live = live_options(options, site, recorder.get());
     live.observer = recorder.get();
+    live.resume = std::move(resume);
     const auto drawing = window.while_made("The plan is being drawn on the skin.", 0.7,
                                            [&] { return CaseDrawing(the_case, drawing_settings(site)); });
     return run_live(
@@ -166,6 +205,11 @@ Run add_session(CLI::App& app) {
         ->capture_default_str()
         ->check(CLI::IsMember({"none", "events", "all"}));
     sub->add_option("--recordings", o.recordings, "Folder for the recording (default: CASE/recordings)");
+    sub->add_option("--resume", o.resume,
+                    "Recording of a session that was cut short: goes on with its last match, without a press, if "
+                    "markers, rig and skin agree with it (otherwise the newest recording is offered in the window)");
+    sub->add_flag("--anonymous", o.anonymous,
+                  "The recording holds no names, and its pictures are blurred but for the plan's surroundings");
     preset_option(sub, o.preset)->excludes(room);
     sub->add_option(
         "--projector", o.projector_monitor,

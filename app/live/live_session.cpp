@@ -17,14 +17,16 @@ constexpr std::array kStatusKinds{"ready", "scanning", "matching", "aligned", "c
 }  // namespace
 
 LiveSession::LiveSession(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
-                         std::filesystem::path keep_matches_in, SessionObserver* observer)
+                         std::filesystem::path keep_matches_in, SessionObserver* observer,
+                         std::optional<ResumeOffer> offer)
     : case_(the_case),
       drawing_(drawing),
       keep_matches_in_(std::move(keep_matches_in)),
       observer_(observer),
       blank_(model_of_case(the_case, drawing)),
       model_(blank_),
-      gate_(observer) {
+      gate_(observer),
+      offer_(std::move(offer)) {
     enter(state_, blank_, model_);
     said();
     show_alive();

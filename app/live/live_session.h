@@ -15,6 +15,7 @@
 #include "app/live/observed_gate.h"
 #include "app/live/room.h"
 #include "app/live/session_states.h"
+#include "app/recording/resume_offer.h"
 #include "app/session.h"
 #include "app/update_latency.h"
 #include "app/windows/operator_model.h"
@@ -32,9 +33,10 @@ enum class AskedBy { person, program, lost_projector };
 class LiveSession {
 public:
     /// `keep_matches_in`: every match and its scan in a folder of its own there; empty: not kept. `observer` (null:
-    /// nobody) is told of all that happens.
+    /// nobody) is told of all that happens. `offer`: a match of an earlier session that it may go on with.
     LiveSession(MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
-                std::filesystem::path keep_matches_in, SessionObserver* observer = nullptr);
+                std::filesystem::path keep_matches_in, SessionObserver* observer = nullptr,
+                std::optional<ResumeOffer> offer = {});
     ~LiveSession();
 
     /// Queued; `dark` and `stop` overtake everything that waits. The model says so at once. Returns why it does nothing
@@ -43,6 +45,9 @@ public:
 
     /// Finding the patient with these landmarks (none: without), clicked on the last scan; queued.
     std::string post_find_patient(std::vector<PointPair> landmarks);
+
+    /// The projector was away: before the plan is lit again a short scan looks whether all is as it was.
+    void look_before_light();
 
     OperatorModel model() const;
 
@@ -76,6 +81,10 @@ private:
     void find_patient(Session& session, const std::vector<PointPair>& landmarks);
     void confirm(Session& session);
     void confirm_light(Session& session);
+    void offer_to_resume();
+    void resume(Session& session);
+    ResumeCheck look_whether_it_holds(Session& session, const KeptMatch& match);
+    void look_again(Session& session);
     void check_skin(Session& session);
     void show_verification(const Session::Update& update, LightGate::Ruling& ruling);
     void end_verification(Session& session);
@@ -133,9 +142,12 @@ private:
     Instant seen_at_{};                 ///< of the last frame, on the room's clock
     int landmark_ = -1;                 ///< that is lit for a person to look at; -1: the plan is lit
     int landmarks_to_look_at_ = 0;
-    std::string landmark_place_;  ///< of the one that is lit, in words: "front, left, high"
-    std::deque<Instant> lit_at_;  ///< of the last pictures, on the room's clock
-    int good_updates_ = 0;        ///< ALIGNED so often; then the simulated fault begins
+    std::string landmark_place_;        ///< of the one that is lit, in words: "front, left, high"
+    std::deque<Instant> lit_at_;        ///< of the last pictures, on the room's clock
+    int good_updates_ = 0;              ///< ALIGNED so often; then the simulated fault begins
+    std::optional<ResumeOffer> offer_;  ///< of the session's thread
+    std::atomic<bool> look_first_{false};
+    std::optional<KeptMatch> away_;  ///< this session's own, while it is not known whether it still holds
     bool ending_ = false, following_ = false;
     std::atomic<bool> projecting_{false};
     std::atomic<Instant::rep> alive_at_{0};

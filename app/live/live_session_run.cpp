@@ -88,6 +88,7 @@ void LiveSession::run(const MakeRoom& make_room) {
         m.simulated = room->simulated();
         m.case_subtitle = room->name() + " \u00b7 " + m.case_subtitle;
     });
+    offer_to_resume();
     for (;;) {
         const Press press = next_press(following_ ? Instant{} : room->look_interval());
         show_alive();
@@ -143,7 +144,8 @@ bool LiveSession::still_wanted(const Press& press) const {
         case OperatorAction::track:
             return state_ == SessionState::following;
         case OperatorAction::confirm:
-            return state_ == SessionState::found || state_ == SessionState::verifying;
+            return state_ == SessionState::found || state_ == SessionState::verifying ||
+                   state_ == SessionState::looking_again;
         default:
             return true;
     }
@@ -164,6 +166,9 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
     view_.expect_found(press.action != OperatorAction::scan && press.action != OperatorAction::check_skin);
     switch (press.action) {
         case OperatorAction::scan:
+            offer_.reset();
+            away_.reset();
+            look_first_ = false;
             following_ = projecting_ = false;
             permit_light(press);
             room.let_patient_move(false);
@@ -181,13 +186,19 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
             break;
         case OperatorAction::track:
             permit_light(press);
+            if (look_first_) room.let_patient_move(false);  // was asked to lie still
+            look_again(session);
             gate_.restart();
             end_verification(session);
             following_ = true;
             room.let_patient_move(true);
             break;
         case OperatorAction::confirm:
-            confirm(session);
+            permit_light(press);
+            if (offer_)
+                resume(session);
+            else
+                confirm(session);
             return;
         case OperatorAction::dark:
         case OperatorAction::stop:

@@ -59,7 +59,9 @@ void check_monitor(const std::string& name, const ProjectorFacts& facts) {
 class Autoplay {
 public:
     /// That light or a match is right is a person's word: only in the simulated room is it said without one.
-    explicit Autoplay(bool says_it_is_right) : says_it_is_right_(says_it_is_right) {}
+    /// `resumes`: the session goes on with a match by itself, and Track is what comes next.
+    explicit Autoplay(bool says_it_is_right, bool resumes = false)
+        : says_it_is_right_(says_it_is_right), step_(resumes ? 2 : 0) {}
 
     OperatorAction next(const OperatorModel& model) {
         if (step_ == 0 && model.scan.enabled) return advance(OperatorAction::scan);
@@ -77,7 +79,7 @@ private:
         return action;
     }
     bool says_it_is_right_;
-    int step_ = 0;
+    int step_;
     std::string confirmed_;  ///< the words on the button that was pressed last
 };
 
@@ -110,7 +112,10 @@ void tell_of_projector(const ProjectorProblem& problem, LiveSession& session, bo
         lost = false;
         return;
     }
-    if (!lost) session.post(OperatorAction::dark, AskedBy::lost_projector);
+    if (!lost) {
+        session.post(OperatorAction::dark, AskedBy::lost_projector);
+        session.look_before_light();
+    }
     lost = true;
     model.status = {StatusKind::dark,
                     "No projector: " + problem.what + ".",
@@ -237,11 +242,13 @@ int run_live_simulated(SessionWindow& screen, MakeRoom make_room, const Case& th
         settings.session_patience = std::chrono::milliseconds(2500);
         projector = std::make_unique<ProjectorKeeper>(monitor, settings);
     }
-    LiveSession session(std::move(make_room), the_case, drawing, options.keep_matches_in, options.observer);
+    LiveSession session(std::move(make_room), the_case, drawing, options.keep_matches_in, options.observer,
+                        options.resume);
     std::unique_ptr<LightKeeper> light;  // dark and gone before the session is
     if (projector) light = std::make_unique<LightKeeper>(*projector, session);
     WindowMeter meter;
-    const int code = run_windows(window, session, projector.get(), options, Autoplay(true), meter);
+    const int code = run_windows(window, session, projector.get(), options,
+                                 Autoplay(true, options.resume && options.resume->at_once), meter);
     return told_at_the_end(code, session, meter, options);
 }
 
@@ -252,9 +259,10 @@ int run_live(SessionWindow& screen, const MakeRoomWith& make_room, const Case& t
     check_monitor(options.projector_monitor, options.projector);
     ProjectorKeeper projector(options.projector_monitor, keeper_settings(options));
     LiveSession session([&](const RoomProgress& progress) { return make_room(projector, progress); }, the_case, drawing,
-                        options.keep_matches_in, options.observer);
+                        options.keep_matches_in, options.observer, options.resume);
     WindowMeter meter;
-    const int code = run_windows(window, session, &projector, options, Autoplay(false), meter);
+    const int code = run_windows(window, session, &projector, options,
+                                 Autoplay(false, options.resume && options.resume->at_once), meter);
     return told_at_the_end(code, session, meter, options);
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "app/live/room.h"
+#include "app/recording/resume_offer.h"
 #include "app/session.h"
 #include "app/windows/operator_window.h"
 #include "planning_io/case/light_file.h"
@@ -27,6 +28,7 @@ struct LiveOptions {
     double end_after_s = 0;                 ///< of projecting, wall time; 0 = until the window is closed
     std::filesystem::path keep_matches_in;  ///< folder for every match and its scan; empty = none
     bool json = false;                      ///< at the end print how late the light was, as JSON
+    std::optional<ResumeOffer> resume;      ///< a match of an earlier session to go on with
     SessionObserver* observer = nullptr;    ///< told of all that happens; null: nobody
     std::function<std::string()> trouble;   ///< of the recording, to be said beside all else; may be empty
     std::filesystem::path screenshots;      ///< folder for a picture of the operator window a step; empty = none

@@ -44,6 +44,13 @@ constexpr SessionView kViews[] = {
      nullptr, nullptr, "is running", nullptr, A::none, true, true, 4, StepState::attention, true, true, true},
     {"Checking the skin", StatusKind::scanning, "Checking the skin: keep the patient still.", "Stop and DARK end it.",
      kChecking, kChecking, "is running", nullptr, A::none, false, false, 4, StepState::attention, true, true, true},
+    {"Offered", StatusKind::ready, "Ready to scan, or to go on with the last match.",
+     "A short scan looks first whether markers, rig and skin are as they were; else press Scan.",  //
+     nullptr, "scan first", "go on, or scan", kNothing, A::none, true, false, 2, StepState::active, false, false,
+     false},
+    {"Looking again", StatusKind::scanning, "Looking whether all is as it was: keep the patient still.",
+     "Stop and DARK end it.",  //
+     kChecking, kChecking, kChecking, nullptr, A::none, false, false, 3, StepState::active, false, false, true},
 };
 static_assert(std::size(kViews) == kSessionStates.size());
 
@@ -92,6 +99,7 @@ const char* obstacle(S state, A press) {
 /// The light goes out, and what was being made of it is given up.
 S after_dark(S state) {
     if (state == S::scanning) return S::ready;
+    if (state == S::looking_again) return S::offered;
     return state == S::following || state == S::verifying || state == S::checking_skin ? S::found : state;
 }
 
@@ -113,7 +121,7 @@ std::optional<SessionState> after_press(SessionState state, OperatorAction press
         case A::track:
             return S::following;
         case A::confirm:
-            return state == S::unsure ? S::found : S::verifying;
+            return state == S::unsure ? S::found : state == S::offered ? S::looking_again : S::verifying;
         case A::check_skin:
             return S::checking_skin;
         default:
@@ -142,6 +150,12 @@ SessionState after(SessionState state, SessionHappening happening) {
             return state == S::verifying ? S::following : state;
         case H::skin_checked:
             return state == S::checking_skin ? S::following : state;
+        case H::match_offered:
+            return state == S::ready ? S::offered : state;
+        case H::match_resumed:
+            return state == S::looking_again ? S::found : state;
+        case H::match_resumed_unsure:
+            return state == S::looking_again ? S::unsure : state;
         case H::failed:
             return state == S::matching ? S::scanned : after_dark(state);
     }
@@ -162,7 +176,7 @@ void enter(SessionState state, const OperatorModel& blank, OperatorModel& model)
     model.stop = button(view.no_stop);
     model.next = view.next;
     model.confirm = view.confirm && !view.lights;  // of light it is asked when there is light to look at
-    model.confirm_words = "It fits: use it";
+    model.confirm_words = state == SessionState::offered ? "Go on with the last match" : "It fits: use it";
     model.check_skin = view.check_skin;
     model.light_on = view.lights && view.has_match;
     for (int i = 0; i < static_cast<int>(model.steps.size()); ++i)

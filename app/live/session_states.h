@@ -21,11 +21,14 @@ enum class SessionState {
     following,      ///< light is asked for: on the patient, or dark until the pose is good
     verifying,      ///< one landmark alone is lit, for a person to look at
     checking_skin,  ///< a short scan while following
+    offered,        ///< as ready, and there is a match of an earlier session to go on with
+    looking_again,  ///< a short scan: are markers, rig and skin as that match has them?
 };
-inline constexpr std::array kSessionStates{SessionState::opening,   SessionState::ready,        SessionState::scanning,
-                                    SessionState::scanned,   SessionState::matching,     SessionState::not_found,
-                                    SessionState::unsure,    SessionState::found,        SessionState::following,
-                                    SessionState::verifying, SessionState::checking_skin};
+inline constexpr std::array kSessionStates{
+    SessionState::opening,      SessionState::ready,     SessionState::scanning,      SessionState::scanned,
+    SessionState::matching,     SessionState::not_found, SessionState::unsure,        SessionState::found,
+    SessionState::following,    SessionState::verifying, SessionState::checking_skin, SessionState::offered,
+    SessionState::looking_again};
 
 /// What becomes of what was begun.
 enum class SessionHappening {
@@ -36,7 +39,10 @@ enum class SessionHappening {
     match_refused,
     landmarks_seen,  ///< all of them: the plan is lit again
     skin_checked,
-    failed,  ///< refused, ended by DARK, or the gate has stopped the light
+    match_offered,
+    match_resumed,
+    match_resumed_unsure,  ///< it needs a person's look, which it has not had
+    failed,                ///< refused, ended by DARK, or the gate has stopped the light
 };
 
 /// What a state looks like, and which presses it takes. A button that is not enabled says why.

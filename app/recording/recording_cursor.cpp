@@ -22,6 +22,8 @@ bool RecordingCursor::read_chunk() {
         head_ = std::move(chunk);
     } else if (chunk->type == chunk_types::kRoom) {
         room_ = std::move(chunk);
+    } else if (chunk->type == chunk_types::kMatch) {
+        match_ = std::move(chunk);
     } else if (chunk->type == chunk_types::kEvent) {
         if (!goes_nowhere(chunk->payload)) next_.push_back({std::move(chunk->payload), {}});
     } else if (chunk->type == chunk_types::kInputs) {

@@ -35,6 +35,8 @@ public:
     const RecordingReader& reader() const { return reader_; }
     const std::optional<RecordingChunk>& room() const { return room_; }
     const std::optional<RecordingChunk>& head() const { return head_; }
+    /// The last match that was kept; empty before the first.
+    const std::optional<RecordingChunk>& match() const { return match_; }
     /// Reads on to the first event or answer; head and room are there afterwards, if the recording has them.
     void begin();
     Instant at() const { return at_; }  ///< of the last chunk
@@ -45,7 +47,7 @@ private:
     RecordingReader reader_;
     std::deque<Next> next_;
     std::deque<RecordingChunk> frames_;  ///< the last ones
-    std::optional<RecordingChunk> head_, room_;
+    std::optional<RecordingChunk> head_, room_, match_;
     std::string lost_;  ///< what was dropped where the reader stands
     Instant at_{};
 };

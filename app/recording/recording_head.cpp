@@ -64,10 +64,20 @@ RecordingHead recording_head(const Case& the_case, const fs::path& case_folder, 
     return head;
 }
 
+RecordingHead without_names(RecordingHead head) {
+    head.anonymous = true;
+    head.case_title = head.case_code;
+    head.plan_name.clear(), head.plan_version.clear();
+    head.operator_name.clear(), head.computer.clear();
+    head.case_folder.clear();
+    return head;
+}
+
 std::string text_of(const RecordingHead& head) {
     const Json json{{"format", kFormat},
                     {"version", 1},
                     {"record", word_of(head.mode)},
+                    {"anonymous", head.anonymous},
                     {"program", head.program},
                     {"program_hash", head.program_hash},
                     {"case",
@@ -94,6 +104,7 @@ RecordingHead head_of(const std::string& text, const fs::path& file) {
     const JsonValue record = root.at("record");
     head.mode = record_mode_of(record.text());
     if (record.text() != word_of(head.mode)) record.refuse("is none of \"none\", \"events\" and \"all\"");
+    if (const auto anonymous = root.find("anonymous")) head.anonymous = anonymous->flag();
     head.program = root.at("program").text();
     head.program_hash = root.at("program_hash").text();
     const JsonValue of_case = root.at("case");

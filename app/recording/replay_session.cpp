@@ -51,6 +51,9 @@ public:
     void skin_checked(const SkinCheck& check) noexcept override {
         compare([&] { return session_events::skin_checked(check); }, result_.skin_checks);
     }
+    void resumed(const Session& session, const ResumeCheck& check) noexcept override {
+        compare([&] { return session_events::resumed(session, check); }, result_.resumptions);
+    }
     void refused(SessionCall call, const std::exception& why) noexcept override {
         told_ = true;
         const int before = result_.refusals;
@@ -181,6 +184,10 @@ private:
                     break;
                 case SessionCall::check_skin:
                     session_.check_skin(go_on);
+                    break;
+                case SessionCall::resume:
+                    if (!cursor_.match()) throw ReplayEnds{"the match that was gone on with was not kept"};
+                    session_.resume(kept_match_of(cursor_.match()->payload, cursor_.reader().file()), go_on);
                     break;
                 case SessionCall::light_landmark: {
                     const int which = event.value("which", -1);

@@ -13,8 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array kCalls{"scan",       "find_patient",   "confirm", "update",
-                            "check_skin", "light_landmark", "go_dark", "light_item"};
+constexpr std::array kCalls{"scan",           "find_patient", "confirm",    "update", "check_skin",
+                            "light_landmark", "go_dark",      "light_item", "resume"};
 constexpr std::array kGateCalls{"step", "verify", "skin_checked", "new_match", "restart"};
 constexpr std::array kVerdicts{"yes", "ask", "no"};
 constexpr std::array kTrusts{"dark", "look", "aligned"};
@@ -99,6 +99,12 @@ Json json_of(const OverlayStep& overlay) {
             {"points",
              {overlay.counts.points, overlay.counts.lit, overlay.counts.too_steep, overlay.counts.hidden,
               overlay.counts.outside}}};
+}
+
+Json item_names(const Session& session) {
+    Json names = Json::array();
+    for (const DrawnItem& item : session.drawing().items) names.push_back(item.name);
+    return names;
 }
 
 }  // namespace
@@ -210,6 +216,24 @@ std::string skin_checked(const SkinCheck& check) {
                     {"off_mm", check.off_mm},
                     {"bound_mm", check.bound_mm},
                     {"moved_meanwhile_mm", check.moved_meanwhile_mm}});
+}
+
+std::string resumed(const Session& session, const ResumeCheck& check) {
+    const RegistrationResult& found = *session.registration();
+    return text_of({{"what", "resumed"},
+                    {"verdict", kVerdicts[static_cast<std::size_t>(found.verdict)]},
+                    {"patient_from_ct", json_of(found.patient_from_ct)},
+                    {"markers", check.markers},
+                    {"marker_off_mm", check.marker_off_mm},
+                    {"moved_meanwhile_mm", check.moved_meanwhile_mm},
+                    {"light_moved_mm", check.light_moved_mm},
+                    {"points", check.points},
+                    {"cloud", hash_of(*check.cloud)},
+                    {"residual_mm", check.residual_mm},
+                    {"skin_off_mm", check.skin_off_mm},
+                    {"bound_mm", check.bound_mm},
+                    {"items", item_names(session)},
+                    {"predicted_mm", predicted_errors_mm(session.plan(), found)}});
 }
 
 std::string refused(SessionCall call, const std::exception& why) {

@@ -14,6 +14,7 @@ std::string scanned(const Session& session);
 std::string matched(const Session& session);
 std::string updated(const Session& session, const Session::Update& update);
 std::string skin_checked(const SkinCheck& check);
+std::string resumed(const Session& session, const ResumeCheck& check);
 std::string refused(SessionCall call, const std::exception& why);
 std::string gate(GateCall call, Instant at, double off_mm, const LightGate::Ruling* ruling);
 std::string pressed(const std::string& action);

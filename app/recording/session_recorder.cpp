@@ -4,6 +4,7 @@
 
 #include <atomic>
 
+#include "app/console.h"
 #include "app/recording/recording_head.h"
 #include "app/recording/session_events.h"
 #include "planning_io/recording/packed_pictures.h"
@@ -28,11 +29,13 @@ struct SessionRecorder::PackedSize {
 };
 
 SessionRecorder::SessionRecorder(std::unique_ptr<RecordingSink> sink, const RecordingHead& head,
-                                 const RecordingWriterSettings& writing, const FrameChoiceSettings& choice)
+                                 const RecordingWriterSettings& writing, const FrameChoiceSettings& choice,
+                                 std::optional<NamesLeftOut> anonymous)
     : mode_(head.mode),
       choice_(choice),
       most_before_(choice.before),
       packed_(std::make_shared<PackedSize>()),
+      anonymous_(std::move(anonymous)),
       writer_(std::move(sink), writing) {
     writer_.add({chunk_types::kHead, Instant{}, text_of(head)});
 }
@@ -89,6 +92,7 @@ void SessionRecorder::event(const MakeText& make_text) noexcept {
     try {
         std::string text = make_text();
         const std::lock_guard lock(mutex_);
+        if (anonymous_) text = anonymous_->out_of(text);
         flush();
         writer_.add({chunk_types::kEvent, now_, std::move(text)});
     } catch (const std::exception&) {
@@ -125,7 +129,8 @@ void SessionRecorder::said(const std::string& kind, const std::string& headline,
 void SessionRecorder::asked(SessionCall call, const std::vector<PointPair>& landmarks, int which) noexcept {
     event([&] { return session_events::asked(call, landmarks, which); });
     const std::lock_guard lock(mutex_);
-    scanning_ = first_of_scan_ = call == SessionCall::scan || call == SessionCall::check_skin;
+    scanning_ = first_of_scan_ =
+        call == SessionCall::scan || call == SessionCall::check_skin || call == SessionCall::resume;
 }
 
 void SessionRecorder::clock_read(Instant now) noexcept {
@@ -140,8 +145,9 @@ void SessionRecorder::clock_read(Instant now) noexcept {
 void SessionRecorder::frame_taken(const StereoFrame& frame) noexcept {
     try {
         const std::string hash = hash_of(frame);
-        const auto kept = std::make_shared<const StereoFrame>(frame);
+        const auto pictures = std::make_shared<const StereoFrame>(frame);
         const std::lock_guard lock(mutex_);
+        const Frame kept{pictures, region_};
         now_ = std::max(now_, frame.at);
         kept_frame_ = false;
         if (mode_ == RecordMode::all)
@@ -154,25 +160,33 @@ void SessionRecorder::frame_taken(const StereoFrame& frame) noexcept {
     }
 }
 
+StereoFrame SessionRecorder::blurred(const Frame& frame) {
+    StereoFrame blurred = *frame.pictures;
+    blurred.left = blurred_outside(blurred.left, frame.region.left);
+    blurred.right = blurred_outside(blurred.right, frame.region.right);
+    return blurred;
+}
+
 void SessionRecorder::write(const Frame& frame) {
-    const auto pack = [frame, packed = packed_] {
-        std::string bytes = pack_frame(*frame);
-        if (const std::size_t raw = bytes_of(*frame); raw > 0)
+    const auto pack = [frame, packed = packed_, anonymous = anonymous_.has_value()] {
+        std::string bytes = anonymous ? pack_frame(blurred(frame)) : pack_frame(*frame.pictures);
+        if (const std::size_t raw = bytes_of(*frame.pictures); raw > 0)
             packed->share = static_cast<double>(bytes.size()) / static_cast<double>(raw);
         return bytes;
     };
-    kept_frame_ = writer_.add_picture(chunk_types::kFrame, frame->at, bytes_of(*frame) + kChunkHeaderBytes, pack);
+    kept_frame_ = writer_.add_picture(chunk_types::kFrame, frame.pictures->at,
+                                      bytes_of(*frame.pictures) + kChunkHeaderBytes, pack);
 }
 
 /// Of a scan the first picture alone, under white light: the stripes tell nothing that the cloud does not.
 void SessionRecorder::choose(const Frame& frame) {
-    const double bytes = packed_->share * static_cast<double>(bytes_of(*frame));
+    const double bytes = packed_->share * static_cast<double>(bytes_of(*frame.pictures));
     if (scanning_) {
         if (first_of_scan_) write(frame);
         first_of_scan_ = false;
         return;
     }
-    if (choice_.keep(frame->at, bytes)) {
+    if (choice_.keep(frame.pictures->at, bytes)) {
         write(frame);
         return;
     }
@@ -182,7 +196,7 @@ void SessionRecorder::choose(const Frame& frame) {
 
 void SessionRecorder::something_happened() {
     if (mode_ == RecordMode::all || before_.empty()) return;
-    const double bytes = packed_->share * static_cast<double>(bytes_of(*before_.back()));
+    const double bytes = packed_->share * static_cast<double>(bytes_of(*before_.back().pictures));
     const std::size_t kept = choice_.event(before_.size(), bytes);
     for (std::size_t i = before_.size() - kept; i < before_.size(); ++i) write(before_[i]);
     before_.clear();
@@ -243,11 +257,54 @@ void SessionRecorder::scanned(const Session& session) noexcept {
 }
 
 void SessionRecorder::matched(const Session& session) noexcept {
+    name_items(session);
     event([&] { return session_events::matched(session); });
+    try {
+        if (auto match = session.kept_match()) {
+            match->made_utc = today();
+            keep(*match);
+        }
+    } catch (const std::exception&) {
+    }
+}
+
+/// Of an anonymous recording: items have numbers, and of the face nothing is known until the next pose.
+void SessionRecorder::name_items(const Session& session) {
+    const std::lock_guard lock(mutex_);
+    region_ = {};
+    if (anonymous_) anonymous_->add_items(session.drawing());
+}
+
+/// All that it takes to go on with this match after whatever ends this session.
+void SessionRecorder::keep(const KeptMatch& match) {
+    if (anonymous_) return;  // the skin as it was found is in it
+    std::string text = text_of(match);
+    const std::lock_guard lock(mutex_);
+    flush();
+    writer_.add({chunk_types::kMatch, now_, std::move(text)});
+}
+
+void SessionRecorder::match_offered(const KeptMatch& match) noexcept {
+    try {
+        keep(match);
+    } catch (const std::exception&) {
+    }
+}
+
+void SessionRecorder::resumed(const Session& session, const ResumeCheck& check) noexcept {
+    name_items(session);
+    event([&] { return session_events::resumed(session, check); });
 }
 
 void SessionRecorder::updated(const Session& session, const Session::Update& update) noexcept {
     event([&] { return session_events::updated(session, update); });
+    if (!anonymous_) return;
+    try {
+        PlanRegion region = plan_region(session, update.pose);
+        const std::lock_guard lock(mutex_);
+        region_ = std::move(region);
+    } catch (const std::exception&) {
+    }
 }
 
 void SessionRecorder::skin_checked(const SkinCheck& check) noexcept {

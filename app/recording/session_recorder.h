@@ -5,6 +5,7 @@
 #include <mutex>
 #include <string>
 
+#include "app/recording/anonymous.h"
 #include "app/recording/frame_choice.h"
 #include "app/recording/recorded_inputs.h"
 #include "app/session_observer.h"
@@ -22,12 +23,16 @@ enum class RecordMode {
 /// What a recording says of itself first.
 struct RecordingHead {
     RecordMode mode = RecordMode::events;
+    bool anonymous = false;  ///< frames blurred outside of the plan's region, no names, no match to go on with
     std::string program, program_hash;  ///< version; XXH3-128 of its file
     std::string case_code, case_title, volume_hash, mesh_hash, plan_hash, plan_name, plan_version;
     std::filesystem::path case_folder;  ///< where it was then
     Eigen::Vector3d up_in_ct{0, 0, 1};  ///< of the drawing's labels
     std::string began_utc, operator_name, computer;
 };
+
+/// The head without what names a person or a place.
+RecordingHead without_names(RecordingHead head);
 
 /// Of this program, this case, this user, now.
 RecordingHead recording_head(const Case& the_case, const std::filesystem::path& case_folder, RecordMode mode,
@@ -37,7 +42,8 @@ RecordingHead recording_head(const Case& the_case, const std::filesystem::path& 
 class SessionRecorder final : public SessionObserver {
 public:
     SessionRecorder(std::unique_ptr<RecordingSink> sink, const RecordingHead& head,
-                    const RecordingWriterSettings& writing = {}, const FrameChoiceSettings& choice = {});
+                    const RecordingWriterSettings& writing = {}, const FrameChoiceSettings& choice = {},
+                    std::optional<NamesLeftOut> anonymous = {});
     ~SessionRecorder() override;  ///< as `finish` does
 
     RecordingState state() const { return writer_.state(); }
@@ -62,17 +68,25 @@ public:
     void matched(const Session& session) noexcept override;
     void updated(const Session& session, const Session::Update& update) noexcept override;
     void skin_checked(const SkinCheck& check) noexcept override;
+    void match_offered(const KeptMatch& match) noexcept override;
+    void resumed(const Session& session, const ResumeCheck& check) noexcept override;
     void refused(SessionCall call, const std::exception& why) noexcept override;
     void gate(GateCall call, Instant at, double off_mm, const LightGate::Ruling* ruling) noexcept override;
 
 private:
-    using Frame = std::shared_ptr<const StereoFrame>;
+    struct Frame {
+        std::shared_ptr<const StereoFrame> pictures;
+        PlanRegion region;  ///< of an anonymous recording: what stays sharp
+    };
     struct PackedSize;
     void input(RecordedInput input);
     void flush();
+    void keep(const KeptMatch& match);
     template <class MakeText>
     void event(const MakeText& make_text) noexcept;
+    static StereoFrame blurred(const Frame& frame);
     void write(const Frame& frame);
+    void name_items(const Session& session);
     void choose(const Frame& frame);
     void something_happened();
     void keep_picture(const RgbImage& picture);
@@ -89,6 +103,8 @@ private:
     bool kept_frame_ = false;  ///< the last one
     std::string happening_;    ///< what the light was last; another is an event
     std::string said_;
+    std::optional<NamesLeftOut> anonymous_;
+    PlanRegion region_;  ///< by the last pose
     RecordingWriter writer_;
 };
 

@@ -100,6 +100,7 @@ private:
         if (what == "updated") take_update(event);
         if (what == "gate") take_ruling(event);
         if (what == "matched") take_match(event);
+        if (what == "resumed") take_resumption(event);
         if (what == "asked") take_call(event);
         if (what == "pressed" && event.value("action", "") == "dark") say("DARK was pressed.", event);
         if (what == "pressed" && event.value("action", "") == "projector_lost")
@@ -138,6 +139,22 @@ private:
                              event.value("points", std::size_t{0})};
         for (const Json& reason : event.at("reasons")) match.reasons.push_back(reason.get<std::string>());
         facts_.matches.push_back(match);
+        take_items(event);
+        if (match.verdict == "yes") use_match();
+    }
+
+    /// A match of an earlier session that this one went on with.
+    void take_resumption(const Json& event) {
+        say(fmt::format(
+                "The match of an earlier session was gone on with: {} markers, and the plan's skin within {:.1f} "
+                "mm of where they put it.",
+                event.value("markers", 0), number(event.at("skin_off_mm")).value_or(0)),
+            event);
+        take_items(event);
+        use_match();
+    }
+
+    void take_items(const Json& event) {
         landmark_ = -1;
         now_.clear();
         predicted_.clear();
@@ -149,7 +166,6 @@ private:
         }
         reached_.assign(now_.size(), false);
         forget_showing();
-        if (match.verdict == "yes") use_match();
     }
 
     /// The n-th of that name, from 0, among the items of all matches.

@@ -100,7 +100,7 @@ void MiddleView::draw_scene(const Pen& pen, const Box& place, const OperatorMode
     const float strip = button_height(pen) + 24 * pen.scale;  // of buttons, which a finger must meet at once
     const float above = model.fit ? strip : 0;
     const float below =
-        (model.landmarks ? strip : 0) + (model.fit && model.confirm ? strip : 0) + (model.check_skin ? strip : 0);
+        (model.landmarks ? strip : 0) + (model.confirm ? strip : 0) + (model.check_skin ? strip : 0);
     scene_.take_mouse("scene", {place.x, place.y + above, place.width, place.height - above - below});
     if (!shown.skin && !shown.cloud) return;  // nothing to be seen yet
     scene_.draw(pen, place, shown);
@@ -158,7 +158,7 @@ OperatorAction MiddleView::draw_corner_buttons(const Pen& pen, Box corner, const
             wanted = OperatorAction::check_skin;
         corner.y -= corner.height + 12 * pen.scale;
     }
-    if (!model.fit || !model.confirm) return wanted;
+    if (!model.confirm) return wanted;
     places_["confirm"] = corner;
     const bool leads_on = model.next == OperatorAction::confirm;
     const ButtonLook look{false, leads_on, key_text(KeyMeaning::confirm) + (leads_on ? " · Enter" : "")};

@@ -115,7 +115,7 @@ SkinDisplacement skin_of(const JsonValue& json) {
 
 }  // namespace
 
-void write_registration(const RegistrationResult& result, const fs::path& file) {
+std::string text_of(const RegistrationResult& result) {
     Json json = Json{{"format", "planlight registration"},
                      {"version", kVersion},
                      {"verdict", kVerdicts[static_cast<std::size_t>(result.verdict)]},
@@ -145,12 +145,21 @@ void write_registration(const RegistrationResult& result, const fs::path& file) 
     json["case"] = json_of(result.of_case);
     json["rig"] = result.rig ? json_of(*result.rig) : Json();
     json["checksum"] = checksum_of(json);
-    write_safely(file, dump(json));
+    return dump(json);
+}
+
+void write_registration(const RegistrationResult& result, const fs::path& file) {
+    write_safely(file, text_of(result));
 }
 
 RegistrationResult read_registration(const fs::path& file) {
-    const Json json = parse_file(file, "planlight registration");
+    return registration_of_text(read_whole(file), file);
+}
+
+RegistrationResult registration_of_text(const std::string& text, const fs::path& file) {
+    const Json json = parse_json(text, file);
     const JsonValue root(json, file);
+    check_format(root, "planlight registration", kVersion, file);
     const auto number = [&](const char* key) {  // evidence may be absent or, where it was not finite, null
         const auto value = root.find(key);
         return value ? value->number() : 0.0;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "planning_io/types/registration_result.h"
 
@@ -14,5 +15,9 @@ void write_registration(const RegistrationResult& result, const std::filesystem:
 /// Throws DamagedFileError where the file's checksum does not fit, so that `ask` cannot become `yes` by an editor;
 /// without a checksum a `yes` is read as `ask`.
 RegistrationResult read_registration(const std::filesystem::path& file);
+
+/// What `write_registration` writes, and what `read_registration` makes of it (`file`: for its words).
+std::string text_of(const RegistrationResult& result);
+RegistrationResult registration_of_text(const std::string& text, const std::filesystem::path& file);
 
 }  // namespace planlight

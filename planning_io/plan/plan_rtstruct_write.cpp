@@ -1,6 +1,4 @@
 #include <fmt/format.h>
-#include <unistd.h>
-#include <vtkDICOMCompiler.h>
 #include <vtkDICOMDictionary.h>
 #include <vtkDICOMItem.h>
 #include <vtkDICOMMetaData.h>
@@ -10,9 +8,8 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <cstdlib>
 
-#include "planning_io/files/content_hash.h"
+#include "planning_io/dicom/dicom_write.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/plan/plan_rtstruct.h"
@@ -24,44 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
+using namespace dicom_write;
 
 constexpr const char* kRtStructClass = "1.2.840.10008.5.1.4.1.1.481.3";
-constexpr const char* kImplicitLittleEndian = "1.2.840.10008.1.2";  // contours may be longer than explicit VRs can say
-constexpr std::size_t kDecimalStringChars = 16;                     // of the value representation DS
-
-/// As one value of at most 64 characters (VR LO): no backslash, no control characters, cut between two UTF-8
-/// characters.
-vtkDICOMValue name_value(std::string text) {
-    for (char& c : text)
-        if (c == '\\' || (c >= 0 && c < ' ')) c = c == '\\' ? '/' : ' ';
-    std::size_t end = std::min<std::size_t>(text.size(), 64);
-    while (end > 0 && end < text.size() && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;
-    return {vtkDICOMVR::LO, vtkDICOMCharacterSet(vtkDICOMCharacterSet::ISO_IR_192), text.substr(0, end)};
-}
-
-vtkDICOMSequence sequence_of(const vtkDICOMItem& item) {
-    vtkDICOMSequence sequence;
-    sequence.AddItem(item);
-    return sequence;
-}
-
-/// The number with as many digits as 16 characters hold.
-std::string decimal_string(double value) {
-    for (int digits = 15; digits > 0; --digits)
-        if (std::string text = fmt::format("{:.{}g}", value, digits); text.size() <= kDecimalStringChars) return text;
-    return "0";
-}
-
-/// UID from content, under the root for UUIDs (2.25): the same plan of the same case has the same one.
-std::string uid_of(const std::string& content) {
-    const std::string hex = content_hash(content);
-    unsigned __int128 number = 0;
-    for (const char c : hex) number = number * 16 + static_cast<unsigned>(c <= '9' ? c - '0' : c - 'a' + 10);
-    std::string digits;
-    for (; number > 0; number /= 10)
-        digits.insert(digits.begin(), static_cast<char>('0' + static_cast<int>(number % 10)));
-    return "2.25." + (digits.empty() ? "0" : digits);
-}
 
 struct RoiItems {
     vtkDICOMSequence names, contours, observations;
@@ -142,13 +104,6 @@ void add_items(RoiWriter& writer, const Plan& plan) {
     }
 }
 
-std::string digits_of(const std::string& iso, std::size_t from, std::size_t count) {
-    std::string digits;
-    for (const char c : iso)
-        if (c >= '0' && c <= '9') digits += c;
-    return digits.size() >= from + count ? digits.substr(from, count) : std::string();
-}
-
 void set_head(vtkDICOMMetaData* meta, const RtStructIdentity& identity, const std::string& content) {
     const auto set = [&](vtkDICOMTag tag, vtkDICOMVR vr, const std::string& value) {
         meta->Set(tag, vtkDICOMValue(vr, value));
@@ -182,31 +137,6 @@ void set_head(vtkDICOMMetaData* meta, const RtStructIdentity& identity, const st
     meta->Set(DC::ReferencedFrameOfReferenceSequence, sequence_of(frame));
 }
 
-/// The file's bytes: vtk-dicom writes to files only.
-std::string compile(vtkDICOMMetaData* meta, const fs::path& file) {
-    std::string name = (fs::temp_directory_path() / "planlight-rtstruct-XXXXXX").string();
-    const int fd = mkstemp(name.data());
-    if (fd < 0)
-        throw DiskError(file, "could not be written (no temporary file)",
-                        "Make room in the folder for temporary files.");
-    close(fd);
-    vtkNew<vtkDICOMCompiler> compiler;
-    compiler->SetFileName(name.c_str());
-    compiler->SetMetaData(meta);
-    compiler->SetSOPInstanceUID(meta->Get(DC::SOPInstanceUID).AsString().c_str());
-    compiler->SetSeriesInstanceUID(meta->Get(DC::SeriesInstanceUID).AsString().c_str());
-    compiler->SetStudyInstanceUID(meta->Get(DC::StudyInstanceUID).AsString().c_str());
-    compiler->SetTransferSyntaxUID(kImplicitLittleEndian);
-    compiler->WriteHeader();
-    compiler->Close();
-    const bool good = compiler->GetErrorCode() == 0;
-    const std::string bytes = good ? read_whole(name) : std::string();
-    std::error_code ignored;
-    fs::remove(name, ignored);
-    if (!good) throw DiskError(file, "could not be written", "Make room in the folder for temporary files.");
-    return bytes;
-}
-
 }  // namespace
 
 void write_plan_rtstruct(const Plan& plan, const RtStructIdentity& identity, const fs::path& file) {
@@ -225,7 +155,8 @@ void write_plan_rtstruct(const Plan& plan, const RtStructIdentity& identity, con
     meta->Set(DC::StructureSetROISequence, writer.items().names);
     meta->Set(DC::ROIContourSequence, writer.items().contours);
     meta->Set(DC::RTROIObservationsSequence, writer.items().observations);
-    write_safely(file, compile(meta, file));
+    // Contours may be longer than explicit value representations can say.
+    write_safely(file, compile(meta, kImplicitLittleEndian, file));
 }
 
 }  // namespace planlight

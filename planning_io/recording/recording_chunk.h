@@ -19,6 +19,7 @@ inline constexpr ChunkType kEvent{'E', 'V', 'N', 'T'};    ///< JSON: what was as
 inline constexpr ChunkType kInputs{'I', 'N', 'P', 'T'};   ///< what the devices answered, in order
 inline constexpr ChunkType kFrame{'F', 'R', 'A', 'M'};    ///< both cameras' pictures, lossless
 inline constexpr ChunkType kPicture{'L', 'I', 'T', 'E'};  ///< a picture that was handed to the projector
+inline constexpr ChunkType kMatch{'M', 'T', 'C', 'H'};    ///< JSON: a match, with all that it takes to go on with it
 inline constexpr ChunkType kLost{'L', 'O', 'S', 'T'};     ///< JSON: what the disk was too slow or too full for
 inline constexpr ChunkType kDone{'D', 'O', 'N', 'E'};     ///< JSON: the session ended by itself; always the last
 }  // namespace chunk_types

@@ -100,14 +100,37 @@ bool RecordingReader::whole_chunk_from(std::uint64_t at) {
     return false;
 }
 
+/// Past a chunk that nobody wants, as far as its header tells; false where it is wanted, or is to be read to be judged:
+/// the last one in the file is.
+bool RecordingReader::pass_over() {
+    if (!wanted_ || at_ > bytes_ || bytes_ - at_ < kChunkHeaderBytes) return false;
+    std::array<char, kChunkHeaderBytes> header{};
+    in_.clear();
+    in_.seekg(static_cast<std::streamoff>(at_));
+    if (!in_.read(header.data(), header.size()) || std::string_view(header.data(), 4) != kMarker) return false;
+    if (number_at<std::uint64_t>(header.data() + 8) != chunks_) return false;
+    ChunkType type{};
+    std::copy_n(header.data() + 4, 4, type.begin());
+    if (type == chunk_types::kDone || wanted_(type, Instant(number_at<std::int64_t>(header.data() + 16)))) return false;
+    const std::uint64_t size = number_at<std::uint32_t>(header.data() + 24);
+    if (size > kMostPayloadBytes || size + kChunkHeaderBytes >= bytes_ - at_) return false;
+    at_ += kChunkHeaderBytes + size;
+    ++chunks_;
+    done_seen_ = false;
+    return true;
+}
+
 std::optional<RecordingChunk> RecordingReader::next() {
     if (end_ != RecordingEnd::open) return std::nullopt;
+    while (pass_over()) {
+    }
     std::optional<RecordingChunk> chunk = whole_chunk_at(at_, chunks_);
     if (chunk) {
         at_ += kChunkHeaderBytes + chunk->payload.size();
         ++chunks_;
         done_seen_ = chunk->type == chunk_types::kDone;
-        return chunk;
+        if (!wanted_ || wanted_(chunk->type, chunk->at)) return chunk;
+        return next();  // the last, or DONE
     }
     if (at_ == bytes_)
         end_ = done_seen_ ? RecordingEnd::whole : RecordingEnd::cut;

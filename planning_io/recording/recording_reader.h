@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "planning_io/recording/recording_chunk.h"
 
@@ -25,6 +27,11 @@ public:
     /// damaged or of another version, DiskError when the disk does not give its bytes.
     explicit RecordingReader(const std::filesystem::path& file);
 
+    /// From now on `next` gives the chunks that are wanted, by type and time, only. The others are passed over by their
+    /// headers, so that an hour's pictures cost no time; that what they hold is whole is then not looked at.
+    using Wanted = std::function<bool(const ChunkType&, Instant)>;
+    void want_only(Wanted wanted) { wanted_ = std::move(wanted); }
+
     /// The next whole chunk; empty at the end, or where the rest cannot be read (see `end`). Never throws for damage;
     /// DiskError where the disk does not give the bytes that the file has.
     std::optional<RecordingChunk> next();
@@ -42,7 +49,10 @@ private:
     bool whole_chunk_from(std::uint64_t at);
     [[noreturn]] void unreadable(std::uint64_t at) const;
 
+    bool pass_over();
+
     std::filesystem::path file_;
+    Wanted wanted_;  ///< empty: all
     std::ifstream in_;
     std::uint64_t bytes_ = 0, at_ = 0, chunks_ = 0;
     bool done_seen_ = false;

@@ -19,7 +19,9 @@ constexpr OperatorAction kPresses[] = {
 constexpr SessionHappening kHappenings[] = {SessionHappening::room_made,     SessionHappening::scan_done,
                                             SessionHappening::match_found,   SessionHappening::match_unsure,
                                             SessionHappening::match_refused, SessionHappening::landmarks_seen,
-                                            SessionHappening::skin_checked,  SessionHappening::failed};
+                                            SessionHappening::skin_checked,  SessionHappening::match_offered,
+                                            SessionHappening::match_resumed, SessionHappening::match_resumed_unsure,
+                                            SessionHappening::failed};
 
 std::string name(SessionState state) {
     return view_of(state).name;

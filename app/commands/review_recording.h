@@ -1,0 +1,23 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+namespace planlight {
+
+/// What of a recorded session is to be looked at.
+struct RecordingReviewOptions {
+    std::filesystem::path recording;
+    std::filesystem::path out;   ///< folder; empty: beside the recording
+    double at_s = -1;            ///< of a picture; below 0: none
+    std::vector<double> clip_s;  ///< from, to; empty: none
+    bool json = false;
+};
+
+/// Whether this is a recording and not a case.
+bool is_recording(const std::filesystem::path& path);
+
+/// `planlight review RECORDING`: its page, then the pictures that were asked for. Gives the exit code.
+int run_recording_review(const RecordingReviewOptions& options);
+
+}  // namespace planlight

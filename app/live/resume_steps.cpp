@@ -1,0 +1,90 @@
+// What a live session does to go on with the match of an earlier one, or with its own after its projector was away.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "app/case_model.h"
+#include "app/console.h"
+#include "app/live/live_session.h"
+#include "app/live/scene_of_session.h"
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+/// "2026-03-14T09:30:00Z" -> "09:30 UTC".
+std::string time_of_day(const std::string& utc) {
+    return utc.size() >= 16 ? utc.substr(11, 5) + " UTC" : "the session before";
+}
+
+}  // namespace
+
+void LiveSession::offer_to_resume() {
+    if (!offer_) return;
+    happened(SessionHappening::match_offered, [&](OperatorModel& m) {
+        m.status.headline =
+            fmt::format("Ready to scan, or to go on with the match of {}.", time_of_day(offer_->match.made_utc));
+    });
+    if (offer_->at_once) post(OperatorAction::confirm);
+}
+
+/// Light only when markers, rig and skin agree with the match; what does not is said by whoever catches it.
+ResumeCheck LiveSession::look_whether_it_holds(Session& session, const KeptMatch& match) {
+    return session.resume(match, [&](int done, int of) {
+        if (!light_permitted()) throw CheckFailedError("The short scan was ended by DARK", "Press the button again.");
+        set_progress(view_of(SessionState::looking_again).headline, static_cast<double>(done) / std::max(1, of));
+    });
+}
+
+void LiveSession::resume(Session& session) {
+    const KeptMatch match = offer_->match;
+    following_ = projecting_ = false;
+    said();
+    const ResumeCheck check = look_whether_it_holds(session, match);
+    gate_.new_match();
+    landmark_ = -1;
+    offer_.reset();
+    const RegistrationResult& found = *session.registration();
+    OperatorModel shown = blank_;
+    show_match(case_, found, nullptr, shown);
+    shown.scene.markers = markers_in_ct(session.tracker(), found.patient_from_ct.inverse());
+    shown.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
+    shown.evidence.insert(
+        shown.evidence.begin(),
+        fmt::format("The match of {} is used again: {} markers within {:.2f} mm, the plan's skin within {:.1f} mm of "
+                    "where they put it.",
+                    time_of_day(match.made_utc), check.markers, check.marker_off_mm, check.skin_off_mm));
+    shown.evidence.insert(shown.evidence.end(), blank_.evidence.begin(), blank_.evidence.end());
+    const bool unsure = found.verdict == Verdict::ask && !match.confirmed;
+    happened(unsure ? SessionHappening::match_resumed_unsure : SessionHappening::match_resumed, [&](OperatorModel& m) {
+        m.scene = shown.scene;
+        m.rows = shown.rows;
+        m.fit = shown.fit;
+        m.evidence = shown.evidence;
+        if (!unsure)
+            m.status = {StatusKind::ready,
+                        "Markers, rig and skin agree with the match.",
+                        {"Press Track, and look at the light on two landmarks before you use it."},
+                        {}};
+    });
+}
+
+void LiveSession::look_before_light() {
+    look_first_ = true;
+}
+
+/// After the projector was away: it, or the patient, may have been moved meanwhile. What was not found so stays to be
+/// looked at by the next press of Track.
+void LiveSession::look_again(Session& session) {
+    if (!look_first_) return;
+    if (auto match = session.kept_match()) {
+        match->made_utc = today();
+        away_ = std::move(match);
+    }
+    if (!away_) return;
+    look_whether_it_holds(session, *away_);
+    look_first_ = false;
+    away_.reset();
+}
+
+}  // namespace planlight

@@ -1,0 +1,117 @@
+#include "app/recording/anonymous.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+namespace planlight {
+namespace {
+
+constexpr double kRound_mm = 12;  // of the plan's lines the picture is kept so far
+constexpr double kApart_mm = 4;
+
+PlanRegion::InPicture region_in(const CameraModel& camera, const std::vector<Eigen::Vector3d>& points_in_rig) {
+    PlanRegion::InPicture region;
+    for (const Eigen::Vector3d& p : points_in_rig) {
+        const auto pixel = project(camera, p);
+        if (!pixel || !in_picture(camera, *pixel)) continue;
+        region.pixels.push_back(*pixel);
+        region.radius_px = std::max(region.radius_px, kRound_mm * camera.focal_x / (camera.device_from_rig * p).z());
+    }
+    return region;
+}
+
+}  // namespace
+
+PlanRegion plan_region(const Session& session, const TrackedPose& pose) {
+    if (!pose.rig_from_patient || session.registration() == nullptr) return {};
+    const RigidTransform rig_from_ct = *pose.rig_from_patient * session.registration()->patient_from_ct;
+    std::vector<Eigen::Vector3d> points;
+    for (const Stroke& stroke : session.drawing().strokes) {
+        Eigen::Vector3d last = Eigen::Vector3d::Constant(1e9);
+        for (const Eigen::Vector3d& p : stroke.points_in_ct) {
+            if (stroke.kind == StrokeKind::label || (p - last).norm() < kApart_mm) continue;
+            points.push_back(rig_from_ct * p);
+            last = p;
+        }
+    }
+    return {region_in(session.rig().left_camera, points), region_in(session.rig().right_camera, points)};
+}
+
+GrayImage blurred_outside(const GrayImage& picture, const PlanRegion::InPicture& region) {
+    constexpr int kCells = 24;
+    GrayImage blurred = picture;
+    const int cell = std::max(1, (picture.width + kCells - 1) / kCells);
+    for (int top = 0; top < picture.height; top += cell)
+        for (int left = 0; left < picture.width; left += cell) {
+            const int bottom = std::min(top + cell, picture.height), right = std::min(left + cell, picture.width);
+            long sum = 0;
+            for (int y = top; y < bottom; ++y)
+                for (int x = left; x < right; ++x) sum += picture.at(x, y);
+            const auto mean = static_cast<std::uint8_t>(sum / ((bottom - top) * (right - left)));
+            for (int y = top; y < bottom; ++y)
+                for (int x = left; x < right; ++x) blurred.at(x, y) = mean;
+        }
+    const double r = region.radius_px;
+    for (const Eigen::Vector2d& p : region.pixels)
+        for (int y = std::max(0, static_cast<int>(p.y() - r)); y <= std::min(picture.height - 1.0, p.y() + r); ++y)
+            for (int x = std::max(0, static_cast<int>(p.x() - r)); x <= std::min(picture.width - 1.0, p.x() + r); ++x)
+                if ((Eigen::Vector2d(x, y) - p).norm() <= r) blurred.at(x, y) = picture.at(x, y);
+    return blurred;
+}
+
+NamesLeftOut::NamesLeftOut(const Case& the_case) {
+    add(title_of(the_case), the_case.code);
+    for (const std::string* name : {&the_case.names.title, &the_case.names.patient, &the_case.names.plan,
+                                    &the_case.names.plan_version, &the_case.names.series})
+        add(*name, "…");
+}
+
+void NamesLeftOut::add_items(const PlanDrawing& drawing) {
+    for (std::size_t i = 0; i < drawing.items.size(); ++i) add(drawing.items[i].name, fmt::format("item {}", i + 1));
+}
+
+void NamesLeftOut::add(const std::string& name, const std::string& instead) {
+    constexpr std::size_t kLeast = 2;  // a single letter would be found in every word
+    if (name.size() < kLeast) return;
+    const auto known = [&](const auto& pair) { return pair.first == name; };
+    if (std::none_of(names_.begin(), names_.end(), known)) names_.emplace_back(name, instead);
+    // The longest first, so that no part of a name is left of it.
+    std::stable_sort(names_.begin(), names_.end(),
+                     [](const auto& a, const auto& b) { return a.first.size() > b.first.size(); });
+}
+
+std::string NamesLeftOut::out_of(const std::string& json) const {
+    using Json = nlohmann::ordered_json;
+    // What the program itself chooses from: a plan's item may be called so as well.
+    const auto is_word = [](const std::string& key) {
+        return key == "what" || key == "call" || key == "trust" || key == "verdict" || key == "kind" ||
+               key == "fault" || key == "action";
+    };
+    const std::function<void(Json&)> walk = [&](Json& value) {
+        if (value.is_string()) {
+            value = text_without(value.get<std::string>());
+        } else if (value.is_array()) {
+            for (Json& one : value) walk(one);
+        } else if (value.is_object()) {
+            for (auto& [key, one] : value.items())
+                if (!is_word(key)) walk(one);
+        }
+    };
+    Json event = Json::parse(json, nullptr, false);
+    if (event.is_discarded()) return {};
+    walk(event);
+    return event.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string NamesLeftOut::text_without(std::string text) const {
+    for (const auto& [name, instead] : names_)
+        for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + instead.size()))
+            text.replace(at, name.size(), instead);
+    return text;
+}
+
+}  // namespace planlight

@@ -1,0 +1,124 @@
+#include "app/recording/resume_offer.h"
+
+#include <fmt/format.h>
+
+#include "app/recording/recording_head.h"
+#include "planning_io/case/rig_file.h"
+#include "planning_io/recording/recording_reader.h"
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kScan = "Begin the session without it: scan and register the patient.";
+
+/// What the events after a match say of it.
+struct Fate {
+    std::string match;  ///< its chunk; empty: none
+    std::string found;  ///< the last one
+    std::string why_none = "nobody was found in that session, or it was recorded without what that takes (--anonymous)";
+    bool confirmed = false;
+    std::string stopped;  ///< why its light was stopped, and not asked for again
+
+    void take(const RecordingChunk& chunk) {
+        const std::string& text = chunk.payload;
+        if (chunk.type == chunk_types::kMatch) {
+            match = found = text;
+            confirmed = false;
+            stopped.clear();
+        } else if (text.starts_with(R"({"what":"asked","call":"scan")")) {
+            match.clear();
+            why_none = "a new scan had begun in that session, and it did not come to a match";
+        } else if (text.starts_with(R"({"what":"asked","call":"confirm")")) {
+            confirmed = true;
+        } else if (text.starts_with(R"({"what":"gate","call":"restart")")) {
+            stopped.clear();
+        } else if (text.starts_with(R"({"what":"gate","call":"step")") &&
+                   text.find(R"("stop":true)") != std::string::npos) {
+            stopped = "its light was stopped in that session, because it lay beside the plan or the skin beside it";
+        }
+    }
+};
+
+void check_names(const LastMatch& last, const Case& the_case, const fs::path& recording) {
+    const RecordingHead& head = last.head;
+    const CaseName name = name_of(the_case);
+    if (head.volume_hash != name.volume_hash || head.mesh_hash != name.mesh_hash)
+        throw InputError(recording,
+                         fmt::format("is of the case {}, and this is the case {}", head.case_code, name.code),
+                         "Open the case of that session, or begin without it.");
+    if (head.plan_hash != the_case.plan_hash)
+        throw InputError(recording, "was recorded with another plan than this case has now", kScan);
+    const std::string program = recording_head(the_case, {}, RecordMode::events, {}).program_hash;
+    if (head.program_hash != program)
+        throw InputError(recording,
+                         fmt::format("was recorded by another program (planlight {}, {}; this one {})", head.program,
+                                     head.program_hash.substr(0, 8), program.substr(0, 8)),
+                         kScan);
+}
+
+}  // namespace
+
+LastMatch last_match_of(const fs::path& recording) {
+    RecordingReader reader(recording);
+    reader.want_only([](const ChunkType& type, Instant) {
+        return type == chunk_types::kHead || type == chunk_types::kEvent || type == chunk_types::kMatch;
+    });
+    LastMatch last;
+    Fate fate;
+    bool headed = false;
+    while (const auto chunk = reader.next()) {
+        if (chunk->type == chunk_types::kHead) {
+            last.head = head_of(chunk->payload, recording);
+            headed = true;
+        } else {
+            fate.take(*chunk);
+        }
+    }
+    if (!headed)
+        throw DamagedFileError(recording, "does not say whose it is",
+                               "It ends before its first chunk: there is nothing in it.");
+    if (!fate.found.empty()) last.found = kept_match_of(fate.found, recording);
+    if (fate.match.empty()) {
+        last.why_none = fate.why_none;
+    } else if (!fate.stopped.empty()) {
+        last.why_none = fate.stopped;
+    } else {
+        last.match = kept_match_of(fate.match, recording);
+        last.match->confirmed |= fate.confirmed;
+    }
+    return last;
+}
+
+ResumeOffer resume_offer(const fs::path& recording, const Case& the_case, const RigCalibration* rig) {
+    LastMatch last = last_match_of(recording);
+    check_names(last, the_case, recording);
+    if (!last.match) throw InputError(recording, "has no match to go on with: " + last.why_none, kScan);
+    const auto& state = last.match->registration.rig;
+    if (rig != nullptr && (!state || state->calibrated.hash != hash_of(*rig)))
+        throw InputError(recording,
+                         fmt::format("was recorded with another rig (calibrated {}, this one {})",
+                                     state ? state->calibrated.made_on : "on a day not said", rig->made_on),
+                         kScan);
+    return {std::move(*last.match), recording, false};
+}
+
+std::optional<fs::path> newest_recording(const fs::path& folder) {
+    constexpr auto kOldest = std::chrono::hours(12);
+    std::optional<fs::path> newest;
+    fs::file_time_type newest_at{};
+    std::error_code fault;
+    for (fs::directory_iterator entry(folder, fault), end; !fault && entry != end; entry.increment(fault)) {
+        if (entry->path().extension() != ".plrec") continue;
+        const auto at = fs::last_write_time(entry->path(), fault);
+        if (fault || (newest && at <= newest_at)) continue;
+        newest = entry->path();
+        newest_at = at;
+    }
+    if (newest && fs::file_time_type::clock::now() - newest_at > kOldest) return std::nullopt;
+    return newest;
+}
+
+}  // namespace planlight

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "app/kept_match.h"
+#include "app/recording/session_recorder.h"
+
+namespace planlight {
+
+/// A match that a session may go on with.
+struct ResumeOffer {
+    KeptMatch match;
+    std::filesystem::path recording;  ///< where it is from
+    bool at_once = false;             ///< asked for on the command line: no press is waited for
+};
+
+/// The match that the session of this recording used last. An hour's recording is read in well under a second: its
+/// pictures are passed over.
+struct LastMatch {
+    RecordingHead head;
+    std::optional<KeptMatch> match;
+    std::string why_none;            ///< in words, where there is none
+    std::optional<KeptMatch> found;  ///< the last one that was found, whatever became of it
+};
+LastMatch last_match_of(const std::filesystem::path& recording);
+
+/// What a session of this case can go on with. Throws InputError, with both names, when the recording is of another
+/// case, plan, program or (where it is given) rig, or has no match to go on with; DamagedFileError.
+ResumeOffer resume_offer(const std::filesystem::path& recording, const Case& the_case,
+                         const RigCalibration* rig = nullptr);
+
+/// The recording of that folder that was written to last, if that was in the last twelve hours; empty: none.
+std::optional<std::filesystem::path> newest_recording(const std::filesystem::path& folder);
+
+}  // namespace planlight

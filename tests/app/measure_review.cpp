@@ -1,0 +1,80 @@
+// How soon an hour's recording is shown, and its last match found: the updates and frames of a short session are
+// written again and again, later each time, until they make an hour. measure_review [MINUTES]
+#include <fmt/format.h>
+
+#include <chrono>
+#include <fstream>
+
+#include "app/recording/resume_offer.h"
+#include "app/report/recording_review.h"
+#include "planning_io/recording/recording_reader.h"
+#include "tests/app/played_session.h"
+#include "tests/support/test_data.h"
+
+namespace {
+
+using namespace planlight;
+namespace fs = std::filesystem;
+
+double elapsed_s(std::chrono::steady_clock::time_point since) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - since).count();
+}
+
+/// The event with its time on the session's clock so much later.
+std::string later(const std::string& text, Instant by) {
+    const std::size_t at = text.find("\"at_ns\":");
+    if (at == std::string::npos) return text;
+    const std::size_t from = at + 8, end = text.find_first_not_of("-0123456789", from);
+    return text.substr(0, from) + std::to_string(std::stoll(text.substr(from, end - from)) + by.count()) +
+           text.substr(end);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const double minutes = argc > 1 ? std::stod(argv[1]) : 60;
+    if (!test::example_case().there) return 77;
+    const test::TemporaryFolder folder;
+    const fs::path brief = folder.path() / "brief.plrec", file = folder.path() / "long.plrec";
+    test::PlayedSession how;
+    how.updates = 150;
+    test::record_session(how, test::example_case(), RecordMode::events, brief);
+    std::vector<RecordingChunk> head, body;
+    RecordingReader reader(brief);
+    while (auto chunk = reader.next()) {
+        const bool following = !body.empty() || chunk->payload.starts_with(R"({"what":"updated")");
+        if (chunk->type != chunk_types::kDone) (following ? body : head).push_back(std::move(*chunk));
+    }
+    const Instant lasts = body.back().at - body.front().at;
+    std::ofstream out(file, std::ios::binary);
+    out << recording_header();
+    std::uint64_t number = 0;
+    for (const auto& chunk : head) out << chunk_bytes(chunk, number++);
+    // Frames as an hour within its budget has them: one every two seconds, and twelve round each event.
+    for (Instant by{}; seconds(by) < 60 * minutes; by += lasts) {
+        int frames = 0;
+        for (const auto& chunk : body) {
+            if (chunk.type == chunk_types::kFrame && ++frames > 0.7 * seconds(lasts)) continue;
+            out << chunk_bytes({chunk.type, chunk.at + by,
+                                chunk.type == chunk_types::kEvent ? later(chunk.payload, by) : chunk.payload},
+                               number++);
+        }
+    }
+    out.close();
+    auto began = std::chrono::steady_clock::now();
+    const RecordingTimeLine line = time_line_of(file);
+    const double read_s = elapsed_s(began);
+    const std::string page = review_page(line, {});
+    const double page_s = elapsed_s(began);
+    began = std::chrono::steady_clock::now();
+    int moments = for_each_moment(file, line.frames_s.back(), line.frames_s.back(), [](const RecordedMoment&) {});
+    const double frame_s = elapsed_s(began);
+    began = std::chrono::steady_clock::now();
+    const bool match = last_match_of(file).match.has_value();
+    fmt::print(
+        "{:.1f} min, {:.2f} GB, {} chunks, {} frames: time line {:.2f} s, with its page ({:.0f} kB) {:.2f} s; the last "
+        "frame ({}) {:.2f} s; the last match ({}) {:.2f} s\n",
+        line.lasted_s / 60, static_cast<double>(fs::file_size(file)) / 1e9, number, line.frames_s.size(), read_s,
+        static_cast<double>(page.size()) / 1e3, page_s, moments, frame_s, match ? "found" : "none", elapsed_s(began));
+    return 0;
+}

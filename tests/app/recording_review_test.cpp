@@ -1,0 +1,224 @@
+// What `review` shows of a recording, and what an anonymous one leaves out.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "app/recording/anonymous.h"
+#include "app/recording/recording_head.h"
+#include "app/report/recording_review.h"
+#include "planning_io/recording/packed_pictures.h"
+#include "planning_io/recording/recording_file.h"
+#include "planning_io/recording/recording_reader.h"
+#include "planning_io/types/error.h"
+#include "tests/app/played_session.h"
+#include "tests/support/test_data.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+
+/// A recording made by hand, so that what it must show is known: 10 s dark, 10 s amber, 10 s green, at 10 Hz, and a
+/// frame a second whose left picture has the second as its grey.
+class RecordingReview : public ::testing::Test {
+protected:
+    static constexpr Instant kBegan = std::chrono::seconds(500);
+    test::TemporaryFolder folder_;
+    fs::path file_ = folder_.path() / "made.plrec";
+    std::ofstream out_;
+    std::uint64_t number_ = 0;
+
+    void put(const ChunkType& type, Instant at, const std::string& payload) {
+        out_ << chunk_bytes({type, kBegan + at, payload}, number_++);
+    }
+    void event(Instant at, const nlohmann::ordered_json& json) { put(chunk_types::kEvent, at, json.dump()); }
+    void make() {
+        out_.open(file_, std::ios::binary);
+        out_ << recording_header();
+        RecordingHead head;
+        head.case_code = head.case_title = "1234";
+        put(chunk_types::kHead, -kBegan, text_of(head));
+        put(chunk_types::kRoom, {}, "{}");
+        event(milliseconds(1), {{"what", "matched"}, {"verdict", "yes"}, {"predicted_mm", {0.3, 0.4}}});
+        for (int i = 0; i < 300; ++i) {
+            const Instant at = milliseconds(100 * i + 50);
+            const bool lit = i >= 100;
+            const auto ns = (kBegan + at).count();
+            if (i % 10 == 0) {
+                StereoFrame frame{GrayImage(32, 24, static_cast<std::uint8_t>(i / 10)), GrayImage(32, 24, 9),
+                                  kBegan + at, milliseconds(5), static_cast<std::uint64_t>(i)};
+                put(chunk_types::kFrame, at, pack_frame(frame));
+                if (lit) put(chunk_types::kPicture, at + milliseconds(20), pack_picture(RgbImage(16, 12, {0, 255, 0})));
+            }
+            event(at, {{"what", "updated"},
+                       {"number", i},
+                       {"at_ns", ns},
+                       {"exposure_ns", 5},
+                       {"pose", {{"bound_95_mm", 0.3}}},
+                       {"light", {{"lit", lit}}},
+                       {"delay_ns", 0},
+                       {"check", {{"off_mm", 7}}}});
+            event(at, {{"what", "gate"},
+                       {"call", "step"},
+                       {"at_ns", ns},
+                       {"trust", !lit      ? "dark"
+                                 : i < 200 ? "look"
+                                           : "aligned"},
+                       {"headline", "words"},
+                       {"off_mm", lit ? nlohmann::json(i == 250 ? 0.9 : 0.2) : nlohmann::json()}});
+        }
+    }
+    void finish(bool whole) {
+        if (whole) put(chunk_types::kDone, std::chrono::seconds(30), "{}");
+        out_.close();
+    }
+};
+
+TEST_F(RecordingReview, ShowsTheGatesColoursAndTheErrorsOverTime) {
+    make();
+    finish(true);
+    const RecordingTimeLine line = time_line_of(file_);
+    double seconds_of[3] = {0, 0, 0}, worst_mm = 0;
+    for (const auto& s : line.stretches) {
+        seconds_of[static_cast<std::size_t>(s.trust)] += s.to_s - s.from_s;
+        worst_mm = std::max(worst_mm, s.off_mm);
+        if (s.trust != LightTrust::dark) {
+            EXPECT_NEAR(s.predicted_mm, 0.5, 1e-9) << "0.4 of the match, 0.3 of the pose";
+        }
+    }
+    for (const double s : seconds_of) EXPECT_NEAR(s, 10, 0.11) << "an update every 0.1 s";
+    EXPECT_EQ(worst_mm, 0.9) << "the gate's figure, not another off_mm";
+    EXPECT_EQ(line.frames_s.size(), 30u);
+    EXPECT_EQ(line.ended, "");
+    const auto colours = std::count_if(line.events.begin(), line.events.end(), [](const auto& event) {
+        return event.what.starts_with("Dark: ") || event.what.starts_with("Amber: ") ||
+               event.what.starts_with("Green: ");
+    });
+    EXPECT_EQ(colours, 3);
+    const std::string page = review_page(line, {{"x.png", "A picture <of> it"}});
+    EXPECT_NE(page.find("A picture &lt;of&gt; it"), std::string::npos);
+    const auto figures = nlohmann::json::parse(review_json(line));
+    EXPECT_EQ(figures["frames_s"].size(), 30u);
+    EXPECT_EQ(figures["stretches"].size(), line.stretches.size());
+}
+
+TEST_F(RecordingReview, AFrameByItsTimeHasThePictureThatCameAfterIt) {
+    make();
+    finish(true);
+    int seen = 0;
+    EXPECT_EQ(for_each_moment(file_, 14.5, 17.5,
+                              [&](const RecordedMoment& moment) {
+                                  ++seen;
+                                  EXPECT_EQ(moment.frame.left.at(3, 3), 14 + seen);
+                                  ASSERT_FALSE(moment.light.empty());
+                                  EXPECT_EQ(moment.light.at(0, 0), (Rgb{0, 255, 0}));
+                                  const RgbImage all = picture_of(moment);
+                                  EXPECT_EQ(all.height, 24);
+                                  EXPECT_EQ(all.width, 32 + 8 + 32 + 8 + 32);
+                              }),
+              3);
+    EXPECT_EQ(for_each_moment(file_, 40, 50, [](const RecordedMoment&) {}), 0);
+    EXPECT_EQ(for_each_moment(file_, 0, 5, [](const RecordedMoment& m) { EXPECT_TRUE(m.light.empty()); }), 5);
+}
+
+TEST_F(RecordingReview, ARecordingThatWasCutIsShownUpToThere) {
+    make();
+    finish(false);
+    fs::resize_file(file_, fs::file_size(file_) - 40);
+    const RecordingTimeLine line = time_line_of(file_);
+    EXPECT_NE(line.ended, "");
+    EXPECT_NEAR(line.lasted_s, 30, 0.2);
+    std::ofstream(file_, std::ios::binary) << recording_header();
+    EXPECT_THROW(time_line_of(file_), DamagedFileError);
+}
+
+TEST(Anonymous, OutsideOfThePlansRegionNothingSharpIsLeft) {
+    GrayImage face(240, 180);
+    for (int y = 0; y < 180; ++y)
+        for (int x = 0; x < 240; ++x) face.at(x, y) = static_cast<std::uint8_t>(37 * x * x + 91 * y * x + 13 * y);
+    PlanRegion::InPicture region;
+    region.pixels = {{100, 80}};
+    region.radius_px = 9;
+    const GrayImage blurred = blurred_outside(face, region);
+    for (int y = 0; y < 180; ++y)
+        for (int x = 0; x < 240; ++x) {
+            const bool near = std::hypot(x - 100, y - 80) <= 9;
+            if (near) {
+                EXPECT_EQ(blurred.at(x, y), face.at(x, y));
+            }
+            // A cell of a mosaic has one grey: its first pixel's, where that is not in the region.
+            const int cx = x / 10 * 10, cy = y / 10 * 10;
+            if (!near && std::hypot(cx - 100, cy - 80) > 9) {
+                EXPECT_EQ(blurred.at(x, y), blurred.at(cx, cy));
+            }
+        }
+    const GrayImage all = blurred_outside(face, {});
+    EXPECT_EQ(all.at(100, 80), all.at(109, 89)) << "without a region all of it is blurred";
+}
+
+TEST(Anonymous, NamesAreLeftOutOfWhatIsSaidAndNotOfItsWords) {
+    Case the_case;
+    the_case.code = "1234-abcd";
+    the_case.names.patient = "Erika \"M.\"";
+    the_case.names.title = "aligned";  // a title may be any word
+    PlanDrawing drawing;
+    drawing.items.resize(2);
+    drawing.items[0].name = "Erika's hole";
+    drawing.items[1].name = "Erika";
+    NamesLeftOut names(the_case);
+    names.add_items(drawing);
+    const auto out = nlohmann::json::parse(names.out_of(
+        R"({"what":"gate","trust":"aligned","headline":"\"Erika's hole\" of Erika \"M.\" is not measured","items":["Erika's hole","Erika"]})"));
+    EXPECT_EQ(out["trust"], "aligned");
+    EXPECT_EQ(out["items"], nlohmann::json({"item 1", "item 2"}));
+    EXPECT_EQ(out.dump().find("Erika"), std::string::npos) << out;
+}
+
+/// A session in the simulated room, recorded without names and faces.
+TEST(AnonymousRecording, HoldsNoNameAndNoFace) {
+    if (!test::example_case().there) GTEST_SKIP() << "the package invesalius-examples is not installed";
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.path() / "anonymous.plrec";
+    Case named = test::example_case().prepared;
+    named.names.patient = "Xaverl Q.", named.names.title = "Xaverl's head";
+    std::vector<std::string> items;
+    for (const auto& hole : named.plan.boreholes) items.push_back(hole.name);
+    {
+        RecordingHead head = recording_head(named, "/home/xaverl/cases", RecordMode::events, {});
+        SessionRecorder recorder(std::make_unique<RecordingFile>(file), without_names(head), {}, {},
+                                 NamesLeftOut(named));
+        test::PlayedSession how;
+        how.seed = 31;
+        how.updates = 20;
+        test::play_session(how, test::example_case(), &recorder);
+    }
+    RecordingReader reader(file);
+    int frames = 0, sharp = 0;
+    while (const auto chunk = reader.next()) {
+        EXPECT_NE(chunk->type, chunk_types::kMatch);
+        if (chunk->type == chunk_types::kEvent || chunk->type == chunk_types::kHead) {
+            EXPECT_EQ(chunk->payload.find("averl"), std::string::npos) << chunk->payload.substr(0, 300);
+            for (const std::string& name : items)
+                EXPECT_EQ(chunk->payload.find('"' + name + '"'), std::string::npos) << name;
+        }
+        if (chunk->type != chunk_types::kFrame) continue;
+        ++frames;
+        const StereoFrame frame = unpack_frame(chunk->payload, file);
+        // Neighbours that differ: none within a cell of the mosaic.
+        std::size_t differ = 0;
+        for (int y = 0; y < frame.left.height; ++y)
+            for (int x = 0; x + 1 < frame.left.width; ++x)
+                differ += (x + 1) % 31 != 0 && frame.left.at(x, y) != frame.left.at(x + 1, y);
+        const double share = static_cast<double>(differ) / static_cast<double>(frame.left.pixels.size());
+        EXPECT_LT(share, 0.35) << "the example's plan covers less than a third of the picture";
+        sharp += share > 0.01;
+    }
+    EXPECT_GT(frames, 3);
+    EXPECT_GT(sharp, 0) << "round the plan the light can be looked at";
+}
+
+}  // namespace
+}  // namespace planlight
