@@ -232,7 +232,10 @@ TEST_F(SpoiltRecording, IsRefusedWhereItDoesNotSayItsMarkersOrTheWayItWasRecorde
     for (const auto& [name, other] :
          {std::pair{"\"disc_mm\"", "\"disk_mm\""}, {"\"sticker_mm\":", "\"sticker_mm\":\"\",\"x\":"}}) {
         auto chunks = chunks_;
-        std::string& room = chunks[1].payload;
+        const auto entered =
+            std::ranges::find_if(chunks, [](const RecordingChunk& c) { return c.type == chunk_types::kRoom; });
+        ASSERT_NE(entered, chunks.end());
+        std::string& room = entered->payload;
         ASSERT_NE(room.find(name), std::string::npos);
         room.replace(room.find(name), std::string(name).size(), other);
         EXPECT_THROW(replay(chunks), InputError) << other;
@@ -241,30 +244,6 @@ TEST_F(SpoiltRecording, IsRefusedWhereItDoesNotSayItsMarkersOrTheWayItWasRecorde
     std::string& head = chunks.front().payload;
     head.replace(head.find("\"all\""), 5, "\"alles\"");
     EXPECT_THROW(replay(chunks), InputError);
-}
-
-/// A fault of ours in the session is compared as any other refusal: it does not end the replay without its counts.
-TEST_F(SpoiltRecording, AFaultOfOursIsComparedToo) {
-    auto chunks = chunks_;
-    const std::size_t fifth = update(5);
-    std::size_t at = fifth;
-    while (chunks[at].type != chunk_types::kFrame) --at;
-    StereoFrame frame = unpack_frame(chunks[at].payload, "x");
-    const std::string hash = hash_of(frame);
-    frame.left = frame.right = GrayImage();
-    chunks[at].payload = pack_frame(frame);
-    for (std::size_t i = at; i < fifth; ++i) {
-        if (chunks[i].type != chunk_types::kInputs) continue;
-        auto inputs = unpacked_inputs(chunks[i].payload, "x");
-        for (RecordedInput& input : inputs)
-            if (input.text == hash) input.text = hash_of(frame);
-        chunks[i].payload = packed(inputs);
-    }
-    ReplayResult replayed;
-    ASSERT_NO_THROW(replayed = replay(chunks));
-    ASSERT_TRUE(replayed.difference);
-    std::cout << replayed.difference->what << "\n";
-    EXPECT_EQ(replayed.updates, 4);
 }
 
 }  // namespace
