@@ -91,6 +91,7 @@ public:
     }
     void take(OperatorWindow& window, const OperatorModel& model, const LiveSession& session) {
         if (folder_.empty()) return;
+        if (model.light_on && !model.figures.delay_to_light_ms) return;  // the light is still being made
         const auto kind = static_cast<int>(model.status.kind);
         frames_ = kind == kind_ ? frames_ + 1 : 0;
         kind_ = kind;
@@ -101,7 +102,7 @@ public:
     }
 
 private:
-    static constexpr int kSettledFrames = 4;
+    static constexpr int kSettledFrames = 8;  ///< looks at the session
     std::filesystem::path folder_;
     int kind_ = -1, frames_ = 0, number_ = 0;
 };
