@@ -118,6 +118,11 @@ void ProgressBar::note(const std::string& line) {
     if (!console().settings.quiet) fmt::print(stderr, "{}\n", line);
 }
 
+void ProgressBar::warn(const std::string& text) {
+    end_step();
+    planlight::warn(text);
+}
+
 void warn(const std::string& text) {
     if (console().open_bar) fmt::print(stderr, "\n");
     add_to_log("warning: " + text);

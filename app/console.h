@@ -34,6 +34,8 @@ public:
     std::function<void(const std::string&, double)> callback();
     /// A line of its own, also where stderr is no terminal.
     void note(const std::string& line);
+    /// The same for a warning, which is said under --quiet as well.
+    void warn(const std::string& text);
 
 private:
     void draw(int percent);

@@ -47,7 +47,9 @@ CaseDrawing::CaseDrawing(const Case& the_case, const CaseDrawing& planned, const
 }
 
 DrawingSettings lit_by(const RigCalibration& rig, const RigidTransform& rig_from_ct, DrawingSettings settings) {
-    settings.light = LightView{rig.projector, rig_from_ct};
+    LightView light{rig.projector, rig_from_ct};
+    light.steepest = 0.87;  // 50 degrees: whoever looks from beside the projector sees it steeper still
+    settings.light = light;
     const Eigen::Vector3d up_in_camera(0, -1, 0);
     if (settings.up_in_ct.isZero())
         settings.up_in_ct =

@@ -10,7 +10,8 @@ namespace planlight {
 
 /// What a site sets once, in planlight/config.json under $XDG_CONFIG_HOME (~/.config where that is not set):
 /// {"format": "planlight config", "version": 1, "units": "mm" | "cm" | "inch", "surgeon_side": "feet" | "head" | "left"
-/// | "right" | "view", "monitors": {"operator": "DP-1", "projector": "HDMI-2"}}. Every name but the first two may be missing.
+/// | "right" | "view", "monitors": {"operator": "DP-1", "projector": "HDMI-2"}}. Every name but the first two may be
+/// missing.
 struct SiteSettings {
     /// Unit of the lengths that commands print for a person. Files, JSON, windows and the light stay in mm.
     std::string units = "mm";

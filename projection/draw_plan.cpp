@@ -128,7 +128,12 @@ void Drawer::add_ticks(int item_index, Rgb colour, const SkinLine& line) {
 void Drawer::wish(int item_index, std::vector<std::string> figures, std::vector<Point> anchors, double keep_off_mm,
                   std::optional<Vector3d> away_from) {
     DrawnItem& named = item(item_index);
-    for (const std::string& figure : figures) named.label += "  " + figure;
+    for (std::string& figure : figures) {
+        named.label += "  " + figure;
+        // The sign is read as a digit by whoever reads quickly: 25 for ⌀5.
+        static const std::string kDiameter = "⌀";
+        if (figure.rfind(kDiameter, 0) == 0) figure = figure.substr(kDiameter.size()) + " mm wide";
+    }
     if (named.lit_name.empty() && figures.empty()) return;
     wishes_.push_back({item_index,
                        {named.lit_name, std::move(figures)},
@@ -156,12 +161,13 @@ void Drawer::wish_along(int item_index, const std::string& figure, const SkinLin
 }
 
 void Drawer::draw(const OsteotomyLine& line) {
-    std::vector<Point> on_skin;
+    std::vector<Point> on_ct_skin, on_skin;
     double far_mm = 0;
     if (finite(line))
         for (const Vector3d& p : line.points_in_ct) {
             const Point planned = ct_skin_.nearest(p);
             far_mm = std::max(far_mm, (planned.p_in_ct - p).norm());
+            on_ct_skin.push_back(planned);
             on_skin.push_back(skin_.same_place(ct_skin_, planned));
         }
     const int i =
@@ -174,7 +180,11 @@ void Drawer::draw(const OsteotomyLine& line) {
     const Rgb colour = chosen(line.colour, kOsteotomyGreen);
     add(StrokeKind::osteotomy_line, i, colour, settings_.line_width_mm, way);
     add_ticks(i, colour, way);
-    wish_along(i, fmt::format("{:.0f} mm", length_mm(way)), way);
+    // The plan's own length, as every page and window has it; the skin as it is now may make it a millimetre another.
+    const double planned_mm = &ct_skin_ == &skin_
+                                  ? length_mm(way)
+                                  : length_mm(join(ct_skin_, on_ct_skin, line.closed, settings_.max_segment_mm));
+    wish_along(i, fmt::format("{:.0f} mm", planned_mm), way);
 }
 
 void Drawer::draw(const Borehole& hole) {
@@ -200,7 +210,8 @@ void Drawer::draw(const Borehole& hole) {
     if (hole.depth_mm > 0) figures.push_back(fmt::format("{} mm deep", mm(hole.depth_mm)));
     const TextFrame frame = text_frame(at, settings_.up_in_ct);
     // As long as the ring's own light can still be told from it by the cameras (`segments_of`).
-    const double arm_mm = radius_mm > 0 ? std::max(std::min(1.5, 0.5 * radius_mm), std::min(5.0, radius_mm - 2.5)) : 1.5;
+    const double arm_mm =
+        radius_mm > 0 ? std::max(std::min(1.5, 0.5 * radius_mm), std::min(5.0, radius_mm - 2.5)) : 1.5;
     add_bar(StrokeKind::borehole, i, colour, at, frame.right_in_ct, arm_mm, arm_mm);
     add_bar(StrokeKind::borehole, i, colour, at, frame.up_in_ct, arm_mm, arm_mm);
     wish(i, std::move(figures), {at}, std::max(radius_mm, arm_mm));

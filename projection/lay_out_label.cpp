@@ -8,7 +8,7 @@
 namespace planlight {
 namespace {
 
-constexpr double kLineSpacing = 1.65, kGap = 0.9;  // of a capital's height
+constexpr double kLineSpacing = 1.65, kBetween = 0.3;  // of a capital's height
 
 double width_mm(const std::string& text, double height_mm, const Lettering& letters) {
     return height_mm * letters.outline(text).width;
@@ -59,60 +59,27 @@ std::string cut_in_the_middle(const std::string& name, double height_mm, const L
     return signs.empty() ? std::string() : signs.front() + "…";
 }
 
-class Block {
-public:
-    Block(double height_mm, const Lettering& letters) : height_mm_(height_mm), letters_(letters) {}
-
-    void add_line(const std::string& text) {
-        TextOutline outline = letters_.outline(text);
-        block_.words += (block_.words.empty() ? "" : "\n") + text;
-        const double half = outline.width / 2;
-        rows_.push_back({{std::move(outline), -half}});
+/// Lines below each other, so far apart that the ink of none touches another's; (0,0) in the middle of all.
+TextBlock stacked(const std::vector<std::string>& texts, double height_mm, const Lettering& letters) {
+    TextBlock block;
+    double y = 0, top = 0, bottom = 0, low_before = 0;
+    for (const std::string& text : texts) {
+        TextOutline outline = letters.outline(text);
+        const bool first = block.lines.empty();
+        const double low = std::min(0.0, outline.low), high = std::max(1.0, outline.high);
+        if (!first) y -= std::max(kLineSpacing, high - low_before + kBetween);
+        if (first) top = high;
+        bottom = y + low;
+        low_before = low;
+        block.width_mm = std::max(block.width_mm, height_mm * outline.width);
+        block.words += (first ? "" : "\n") + text;
+        const double begins_mm = -height_mm * outline.width / 2;
+        block.lines.push_back({std::move(outline), {begins_mm, height_mm * y}});
     }
-    /// Beside the last line where there is room.
-    bool join_line(const std::string& text) {
-        TextOutline outline = letters_.outline(text);
-        std::vector<Piece>& row = rows_.back();
-        const double all = row.back().text.width + kGap + outline.width;
-        if (row.size() != 1 || all * height_mm_ > 0.75 * kMaxLine_mm) return false;
-        block_.words += "  " + text;
-        const double second_begins = -all / 2 + row.back().text.width + kGap;
-        row.back().begins = -all / 2;
-        row.push_back({std::move(outline), second_begins});
-        return true;
-    }
-    /// Lines so far apart that the ink of none touches another's.
-    TextBlock block() {
-        double y = 0, top = 0, bottom = 0, width = 0, low_before = 0;
-        for (std::size_t r = 0; r < rows_.size(); ++r) {
-            double low = 0, high = 1;
-            for (const Piece& piece : rows_[r])
-                low = std::min(low, piece.text.low), high = std::max(high, piece.text.high);
-            if (r > 0) y -= std::max(kLineSpacing, high - low_before + 0.3);
-            if (r == 0) top = high;
-            bottom = y + low;
-            low_before = low;
-            for (Piece& piece : rows_[r]) {
-                width = std::max(width, 2 * std::abs(piece.begins));
-                block_.lines.push_back({std::move(piece.text), {height_mm_ * piece.begins, height_mm_ * y}});
-            }
-        }
-        block_.width_mm = height_mm_ * width;
-        block_.height_mm = height_mm_ * (top - bottom);
-        for (auto& line : block_.lines) line.begins_mm.y() -= height_mm_ * (top + bottom) / 2;
-        return std::move(block_);
-    }
-
-private:
-    struct Piece {
-        TextOutline text;
-        double begins;  ///< of a capital's height, from the middle
-    };
-    double height_mm_;
-    const Lettering& letters_;
-    std::vector<std::vector<Piece>> rows_;
-    TextBlock block_;
-};
+    block.height_mm = height_mm * (top - bottom);
+    for (auto& line : block.lines) line.begins_mm.y() -= height_mm * (top + bottom) / 2;
+    return block;
+}
 
 }  // namespace
 
@@ -122,21 +89,13 @@ std::string shortened(const std::string& name, double text_height_mm, const Lett
 }
 
 TextBlock lay_out(const LabelText& text, double text_height_mm, const Lettering& letters) {
-    const std::string name = shortened(text.name, text_height_mm, letters);
-    Block block(text_height_mm, letters);
-    if (!letters.outline(name).lacks.empty()) return {};
-    bool may_join = !name.empty();
-    if (!name.empty()) {
-        const auto lines = in_two_lines(name, text_height_mm, letters);
-        may_join = lines.size() == 1;
-        for (const std::string& line : lines) block.add_line(line);
-    }
-    for (const std::string& figure : text.figures) {
-        if (!letters.outline(figure).lacks.empty()) return {};
-        if (!may_join || !block.join_line(figure)) block.add_line(figure);
-        may_join = false;
-    }
-    return block.block();
+    std::vector<std::string> lines;
+    if (!text.name.empty())
+        lines = in_two_lines(shortened(text.name, text_height_mm, letters), text_height_mm, letters);
+    lines.insert(lines.end(), text.figures.begin(), text.figures.end());
+    for (const std::string& line : lines)
+        if (!letters.outline(line).lacks.empty()) return {};
+    return stacked(lines, text_height_mm, letters);
 }
 
 }  // namespace planlight

@@ -10,7 +10,7 @@ namespace planlight {
 /// What a label says: a name, and figures with their units.
 struct LabelText {
     std::string name;
-    std::vector<std::string> figures;  ///< "⌀7", "6 mm deep": each whole on one line
+    std::vector<std::string> figures;  ///< "7 mm wide", "6 mm deep": each whole on one line
 };
 
 /// A label's lines, laid out: (0,0) in the middle, x along the lines, y up, mm.
@@ -28,7 +28,7 @@ struct TextBlock {
 inline constexpr double kMaxLine_mm = 44;
 
 /// Lines of a label with capitals so high. A name too long for a line stands on two, and is shortened in the middle
-/// where that is not enough; the first figure stands beside a short name; figures are never parted. Nothing when a font
+/// where that is not enough; each figure has a line of its own, so that no two are read as one. Nothing when a font
 /// lacks a sign of it.
 TextBlock lay_out(const LabelText& text, double text_height_mm, const Lettering& letters = lettering());
 

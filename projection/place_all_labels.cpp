@@ -62,7 +62,8 @@ private:
     void face_the_light();
     void tell_of_others();
     bool put(const LabelWish& wish);
-    bool put_whole_first();
+    void put_whole_first();
+    int told() const;
     void put_numbers_first();
     void keep_to_share();
     void put_of_moment();
@@ -106,20 +107,31 @@ void AllLabels::tell_of_others() {
 bool AllLabels::put(const LabelWish& wish) {
     auto label = place_label(wish, skin_, settings_, occupied_);
     if (!label) return false;
-    occupied_.take_away_label(wish.item);
+    if (const auto former = put_.find(wish.item); former != put_.end()) vacate(former->second, occupied_);
     occupy(*label, occupied_);
     put_.insert_or_assign(wish.item, std::move(*label));
     return true;
 }
 
-/// Whole labels, and shorter ones where there is no room. False when an item has not even its name.
-bool AllLabels::put_whole_first() {
+/// Whole labels, and shorter ones where there is no room.
+void AllLabels::put_whole_first() {
     occupied_ = plan_;
     put_.clear();
-    bool all = true;
     for (const LabelWish& wish : wishes_)
-        all = all && (put(in_form(wish, Form::whole)) || put(in_form(wish, Form::name)));
-    return all;
+        for (const Form form : {Form::whole, Form::name, Form::number})
+            if (put(in_form(wish, form))) break;
+}
+
+/// How much the labels tell: an item without any costs most.
+int AllLabels::told() const {
+    int told = 0;
+    for (const LabelWish& wish : wishes_) {
+        const auto label = put_.find(wish.item);
+        if (label == put_.end()) continue;
+        const bool number = label->second.words == wish.number;
+        told += number ? 4 : label->second.words.size() > wish.text.name.size() + 2 ? 6 : 5;
+    }
+    return told;
 }
 
 /// A crowded plan: a number for as many as can have one, then names, then figures where room is left.
@@ -161,6 +173,7 @@ void AllLabels::keep_to_share() {
 void AllLabels::put_of_moment() {
     for (LabelWish wish : wishes_) {
         wish.but_of = OccupiedSkin::kAllLabels;
+        wish.others.clear();  // they are dim
         auto label = place_label(wish, skin_, settings_, plan_);
         if (!label) label = place_label(in_form(wish, Form::name), skin_, settings_, plan_);
         if (!label) continue;
@@ -170,7 +183,15 @@ void AllLabels::put_of_moment() {
 }
 
 void AllLabels::place() {
-    if (!put_whole_first()) put_numbers_first();
+    constexpr int kAll = 6;
+    put_whole_first();
+    if (const int first = told(); first < kAll * static_cast<int>(wishes_.size())) {
+        const auto whole_first = put_;
+        put_numbers_first();
+        if (told() <= first) put_ = whole_first;
+        occupied_ = plan_;
+        for (const auto& [item, label] : put_) occupy(label, occupied_);
+    }
     keep_to_share();
     for (const LabelWish& wish : wishes_) {
         const auto label = put_.find(wish.item);

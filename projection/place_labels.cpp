@@ -96,7 +96,7 @@ bool Search::is_close_to_another(const TextFrame& frame) const {
 
 /// True when all of the text's outline lies on skin that is free, flat and lit.
 bool Search::is_free(const TextFrame& frame) const {
-    constexpr double kApart_mm = 2.2, kFlat = 0.7;
+    constexpr double kApart_mm = 2.2, kFlat = 0.85;
     if (is_close_to_another(frame)) return false;
     const int nx = std::max(1, static_cast<int>(std::ceil(block_.width_mm / kApart_mm)));
     const int ny = std::max(1, static_cast<int>(std::ceil(block_.height_mm / kApart_mm)));
@@ -113,9 +113,12 @@ bool Search::is_free(const TextFrame& frame) const {
 
 double Search::cost_of(std::size_t anchor, double angle, double gap_mm, const Point& middle) const {
     const Point& from = wish_.anchors[anchor];
+    Vector3d facing = wish_.facing_in_ct.value_or(from.normal_in_ct);
+    if (settings_.light)
+        facing = (settings_.light->rig_from_ct.inverse() * settings_.light->projector.centre_in_rig() - middle.p_in_ct)
+                     .normalized();
     double cost = gap_mm + 0.3 * static_cast<double>(anchor) + 2 * std::abs(std::sin(angle)) +
-                  (std::cos(angle) < -0.1 ? 0.5 : 0) +
-                  30 * (1 - middle.normal_in_ct.dot(wish_.facing_in_ct.value_or(from.normal_in_ct)));
+                  (std::cos(angle) < -0.1 ? 0.5 : 0) + 30 * (1 - middle.normal_in_ct.dot(facing));
     if (wish_.away_from_in_ct &&
         (middle.p_in_ct - *wish_.away_from_in_ct).norm() < (from.p_in_ct - *wish_.away_from_in_ct).norm())
         cost += 15;
@@ -179,8 +182,9 @@ void OccupiedSkin::add(const Vector3d& p_in_ct, int owner) {
     cell.push_back({p_in_ct, owner});
 }
 
-void OccupiedSkin::take_away_label(int item) {
-    for (auto& [key, cell] : cells_) std::erase_if(cell, [&](const Taken& q) { return q.owner == item; });
+void OccupiedSkin::take_away(const Vector3d& p_in_ct, int owner) {
+    const auto cell = cells_.find(key((p_in_ct / kCell_mm).array().floor().cast<int>()));
+    if (cell != cells_.end()) std::erase_if(cell->second, [&](const Taken& q) { return q.owner == owner; });
 }
 
 bool OccupiedSkin::within(const Vector3d& p_in_ct, double distance_mm, int but_of) const {
@@ -198,12 +202,25 @@ bool OccupiedSkin::within(const Vector3d& p_in_ct, double distance_mm, int but_o
     return false;
 }
 
-void occupy(const Label& label, OccupiedSkin& occupied) {
-    for (const Vector3d& p : label.field_in_ct) occupied.add(p, label.item);
+namespace {
+
+template <class Visit>
+void each_point(const Label& label, const Visit& visit) {
+    for (const Vector3d& p : label.field_in_ct) visit(p);
     for (const auto& sign : label.signs_in_ct)
         for (const auto& outline : sign)
-            for (const Vector3d& p : outline) occupied.add(p, label.item);
-    for (const Vector3d& p : label.leader.points_in_ct) occupied.add(p, label.item);
+            for (const Vector3d& p : outline) visit(p);
+    for (const Vector3d& p : label.leader.points_in_ct) visit(p);
+}
+
+}  // namespace
+
+void occupy(const Label& label, OccupiedSkin& occupied) {
+    each_point(label, [&](const Vector3d& p) { occupied.add(p, label.item); });
+}
+
+void vacate(const Label& label, OccupiedSkin& occupied) {
+    each_point(label, [&](const Vector3d& p) { occupied.take_away(p, label.item); });
 }
 
 std::optional<Label> place_label(const LabelWish& wish, const SkinSurface& skin, const DrawingSettings& settings,
@@ -214,7 +231,8 @@ std::optional<Label> place_label(const LabelWish& wish, const SkinSurface& skin,
     if (!found) return std::nullopt;
     auto label = draw_label(skin, found->frame, block, wish.item, settings.text_height_mm);
     if (!label) return std::nullopt;
-    if (found->leader.size() > 1)
+    constexpr std::size_t kLongEnoughToBeSeen = 5;  // points, half a millimetre apart
+    if (found->leader.size() >= kLongEnoughToBeSeen)
         for (const Point& p : found->leader) {
             label->leader.points_in_ct.push_back(p.p_in_ct);
             label->leader.normals_in_ct.push_back(p.normal_in_ct);

@@ -21,7 +21,7 @@ public:
 
     /// `owner`: `kPlan`, or the item whose label it is.
     void add(const Eigen::Vector3d& p_in_ct, int owner = kPlan);
-    void take_away_label(int item);
+    void take_away(const Eigen::Vector3d& p_in_ct, int owner);
     /// `distance_mm` up to the cell size. What belongs to `but_of` is overlooked.
     bool within(const Eigen::Vector3d& p_in_ct, double distance_mm, int but_of = kNobody) const;
 
@@ -51,7 +51,7 @@ struct LabelWish {
         double half_size_mm;
     };
     std::vector<Other> others = {};
-    int but_of = OccupiedSkin::kNobody;              ///< whose labels may lie there
+    int but_of = OccupiedSkin::kNobody;  ///< whose labels may lie there
 };
 
 /// The label where it overlaps nothing, the skin is flat and, where the light is known, all of it can be lit: the
@@ -62,8 +62,9 @@ struct LabelWish {
 std::optional<Label> place_label(const LabelWish& wish, const SkinSurface& skin, const DrawingSettings& settings,
                                  const OccupiedSkin& occupied);
 
-/// Takes the skin under the label and its leader.
+/// Takes the skin under the label and its leader, and gives it back.
 void occupy(const Label& label, OccupiedSkin& occupied);
+void vacate(const Label& label, OccupiedSkin& occupied);
 
 /// A skin point with the directions in which text runs and stands there, read from outside.
 struct TextFrame {

@@ -144,6 +144,13 @@ void judge_edges(const SkinMask& mask, SkinJudgement& r) {
 }
 
 void judge_things(SkinJudgement& r) {
+    if (std::isnan(r.one_sided_cm2) || std::isnan(r.bumps_cm2) || std::isnan(r.width))
+        add(r.doubts,
+            fmt::format("Whether something lies on the skin ({}{}{}) could not be asked: too little of the head is in "
+                        "the volume",
+                        std::isnan(r.one_sided_cm2) ? "at one side" : "",
+                        std::isnan(r.bumps_cm2) ? ", small things" : "", std::isnan(r.width) ? ", at both sides" : ""),
+            kLook);
     if (r.one_sided_cm2 > kOneSided_cm2)
         add(r.doubts,
             fmt::format("Over {:.0f} square cm one side of the head stands out by more than 10 mm before the other: "

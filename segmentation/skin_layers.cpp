@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "planning_io/types/statistics.h"
+#include "segmentation/triangle_area.h"
 #include "segmentation/volume_sample.h"
 
 namespace planlight {
@@ -228,13 +229,7 @@ SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const Triang
     layers.scalp_mm = depths.empty() ? NAN : median(std::move(depths));
     layers.dip = levels.empty() ? NAN : median(std::move(levels));
     double area_cm2 = 0;
-    for (const auto& t : skin.triangles) {
-        const auto& a = skin.vertices_in_ct[static_cast<std::size_t>(t[0])];
-        area_cm2 += (skin.vertices_in_ct[static_cast<std::size_t>(t[1])] - a)
-                        .cross(skin.vertices_in_ct[static_cast<std::size_t>(t[2])] - a)
-                        .norm() /
-                    200;
-    }
+    for (const auto& t : skin.triangles) area_cm2 += area_in_ct(skin, t).norm() / 100;
     if (!volume.is_hu && !layers.bright_bone && layers.layered_share > kLayeredAllOver)
         layers.boneless_cm2 = area_cm2 * boneless_share(samples, brain);
     layers.gap_cm2 = samples.empty() || !volume.is_hu ? 0 : area_cm2 * off / static_cast<double>(samples.size());

@@ -6,6 +6,7 @@
 
 #include "planning_io/types/statistics.h"
 #include "segmentation/coarse_body.h"
+#include "segmentation/triangle_area.h"
 
 namespace planlight {
 namespace {
@@ -14,16 +15,9 @@ using Eigen::Vector3d;
 
 constexpr double kBallGrid_mm = 4, kUpperHead_mm = 150, kMostDepth_mm = 130;
 constexpr double kStrandGrid_mm = 3, kThin_mm = 7, kLongestStrand_mm = 300;
-constexpr double kLeastCut_cm2 = 1, kAdultSkull_mm = 75;
+constexpr double kLeastCut_cm2 = 1;
+constexpr double kUsualSkull_mm = 75;  // radius of an adult's: thick hair makes the ball larger, not the head longer
 constexpr double kCell_mm = 4, kSteep = 0.4;  // of the nose's search
-
-double area_of(const TriangleMesh& mesh, const std::array<std::int32_t, 3>& t, Vector3d* normal) {
-    const auto& a = mesh.vertices_in_ct[static_cast<std::size_t>(t[0])];
-    const Vector3d n = (mesh.vertices_in_ct[static_cast<std::size_t>(t[1])] - a)
-                           .cross(mesh.vertices_in_ct[static_cast<std::size_t>(t[2])] - a);
-    *normal = n.normalized();
-    return n.norm() / 2;
-}
 
 bool is_cut(const TriangleMesh& skin, const std::array<std::int32_t, 3>& t) {
     return std::all_of(t.begin(), t.end(),
@@ -33,7 +27,7 @@ bool is_cut(const TriangleMesh& skin, const std::array<std::int32_t, 3>& t) {
 /// What ends at a side with this normal, `below_mm` under the skull's middle. Shoulders and neck end at every side of a
 /// volume; an adult's chin lies 110 to 140 mm below.
 const char* name_of_end(const Vector3d& normal, double below_mm, double radius_mm) {
-    const double skull_mm = std::min(radius_mm, kAdultSkull_mm);
+    const double skull_mm = std::min(radius_mm, kUsualSkull_mm);
     int axis = 0;
     normal.cwiseAbs().maxCoeff(&axis);
     const bool up = normal[axis] > 0;
@@ -132,10 +126,10 @@ std::vector<CutSide> cut_sides_of(const TriangleMesh& skin, const HeadBall& ball
     if (!skin.flags.empty())
         for (const auto& t : skin.triangles) {
             if (!is_cut(skin, t)) continue;
-            Vector3d normal;
-            const double cm2 = area_of(skin, t, &normal) / 100;
+            const Vector3d area = area_in_ct(skin, t);
+            const double cm2 = area.norm() / 100;
             const double below_mm = ball.centre_in_ct.z() - skin.vertices_in_ct[static_cast<std::size_t>(t[0])].z();
-            const std::string name = name_of_end(normal, below_mm, ball.radius_mm);
+            const std::string name = name_of_end(area.normalized(), below_mm, ball.radius_mm);
             CutSide& side = sides[name];
             side = {name, side.area_cm2 + cm2, name == "neck"};
         }

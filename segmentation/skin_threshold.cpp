@@ -31,7 +31,7 @@ Histogram histogram_of(const std::vector<float>& values, double low, double high
     return h;
 }
 
-/// The centre of the fullest bin (of three-bin sums) of [from, to]; `share` of all counts that it must hold.
+/// The centre of the fullest bin (of three-bin sums) of [from, to].
 double peak(const Histogram& h, std::size_t from, std::size_t to) {
     std::size_t best = from;
     double most = -1;

@@ -1,12 +1,14 @@
 #include "segmentation/things_on_skin.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <optional>
 
 #include "planning_io/types/statistics.h"
 #include "segmentation/coarse_body.h"
+#include "segmentation/triangle_area.h"
 
 namespace planlight {
 namespace {
@@ -16,15 +18,20 @@ using Eigen::Vector3d;
 constexpr double kGrid_mm = 2;
 constexpr double kRolling_mm = 12, kBump_mm = 3;
 constexpr double kOneSided_mm = 10, kFar_mm = 40;
-constexpr double kAdultSkull_mm = 80, kChin = 1.1;  // of the skull's radius below its middle
+constexpr double kLargestSkull_mm = 80;  // radius of an adult's
+constexpr double kChin = 1.1;            // of the skull's radius below its middle
+constexpr double kLeastMirrored = 0.5;   // of the skin: whose mirror image the volume shows
 constexpr std::size_t kMostPoints = 6000;
 
 /// Signed distances from the body's surface (positive outside), where the volume reaches.
 struct Distances {
     CoarseBody coarse;
+    Eigen::Affine3d voxel_from_ct;
+    std::array<int, 3> size;  ///< of the volume
     std::vector<float> out_mm, in_mm;
 
-    explicit Distances(CoarseBody body) : coarse(std::move(body)) {
+    Distances(CoarseBody body, const Volume& volume)
+        : coarse(std::move(body)), voxel_from_ct(volume.ct_from_voxel.inverse()), size(volume.size) {
         const VoxelGrid& grid = coarse.places.grid;
         out_mm = distance_from(coarse.body, 1, grid, kFar_mm);
         Mask whole = coarse.body;  // an end of the volume is no surface
@@ -40,10 +47,16 @@ struct Distances {
             if (at[a] < 0 || at[a] >= places.grid.size[static_cast<std::size_t>(a)]) return std::nullopt;
         return places.index(at.x(), at.y(), at.z());
     }
-    /// Not a number where nothing was measured.
+    bool is_measured(const Vector3d& p_in_ct) const {
+        const Vector3d at = voxel_from_ct * p_in_ct;
+        for (int a = 0; a < 3; ++a)
+            if (!(at[a] >= -0.5 && at[a] < size[static_cast<std::size_t>(a)] - 0.5)) return false;
+        return true;
+    }
+    /// Not a number where nothing was measured. The grid is the skin's box: beyond it lies air, or the volume's end.
     double operator()(const Vector3d& p_in_ct) const {
         const auto at = index_at(p_in_ct);
-        if (!at) return kFar_mm;
+        if (!at) return is_measured(p_in_ct) ? kFar_mm : NAN;
         if (!coarse.places.measured[*at]) return NAN;
         return static_cast<double>(coarse.body[*at] ? -in_mm[*at] : out_mm[*at]);
     }
@@ -52,8 +65,7 @@ struct Distances {
 std::vector<double> areas_cm2(const TriangleMesh& skin) {
     std::vector<double> areas(skin.vertices_in_ct.size(), 0);
     for (const auto& t : skin.triangles) {
-        const auto at = [&](std::size_t k) { return skin.vertices_in_ct[static_cast<std::size_t>(t[k])]; };
-        const double third_cm2 = (at(1) - at(0)).cross(at(2) - at(0)).norm() / 600;
+        const double third_cm2 = area_in_ct(skin, t).norm() / 300;
         for (const std::int32_t corner : t) areas[static_cast<std::size_t>(corner)] += third_cm2;
     }
     return areas;
@@ -84,7 +96,7 @@ struct Point {
 
 std::vector<Point> points_of(const TriangleMesh& skin, const HeadBall& ball) {
     const std::vector<double> areas = areas_cm2(skin);
-    const double lowest = ball.centre_in_ct.z() - kChin * std::min(ball.radius_mm, kAdultSkull_mm);
+    const double lowest = ball.centre_in_ct.z() - kChin * std::min(ball.radius_mm, kLargestSkull_mm);
     const std::size_t stride = std::max<std::size_t>(1, areas.size() / kMostPoints);
     std::vector<Point> points;
     for (std::size_t v = 0; v < areas.size(); v += stride)
@@ -96,14 +108,15 @@ std::vector<Point> points_of(const TriangleMesh& skin, const HeadBall& ball) {
 /// The plane whose mirror images lie best on the surface; from x = 0 of ct, in steps that are halved.
 MiddlePlane middle_plane(const Distances& distances, const std::vector<Point>& points, const HeadBall& ball) {
     const auto misfit = [&](const MiddlePlane& plane) {
-        double sum = 0, weight = 0;
+        double sum = 0, weight = 0, all = 0;
         for (const Point& p : points) {
+            all += p.area_cm2;
             const double off_mm = distances(plane.mirrored(p.at_in_ct));
             if (std::isnan(off_mm)) continue;
             sum += p.area_cm2 * std::pow(std::min(std::abs(off_mm), kOneSided_mm), 2);
             weight += p.area_cm2;
         }
-        return weight > 0 ? sum / weight : INFINITY;
+        return weight > kLeastMirrored * all ? sum / weight : INFINITY;  // not the plane that mirrors next to nothing
     };
     MiddlePlane best{ball.centre_in_ct};
     double least = misfit(best);
@@ -122,10 +135,15 @@ MiddlePlane middle_plane(const Distances& distances, const std::vector<Point>& p
 }
 
 double one_sided(const Distances& distances, const std::vector<Point>& points, const MiddlePlane& plane) {
-    double cm2 = 0;
-    for (const Point& p : points)
-        if (distances(plane.mirrored(p.at_in_ct)) > kOneSided_mm) cm2 += p.area_cm2;
-    return cm2;
+    double cm2 = 0, mirrored = 0, all = 0;
+    for (const Point& p : points) {
+        all += p.area_cm2;
+        const double off_mm = distances(plane.mirrored(p.at_in_ct));
+        if (std::isnan(off_mm)) continue;
+        mirrored += p.area_cm2;
+        if (off_mm > kOneSided_mm) cm2 += p.area_cm2;
+    }
+    return mirrored > kLeastMirrored * all ? cm2 : NAN;
 }
 
 double bumps(const Distances& distances, const TriangleMesh& skin, const HeadBall& ball) {
@@ -133,19 +151,20 @@ double bumps(const Distances& distances, const TriangleMesh& skin, const HeadBal
     for (std::size_t v = 0; v < core.size(); ++v) core[v] = static_cast<double>(distances.in_mm[v]) > kRolling_mm;
     const auto from_core = distance_from(core, 1, distances.coarse.places.grid, kRolling_mm + kFar_mm);
     const std::vector<double> areas = areas_cm2(skin);
-    double cm2 = 0;
+    double cm2 = 0, all = 0;
     for (std::size_t v = 0; v < areas.size(); ++v) {
         if (is_end(skin, v)) continue;
         const Vector3d away = (skin.vertices_in_ct[v] - ball.centre_in_ct).normalized();
         if (away.z() < 0.2 && (away.z() < -0.15 || away.y() < 0.5)) continue;  // ears, face, neck
+        all += areas[v];
         const auto at = distances.index_at(skin.vertices_in_ct[v]);
         if (at && static_cast<double>(from_core[*at]) > kRolling_mm + kBump_mm) cm2 += areas[v];
     }
-    return cm2;
+    return all > 0 ? cm2 : NAN;
 }
 
 double width(const TriangleMesh& skin, const MiddlePlane& plane, const HeadBall& ball) {
-    double widest = 0;
+    double widest = NAN;
     for (const double level : {-0.4, -0.6, -0.8}) {
         std::vector<double> aside;
         for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
@@ -153,7 +172,7 @@ double width(const TriangleMesh& skin, const MiddlePlane& plane, const HeadBall&
             if (is_end(skin, v) || std::abs(p.z() - ball.centre_in_ct.z() - level * ball.radius_mm) > 3) continue;
             aside.push_back(std::abs(plane.left_of(p)));
         }
-        if (aside.size() > 30) widest = std::max(widest, quantile(std::move(aside), 0.95) / ball.radius_mm);
+        if (aside.size() > 30) widest = std::fmax(widest, quantile(std::move(aside), 0.95) / ball.radius_mm);
     }
     return widest;
 }
@@ -163,7 +182,7 @@ double width(const TriangleMesh& skin, const MiddlePlane& plane, const HeadBall&
 ThingsOnSkin things_on_skin(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin,
                             const HeadBall& ball) {
     if (skin.vertices_in_ct.empty() || !(ball.radius_mm > 0)) return {};
-    const Distances distances(coarse_body(volume, mask, skin, kGrid_mm, 0));
+    const Distances distances(coarse_body(volume, mask, skin, kGrid_mm, 0), volume);
     const std::vector<Point> points = points_of(skin, ball);
     const MiddlePlane plane = middle_plane(distances, points, ball);
     return {one_sided(distances, points, plane), bumps(distances, skin, ball), width(skin, plane, ball)};

@@ -25,17 +25,37 @@ std::vector<std::string> left_of(const Path& recording, const Path& case_folder)
     return left;
 }
 
-int run_forget(const Path& recording) {
-    Path case_folder;
+/// The case that it names; empty where it cannot be read.
+Path case_of(const Path& recording) {
     try {
-        case_folder = head_of_recording(recording).case_folder;
+        return head_of_recording(recording).case_folder;
     } catch (const DamagedFileError&) {  // a recording all the same: its first words are
+    } catch (const DiskError&) {         // what cannot be read can be removed all the same
     }
+    return {};
+}
+
+/// False: somebody has removed it already.
+bool removed(const Path& file) {
     std::error_code fault;
-    if (!fs::remove(recording, fault) || fault)
-        throw DiskError(recording, "cannot be removed: " + fault.message(), "Check the permissions of its folder.");
-    fmt::print("{} is removed.\n", recording.string());
+    const bool was_there = fs::remove(file, fault);
+    if (fault) throw DiskError(file, "cannot be removed: " + fault.message(), "Check the permissions of its folder.");
+    return was_there;
+}
+
+/// Of a link, what it leads to is removed first: there the faces are.
+int run_forget(const Path& named) {
+    const Path case_folder = case_of(named);
+    std::error_code ignored;
+    const bool link = fs::is_symlink(named, ignored);
+    const Path recording = link ? fs::canonical(named) : named;
+    const std::uintmax_t names = fs::hard_link_count(recording, ignored);
+    const bool others = !ignored && names > 1;
+    fmt::print("{} is removed{}.\n", recording.string(), removed(recording) ? "" : " already");
+    if (link && removed(named)) fmt::print("{}, a link to it, is removed.\n", named.string());
     const auto left = left_of(recording, case_folder);
+    if (others)
+        fmt::print("Left: the recording itself, under {} other name{} (hard links)\n", names - 1, names > 2 ? "s" : "");
     for (const std::string& what : left) fmt::print("Left: {}\n", what);
     fmt::print(
         "Left: copies that somebody made, and until the disk writes over them the bytes themselves, unless it is "

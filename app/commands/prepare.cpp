@@ -71,7 +71,7 @@ Preparation prepare(const Inputs& in, const PrepareOptions& options, ProgressBar
     LutSettings lut;
     lut.voxel_mm = options.voxel_mm;
     check_memory_to_prepare(in.volume, lut);
-    const auto told = [&bar](const std::string& warning) { bar.note("warning: " + warning); };
+    const auto told = [&bar](const std::string& warning) { bar.warn(warning); };
     for (const auto& note : in.plan.notes) told(note);
     const auto show_thresholds = [&](const Volume& volume, double threshold) {
         Path picture = options.out;
@@ -99,7 +99,7 @@ PreparationReport report_of(Inputs& in, Preparation& done, ProgressBar& bar) {
     done.mask.body = {};
     release_spare_memory();
     add_views(done.prepared, done.drawing, pictures);
-    if (!pictures.no_views.empty()) bar.note("warning: " + pictures.no_views);
+    if (!pictures.no_views.empty()) bar.warn(pictures.no_views);
     PreparationReport report = preparation_report(done, done.drawing, removed, pictures);
     release_spare_memory();
     bar.show("report", 1);

@@ -55,6 +55,37 @@ void print_json(const ReplayResult& r) {
     std::cout << json.dump(2) << '\n';
 }
 
+const char* heading_of(const ReplayResult& r) {
+    if (r.difference) return "Alike before it differs";
+    if (r.end == RecordingEnd::whole && r.ended.empty()) return "Alike to the last digit";
+    return "Alike as far as it could be compared";
+}
+
+[[noreturn]] void tell_difference(const ReplayResult& result) {
+    throw CheckFailedError(sentence_of(*result.difference, result.began),
+                           result.other_program
+                               ? "It was recorded by another build of the program: replay it with that."
+                               : "The same build of the program should not differ: keep the recording, "
+                                 "and report it with the processor's name.");
+}
+
+/// Throws unless all that the recording holds was compared. One that was cut holds no more.
+void check_compared(const ReplayResult& result, const Path& recording) {
+    if (result.difference) tell_difference(result);
+    if (result.end == RecordingEnd::damaged)
+        throw DamagedFileError(recording, "is alike up to where it is damaged",
+                               "Copy the file again from where it was written.");
+    if (result.compared() == 0)
+        throw CheckFailedError("nothing of the recording could be compared: " +
+                                   (result.ended.empty() ? "nothing was asked of the session." : result.ended),
+                               "Record a session with a scan: `planlight session --record all`.");
+    if (!result.ended.empty() && result.end == RecordingEnd::open)
+        throw CheckFailedError(
+            fmt::format("the replay is alike up to {:.1f} s, and cannot go on to the end of the recording: {}",
+                        result.recorded_s, result.ended),
+            "What comes after rests on what was not kept: record on a disk that is quick and has room.");
+}
+
 int run_replay(const ReplayOptions& options) {
     Path folder = options.case_folder;
     if (folder.empty()) folder = head_of_recording(options.recording).case_folder;
@@ -66,18 +97,9 @@ int run_replay(const ReplayOptions& options) {
     if (options.json)
         print_json(result);
     else
-        fmt::print("{}: alike to the last digit ({:.1f} s of the session).\n", counts_of(result), result.recorded_s);
+        fmt::print("{}: {} ({:.1f} s of the session).\n", heading_of(result), counts_of(result), result.recorded_s);
+    check_compared(result, options.recording);
     if (!result.ended.empty()) warn(result.ended);
-    if (result.difference) {
-        const std::string sentence = sentence_of(*result.difference, result.began);
-        throw CheckFailedError(sentence, result.other_program
-                                             ? "It was recorded by another build of the program: replay it with that."
-                                             : "The same build of the program should not differ: keep the recording, "
-                                               "and report it with the processor's name.");
-    }
-    if (result.end == RecordingEnd::damaged)
-        throw DamagedFileError(options.recording, "is alike up to where it is damaged",
-                               "Copy the file again from where it was written.");
     return 0;
 }
 

@@ -23,6 +23,10 @@
 
 namespace planlight {
 
+/// Who asks for what a button does. A person's press is recorded as theirs; what the program does by itself is recorded
+/// by what comes of it, and darkness because the projector was lost by that name.
+enum class AskedBy { person, program, lost_projector };
+
 /// A session in a room that runs in a thread of its own, so that the windows answer while it computes.
 ///
 /// The window thread posts what the person wants and takes the newest model and the newest light.
@@ -37,7 +41,7 @@ public:
 
     /// Queued; `dark` and `stop` overtake everything that waits. The model says so at once. Returns why it does nothing
     /// in the state of now, as a sentence; empty: it is taken.
-    std::string post(OperatorAction action);
+    std::string post(OperatorAction action, AskedBy by = AskedBy::person);
 
     /// Finding the patient with these landmarks (none: without), clicked on the last scan; queued.
     std::string post_find_patient(std::vector<PointPair> landmarks);
@@ -94,8 +98,6 @@ private:
     std::optional<double> lit_per_s(const Session::Update& update);
     void play_fault(const LightGate::Ruling& ruling, Room& room);
     void stop_light(Session& session, const LightGate::Ruling& ruling);
-    void set_status(StatusKind kind, const std::string& headline, std::vector<std::string> details = {});
-    void set_steps(int active, StepState state = StepState::active);
     /// What came of something: it leads on, and `change` is made with it; nothing of both where DARK was pressed
     /// meanwhile and has led elsewhere.
     void happened(SessionHappening happening, const std::function<void(OperatorModel&)>& change = {});
@@ -104,7 +106,7 @@ private:
     void said();
     std::uint64_t darks_now() const;
     std::string refused_press(OperatorAction action) const;
-    void keep_refused_pictures(const Session& session);
+    void begin(const Press& press);
     void look(const Session& session, Room& room);
     Press next_press(Instant longest);
     void permit_light(const Press& press);
@@ -140,6 +142,7 @@ private:
     Instant seen_at_{};                 ///< of the last frame, on the room's clock
     int landmark_ = -1;                 ///< that is lit for a person to look at; -1: the plan is lit
     int landmarks_to_look_at_ = 0;
+    std::string landmark_place_;        ///< of the one that is lit, in words: "front, left, high"
     std::deque<Instant> lit_at_;        ///< of the last pictures, on the room's clock
     int good_updates_ = 0;              ///< ALIGNED so often; then the simulated fault begins
     std::optional<ResumeOffer> offer_;  ///< of the session's thread

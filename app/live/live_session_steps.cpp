@@ -9,6 +9,7 @@
 #include "app/live/live_session.h"
 #include "app/live/scene_of_session.h"
 #include "app/report/registration_certificate.h"
+#include "app/verify_landmarks.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -34,7 +35,7 @@ void LiveSession::scan(Session& session) {
 /// Of what is being done, while it is not overtaken by DARK.
 void LiveSession::set_progress(const std::string& headline, double share) {
     change_model([&](OperatorModel& m) {
-        if (permitted_ != darks_) return;
+        if (permitted_ != darks_ || !view_of(state_).lights) return;
         m.status.headline = headline;
         m.status.share = share;
     });
@@ -70,10 +71,10 @@ void LiveSession::find_patient(Session& session, const std::vector<PointPair>& l
         m.rows = shown.rows;
         m.fit = shown.fit;
         m.evidence = shown.evidence;
+        if (found.verdict == Verdict::no) show_refused_scan(session, m);
         if (state_ != SessionState::found)
             m.status.details.insert(m.status.details.end(), found.reasons.begin(), found.reasons.end());
     });
-    if (found.verdict == Verdict::no) keep_refused_pictures(session);
 }
 
 /// Keeps the match and its scan; what became of it, in a sentence. A full disk does not end a session.
@@ -110,6 +111,7 @@ void LiveSession::confirm_light(Session& session) {
     landmarks_to_look_at_ = static_cast<int>(session.landmarks().size());
     if (++landmark_ < landmarks_to_look_at_) {
         session.light_landmark(static_cast<std::size_t>(landmark_));
+        landmark_place_ = words_of_place(drawing_.skin, session.landmarks()[static_cast<std::size_t>(landmark_)]);
     } else {
         end_verification(session);
         gate_.verify(seen_at_);
@@ -130,11 +132,16 @@ void LiveSession::end_verification(Session& session) {
 /// What is said while a landmark is lit, where nothing worse is to be said.
 void LiveSession::show_verification(const Session::Update& update, LightGate::Ruling& ruling) {
     if (landmark_ < 0 || !update.overlay.lit || ruling.stop) return;
+    std::erase_if(ruling.details, [](const std::string& detail) {  // that has been done
+        return detail.find("\"Show landmarks\"") != std::string::npos;
+    });
     ruling.headline =
         fmt::format("LOOK: is the ring of light on landmark {} of {}?", landmark_ + 1, landmarks_to_look_at_);
-    ruling.details.insert(ruling.details.begin(),
-                          "The picture of the head shows where it belongs. If it lies elsewhere on the patient, press "
-                          "Stop, and scan again.");
+    ruling.details.insert(
+        ruling.details.begin(),
+        (landmark_place_.empty() ? "The picture of the head shows where it belongs."
+                                 : "It belongs there: " + landmark_place_ + " (see the picture of the head).") +
+            " If it lies elsewhere on the patient, press Stop, and scan again.");
 }
 
 /// The short scan, and what it means for the light.
@@ -181,9 +188,9 @@ void LiveSession::stop_light(Session& session, const LightGate::Ruling& ruling) 
         view_.put_into(seen);
         m.left.refused = seen.left.live;
         m.right.refused = seen.right.live;
+        m.steps[4] = StepState::attention;
+        m.status = {StatusKind::refused, ruling.headline, ruling.details};
     });
-    set_steps(4, StepState::attention);
-    set_status(StatusKind::refused, ruling.headline, ruling.details);
 }
 
 namespace {
@@ -191,6 +198,14 @@ namespace {
 std::vector<std::string> why_dark(const std::vector<LightCause>& causes) {
     if (causes.empty()) return {"The light comes back by itself when the pose is good."};
     return {causes.front().sentence(), causes.front().remedy()};
+}
+
+Status status_of(const Session& session, const Session::Update& update, const LightGate::Ruling& ruling) {
+    if (!update.overlay.lit) return {StatusKind::dark, "Dark: " + update.overlay.reason + ".", why_dark(update.causes)};
+    std::vector<std::string> details = sentences(update.overlay.counts.partly_lit, session.lit_drawing());
+    details.insert(details.end(), ruling.details.begin(), ruling.details.end());
+    if (!update.camera_doubt.empty()) details.push_back(update.camera_doubt + ".");
+    return {ruling.trust == LightTrust::aligned ? StatusKind::aligned : StatusKind::check, ruling.headline, details};
 }
 
 }  // namespace
@@ -228,7 +243,7 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
     const auto light = room.true_light(session.lit_drawing(), update.overlay);
     Figures figures;
     figures.updates_per_s = lit_per_s(update);
-    figures.delay_to_light_ms = 1000 * seconds(update.overlay.lit_from - update.pose.at);
+    figures.delay_to_light_ms = 1000 * seconds(update.overlay.lit_from + session.found_delay() - update.pose.at);
     if (update.pose.rig_from_patient) {
         const Eigen::Vector3d middle = session.tracker().markers().front().centre_in_patient;
         figures.head_moved_mm = (*update.pose.rig_from_patient * middle - middle).norm();
@@ -237,13 +252,22 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
     }
     if (!update.overlay.lit) figures.delay_to_light_ms.reset();
     figures.overlay_error_mm = ruling.off_mm;
-    set_steps(gate_.verified() ? 5 : 4, gate_.verified() ? StepState::active : StepState::attention);
     view_.found(update.frame.at, found_markers(session.tracker().seen_left()),
                 found_markers(session.tracker().seen_right()));
+    const Status status = status_of(session, update, ruling);
+    bool told = false;
     change_model([&](OperatorModel& m) {
         note_latency(update, m);
-        if (permitted_ != darks_) return;  // DARK was pressed meanwhile
-        m.confirm = update.overlay.lit && ruling.ask_to_verify;
+        // DARK or something else was pressed meanwhile, and stands there already.
+        if (permitted_ != darks_ || (state_ != SessionState::following && state_ != SessionState::verifying)) return;
+        told = true;
+        m.status = status;
+        m.steps[4] = gate_.verified() ? StepState::done : StepState::attention;
+        m.steps[5] = gate_.verified() ? StepState::active : StepState::waiting;
+        // A yes that waits for its turn is not asked for twice: the second would be of what has not been lit yet.
+        const bool said_yes = std::any_of(presses_.begin(), presses_.end(),
+                                          [](const Press& press) { return press.action == OperatorAction::confirm; });
+        m.confirm = update.overlay.lit && ruling.ask_to_verify && !said_yes;
         m.next = m.confirm ? OperatorAction::confirm : OperatorAction::none;
         m.confirm_words = landmark_ >= 0 ? fmt::format("Light {} is right", landmark_ + 1) : "Show landmarks";
         for (std::size_t i = 0;
@@ -254,14 +278,7 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
         m.figures = figures;
         m.scene.light = light;
     });
-    std::vector<std::string> details = sentences(update.overlay.counts.partly_lit, session.lit_drawing());
-    details.insert(details.end(), ruling.details.begin(), ruling.details.end());
-    if (!update.camera_doubt.empty()) details.push_back(update.camera_doubt + ".");
-    if (update.overlay.lit)
-        set_status(ruling.trust == LightTrust::aligned ? StatusKind::aligned : StatusKind::check, ruling.headline,
-                   details);
-    else
-        set_status(StatusKind::dark, "Dark: " + update.overlay.reason + ".", why_dark(update.causes));
+    if (told) said();
 }
 
 }  // namespace planlight

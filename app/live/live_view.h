@@ -19,6 +19,9 @@ public:
     /// `old_after`: from then on a picture is not called live any more, wall time.
     void set_old_after(Instant old_after);
 
+    /// True: a picture is shown together with what is found in it, not before; false: at once, without.
+    void expect_found(bool expect);
+
     /// Keeps a copy, unless the last one was taken only a moment ago: a window shows no more than twenty a second.
     void take(const StereoFrame& frame);
     /// What was found in the frame of that time, where its pictures are those that are kept.
@@ -32,9 +35,13 @@ public:
 private:
     mutable std::mutex mutex_;
     const Clock& clock_;
-    SeenPicture left_, right_;
-    Instant at_{};                      ///< of the frame, on the room's clock
-    Instant taken_{};                  ///< on the wall's
+    struct Pair {
+        SeenPicture left, right;
+        Instant at{};     ///< of the frame, on the room's clock
+        Instant taken{};  ///< on the wall's
+    };
+    Pair shown_, next_;  ///< `next_`: what is in it is being looked for
+    bool expect_found_ = false;
     Instant old_after_ = std::chrono::milliseconds(1500);
     std::string left_note_, right_note_;
 };

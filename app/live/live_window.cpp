@@ -113,7 +113,7 @@ void tell_of_projector(const ProjectorProblem& problem, LiveSession& session, bo
         return;
     }
     if (!lost) {
-        session.post(OperatorAction::dark);
+        session.post(OperatorAction::dark, AskedBy::lost_projector);
         session.look_before_light();
     }
     lost = true;
@@ -176,7 +176,9 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         if (projector) tell_of_projector(projector->problem(), session, projector_lost, model);
         if (const std::string trouble = options.trouble ? options.trouble() : ""; !trouble.empty())
             model.status.details.push_back(trouble);
+        const auto frame_began = std::chrono::steady_clock::now();
         const OperatorAction action = window.frame(model);
+        const double rest_s = rest_after(std::chrono::steady_clock::now() - frame_began);
         if (projector) {
             projector->window_lives();
             projector->session_lives(session.alive_at());
@@ -189,10 +191,11 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
             window.say(session.post_find_patient(window.landmarks()));
         else
             window.say(session.post(action));
-        if (options.autoplay && meter.idle_s() >= options.idle_first_s) session.post(autoplay.next(model));
+        if (options.autoplay && meter.idle_s() >= options.idle_first_s)
+            session.post(autoplay.next(model), AskedBy::program);
         screenshots.take(window, model, session);
         session.rethrow_fault();
-        window.rest(kLongestRest_s);
+        window.rest(rest_s);
         meter.note(phase_of(model), window.frames_drawn());
         const auto now = std::chrono::steady_clock::now();
         if (session.projecting() && !projecting_since) projecting_since = now;

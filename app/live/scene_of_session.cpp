@@ -47,4 +47,13 @@ std::vector<FoundMarker> found_markers(const std::vector<PatientTracker::Seen>& 
     return found;
 }
 
+void show_refused_scan(const Session& session, OperatorModel& model) {
+    if (session.capture() == nullptr || session.capture()->left.empty()) return;
+    const ScanCapture& capture = *session.capture();
+    model.left.refused = SeenPicture{std::make_shared<GrayImage>(capture.left.front()),
+                                     found_markers(session.tracker().seen_left(), true), true};
+    model.right.refused = SeenPicture{std::make_shared<GrayImage>(capture.right.front()),
+                                      found_markers(session.tracker().seen_right(), true), true};
+}
+
 }  // namespace planlight

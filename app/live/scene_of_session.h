@@ -24,4 +24,7 @@ std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing
 /// The discs that the tracker found, for the camera pictures; `all`: also those that are none of the patient's markers.
 std::vector<FoundMarker> found_markers(const std::vector<PatientTracker::Seen>& seen, bool all = false);
 
+/// The last scan's even pictures with what was found in them, into the model: those of a refusal. Nothing without one.
+void show_refused_scan(const Session& session, OperatorModel& model);
+
 }  // namespace planlight

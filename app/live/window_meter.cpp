@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <time.h>
 
+#include <algorithm>
+
 namespace planlight {
 namespace {
 
@@ -13,6 +15,10 @@ double process_cpu_s() {
 }
 
 }  // namespace
+
+double rest_after(std::chrono::steady_clock::duration frame) {
+    return std::clamp(0.04 - std::chrono::duration<double>(frame).count(), 0.005, 0.03);
+}
 
 void WindowMeter::note(Phase phase, std::size_t frames_drawn) {
     const auto now = std::chrono::steady_clock::now();

@@ -6,6 +6,10 @@
 
 namespace planlight {
 
+/// How long a window's loop rests after a frame that took so long, s: some twenty-five frames a second, no longer than
+/// 30 ms, and never without a pause for the rest of the program.
+double rest_after(std::chrono::steady_clock::duration frame);
+
 /// What an operator window costs: the processor while a person is waited for, the frames while light is asked for.
 class WindowMeter {
 public:

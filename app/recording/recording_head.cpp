@@ -101,7 +101,9 @@ RecordingHead head_of(const std::string& text, const fs::path& file) {
     const JsonValue root(json, file);
     check_format(root, kFormat, 1, file);
     RecordingHead head;
-    head.mode = record_mode_of(root.at("record").text());
+    const JsonValue record = root.at("record");
+    head.mode = record_mode_of(record.text());
+    if (record.text() != word_of(head.mode)) record.refuse("is none of \"none\", \"events\" and \"all\"");
     if (const auto anonymous = root.find("anonymous")) head.anonymous = anonymous->flag();
     head.program = root.at("program").text();
     head.program_hash = root.at("program_hash").text();

@@ -8,12 +8,12 @@
 #include "app/recording/recording_head.h"
 #include "app/recording/session_events.h"
 #include "planning_io/case/rig_file.h"
+#include "planning_io/files/json_value.h"
 
 namespace planlight {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 using Kind = RecordedInput::Kind;
 
 /// The names under which two objects of JSON differ, with both values, shortened.
@@ -55,9 +55,14 @@ public:
         compare([&] { return session_events::resumed(session, check); }, result_.resumptions);
     }
     void refused(SessionCall call, const std::exception& why) noexcept override {
-        if (dynamic_cast<const Error*>(&why) == nullptr) return;
+        told_ = true;
+        const int before = result_.refusals;
         compare([&] { return session_events::refused(call, why); }, result_.refusals);
+        if (call == SessionCall::update) refused_updates_ += result_.refusals - before;
     }
+    /// Whether the session told of the fault that it threw; asked once.
+    bool was_told() { return std::exchange(told_, false); }
+    int refused_updates() const { return refused_updates_; }  ///< alike
     /// Throws what was found.
     void rethrow() {
         if (fault_) std::rethrow_exception(std::exchange(fault_, nullptr));
@@ -84,6 +89,8 @@ private:
     RecordingCursor& cursor_;
     ReplayResult& result_;
     std::exception_ptr fault_;
+    bool told_ = false;
+    int refused_updates_ = 0;
 };
 
 std::vector<PointPair> landmarks_of(const Json& event) {
@@ -122,7 +129,7 @@ public:
             throw DamagedFileError(cursor_.reader().file(), "what was asked cannot be understood",
                                    "Copy the file again from where it was written.");
         } catch (const ReplayDiffers& differs) {
-            const bool within = result_.updates + result_.refusals < updates_asked_;
+            const bool within = result_.updates + comparer_.refused_updates() < updates_asked_;
             result_.difference = {devices_.given().last_number, devices_.given().last_at,
                                   within ? updates_asked_ : result_.updates, differs.what};
         }
@@ -196,8 +203,9 @@ private:
                     session_.go_dark();
                     break;
             }
-        } catch (const Error&) {
-            // The comparer has it: the recording must have the same refusal.
+        } catch (const std::exception&) {
+            // Of whatever kind: the comparer has it, and the recording must have the same.
+            if (!comparer_.was_told()) throw;
         }
     }
 
@@ -253,6 +261,13 @@ void check_holds_frames(const RecordingHead& head, const fs::path& recording) {
         "What is to be replayed is recorded by `planlight session --record all`; `planlight report` needs no frames.");
 }
 
+/// Never guessed: other markers are found elsewhere, and would differ without a reason.
+MarkerDesign markers_of(const Json& room, const fs::path& recording) {
+    const JsonValue root(room, recording);
+    const double disc_mm = root.at("disc_mm").number(0.1, 1000);
+    return {disc_mm, root.at("sticker_mm").number(disc_mm, 1000)};
+}
+
 }  // namespace
 
 RecordingHead head_of_recording(const fs::path& recording) {
@@ -282,7 +297,7 @@ ReplayResult replay_session(const fs::path& recording, const Case& the_case,
     DrawingSettings how;
     how.up_in_ct = result.head.up_in_ct;
     const CaseDrawing drawing(the_case, how);
-    const MarkerDesign markers{room.value("disc_mm", 8.0), room.value("sticker_mm", 16.0)};
+    const MarkerDesign markers = markers_of(room, recording);
     Replay(cursor, the_case, drawing, rig_of_text(room["rig"].dump(), recording), markers, result).run(progress);
     result.end = cursor.reader().end();
     result.other_program = recording_head(the_case, {}, RecordMode::all, {}).program_hash != result.head.program_hash;

@@ -22,6 +22,7 @@ struct ReplayResult {
     RecordingHead head;
     int scans = 0, matches = 0, updates = 0, rulings = 0, skin_checks = 0, resumptions = 0,
         refusals = 0;  ///< alike to the last digit
+    int compared() const { return scans + matches + updates + rulings + skin_checks + resumptions + refusals; }
     int pictures = 0, frames = 0;
     std::optional<ReplayDifference> difference;
     std::string ended;  ///< why before the recording's own end, in words; empty: it was replayed to its end

@@ -103,6 +103,8 @@ private:
         if (what == "resumed") take_resumption(event);
         if (what == "asked") take_call(event);
         if (what == "pressed" && event.value("action", "") == "dark") say("DARK was pressed.", event);
+        if (what == "pressed" && event.value("action", "") == "projector_lost")
+            say("The projector was lost, and the session made dark.", event, true);
         if (what == "refused")
             facts_.refusals.push_back({at_s_, "", event.value("call", "") + ": " + event.value("why", ""), false});
         if (what == "skin_checked") take_skin_check(event);

@@ -5,10 +5,10 @@
 #include <algorithm>
 
 #include "app/evaluation/distribution.h"
-#include "app/windows/camera_picture.h"
 #include "app/report/html_page.h"
 #include "app/report/paper_page.h"
 #include "app/report/svg_chart.h"
+#include "app/windows/camera_picture.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 

@@ -111,7 +111,9 @@ OperationVerdict verdict_of(const OperationFacts& facts) {
               fmt::format("{} pieces are missing in the recording: the disk was too slow or full.", facts.lost_chunks));
     if (facts.updates == 0 || facts.lit_s <= 0) {
         verdict.kind = std::max(verdict.kind, Kind::look);
-        verdict.sentence = "No light of the plan was shown.";
+        verdict.sentence = facts.ended.empty() && !facts.damaged
+                               ? "No light of the plan was shown."
+                               : "In what is left of the recording no light of the plan was shown.";
     } else {
         const Distribution d = distribution_of(facts.light_off_mm);
         verdict.sentence = fmt::format(

@@ -32,6 +32,18 @@ std::optional<double> tilt_of(const SkinLut& lut, const Vector3d& at, const Vect
     return std::acos(std::clamp(-inwards.normalized().dot(outwards->normalized()), -1.0, 1.0));
 }
 
+/// Of a line's own points; of anything else its place on the skin.
+Vector3d middle_of(const PlanDrawing& drawing, std::size_t item, StrokeKind kind) {
+    const bool line = kind == StrokeKind::osteotomy_line || kind == StrokeKind::cut_plane;
+    Vector3d sum = Vector3d::Zero();
+    double count = 0;
+    for (const Stroke& stroke : drawing.strokes) {
+        if (!line || stroke.item != static_cast<int>(item) || stroke.kind != kind) continue;
+        for (const Vector3d& p : stroke.points_in_ct) sum += p, ++count;
+    }
+    return count > 0 ? Vector3d(sum / count) : drawing.items[item].anchor_in_ct;
+}
+
 /// All strokes of that kind that belong to the item; ticks and labels do not.
 double length_along_skin_mm(const PlanDrawing& drawing, std::size_t item, StrokeKind kind) {
     double sum = 0;
@@ -113,7 +125,14 @@ std::string direction_in_words(const Vector3d& inwards_in_ct) {
     return sideways + (sideways.empty() || upwards.empty() ? "" : ", ") + upwards;
 }
 
-std::vector<PlanFact> plan_facts(const Plan& plan, const PlanDrawing& drawing, const SkinLut& lut) {
+std::string side_in_words(double left_of_middle_mm) {
+    constexpr double kMiddle_mm = 2;
+    if (std::abs(left_of_middle_mm) < kMiddle_mm) return "in the middle";
+    return fmt::format("{:.0f} mm {}", std::abs(left_of_middle_mm), left_of_middle_mm > 0 ? "left" : "right");
+}
+
+std::vector<PlanFact> plan_facts(const Plan& plan, const PlanDrawing& drawing, const SkinLut& lut,
+                                 const std::optional<MidPlane>& mid_plane) {
     std::vector<PlanFact> facts;
     const auto add = [&](const auto& items, StrokeKind kind, bool has_length) {
         for (const auto& item : items) {
@@ -125,6 +144,7 @@ std::vector<PlanFact> plan_facts(const Plan& plan, const PlanDrawing& drawing, c
             if (const double mm = length_along_skin_mm(drawing, number, kind); has_length && mm > 0)
                 fact.length_mm = mm;
             tell_of_skin(fact, drawing.items[number], lut);
+            if (mid_plane) fact.left_of_middle_mm = mid_plane->left_mm(middle_of(drawing, number, kind));
             facts.push_back(std::move(fact));
         }
     };

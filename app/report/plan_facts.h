@@ -7,6 +7,7 @@
 #include "planning_io/types/plan.h"
 #include "planning_io/types/skin_lut.h"
 #include "projection/draw_plan.h"
+#include "projection/mid_plane.h"
 
 namespace planlight {
 
@@ -23,13 +24,18 @@ struct PlanFact {
     std::optional<double> tilt;                    ///< between the way in and the skin's perpendicular
     std::optional<Eigen::Vector3d> inwards_in_ct;  ///< unit, of a way or a hole with an axis
     std::optional<double> over_bone_mm;            ///< soft tissue between skin and bone there
+    std::optional<double> left_of_middle_mm;       ///< of its place on the skin, from the head's own mid-plane
     double to_skin_mm = 0;
     Gravity gravity = Gravity::none;
     std::string distance;  ///< in words that match its gravity
 };
 
-/// One for each item of the drawing, in its order (`draw_plan`).
-std::vector<PlanFact> plan_facts(const Plan& plan, const PlanDrawing& drawing, const SkinLut& lut);
+/// One for each item of the drawing, in its order (`draw_plan`). `mid_plane`: of the head, where it was found.
+std::vector<PlanFact> plan_facts(const Plan& plan, const PlanDrawing& drawing, const SkinLut& lut,
+                                 const std::optional<MidPlane>& mid_plane = {});
+
+/// "38 mm right"; "in the middle" within 2 mm of it.
+std::string side_in_words(double left_of_middle_mm);
 
 /// A distance to the skin in words, and how grave it is: "on the skin" up to 0.5 mm, "look" from 2 mm, "stop" where it
 /// is not drawn (three times `max_distance_to_skin_mm`).

@@ -25,6 +25,7 @@ Json items_json(const PlanDrawing& drawing, const std::vector<PlanFact>& facts) 
         items.push_back({{"name", item.name},
                          {"kind", fact.kind},
                          {"label", item.label},
+                         {"left_of_middle_mm", or_null(fact.left_of_middle_mm)},
                          {"depth_mm", or_null(fact.depth_mm)},
                          {"length_mm", or_null(fact.length_mm)},
                          {"diameter_mm", or_null(fact.diameter_mm)},

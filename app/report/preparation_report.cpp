@@ -176,9 +176,11 @@ std::string fact_html(const PlanFact& fact) {
     const std::optional<double> tilt = fact.tilt ? std::optional(kDegrees * *fact.tilt) : std::nullopt;
     const char* gravity = fact.gravity == Gravity::stop ? "stop" : fact.gravity == Gravity::look ? "look" : "";
     return fmt::format(
-        "<tr><td class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
+        "<tr><td "
+        "class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
         "class=\"{}\">{}</td></tr>",
         html_escaped(fact.name.empty() ? "without a name" : fact.name), fact.kind,
+        fact.left_of_middle_mm ? side_in_words(*fact.left_of_middle_mm) : "–",
         number(fact.depth_mm ? fact.depth_mm : fact.length_mm, 1, " mm"), number(fact.diameter_mm, 1, " mm"),
         number(tilt, 0, "°"), fact.inwards_in_ct ? direction_in_words(*fact.inwards_in_ct) : "–",
         number(fact.over_bone_mm, 1, " mm"), gravity, html_escaped(fact.distance));
@@ -187,7 +189,8 @@ std::string fact_html(const PlanFact& fact) {
 std::string plan_html(const std::vector<PlanFact>& facts) {
     if (facts.empty()) return "<h2>The plan</h2><p>It holds nothing.</p>";
     std::string html =
-        "<h2>The plan</h2><table class=\"plan\"><thead><tr><th>Name</th><th>Kind</th><th>Depth or "
+        "<h2>The plan</h2><table class=\"plan\"><thead><tr><th>Name</th><th>Kind</th><th>Side of its "
+        "middle</th><th>Depth or "
         "length</th><th>Diameter</th><th>Tilt "
         "from the skin's perpendicular</th><th>Direction inwards</th><th>Soft tissue over bone</th><th>Its points "
         "lie</th></tr></thead>";
@@ -221,7 +224,7 @@ std::string signatures_html() {
 PreparationReport preparation_report(const Preparation& done, const PlanDrawing& drawing, const RemovedPieces& removed,
                                      const PreparationPictures& pictures) {
     const Case& c = done.prepared;
-    const std::vector<PlanFact> facts = plan_facts(c.plan, drawing, c.lut);
+    const std::vector<PlanFact> facts = plan_facts(c.plan, drawing, c.lut, find_mid_plane(SkinSurface(c.skin)));
     const std::string first =
         fmt::format(
             "<h1>{}</h1><p class=\"muted\">Report of preparation. Research software, not a medical "

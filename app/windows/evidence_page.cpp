@@ -11,9 +11,7 @@ namespace planlight {
 namespace {
 
 std::string words_of(const PlanRow& row) {
-    std::string words = row.name;
-    if (row.depth_mm) words += ", " + number_text(row.depth_mm, "mm") + " deep";
-    words += ". ";
+    std::string words = row.name + ". ";
     words += row.predicted_error_mm
                  ? "By the match it lies within " + number_text(row.predicted_error_mm, "mm") + " (95 %)."
                  : "How far off it may be is not known yet.";

@@ -102,6 +102,7 @@ void MiddleView::draw_scene(const Pen& pen, const Box& place, const OperatorMode
     const float below =
         (model.landmarks ? strip : 0) + (model.confirm ? strip : 0) + (model.check_skin ? strip : 0);
     scene_.take_mouse("scene", {place.x, place.y + above, place.width, place.height - above - below});
+    if (!shown.skin && !shown.cloud) return;  // nothing to be seen yet
     scene_.draw(pen, place, shown);
     draw_title(pen, place, model, shown);
 }

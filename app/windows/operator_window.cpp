@@ -225,6 +225,7 @@ struct OperatorWindow::Parts {
         if (!model.light_on) return true;
         gui.keep_open();
         asks_to_close = true;
+        drawn.reset();  // the question is new
         return false;
     }
 };

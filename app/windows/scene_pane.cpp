@@ -55,7 +55,7 @@ void ScenePane::draw(const Pen& pen, const Box& box, const SceneModel& model) {
     const auto began = steady_clock::now();
     const int* const size = target_->GetSize();
     const bool turned = !(view_ == rendered_view_) || size[0] != width || size[1] != height;
-    behind_ = !turned && began < not_before_;
+    behind_ = !turned && began < not_before_ && !(model == rendered_);
     if (!behind_ && scene_->update(model, view_, width, height, pen.scale)) {
         target_->SetSize(width, height);
         target_->GetState()->Reset();
@@ -63,6 +63,7 @@ void ScenePane::draw(const Pen& pen, const Box& box, const SceneModel& model) {
         target_->Render();
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         rendered_view_ = view_;
+        rendered_ = model;
         const auto ended = steady_clock::now();
         not_before_ = ended + 2 * (ended - began);
     }

@@ -47,6 +47,7 @@ private:
     std::unique_ptr<Scene> scene_;
     SceneView view_, first_view_;
     SceneView rendered_view_;
+    SceneModel rendered_;
     bool behind_ = false;
     std::chrono::steady_clock::time_point not_before_{};
     ImVec2 corner_{0, 0};  ///< of the picture, window pixels

@@ -107,6 +107,7 @@ int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int f
 
     const float foot = box.bottom() - pad - line;
     draw_evidence(pen, model, {columns.name_x, foot - evidence, text_width_px, evidence});
+    if (model.rows.empty() && model.evidence.empty()) return rows;
     const std::string all = evidence < wanted || rows < count ? "Press here for all of it" : "Press here for the page";
     pen.line(pen.fonts.small, all + " (" + key_text(KeyMeaning::evidence) + ")", columns.name_x, foot + line / 2,
              text_width_px, evidence < wanted || rows < count ? theme::kAmber : theme::kQuiet);

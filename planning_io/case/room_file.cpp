@@ -18,9 +18,25 @@ std::optional<double> number_in(const JsonValue& from, const char* key, double l
     return value ? std::optional(value->number(least, most)) : std::nullopt;
 }
 
+/// Former programs wrote it for every GenICam camera, beside `line`; now `line` alone says it.
+void check_trigger(const JsonValue& camera) {
+    const auto trigger = camera.find("trigger");
+    if (!trigger) return;
+    const std::string text = trigger->text();
+    const bool line = camera.find("line").has_value();
+    if (text == "line" && !line)
+        trigger->refuse("names no line", "Name it: \"line\": \"Line0\"; `trigger` may be deleted.");
+    if (text == "none" && line)
+        trigger->refuse("is \"none\" beside a line", "Delete `trigger`, or `line` where the camera runs free.");
+    if (text != "line" && text != "none")
+        trigger->refuse("is no longer known as \"" + text + "\"",
+                        "Delete `trigger`: a camera runs free, or by the `line` that it names.");
+}
+
 RoomCamera camera_of(const JsonValue& value) {
-    value.has_only(
-        {"device", "pixel_format", "line", "exposure_ms", "gain", "frames_hz", "transfer_ms", "region", "pipeline"});
+    value.has_only({"device", "pixel_format", "trigger", "line", "exposure_ms", "gain", "frames_hz", "transfer_ms",
+                    "region", "pipeline"});
+    check_trigger(value);
     RoomCamera camera;
     if (const auto pipeline = value.find("pipeline")) camera.pipeline = pipeline->text();
     if (camera.pipeline.empty()) camera.device = value.at("device").text();
@@ -64,6 +80,10 @@ Json json_of(const RoomCamera& camera) {
 }  // namespace
 
 RoomFile read_room(const std::filesystem::path& file) {
+    if (std::error_code ignored; !std::filesystem::exists(file, ignored))
+        throw InputError(
+            file, "does not exist",
+            "Check its name; `planlight devices --out room.json` writes a first one where cameras answer.");
     const Json json = parse_file(file, kFormat);
     const JsonValue root(json, file);
     root.has_only({"format", "version", "name", "rig", "projector", "cameras", "markers"});

@@ -23,6 +23,9 @@ double mm_per_px(const Triangulation& raw, const CameraModel& projector) {
 constexpr const char* kOtherDistortion =
     "If rig.json was written by another program, see that its distortion has the right sign; else calibrate again.";
 
+constexpr const char* kAnotherRig =
+    "Look whether this is the rig file of this room, and whether left and right are exchanged; if neither, calibrate "
+    "the rig again.";
 constexpr const char* kNotInView =
     "Put the board or the patient where both cameras see it under the light. If it is there, calibrate the rig again.";
 
@@ -51,6 +54,13 @@ void decide_by_state(DriftCheck& check, const RigState& state) {
     check.verdict = cameras ? Verdict::cameras_moved : lens ? Verdict::lens_changed : Verdict::projector_moved;
     check.reason = state.sentence;
     check.remedy = state.remedy;
+    constexpr double kBump_mm = 50, kBump_rad = 0.05;  // nothing that is knocked stands so far from its place
+    const bool elsewhere = std::any_of(state.devices.begin(), state.devices.end(), [](const DeviceFinding& f) {
+        return f.moved_mm > kBump_mm || f.turned > kBump_rad;
+    });
+    if (!elsewhere) return;
+    check.reason = "the devices do not stand at all as this rig file has them (" + state.sentence + ")";
+    check.remedy = kAnotherRig;
 }
 
 /// `placed`: the points were enough to place the projector by them. Moved cameras are told first: then they may not be.
@@ -66,7 +76,8 @@ void decide(DriftCheck& check, bool placed, const DriftLimits& limits) {
         check.reason = fmt::format(
             "the cameras do not fit each other any more: {:.2f} px from the epipolar lines; {:.2f} is the limit",
             check.epipolar_px, limits.epipolar_px);
-        check.remedy = "Calibrate the rig again.";
+        constexpr double kBump_px = 8;
+        check.remedy = check.epipolar_px > kBump_px ? kAnotherRig : "Calibrate the rig again.";
     } else if (!placed) {
         check.reason = "what both cameras see under the light lies too close together to place the projector by it";
         check.remedy = kNotInView;

@@ -1,6 +1,7 @@
 // Can the light be read? Plans with names of several kinds on the example patient in simulated rooms, each in a random
 // pose; the labels as a simulated camera sees them are read by tesseract (Debian package tesseract-ocr), one by one.
-// measure_legibility [POSES [FIRST_SEED [paper|modern|both]]]   (default 20 poses, seed 1, both)
+// measure_legibility [POSES [FIRST_SEED [paper|modern|both [camera|eye]]]]   (default 20 poses, seed 1, both, camera;
+// eye: an eye in the camera's place, without its blur, pixels and noise)
 // PLANLIGHT_PICTURES=folder keeps the projector's pictures, the cameras' and the labels as they were read.
 #include <fmt/format.h>
 
@@ -13,7 +14,7 @@
 namespace planlight::test {
 namespace {
 
-int run(int poses, unsigned first_seed, const std::string& preset) {
+int run(int poses, unsigned first_seed, const std::string& preset, bool eye) {
     if (!example_patient() || !can_read_labels()) {
         fmt::print("the packages invesalius-examples and tesseract-ocr are needed\n");
         return 1;
@@ -25,7 +26,7 @@ int run(int poses, unsigned first_seed, const std::string& preset) {
         LabelsRead all;
         for (int i = 0; i < poses; ++i) {
             const unsigned seed = first_seed + static_cast<unsigned>(i);
-            const LabelsRead read = head.read(each, seed);
+            const LabelsRead read = head.read(each, seed, eye);
             all.append(read);
             fmt::print(
                 "{} {:>3}: {} items, {} labels lit, {} left out, {} names alone; {} read right, {} wrong, {} "
@@ -50,5 +51,6 @@ int run(int poses, unsigned first_seed, const std::string& preset) {
 
 int main(int argc, char** argv) {
     return planlight::test::run(argc > 1 ? std::atoi(argv[1]) : 20,
-                                argc > 2 ? static_cast<unsigned>(std::atoi(argv[2])) : 1, argc > 3 ? argv[3] : "both");
+                                argc > 2 ? static_cast<unsigned>(std::atoi(argv[2])) : 1, argc > 3 ? argv[3] : "both",
+                                argc > 4 && std::string(argv[4]) == "eye");
 }

@@ -129,9 +129,8 @@ Measured measure(const Room& of, const Volume& volume, const Case& the_case, con
     const OverlayErrors after = light_on(skin_now, drawn, projector, picture, true);
     measured.after = after.places, measured.tick_mm = after.tick_mm, measured.right_angle_deg = after.long_angle_deg;
     const SkinSurface true_skin = true_skin_of(rig, skin.mesh(), of.towards);
-    const OverlayErrors known = light_on(true_skin, draw_plan(plan, skin, true_skin, drawing),
-                                         rig.true_rig().projector, {truth, RigidTransform::Identity(), capture.began},
-                                         true);
+    const OverlayErrors known = light_on(true_skin, draw_plan(plan, skin, true_skin, drawing), rig.true_rig().projector,
+                                         {truth, RigidTransform::Identity(), capture.began}, true);
     measured.known = known.places, measured.known_tick_mm = known.tick_mm;
     measured.known_right_angle_deg = known.long_angle_deg;
     return measured;
@@ -251,7 +250,8 @@ void measure_rooms(Preset preset, bool still, int rooms, unsigned first_seed, co
         return fmt::format("{:.2f} / {:.2f} / {:.2f} ({})", d.median, d.p95, d.worst, d.count);
     };
     fmt::print(
-        "  median / 95 % / worst (how many): 10 mm between ticks, after {}, known {} mm; right angles of crosses of 8 mm "
+        "  median / 95 % / worst (how many): 10 mm between ticks, after {}, known {} mm; right angles of crosses of 8 "
+        "mm "
         "and more, after {}, known {} degrees\n",
         said(tick_mm), said(known_tick_mm), said(angle_deg), said(known_angle_deg));
     const Distribution off = distribution_of(target_mm), stated = distribution_of(bound_mm);

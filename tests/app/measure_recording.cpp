@@ -1,7 +1,7 @@
 // measure_recording [SESSIONS] [UPDATES] [FIRST_SEED]: sessions in the simulated paper's room, without a fault and with
 // each in turn, are recorded (--record all) and replayed; says how many are alike to the last digit, how many bytes a
 // second the parts of a recording take, and how long the session was kept by its recorder. Exit code 0 when all are
-// alike.
+// alike to their end.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -84,5 +84,5 @@ int main(int argc, char** argv) {
         "The recorder kept the session's thread for {:.2f} ms an update (median), {:.2f} ms (95 %), {:.2f} ms "
         "(worst) of {}.\n",
         told.median, told.p95, told.worst, told.count);
-    return alike == sessions ? 0 : 1;
+    return whole == sessions ? 0 : 1;
 }

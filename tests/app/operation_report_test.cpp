@@ -224,6 +224,13 @@ TEST_F(Operation, ADoubtfulMatchPredictsFromItsConfirmationOn) {
     EXPECT_EQ(facts(false).items[0].predicted_mm, 0.5);
 }
 
+TEST_F(Operation, AProjectorThatWasLostIsNobodysPress) {
+    event({{"what", "pressed"}, {"action", "projector_lost"}, {"utc", "x"}});
+    const OperationFacts f = facts();
+    ASSERT_EQ(f.said.size(), 1u);
+    EXPECT_EQ(f.said[0].what, "The projector was lost, and the session made dark.");
+}
+
 TEST_F(Operation, ItsLastWordCountsWhatTheDiskDidNotTake) {
     add(chunk_types::kLost, R"({"chunks": 2, "bytes": 10})");
     EXPECT_EQ(facts(true, R"({"dropped_chunks": 5, "dropped_bytes": 20})").lost_chunks, 5u);

@@ -23,6 +23,7 @@ class Counting final : public SessionObserver {
 public:
     Counting(SessionObserver* next, std::string doubt) : next_(next), doubt_(std::move(doubt)) {}
     int updates() const { return updates_; }
+    int skin_checks() const { return skin_checks_; }  ///< with an answer or without
     int doubted() const { return doubted_; }
     const std::vector<double>& told_ms() const { return told_ms_; }
 
@@ -80,6 +81,7 @@ public:
     void skin_checked(const SkinCheck& check) noexcept override {
         pass([&](SessionObserver& next) { next.skin_checked(check); });
         told_ = {};
+        ++skin_checks_;
     }
     void refused(SessionCall call, const std::exception& why) noexcept override {
         pass([&](SessionObserver& next) { next.refused(call, why); });
@@ -98,7 +100,7 @@ private:
     }
     SessionObserver* next_;
     std::string doubt_;
-    std::atomic<int> updates_{0}, doubted_{0};
+    std::atomic<int> updates_{0}, doubted_{0}, skin_checks_{0};
     Instant told_{};               ///< since the last update
     std::vector<double> told_ms_;  ///< of each update
 };
@@ -231,7 +233,8 @@ PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, 
         verify(session, counting, how.updates * 2 / 3);
         if (how.check_skin) {
             session.post(OperatorAction::check_skin);
-            std::this_thread::sleep_for(500ms);
+            wait_for(session, "the check of the skin",
+                     [&](const OperatorModel&) { return counting.skin_checks() > 0; });
         }
         session.post(OperatorAction::dark);
         wait_for(session, "DARK", [](const OperatorModel& m) { return !m.stop.enabled; });

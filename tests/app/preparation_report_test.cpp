@@ -46,8 +46,8 @@ TEST(PlanFacts, DepthAndAngleAreThoseOfThePlan) {
     plan.boreholes.push_back({"B", Vector3d(0, 0, 0), std::nullopt, 7, 6, std::nullopt});
     plan.trajectories.push_back({"T", Vector3d(0, 0, 0), Vector3d(30, 40, 0), 2, std::nullopt});
     PlanDrawing drawing;
-    drawing.items = {{StrokeKind::borehole, "B", "B", Vector3d(0, 0, 0), 0, {}},
-                     {StrokeKind::trajectory, "T", "T", Vector3d(0, 0, 0), 3, {}}};
+    drawing.items = {{StrokeKind::borehole, "B", "B", Vector3d(0, 0, 0), 0, {}, true, {}},
+                     {StrokeKind::trajectory, "T", "T", Vector3d(0, 0, 0), 3, {}, true, {}}};
     const auto facts = plan_facts(plan, drawing, flat_skin());
     ASSERT_EQ(facts.size(), 2U);
     EXPECT_EQ(*facts[0].tilt, 0);
@@ -56,6 +56,11 @@ TEST(PlanFacts, DepthAndAngleAreThoseOfThePlan) {
     EXPECT_NEAR(*facts[1].depth_mm, 50, 1e-9);
     EXPECT_NEAR(*facts[1].tilt, std::atan2(3, 4), 1e-6);
     EXPECT_EQ(facts[1].gravity, Gravity::look);
+    EXPECT_FALSE(facts[0].left_of_middle_mm) << "no mid-plane was found";
+    const auto sided = plan_facts(plan, drawing, flat_skin(), MidPlane{Vector3d(12, 0, 0), Vector3d(1, 0, 0)});
+    EXPECT_NEAR(*sided[0].left_of_middle_mm, -12, 1e-9) << "LPS: +x is the patient's left";
+    EXPECT_EQ(side_in_words(*sided[0].left_of_middle_mm), "12 mm right");
+    EXPECT_EQ(side_in_words(1.4), "in the middle");
 }
 
 /// 100 mm of air with a ball of 30 mm in the middle, and a plate of 40 x 4 x 40 mm behind it. Voxels of 2 mm.

@@ -9,7 +9,9 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <numbers>
+#include <optional>
 #include <random>
 
 #include "app/prepare_case.h"
@@ -42,10 +44,14 @@ std::string digits_of(const std::string& text) {
     return digits;
 }
 
-/// Without blanks and line ends.
-std::string close_up(std::string text) {
-    std::erase_if(text, [](char c) { return c == ' ' || c == '\n' || c == '/' || c == '\f'; });
-    return text;
+std::vector<std::string> lines_of(const std::string& text) {
+    std::vector<std::string> lines(1);
+    for (const char c : text)
+        if (c == '/')
+            lines.emplace_back();
+        else
+            lines.back() += c;
+    return lines;
 }
 
 /// Of a grey picture, between its pixels (Catmull-Rom).
@@ -63,6 +69,38 @@ double between(const GrayImage& picture, const Vector2d& at) {
                 wx[static_cast<std::size_t>(dx)] * wy[static_cast<std::size_t>(dy)] *
                 picture.at(std::clamp(x + dx - 1, 0, picture.width - 1), std::clamp(y + dy - 1, 0, picture.height - 1));
     return sum;
+}
+
+/// As an eye evens out what lies in less light: against the mean and the spread of 5 mm round about; with a bright rim.
+GrayImage dark_on_bright(const std::vector<double>& values, int width, int height, int round_px) {
+    constexpr int kRim_px = 20;
+    std::vector<double> sum(static_cast<std::size_t>((width + 1) * (height + 1)), 0), squares = sum;
+    const auto at = [&](int x, int y) { return static_cast<std::size_t>(y * (width + 1) + x); };
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const double v = values[static_cast<std::size_t>(y * width + x)];
+            sum[at(x + 1, y + 1)] = v + sum[at(x, y + 1)] + sum[at(x + 1, y)] - sum[at(x, y)];
+            squares[at(x + 1, y + 1)] = v * v + squares[at(x, y + 1)] + squares[at(x + 1, y)] - squares[at(x, y)];
+        }
+    const auto spread_in = [&](int x0, int y0, int x1, int y1, double& mean) {
+        const double n = (x1 - x0) * (y1 - y0);
+        const auto box = [&](const auto& t) { return t[at(x1, y1)] - t[at(x0, y1)] - t[at(x1, y0)] + t[at(x0, y0)]; };
+        mean = box(sum) / n;
+        return std::sqrt(std::max(0.0, box(squares) / n - mean * mean));
+    };
+    double mean = 0;
+    const double all = spread_in(0, 0, width, height, mean);
+    GrayImage picture(width + 2 * kRim_px, height + 2 * kRim_px);
+    std::fill(picture.pixels.begin(), picture.pixels.end(), std::uint8_t{255});
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x) {
+            const double spread = spread_in(std::max(0, x - round_px), std::max(0, y - round_px),
+                                            std::min(width, x + round_px), std::min(height, y + round_px), mean);
+            const double v =
+                (values[static_cast<std::size_t>(y * width + x)] - mean) / std::max(spread, 0.6 * all + 1e-9);
+            picture.at(x + kRim_px, y + kRim_px) = static_cast<std::uint8_t>(std::clamp(200 - 110 * v, 0.0, 255.0));
+        }
+    return picture;
 }
 
 }  // namespace
@@ -83,7 +121,7 @@ std::string read_text(const GrayImage& picture) {
     const TemporaryFolder folder;
     write_png(picture, folder.path() / "label.png");
     const std::string command = "OMP_THREAD_LIMIT=1 tesseract '" + (folder.path() / "label.png").string() +
-                                "' stdout --psm 6 --dpi 200 -l eng 2>/dev/null";
+                                "' stdout --psm 7 --dpi 200 -l eng 2>/dev/null";
     std::string read;
     if (FILE* pipe = popen(command.c_str(), "r")) {
         std::array<char, 256> some{};
@@ -101,58 +139,150 @@ std::string read_text(const GrayImage& picture) {
 }
 
 Reading compare(const std::string& written, const std::string& read) {
-    static const std::string kSign = "⌀";
-    static const std::array<std::string, 12> kLikeIt{"⌀", "Ø", "ø", "@", "©", "®", "°", "O", "o", "G", "&", "Q"};
-    const std::string got = close_up(read);
-    std::vector<std::string> wanted{close_up(written)};
-    for (const std::string& like : kLikeIt) {
-        std::string one = close_up(written);
-        if (const auto at = one.find(kSign); at != std::string::npos) {
-            wanted.push_back(one.replace(at, kSign.size(), like));
+    const auto plain = [](const std::string& text) {
+        std::string out;
+        for (std::size_t i = 0; i < text.size();) {
+            static const std::string kDots = "…";
+            if (text.compare(i, kDots.size(), kDots) == 0) {
+                out += "...";
+                i += kDots.size();
+                continue;
+            }
+            const char c = text[i++];
+            if (c != ' ' && c != '/') out += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
         }
+        return out;
+    };
+    if (plain(written) == plain(read)) return Reading::right;
+    const auto wanted = lines_of(written), got = lines_of(read);
+    for (std::size_t k = 0; k < std::max(wanted.size(), got.size()); ++k) {
+        const std::string digits = k < got.size() ? digits_of(got[k]) : "";
+        if (!digits.empty() && (k >= wanted.size() || digits != digits_of(wanted[k]))) return Reading::other_number;
     }
-    if (std::find(wanted.begin(), wanted.end(), got) != wanted.end()) return Reading::right;
-    return digits_of(written) == digits_of(read) ? Reading::other : Reading::other_number;
+    return Reading::other;
 }
 
-GrayImage upright(const Label& label, const GrayImage& seen, const CameraModel& camera,
-                  const RigidTransform& rig_from_ct) {
-    constexpr double kPixel_mm = 0.125, kMargin_mm = 2.5;
-    Vector3d middle = Vector3d::Zero(), normal = Vector3d::Zero();
-    for (std::size_t i = 0; i < label.field_in_ct.size(); ++i) {
-        middle += label.field_in_ct[i] / static_cast<double>(label.field_in_ct.size());
-        normal += label.field_normals_in_ct[i];
-    }
+namespace {
+
+/// Where a line of a label's text stands: its middle, the way it runs and stands, half its size.
+struct TextLineOnSkin {
+    Vector3d middle, right, up;
+    double half_width_mm = 0, half_height_mm = 0;
+};
+
+struct LabelAxes {
+    Vector3d normal, right, up;
+};
+LabelAxes axes_of(const Label& label) {
+    Vector3d normal = Vector3d::Zero();
+    for (const Vector3d& n : label.field_normals_in_ct) normal += n;
     normal.normalize();
-    const std::size_t half = label.field_in_ct.size() / 2;  // the field goes up column by column
-    std::size_t at = half;
+    std::size_t at = label.field_in_ct.size() / 2;  // the field goes up column by column
     while (at > 0 && (label.field_in_ct[at - 1] - label.field_in_ct[at]).norm() < 4.5) --at;
-    Vector3d up = label.field_in_ct[at + 1] - label.field_in_ct[at];
-    up = (up - up.dot(normal) * normal).normalized();
-    const Vector3d right = up.cross(normal);
-    Vector2d low(1e9, 1e9), high(-1e9, -1e9);
-    for (const Vector3d& p : label.field_in_ct) {
-        const Vector2d xy(right.dot(p - middle), up.dot(p - middle));
-        low = low.cwiseMin(xy), high = high.cwiseMax(xy);
+    const Vector3d along_up = label.field_in_ct[at + 1] - label.field_in_ct[at];
+    const Vector3d up = (along_up - along_up.dot(normal) * normal).normalized();
+    return {normal, up.cross(normal), up};
+}
+
+/// The outlines' points of each line of text, from the top: a sign far to the left of the one before begins another.
+std::vector<std::vector<Vector3d>> rows_of(const Label& label, const Vector3d& right) {
+    std::vector<std::vector<Vector3d>> rows(1);
+    double before = -1e9;
+    for (const auto& sign : label.signs_in_ct) {
+        Vector3d middle = Vector3d::Zero();
+        double count = 0;
+        for (const auto& outline : sign)
+            for (const Vector3d& p : outline) middle += p, ++count;
+        const double here = middle.dot(right) / count;
+        if (here < before - 1.5) rows.emplace_back();
+        for (const auto& outline : sign) rows.back().insert(rows.back().end(), outline.begin(), outline.end());
+        before = here;
     }
-    low.array() -= kMargin_mm, high.array() += kMargin_mm;
-    GrayImage picture(static_cast<int>((high.x() - low.x()) / kPixel_mm),
-                      static_cast<int>((high.y() - low.y()) / kPixel_mm));
-    std::vector<double> values;
-    for (int y = 0; y < picture.height; ++y)
-        for (int x = 0; x < picture.width; ++x) {
-            const Vector3d p = middle + (low.x() + kPixel_mm * x) * right + (high.y() - kPixel_mm * y) * up;
-            const auto pixel = project(camera, rig_from_ct * p);
-            if (!pixel || !in_picture(camera, *pixel)) return {};
-            values.push_back(between(seen, *pixel));
+    return rows;
+}
+
+/// A line of text in a camera's picture: pixels of its middle, and of a millimetre along and up it.
+struct LineSeen {
+    Vector2d middle_px;
+    Eigen::Matrix2d px_by_mm;
+    Vector2d low_mm{1e9, 1e9}, high_mm{-1e9, -1e9};  ///< of its ink, from the middle
+};
+
+/// As straight as the line is seen: through its ink, by least squares. Empty when part of it is out of the picture.
+std::optional<LineSeen> line_seen(const std::vector<Vector3d>& points, const LabelAxes& axes, const CameraModel& camera,
+                                  const RigidTransform& rig_from_ct) {
+    constexpr double kWide_mm = 12;
+    Vector3d mean = Vector3d::Zero();
+    for (const Vector3d& p : points) mean += p / static_cast<double>(points.size());
+    Eigen::Matrix<double, 2, 3> px_by_rig;
+    const auto middle = project(camera, rig_from_ct * mean, px_by_rig);
+    if (!middle) return std::nullopt;
+    Eigen::Matrix2d px_by_mm;
+    px_by_mm << px_by_rig * (rig_from_ct.linear() * axes.right), px_by_rig * (rig_from_ct.linear() * axes.up);
+    const Eigen::Matrix2d mm_by_px = px_by_mm.inverse();
+    std::vector<Vector2d> seen;
+    double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, low = 1e9, high = -1e9;
+    for (const Vector3d& p : points) {
+        const auto pixel = project(camera, rig_from_ct * p);
+        if (!pixel || !in_picture(camera, *pixel)) return std::nullopt;
+        const Vector2d xy = mm_by_px * (*pixel - *middle);
+        seen.push_back(xy);
+        n += 1, sx += xy.x(), sy += xy.y(), sxx += xy.x() * xy.x(), sxy += xy.x() * xy.y();
+        low = std::min(low, xy.x()), high = std::max(high, xy.x());
+    }
+    const double slope = high - low > kWide_mm ? (n * sxy - sx * sy) / std::max(1e-9, n * sxx - sx * sx) : 0;
+    Eigen::Matrix2d turned;
+    turned << Vector2d(1, slope), Vector2d(0, 1);
+    LineSeen line{*middle, px_by_mm * turned};
+    for (const Vector2d& xy : seen) {
+        const Vector2d own(xy.x(), xy.y() - slope * xy.x());
+        line.low_mm = line.low_mm.cwiseMin(own), line.high_mm = line.high_mm.cwiseMax(own);
+    }
+    return line;
+}
+
+}  // namespace
+
+std::vector<GrayImage> upright(const Label& label, const Seen& seen, const CameraModel& camera,
+                               const RigidTransform& rig_from_ct, double pixel_mm) {
+    constexpr double kMargin_mm = 1;
+    std::vector<GrayImage> pictures;
+    const LabelAxes axes = axes_of(label);
+    for (const auto& row : rows_of(label, axes.right)) {
+        const auto line = line_seen(row, axes, camera, rig_from_ct);
+        if (!line) return {};
+        const Vector2d size_mm = line->high_mm - line->low_mm + Vector2d::Constant(2 * kMargin_mm);
+        const int width = static_cast<int>(size_mm.x() / pixel_mm), height = static_cast<int>(size_mm.y() / pixel_mm);
+        std::vector<double> values;
+        for (int y = 0; y < height; ++y)
+            for (int x = 0; x < width; ++x) {
+                const Vector2d xy(line->low_mm.x() - kMargin_mm + pixel_mm * x,
+                                  line->high_mm.y() + kMargin_mm - pixel_mm * y);
+                values.push_back(seen(line->middle_px + line->px_by_mm * xy));
+            }
+        pictures.push_back(dark_on_bright(values, width, height, static_cast<int>(5 / pixel_mm)));
+    }
+    return pictures;
+}
+
+std::string read_label(const Label& label, const Seen& seen, const CameraModel& camera,
+                       const RigidTransform& rig_from_ct, const std::filesystem::path& keep) {
+    std::vector<std::map<std::string, int>> votes;
+    for (const double pixel_mm : {0.16, 0.125, 0.2}) {
+        const auto pictures = upright(label, seen, camera, rig_from_ct, pixel_mm);
+        votes.resize(pictures.size());
+        for (std::size_t k = 0; k < pictures.size(); ++k) {
+            ++votes[k][read_text(pictures[k])];
+            if (!keep.empty() && pixel_mm == 0.125) write_png(pictures[k], keep.string() + fmt::format("_{}.png", k));
         }
-    std::vector<double> sorted = values;
-    std::sort(sorted.begin(), sorted.end());
-    const double dark = sorted[sorted.size() / 4], bright = sorted[sorted.size() * 97 / 100];
-    for (std::size_t i = 0; i < values.size(); ++i)
-        picture.pixels[i] = static_cast<std::uint8_t>(
-            std::clamp(255 - 255 * (values[i] - dark) / std::max(1.0, bright - dark), 0.0, 255.0));
-    return picture;
+    }
+    std::string read;
+    for (const auto& line : votes) {
+        const auto most = std::max_element(line.begin(), line.end(),
+                                           [](const auto& a, const auto& b) { return a.second < b.second; });
+        read += (read.empty() ? "" : "/") + most->first;
+    }
+    return read;
 }
 
 struct LabelledHead::Parts {
@@ -216,10 +346,38 @@ Plan LabelledHead::Parts::plan(unsigned seed) const {
     return plan;
 }
 
+namespace {
+
+/// What an eye where that camera stands sees: the true skin under the light that truly falls there, and 20 % of room
+/// light, without the camera's blur, pixels and noise.
+Seen seen_by_eye(const simulation::SimulatedRig& rig, const RgbImage& light, const CameraModel& camera, Instant at) {
+    const RigidTransform rig_from_ct = rig.true_rig_from_ct(at), ct_from_rig = rig_from_ct.inverse();
+    const CameraModel projector = rig.true_rig().projector;
+    GrayImage green(light.width, light.height);
+    std::transform(light.pixels.begin(), light.pixels.end(), green.pixels.begin(), [](const Rgb& p) { return p[1]; });
+    return [&rig, camera, projector, rig_from_ct, ct_from_rig, green, at](const Vector2d& pixel) {
+        constexpr double kRoomLight = 0.2, kShadow_mm = 1;
+        const auto ray = ray_through(camera, pixel);
+        if (!ray) return 0.0;
+        const auto skin = rig.true_skin_along(ct_from_rig * ray->origin, ct_from_rig.linear() * ray->direction);
+        if (!skin) return 0.0;
+        const auto by = project(projector, rig_from_ct * skin->p_in_ct);
+        double lit = 0;
+        if (by && in_picture(projector, *by)) {
+            const auto falls = rig.true_light(*by, at);
+            if (falls && (falls->p_in_ct - skin->p_in_ct).norm() < kShadow_mm) lit = between(green, *by);
+        }
+        const Vector3d to_light = (ct_from_rig * projector.centre_in_rig() - skin->p_in_ct).normalized();
+        return kRoomLight * 255 + lit * std::max(0.0, to_light.dot(skin->normal_in_ct));
+    };
+}
+
+}  // namespace
+
 LabelledHead::LabelledHead() : parts_(std::make_unique<Parts>()) {}
 LabelledHead::~LabelledHead() = default;
 
-LabelsRead LabelledHead::read(simulation::Preset preset, unsigned seed) const {
+LabelsRead LabelledHead::read(simulation::Preset preset, unsigned seed, bool eye) const {
     LabelsRead result;
     const Plan plan = parts_->plan(seed);
     simulation::RoomSettings settings;
@@ -249,6 +407,7 @@ LabelsRead LabelledHead::read(simulation::Preset preset, unsigned seed) const {
     result.items = static_cast<int>(drawing.items.size());
     result.left_out = static_cast<int>(counts.labels_left_out.size());
     result.share_of_text = share_of_text(drawing);
+    const RigCalibration truth = rig.true_rig();
     for (const Label& label : drawing.labels) {
         const bool is_lit = !label.of_moment && std::find(counts.labels_lit.begin(), counts.labels_lit.end(),
                                                           label.item) != counts.labels_lit.end();
@@ -260,26 +419,35 @@ LabelsRead LabelledHead::read(simulation::Preset preset, unsigned seed) const {
                 if (!rig.truly_seen(camera, {label.field_in_ct[i], label.field_normals_in_ct[i]}, lit)) return false;
             return true;
         };
-        const bool left = sees(simulation::SimulatedRig::Camera::left);
-        if (!left && !sees(simulation::SimulatedRig::Camera::right)) {
+        // From where it is seen best, as a person would look.
+        const bool by_left = sees(simulation::SimulatedRig::Camera::left),
+                   by_right = sees(simulation::SimulatedRig::Camera::right);
+        if (!by_left && !by_right) {
             ++result.unseen;
             continue;
         }
-        const RigCalibration truth = rig.true_rig();
-        const GrayImage picture =
-            upright(label, left ? frame.left : frame.right, left ? truth.left_camera : truth.right_camera, rig_from_ct);
-        if (picture.width == 0) {
+        const auto facing = [&](const CameraModel& one) {
+            const std::size_t k = label.field_in_ct.size() / 2;
+            const Vector3d way = rig_from_ct.inverse() * one.centre_in_rig() - label.field_in_ct[k];
+            return way.normalized().dot(label.field_normals_in_ct[k]);
+        };
+        const bool left = by_left && (!by_right || facing(truth.left_camera) > facing(truth.right_camera));
+        const CameraModel& camera = left ? truth.left_camera : truth.right_camera;
+        const GrayImage& picture = left ? frame.left : frame.right;
+        const Seen seen = eye ? seen_by_eye(rig, light, camera, lit)
+                              : Seen([&](const Vector2d& pixel) { return between(picture, pixel); });
+        const auto read = read_label(label, seen, camera, rig_from_ct,
+                                     folder.empty() ? folder : folder / fmt::format("{}_label{}", name, label.item));
+        if (read.empty()) {
             ++result.unseen;
             continue;
         }
         std::string written = label.words;
         std::replace(written.begin(), written.end(), '\n', '/');
-        const std::string read = read_text(picture);
         const Reading reading = compare(written, read);
         result.right += reading == Reading::right;
         if (reading != Reading::right) result.wrong.push_back(written + " | " + read);
         if (reading == Reading::other_number) result.other_number.push_back(written + " | " + read);
-        if (!folder.empty()) write_png(picture, folder / fmt::format("{}_label{}.png", name, label.item));
     }
     return result;
 }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -26,18 +28,26 @@ struct LabelsRead {
 /// True where `tesseract` can be run.
 bool can_read_labels();
 
-/// What tesseract reads in a picture of dark letters on bright ground, lines parted by '/'. Empty: nothing.
+/// What tesseract reads in a picture of one line of dark letters on bright ground. Empty: nothing.
 std::string read_text(const GrayImage& picture);
 
 enum class Reading { right, other, other_number };
-/// Is what was read what was written? Blanks do not count; the diameter sign may be read as any sign that looks like
-/// it, since the reader does not know it. Another number: other digits in the same places, or more or fewer of them.
+/// Is what was read what was written? Blanks and capitals do not count. Another number: a line of which
+/// other digits were read; one of which none were read is only not read.
 Reading compare(const std::string& written, const std::string& read);
 
-/// The label as a camera saw it, turned upright, dark on bright, a capital some 40 pixels high. Empty when part of it
-/// lies outside the picture.
-GrayImage upright(const Label& label, const GrayImage& seen, const CameraModel& camera,
-                  const RigidTransform& rig_from_ct);
+/// How bright a camera, or an eye in its place, sees what is at a pixel (sub-pixel): 0 to 255.
+using Seen = std::function<double(const Eigen::Vector2d& pixel)>;
+
+/// The label's lines as a camera saw them, each turned upright, dark on bright, pixels of that size. Empty
+/// when part of them lies outside the picture.
+std::vector<GrayImage> upright(const Label& label, const Seen& seen, const CameraModel& camera,
+                               const RigidTransform& rig_from_ct, double pixel_mm);
+
+/// What is read in the label's lines, parted by '/': at three scales, the reading that comes most. Empty when part of
+/// it is out of the picture. `keep`: where its pictures are kept, without their ending; empty: nowhere.
+std::string read_label(const Label& label, const Seen& seen, const CameraModel& camera,
+                       const RigidTransform& rig_from_ct, const std::filesystem::path& keep = {});
 
 /// The example patient with plans of names and figures of several kinds on one side of the head.
 class LabelledHead {
@@ -45,7 +55,8 @@ public:
     LabelledHead();
     ~LabelledHead();
     /// A plan, a room and a pose of that seed: the plan drawn, lit and read.
-    LabelsRead read(simulation::Preset preset, unsigned seed) const;
+    /// `eye`: by an eye in the camera's place, without its blur, pixels and noise; else in the camera's picture.
+    LabelsRead read(simulation::Preset preset, unsigned seed, bool eye) const;
 
 private:
     struct Parts;

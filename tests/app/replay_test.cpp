@@ -100,11 +100,16 @@ private:
 
 TEST_F(Replay, ADiskThatTakesNothingLeavesTheLightAloneAndIsSaid) {
     std::atomic<bool> still{true};
+    struct LetGo {  // whatever ends the test: the recorder waits for its disk
+        std::atomic<bool>& still;
+        ~LetGo() { still = false; }
+    };
     RecordingWriterSettings writing;
     writing.most_waiting_bytes = 3'000'000;
     writing.spare_bytes = 10'000;
     SessionRecorder recorder(std::make_unique<StillDisk>(still),
                              recording_head(test::example_case().prepared, {}, RecordMode::all, {}), writing);
+    const LetGo let_go{still};
     PlayedSession how;
     how.seed = 5;
     how.updates = 20;
@@ -114,7 +119,6 @@ TEST_F(Replay, ADiskThatTakesNothingLeavesTheLightAloneAndIsSaid) {
     EXPECT_GE(recorder.state().dropped_chunks, 40u) << "a scan of 46 pictures and 20 updates, and room for three";
     EXPECT_LE(recorder.state().waiting_bytes, 3'010'000u);
     EXPECT_NE(recorder.trouble().find("the light is not affected"), std::string::npos) << recorder.trouble();
-    still = false;
 }
 
 /// One recording that is spoilt in many ways.
@@ -126,6 +130,7 @@ protected:
         PlayedSession how;
         how.seed = 2;
         how.updates = 24;
+        how.dark_in_scan = true;  // a refusal that is none of an update
         const fs::path file = folder().path() / "sound.plrec";
         test::record_session(how, test::example_case(), RecordMode::all, file);
         chunks_ = chunks_of(file);
@@ -221,6 +226,24 @@ TEST_F(SpoiltRecording, IsRefusedForAnotherCaseAndWithoutItsFrames) {
     chunks.front().payload.replace(at, 5, "\"events\"");
     write(chunks, file);
     EXPECT_THROW(replay_session(file, test::example_case().prepared), InputError);
+}
+
+TEST_F(SpoiltRecording, IsRefusedWhereItDoesNotSayItsMarkersOrTheWayItWasRecorded) {
+    for (const auto& [name, other] :
+         {std::pair{"\"disc_mm\"", "\"disk_mm\""}, {"\"sticker_mm\":", "\"sticker_mm\":\"\",\"x\":"}}) {
+        auto chunks = chunks_;
+        const auto entered =
+            std::ranges::find_if(chunks, [](const RecordingChunk& c) { return c.type == chunk_types::kRoom; });
+        ASSERT_NE(entered, chunks.end());
+        std::string& room = entered->payload;
+        ASSERT_NE(room.find(name), std::string::npos);
+        room.replace(room.find(name), std::string(name).size(), other);
+        EXPECT_THROW(replay(chunks), InputError) << other;
+    }
+    auto chunks = chunks_;
+    std::string& head = chunks.front().payload;
+    head.replace(head.find("\"all\""), 5, "\"alles\"");
+    EXPECT_THROW(replay(chunks), InputError);
 }
 
 }  // namespace

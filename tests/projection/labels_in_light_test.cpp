@@ -188,7 +188,7 @@ TEST(LabelsInLight, ANameThatCannotBeDrawnIsNumberedAndTheFiguresStay) {
     plan.boreholes.push_back({"\U0010FFFD", on_ball(0, 0), {}, 7, 6, {}});
     const PlanDrawing drawing = draw_plan(plan, ball());
     ASSERT_FALSE(drawing.labels.empty());
-    EXPECT_EQ(drawing.labels[0].words, "#1  ⌀7\n6 mm deep");
+    EXPECT_EQ(drawing.labels[0].words, "#1\n7 mm wide\n6 mm deep");
     EXPECT_EQ(drawing.items[0].name, "\U0010FFFD");
     ASSERT_EQ(drawing.items[0].warnings.size(), 1u);
 }

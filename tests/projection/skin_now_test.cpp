@@ -44,6 +44,19 @@ TEST(SkinNow, LiesWhereTheScanFoundIt) {
     EXPECT_EQ(same.mesh().vertices_in_ct, ball().mesh().vertices_in_ct);
 }
 
+// 100 mm on the CT's skin are 97.5 mm on skin that lies 2 mm deeper; the plan's page says 100, and so must the light.
+TEST(SkinNow, ALineIsCalledByItsPlannedLength) {
+    const SkinSurface now = skin_as_scanned(ball().mesh(), scanned([](auto&) { return -2.; }));
+    OsteotomyLine line;
+    line.name = "Cut";
+    for (int i = 0; i <= 20; ++i) line.points_in_ct.push_back(on_ball(100 / kRadius_mm * (i / 20.0 - 0.5), 0));
+    Plan plan;
+    plan.osteotomy_lines.push_back(line);
+    const PlanDrawing drawing = draw_plan(plan, ball(), now);
+    ASSERT_FALSE(drawing.labels.empty());
+    EXPECT_NE(drawing.labels.front().words.find("100 mm"), std::string::npos) << drawing.labels.front().words;
+}
+
 // Skin 2 mm deeper, an axis that leans by 45 degrees: the place on the skin moves aside by 2 mm. The nearest point
 // would not.
 TEST(SkinNow, AHoleStaysOnItsAxis) {

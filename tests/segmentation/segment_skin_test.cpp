@@ -223,6 +223,59 @@ TEST(SegmentSkin, APhantomOfBoneAloneIsFoundWithItsThinSkull) {
     EXPECT_NEAR(segment_skin(volume, settings).volume_ml, 4.0 / 3 * 3.1416 * 7.5 * 7.5 * 7.5, 60);
 }
 
+/// Voxels of 2 mm, 121 each way: a ball of 40 mm, and a couch of `thick_mm` under it, `gap_mm` below.
+Volume phantom_on_couch(double thick_mm, double gap_mm) {
+    Volume volume;
+    volume.modality = "CT";
+    volume.is_hu = true;
+    volume.ct_from_voxel.linear() *= 2;
+    volume.ct_from_voxel.translation() = Eigen::Vector3d(-120, -120, -120);
+    volume.size = {121, 121, 121};
+    for (int k = 0; k < 121; ++k)
+        for (int j = 0; j < 121; ++j)
+            for (int i = 0; i < 121; ++i) {
+                const Eigen::Vector3d p = volume.ct_from_voxel * Eigen::Vector3d(i, j, k);
+                const double below = p.y() - 40 - gap_mm;
+                const bool couch = below > -1 && below < thick_mm && std::abs(p.x()) < 100;
+                volume.values.push_back(p.norm() < 40 || couch ? 100.0F : -1000.0F);
+            }
+    return volume;
+}
+
+TEST(SegmentSkin, APhantomThatMayBeACouchOrLiesOnOneIsDoubted) {
+    SkinSettings settings;
+    settings.phantom = true;
+    const auto warned = [&](const Volume& volume, const char* of) {
+        const SkinMask mask = segment_skin(volume, settings);
+        return std::any_of(mask.warnings.begin(), mask.warnings.end(),
+                           [&](const std::string& w) { return w.find(of) != std::string::npos; });
+    };
+    const Volume touching = phantom_on_couch(6, -2), larger = phantom_on_couch(40, 10), alone = phantom_on_couch(0, 60);
+    EXPECT_TRUE(warned(touching, "reaches the sides")) << "the couch is part of the skin";
+    EXPECT_TRUE(warned(larger, "of two large pieces")) << "the couch is the skin";
+    EXPECT_TRUE(warned(larger, "reaches the sides"));
+    EXPECT_FALSE(warned(alone, "")) << "nothing else is there";
+}
+
+TEST(SegmentSkin, AsAPhantomASmallPlateIsTakenAndNothingIsRefusedInItsWords) {
+    Volume plate = phantom_on_couch(0, 60);
+    for (std::size_t v = 0; v < plate.values.size(); ++v) plate.values[v] = -1000;
+    SkinSettings settings;
+    settings.phantom = true;
+    for (int j = 40; j < 60; ++j)
+        for (int i = 40; i < 60; ++i)
+            for (const int k : {50, 51}) plate.values[plate.index(i, j, k)] = 200;
+    EXPECT_NEAR(segment_skin(plate, settings).volume_ml, 6.4, 0.1);
+    settings.threshold = 500;
+    try {
+        segment_skin(plate, settings);
+        ADD_FAILURE();
+    } catch (const InputError& error) {
+        EXPECT_EQ(std::string(error.what()).find("skin"), std::string::npos) << error.what();
+        EXPECT_EQ(error.remedy.find("head"), std::string::npos) << error.remedy;
+    }
+}
+
 TEST(SegmentSkin, ReportsProgressToTheEnd) {
     ScanOptions options;
     options.spacing_mm = {3, 3, 3};

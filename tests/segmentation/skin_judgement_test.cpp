@@ -154,6 +154,23 @@ TEST(JudgeSkin, SaysThatACushionLiesAtOneCheek) {
     EXPECT_LT(judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); })).skin.one_sided_cm2, 3);
 }
 
+/// The mirror image of the right side lies where nothing was measured, not in air.
+TEST(JudgeSkin, OfAHeadThatTheVolumeCutsAtOneSideNothingIsSaidToLieAtTheOther) {
+    const Judged head = judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p - Vector3d(50, 0, 0))); }));
+    EXPECT_TRUE(doubts(head.skin, "left side is cut off"));
+    EXPECT_FALSE(doubts(head.skin, "one side of the head")) << head.skin.one_sided_cm2;
+    EXPECT_LT(head.skin.one_sided_cm2, 3);
+}
+
+TEST(JudgeSkin, ThatWhatCouldNotBeAskedIsSaidAndIsNoZero) {
+    // Above the ears nothing is in the volume: how wide the head is there is not known.
+    const Judged head =
+        judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p + Vector3d(0, 0, 20))); }, {105, 125, 40}));
+    if (head.refused) GTEST_SKIP() << "refused";
+    EXPECT_TRUE(std::isnan(head.skin.width)) << head.skin.width;
+    EXPECT_TRUE(doubts(head.skin, "could not be asked"));
+}
+
 TEST(JudgeSkin, SaysThatThingsLieAtBothEars) {
     const Judged head = judged(head_with(phones));
     EXPECT_TRUE(doubts(head.skin, "at both sides")) << head.skin.width;

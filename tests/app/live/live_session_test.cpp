@@ -97,7 +97,13 @@ TEST_F(LiveSessionTest, AScanThatIsEndedByDarkLeavesButtonsAndWordsRight) {
     EXPECT_EQ(scanning.figures, Figures{}) << "those of the light before";
     EXPECT_FALSE(scanning.fit);
     EXPECT_FALSE(scanning.rows.front().predicted_error_mm);
-    wait_for(*session, "pictures of the scan", [](const OperatorModel& m) { return m.status.share > 0.1; });
+    while (session->model().status.share < 0.1) {
+        const OperatorModel during = session->model();
+        EXPECT_EQ(during.status.kind, StatusKind::scanning) << "the last update of the light says nothing any more";
+        EXPECT_EQ(during.figures, Figures{});
+        EXPECT_EQ(during.scene.light, nullptr);
+        std::this_thread::sleep_for(1ms);
+    }
     session->post(OperatorAction::dark);
     for (const OperatorModel& dark :
          {session->model(), (std::this_thread::sleep_for(2s), session->model())}) {  // at once, and when it has ended
@@ -121,6 +127,8 @@ TEST_F(LiveSessionTest, LightIsConfirmedOncePerPressAndDarkLeadsBackToTheMatch) 
         wait_for(*session, "the first landmark", [](const OperatorModel& m) { return m.confirm; });
     EXPECT_EQ(first.confirm_words, "Light 1 is right");
     EXPECT_EQ(first.next, OperatorAction::confirm);
+    for (const std::string& detail : first.status.details)
+        EXPECT_EQ(detail.find("Show landmarks"), std::string::npos) << "there is no such button any more: " << detail;
     session->post(OperatorAction::dark);
     const OperatorModel dark = session->model();
     EXPECT_EQ(dark.status.kind, StatusKind::dark);

@@ -54,6 +54,46 @@ TEST_F(LiveViewTest, WhatWasFoundInAnotherFrameIsNotDrawnOverThisOne) {
     EXPECT_TRUE(shown().left.live.found.empty()) << "they were found in the frame before";
 }
 
+TEST_F(LiveViewTest, APictureWaitsForItsMarkersWhereTheyAreLookedFor) {
+    view.expect_found(true);
+    view.take(frame_at(1s, 10));
+    EXPECT_EQ(shown().left.live.picture, nullptr) << "else the rings would flicker";
+    view.found(1s, {{{3, 3}, 2}}, {});
+    clock.time += 1s;
+    view.take(frame_at(2s, 20));
+    EXPECT_EQ(shown().left.live.picture->at(0, 0), 10);
+    EXPECT_EQ(shown().left.live.found.size(), 1U);
+    view.found(2s, {}, {});
+    EXPECT_EQ(shown().left.live.picture->at(0, 0), 20);
+    EXPECT_TRUE(shown().left.live.found.empty());
+    EXPECT_TRUE(shown().left.live.searched);
+}
+
+TEST_F(LiveViewTest, APictureInWhichNothingHasMovedIsLiveWithoutBeingDrawnAnew) {
+    view.expect_found(true);
+    const auto seen = [&](Instant at, const GrayImage& picture, double marker_x) {
+        clock.time += 1s;
+        StereoFrame frame = frame_at(at, 0);
+        frame.left = frame.right = picture;
+        view.take(frame);
+        view.found(at, {{{marker_x, 100}, 6}}, {});
+        return shown().left.live.picture;
+    };
+    GrayImage room(640, 480, 80), noisy = room, finger = room;
+    for (int y = 0; y < 480; ++y)
+        for (int x = 0; x < 640; ++x) noisy.at(x, y) = static_cast<std::uint8_t>(74 + (x * 31 + y * 17) % 13);
+    for (int y = 200; y < 230; ++y)
+        for (int x = 300; x < 312; ++x) finger.at(x, y) = 180;
+    const auto first = seen(1s, room, 50);
+    EXPECT_EQ(seen(2s, noisy, 50.4), first) << "noise of 12 grey values";
+    EXPECT_EQ(shown().left.old_s, 0) << "and it is as live as that";
+    const auto moved = seen(3s, noisy, 53);
+    EXPECT_NE(moved, first) << "a marker has moved by 3 pixels";
+    EXPECT_NE(seen(4s, finger, 53), moved) << "12 x 30 pixels have changed";
+    clock.time += 3s;
+    EXPECT_EQ(shown().left.old_s, 3);
+}
+
 TEST_F(LiveViewTest, APictureThatIsNotRenewedSaysItsAgeAndWhy) {
     view.take(frame_at(1s, 10));
     clock.time += 1400ms;

@@ -38,7 +38,10 @@ grep -v histogram "$folder/latency.json"; grep -o '^.*worst_ms": [0-9.]*' "$fold
 check "it came to the light" "$(ls "$folder"/pictures/light-*.png 2>/dev/null | wc -l | awk '{print ($1 > 0) ? 1 : 0}')" "no light"
 kill $served; wait $served 2>/dev/null
 "$PLANLIGHT" replay "$folder"/case/recordings/*.plrec --json >"$folder/replayed" 2>"$folder/errors"; code=$?
-check "its recording is replayed to the last digit" "$(number "$code == 0")" "exit code $code: $(cat "$folder/errors")"
+updates=$(awk -F'[:,]' '/"updates"/ {print $2}' "$folder/replayed")
+whole=$(grep -c '"whole": true' "$folder/replayed")
+check "its recording is replayed to its end, to the last digit" "$(number "$code == 0 && $whole == 1 && ${updates:-0} > 0")" \
+  "exit code $code, whole: $whole, updates: $updates: $(cat "$folder/errors")"
 grep -e scans -e updates -e decisions -e ended "$folder/replayed"
 "$PLANLIGHT" report "$folder"/case/recordings/*.plrec --out "$folder/operation.html" 2>"$folder/errors"; code=$?
 check "its report is written" "$(number "$code == 0")" "exit code $code: $(cat "$folder/errors")"

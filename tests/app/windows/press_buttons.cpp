@@ -78,9 +78,9 @@ int main(int, char** argv) {
     OperatorModel model = test::fake_model();
     OperatorWindow window({"Planlight buttons", 1280, 800, std::nullopt, true});
     for (int i = 0; i < 30; ++i) window.frame(model);
-    fmt::print("{}\n", drawn_in(window, model, 60) == 0 ? "still" : "drawn without need");
+    const std::size_t without_need = drawn_in(window, model, 60);
     model.status.headline += " And more.";
-    fmt::print("{}\n", drawn_in(window, model, 20) == 1 ? "drawn once" : "not drawn once");
+    fmt::print("drawn {} and {} times\n", without_need, drawn_in(window, model, 20));
     model.light_on = true;
     test::write_picture(folder + "/operator.ppm", window.screenshot());
     const auto write_places = [&](const std::string& name, const std::vector<std::string>& words) {

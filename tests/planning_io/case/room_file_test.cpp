@@ -38,6 +38,30 @@ TEST(RoomFile, ReadsBackAndItsPathsAreBesideIt) {
     EXPECT_EQ(back.max_apart_ms, 0.5);
 }
 
+/// `trigger` stood in every room.json of a former program.
+TEST(RoomFile, OfAFormerProgramIsReadAsItWasMeantOrRefusedWithWhatToDelete) {
+    const test::TemporaryFolder folder;
+    const auto file = folder.path() / "room.json";
+    const auto left = [&](const std::string& trigger) {
+        write_safely(file,
+                     R"({"format": "planlight room", "version": 1, "rig": "rig.json", "projector": {"monitor": "A"},)"
+                     R"("cameras": {"left": {"device": "1", )" +
+                         trigger + R"(}, "right": {"device": "2", "trigger": "none"}}})");
+        return read_room(file).left;
+    };
+    EXPECT_EQ(left(R"("trigger": "none")").line, "");
+    EXPECT_EQ(left(R"("trigger": "line", "line": "Line2")").line, "Line2");
+    for (const char* refused : {R"("trigger": "software")", R"("trigger": "line")",
+                                R"("trigger": "none", "line": "Line2")", R"("trigger": 3)"}) {
+        try {
+            left(refused);
+            ADD_FAILURE() << refused;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("trigger"), std::string::npos) << error.what();
+        }
+    }
+}
+
 TEST(RoomFile, WhatIsMissingMisspeltOrImpossibleIsRefusedByName) {
     const test::TemporaryFolder folder;
     const auto refusal = [&](const std::string& cameras) {
