@@ -242,9 +242,12 @@ protected:
         EXPECT_FALSE(session.projecting());
         if (!session.model().track.enabled) return session.model();
         session.post(OperatorAction::track);
-        wait([](const OperatorModel& m) { return m.status.kind == StatusKind::check && m.confirm; });
-        EXPECT_TRUE(session.projecting());
-        return session.model();
+        OperatorModel lit;
+        wait([&](const OperatorModel& m) {
+            lit = m;
+            return m.status.kind == StatusKind::check && m.confirm;
+        });
+        return lit;
     }
 };
 
@@ -371,7 +374,7 @@ protected:
         EXPECT_TRUE(green);
         session.look_before_light();
         session.post(OperatorAction::dark);
-        wait(session, [](const OperatorModel& m) { return m.track.enabled; });
+        wait(session, [&](const OperatorModel& m) { return m.track.enabled && !session.projecting(); });
         session.post(OperatorAction::track);
         wait(session,
              [&](const OperatorModel& m) { return session.projecting() || m.status.kind == StatusKind::refused; });
