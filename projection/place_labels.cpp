@@ -15,10 +15,11 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Point = SkinSurface::Point;
 
-constexpr double kClear_mm = 2.6;      // between a text's outline and anything drawn
-constexpr double kLeaderClear_mm = 1;  // between a leader and anything drawn
-constexpr double kLeaderFrom_mm = 3;   // a text farther from its item has a leader
-constexpr double kOffItem_mm = 0.8;    // between what is drawn at the anchor and the leader
+constexpr double kClear_mm = 2.6;            // between a text's outline and anything drawn
+constexpr double kApartFromLabels_mm = 4.8;  // more than between a text's own lines: two labels are not one
+constexpr double kLeaderClear_mm = 1;        // between a leader and anything drawn
+constexpr double kLeaderFrom_mm = 3;         // a text farther from its item has a leader
+constexpr double kOffItem_mm = 0.8;          // between what is drawn at the anchor and the leader
 
 struct Candidate {
     TextFrame frame;
@@ -106,7 +107,7 @@ bool Search::is_free(const TextFrame& frame) const {
                               block_.height_mm * (static_cast<double>(iy) / ny - 0.5));
             const auto p = on_skin(skin_, frame, xy);
             if (!p || !skin_.real_skin(*p) || p->normal_in_ct.dot(frame.at.normal_in_ct) < kFlat) return false;
-            if (occupied_.within(p->p_in_ct, kClear_mm, wish_.but_of) || !lit(*p)) return false;
+            if (occupied_.within(p->p_in_ct, kClear_mm, wish_.but_of, kApartFromLabels_mm) || !lit(*p)) return false;
         }
     return true;
 }
@@ -187,7 +188,7 @@ void OccupiedSkin::take_away(const Vector3d& p_in_ct, int owner) {
     if (cell != cells_.end()) std::erase_if(cell->second, [&](const Taken& q) { return q.owner == owner; });
 }
 
-bool OccupiedSkin::within(const Vector3d& p_in_ct, double distance_mm, int but_of) const {
+bool OccupiedSkin::within(const Vector3d& p_in_ct, double distance_mm, int but_of, double labels_mm) const {
     const Eigen::Vector3i cell = (p_in_ct / kCell_mm).array().floor().cast<int>();
     for (int dx = -1; dx <= 1; ++dx)
         for (int dy = -1; dy <= 1; ++dy)
@@ -196,7 +197,8 @@ bool OccupiedSkin::within(const Vector3d& p_in_ct, double distance_mm, int but_o
                 if (found == cells_.end()) continue;
                 for (const Taken& q : found->second) {
                     if (q.owner != kPlan && (but_of == kAllLabels || but_of == q.owner)) continue;
-                    if ((q.p_in_ct - p_in_ct).squaredNorm() < distance_mm * distance_mm) return true;
+                    const double clear_mm = q.owner == kPlan ? distance_mm : std::max(distance_mm, labels_mm);
+                    if ((q.p_in_ct - p_in_ct).squaredNorm() < clear_mm * clear_mm) return true;
                 }
             }
     return false;

@@ -23,9 +23,10 @@ public:
     void add(const Eigen::Vector3d& p_in_ct, int owner = kPlan);
     void take_away(const Eigen::Vector3d& p_in_ct, int owner);
     /// `distance_mm` up to the cell size. What belongs to `but_of` is overlooked.
-    bool within(const Eigen::Vector3d& p_in_ct, double distance_mm, int but_of = kNobody) const;
+    /// Labels are kept off by `labels_mm` where that is more.
+    bool within(const Eigen::Vector3d& p_in_ct, double distance_mm, int but_of = kNobody, double labels_mm = 0) const;
 
-    static constexpr double kCell_mm = 3;
+    static constexpr double kCell_mm = 5;
 
 private:
     struct Taken {
