@@ -24,12 +24,12 @@ struct SkinJudgement {
     double ball_radius_mm =
         0;  ///< of the largest ball within the upper head: an adult's skull 65 to 80, a newborn's 45
     Eigen::Vector3d ball_centre_in_ct = Eigen::Vector3d::Zero();
-    double layered_share = 0;  ///< of the vault, where bone lies under the skin, between scalp and brain
-    double scalp_mm = 0;       ///< median soft tissue over the bone of the vault
-    double nose_mm = 0;        ///< how far the nose stands out before the cheeks
-    double edge_blur_mm = 0;   ///< median way from 20 to 80 % of the step from air to skin
-    double gap_cm2 = 0;        ///< of skin under which air is again (a mask, a cushion, a cloth)
-    double boneless_cm2 = 0;   ///< of an MR: patch of the upper head with no bone within 16 mm (a shining cushion)
+    double layered_share = 0;    ///< of the vault, where bone lies under the skin, between scalp and brain
+    double scalp_mm = 0;         ///< median soft tissue over the bone of the vault
+    double nose_mm = 0;          ///< how far the nose stands out before the cheeks
+    double edge_blur_mm = 0;     ///< median way from 20 to 80 % of the step from air to skin
+    double gap_cm2 = 0;          ///< of skin under which air is again (a mask, a cushion, a cloth)
+    double boneless_cm2 = 0;     ///< of an MR: patch of the upper head with no bone within 16 mm (a shining cushion)
     double one_sided_cm2 = NAN;  ///< `ThingsOnSkin`, and the next two
     double bumps_cm2 = NAN;
     double width = NAN;

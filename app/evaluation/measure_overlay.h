@@ -15,8 +15,8 @@ struct OverlayErrors {
     std::vector<double> position_mm;  ///< lines: sideways, per 2 mm of line; circles: of the centre, along the skin
     std::vector<double> diameter_percent;  ///< of borehole circles
     std::vector<double> tick_mm;           ///< of the 10 mm between neighbouring ticks, along the line
-    std::vector<double> angle_deg;       ///< of the right angle of the crosses of holes and ways in
-    std::vector<double> long_angle_deg;  ///< of those crosses that are 8 mm and more: long enough to be measured
+    std::vector<double> angle_deg;         ///< of the right angle of the crosses of holes and ways in
+    std::vector<double> long_angle_deg;    ///< of those crosses that are 8 mm and more: long enough to be measured
     /// The same by place, for whoever sorts them by how steeply the light falls.
     struct Place {
         StrokeKind kind = StrokeKind::osteotomy_line;

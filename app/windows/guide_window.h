@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "app/windows/window_settings.h"
 #include "app/windows/guide_model.h"
+#include "app/windows/window_settings.h"
 
 namespace planlight {
 

@@ -99,8 +99,7 @@ void MiddleView::draw_scene(const Pen& pen, const Box& place, const OperatorMode
     const SceneModel shown = scene_of_fit(model, fit_view);
     const float strip = button_height(pen) + 24 * pen.scale;  // of buttons, which a finger must meet at once
     const float above = model.fit ? strip : 0;
-    const float below =
-        (model.landmarks ? strip : 0) + (model.confirm ? strip : 0) + (model.check_skin ? strip : 0);
+    const float below = (model.landmarks ? strip : 0) + (model.confirm ? strip : 0) + (model.check_skin ? strip : 0);
     scene_.take_mouse("scene", {place.x, place.y + above, place.width, place.height - above - below});
     if (!shown.skin && !shown.cloud) return;  // nothing to be seen yet
     scene_.draw(pen, place, shown);

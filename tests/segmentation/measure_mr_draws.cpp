@@ -40,10 +40,10 @@ int main(int argc, char** argv) {
         const SkinScore score = score_of(draw.volume, truth);
         if (words.size() > 3 && !score.skin.triangles.empty())
             write_png(head_sheet(draw.volume, score.skin), fmt::format("{}/{}.png", words[3], seed));
-        const char* verdict = score.refused           ? "refused"
-                              : score.taken_wrongly() ? "WRONG"
+        const char* verdict = score.refused               ? "refused"
+                              : score.taken_wrongly()     ? "WRONG"
                               : !(score.off_percent <= 1) ? "warned"
-                                                      : "right";
+                                                          : "right";
         (score.refused ? refused : score.taken_wrongly() ? wrong : !(score.off_percent <= 1) ? warned : right) += 1;
         fmt::print("{}\t{}\t{:.2f} % off\tp95 {:.2f} mm\t{}\t{}\n", seed, verdict, score.off_percent, score.p95_mm,
                    draw.said, score.why);

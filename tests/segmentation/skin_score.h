@@ -10,11 +10,12 @@ namespace planlight::test {
 /// What became of a volume, against its true skin.
 struct SkinScore {
     bool refused = false;
-    bool doubted = false;    ///< taken with a warning; that the volume ends within the head is none
-    double off_percent = 0;  ///< of the true skin further than 2 mm from ours; not a number when refused, or nothing was compared
-    double p95_mm = 0;       ///< of its distance
-    std::string why;         ///< the doubts' or the refusal's beginnings
-    TriangleMesh skin;       ///< ours, also of what was refused for its looks
+    bool doubted = false;  ///< taken with a warning; that the volume ends within the head is none
+    double off_percent =
+        0;  ///< of the true skin further than 2 mm from ours; not a number when refused, or nothing was compared
+    double p95_mm = 0;  ///< of its distance
+    std::string why;    ///< the doubts' or the refusal's beginnings
+    TriangleMesh skin;  ///< ours, also of what was refused for its looks
 
     /// Also where nothing could be compared.
     bool taken_wrongly() const { return !refused && !doubted && !(off_percent <= 1); }
