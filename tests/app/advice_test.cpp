@@ -19,6 +19,8 @@ namespace fs = std::filesystem;
 const std::map<std::string, std::vector<std::string>> kServes{
     {"app/commands/example_plan.cpp", {"demo"}},
     {"app/belonging.cpp", {"project"}},
+    {"app/commands/review_recording.cpp", {"review"}},
+    {"app/export/", {"export"}},
     {"app/prepare_case.cpp", {"prepare"}},
     {"planning_io/case/case_folder.cpp", {"prepare"}},
     {"app/commands/cloud_unit.cpp", {"register"}},
