@@ -16,8 +16,8 @@ struct ResumeOffer {
     bool at_once = false;             ///< asked for on the command line: no press is waited for
 };
 
-/// The match that the session of this recording used last. An hour's recording is read in well under a second: its
-/// pictures are passed over.
+/// The match that the session of this recording used last. Its pictures are passed over: an hour's recording
+/// takes some seconds (`measure_review`).
 struct LastMatch {
     RecordingHead head;
     std::optional<KeptMatch> match;

@@ -35,7 +35,7 @@ struct RecordingTimeLine {
     bool damaged = false;
 };
 
-/// Reads a recording through, its pictures passed over: an hour in about a second. Throws InputError, DamagedFileError.
+/// Reads a recording through, its pictures passed over: an hour in some seconds. Throws InputError, DamagedFileError.
 RecordingTimeLine time_line_of(const std::filesystem::path& recording);
 
 /// A frame that was kept, with the picture that the projector was given after it, where that was kept.
