@@ -230,6 +230,14 @@ std::optional<Refusal> judge_rig(const std::vector<PoseObservation>& poses, cons
     return std::nullopt;
 }
 
+/// Median distance of the boards' origins from the left camera, mm, which a wrong square scales; 0 without a pose.
+double board_distance_mm(const RigEstimate& rig) {
+    std::vector<double> distances;
+    for (const auto& pose : rig.rig_from_board)
+        if (pose) distances.push_back(pose->translation().norm());
+    return distances.empty() ? 0 : median(distances);
+}
+
 std::vector<std::string> warnings_about(const std::vector<PoseObservation>& poses, const Calibration& calibration) {
     std::vector<std::string> warnings;
     const BundleResult& bundle = calibration.bundle;
@@ -253,6 +261,12 @@ std::vector<std::string> warnings_about(const std::vector<PoseObservation>& pose
                         100 * (p->focal_x / p->focal_y - 1)));
     if (const double bend = bundle.rig.bend_mm.cwiseAbs().maxCoeff(); bend > 0.5)
         warnings.push_back(fmt::format("the board is bent by {:.1f} mm; glue it on a flat plate", bend));
+    constexpr double kNearest_mm = 250, kFarthest_mm = 3500;
+    if (const double mm = board_distance_mm(bundle.rig); mm > 0 && (mm < kNearest_mm || mm > kFarthest_mm))
+        warnings.push_back(
+            fmt::format("the board stood {:.0f} mm from the left camera by this calibration; if that is not so, its "
+                        "squares are not as large as was said",
+                        mm));
     return warnings;
 }
 

@@ -188,6 +188,23 @@ TEST(CalibrateRig, ASingleCameraAndAPairAreEnough) {
     EXPECT_NEAR(single.device(DeviceName::left_camera)->focal_x, 2180, 6);
 }
 
+/// Everything fits a board of a tenth of the size, but for the room that it stands in.
+TEST(CalibrateRig, SquaresTenTimesTooSmallOrTooLargeAreDoubted) {
+    const test::IdealRoom room = test::ideal_room();
+    CalibrationSettings quick;
+    quick.folds = 0;
+    const auto doubted = [&](const char* board) {
+        const Calibration found =
+            calibrate_rig(room.observe(), parse_board(board), room.rig.projector.width, room.rig.projector.height);
+        return std::any_of(found.warnings.begin(), found.warnings.end(), [](const std::string& warning) {
+            return warning.find("squares are not as large as was said") != std::string::npos;
+        });
+    };
+    EXPECT_FALSE(doubted("charuco 10x7 25 mm"));
+    EXPECT_TRUE(doubted("charuco 10x7 2.5 mm"));
+    EXPECT_TRUE(doubted("charuco 10x7 250 mm"));
+}
+
 TEST(CalibrateRig, OutliersAreLeftOutAndCounted) {
     const test::IdealRoom room = test::ideal_room();
     auto poses = room.observe();
