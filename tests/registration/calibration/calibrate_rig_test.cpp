@@ -194,8 +194,8 @@ TEST(CalibrateRig, SquaresTenTimesTooSmallOrTooLargeAreDoubted) {
     CalibrationSettings quick;
     quick.folds = 0;
     const auto doubted = [&](const char* board) {
-        const Calibration found =
-            calibrate_rig(room.observe(), parse_board(board), room.rig.projector.width, room.rig.projector.height);
+        const Calibration found = calibrate_rig(room.observe(), parse_board(board), room.rig.projector.width,
+                                                room.rig.projector.height, quick);
         return std::any_of(found.warnings.begin(), found.warnings.end(), [](const std::string& warning) {
             return warning.find("squares are not as large as was said") != std::string::npos;
         });
