@@ -11,7 +11,7 @@ constexpr const char* kOpening = "the room is being made";
 constexpr const char* kScanning = "wait for the scan";
 constexpr const char* kMatching = "wait for the match";
 constexpr const char* kChecking = "wait for the check";
-constexpr const char* kNothing = "nothing runs";
+constexpr const char* kNothing = "no light is on";
 
 // In the order of SessionState.
 constexpr SessionView kViews[] = {
