@@ -6,6 +6,7 @@
 #include <map>
 
 #include "projection/lay_out_label.h"
+#include "projection/text_signs.h"
 
 namespace planlight {
 namespace {

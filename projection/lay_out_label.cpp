@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "projection/stroke_font.h"
+#include "projection/text_signs.h"
 
 namespace planlight {
 namespace {

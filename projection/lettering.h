@@ -48,10 +48,4 @@ private:
 /// That of this computer's fonts (`font_files`), made by the first who asks.
 const Lettering& lettering();
 
-/// The text cut where a reader sees one sign end: a letter with its accents is one.
-std::vector<std::string> readers_signs(const std::string& utf8);
-
-/// UTF-8 of one code point.
-std::string utf8_of(char32_t code);
-
 }  // namespace planlight

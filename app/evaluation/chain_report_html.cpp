@@ -24,16 +24,16 @@ std::string preset_section(const PresetSummary& s) {
     for (const auto& r : s.rows)
         html += fmt::format(
             "<tr><td>{}</td><td>{:.2f} {}</td><td class=\"{}\">{:.2f}</td><td>{:.2f}</td><td>{}</td><td>{}</td></tr>",
-            html_escaped(r.name), r.found.median, r.unit,
+            xml_escaped(r.name), r.found.median, r.unit,
             r.goal.empty() ? ""
             : r.reached    ? "yes"
                            : "no",
-            r.found.p95, r.found.worst, r.found.count, html_escaped(r.goal));
+            r.found.p95, r.found.worst, r.found.count, xml_escaped(r.goal));
     html += fmt::format(
         "</table><p>Dark updates while following: {} of {}. One marker covered: lit in {} of {} updates. "
         "Two markers left: lit in {} of {} (must be none).</p>",
         s.dark_updates, s.updates, s.lost_marker_lit, s.lost_marker_updates, s.too_few_lit, s.too_few_updates);
-    for (const auto& refusal : s.refusals) html += fmt::format("<p class=\"no\">{}</p>", html_escaped(refusal));
+    for (const auto& refusal : s.refusals) html += fmt::format("<p class=\"no\">{}</p>", xml_escaped(refusal));
     return html;
 }
 
@@ -45,7 +45,7 @@ std::string preparation_section(const Preparation& p) {
         "Skin {:.2f} s, surface {:.2f} s, LUT {:.2f} s.</p>",
         p.threshold, p.pieces_removed, p.removed_ml, c.skin.triangles.size(), c.lut.size[0], c.lut.size[1],
         c.lut.size[2], c.lut.voxel_mm, c.lut.skin.size(), p.segment_s, p.triangulate_s, p.lut_s);
-    for (const auto& warning : c.warnings) html += fmt::format("<p class=\"no\">{}</p>", html_escaped(warning));
+    for (const auto& warning : c.warnings) html += fmt::format("<p class=\"no\">{}</p>", xml_escaped(warning));
     return html;
 }
 

@@ -94,7 +94,7 @@ std::string device_rows(const CalibrationReport& report) {
             "&plusmn; {:.2f} "
             "px</td>"
             "<td>{:.2f}, {:.2f} &plusmn; {:.2f} px</td></tr>",
-            text_of(name), serial.empty() ? "not given" : html_escaped(serial), d->width, d->height,
+            text_of(name), serial.empty() ? "not given" : xml_escaped(serial), d->width, d->height,
             c.held_out.rms_px[i], c.bundle.rms_px[i],
             all > 0 ? 100 * static_cast<double>(c.bundle.left_out[i]) / all : 0, d->focal_x, sigma[0], d->centre_x,
             d->centre_y, sigma[2]);
@@ -115,7 +115,7 @@ std::string verdict(const Calibration& c) {
     if (c.warnings.empty()) return "<div class=\"verdict yes\">&#10003; Calibrated without a warning.</div>";
     std::string html = fmt::format("<div class=\"verdict no\">&#9888; Calibrated with {} warning{}.</div>",
                                    c.warnings.size(), c.warnings.size() == 1 ? "" : "s");
-    for (const std::string& warning : c.warnings) html += fmt::format("<p class=\"no\">{}</p>", html_escaped(warning));
+    for (const std::string& warning : c.warnings) html += fmt::format("<p class=\"no\">{}</p>", xml_escaped(warning));
     return html;
 }
 
@@ -239,8 +239,8 @@ void write_calibration_html(const CalibrationReport& report, const std::filesyst
     const Calibration& c = report.calibration;
     std::string body =
         fmt::format("<p class=\"muted\">{}, {} of {} poses, board {}. For research; not a medical device.</p>",
-                    html_escaped(report.made_on), c.bundle.rig.poses(), report.poses.size(),
-                    html_escaped(text_of(report.board))) +
+                    xml_escaped(report.made_on), c.bundle.rig.poses(), report.poses.size(),
+                    xml_escaped(text_of(report.board))) +
         verdict(c) + "<h2>Devices</h2>" + device_rows(report);
     body +=
         "<p class=\"muted\">Difference between where a corner (for the projector: the light on the board) is and where "
@@ -255,7 +255,7 @@ void write_calibration_html(const CalibrationReport& report, const std::filesyst
             "too small "
             "by as much, and nothing here would show it. Measure ten squares with a calliper.</p>",
             c.held_out.lengths, c.held_out.length_rms_mm, c.held_out.length_mean_mm, report.board.square_mm);
-    for (const std::string& change : report.changes) body += fmt::format("<p>{}</p>", html_escaped(change));
+    for (const std::string& change : report.changes) body += fmt::format("<p>{}</p>", xml_escaped(change));
     if (c.volume) {
         const double full = std::max(0.02, std::ceil(c.volume->worst_mm * 50) / 50);
         std::vector<ReportPicture> pictures;

@@ -71,8 +71,8 @@ bool is_wide(const ReportPicture& p) {
 
 std::string figure(const ReportPicture& p, bool wide) {
     return fmt::format("<figure{}><img alt=\"{}\" src=\"{}\"><figcaption><b>{}</b>{}</figcaption></figure>",
-                       wide ? " class=\"wide\"" : "", html_escaped(p.title), embedded(p.picture), html_escaped(p.title),
-                       html_escaped(p.caption));
+                       wide ? " class=\"wide\"" : "", xml_escaped(p.title), embedded(p.picture), xml_escaped(p.title),
+                       xml_escaped(p.caption));
 }
 
 std::string now() {
@@ -109,23 +109,6 @@ ReportFacts facts_of(const Case& the_case) {
             {"Plan", plan}};
 }
 
-std::string html_escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += c;
-    }
-    return out;
-}
-
 std::string html_figures(const std::vector<ReportPicture>& pictures, int columns) {
     std::string html =
         columns == 0 || columns == 2
@@ -144,8 +127,7 @@ std::string html_figures(const std::vector<ReportPicture>& pictures, int columns
 std::string html_page(const std::string& title, const std::string& body, const ReportFacts& facts) {
     std::string about;
     const auto add = [&](const std::string& name, const std::string& value) {
-        if (!value.empty())
-            about += fmt::format("<div><span>{}</span>{}</div>", html_escaped(name), html_escaped(value));
+        if (!value.empty()) about += fmt::format("<div><span>{}</span>{}</div>", xml_escaped(name), xml_escaped(value));
     };
     for (const auto& [name, value] : facts) add(name, value);
     add("Operator", operator_name());
@@ -154,7 +136,7 @@ std::string html_page(const std::string& title, const std::string& body, const R
         "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>{}</title><style>{}</style></head>"
         "<body><main><h1>{}</h1><div class=\"facts\">{}</div>{}<footer>Planlight {}. For research; not a medical "
         "device.</footer></main></body></html>\n",
-        html_escaped(title), kStyle, html_escaped(title), about, body, PLANLIGHT_VERSION);
+        xml_escaped(title), kStyle, xml_escaped(title), about, body, PLANLIGHT_VERSION);
 }
 
 }  // namespace planlight

@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "planning_io/files/xml_text.h"
 #include "planning_io/types/image.h"
 
 namespace planlight {
@@ -25,9 +26,6 @@ std::string operator_name();
 
 /// Case, patient, volume and plan by their names.
 ReportFacts facts_of(const Case& the_case);
-
-/// Text with & < > " made safe for a page.
-std::string html_escaped(const std::string& text);
 
 /// The picture as the address of an <img>: PNG inside the page.
 std::string embedded_png(const RgbImage& picture);

@@ -50,7 +50,7 @@ std::string utc_text(const std::string& iso) {
 }
 
 std::string row(const std::string& name, const std::string& value) {
-    return value.empty() ? "" : fmt::format("<tr><td>{}</td><td>{}</td></tr>", name, html_escaped(value));
+    return value.empty() ? "" : fmt::format("<tr><td>{}</td><td>{}</td></tr>", name, xml_escaped(value));
 }
 
 std::string mm(const std::optional<double>& value) {
@@ -86,7 +86,7 @@ std::string items_html(const OperationFacts& facts) {
                                                                marked(d.p95), marked(d.worst))
                                                  : std::string("<td colspan=\"3\">not seen by the cameras</td>");
         html += fmt::format("<tr><td class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}</td>{}<td>{}</td></tr>",
-                            html_escaped(short_name(item.name)), shown_text(item, facts), duration_text(item.shown_s),
+                            xml_escaped(short_name(item.name)), shown_text(item, facts), duration_text(item.shown_s),
                             mm(item.predicted_mm), measured, d.count);
     }
     if (facts.items.size() > kMost)
@@ -114,7 +114,7 @@ std::string time_html(const OperationFacts& facts) {
     html += "<table><tr><th>Dark by itself, because</th><th>times</th><th>for</th></tr>";
     constexpr std::size_t kMost = 5;
     for (std::size_t i = 0; i < std::min(dark.size(), kMost); ++i)
-        html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>", html_escaped(dark[i].first),
+        html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td></tr>", xml_escaped(dark[i].first),
                             dark[i].second.first, duration_text(dark[i].second.second));
     if (dark.size() > kMost)
         html += fmt::format("<tr><td>and {} reasons more</td><td></td><td></td></tr>", dark.size() - kMost);
@@ -168,9 +168,9 @@ std::string matches_html(const OperationFacts& facts) {
         std::string why;
         for (const std::string& reason : match.reasons) why += (why.empty() ? "" : " ") + reason;
         html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>", moment_text(match.at_s),
-                            html_escaped(match.verdict), match.points,
+                            xml_escaped(match.verdict), match.points,
                             match.residual_rms_mm ? mm(match.residual_rms_mm) + " rms" : mm({}),
-                            html_escaped(short_text(why, kLongest)));
+                            xml_escaped(short_text(why, kLongest)));
     }
     if (first > 0) html += fmt::format("<tr><td colspan=\"5\">after {} others</td></tr>", first);
     return html + "</table>";
@@ -192,7 +192,7 @@ std::string events_html(const std::string& title, const std::vector<OperationEve
     html += "<table>";
     for (const OperationEvent* event : chosen_of(events, most))
         html += fmt::format("<tr><td style=\"width:16%\">{}</td><td>{}</td></tr>", moment_text(event->at_s),
-                            html_escaped(event->what));
+                            xml_escaped(event->what));
     html += "</table>";
     if (events.size() > most)
         html +=
@@ -236,7 +236,7 @@ std::string facts_html(const OperationFacts& facts) {
 }
 
 std::string hashes_html(const OperationFacts& facts) {
-    return "<h2>Hashes (XXH3-128)</h2><p>" + html_escaped(facts.file + ": " + facts.recording_hash) +
+    return "<h2>Hashes (XXH3-128)</h2><p>" + xml_escaped(facts.file + ": " + facts.recording_hash) +
            "</p><div class=\"two\"><table>" + row("Volume", facts.head.volume_hash) +
            row("Skin", facts.head.mesh_hash) + row("Plan", facts.head.plan_hash) + "</table><table>" +
            row("Rig", facts.rig_hash) + row("Program", facts.head.program_hash) + "</table></div>";
@@ -249,10 +249,10 @@ std::string verdict_html(const OperationVerdict& verdict) {
     const char* sign = verdict.kind == OperationVerdict::Kind::good   ? "&#10003;"
                        : verdict.kind == OperationVerdict::Kind::look ? "&#9888;"
                                                                       : "&#10007;";
-    std::string html = fmt::format("<div class=\"verdict {}\">{} {}</div>", kind, sign, html_escaped(verdict.sentence));
+    std::string html = fmt::format("<div class=\"verdict {}\">{} {}</div>", kind, sign, xml_escaped(verdict.sentence));
     if (verdict.reasons.empty()) return html;
     html += "<ul>";
-    for (const std::string& reason : verdict.reasons) html += "<li>" + html_escaped(reason) + "</li>";
+    for (const std::string& reason : verdict.reasons) html += "<li>" + xml_escaped(reason) + "</li>";
     return html + "</ul>";
 }
 
@@ -262,7 +262,7 @@ void write_operation_report(const OperationFacts& facts, const std::string& json
     constexpr std::size_t kMostEvents = 5, kMostRefusals = 2;
     const std::string title = "Operation: " + facts.head.case_title;
     const std::string body =
-        fmt::format("<section class=\"sheet\"><h1>{}</h1>{}{}{}{}</section>", html_escaped(title),
+        fmt::format("<section class=\"sheet\"><h1>{}</h1>{}{}{}{}</section>", xml_escaped(title),
                     verdict_html(verdict_of(facts)), facts_html(facts), items_html(facts), time_html(facts)) +
         fmt::format(
             "<section class=\"sheet\">{}{}{}{}{}{}<div class=\"sign\"><span>Name</span><span>Date</span>"

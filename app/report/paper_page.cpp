@@ -49,7 +49,7 @@ std::string paper_page(const std::string& title, const std::string& body, const 
     return fmt::format(
         "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>{}</title><style>{}</style></head>"
         "<body><main>{}</main><div class=\"foot\">{}</div></body></html>\n",
-        html_escaped(title), kStyle, body, html_escaped(foot));
+        xml_escaped(title), kStyle, body, xml_escaped(foot));
 }
 
 }  // namespace planlight

@@ -18,12 +18,12 @@ constexpr std::size_t kPiecesListed = 5;
 
 /// A row of a table of two columns; none where there is nothing to say.
 std::string row(const std::string& name, const std::string& value) {
-    return value.empty() ? "" : fmt::format("<tr><td>{}</td><td>{}</td></tr>", name, html_escaped(value));
+    return value.empty() ? "" : fmt::format("<tr><td>{}</td><td>{}</td></tr>", name, xml_escaped(value));
 }
 
 std::string figure(const ReportPicture& p) {
     return fmt::format("<figure><img alt=\"{}\" src=\"{}\"><figcaption><b>{}</b> {}</figcaption></figure>",
-                       html_escaped(p.title), embedded_png(p.picture), html_escaped(p.title), html_escaped(p.caption));
+                       xml_escaped(p.title), embedded_png(p.picture), xml_escaped(p.title), xml_escaped(p.caption));
 }
 
 std::string figures_in_a_row(const std::vector<ReportPicture>& pictures, int columns) {
@@ -40,7 +40,7 @@ std::string warnings_html(const std::vector<std::string>& warnings) {
         "<div class=\"verdict look\">&#9888; Prepared with {}. Look at each before this "
         "is used.</div><ul>",
         counted(static_cast<long long>(warnings.size()), "warning"));
-    for (const auto& warning : warnings) html += fmt::format("<li>{}</li>", html_escaped(warning));
+    for (const auto& warning : warnings) html += fmt::format("<li>{}</li>", xml_escaped(warning));
     return html + "</ul>";
 }
 
@@ -160,7 +160,7 @@ std::string views_html(const Preparation& done, const PreparationPictures& pictu
     if (pictures.views.size() >= 4)
         html += figures_in_a_row({pictures.views.begin(), pictures.views.begin() + 4}, 4);
     else
-        html += fmt::format("<p class=\"look\">{}</p>", html_escaped(pictures.no_views));
+        html += fmt::format("<p class=\"look\">{}</p>", xml_escaped(pictures.no_views));
     if (done.on_given_surface)
         return html + (pictures.views.size() > 4 ? figures_in_a_row({pictures.views[4]}, 4) : "") +
                "<p>The surface was given: nothing was thrown away here.</p>";
@@ -179,11 +179,11 @@ std::string fact_html(const PlanFact& fact) {
         "<tr><td "
         "class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
         "class=\"{}\">{}</td></tr>",
-        html_escaped(fact.name.empty() ? "without a name" : fact.name), fact.kind,
+        xml_escaped(fact.name.empty() ? "without a name" : fact.name), fact.kind,
         fact.left_of_middle_mm ? side_in_words(*fact.left_of_middle_mm) : "–",
         number(fact.depth_mm ? fact.depth_mm : fact.length_mm, 1, " mm"), number(fact.diameter_mm, 1, " mm"),
         number(tilt, 0, "°"), fact.inwards_in_ct ? direction_in_words(*fact.inwards_in_ct) : "–",
-        number(fact.over_bone_mm, 1, " mm"), gravity, html_escaped(fact.distance));
+        number(fact.over_bone_mm, 1, " mm"), gravity, xml_escaped(fact.distance));
 }
 
 std::string plan_html(const std::vector<PlanFact>& facts) {
@@ -229,7 +229,7 @@ PreparationReport preparation_report(const Preparation& done, const PlanDrawing&
         fmt::format(
             "<h1>{}</h1><p class=\"muted\">Report of preparation. Research software, not a medical "
             "device.</p>",
-            html_escaped(title_of(c))) +
+            xml_escaped(title_of(c))) +
         warnings_html(c.warnings) + identity_html(done) + slices_html(pictures);
     const std::string second =
         views_html(done, pictures, removed) + plan_html(facts) + figures_html(done) + signatures_html();

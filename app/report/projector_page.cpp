@@ -16,8 +16,8 @@ namespace {
 constexpr const char *kSeen = "#0b8a4c", *kFit = "#1f6feb", *kWarn = "#b45f06";
 
 std::string figure(const std::string& svg, const std::string& title, const std::string& caption) {
-    return fmt::format("<figure>{}<figcaption><b>{}</b>{}</figcaption></figure>", svg, html_escaped(title),
-                       html_escaped(caption));
+    return fmt::format("<figure>{}<figcaption><b>{}</b>{}</figcaption></figure>", svg, xml_escaped(title),
+                       xml_escaped(caption));
 }
 
 std::string curve_chart(const ResponseResult& r, double to_grey, double to_light) {
@@ -63,7 +63,7 @@ std::string section(const ResponseResult& r) {
         "<p>{}</p><div class=\"grid\">{}{}</div><p class=\"muted\">{} tiles of both pictures; black is {:.0f}, white "
         "{:.0f} grey there; "
         "{} tiles left out because white saturates.</p>",
-        html_escaped(meaning_of(r)),
+        xml_escaped(meaning_of(r)),
         figure(curve_chart(r, 256, 1), "Measured curve",
                "Points: measured, bars: two standard deviations. Line: fitted."),
         figure(curve_chart(r, 48, dark_light), "Its dark end",
@@ -83,7 +83,7 @@ std::string section(const CycleResult& r) {
     std::string html = fmt::format(
         "<h2>Colour cycle</h2><p>{}</p><table><tr><th>Picture</th><th>Variation</th><th>At most (95 %)</th><th></th>"
         "<th>Seen at</th><th>Cycles that look so</th></tr>",
-        html_escaped(meaning_of(r)));
+        xml_escaped(meaning_of(r)));
     for (const CycleRun& run : r.runs) {
         std::string cycles;
         for (const double hz : run.cycles_hz) cycles += fmt::format("{}{:g} Hz", cycles.empty() ? "" : " or ", hz);
@@ -155,7 +155,7 @@ std::string section(const LatencyResult& r) {
         "<h2>Latency</h2><p>{}</p>{}<p class=\"muted\">Agreement with the code {:.3f}, at the next best delay {:.3f}. "
         "{} changes, {} never "
         "light, {} a refresh late; {} frames lost, {} doubled.</p>",
-        html_escaped(meaning_of(r)),
+        xml_escaped(meaning_of(r)),
         figure(histogram(r), "Delays of the flashes",
                "Dark: changes within an exposure. Pale: changes between two exposures, spread over the time between "
                "them."),
@@ -167,7 +167,7 @@ std::string section_or_refusal(const std::optional<Result>& result, const char* 
     if (!result) return {};
     if (!result->refusal) return section(*result);
     return fmt::format("<h2>{}</h2><p class=\"no\">Not measured: {}. {}</p>", what,
-                       html_escaped(result->refusal->reason), html_escaped(result->refusal->remedy));
+                       xml_escaped(result->refusal->reason), xml_escaped(result->refusal->remedy));
 }
 
 }  // namespace
@@ -185,8 +185,8 @@ void write_projector_html(const ProjectorReport& report, const std::filesystem::
                               findings.size() == 1 ? "" : "s");
     for (LightFinding finding : findings) {
         finding.what[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(finding.what[0])));
-        body += fmt::format("<p><span class=\"no\">{}.</span> {}</p>", html_escaped(finding.what),
-                            html_escaped(finding.remedy));
+        body += fmt::format("<p><span class=\"no\">{}.</span> {}</p>", xml_escaped(finding.what),
+                            xml_escaped(finding.remedy));
     }
     body += section_or_refusal(report.latency, "Latency") + section_or_refusal(report.response, "Response") +
             section_or_refusal(report.cycle, "Colour cycle");

@@ -96,7 +96,7 @@ private:
         const char* colour = trust == LightTrust::aligned ? "Green: "
                              : trust == LightTrust::look  ? "Amber: "
                                                           : "Dark: ";
-        line_.events.push_back({at_s_, colour + (words.empty() ? std::string("the light is out for now.") : words)});
+        line_.events.push_back({at_s_, colour + (words.empty() ? std::string("the light went out.") : words)});
     }
 
     void take_seldom(const Json& event, double at_s) {
@@ -257,7 +257,7 @@ std::string review_page(const RecordingTimeLine& line,
     errors.dots(worst_of(line, unit_s, &RecordingTimeLine::Stretch::predicted_mm, kMost_mm), "#9a5bb0");
     errors.dots(worst_of(line, unit_s, &RecordingTimeLine::Stretch::off_mm, kMost_mm), "#15406b");
     std::string body;
-    if (!line.ended.empty()) body += "<p class=\"no\">" + html_escaped(line.ended) + "</p>";
+    if (!line.ended.empty()) body += "<p class=\"no\">" + xml_escaped(line.ended) + "</p>";
     body +=
         "<h2>What the light was</h2>" + gate.text() +
         "<p>High and green: aligned. Middle and amber: to be looked at. Low and dark: no light. Nothing: the plan was "
@@ -267,11 +267,11 @@ std::string review_page(const RecordingTimeLine& line,
         "worst of its stretch; lines at 1 mm (not trusted) and 2 mm (goes out); what is above 3 mm stands at 3.</p>";
     for (const auto& [file, caption] : pictures)
         body += fmt::format("<figure><img style=\"width:100%\" src=\"{}\"><figcaption>{}</figcaption></figure>",
-                            html_escaped(file), html_escaped(caption));
+                            xml_escaped(file), xml_escaped(caption));
     body += "<h2>What happened</h2><table><tr><th>s</th><th></th></tr>";
     for (std::size_t i = 0; i < std::min(kMostEvents, line.events.size()); ++i)
         body += fmt::format("<tr><td>{:.2f}</td><td style=\"text-align:left\">{}</td></tr>", line.events[i].at_s,
-                            html_escaped(line.events[i].what));
+                            xml_escaped(line.events[i].what));
     body += "</table>";
     if (line.events.size() > kMostEvents)
         body += fmt::format("<p>And {} more, in review.json.</p>", line.events.size() - kMostEvents);

@@ -24,7 +24,7 @@ std::string verdict_html(const RegistrationResult& found) {
         : found.verdict == Verdict::ask
             ? "<div class=\"verdict no\">&#9888; Ask: look whether the scan fits the skin before it is used.</div>"
             : "<div class=\"verdict no\">&#10007; No: the patient was not found.</div>";
-    for (const std::string& reason : found.reasons) html += fmt::format("<p class=\"no\">{}</p>", html_escaped(reason));
+    for (const std::string& reason : found.reasons) html += fmt::format("<p class=\"no\">{}</p>", xml_escaped(reason));
     return html;
 }
 
@@ -36,7 +36,7 @@ std::string items_html(const OperatorModel& model) {
                            : *row.predicted_error_mm <= model.warn_above_mm ? "&#10003;"
                            : *row.predicted_error_mm <= model.stop_above_mm ? "&#9888;"
                                                                             : "&#10007;";
-        html += fmt::format("<tr><td>{}</td><td>{}</td></tr>", html_escaped(row.name),
+        html += fmt::format("<tr><td>{}</td><td>{}</td></tr>", xml_escaped(row.name),
                             known ? fmt::format("{} {:.1f} mm", mark, *row.predicted_error_mm) : "not known");
     }
     return html + "</table>";
@@ -51,7 +51,7 @@ void write_certificate_html(const Case& the_case, const CaseDrawing& drawing, co
     show_match(the_case, found, cloud, model);
     model.scene.on_paper = true;
     std::string body = verdict_html(found);
-    for (const std::string& line : evidence_of(found)) body += fmt::format("<p>{}</p>", html_escaped(line));
+    for (const std::string& line : evidence_of(found)) body += fmt::format("<p>{}</p>", xml_escaped(line));
     if (found.verdict != Verdict::no) {
         body += items_html(model);
         body +=

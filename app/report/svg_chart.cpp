@@ -63,7 +63,7 @@ void SvgChart::mark(double x, const std::string& words, const std::string& colou
         "<line x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1:.1f}\" y2=\"{2:.1f}\" stroke=\"{3}\" stroke-dasharray=\"5 4\" "
         "stroke-width=\"2\"/>"
         "<text x=\"{4:.1f}\" y=\"{5:.1f}\" fill=\"{3}\" text-anchor=\"{6}\">{7}</text>",
-        px(x), kTop, py(y_.from), colour, px(x) + (right ? -6 : 6), y, right ? "end" : "start", html_escaped(words));
+        px(x), kTop, py(y_.from), colour, px(x) + (right ? -6 : 6), y, right ? "end" : "start", xml_escaped(words));
 }
 
 std::string SvgChart::text() const {
@@ -83,10 +83,10 @@ std::string SvgChart::text() const {
             "<text x=\"{3:.1f}\" y=\"{4:.1f}\" fill=\"#44505c\" text-anchor=\"end\">{5:g}</text>",
             py(y), kLeft, width_ - kRight, kLeft - 7, py(y) + 5, std::abs(y) < 1e-9 * step_y ? 0.0 : y);
     svg += fmt::format("<text x=\"{:.1f}\" y=\"{}\" fill=\"#1b232c\" text-anchor=\"middle\">{}</text>",
-                       (kLeft + width_ - kRight) / 2, height_ - 8, html_escaped(x_.label));
+                       (kLeft + width_ - kRight) / 2, height_ - 8, xml_escaped(x_.label));
     svg += fmt::format(
         "<text transform=\"translate(16 {:.1f}) rotate(-90)\" fill=\"#1b232c\" text-anchor=\"middle\">{}</text>",
-        (kTop + height_ - kBottom) / 2.0, html_escaped(y_.label));
+        (kTop + height_ - kBottom) / 2.0, xml_escaped(y_.label));
     return svg + drawn_ + "</svg>";
 }
 

@@ -17,6 +17,7 @@
 #include "planning_io/case/slicer_transform.h"
 #include "planning_io/files/json_value.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/files/xml_text.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 
@@ -97,23 +98,6 @@ void write_light(const std::vector<SlicerLine>& light, const fs::path& file) {
     data->SetLines(lines);
     data->GetCellData()->SetScalars(colours);
     write_model(data, file);
-}
-
-std::string xml_escaped(const std::string& text) {
-    std::string out;
-    for (const char c : text) {
-        if (c == '&')
-            out += "&amp;";
-        else if (c == '<')
-            out += "&lt;";
-        else if (c == '>')
-            out += "&gt;";
-        else if (c == '"')
-            out += "&quot;";
-        else
-            out += static_cast<unsigned char>(c) < ' ' ? ' ' : c;
-    }
-    return out;
 }
 
 /// scene.mrml as it grows: each node with an id of its own.
