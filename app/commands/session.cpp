@@ -109,8 +109,9 @@ Recorder recorder_of(const SessionOptions& options, const Case& the_case, const 
     return Recorder(new SessionRecorder(std::move(sink), head));
 }
 
-LiveOptions live_options(const SessionOptions& options, const SiteSettings& site, const SessionRecorder* recorder) {
+LiveOptions live_options(const SessionOptions& options, const SiteSettings& site, SessionRecorder* recorder) {
     LiveOptions live;
+    live.observer = recorder;
     live.projector_monitor = options.projector_monitor.empty() ? site.projector_monitor : options.projector_monitor;
     live.operator_monitor = options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor;
     if (!options.projector_file.empty()) live.projector = read_projector_file(options.projector_file);
@@ -123,6 +124,11 @@ LiveOptions live_options(const SessionOptions& options, const SiteSettings& site
     live.keep_matches_in = options.keep.empty() ? options.case_folder / kRegistrationsFolder : options.keep;
     if (recorder) live.trouble = [recorder] { return recorder->trouble(); };
     return live;
+}
+
+CaseDrawing drawing_of(const Case& the_case, const SiteSettings& site, SessionWindow& window) {
+    return window.while_made("The plan is being drawn on the skin.", 0.7,
+                             [&] { return CaseDrawing(the_case, drawing_settings(site)); });
 }
 
 int run_in_simulated_room(const SessionOptions& options, const Case& the_case, const SiteSettings& site,
@@ -141,10 +147,8 @@ int run_in_simulated_room(const SessionOptions& options, const Case& the_case, c
     auto resume = resume_of(options, the_case, nullptr);
     const auto recorder = recorder_of(options, the_case, site);
     LiveOptions live = live_options(options, site, recorder.get());
-    live.observer = recorder.get();
     live.resume = std::move(resume);
-    const auto drawing = window.while_made("The plan is being drawn on the skin.", 0.7,
-                                           [&] { return CaseDrawing(the_case, drawing_settings(site)); });
+    const CaseDrawing drawing = drawing_of(the_case, site, window);
     return run_live_simulated(
         window,
         [&](const RoomProgress& progress) {
@@ -162,10 +166,8 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
     auto resume = resume_of(options, the_case, &rig);
     const auto recorder = recorder_of(options, the_case, site);
     LiveOptions live = live_options(options, site, recorder.get());
-    live.observer = recorder.get();
     live.resume = std::move(resume);
-    const auto drawing = window.while_made("The plan is being drawn on the skin.", 0.7,
-                                           [&] { return CaseDrawing(the_case, drawing_settings(site)); });
+    const CaseDrawing drawing = drawing_of(the_case, site, window);
     return run_live(
         window,
         [&](Projector& projector, const RoomProgress& progress) {
