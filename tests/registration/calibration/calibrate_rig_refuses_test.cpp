@@ -1,0 +1,213 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "registration/calibration/calibrate_rig.h"
+#include "registration/calibration/initial_calibration.h"
+#include "tests/registration/calibration/ideal_board.h"
+
+namespace planlight {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+Calibration calibrated(const test::IdealRoom& room, const std::vector<PoseObservation>& poses, bool projector = true) {
+    return calibrate_rig(poses, room.board, projector ? room.rig.projector.width : 0, room.rig.projector.height);
+}
+
+/// Expects a refusal whose reason and remedy are there, and whose reason holds `words`.
+void expect_refused(const Calibration& calibration, const std::string& words) {
+    ASSERT_TRUE(calibration.refusal.has_value()) << "not refused; expected: " << words;
+    EXPECT_NE(calibration.refusal->reason.find(words), std::string::npos) << calibration.refusal->reason;
+    EXPECT_FALSE(calibration.refusal->remedy.empty());
+}
+
+TEST(CalibrateRigRefuses, TooFewPoses) {
+    expect_refused(calibrated(test::ideal_room(2), test::ideal_room(2).observe()), "2 of 2 poses");
+}
+
+TEST(CalibrateRigRefuses, NoPoseAtAll) {
+    expect_refused(calibrate_rig({}, parse_board("charuco 10x7 25 mm"), 800, 600), "0 of 0 poses");
+}
+
+TEST(CalibrateRigRefuses, TheSamePoseAgainAndAgain) {
+    test::IdealRoom room = test::ideal_room();
+    for (auto& pose : room.rig_from_board) pose = room.rig_from_board.front();
+    expect_refused(calibrated(room, room.observe()), "1 different");
+}
+
+TEST(CalibrateRigRefuses, BoardsFlatOn) {
+    test::IdealRoom room = test::ideal_room(8, 1);
+    for (auto& pose : room.rig_from_board) {  // flat on to the left camera
+        const Vector3d middle = pose * Vector3d(125, 87.5, 0);
+        pose.linear() =
+            room.rig.left_camera.device_from_rig.linear().transpose() *
+            Eigen::AngleAxisd(0.3 * static_cast<double>(&pose - room.rig_from_board.data()), Vector3d::UnitZ())
+                .toRotationMatrix();
+        pose.translation() = middle - pose.linear() * Vector3d(125, 87.5, 0);
+    }
+    expect_refused(calibrated(room, room.observe()), "flat on");
+}
+
+TEST(CalibrateRigRefuses, PosesTiltedAllTheSameWay) {
+    test::IdealRoom room = test::ideal_room();
+    for (std::size_t i = 0; i < room.rig_from_board.size(); ++i) {
+        RigidTransform& pose = room.rig_from_board[i];
+        const Vector3d middle = pose * Vector3d(125, 87.5, 0);
+        pose.linear() = (Eigen::AngleAxisd(0.5 + 0.01 * static_cast<double>(i), Vector3d(0.6, 0.8, 0)) *
+                         Eigen::AngleAxisd(0.3 * static_cast<double>(i), Vector3d::UnitZ()))
+                            .toRotationMatrix();
+        pose.translation() = middle - pose.linear() * Vector3d(125, 87.5, 0);
+    }
+    expect_refused(calibrated(room, room.observe()), "too similar");
+}
+
+TEST(CalibrateRigRefuses, ABoardOfAnotherCount) {
+    const test::IdealRoom room = test::ideal_room(8, 25, "charuco 10x7 25 mm");
+    const BoardSpec wrong = parse_board("charuco 9x7 25 mm");
+    auto poses = room.observe();
+    for (auto& pose : poses)
+        for (auto* seen : {&pose.left, &pose.right})
+            while (seen->corners.ids.back() >= wrong.corner_count())
+                seen->corners.ids.pop_back(), seen->corners.pixels.pop_back();
+    expect_refused(calibrate_rig(poses, wrong, 800, 600), "do not lie as on a charuco 9x7");
+}
+
+TEST(CalibrateRigRefuses, CamerasThatAreSwapped) {
+    const test::IdealRoom room = test::ideal_room();
+    auto poses = room.observe();
+    for (auto& pose : poses) std::swap(pose.left, pose.right);
+    expect_refused(calibrated(room, poses), "swapped");
+}
+
+TEST(CalibrateRigRefuses, AMirroredCamera) {
+    // A chessboard's mirror image is a chessboard: only the other camera can tell. Its corners come in mirrored order,
+    // too.
+    const test::IdealRoom room = test::ideal_room(8, 25, "chessboard 9x7 20 mm");
+    auto poses = room.observe();
+    const int across = room.board.corners_across();
+    for (auto& pose : poses) {
+        BoardCorners mirrored;
+        for (int id = 0; id < room.board.corner_count(); ++id) {
+            const int other = id / across * across + across - 1 - id % across;
+            const auto& c = pose.right.corners;
+            const auto at = std::find(c.ids.begin(), c.ids.end(), other);
+            if (at == c.ids.end()) continue;
+            mirrored.ids.push_back(id);
+            mirrored.pixels.emplace_back(
+                pose.right.width - 1 - c.pixels[static_cast<std::size_t>(at - c.ids.begin())].x(),
+                c.pixels[static_cast<std::size_t>(at - c.ids.begin())].y());
+        }
+        pose.right.corners = mirrored;
+    }
+    expect_refused(calibrated(room, poses), "mirrored");
+}
+
+TEST(CalibrateRigRefuses, AMirroredCameraByItsMarkers) {
+    const test::IdealRoom room = test::ideal_room();
+    auto poses = room.observe();
+    for (auto& pose : poses) {
+        pose.left.corners = {};
+        pose.left.found_mirrored = true;
+    }
+    expect_refused(calibrated(room, poses), "left camera's pictures are mirrored");
+}
+
+TEST(CalibrateRigRefuses, AMirroredProjector) {
+    const test::IdealRoom room = test::ideal_room();
+    auto poses = room.observe();
+    for (auto& pose : poses)
+        for (auto* seen : {&pose.left, &pose.right})
+            for (LightSample& sample : seen->light)
+                sample.pixel_in_projector.x() = room.rig.projector.width - 1 - sample.pixel_in_projector.x();
+    expect_refused(calibrated(room, poses), "projector's picture is mirrored");
+}
+
+/// From pose 5 on a camera stands a tenth of a degree (4 px) otherwise.
+TEST(CalibrateRigRefuses, ACameraMovedBetweenPoses) {
+    const test::IdealRoom room = test::ideal_room();
+    test::IdealRoom knocked = room;
+    knocked.rig.right_camera.device_from_rig =
+        Eigen::AngleAxisd(0.1 * M_PI / 180, Vector3d::UnitY()) * room.rig.right_camera.device_from_rig;
+    auto poses = room.observe();
+    const auto after = knocked.observe();
+    for (std::size_t i = 5; i < poses.size(); ++i) poses[i] = after[i];
+    expect_refused(calibrated(room, poses), "moved between poses");
+}
+
+TEST(CalibrateRigRefuses, AProjectorMovedBetweenPoses) {
+    const test::IdealRoom room = test::ideal_room();
+    test::IdealRoom knocked = room;
+    knocked.rig.projector.device_from_rig =
+        Eigen::AngleAxisd(0.2 * M_PI / 180, Vector3d::UnitY()) * room.rig.projector.device_from_rig;
+    auto poses = room.observe();
+    const auto after = knocked.observe();
+    for (std::size_t i = 4; i < poses.size(); ++i) poses[i] = after[i];
+    expect_refused(calibrated(room, poses), "the light does not fit");
+}
+
+/// A hundredth of a degree is 0.4 px, 0.16 mm on the patient: five times the noise, and no reason to be content.
+TEST(CalibrateRigRefuses, AHundredthOfADegreeOfACameraOrTheProjector) {
+    const test::IdealRoom room = test::ideal_room();
+    for (const bool projector : {false, true}) {
+        test::IdealRoom knocked = room;
+        CameraModel& device = projector ? knocked.rig.projector : knocked.rig.right_camera;
+        device.device_from_rig =
+            Eigen::AngleAxisd((projector ? 0.01 : 0.02) * M_PI / 180, Vector3d::UnitX()) * device.device_from_rig;
+        auto poses = room.observe();
+        const auto after = knocked.observe();
+        for (std::size_t i = 4; i < poses.size(); ++i) poses[i] = after[i];
+        expect_refused(calibrated(room, poses), "moved between poses");
+    }
+}
+
+TEST(CalibrateRigRefuses, PicturesOfDifferentPosesPairedUp) {
+    const test::IdealRoom room = test::ideal_room();
+    auto poses = room.observe();
+    const auto first = poses.front().right;
+    for (std::size_t i = 0; i + 1 < poses.size(); ++i) poses[i].right = poses[i + 1].right;
+    poses.back().right = first;
+    expect_refused(calibrated(room, poses), "of different poses");
+}
+
+TEST(CalibrateRigRefuses, SaturatedDimMovedAndUndecodedPictures) {
+    const test::IdealRoom room = test::ideal_room();
+    const auto good = room.observe();
+    auto poses = good;
+    poses[2].right.saturated_share = 0.2;
+    expect_refused(calibrated(room, poses), "pose-02, right camera: 20 % of the board is saturated");
+    poses = good;
+    poses[3].left.contrast_grey = 5;
+    expect_refused(calibrated(room, poses), "pose-03, left camera: the board is too dark");
+    poses = good;
+    poses[1].left.moved_px = 0.6;
+    expect_refused(calibrated(room, poses), "pose-01, left camera: the board or the rig moved by 0.60 px");
+    poses = good;
+    poses[4].left.decoded_share = 0.05;
+    expect_refused(calibrated(room, poses), "pose-04, left camera: only 5 %");
+    poses = good;
+    poses[5].left.width = 640;
+    expect_refused(calibrated(room, poses), "pose-05, left camera: 640 x 576 pixels");
+}
+
+/// A telephoto picture of a far board tells next to nothing of the focal length: the numbers are not believed.
+TEST(CalibrateRigRefuses, ImplausibleFocalLengths) {
+    test::IdealRoom room = test::ideal_room();
+    for (CameraModel* camera : {&room.rig.left_camera, &room.rig.right_camera}) {
+        camera->focal_x *= 16;
+        camera->focal_y *= 16;
+        camera->k1 = 0;
+        RigidTransform away = RigidTransform::Identity();
+        away.translation().z() = 13500;
+        camera->device_from_rig = away * camera->device_from_rig;
+    }
+    room.noise_px = 0.01;
+    expect_refused(calibrated(room, room.observe(), false), "focal length comes out as");
+}
+
+}  // namespace
+}  // namespace planlight
