@@ -14,10 +14,7 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-Calibration calibrated(const test::IdealRoom& room, const std::vector<PoseObservation>& poses, bool projector = true) {
-    return calibrate_rig(poses, room.board, projector ? room.rig.projector.width : 0, room.rig.projector.height);
-}
+using test::calibrated;
 
 /// Without noise nothing but the model is at work: numbers come back to the convergence of the adjustment.
 TEST(CalibrateRig, WithoutNoiseTheRigComesBackExactly) {

@@ -3,6 +3,7 @@
 #include <random>
 
 #include "planning_io/types/rig_calibration.h"
+#include "registration/calibration/calibrate_rig.h"
 #include "registration/calibration/observe_pose.h"
 
 namespace planlight::test {
@@ -20,5 +21,10 @@ struct IdealRoom {
 
 /// `tilt_deg` of all poses against flat on; every way round, at two distances.
 IdealRoom ideal_room(int poses = 8, double tilt_deg = 25, const char* board = "charuco 10x7 25 mm");
+
+/// From these poses of its board, with or without the projector's light.
+inline Calibration calibrated(const IdealRoom& room, const std::vector<PoseObservation>& poses, bool projector = true) {
+    return calibrate_rig(poses, room.board, projector ? room.rig.projector.width : 0, room.rig.projector.height);
+}
 
 }  // namespace planlight::test
