@@ -110,6 +110,7 @@ void SessionRecorder::room_entered(const RoomFacts& room) noexcept {
 
 void SessionRecorder::pressed(const std::string& action) noexcept {
     event([&] { return session_events::pressed(action); });
+    something_happened();
 }
 
 void SessionRecorder::said(const std::string& kind, const std::string& headline,
@@ -194,12 +195,17 @@ void SessionRecorder::choose(const Frame& frame) {
     if (before_.size() > most_before_) before_.pop_front();
 }
 
-void SessionRecorder::something_happened() {
-    if (mode_ == RecordMode::all || before_.empty()) return;
-    const double bytes = packed_->share * static_cast<double>(bytes_of(*before_.back().pictures));
-    const std::size_t kept = choice_.event(before_.size(), bytes);
-    for (std::size_t i = before_.size() - kept; i < before_.size(); ++i) write(before_[i]);
-    before_.clear();
+void SessionRecorder::something_happened() noexcept {
+    try {
+        const std::lock_guard lock(mutex_);
+        if (mode_ == RecordMode::all) return;
+        const double bytes =
+            before_.empty() ? 0 : packed_->share * static_cast<double>(bytes_of(*before_.back().pictures));
+        const std::size_t kept = choice_.event(before_.size(), bytes);
+        for (std::size_t i = before_.size() - kept; i < before_.size(); ++i) write(before_[i]);
+        before_.clear();
+    } catch (const std::exception&) {
+    }
 }
 
 void SessionRecorder::picture_shown(const RgbImage& picture, Instant valid_until, Instant lit_from) noexcept {
@@ -242,6 +248,7 @@ void SessionRecorder::device_failed(const Error& fault) noexcept {
         input({Kind::failed, {}, {}, 0, fault.what(), fault.remedy});
     } catch (const std::exception&) {
     }
+    something_happened();
 }
 
 void SessionRecorder::stopped(const Error& why) noexcept {
@@ -313,18 +320,21 @@ void SessionRecorder::skin_checked(const SkinCheck& check) noexcept {
 
 void SessionRecorder::refused(SessionCall call, const std::exception& why) noexcept {
     event([&] { return session_events::refused(call, why); });
+    something_happened();
 }
 
 void SessionRecorder::gate(GateCall call, Instant at, double off_mm, const LightGate::Ruling* ruling) noexcept {
     event([&] { return session_events::gate(call, at, off_mm, ruling); });
     if (!ruling) return;
+    bool changed = false;
     try {
-        const std::string now = session_events::word_of(ruling->trust) + ruling->headline;
+        std::string now = session_events::word_of(ruling->trust) + ruling->headline;
         const std::lock_guard lock(mutex_);
-        if (now != happening_) something_happened();
-        happening_ = now;
+        changed = now != happening_;
+        happening_ = std::move(now);
     } catch (const std::exception&) {
     }
+    if (changed) something_happened();
 }
 
 }  // namespace planlight

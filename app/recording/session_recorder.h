@@ -16,8 +16,9 @@ namespace planlight {
 /// How much of a session is recorded.
 enum class RecordMode {
     none,
-    events,  ///< all that happened, and as many frames as a gigabyte an hour holds: round events, and now and then
-    all,     ///< every frame as well: what `replay` needs
+    events,  ///< all that happened, and as many frames as a gigabyte an hour holds: round presses, faults and what the
+             ///< gate says, and now and then
+    all,  ///< every frame as well: what `replay` needs
 };
 
 /// What a recording says of itself first.
@@ -88,7 +89,8 @@ private:
     void write(const Frame& frame);
     void name_items(const Session& session);
     void choose(const Frame& frame);
-    void something_happened();
+    /// A press, a fault, a refusal, another word of the gate: the frames round it are kept.
+    void something_happened() noexcept;
     void keep_picture(const RgbImage& picture);
 
     RecordMode mode_;

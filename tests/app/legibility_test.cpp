@@ -1,6 +1,7 @@
 // Labels of the light on the simulated head, read by tesseract: two poses here, twenty by measure_legibility.
 #include <gtest/gtest.h>
 
+#include "tests/app/labelled_head.h"
 #include "tests/app/read_labels.h"
 #include "tests/support/test_data.h"
 

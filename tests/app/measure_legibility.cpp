@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <string>
 
+#include "tests/app/labelled_head.h"
 #include "tests/app/read_labels.h"
 #include "tests/support/test_data.h"
 

@@ -1,0 +1,215 @@
+#include "tests/app/labelled_head.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <random>
+
+#include "app/prepare_case.h"
+#include "app/session.h"
+#include "planning_io/files/image_file.h"
+#include "planning_io/plan/plan_file.h"
+#include "planning_io/volume/read_volume.h"
+#include "projection/place_all_labels.h"
+#include "tests/app/read_labels.h"
+#include "tests/support/test_data.h"
+
+namespace planlight::test {
+namespace {
+
+using namespace std::chrono_literals;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+std::filesystem::path pictures_folder() {
+    const char* folder = std::getenv("PLANLIGHT_PICTURES");
+    return folder ? folder : "";
+}
+
+}  // namespace
+
+void LabelsRead::append(const LabelsRead& more) {
+    items += more.items, lit += more.lit, left_out += more.left_out, name_alone += more.name_alone;
+    unseen += more.unseen, right += more.right;
+    wrong.insert(wrong.end(), more.wrong.begin(), more.wrong.end());
+    other_number.insert(other_number.end(), more.other_number.begin(), more.other_number.end());
+    share_of_text = more.share_of_text;
+}
+
+struct LabelledHead::Parts {
+    Volume volume = read_volume(*example_patient());
+    Preparation prepared = prepare_case(volume, {}, {}, {}, "2001-10-14");
+    SkinSurface skin{prepared.prepared.skin};
+
+    std::optional<SkinSurface::Point> from_side(const Vector3d& out, double across_mm, double up_mm) const;
+    Plan plan(unsigned seed) const;
+};
+
+std::optional<SkinSurface::Point> LabelledHead::Parts::from_side(const Vector3d& out, double across_mm,
+                                                                 double up_mm) const {
+    Vector3d low = skin.mesh().vertices_in_ct.front(), high = low;
+    for (const Vector3d& v : skin.mesh().vertices_in_ct) low = low.cwiseMin(v), high = high.cwiseMax(v);
+    const Vector3d middle = (low + high) / 2 + Vector3d(0, 0, 0.15 * (high - low).z());
+    const Vector3d across = Vector3d(0, 0, 1).cross(out).normalized(), up = out.cross(across);
+    const auto hit = skin.first_hit({middle + 400 * out + across_mm * across + up_mm * up, -out});
+    if (!hit || !skin.real_skin(*hit) || hit->normal_in_ct.dot(out) < 0.55) return std::nullopt;
+    return hit;
+}
+
+/// A closed cut, holes, ways in and a plane on one side of the head, with names and figures of that seed.
+Plan LabelledHead::Parts::plan(unsigned seed) const {
+    static const std::array<Vector3d, 5> kSides{Vector3d(0, -1, 0.2), Vector3d(1, -0.6, 0.2), Vector3d(0, -1, 0.6),
+                                                Vector3d(-1, -0.6, 0.2), Vector3d(1, -1, 0.3)};
+    static const std::array<const char*, 12> kNames{"B",    "Hole ", "K",       "Drill ",     "Entry ", "T",
+                                                    "EVD ", "P",     "Biopsy ", "Burr hole ", "Screw ", "Target "};
+    static const std::array<const char*, 6> kLines{
+        "Osteotomy", "Craniotomy", "Skin flap", "Incision left", "Resection margin frontal", "Midline"};
+    std::mt19937 random(seed);
+    const auto within = [&](double from, double to) {
+        return std::uniform_real_distribution<double>(from, to)(random);
+    };
+    const auto any = [&](const auto& list) { return std::string(list[random() % list.size()]); };
+    const Vector3d out = kSides[seed % kSides.size()].normalized();
+    Plan plan;
+    OsteotomyLine line{any(kLines), {}, true, {}};
+    const double wide_mm = within(22, 32), high_mm = within(18, 26);
+    for (int k = 0; k < 10; ++k) {
+        const double angle = 2 * std::numbers::pi * k / 10;
+        if (const auto p = from_side(out, wide_mm * std::cos(angle), high_mm * std::sin(angle)))
+            line.points_in_ct.push_back(p->p_in_ct);
+    }
+    if (line.points_in_ct.size() > 4) plan.osteotomy_lines.push_back(line);
+    const std::array<Vector2d, 7> places{Vector2d(-48, 28), Vector2d(46, 30), Vector2d(-46, -26), Vector2d(44, -28),
+                                         Vector2d(0, 0),    Vector2d(-4, 42), Vector2d(6, -46)};
+    int number = 1;
+    for (const Vector2d& place : places) {
+        const auto p = from_side(out, place.x() + within(-5, 5), place.y() + within(-5, 5));
+        const std::string name = any(kNames) + std::to_string(number++ + 10 * static_cast<int>(random() % 3));
+        if (!p) continue;
+        const Vector3d leaning = (-p->normal_in_ct + 0.3 * out.unitOrthogonal()).normalized();
+        if (number % 3 == 0)
+            plan.trajectories.push_back(
+                {name, p->p_in_ct, Vector3d(p->p_in_ct + within(25, 79) * leaning), std::round(within(0, 4)), {}});
+        else
+            plan.boreholes.push_back(
+                {name, p->p_in_ct, {}, std::round(2 * within(3, 14)) / 2, std::round(2 * within(3, 14)) / 2, {}});
+    }
+    return plan;
+}
+
+namespace {
+
+/// What an eye where that camera stands sees: the true skin under the light that truly falls there, and 20 % of room
+/// light, without the camera's blur, pixels and noise.
+Seen seen_by_eye(const simulation::SimulatedRig& rig, const RgbImage& light, const CameraModel& camera, Instant at) {
+    const RigidTransform rig_from_ct = rig.true_rig_from_ct(at), ct_from_rig = rig_from_ct.inverse();
+    const CameraModel projector = rig.true_rig().projector;
+    GrayImage green(light.width, light.height);
+    std::transform(light.pixels.begin(), light.pixels.end(), green.pixels.begin(), [](const Rgb& p) { return p[1]; });
+    return [&rig, camera, projector, rig_from_ct, ct_from_rig, green, at](const Vector2d& pixel) {
+        constexpr double kRoomLight = 0.2, kShadow_mm = 1;
+        const auto ray = ray_through(camera, pixel);
+        if (!ray) return 0.0;
+        const auto skin = rig.true_skin_along(ct_from_rig * ray->origin, ct_from_rig.linear() * ray->direction);
+        if (!skin) return 0.0;
+        const auto by = project(projector, rig_from_ct * skin->p_in_ct);
+        double lit = 0;
+        if (by && in_picture(projector, *by)) {
+            const auto falls = rig.true_light(*by, at);
+            if (falls && (falls->p_in_ct - skin->p_in_ct).norm() < kShadow_mm) lit = between(green, *by);
+        }
+        const Vector3d to_light = (ct_from_rig * projector.centre_in_rig() - skin->p_in_ct).normalized();
+        return kRoomLight * 255 + lit * std::max(0.0, to_light.dot(skin->normal_in_ct));
+    };
+}
+
+}  // namespace
+
+LabelledHead::LabelledHead() : parts_(std::make_unique<Parts>()) {}
+LabelledHead::~LabelledHead() = default;
+
+LabelsRead LabelledHead::read(simulation::Preset preset, unsigned seed, bool eye) const {
+    LabelsRead result;
+    const Plan plan = parts_->plan(seed);
+    simulation::RoomSettings settings;
+    settings.preset = preset;
+    settings.seed = seed;
+    settings.skin_threshold_hu = parts_->prepared.threshold;
+    simulation::SimulatedRig rig(parts_->volume, points_of(plan), settings);
+    const RigidTransform rig_from_ct = rig.true_rig_from_ct(rig.clock().now());
+    DrawingSettings how;
+    if (seed % 2 == 0) how.up_in_ct.setZero();  // upright as the camera sees it; else in ct
+    how = lit_by(rig.calibration(), rig_from_ct, how);
+    how.keep_clear_in_ct = rig.true_markers_in_ct();
+    const PlanDrawing drawing = draw_plan(plan, parts_->skin, how);
+    RenderSettings render;
+    for (const Vector3d& marker : rig.true_markers_in_ct()) render.keep_dark_in_patient.push_back(rig_from_ct * marker);
+    const DrawingRenderer renderer(parts_->skin, rig.calibration().projector);
+    RgbImage light;
+    const RenderCounts counts = renderer.render_into(light, drawing, rig_from_ct, RigidTransform::Identity(), render);
+    const Instant lit = rig.projector().show(light, rig.clock().now() + 10s);
+    const StereoFrame frame = rig.cameras().grab(lit, 2s);
+    const auto folder = pictures_folder();
+    const std::string name = fmt::format("{}_{}", preset == simulation::Preset::paper ? "paper" : "modern", seed);
+    if (!folder.empty()) {
+        write_png(light, folder / (name + "_light.png"));
+        write_png(frame.left, folder / (name + "_left.png"));
+    }
+    result.items = static_cast<int>(drawing.items.size());
+    result.left_out = static_cast<int>(counts.labels_left_out.size());
+    result.share_of_text = share_of_text(drawing);
+    const RigCalibration truth = rig.true_rig();
+    for (const Label& label : drawing.labels) {
+        const bool is_lit = !label.of_moment && std::find(counts.labels_lit.begin(), counts.labels_lit.end(),
+                                                          label.item) != counts.labels_lit.end();
+        if (!is_lit) continue;
+        ++result.lit;
+        result.name_alone += label.words == drawing.items[static_cast<std::size_t>(label.item)].lit_name;
+        const auto sees = [&](simulation::SimulatedRig::Camera camera) {
+            for (std::size_t i = 0; i < label.field_in_ct.size(); ++i)
+                if (!rig.truly_seen(camera, {label.field_in_ct[i], label.field_normals_in_ct[i]}, lit)) return false;
+            return true;
+        };
+        // From where it is seen best, as a person would look.
+        const bool by_left = sees(simulation::SimulatedRig::Camera::left),
+                   by_right = sees(simulation::SimulatedRig::Camera::right);
+        if (!by_left && !by_right) {
+            ++result.unseen;
+            continue;
+        }
+        const auto facing = [&](const CameraModel& one) {
+            const std::size_t k = label.field_in_ct.size() / 2;
+            const Vector3d way = rig_from_ct.inverse() * one.centre_in_rig() - label.field_in_ct[k];
+            return way.normalized().dot(label.field_normals_in_ct[k]);
+        };
+        const bool left = by_left && (!by_right || facing(truth.left_camera) > facing(truth.right_camera));
+        const CameraModel& camera = left ? truth.left_camera : truth.right_camera;
+        const GrayImage& picture = left ? frame.left : frame.right;
+        const Seen seen = eye ? seen_by_eye(rig, light, camera, lit)
+                              : Seen([&](const Vector2d& pixel) { return between(picture, pixel); });
+        const auto read = read_label(label, seen, camera, rig_from_ct,
+                                     folder.empty() ? folder : folder / fmt::format("{}_label{}", name, label.item));
+        if (read.empty()) {
+            ++result.unseen;
+            continue;
+        }
+        std::string written = label.words;
+        std::replace(written.begin(), written.end(), '\n', '/');
+        const Reading reading = compare(written, read);
+        result.right += reading == Reading::right;
+        if (reading != Reading::right) result.wrong.push_back(written + " | " + read);
+        if (reading == Reading::other_number) result.other_number.push_back(written + " | " + read);
+    }
+    return result;
+}
+
+}  // namespace planlight::test
