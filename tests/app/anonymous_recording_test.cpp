@@ -1,0 +1,106 @@
+// What an anonymous recording leaves out.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "app/recording/anonymous.h"
+#include "app/recording/recording_head.h"
+#include "planning_io/recording/packed_pictures.h"
+#include "planning_io/recording/recording_file.h"
+#include "planning_io/recording/recording_reader.h"
+#include "tests/app/played_session.h"
+#include "tests/support/test_data.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Anonymous, OutsideOfThePlansRegionNothingSharpIsLeft) {
+    GrayImage face(240, 180);
+    for (int y = 0; y < 180; ++y)
+        for (int x = 0; x < 240; ++x) face.at(x, y) = static_cast<std::uint8_t>(37 * x * x + 91 * y * x + 13 * y);
+    PlanRegion::InPicture region;
+    region.pixels = {{100, 80}};
+    region.radius_px = 9;
+    const GrayImage blurred = blurred_outside(face, region);
+    for (int y = 0; y < 180; ++y)
+        for (int x = 0; x < 240; ++x) {
+            const bool near = std::hypot(x - 100, y - 80) <= 9;
+            if (near) {
+                EXPECT_EQ(blurred.at(x, y), face.at(x, y));
+            }
+            // A cell of a mosaic has one grey: its first pixel's, where that is not in the region.
+            const int cx = x / 10 * 10, cy = y / 10 * 10;
+            if (!near && std::hypot(cx - 100, cy - 80) > 9) {
+                EXPECT_EQ(blurred.at(x, y), blurred.at(cx, cy));
+            }
+        }
+    const GrayImage all = blurred_outside(face, {});
+    EXPECT_EQ(all.at(100, 80), all.at(109, 89)) << "without a region all of it is blurred";
+}
+
+TEST(Anonymous, NamesAreLeftOutOfWhatIsSaidAndNotOfItsWords) {
+    Case the_case;
+    the_case.code = "1234-abcd";
+    the_case.names.patient = "Erika \"M.\"";
+    the_case.names.title = "aligned";  // a title may be any word
+    PlanDrawing drawing;
+    drawing.items.resize(2);
+    drawing.items[0].name = "Erika's hole";
+    drawing.items[1].name = "Erika";
+    NamesLeftOut names(the_case);
+    names.add_items(drawing);
+    const auto out = nlohmann::json::parse(names.out_of(
+        R"({"what":"gate","trust":"aligned","headline":"\"Erika's hole\" of Erika \"M.\" is not measured","items":["Erika's hole","Erika"]})"));
+    EXPECT_EQ(out["trust"], "aligned");
+    EXPECT_EQ(out["items"], nlohmann::json({"item 1", "item 2"}));
+    EXPECT_EQ(out.dump().find("Erika"), std::string::npos) << out;
+}
+
+/// A session in the simulated room, recorded without names and faces.
+TEST(AnonymousRecording, HoldsNoNameAndNoFace) {
+    if (!test::example_case().there) GTEST_SKIP() << "the package invesalius-examples is not installed";
+    const test::TemporaryFolder folder;
+    const fs::path file = folder.path() / "anonymous.plrec";
+    Case named = test::example_case().prepared;
+    named.names.patient = "Xaverl Q.", named.names.title = "Xaverl's head";
+    std::vector<std::string> items;
+    for (const auto& hole : named.plan.boreholes) items.push_back(hole.name);
+    {
+        RecordingHead head = recording_head(named, "/home/xaverl/cases", RecordMode::events, {});
+        SessionRecorder recorder(std::make_unique<RecordingFile>(file), without_names(head), {}, {},
+                                 NamesLeftOut(named));
+        test::PlayedSession how;
+        how.seed = 31;
+        how.updates = 20;
+        test::play_session(how, test::example_case(), &recorder);
+    }
+    RecordingReader reader(file);
+    int frames = 0, sharp = 0;
+    while (const auto chunk = reader.next()) {
+        EXPECT_NE(chunk->type, chunk_types::kMatch);
+        if (chunk->type == chunk_types::kEvent || chunk->type == chunk_types::kHead) {
+            EXPECT_EQ(chunk->payload.find("averl"), std::string::npos) << chunk->payload.substr(0, 300);
+            for (const std::string& name : items)
+                EXPECT_EQ(chunk->payload.find('"' + name + '"'), std::string::npos) << name;
+        }
+        if (chunk->type != chunk_types::kFrame) continue;
+        ++frames;
+        const StereoFrame frame = unpack_frame(chunk->payload, file);
+        // Neighbours that differ: none within a cell of the mosaic.
+        std::size_t differ = 0;
+        for (int y = 0; y < frame.left.height; ++y)
+            for (int x = 0; x + 1 < frame.left.width; ++x)
+                differ += (x + 1) % 31 != 0 && frame.left.at(x, y) != frame.left.at(x + 1, y);
+        const double share = static_cast<double>(differ) / static_cast<double>(frame.left.pixels.size());
+        EXPECT_LT(share, 0.35) << "the example's plan covers less than a third of the picture";
+        sharp += share > 0.01;
+    }
+    EXPECT_GT(frames, 3);
+    EXPECT_GT(sharp, 0) << "round the plan the light can be looked at";
+}
+
+}  // namespace
+}  // namespace planlight

@@ -1,0 +1,91 @@
+// Which frames `--record events` keeps.
+#include "app/recording/session_recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+#include <vector>
+
+#include "planning_io/recording/packed_pictures.h"
+#include "planning_io/recording/recording_file.h"
+#include "planning_io/recording/recording_reader.h"
+#include "planning_io/types/error.h"
+#include "tests/support/test_data.h"
+
+namespace planlight {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Numbers of the frames that are kept of four seconds at 25 frames/s, in which something happens after frame 40.
+std::vector<std::uint64_t> kept_when(const std::function<void(SessionRecorder&)>& something) {
+    const test::TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "session.plrec";
+    {
+        SessionRecorder recorder(std::make_unique<RecordingFile>(file), {});
+        for (int i = 0; i < 100; ++i) {
+            recorder.frame_taken({GrayImage(32, 24, 5), GrayImage(32, 24, 9), milliseconds(40 * i), milliseconds(5),
+                                  static_cast<std::uint64_t>(i)});
+            if (i == 40) something(recorder);
+        }
+        EXPECT_EQ(recorder.finish(), "");
+    }
+    std::vector<std::uint64_t> numbers;
+    RecordingReader reader(file);
+    while (const auto chunk = reader.next())
+        if (chunk->type == chunk_types::kFrame) numbers.push_back(unpack_frame(chunk->payload, file).number);
+    return numbers;
+}
+
+/// One every two seconds, and the twelve before and after what happened.
+std::vector<std::uint64_t> round_frame_40() {
+    std::vector<std::uint64_t> numbers{0};
+    for (std::uint64_t i = 29; i <= 52; ++i) numbers.push_back(i);
+    numbers.push_back(53);  // two seconds after the first one are over
+    return numbers;
+}
+
+TEST(RecordedEvents, WhileNothingHappensAFrameEveryTwoSecondsIsKept) {
+    EXPECT_EQ(kept_when([](SessionRecorder&) {}), (std::vector<std::uint64_t>{0, 50}));
+}
+
+TEST(RecordedEvents, FramesRoundAPersonsPressAreKept) {
+    EXPECT_EQ(kept_when([](SessionRecorder& r) { r.pressed("confirm"); }), round_frame_40());
+}
+
+TEST(RecordedEvents, FramesRoundAFaultOfADeviceAreKept) {
+    EXPECT_EQ(kept_when([](SessionRecorder& r) { r.device_failed(DeviceError("left camera", "is gone", "plug it in")); }),
+              round_frame_40());
+}
+
+TEST(RecordedEvents, FramesRoundAnotherWordOfTheGateAreKeptAndRoundTheSameWordAreNot) {
+    LightGate::Ruling look;
+    look.trust = LightTrust::look;
+    look.headline = "LOOK";
+    EXPECT_EQ(kept_when([&](SessionRecorder& r) { r.gate(GateCall::step, {}, 0, &look); }), round_frame_40());
+    EXPECT_EQ(kept_when([&](SessionRecorder& r) {
+                  for (int i = 0; i < 3; ++i) r.gate(GateCall::step, {}, 0, &look);
+              }),
+              round_frame_40());
+}
+
+TEST(RecordedEvents, WhatHappensBeforeTheFirstFrameKeepsTheFirstFrames) {
+    const test::TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "session.plrec";
+    {
+        SessionRecorder recorder(std::make_unique<RecordingFile>(file), {});
+        recorder.pressed("scan");
+        for (int i = 0; i < 30; ++i)
+            recorder.frame_taken({GrayImage(32, 24, 5), GrayImage(32, 24, 9), milliseconds(40 * i), milliseconds(5),
+                                  static_cast<std::uint64_t>(i)});
+        EXPECT_EQ(recorder.finish(), "");
+    }
+    int frames = 0;
+    RecordingReader reader(file);
+    while (const auto chunk = reader.next()) frames += chunk->type == chunk_types::kFrame;
+    EXPECT_EQ(frames, 13) << "twelve after the press, and the next of the usual ones";
+}
+
+}  // namespace
+}  // namespace planlight
