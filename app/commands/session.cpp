@@ -134,8 +134,8 @@ CaseDrawing drawing_of(const Case& the_case, const SiteSettings& site, SessionWi
 int run_in_simulated_room(const SessionOptions& options, const Case& the_case, const SiteSettings& site,
                           SessionWindow& window) {
     if (options.volume.empty())
-        throw InputError({}, "neither a room nor a simulated patient was named",
-                         "Give --room room.json for real devices, or --volume VOLUME for the simulated room.");
+        throw Error(ExitCode::usage, "neither a room nor a simulated patient was named",
+                    "Give --room room.json for real devices, or --volume VOLUME for the simulated room.");
     const Volume volume = window.while_made("The volume of the simulated patient is being read.", 0.3,
                                             [&] { return read_volume(options.volume, options.series_uid); });
     if (hash_of(volume) != the_case.volume_hash)
