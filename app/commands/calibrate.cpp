@@ -139,17 +139,19 @@ std::optional<RigCalibration> previous_rig(const std::filesystem::path& file) {
     }
 }
 
-Path beside(const Path& file, const std::string& end) {
-    Path other = file;
-    other.replace_extension();
-    return other += end + file.extension().string();
+Path unused(const Path& file, const std::string& end) {
+    const auto with = [&](const std::string& name) {
+        Path other = file;
+        other.replace_extension();
+        return other += name + file.extension().string();
+    };
+    Path other = with(end);
+    for (int i = 2; std::filesystem::exists(other); ++i) other = with(fmt::format("{}-{}", end, i));
+    return other;
 }
 
 void keep_previous_rig(const Path& file) {
-    if (!std::filesystem::exists(file)) return;
-    Path kept = beside(file, "-before");
-    for (int i = 2; std::filesystem::exists(kept); ++i) kept = beside(file, fmt::format("-before-{}", i));
-    write_safely(kept, read_whole(file));
+    if (std::filesystem::exists(file)) write_safely(unused(file, "-before"), read_whole(file));
 }
 
 Run add_calibrate(CLI::App& app) {

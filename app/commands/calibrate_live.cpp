@@ -209,7 +209,7 @@ Keeping decide(const CalibrateOptions& options, const std::vector<std::string>& 
 path write_as_decided(const RigCalibration& rig, const CalibrateOptions& options, Keeping keeping) {
     if (keeping == Keeping::discard) return {};
     if (keeping == Keeping::beside) {
-        const path file = beside(options.out, "-new");
+        const path file = unused(options.out, "-new");
         write_rig(rig, file);
         return file;
     }

@@ -97,7 +97,8 @@ int run_check(CheckOptions options) {
     if (options.live) room = read_room(options.room);
     if (options.rig.empty() && room) options.rig = room->rig;
     if (options.rig.empty())
-        throw InputError({}, "no rig file was named", "Give --rig rig.json, or --room room.json, which names one.");
+        throw Error(ExitCode::usage, "no rig file was named",
+                    "Give --rig rig.json, or --room room.json, which names one.");
     const RigCalibration rig = read_rig(options.rig);
     Path file = options.log;
     if (file.empty()) {

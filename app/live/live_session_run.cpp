@@ -26,7 +26,9 @@ public:
             projector_.go_dark();
             return projector_.show(RgbImage(width(), height()), valid_until);
         }
-        return projector_.show(picture, valid_until);
+        const Instant lit = projector_.show(picture, valid_until);
+        if (!session_.light_permitted()) go_dark();  // DARK was pressed while it was handed over
+        return lit;
     }
     void go_dark() noexcept override {
         session_.show_alive();
@@ -56,7 +58,7 @@ void LiveSession::look(const Session& session, Room& room) {
         const auto found = [&](const GrayImage& picture) {
             std::vector<FoundMarker> shown;
             for (const auto& marker : find_markers(picture, session.tracking_settings().markers))
-                shown.push_back({marker.pixel, marker.radius_px});
+                shown.push_back({marker.pixel, marker.radius_px, FoundMarker::Pairing::not_asked});
             return shown;
         };
         view_.found(frame.at, found(frame.left), found(frame.right));
@@ -104,7 +106,11 @@ void LiveSession::run(const MakeRoom& make_room) {
             projecting_ = false;
             session.go_dark();
             view_.failed(lost.what());
+            const bool unchecked = press.action == OperatorAction::check_skin;
             happened(following_ ? SessionHappening::skin_checked : SessionHappening::failed, [&](OperatorModel& m) {
+                if (unchecked)  // the light comes back, and must not look as if the skin had been looked at
+                    m.evidence.insert(m.evidence.begin(),
+                                      std::string("The skin was not checked: ") + lost.what() + "; check it again.");
                 m.status = {StatusKind::dark,
                             std::string("Dark: ") + lost.what() + ".",
                             {lost.remedy, following_ ? "The light comes back by itself." : "Press the button again."}};
@@ -209,6 +215,7 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
                 m.scene.light = nullptr;
                 if (!view_of(state_).lights) m.status = dark_status(state_);
             });
+            said();
             return;
         case OperatorAction::none:
         case OperatorAction::quit:
