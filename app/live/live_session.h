@@ -19,6 +19,7 @@
 #include "app/session.h"
 #include "app/update_latency.h"
 #include "app/windows/operator_model.h"
+#include "planning_io/types/error.h"
 #include "planning_io/types/steady_clock.h"
 
 namespace planlight {
@@ -77,7 +78,14 @@ private:
         SessionState from = SessionState::opening;  ///< in which it was pressed
     };
     void run(const MakeRoom& make_room);
+    std::unique_ptr<Room> make(const MakeRoom& make_room);
+    void enter_room(const Room& room);
+    void device_lost(const Press& press, Session& session, const DeviceError& lost);
+    void refused(const Press& press, Session& session, const Error& refusal);
     void act(const Press& press, Session& session, Room& room);
+    void begin_anew(Session& session, Room& room);
+    void begin_to_follow(Session& session, Room& room);
+    void answer_dark(const Press& press, Session& session);
     void scan(Session& session);
     void find_patient(Session& session, const std::vector<PointPair>& landmarks);
     void confirm(Session& session);

@@ -132,7 +132,7 @@ std::optional<LastSession> last_session(const fs::path& folder) {
         try {
             LastMatch last = last_match_of(recording);
             if (!last.untouched) return LastSession{recording, std::move(last)};
-        } catch (const DamagedFileError&) {
+        } catch (const Error&) {  // no recording, or none that says whose it is
         }
     }
     return std::nullopt;
