@@ -7,6 +7,7 @@
 #include "app/case_model.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/language_option.h"
 #include "app/commands/review_recording.h"
 #include "app/console.h"
 #include "app/live/clickable_scan.h"
@@ -77,7 +78,7 @@ int run_landmarks(const ReviewOptions& options, const CaseDrawing& drawing, cons
     model.use_landmarks = "Save landmarks";
     if (!model.fit)
         model.status = {StatusKind::ready, "Click landmarks on the skin and on the scan.", {"Nothing is projected."}};
-    const std::vector<PointPair> pairs = click_landmarks(model, already);
+    const std::vector<PointPair> pairs = click_landmarks(model, already, words_of_window({}, read_site_settings()));
     if (pairs.empty()) {
         fmt::print("No landmarks were clicked; nothing was written.\n");
         return 0;
@@ -147,7 +148,7 @@ int run_review(const ReviewOptions& options) {
     if (!display_is_there())
         throw DeviceError("Display", "no window can be opened here",
                           "Start the program in a desktop session, or give --picture FILE.png of `planlight review`.");
-    show_model(model, view);
+    show_model(model, view, words_of_window({}, read_site_settings()));
     return 0;
 }
 

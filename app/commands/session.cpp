@@ -2,6 +2,7 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/language_option.h"
 #include "app/commands/surgeon_option.h"
 #include "app/console.h"
 #include "app/live/live_window.h"
@@ -29,7 +30,8 @@ struct SessionOptions {
     Path recordings;         ///< folder; empty: CASE/recordings
     Path resume;             ///< recording of the session to go on with; empty: the last one is offered
     std::string series_uid;
-    std::string surgeon;  ///< where he stands; empty: as the site says
+    std::string language;  ///< of the window; empty: as the site says
+    std::string surgeon;   ///< where he stands; empty: as the site says
     std::string preset = "paper", projector_monitor, operator_monitor;
     unsigned seed = 1;
     double speed_mm_s = 20;
@@ -180,7 +182,8 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
 
 int run_session(const SessionOptions& options) {
     const SiteSettings site = site_with(options.surgeon);
-    SessionWindow window(options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor);
+    SessionWindow window(options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor,
+                         words_of_window(options.language, site));
     const Case the_case =
         window.while_made("The case is being read.", 0.1, [&] { return read_case(options.case_folder); });
     if (!options.json) fmt::print("{}\n", title_of(the_case));
@@ -227,6 +230,7 @@ Run add_session(CLI::App& app) {
         ->excludes(delay);
     sub->add_option("--operator", o.operator_monitor, "Monitor of the operator window (default: the primary one)");
     surgeon_option(sub, o.surgeon);
+    language_option(sub, o.language);
     sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str()->excludes(room);
     sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")
         ->capture_default_str()

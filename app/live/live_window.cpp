@@ -129,7 +129,8 @@ WindowMeter::Phase phase_of(const OperatorModel& model) {
 
 }  // namespace
 
-SessionWindow::SessionWindow(const std::string& operator_monitor) : monitor_(operator_monitor) {
+SessionWindow::SessionWindow(const std::string& operator_monitor, std::shared_ptr<const Words> words)
+    : monitor_(operator_monitor), words_(std::move(words)) {
     if (!display_is_there()) return;
     window();
     show("Planlight starts.", 0);
@@ -137,6 +138,7 @@ SessionWindow::SessionWindow(const std::string& operator_monitor) : monitor_(ope
 
 OperatorWindow& SessionWindow::window() {
     WindowSettings settings;
+    settings.words = words_;
     if (!monitor_.empty()) settings.monitor = monitor_;
     if (!window_) window_ = std::make_unique<OperatorWindow>(settings);
     return *window_;
@@ -266,14 +268,19 @@ int run_live(SessionWindow& screen, const MakeRoomWith& make_room, const Case& t
     return told_at_the_end(code, session, meter, options);
 }
 
-void show_model(const OperatorModel& model, FitView view) {
-    OperatorWindow window;
+void show_model(const OperatorModel& model, FitView view, std::shared_ptr<const Words> words) {
+    WindowSettings settings;
+    settings.words = std::move(words);
+    OperatorWindow window(settings);
     window.set_fit_view(view);
     while (window.frame(model) != OperatorAction::quit) window.rest(kLongestRest_s);
 }
 
-std::vector<PointPair> click_landmarks(const OperatorModel& model, const std::vector<PointPair>& already) {
-    OperatorWindow window;
+std::vector<PointPair> click_landmarks(const OperatorModel& model, const std::vector<PointPair>& already,
+                                       std::shared_ptr<const Words> words) {
+    WindowSettings settings;
+    settings.words = std::move(words);
+    OperatorWindow window(settings);
     window.open_landmarks(already);
     for (;;) {
         const OperatorAction action = window.frame(model);

@@ -168,9 +168,9 @@ struct OperatorWindow::Parts {
         pen.panel(card, IM_COL32(38, 30, 8, 255), theme::kAmber, 3);
         float y = card.y + pad;
         const float width = card.width - 2 * pad;
-        y += pen.paragraph(pen.fonts.title, "The light is on the patient. Make it dark and close the window?",
+        y += pen.paragraph(pen.fonts.title, pen.say("The light is on the patient. Make it dark and close the window?"),
                            {card.x + pad, y, width, 3 * line_height(pen.fonts.title)}, theme::kText);
-        pen.paragraph(pen.fonts.body, "The light goes on until you answer. DARK works as always.",
+        pen.paragraph(pen.fonts.body, pen.say("The light goes on until you answer. DARK works as always."),
                       {card.x + pad, y + 8 * s, width, 2 * line_height(pen.fonts.body)}, theme::kText);
         const Box row{card.x + pad, card.bottom() - pad - height, (width - pad) / 2, height};
         const Box other{row.right() + pad, row.y, row.width, height};
