@@ -10,7 +10,8 @@ namespace planlight {
 
 /// What a site sets once, in planlight/config.json under $XDG_CONFIG_HOME (~/.config where that is not set):
 /// {"format": "planlight config", "version": 1, "units": "mm" | "cm" | "inch", "surgeon_side": "feet" | "head" | "left"
-/// | "right" | "view", "monitors": {"operator": "DP-1", "projector": "HDMI-2"}}. Every name but the first two may be
+/// | "right" | "view", "monitors": {"operator": "DP-1", "projector": "HDMI-2"},
+/// "openigtlink": {"names": true}}. Every name but the first two may be
 /// missing.
 struct SiteSettings {
     /// Unit of the lengths that commands print for a person. Files, JSON, windows and the light stay in mm.
@@ -19,6 +20,7 @@ struct SiteSettings {
     /// the operator's window, sees them at the match.
     std::string surgeon_side = "feet";
     std::string operator_monitor, projector_monitor;  ///< names; empty: not set. An option of a command overrides them
+    bool openigtlink_names = false;  ///< `session --igtl` says names of patient, case and plan to whoever listens
     std::filesystem::path read_from;                  ///< empty: there is no such file, and these are the defaults
 };
 
