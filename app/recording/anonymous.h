@@ -36,9 +36,10 @@ public:
     void add_items(const PlanDrawing& drawing);
     /// An event (JSON) without the names in what it says; empty where it is none.
     std::string out_of(const std::string& json) const;
+    /// A sentence without them.
+    std::string text_without(std::string text) const;
 
 private:
-    std::string text_without(std::string text) const;
     void add(const std::string& name, const std::string& instead);
     std::vector<std::pair<std::string, std::string>> names_;
 };
