@@ -252,7 +252,7 @@ TEST_F(Export, ALocalizerThatIsTheFirstFileIsPassedOver) {
     auto slices = test::synthetic_series(test::Grid{});
     auto scout = slices[3];
     scout.text(0x00080008, "CS", "ORIGINAL\\PRIMARY\\LOCALIZER");
-    scout.text(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.7");
+    scout.decimals(0x00200037, {0, 1, 0, 0, 0, -1});
     const auto with = [&](int scouts, const char* name, bool alone) {
         std::vector<test::DicomObject> all;
         for (int i = 0; i < scouts; ++i) {
