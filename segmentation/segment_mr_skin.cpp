@@ -21,7 +21,8 @@ constexpr double kBandSteps = 3;       // of the survey, inwards from its outlin
 constexpr double kOuterBandSteps = 2;  // and outwards
 constexpr double kSmoothing_mm = 1.2;  // standard deviation of one smoothing, at most
 constexpr int kMostSmoothings = 3;
-constexpr double kLoudAir = 0.6;  // of the threshold: air that is louder is smoothed
+constexpr double kByThing_mm = 5;  // from what shines outside the head, no air's noise is learnt
+constexpr double kLoudAir = 0.6;   // of the threshold: air that is louder is smoothed
 constexpr double kLeastBody_ml = 50;
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -75,12 +76,13 @@ std::vector<float> signed_distance(const HeadSurvey& survey, const Mask& head, d
     return distance;
 }
 
-enum Place : std::uint8_t { kOutside = 0, kInside = 1, kBand = 2 };
+enum Place : std::uint8_t { kOutside = 0, kInside = 1, kBand = 2, kByThing = 3 };  // kByThing: outside, no air
 
 /// For each voxel of the volume, where it lies to the outline.
 Mask places_of(const Volume& volume, const HeadSurvey& survey, const HeadOutline& outline) {
     const double band_mm = kBandSteps * survey.step_mm(), outer_mm = kOuterBandSteps * survey.step_mm();
     const std::vector<float> distance = signed_distance(survey, outline.head, band_mm + 2 * survey.step_mm());
+    const Mask by_thing = dilate(outline.gone, survey.grid, kByThing_mm);
     Mask places(volume.values.size());
     const Eigen::Affine3d survey_from_voxel =
         Eigen::Scaling(1 / survey.step_mm()) * Eigen::Translation3d(-survey.first_in_ct) * volume.ct_from_voxel;
@@ -94,15 +96,17 @@ Mask places_of(const Volume& volume, const HeadSurvey& survey, const HeadOutline
                                                                 survey.grid.size[static_cast<std::size_t>(a)] - 1);
                 const std::size_t near = survey.index(s[0], s[1], s[2]);
                 const double d = static_cast<double>(distance[near]);
-                places[volume.index(i, j, k)] = d <= -band_mm                             ? kInside
-                                                : d > outer_mm || outline.gone[near] != 0 ? kOutside
-                                                                                          : kBand;
+                places[volume.index(i, j, k)] = d <= -band_mm                                            ? kInside
+                                                : outline.gone[near] || (d > outer_mm && by_thing[near]) ? kByThing
+                                                : d > outer_mm                                           ? kOutside
+                                                                                                         : kBand;
             }
     });
     return places;
 }
 
-/// The nodes of the map round which air is loud: of the voxels where it is sure one in fifty passes kLoudAir.
+/// The nodes of the map round which air is loud: of the voxels where it is sure one in fifty passes kLoudAir. What
+/// shines outside the head (a coil's shell, a cushion) is no noise.
 std::vector<std::uint8_t> loud_nodes(const Volume& leveled, const Mask& places, const LevelMap& map) {
     std::vector<std::vector<float>> air(map.air.size());
     for (std::size_t v = 0; v < places.size(); v += 3) {
@@ -202,6 +206,8 @@ SkinMask segment_mr_skin(const Volume& volume, const SkinSettings& settings,
     const Mask places = places_of(volume, survey, outline);
     leveled = in_levels(std::move(leveled), result.levels);
     smooth_loud_places(leveled, places, result.levels, result.smoothings);
+    // The map between its nodes is known only now: the same values as the surface is drawn from.
+    if (result.smoothings > 1) leveled = Volume(), leveled = skin_values(volume, result);
     Mask body(places.size());
     for (std::size_t v = 0; v < body.size(); ++v)
         body[v] = places[v] == kInside || (places[v] == kBand && leveled.values[v] >= 1);
