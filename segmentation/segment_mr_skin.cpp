@@ -31,9 +31,12 @@ constexpr double kLeastBody_ml = 50;
 }
 
 /// One smoothing by w, 1 - 2w, w along each axis, where `w` keeps it within kSmoothing_mm also across thick slices;
-/// only where the map asks for more than `done` of them.
+/// only as far as the nodes near by ask for more than `done` of them: the mask, made step by step, and the surface,
+/// made from the whole map, see the same values.
 void smooth_once(Volume& volume, const LevelMap& map, int done) {
     const std::vector<float> before = volume.values;
+    std::vector<float> asked = map.smoothings;
+    for (float& times : asked) times = std::clamp(times - static_cast<float>(done), 0.0F, 1.0F);
     std::vector<float> next(volume.values.size());
     const std::array<std::size_t, 3> strides{1, volume.index(0, 1, 0), volume.index(0, 0, 1)};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -55,9 +58,7 @@ void smooth_once(Volume& volume, const LevelMap& map, int done) {
     tbb::parallel_for(0, volume.size[2], [&](int k) {
         for (int j = 0; j < volume.size[1]; ++j)
             for (int from = 0; from < volume.size[0]; from += kEvery) {
-                const float asked = value_at(map, map.smoothings,
-                                             volume.ct_from_voxel * Vector3d(from + 0.5 * kEvery, j, k)),
-                            share = std::clamp(asked - static_cast<float>(done), 0.0F, 1.0F);
+                const float share = value_at(map, asked, volume.ct_from_voxel * Vector3d(from + 0.5 * kEvery, j, k));
                 for (int i = from; i < std::min(from + kEvery, volume.size[0]); ++i) {
                     const std::size_t v = volume.index(i, j, k);
                     volume.values[v] =
@@ -139,7 +140,7 @@ void smooth_loud_places(Volume& leveled, const Mask& places, LevelMap& map, int&
         if (std::find(loud.begin(), loud.end(), 1) == loud.end()) break;
         loud = dilate(loud, nodes, 1.5);  // the nodes within the head know no air
         for (std::size_t n = 0; n < loud.size(); ++n)
-            if (loud[n]) map.smoothings[n] = static_cast<float>(smoothings + 1);
+            if (loud[n] && map.smoothings[n] == static_cast<float>(smoothings)) map.smoothings[n] += 1;
         smooth_once(leveled, map, smoothings);
         ++smoothings;
     }
@@ -206,8 +207,6 @@ SkinMask segment_mr_skin(const Volume& volume, const SkinSettings& settings,
     const Mask places = places_of(volume, survey, outline);
     leveled = in_levels(std::move(leveled), result.levels);
     smooth_loud_places(leveled, places, result.levels, result.smoothings);
-    // The map between its nodes is known only now: the same values as the surface is drawn from.
-    if (result.smoothings > 1) leveled = Volume(), leveled = skin_values(volume, result);
     Mask body(places.size());
     for (std::size_t v = 0; v < body.size(); ++v)
         body[v] = places[v] == kInside || (places[v] == kBand && leveled.values[v] >= 1);
