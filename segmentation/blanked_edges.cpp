@@ -16,7 +16,7 @@ constexpr double kLeastShare = 0.01;  // of the volume that shows the one value
 constexpr double kFull = 0.8;         // of what lies deeper: no blur has taken from it
 constexpr double kCell_mm = 4;
 constexpr int kReach = 2;  // cells to every side: a patch of 20 mm
-constexpr double kPatch = 0.8, kUsual = 0.2;
+constexpr double kPatch = 0.8, kUsual = 0.2, kLeastAway = 0.05;
 
 /// The value that voxels below the threshold show most often; empty when they hardly repeat one.
 std::optional<float> commonest_value(const Volume& volume, double threshold) {
@@ -128,13 +128,15 @@ void flag_blanked_edges(TriangleMesh& mesh, const Volume& volume, double thresho
     });
     if (std::find(edges.begin(), edges.end(), kHard) == edges.end()) return;
     const Patches patches(mesh, edges);
-    std::size_t skin = 0, usual = 0;
+    std::size_t skin = 0, away = 0, usual = 0;  // away: from any such patch, where the skin's own edge shows
     for (std::size_t v = 0; v < edges.size(); ++v) {
         if (mesh.flags[v] != kSkin) continue;
         ++skin;
+        if (patches.is_by_patch(mesh.vertices_in_ct[v])) continue;
+        ++away;
         usual += patches.share_at(mesh.vertices_in_ct[v]) > kUsual;
     }
-    if (2 * usual > skin) return;
+    if (2 * usual > away || static_cast<double>(away) < kLeastAway * static_cast<double>(skin)) return;
     for (std::size_t v = 0; v < edges.size(); ++v)
         if (edges[v] == kHard ? patches.is_by_patch(mesh.vertices_in_ct[v])
                               : edges[v] == kBlank && patches.share_at(mesh.vertices_in_ct[v]) > kPatch)
