@@ -54,9 +54,10 @@ SiteSettings read_site_settings() {
     const Json json = parse_json(read_whole(file), file);
     const JsonValue root(json, file);
     check_format(root, "planlight config", 1, file);
-    root.has_only({"format", "version", "units", "surgeon_side", "monitors", "openigtlink", "dicom"});
+    root.has_only({"format", "version", "units", "surgeon_side", "monitors", "language", "openigtlink", "dicom"});
     if (const auto units = root.find("units")) site.units = one_of(*units, kUnits);
     if (const auto side = root.find("surgeon_side")) site.surgeon_side = one_of(*side, kSides);
+    if (const auto language = root.find("language")) site.language = language->text();
     if (const auto monitors = root.find("monitors")) {
         monitors->has_only({"operator", "projector"});
         if (const auto name = monitors->find("operator")) site.operator_monitor = name->text();

@@ -11,7 +11,7 @@ namespace planlight {
 
 /// What a site sets once, in planlight/config.json under $XDG_CONFIG_HOME (~/.config where that is not set):
 /// {"format": "planlight config", "version": 1, "units": "mm" | "cm" | "inch", "surgeon_side": "feet" | "head" | "left"
-/// | "right" | "view", "monitors": {"operator": "DP-1", "projector": "HDMI-2"},
+/// | "right" | "view", "monitors": {"operator": "DP-1", "projector": "HDMI-2"}, "language": "de",
 /// "openigtlink": {"names": true}, "dicom": {"own_title": "PLANLIGHT", "host": "pacs", "port": 104, "title": "PACS"}}.
 /// Every name but the first two may be missing.
 struct SiteSettings {
@@ -20,6 +20,7 @@ struct SiteSettings {
     /// Where the surgeon stands: labels on the skin are upright for somebody there; "view": as the left camera, and so
     /// the operator's window, sees them at the match.
     std::string surgeon_side = "feet";
+    std::string language = "en";                      ///< of the operator's windows (app/words/README.md)
     std::string operator_monitor, projector_monitor;  ///< names; empty: not set. An option of a command overrides them
     bool openigtlink_names = false;   ///< `session --igtl` says names of patient, case and plan to whoever listens
     DicomPeer archive;                ///< that `fetch` and `store` talk with; what is not set is as `DicomPeer` has it

@@ -6,6 +6,7 @@
 #include "app/case_model.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/language_option.h"
 #include "app/commands/plan_options.h"
 #include "app/console.h"
 #include "app/live/live_window.h"
@@ -132,7 +133,9 @@ int run_prepare(const PrepareOptions& options) {
         std::cout << report.json;
     else
         print_summary(done, options);
-    if (options.preview) show_model(model_of_case(done.prepared, CaseDrawing(done.prepared)));
+    if (options.preview)
+        show_model(model_of_case(done.prepared, CaseDrawing(done.prepared)), FitView::after,
+                   words_of_window({}, read_site_settings()));
     return 0;
 }
 

@@ -110,6 +110,8 @@ int run_project(const ProjectOptions& options) {
         items.push_back({{"name", item.name},
                          {"label", item.label},
                          {"lit_name", item.lit_name},
+                         {"code", item.code},
+                         {"lit_by_code", item.lit_by_code},
                          {"distance_to_skin_mm", item.distance_to_skin_mm},
                          {"warnings", item.warnings}});
         for (const auto& warning : item.warnings) warn(warning);
@@ -156,7 +158,7 @@ Run add_project(CLI::App& app) {
         ->capture_default_str()
         ->check(CLI::IsMember({"dim", "hidden"}))
         ->needs(item);
-    sub->add_option("--out", o.out, "Picture to write (.png)")->required();
+    sub->add_option("--out", o.out, "Picture to write (.png)")->required()->check(png_file());
     json_flag(sub, o.json);
     return [options] { return run_project(*options); };
 }

@@ -7,6 +7,7 @@
 #include "app/case_model.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/language_option.h"
 #include "app/commands/review_recording.h"
 #include "app/console.h"
 #include "app/live/clickable_scan.h"
@@ -77,7 +78,7 @@ int run_landmarks(const ReviewOptions& options, const CaseDrawing& drawing, cons
     model.use_landmarks = "Save landmarks";
     if (!model.fit)
         model.status = {StatusKind::ready, "Click landmarks on the skin and on the scan.", {"Nothing is projected."}};
-    const std::vector<PointPair> pairs = click_landmarks(model, already);
+    const std::vector<PointPair> pairs = click_landmarks(model, already, words_of_window({}, read_site_settings()));
     if (pairs.empty()) {
         fmt::print("No landmarks were clicked; nothing was written.\n");
         return 0;
@@ -144,7 +145,10 @@ int run_review(const ReviewOptions& options) {
     if (const auto report = options.case_folder / "report.html"; std::filesystem::exists(report))
         fmt::print("Report: {}\n", report.string());
     if (!options.landmarks.empty()) return run_landmarks(options, drawing, *cloud, model);
-    show_model(model, view);
+    if (!display_is_there())
+        throw DeviceError("Display", "no window can be opened here",
+                          "Start the program in a desktop session, or give --picture FILE.png of `planlight review`.");
+    show_model(model, view, words_of_window({}, read_site_settings()));
     return 0;
 }
 
@@ -171,7 +175,8 @@ Run add_review(CLI::App& app) {
         ->capture_default_str()
         ->needs(match);
     sub->add_option("--picture", o.picture, "Write a picture (.png) instead of opening a window; needs no display")
-        ->excludes(landmarks);
+        ->excludes(landmarks)
+        ->check(png_file());
     sub->add_option(
         "--out", o.recorded.out,
         "Of a recording: folder for its page (time line, errors, events) and pictures (default: beside it)");

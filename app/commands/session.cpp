@@ -2,6 +2,7 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/language_option.h"
 #include "app/commands/surgeon_option.h"
 #include "app/console.h"
 #include "app/igtl/session_link.h"
@@ -31,7 +32,8 @@ struct SessionOptions {
     Path recordings;         ///< folder; empty: CASE/recordings
     Path resume;             ///< recording of the session to go on with; empty: the last one is offered
     std::string series_uid;
-    std::string surgeon;  ///< where he stands; empty: as the site says
+    std::string language;  ///< of the window; empty: as the site says
+    std::string surgeon;   ///< where he stands; empty: as the site says
     std::string preset = "paper", projector_monitor, operator_monitor;
     unsigned seed = 1;
     double speed_mm_s = 20;
@@ -50,6 +52,8 @@ Path recordings_folder(const SessionOptions& options) {
     return options.recordings.empty() ? options.case_folder / kRecordingsFolder : options.recordings;
 }
 
+constexpr const char* kLookedAt = "The last session is being looked at.";
+
 /// What the session may go on with. What was asked for and cannot be is refused; what would merely be offered is said.
 /// `rig`: null where it is not known yet.
 std::optional<ResumeOffer> resume_of(const SessionOptions& options, const Case& the_case, const RigCalibration* rig) {
@@ -58,10 +62,10 @@ std::optional<ResumeOffer> resume_of(const SessionOptions& options, const Case& 
         offer.at_once = true;
         return offer;
     }
-    const auto last = newest_recording(recordings_folder(options));
-    if (!last) return std::nullopt;
+    auto session = last_session(recordings_folder(options));
+    if (!session) return std::nullopt;
     try {
-        return resume_offer(*last, the_case, rig);
+        return resume_offer(std::move(session->last), session->recording, the_case, rig);
     } catch (const Error& why_not) {
         fmt::print(stderr, "The last session cannot be gone on with: {}.\n", why_not.what());
         return std::nullopt;
@@ -167,8 +171,8 @@ CaseDrawing drawing_of(const Case& the_case, const SiteSettings& site, SessionWi
 int run_in_simulated_room(const SessionOptions& options, const Case& the_case, const SiteSettings& site,
                           SessionWindow& window) {
     if (options.volume.empty())
-        throw InputError({}, "neither a room nor a simulated patient was named",
-                         "Give --room room.json for real devices, or --volume VOLUME for the simulated room.");
+        throw Error(ExitCode::usage, "neither a room nor a simulated patient was named",
+                    "Give --room room.json for real devices, or --volume VOLUME for the simulated room.");
     const Volume volume = window.while_made("The volume of the simulated patient is being read.", 0.3,
                                             [&] { return read_volume(options.volume, options.series_uid); });
     if (hash_of(volume) != the_case.volume_hash)
@@ -177,7 +181,7 @@ int run_in_simulated_room(const SessionOptions& options, const Case& the_case, c
     simulation::RoomSettings room;
     room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     room.seed = options.seed;
-    auto resume = resume_of(options, the_case, nullptr);
+    auto resume = window.while_made(kLookedAt, 0.5, [&] { return resume_of(options, the_case, nullptr); });
     Listeners listeners(options, the_case, site);
     LiveOptions live = live_options(options, site, listeners);
     live.resume = std::move(resume);
@@ -196,7 +200,7 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
     const RigCalibration rig = read_rig(room.rig);
     if (options.projector_monitor.empty()) options.projector_monitor = room.monitor;
     if (options.projector_file.empty() && options.light_delay_ms < 0) options.projector_file = room.projector_file;
-    auto resume = resume_of(options, the_case, &rig);
+    auto resume = window.while_made(kLookedAt, 0.3, [&] { return resume_of(options, the_case, &rig); });
     Listeners listeners(options, the_case, site);
     LiveOptions live = live_options(options, site, listeners);
     live.resume = std::move(resume);
@@ -211,7 +215,8 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
 
 int run_session(const SessionOptions& options) {
     const SiteSettings site = site_with(options.surgeon);
-    SessionWindow window(options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor);
+    SessionWindow window(options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor,
+                         words_of_window(options.language, site));
     const Case the_case =
         window.while_made("The case is being read.", 0.1, [&] { return read_case(options.case_folder); });
     if (!options.json) fmt::print("{}\n", title_of(the_case));
@@ -258,6 +263,7 @@ Run add_session(CLI::App& app) {
         ->excludes(delay);
     sub->add_option("--operator", o.operator_monitor, "Monitor of the operator window (default: the primary one)");
     surgeon_option(sub, o.surgeon);
+    language_option(sub, o.language);
     sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str()->excludes(room);
     sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")
         ->capture_default_str()

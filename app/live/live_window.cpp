@@ -24,8 +24,6 @@ namespace {
 
 constexpr double kLongestRest_s = 0.03;  ///< between two looks at the session
 
-/// Set by Ctrl-C or a polite kill: the loop ends as if the window had been closed, and everything is dark on the way
-/// out.
 /// The monitor for the light: as asked for, else the first that is not the primary one; empty when there is only one.
 std::string light_monitor(const LiveOptions& options) {
     if (!options.projector_monitor.empty()) return options.projector_monitor;
@@ -131,7 +129,8 @@ WindowMeter::Phase phase_of(const OperatorModel& model) {
 
 }  // namespace
 
-SessionWindow::SessionWindow(const std::string& operator_monitor) : monitor_(operator_monitor) {
+SessionWindow::SessionWindow(const std::string& operator_monitor, std::shared_ptr<const Words> words)
+    : monitor_(operator_monitor), words_(std::move(words)) {
     if (!display_is_there()) return;
     window();
     show("Planlight starts.", 0);
@@ -139,6 +138,7 @@ SessionWindow::SessionWindow(const std::string& operator_monitor) : monitor_(ope
 
 OperatorWindow& SessionWindow::window() {
     WindowSettings settings;
+    settings.words = words_;
     if (!monitor_.empty()) settings.monitor = monitor_;
     if (!window_) window_ = std::make_unique<OperatorWindow>(settings);
     return *window_;
@@ -185,13 +185,14 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
             projector->session_lives(session.alive_at());
         }
         if (action == OperatorAction::quit) return 0;
-        if (projector && (action == OperatorAction::dark || action == OperatorAction::stop)) projector->go_dark();
         // Landmarks that stand in the window count for every match of their scan: a match that they refuse stays
         // refused.
         if (action == OperatorAction::do_register || action == OperatorAction::use_landmarks)
             window.say(session.post_find_patient(window.landmarks()));
         else
             window.say(session.post(action));
+        // After the post: what the session hands over from now on is no light any more.
+        if (projector && (action == OperatorAction::dark || action == OperatorAction::stop)) projector->go_dark();
         if (options.autoplay && meter.idle_s() >= options.idle_first_s)
             session.post(autoplay.next(model), AskedBy::program);
         screenshots.take(window, model, session);
@@ -267,14 +268,19 @@ int run_live(SessionWindow& screen, const MakeRoomWith& make_room, const Case& t
     return told_at_the_end(code, session, meter, options);
 }
 
-void show_model(const OperatorModel& model, FitView view) {
-    OperatorWindow window;
+void show_model(const OperatorModel& model, FitView view, std::shared_ptr<const Words> words) {
+    WindowSettings settings;
+    settings.words = std::move(words);
+    OperatorWindow window(settings);
     window.set_fit_view(view);
     while (window.frame(model) != OperatorAction::quit) window.rest(kLongestRest_s);
 }
 
-std::vector<PointPair> click_landmarks(const OperatorModel& model, const std::vector<PointPair>& already) {
-    OperatorWindow window;
+std::vector<PointPair> click_landmarks(const OperatorModel& model, const std::vector<PointPair>& already,
+                                       std::shared_ptr<const Words> words) {
+    WindowSettings settings;
+    settings.words = std::move(words);
+    OperatorWindow window(settings);
     window.open_landmarks(already);
     for (;;) {
         const OperatorAction action = window.frame(model);

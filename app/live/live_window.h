@@ -12,6 +12,7 @@
 #include "app/recording/resume_offer.h"
 #include "app/session.h"
 #include "app/windows/operator_window.h"
+#include "app/words/words.h"
 #include "planning_io/case/light_file.h"
 #include "planning_io/types/point_pair.h"
 
@@ -41,7 +42,8 @@ bool display_is_there();
 class SessionWindow {
 public:
     /// Opens it where there is a display. `operator_monitor` empty: the primary one. Throws DeviceError.
-    explicit SessionWindow(const std::string& operator_monitor);
+    /// `words`: its language; null: English.
+    explicit SessionWindow(const std::string& operator_monitor, std::shared_ptr<const Words> words = {});
 
     /// What `make` makes in a thread of its own, while the window says so. Throws what it throws.
     template <class Make>
@@ -59,6 +61,7 @@ private:
     void show(const std::string& words, double share);
 
     std::string monitor_;
+    std::shared_ptr<const Words> words_;
     std::unique_ptr<OperatorWindow> window_;
     bool closed_ = false;
 };
@@ -76,10 +79,12 @@ int run_live(SessionWindow& screen, const MakeRoomWith& make_room, const Case& t
              const LiveOptions& options);
 
 /// The operator window on a model that does not change, until it is closed. Throws DeviceError without a display.
-void show_model(const OperatorModel& model, FitView view = FitView::after);
+/// `words`: its language; null: English.
+void show_model(const OperatorModel& model, FitView view = FitView::after, std::shared_ptr<const Words> words = {});
 
 /// The same, with landmarks to be clicked from the start (the model has them), until they are used or the window is
 /// closed. Returns what was clicked on both sides.
-std::vector<PointPair> click_landmarks(const OperatorModel& model, const std::vector<PointPair>& already);
+std::vector<PointPair> click_landmarks(const OperatorModel& model, const std::vector<PointPair>& already,
+                                       std::shared_ptr<const Words> words = {});
 
 }  // namespace planlight

@@ -99,14 +99,14 @@ float draw_figures(const Pen& pen, const Box& box, const Figures& figures, const
     float values = 0, words = 0;
     for (const auto& [value, sentence] : rows) {
         values = std::max(values, text_width(pen.fonts.number, value));
-        words = std::max(words, text_width(pen.fonts.body, sentence));
+        words = std::max(words, text_width(pen.fonts.body, pen.say(sentence)));
     }
     words = std::min(words, box.width - values - gap);
     const float top = box.y + (box.height - step * static_cast<float>(rows.size())) / 2;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const float y = top + step * (static_cast<float>(i) + 0.5F), x = box.right() - words;
         pen.line(pen.fonts.number, rows[i].first, x - gap - values, y, values + 1, IM_COL32_WHITE, Pen::Side::right);
-        pen.line(pen.fonts.body, rows[i].second, x, y, words + 1, look.text);
+        pen.line(pen.fonts.body, pen.say(rows[i].second), x, y, words + 1, look.text);
     }
     return values + gap + words;
 }
@@ -126,14 +126,15 @@ void draw_sentences(const Pen& pen, Box rest, const Status& status, const Look& 
     const auto lines = [&](const ImFont* font, const std::string& t) {
         return line_height(font) * static_cast<float>(broken(font, t, rest.width, 9).size());
     };
-    float all = lines(pen.fonts.strong, status.headline);
-    for (const std::string& detail : status.details) all += lines(pen.fonts.body, detail);
+    const std::string headline = pen.say(status.headline);
+    float all = lines(pen.fonts.strong, headline);
+    for (const std::string& detail : status.details) all += lines(pen.fonts.body, pen.say(detail));
     if (all < rest.height) rest.y += (rest.height - all) / 2;
     rest.height = bottom - rest.y;
-    rest.y += pen.paragraph(pen.fonts.strong, status.headline, rest, IM_COL32_WHITE);
+    rest.y += pen.paragraph(pen.fonts.strong, headline, rest, IM_COL32_WHITE);
     for (const std::string& detail : status.details) {
         rest.height = bottom - rest.y;
-        rest.y += pen.paragraph(pen.fonts.body, detail, rest, look.text);
+        rest.y += pen.paragraph(pen.fonts.body, pen.say(detail), rest, look.text);
     }
 }
 
@@ -151,8 +152,8 @@ void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model, con
     const ImVec2 middle(box.x + 1.6F * pad + radius, middle_y);
     draw_shape(pen, model.status.kind, middle, radius, look);
 
-    const float word_x = middle.x + 1.15F * radius + 1.2F * pad, word = text_width(pen.fonts.word, look.word);
-    pen.line(pen.fonts.word, look.word, word_x, middle_y, 0, look.text);
+    const float word_x = middle.x + 1.15F * radius + 1.2F * pad, word = text_width(pen.fonts.word, pen.say(look.word));
+    pen.line(pen.fonts.word, pen.say(look.word), word_x, middle_y, 0, look.text);
 
     const float figures_width = 600 * s;
     const Box figures{box.right() - 1.6F * pad - figures_width, box.y + 0.6F * pad, figures_width,
@@ -166,7 +167,7 @@ void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model, con
         const float height = line_height(pen.fonts.strong);
         pen.panel({rest.x - pad / 2, rest.y - pad / 2, rest.width + pad / 2, height + pad / 2},
                   IM_COL32(62, 46, 8, 255), theme::kAmber, 2);
-        pen.line(pen.fonts.strong, notice, rest.x, rest.y + height / 2 - pad / 4, rest.width - pad / 2,
+        pen.line(pen.fonts.strong, pen.say(notice), rest.x, rest.y + height / 2 - pad / 4, rest.width - pad / 2,
                  IM_COL32(255, 240, 205, 255));
         rest.y += height + pad / 2;
         rest.height -= height + pad / 2;

@@ -8,7 +8,8 @@ namespace {
 
 constexpr ImU32 kShadow = IM_COL32(0, 0, 0, 200), kGreyed = IM_COL32(105, 105, 105, 255);
 
-/// Rings round what was found: whole where both cameras have it, amber and broken where this one alone has.
+/// Rings round what was found: whole where both cameras have it, amber and broken where this one alone has, grey where
+/// nobody has compared them.
 void draw_found(const Pen& pen, const std::vector<FoundMarker>& found, ImVec2 low, float zoom) {
     constexpr int kArcs = 6;
     constexpr float kTurn = 2 * 3.14159265F;
@@ -19,8 +20,9 @@ void draw_found(const Pen& pen, const std::vector<FoundMarker>& found, ImVec2 lo
                         low.y + zoom * (static_cast<float>(marker.pixel.y()) + 0.5F));
         const float radius = std::max(7 * s, zoom * static_cast<float>(marker.radius_px) + 4 * s);
         pen.list->AddCircle(at, radius, kShadow, 32, 4);
-        if (marker.used) {
-            pen.list->AddCircle(at, radius, theme::kGreen, 32, 2);
+        if (marker.pairing != FoundMarker::Pairing::alone) {
+            const bool both = marker.pairing == FoundMarker::Pairing::both;
+            pen.list->AddCircle(at, radius, both ? theme::kGreen : theme::kText, 32, both ? 2.0F : 1.5F);
             continue;
         }
         for (int i = 0; i < kArcs; ++i) {
@@ -31,10 +33,11 @@ void draw_found(const Pen& pen, const std::vector<FoundMarker>& found, ImVec2 lo
     }
 }
 
-std::string counted(const std::vector<FoundMarker>& found) {
-    const auto alone = std::count_if(found.begin(), found.end(), [](const FoundMarker& m) { return !m.used; });
-    std::string words = std::to_string(found.size()) + (found.size() == 1 ? " marker" : " markers");
-    if (alone > 0) words += ", " + std::to_string(alone) + " here alone";
+std::string counted(const Pen& pen, const std::vector<FoundMarker>& found) {
+    const auto alone = std::count_if(found.begin(), found.end(),
+                                     [](const FoundMarker& m) { return m.pairing == FoundMarker::Pairing::alone; });
+    std::string words = pen.say(std::to_string(found.size()) + (found.size() == 1 ? " marker" : " markers"));
+    if (alone > 0) words += ", " + pen.say(std::to_string(alone) + " here alone");
     return words;
 }
 
@@ -59,10 +62,10 @@ void draw_camera(const Pen& pen, const Box& box, const CameraPicture& camera, bo
                       : theme::kEdge,
               refused || old ? 3 : 1);
     if (!seen.picture || seen.picture->empty() || texture == nullptr) {
-        pen.paragraph(pen.fonts.small, camera.note,
+        pen.paragraph(pen.fonts.small, pen.say(camera.note),
                       {box.x + 16 * s, box.y + 0.4F * box.height, box.width - 32 * s, 0.6F * box.height}, theme::kQuiet,
                       Pen::Side::centre);
-        draw_strip(pen, box, camera.title, IM_COL32(10, 12, 16, 225), theme::kText, false);
+        draw_strip(pen, box, pen.say(camera.title), IM_COL32(10, 12, 16, 225), theme::kText, false);
         return;
     }
     const auto width = static_cast<float>(seen.picture->width), height = static_cast<float>(seen.picture->height);
@@ -71,21 +74,23 @@ void draw_camera(const Pen& pen, const Box& box, const CameraPicture& camera, bo
     pen.list->AddImageRounded(texture, low, {low.x + zoom * width, low.y + zoom * height}, {0, 0}, {1, 1},
                               old ? kGreyed : IM_COL32_WHITE, 10 * s);
     if (!old) draw_found(pen, seen.found, low, zoom);
-    std::string title = camera.title + (refused ? " · refused" : old ? "" : " · live");
-    if (!old && seen.searched) title += " · " + counted(seen.found);
+    std::string state = refused ? " · " + pen.say("refused") : old ? "" : " · " + pen.say("live");
+    if (!old && seen.searched) state += " · " + counted(pen, seen.found);
+    std::string title = pen.say(camera.title) + state;
     const std::string camera_word = " camera";  // is said by the place where it stands
-    if (const auto at = title.find(camera_word);
+    if (const auto at = camera.title.find(camera_word);
         text_width(pen.fonts.small, title) > box.width - 22 * s && at != std::string::npos)
-        title.erase(at, camera_word.size());
+        title = pen.say(camera.title.substr(0, at)) + state;
     draw_strip(pen, box, title, IM_COL32(10, 12, 16, 225), theme::kText, false);
-    if (refused) draw_strip(pen, box, "Press for the live picture", IM_COL32(70, 18, 20, 235), theme::kText, true);
+    if (refused)
+        draw_strip(pen, box, pen.say("Press for the live picture"), IM_COL32(70, 18, 20, 235), theme::kText, true);
     if (!refused && camera.refused)
-        draw_strip(pen, box, "Press for the refused picture", IM_COL32(10, 12, 16, 225), theme::kText, true);
+        draw_strip(pen, box, pen.say("Press for the refused picture"), IM_COL32(10, 12, 16, 225), theme::kText, true);
     if (!old) return;
-    const std::string age = camera.old_s < 100 ? std::to_string(camera.old_s) + " s OLD" : "OLD";
+    const std::string age = pen.say(camera.old_s < 100 ? std::to_string(camera.old_s) + " s OLD" : "OLD");
     pen.line(pen.fonts.number, age, box.x, box.y + box.height / 2, box.width, theme::kAmber, Pen::Side::centre);
     if (!camera.note.empty())
-        pen.paragraph(pen.fonts.small, camera.note,
+        pen.paragraph(pen.fonts.small, pen.say(camera.note),
                       {box.x + 12 * s, box.y + box.height / 2 + 22 * s, box.width - 24 * s, 0.4F * box.height},
                       theme::kText, Pen::Side::centre);
 }

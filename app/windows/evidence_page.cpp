@@ -10,12 +10,13 @@
 namespace planlight {
 namespace {
 
-std::string words_of(const PlanRow& row) {
-    std::string words = row.name + ". ";
-    words += row.predicted_error_mm
-                 ? "By the match it lies within " + number_text(row.predicted_error_mm, "mm") + " (95 %)."
-                 : "How far off it may be is not known yet.";
-    if (row.light_off_mm) words += " Its light was seen " + number_text(row.light_off_mm, "mm") + " beside its place.";
+std::string words_of(const Pen& pen, const PlanRow& row) {
+    std::string words = pen.say(row.name + ". " +
+                                (row.predicted_error_mm ? "By the match it lies within " +
+                                                              number_text(row.predicted_error_mm, "mm") + " (95 %)."
+                                                        : "How far off it may be is not known yet."));
+    if (row.light_off_mm)
+        words += " " + pen.say("Its light was seen " + number_text(row.light_off_mm, "mm") + " beside its place.");
     return words;
 }
 
@@ -28,12 +29,12 @@ ImU32 colour_for(const PlanRow& row, const OperatorModel& model) {
 
 float EvidencePage::draw_items(const Pen& pen, Box box, const OperatorModel& model) const {
     const float from = box.y, swatch = 30 * pen.scale, size = 8 * pen.scale;
-    box.y += pen.paragraph(pen.fonts.title, "The plan", box, theme::kText);
+    box.y += pen.paragraph(pen.fonts.title, pen.say("The plan"), box, theme::kText);
     for (const PlanRow& row : model.rows) {
         const float middle = box.y + line_height(pen.fonts.body) / 2;
         pen.list->AddRectFilled({box.x, middle - size}, {box.x + 2 * size, middle + size}, colour_of(row.colour),
                                 3 * pen.scale);
-        box.y += pen.paragraph(pen.fonts.body, words_of(row), {box.x + swatch, box.y, box.width - swatch, 1e5F},
+        box.y += pen.paragraph(pen.fonts.body, words_of(pen, row), {box.x + swatch, box.y, box.width - swatch, 1e5F},
                                colour_for(row, model)) +
                  6 * pen.scale;
     }
@@ -43,11 +44,11 @@ float EvidencePage::draw_items(const Pen& pen, Box box, const OperatorModel& mod
 float EvidencePage::draw_sentences(const Pen& pen, Box box, const OperatorModel& model) const {
     const float from = box.y;
     box.height = 1e5F;
-    box.y += pen.paragraph(pen.fonts.title, "What it is judged by", box, theme::kText);
+    box.y += pen.paragraph(pen.fonts.title, pen.say("What it is judged by"), box, theme::kText);
     if (model.evidence.empty())
-        box.y += pen.paragraph(pen.fonts.body, "Nothing yet: there is no match.", box, theme::kQuiet);
+        box.y += pen.paragraph(pen.fonts.body, pen.say("Nothing yet: there is no match."), box, theme::kQuiet);
     for (const std::string& sentence : model.evidence)
-        box.y += pen.paragraph(pen.fonts.body, sentence, box, theme::kText) + 8 * pen.scale;
+        box.y += pen.paragraph(pen.fonts.body, pen.say(sentence), box, theme::kText) + 8 * pen.scale;
     return box.y - from;
 }
 
@@ -71,7 +72,7 @@ bool EvidencePage::draw(const Pen& pen, const Box& place, const OperatorModel& m
     height_ = items + draw_sentences(pen, at, model);
     pen.list->PopClipRect();
     if (height_ > words.height)
-        pen.line(pen.fonts.small, "Drag, or turn the mouse wheel, for the rest.", place.x + pad,
+        pen.line(pen.fonts.small, pen.say("Drag, or turn the mouse wheel, for the rest."), place.x + pad,
                  close_.y + close_.height / 2, close_.x - place.x - 2 * pad, theme::kAmber);
     return button(pen, close_, "Close", {true, {}}, {false, false, key_text(KeyMeaning::evidence)});
 }

@@ -23,8 +23,18 @@ struct FontSet {
     ImFont *small, *body, *strong, *number, *title, *letter, *word;
 };
 
-/// Loads all sizes into an empty atlas.
-FontSet load_fonts(ImFontAtlas& atlas, const FontFiles& files, float scale);
+/// Letters (UTF-8) besides those of European scripts that a window shows.
+struct FontLetters {
+    std::string text;  ///< in every size but that of the status
+    std::string word;  ///< of the status
+};
+
+/// Loads all sizes into an empty atlas. Letters that the files lack come from other fonts of this computer, where one
+/// has them.
+FontSet load_fonts(ImFontAtlas& atlas, const FontFiles& files, float scale, const FontLetters& letters = {});
+
+/// A letter as UTF-8.
+std::string utf8_of(unsigned code);
 
 /// The characters of `text` (UTF-8) that the font would show as a blank or as a question mark, each as UTF-8.
 std::vector<std::string> missing_glyphs(const ImFont& font, const std::string& text);

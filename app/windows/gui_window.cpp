@@ -8,8 +8,10 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "app/windows/layout.h"
+#include "app/windows/status_word.h"
 #include "planning_io/types/error.h"
 #include "projection/glfw_session.h"
 #include "projection/projector_window.h"
@@ -57,6 +59,15 @@ GLFWwindow* open_window(const WindowSettings& settings) {
     return window;
 }
 
+/// GLFW names keys by their place on an American keyboard; here by what stands on them, where that is a Latin letter:
+/// a German Z lies where an American Y is.
+int key_by_label(int key, int scan_code) {
+    const char* const label = glfwGetKeyName(key, scan_code);
+    if (label == nullptr || label[0] == '\0' || label[1] != '\0') return key;
+    if (label[0] >= 'a' && label[0] <= 'z') return GLFW_KEY_A + (label[0] - 'a');
+    return label[0] >= 'A' && label[0] <= 'Z' ? GLFW_KEY_A + (label[0] - 'A') : key;
+}
+
 }  // namespace
 
 struct GuiWindow::Parts {
@@ -66,10 +77,18 @@ struct GuiWindow::Parts {
     GLFWwindow* window = nullptr;
     ImGuiContext* gui = nullptr;
     Pen pen{};
-    int to_settle = kFramesAfterInput;  ///< frames
+    std::shared_ptr<const Words> words;
+    FontLetters letters;
+    std::set<unsigned> lacking, hopeless;  ///< letters: to be loaded, and those that no font has
+    int to_settle = kFramesAfterInput;     ///< frames
 
     Parts(const WindowSettings& settings, WindowListener told)
-        : listener(std::move(told)), window(open_window(settings)) {
+        : listener(std::move(told)), window(open_window(settings)), words(settings.words) {
+        pen.words = words.get();
+        pen.lacking = &lacking;
+        if (words) letters.text = words->letters();
+        for (int kind = 0; words && kind <= static_cast<int>(StatusKind::waiting); ++kind)
+            letters.word += words->say(status_word(static_cast<StatusKind>(kind)));
         glfwMakeContextCurrent(window);
         glfwSwapInterval(0);  // the loop that follows the patient must not wait for this screen
         listen();             // before Dear ImGui, which calls these and its own
@@ -99,9 +118,9 @@ struct GuiWindow::Parts {
 
     void listen() {
         glfwSetWindowUserPointer(window, this);
-        glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int modifiers) {
+        glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scan_code, int action, int modifiers) {
             of(w).to_settle = kFramesAfterInput;
-            if (action == GLFW_PRESS && of(w).listener.key) of(w).listener.key(key, modifiers);
+            if (action == GLFW_PRESS && of(w).listener.key) of(w).listener.key(key_by_label(key, scan_code), modifiers);
         });
         glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int action, int) {
             of(w).to_settle = kFramesAfterInput;
@@ -116,12 +135,25 @@ struct GuiWindow::Parts {
         glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int) { of(w).to_settle = kFramesAfterInput; });
     }
 
+    /// Letters that were to be drawn and are not loaded: a name in another script. True when there are new ones.
+    bool take_lacking() {
+        bool more = false;
+        for (const unsigned code : std::exchange(lacking, {})) {
+            if (!hopeless.insert(code).second) continue;  // it was asked for once, and is not there
+            letters.text += utf8_of(code);
+            more = true;
+        }
+        if (more) to_settle = kFramesAfterInput;
+        return more;
+    }
+
     void fit_to(int width, int height) {
         const float scale = layout_of(width, height).scale;
-        if (pen.scale == scale && pen.fonts.body != nullptr) return;
+        const bool more = take_lacking();
+        if (pen.scale == scale && pen.fonts.body != nullptr && !more) return;
         ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
         atlas.Clear();
-        pen.fonts = load_fonts(atlas, font_files, scale);
+        pen.fonts = load_fonts(atlas, font_files, scale, letters);
         ImGui_ImplOpenGL3_DestroyFontsTexture();
         ImGui_ImplOpenGL3_CreateFontsTexture();
         pen.scale = scale;

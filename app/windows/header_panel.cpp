@@ -9,8 +9,6 @@ namespace {
 
 constexpr std::array<const char*, 6> kSteps{"Case", "Rig", "Scan", "Match", "Verify", "Project"};
 
-const std::string kSimulated = "SIMULATED ROOM";
-
 void draw_step(const Pen& pen, const Box& chip, std::size_t index, StepState state) {
     const bool active = state == StepState::active;
     pen.panel(chip, active ? theme::kActive : theme::kPanel, active ? theme::kBlue : theme::kEdge, active ? 2 : 1);
@@ -31,14 +29,14 @@ void draw_step(const Pen& pen, const Box& chip, std::size_t index, StepState sta
                  2 * radius, active ? theme::kText : theme::kQuiet, Pen::Side::centre);
     }
     const bool waiting = state == StepState::waiting;
-    pen.line(active ? pen.fonts.strong : pen.fonts.body, kSteps[index], text_x, middle_y, text_room,
+    pen.line(active ? pen.fonts.strong : pen.fonts.body, pen.say(kSteps[index]), text_x, middle_y, text_room,
              waiting ? theme::kQuiet : theme::kText);
 }
 
 /// The side in large letters at the right end of the box; returns the width that it takes.
-float draw_side(const Pen& pen, const Box& box, const std::string& side) {
-    if (side.empty()) return 0;
-    const std::string caption = "side of the plan";
+float draw_side(const Pen& pen, const Box& box, const std::string& which) {
+    if (which.empty()) return 0;
+    const std::string side = pen.say(which), caption = pen.say("side of the plan");
     const float pad = 12 * pen.scale;
     const float width = std::max(text_width(pen.fonts.number, side), text_width(pen.fonts.small, caption)) + 2 * pad;
     const Box badge{box.right() - width, box.y + 0.08F * box.height, width, 0.84F * box.height};
@@ -56,7 +54,7 @@ void draw_header(const Pen& pen, const WindowLayout& place, const OperatorModel&
     Box title = place.title;
     title.width -= draw_side(pen, title, model.case_side);
     const float large = line_height(pen.fonts.title), small = line_height(pen.fonts.small);
-    const std::string& last = model.simulated ? kSimulated : model.case_subtitle;
+    const std::string last = model.simulated ? pen.say("SIMULATED ROOM") : model.case_subtitle;
     const float plan = model.case_plan.empty() ? 0 : small, rest = last.empty() ? 0 : small;
     float y = title.y + std::max(0.0F, (title.height - large - plan - rest) / 2);
     pen.line(pen.fonts.title, model.case_title, title.x, y + large / 2, title.width, theme::kText);
@@ -70,12 +68,12 @@ void draw_header(const Pen& pen, const WindowLayout& place, const OperatorModel&
     const float gap = 8 * pen.scale, chip_height = std::min(steps.height, std::round(60 * pen.scale));
     const float extra = 56 * pen.scale;  // circle and margins, beside the word
     float words = 0;
-    for (const char* step : kSteps) words += text_width(pen.fonts.strong, step) + extra;
+    for (const char* step : kSteps) words += text_width(pen.fonts.strong, pen.say(step)) + extra;
     const float spare = std::max(0.0F, (steps.width - 5 * gap - words) / 6);
     const float more = std::min(spare, 20 * pen.scale);
     float x = steps.x + 3 * (spare - more);
     for (std::size_t i = 0; i < kSteps.size(); ++i) {
-        const float width = text_width(pen.fonts.strong, kSteps[i]) + extra + more;
+        const float width = text_width(pen.fonts.strong, pen.say(kSteps[i])) + extra + more;
         draw_step(pen, {x, steps.y + (steps.height - chip_height) / 2, width, chip_height}, i, model.steps[i]);
         x += width + gap;
     }

@@ -124,8 +124,8 @@ void LandmarkPanel::draw_words(const Pen& pen, const Box& box) const {
         colour = theme::kAmber;
     }
     const float pad = 18 * pen.scale, line = line_height(pen.fonts.body);
-    pen.paragraph(pen.fonts.body, words, {box.x + pad, box.y + 10 * pen.scale, box.width - 2 * pad, 1.2F * line},
-                  colour);
+    pen.paragraph(pen.fonts.body, pen.say(words),
+                  {box.x + pad, box.y + 10 * pen.scale, box.width - 2 * pad, 1.2F * line}, colour);
     const double misfit_mm = clicks_.misfit_mm();
     const bool poor = misfit_mm > kPoorFitMm;
     const std::string fit =
@@ -134,7 +134,7 @@ void LandmarkPanel::draw_words(const Pen& pen, const Box& box) const {
             : fmt::format("{} landmarks; they fit each other to {:.1f} mm (rms){}", pairs, misfit_mm,
                           poor ? ": is each where it should be, on the right side?" : ".");
     pen.paragraph(
-        pen.fonts.small, fit,
+        pen.fonts.small, pen.say(fit),
         {box.x + pad, box.y + 10 * pen.scale + line, box.width - 2 * pad, 1.2F * line_height(pen.fonts.small)},
         poor ? theme::kAmber : theme::kQuiet);
 }
@@ -171,9 +171,9 @@ std::optional<LandmarkButton> LandmarkPanel::draw(const Pen& pen, const Box& box
     pen.panel(box);
     draw_words(pen, box);
     draw_panes(pen, views);
-    pen.line(pen.fonts.small, "Skin from CT", boxes_[0].x + edge, boxes_[0].y + 16 * pen.scale, pane_width / 2,
+    pen.line(pen.fonts.small, pen.say("Skin from CT"), boxes_[0].x + edge, boxes_[0].y + 16 * pen.scale, pane_width / 2,
              theme::kText);
-    pen.line(pen.fonts.small, "Scan", boxes_[1].x + edge, boxes_[1].y + 16 * pen.scale, pane_width - edge,
+    pen.line(pen.fonts.small, pen.say("Scan"), boxes_[1].x + edge, boxes_[1].y + 16 * pen.scale, pane_width - edge,
              theme::kText);
     const auto pressed = draw_buttons(
         pen, {box.x + edge, box.bottom() - edge - button_height, box.width - 2 * edge, button_height}, use_label);

@@ -108,20 +108,19 @@ void MiddleView::draw_scene(const Pen& pen, const Box& place, const OperatorMode
 
 void MiddleView::draw_title(const Pen& pen, const Box& place, const OperatorModel& model,
                             const SceneModel& shown) const {
-    std::string title = "Skin from CT";
-    if (shown.plan) title += ", with the plan";
-    title += ".";
+    std::string title = pen.say(shown.plan ? "Skin from CT, with the plan." : "Skin from CT.");
+    const auto add = [&](const std::string& sentence) { title += " " + pen.say(sentence); };
     if (model.fit && fit_view == FitView::before)
-        title += " BEFORE: the scan where the first, rough match put it, coloured by its distance.";
+        add("BEFORE: the scan where the first, rough match put it, coloured by its distance.");
     else if (shown.cloud && shown.cloud_distance_mm)
-        title += " AFTER: the scan where the fine match put it; green lies on the skin.";
+        add("AFTER: the scan where the fine match put it; green lies on the skin.");
     else if (shown.cloud)
-        title += " The scan.";
+        add("The scan.");
     if (shown.cloud_distance_mm && std::abs(shown.skin_offset_mm) >= 0.05)
-        title += fmt::format(" The skin lies {:.1f} mm {} that of the CT; distances are counted from there.",
-                             std::abs(shown.skin_offset_mm), shown.skin_offset_mm < 0 ? "inside of" : "outside of");
-    if (shown.skin_error_mm) title += " ERROR: how far off the light may be at each place.";
-    if (shown.light) title += " White: the light as it falls.";
+        add(fmt::format("The skin lies {:.1f} mm {} that of the CT; distances are counted from there.",
+                        std::abs(shown.skin_offset_mm), shown.skin_offset_mm < 0 ? "inside of" : "outside of"));
+    if (shown.skin_error_mm) add("ERROR: how far off the light may be at each place.");
+    if (shown.light) add("White: the light as it falls.");
     const float indent = 18 * pen.scale;
     pen.paragraph(
         pen.fonts.small, title,

@@ -1,9 +1,10 @@
 #include "app/windows/pen.h"
 
+#include <imgui_internal.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <sstream>
 
 namespace planlight {
 namespace {
@@ -22,6 +23,48 @@ std::string shortened(const ImFont* font, std::string text, float width) {
     return text + kMore;
 }
 
+/// What a line may begin with: a word, or a sign of a script without spaces.
+struct Word {
+    std::string text;
+    bool spaced = true;  ///< a space stands before it
+};
+
+/// Chinese, Japanese, and the like: lines break between any two signs, but not before their punctuation.
+bool breaks_anywhere(unsigned code) {
+    const bool closes = code == 0x3001 || code == 0x3002 || code == 0xFF0C || code == 0xFF1A || code == 0xFF1B ||
+                        code == 0xFF09 || code == 0xFF1F || code == 0x300D || code == 0x300F;
+    return code >= 0x2E80 && code < 0xFFF0 && !closes && !(code >= 0xAC00 && code <= 0xD7AF);
+}
+
+std::vector<Word> words_in(const std::string& text) {
+    std::vector<Word> words;
+    bool spaced = true, begun = false;
+    for (const char* at = text.c_str(); *at != '\0';) {
+        unsigned code = 0;
+        const int bytes = std::max(1, ImTextCharFromUtf8(&code, at, nullptr));
+        if (code == ' ' || code == '\n' || code == '\t') {
+            spaced = true;
+            begun = false;
+        } else {
+            if (!begun || breaks_anywhere(code)) words.push_back({"", spaced});
+            words.back().text.append(at, static_cast<std::size_t>(bytes));
+            spaced = false;
+            begun = true;
+        }
+        at += bytes;
+    }
+    return words;
+}
+
+void note_lacking(const ImFont* font, const std::string& text, std::set<unsigned>& lacking) {
+    for (const char* at = text.c_str(); *at != '\0';) {
+        unsigned code = 0;
+        at += std::max(1, ImTextCharFromUtf8(&code, at, nullptr));
+        if (code >= 0x80 && code <= 0xFFFF && font->FindGlyphNoFallback(static_cast<ImWchar>(code)) == nullptr)
+            lacking.insert(code);
+    }
+}
+
 }  // namespace
 
 float text_width(const ImFont* font, const std::string& text) {
@@ -38,22 +81,21 @@ ImU32 colour_of(const Rgb& colour) {
 
 std::vector<std::string> broken(const ImFont* font, const std::string& text, float width, std::size_t most) {
     std::vector<std::string> lines;
-    std::istringstream words(text);
-    std::string line, word;
-    while (words >> word) {
-        const std::string longer = line.empty() ? word : line + " " + word;
+    std::string line;
+    const std::vector<Word> words = words_in(text);
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        const std::string longer = line.empty() ? words[i].text : line + (words[i].spaced ? " " : "") + words[i].text;
         if (line.empty() || text_width(font, longer) <= width) {
             line = longer;
             continue;
         }
         if (lines.size() + 1 == most) {
-            std::string rest;
-            std::getline(words, rest, '\0');
-            line = longer + rest;
+            line = longer;
+            while (++i < words.size()) line += (words[i].spaced ? " " : "") + words[i].text;
             break;
         }
         lines.push_back(shortened(font, line, width));
-        line = word;
+        line = words[i].text;
     }
     if (!line.empty() && lines.size() < most) lines.push_back(shortened(font, line, width));
     return lines;
@@ -68,6 +110,7 @@ void Pen::panel(const Box& box, ImU32 fill, ImU32 edge, float edge_width) const 
 void Pen::line(const ImFont* font, const std::string& text, float x, float middle_y, float width, ImU32 colour,
                Side side) const {
     const std::string shown = width > 0 ? shortened(font, text, width) : text;
+    if (lacking) note_lacking(font, shown, *lacking);
     const float spare = (width > 0 ? width : 0) - text_width(font, shown);
     if (side == Side::right) x += spare;
     if (side == Side::centre) x += spare / 2;

@@ -2,11 +2,13 @@
 
 #include <imgui.h>
 
+#include <set>
 #include <string>
 #include <vector>
 
 #include "app/windows/fonts.h"
 #include "app/windows/layout.h"
+#include "app/words/words.h"
 #include "planning_io/types/image.h"
 
 namespace planlight {
@@ -21,13 +23,19 @@ constexpr ImU32 kBackground = IM_COL32(11, 13, 17, 255), kPanel = IM_COL32(18, 2
                 kControl = IM_COL32(38, 46, 60, 255), kHovered = IM_COL32(52, 64, 84, 255);
 }  // namespace theme
 
-/// Draws text and shapes so that nothing leaves its place: text that is too long is broken, then ended with "…".
+/// Draws text and shapes so that nothing leaves its place: text that is too long is broken, then ended with "…". What
+/// it is given is drawn as it is: texts of the program come through `say`, names do not.
 struct Pen {
     ImDrawList* list;
     FontSet fonts;
     float scale;
+    const Words* words = nullptr;           ///< null: English
+    std::set<unsigned>* lacking = nullptr;  ///< takes the letters that its fonts do not have; may be null
 
     enum class Side { left, centre, right };
+
+    /// In the window's language.
+    std::string say(const std::string& english) const { return words ? words->say(english) : english; }
 
     void panel(const Box& box, ImU32 fill = theme::kPanel, ImU32 edge = theme::kEdge, float edge_width = 1) const;
     /// One line, its middle at `middle_y`; ends with "…" when wider than `width` (0: as wide as it is).

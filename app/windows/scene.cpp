@@ -164,7 +164,8 @@ struct Scene::Parts {
 Scene::Scene(vtkRenderWindow& window, const FontFiles& fonts) : parts_(std::make_unique<Parts>(window, fonts)) {}
 Scene::~Scene() = default;
 
-bool Scene::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale) {
+bool Scene::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale,
+                   const Words* words) {
     Parts& parts = *parts_;
     const bool changed = static_cast<int>(parts.take_skin_and_markers(scene)) |
                          static_cast<int>(parts.take_cloud(scene)) | static_cast<int>(parts.take_lines(scene));
@@ -178,7 +179,7 @@ bool Scene::update(const SceneModel& scene, const SceneView& view, int width, in
     parts.height = height;
     parts.cloud.actor->GetProperty()->SetPointSize(static_cast<float>(std::max(2.0, 2.2 * scale)));
     parts.place_camera();
-    parts.overlay.update(scene, view, width, height, scale);
+    parts.overlay.update(scene, view, width, height, scale, words);
     return true;
 }
 

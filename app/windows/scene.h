@@ -4,6 +4,7 @@
 
 #include "app/windows/fonts.h"
 #include "app/windows/operator_model.h"
+#include "app/words/words.h"
 #include "planning_io/types/camera_model.h"
 
 class vtkRenderWindow;
@@ -17,7 +18,9 @@ public:
     ~Scene();
 
     /// Takes over what has changed; true when the picture must be rendered again.
-    bool update(const SceneModel& scene, const SceneView& view, int width, int height, double scale);
+    /// `words`: of the legend; null: English.
+    bool update(const SceneModel& scene, const SceneView& view, int width, int height, double scale,
+                const Words* words = nullptr);
 
     /// The line of sight through a pixel of the last picture (from its top left), and the pixel of a point; in the
     /// scene's frame.

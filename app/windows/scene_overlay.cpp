@@ -97,13 +97,22 @@ int letters_px(double scale) {
     return std::max(14, static_cast<int>(17 * scale));
 }
 
+/// Letters of a UTF-8 text.
+double signs_of(const std::string& text) {
+    return static_cast<double>(std::count_if(text.begin(), text.end(),
+                                             [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
 }  // namespace
 
 struct SceneOverlay::Parts {
     Boxes boxes;
     std::array<Text, 4> letters;  ///< left, right, top, bottom
     Text title;
+    const Words* words = nullptr;
     std::array<Text, 4> values;
+
+    std::string say(const std::string& english) const { return words ? words->say(english) : english; }
 
     void letters_at_edges(const SceneView& view, int width, int height, double scale) {
         const ViewAxes axes = axes_of(view);
@@ -116,19 +125,20 @@ struct SceneOverlay::Parts {
     }
 
     /// Three fields: up to the first limit, up to the second, above.
-    void legend_of_errors(const SceneModel& scene, double x, double y, double w, double scale) {
+    void legend_of_errors(const SceneModel& scene, const std::string& caption, double x, double y, double w,
+                          double scale) {
         const double bar = w - 48 * scale, third = bar / 3;
         const std::array<double, 3> examples{0, scene.stop_above_mm, 2 * scene.stop_above_mm};
         for (int i = 0; i < 3; ++i)
             boxes.add(x + 24 * scale + i * third, y + 36 * scale, third - 2, 14 * scale,
                       error_colour(examples[static_cast<std::size_t>(i)], scene.warn_above_mm, scene.stop_above_mm),
                       255);
-        title.place("The light may be off by so much, mm (95 %)", x + w / 2, y + 72 * scale, letters_px(scale));
-        const std::array<std::string, 3> words{fmt::format("≤ {:.1f}", scene.warn_above_mm),
-                                               fmt::format("≤ {:.1f}", scene.stop_above_mm),
-                                               fmt::format("> {:.1f}", scene.stop_above_mm)};
+        title.place(caption, x + w / 2, y + 72 * scale, letters_px(scale));
+        const std::array<std::string, 3> limits{fmt::format("≤ {:.1f}", scene.warn_above_mm),
+                                                fmt::format("≤ {:.1f}", scene.stop_above_mm),
+                                                fmt::format("> {:.1f}", scene.stop_above_mm)};
         for (std::size_t i = 0; i < 3; ++i)
-            values[i].place(words[i], x + 24 * scale + (static_cast<double>(i) + 0.5) * third, y + 18 * scale,
+            values[i].place(limits[i], x + 24 * scale + (static_cast<double>(i) + 0.5) * third, y + 18 * scale,
                             letters_px(scale));
         values[3].actor->SetVisibility(0);
     }
@@ -139,17 +149,19 @@ struct SceneOverlay::Parts {
         title.actor->SetVisibility(shown);
         for (Text& value : values) value.actor->SetVisibility(shown);
         if (!shown) return;
-        const double w = std::max(360 * scale, 20.0 * letters_px(scale)), x = width - w - 16 * scale, y = 16 * scale,
-                     bar = w - 48 * scale;
+        const std::string caption =
+            say(errors ? "The light may be off by so much, mm (95 %)" : "The scan lies so far from the skin, mm");
+        const double w = std::max(360 * scale, 0.56 * letters_px(scale) * signs_of(caption) + 24 * scale),
+                     x = width - w - 16 * scale, y = 16 * scale, bar = w - 48 * scale;
         if (errors) {
-            legend_of_errors(scene, x, y, w, scale);
+            legend_of_errors(scene, caption, x, y, w, scale);
             return;
         }
         constexpr int kSteps = 64;
         for (int i = 0; i < kSteps; ++i)
             boxes.add(x + 24 * scale + bar * i / kSteps, y + 36 * scale, bar / kSteps + 0.5, 14 * scale,
                       distance_colour(i + 0.5, kSteps), 255);
-        title.place("The scan lies so far from the skin, mm", x + w / 2, y + 72 * scale, letters_px(scale));
+        title.place(caption, x + w / 2, y + 72 * scale, letters_px(scale));
         for (int i = 0; i < 4; ++i)
             values[static_cast<std::size_t>(i)].place(
                 fmt::format("{}{:.1f}", i == 3 ? "≥ " : "", scene.largest_distance_mm * i / 3),
@@ -166,7 +178,9 @@ SceneOverlay::SceneOverlay(vtkRenderer& renderer, const FontFiles& fonts) : part
 
 SceneOverlay::~SceneOverlay() = default;
 
-void SceneOverlay::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale) {
+void SceneOverlay::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale,
+                          const Words* words) {
+    parts_->words = words;
     scale = std::max(scale, 0.85);     // smaller letters are not readable
     if (scene.on_paper) scale *= 1.6;  // the picture is shown at half its size and less
     for (Text& value : parts_->values) value.set_ink(scene.on_paper);

@@ -4,6 +4,7 @@
 
 #include "app/windows/fonts.h"
 #include "app/windows/operator_model.h"
+#include "app/words/words.h"
 
 class vtkRenderer;
 
@@ -16,7 +17,8 @@ public:
     ~SceneOverlay();
 
     /// For a picture of that many pixels; `scale` 1 is for a 1080-line screen.
-    void update(const SceneModel& scene, const SceneView& view, int width, int height, double scale);
+    void update(const SceneModel& scene, const SceneView& view, int width, int height, double scale,
+                const Words* words = nullptr);
 
 private:
     struct Parts;

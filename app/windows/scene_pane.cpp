@@ -56,7 +56,7 @@ void ScenePane::draw(const Pen& pen, const Box& box, const SceneModel& model) {
     const int* const size = target_->GetSize();
     const bool turned = !(view_ == rendered_view_) || size[0] != width || size[1] != height;
     behind_ = !turned && began < not_before_ && !(model == rendered_);
-    if (!behind_ && scene_->update(model, view_, width, height, pen.scale)) {
+    if (!behind_ && scene_->update(model, view_, width, height, pen.scale, pen.words)) {
         target_->SetSize(width, height);
         target_->GetState()->Reset();
         target_->GetState()->ResetFramebufferBindings();

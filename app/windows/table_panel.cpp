@@ -22,9 +22,10 @@ Columns columns_of(const Pen& pen, const Box& box) {
 void draw_heading(const Pen& pen, const Columns& c, float top) {
     const float height = line_height(pen.fonts.small);
     const auto right = [&](const char* text, float x, float width, float row) {
-        pen.line(pen.fonts.small, text, x, top + height * (row + 0.5F), width, theme::kQuiet, Pen::Side::right);
+        pen.line(pen.fonts.small, pen.say(text), x, top + height * (row + 0.5F), width, theme::kQuiet,
+                 Pen::Side::right);
     };
-    pen.line(pen.fonts.small, "Plan item", c.name_x, top + height, c.name_width, theme::kQuiet);
+    pen.line(pen.fonts.small, pen.say("Plan item"), c.name_x, top + height, c.name_width, theme::kQuiet);
     right("depth", c.depth_x, 0.75F * c.width, 0);
     right("mm", c.depth_x, 0.75F * c.width, 1);
     right("predicted", c.predicted_x, c.width, 0);
@@ -63,7 +64,8 @@ void draw_row(const Pen& pen, const OperatorModel& model, const PlanRow& row, co
 
 float evidence_height(const Pen& pen, const OperatorModel& model, float width) {
     std::size_t lines = 0;
-    for (const std::string& sentence : model.evidence) lines += broken(pen.fonts.small, sentence, width, 9).size();
+    for (const std::string& sentence : model.evidence)
+        lines += broken(pen.fonts.small, pen.say(sentence), width, 9).size();
     return line_height(pen.fonts.small) * static_cast<float>(lines);
 }
 
@@ -71,7 +73,7 @@ void draw_evidence(const Pen& pen, const OperatorModel& model, Box box) {
     const float end = box.bottom() + 1;
     for (const std::string& sentence : model.evidence) {
         box.height = end - box.y;
-        box.y += pen.paragraph(pen.fonts.small, sentence, box, theme::kQuiet);
+        box.y += pen.paragraph(pen.fonts.small, pen.say(sentence), box, theme::kQuiet);
     }
 }
 
@@ -101,16 +103,16 @@ int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int f
                  std::round(y + row_height / 2));
     if (rows < count)
         pen.line(pen.fonts.small,
-                 "rows " + std::to_string(first_row + 1) + "–" + std::to_string(first_row + shown) + " of " +
-                     std::to_string(count),
+                 pen.say("rows " + std::to_string(first_row + 1) + "–" + std::to_string(first_row + shown) + " of " +
+                         std::to_string(count)),
                  columns.name_x, y + line / 2, text_width_px, theme::kAmber);
 
     const float foot = box.bottom() - pad - line;
     draw_evidence(pen, model, {columns.name_x, foot - evidence, text_width_px, evidence});
     if (model.rows.empty() && model.evidence.empty()) return rows;
     const std::string all = evidence < wanted || rows < count ? "Press here for all of it" : "Press here for the page";
-    pen.line(pen.fonts.small, all + " (" + key_text(KeyMeaning::evidence) + ")", columns.name_x, foot + line / 2,
-             text_width_px, evidence < wanted || rows < count ? theme::kAmber : theme::kQuiet);
+    pen.line(pen.fonts.small, pen.say(all) + " (" + key_text(KeyMeaning::evidence) + ")", columns.name_x,
+             foot + line / 2, text_width_px, evidence < wanted || rows < count ? theme::kAmber : theme::kQuiet);
     return rows;
 }
 

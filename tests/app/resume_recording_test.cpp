@@ -1,9 +1,9 @@
 // Which match of a recording is offered, and the live session that goes on with it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "app/live/live_session.h"
 #include "app/live/simulated_room.h"
@@ -11,9 +11,8 @@
 #include "app/recording/replay_session.h"
 #include "app/recording/resume_offer.h"
 #include "planning_io/case/rig_file.h"
-#include "planning_io/plan/plan_file.h"
+#include "planning_io/recording/recording_reader.h"
 #include "planning_io/types/error.h"
-#include "registration/simulation/simulated_rig.h"
 #include "tests/app/played_session.h"
 #include "tests/support/test_data.h"
 
@@ -21,8 +20,6 @@ namespace planlight {
 namespace {
 
 namespace fs = std::filesystem;
-using Eigen::Vector3d;
-using simulation::SimulatedRig;
 
 /// Recordings of sessions that were cut short.
 class ResumeRecording : public ::testing::Test {
@@ -76,21 +73,18 @@ protected:
                                                        std::string());
             },
             the_case, drawing, {}, observer, offer);
-        const auto wait = [&](auto holds) {
-            for (int i = 0; i < 30000 && !holds(session.model()); ++i) {
-                session.rethrow_fault();
-                std::this_thread::sleep_for(std::chrono::milliseconds(10));
-            }
-        };
-        wait([](const OperatorModel& m) { return m.track.enabled || m.status.kind == StatusKind::refused; });
+        test::wait_for(session, "the match or a refusal", [](const OperatorModel& m) {
+            return m.track.enabled || m.status.kind == StatusKind::refused;
+        });
         EXPECT_FALSE(session.projecting());
         if (!session.model().track.enabled) return session.model();
         session.post(OperatorAction::track);
         OperatorModel lit;
-        wait([&](const OperatorModel& m) {
+        test::wait_for(session, "light", [&](const OperatorModel& m) {
             lit = m;
             return m.status.kind == StatusKind::check && m.confirm;
         });
+        EXPECT_TRUE(session.projecting());
         return lit;
     }
 };
@@ -120,7 +114,36 @@ TEST_F(ResumeRecording, AScanThatBeganAfterItOrLightThatWasStoppedEndsTheOffer) 
         EXPECT_THROW(resume_offer(file, test::example_case().prepared), InputError);
     };
     refused(R"({"what":"asked","call":"scan","utc":"2026-01-01T00:00:00Z"})");
+    // Looked for anew, by landmarks, and not found: the match that they contradict is not offered again.
+    refused(R"({"what":"asked","call":"find_patient","utc":"2026-01-01T00:00:00Z","landmarks":[]})");
     refused(R"({"what":"gate","call":"step","at_ns":1,"trust":"dark","headline":"x","stop":true})");
+}
+
+// A power cut, and then a start that a missing camera ended: the session before is the one to go on with.
+TEST_F(ResumeRecording, SessionsThatDidNothingArePassedOver) {
+    const auto all = chunks();
+    const test::TemporaryFolder folder;
+    EXPECT_FALSE(last_session(folder.path()));
+    const auto older = [&](const fs::path& file, int minutes) {
+        fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::minutes(minutes));
+        return file;
+    };
+    const fs::path before = older(written(all, all.size(), folder.path() / "before.plrec"), 30);
+    older(written(all, 1, folder.path() / "ended-at-once.plrec"), 20);
+    std::ofstream(folder.path() / "empty.plrec");
+    older(folder.path() / "empty.plrec", 10);
+    const auto found = last_session(folder.path());
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->recording, before);
+    EXPECT_TRUE(found->last.match);
+
+    const auto scanned = std::find_if(all.begin(), all.end(),
+                                      [](const auto& c) { return c.payload.find("scanned") != std::string::npos; });
+    const fs::path scan_only =
+        older(written(all, static_cast<std::size_t>(scanned - all.begin()) + 1, folder.path() / "scan.plrec"), 5);
+    EXPECT_EQ(last_session(folder.path())->recording, scan_only) << "there the patient was scanned anew";
+    older(before, 13 * 60), older(scan_only, 13 * 60);
+    EXPECT_FALSE(last_session(folder.path())) << "of yesterday";
 }
 
 TEST_F(ResumeRecording, OfAnotherCasePlanProgramOrRigIsRefusedByName) {

@@ -1,0 +1,34 @@
+#include "app/commands/language_option.h"
+
+#include <fmt/format.h>
+
+#include "app/console.h"
+#include "planning_io/types/error.h"
+
+namespace planlight {
+namespace {
+
+/// How many entries of the source that language lacks.
+std::size_t lacking(const Words& words) {
+    std::size_t count = 0;
+    for (const auto& entry : language_of("en").words) count += words.knows(entry.first) ? 0 : 1;
+    return count;
+}
+
+}  // namespace
+
+std::shared_ptr<const Words> words_of_window(const std::string& option, const SiteSettings& site) {
+    const std::string& code = option.empty() ? site.language : option;
+    try {
+        const auto words = words_of(code);
+        if (const std::size_t count = code == "en" ? 0 : lacking(*words); count > 0)
+            warn(fmt::format("The language \"{}\" lacks {} texts; these are shown in English.", code, count));
+        return words;
+    } catch (const Error& fault) {
+        if (!option.empty()) throw;
+        warn(fmt::format("The window is in English: {}. {}", fault.what(), fault.remedy));
+        return std::make_shared<const Words>();
+    }
+}
+
+}  // namespace planlight
