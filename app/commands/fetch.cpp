@@ -66,6 +66,10 @@ int run_fetch(const FetchOptions& options) {
         fmt::print("{} answers.\n", archive.name());
         return 0;
     }
+    const SeriesQuery& q = options.query;
+    if ((q.patient_id + q.patient_name + q.accession_number + q.study_date + q.study_uid + q.series_uid).empty())
+        throw Error(ExitCode::usage, "nothing says what is looked for",
+                    "Give --patient-id, --patient-name, --accession, --date, --study or --series.");
     const auto found = find_series(archive, options.query);
     if (found.empty())
         throw InputError({}, fmt::format("the archive {} finds no such series", archive.name()),

@@ -41,7 +41,8 @@ struct FoundSeries {
     std::string images;  ///< how many; empty where the peer does not say
 };
 
-/// C-FIND, first the studies and then the series of each. In the order of dates and numbers. Throws CheckFailedError
+/// C-FIND, first the studies and then the series of each; of a series UID alone, at once. In the order of dates and
+/// numbers. Throws CheckFailedError
 /// where the peer does not search.
 std::vector<FoundSeries> find_series(const DicomPeer& peer, const SeriesQuery& query);
 

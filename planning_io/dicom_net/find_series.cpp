@@ -27,6 +27,7 @@ Answers answers_to(DicomAssociation& association, const DicomPeer& peer, DcmData
         last = response->m_status;
         if (response->m_dataset && answers.size() < kMost) {
             answers.emplace_back(response->m_dataset);
+            answers.back()->convertToUTF8();  // what cannot be is as it came
             response->m_dataset = nullptr;
         }
         delete response;
@@ -49,9 +50,12 @@ Answers studies(DicomAssociation& association, const DicomPeer& peer, const Seri
     ask_for(keys, DCM_StudyDate, query.study_date);
     ask_for(keys, DCM_StudyInstanceUID, query.study_uid);
     ask_for(keys, DCM_StudyDescription);
+    if (!query.modality.empty()) ask_for(keys, DCM_ModalitiesInStudy, query.modality);
     return answers_to(association, peer, keys);
 }
 
+/// `study_uid` empty: in any study, which not every archive answers; then what stands above the series is asked for
+/// too.
 Answers series_of(DicomAssociation& association, const DicomPeer& peer, const std::string& study_uid,
                   const SeriesQuery& query) {
     DcmDataset keys;
@@ -62,7 +66,31 @@ Answers series_of(DicomAssociation& association, const DicomPeer& peer, const st
     ask_for(keys, DCM_SeriesNumber);
     ask_for(keys, DCM_SeriesDescription);
     ask_for(keys, DCM_NumberOfSeriesRelatedInstances);
+    if (study_uid.empty())
+        for (const DcmTagKey& above : {DCM_PatientID, DCM_PatientName, DCM_StudyDate, DCM_StudyDescription})
+            ask_for(keys, above);
     return answers_to(association, peer, keys);
+}
+
+/// What an answer says, of the study or of the series; what it does not say is left as it was.
+void take(DcmDataset& answer, FoundSeries& one) {
+    const std::pair<DcmTagKey, std::string*> texts[]{{DCM_PatientID, &one.patient_id},
+                                                     {DCM_PatientName, &one.patient_name},
+                                                     {DCM_StudyInstanceUID, &one.study_uid},
+                                                     {DCM_StudyDate, &one.study_date},
+                                                     {DCM_StudyDescription, &one.study_description},
+                                                     {DCM_SeriesInstanceUID, &one.series_uid},
+                                                     {DCM_Modality, &one.modality},
+                                                     {DCM_SeriesNumber, &one.number},
+                                                     {DCM_SeriesDescription, &one.description},
+                                                     {DCM_NumberOfSeriesRelatedInstances, &one.images}};
+    for (const auto& [tag, text] : texts)
+        if (answer.tagExists(tag)) *text = text_of(answer, tag);
+}
+
+bool names_a_study(const SeriesQuery& query) {
+    return !(query.patient_id + query.patient_name + query.accession_number + query.study_date + query.study_uid)
+                .empty();
 }
 
 }  // namespace
@@ -71,24 +99,18 @@ std::vector<FoundSeries> find_series(const DicomPeer& peer, const SeriesQuery& q
     DicomAssociation association(peer);
     association.propose(UID_FINDStudyRootQueryRetrieveInformationModel, plain_transfer_syntaxes());
     association.open();
-    std::vector<FoundSeries> found;
-    for (const auto& study : studies(association, peer, query)) {
-        FoundSeries one;
-        one.patient_id = text_of(*study, DCM_PatientID);
-        one.patient_name = text_of(*study, DCM_PatientName);
-        one.study_uid = text_of(*study, DCM_StudyInstanceUID);
-        one.study_date = text_of(*study, DCM_StudyDate);
-        one.study_description = text_of(*study, DCM_StudyDescription);
-        if (!is_uid(one.study_uid)) continue;
-        for (const auto& series : series_of(association, peer, one.study_uid, query)) {
-            one.series_uid = text_of(*series, DCM_SeriesInstanceUID);
-            one.modality = text_of(*series, DCM_Modality);
-            one.number = text_of(*series, DCM_SeriesNumber);
-            one.description = text_of(*series, DCM_SeriesDescription);
-            one.images = text_of(*series, DCM_NumberOfSeriesRelatedInstances);
-            if (is_uid(one.series_uid)) found.push_back(one);
-        }
+    std::vector<FoundSeries> above(1), found;  // of a series looked for by its UID no study is known
+    if (names_a_study(query) || query.series_uid.empty()) {
+        above.clear();
+        for (const auto& study : studies(association, peer, query)) take(*study, above.emplace_back());
+        std::erase_if(above, [](const FoundSeries& study) { return !is_uid(study.study_uid); });
     }
+    for (const FoundSeries& study : above)
+        for (const auto& series : series_of(association, peer, study.study_uid, query)) {
+            FoundSeries one = study;
+            take(*series, one);
+            if (is_uid(one.study_uid) && is_uid(one.series_uid)) found.push_back(std::move(one));
+        }
     association.close();
     std::stable_sort(found.begin(), found.end(), [](const FoundSeries& a, const FoundSeries& b) {
         return std::make_tuple(a.study_date, a.study_uid, a.number.size(), a.number) <

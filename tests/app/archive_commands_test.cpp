@@ -103,7 +103,8 @@ TEST_F(ArchiveCommands, RefusalsHaveTheirExitCodes) {
     other.uid = "1.2.826.0.1.3680043.9.9999.7.2";
     test::write_series(test::synthetic_series(test::Grid{}, other), folder_.path() / "other");
     ASSERT_EQ(run("store other --title ARCHIVE").exit_code, 0);
-    expect_refused(run("fetch --title ARCHIVE --out got"), 3, "2 series are found");
+    expect_refused(run("fetch --title ARCHIVE"), 2, "nothing says");
+    expect_refused(run("fetch --patient-id PHANTOM-1 --title ARCHIVE --out got"), 3, "2 series are found");
 }
 
 }  // namespace
