@@ -10,8 +10,8 @@ namespace planlight {
 namespace {
 
 // For an observer, in the order of their enumerations.
-constexpr std::array kActions{"none", "scan", "register", "track",         "stop",
-                              "dark", "quit", "confirm",  "use landmarks", "check skin"};
+constexpr std::array kActions{"none", "scan",    "register",      "track",      "stop",      "dark",
+                              "quit", "confirm", "use landmarks", "check skin", "light item"};
 constexpr std::array kStatusKinds{"ready", "scanning", "matching", "aligned", "check", "refused", "dark", "waiting"};
 
 }  // namespace
@@ -27,7 +27,7 @@ LiveSession::LiveSession(MakeRoom make_room, const Case& the_case, const CaseDra
       model_(blank_),
       gate_(observer),
       offer_(std::move(offer)) {
-    enter(state_, blank_, model_);
+    enter(state_, blank_, model_, scan_there_);
     said();
     show_alive();
     thread_ = std::thread([this, make_room = std::move(make_room)] {
@@ -53,7 +53,7 @@ LiveSession::~LiveSession() {
 
 /// Under the lock: why the press does nothing now; empty: it is taken.
 std::string LiveSession::refused_press(OperatorAction action) const {
-    if (const std::string why = why_not(state_, action);
+    if (const std::string why = why_not(state_, action, scan_there_);
         !why.empty() && action != OperatorAction::stop && action != OperatorAction::dark)
         return why;
     if (action == OperatorAction::confirm && !model_.confirm) return why_not(SessionState::ready, action);
@@ -71,9 +71,10 @@ std::string LiveSession::post(OperatorAction action, AskedBy by) {
             ++darks_;
             light_ = {nullptr, light_.number + 1};
         }
-        const SessionState next = after_press(state_, action).value_or(state_);
+        if (action == OperatorAction::scan) scan_there_ = false;  // the former one is given up
+        const SessionState next = after_press(state_, action, scan_there_).value_or(state_);
         if (next != state_ && !(next == SessionState::verifying || state_ == SessionState::unsure))
-            enter(next, blank_, model_);
+            enter(next, blank_, model_, scan_there_);
         state_ = next;
         if (dark) model_.status = dark_status(state_);
         if (action == OperatorAction::confirm) model_.confirm = false;  // until there is something new to look at
@@ -93,13 +94,22 @@ std::string LiveSession::post_find_patient(std::vector<PointPair> landmarks) {
     return post(OperatorAction::do_register);
 }
 
+std::string LiveSession::post_light_item(std::optional<std::size_t> which) {
+    {
+        const std::lock_guard lock(mutex_);
+        item_ = which;
+    }
+    return post(OperatorAction::light_item);
+}
+
 void LiveSession::happened(SessionHappening happening, const std::function<void(OperatorModel&)>& change) {
     {
         const std::lock_guard lock(mutex_);
         if (view_of(state_).lights && permitted_ != darks_) return;
         const SessionState next = after(state_, happening);
+        if (happening == SessionHappening::scan_done) scan_there_ = true;
         if (next == state_ && !change) return;
-        if (next != state_) enter(next, blank_, model_);
+        if (next != state_) enter(next, blank_, model_, scan_there_);
         state_ = next;
         if (change) change(model_);
     }

@@ -192,6 +192,8 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         // refused.
         if (action == OperatorAction::do_register || action == OperatorAction::use_landmarks)
             window.say(session.post_find_patient(window.landmarks()));
+        else if (action == OperatorAction::light_item)
+            window.say(session.post_light_item(window.item_wanted()));
         else
             window.say(session.post(action));
         if (options.autoplay && meter.idle_s() >= options.idle_first_s)

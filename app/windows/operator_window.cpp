@@ -299,6 +299,10 @@ std::vector<PointPair> OperatorWindow::landmarks() const {
     return panel ? panel->clicks().pairs() : std::vector<PointPair>{};
 }
 
+std::optional<std::size_t> OperatorWindow::item_wanted() const {
+    return parts_->middle->item_wanted();
+}
+
 FitView OperatorWindow::fit_view() const {
     return parts_->middle->fit_view;
 }

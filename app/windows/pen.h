@@ -34,6 +34,8 @@ struct Pen {
 
     enum class Side { left, centre, right };
 
+    std::vector<std::string>* cut = nullptr;  ///< takes the texts that had no room; may be null
+
     /// In the window's language.
     std::string say(const std::string& english) const { return words ? words->say(english) : english; }
 

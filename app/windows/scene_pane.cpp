@@ -7,6 +7,7 @@
 #include <vtkOpenGLState.h>
 #include <vtkTextureObject.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -37,10 +38,11 @@ std::optional<ImVec2> ScenePane::take_mouse(const char* name, const Box& sensiti
     }
     if (ImGui::IsItemActive()) {
         if (io.MouseDown[0] && !still) {
-            view_.azimuth =
-                std::remainder(view_.azimuth + kRadiansPerPixel * static_cast<double>(io.MouseDelta.x), 2 * M_PI);
-            view_.elevation =
-                std::clamp(view_.elevation + kRadiansPerPixel * static_cast<double>(io.MouseDelta.y), -1.5, 1.5);
+            // Along the picture's own axes, which a view of its own may have turned.
+            const Eigen::Vector2d by =
+                Eigen::Rotation2Dd(view_.roll) * Eigen::Vector2d(io.MouseDelta.x, -io.MouseDelta.y);
+            view_.azimuth = std::remainder(view_.azimuth + kRadiansPerPixel * by.x(), 2 * M_PI);
+            view_.elevation = std::clamp(view_.elevation - kRadiansPerPixel * by.y(), -1.5, 1.5);
         } else if (!io.MouseDown[0]) {
             view_.shift_mm += scene_->mm_per_pixel() * Eigen::Vector2d(io.MouseDelta.x, -io.MouseDelta.y);
         }

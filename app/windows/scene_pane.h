@@ -39,8 +39,14 @@ public:
     Ray sight(const ImVec2& window_pixel) const;
     ImVec2 pixel_of(const Eigen::Vector3d& p) const;
 
+    /// Millimetres of the head that a pixel in the middle covers.
+    double mm_per_pixel() const { return scene_->mm_per_pixel(); }
+
     const SceneView& view() const { return view_; }
     void set_view(const SceneView& view) { view_ = first_view_ = view; }
+    /// From there, until the person turns it; a double click still goes back to the first view.
+    void look(const SceneView& view) { view_ = view; }
+    const SceneView& first_view() const { return first_view_; }
 
 private:
     vtkSmartPointer<vtkGenericOpenGLRenderWindow> target_;

@@ -3,10 +3,11 @@
 #include "app/windows/operator_window.h"
 #include "app/windows/scene_view.h"
 #include "fake_model.h"
+#include "app/words/words.h"
 #include "write_picture.h"
 
 /// draw_windows scene FILE [azimuth elevation], or draw_windows window FILE [width height status [view of the match: 0
-/// to 2 [old, refused, evidence or answer]]]
+/// to 2 [old, refused, evidence, answer or plain [language]]]]
 int main(int argc, char** argv) {
     using namespace planlight;
     OperatorModel model = test::fake_model();
@@ -20,6 +21,7 @@ int main(int argc, char** argv) {
     if (argc > 4) settings.width = std::stoi(argv[3]), settings.height = std::stoi(argv[4]);
     if (argc > 5) model = test::fake_model_with(static_cast<StatusKind>(std::stoi(argv[5])));
     const std::string special = argc > 7 ? argv[7] : "";
+    if (argc > 8) settings.words = words_of(argv[8]);
     if (special == "old") {
         model.left.old_s = model.right.old_s = 7;
         model.left.note = "Left camera: no frame came for 7 s. Look at its cable and its power.";
