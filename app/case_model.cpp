@@ -9,6 +9,7 @@
 
 #include "app/belonging.h"
 #include "app/windows/orientation.h"
+#include "projection/mid_plane.h"
 
 namespace planlight {
 namespace {
@@ -53,24 +54,26 @@ std::vector<Eigen::Vector3d> points_on_skin(const Plan& plan) {
 
 }  // namespace
 
-std::string side_of_plan(const Case& the_case) {
+std::string side_of_plan(const Plan& plan, const SkinSurface& skin) {
     constexpr double kMiddle_mm = 10;                   // so near to the middle nothing is said to lie on a side
     constexpr double kEdge_mm = 2, kMostAtEdge = 0.04;  // more of the skin there: the volume was cut off
-    const auto& skin = the_case.skin.vertices_in_ct;
-    const std::vector<Eigen::Vector3d> points = points_on_skin(the_case.plan);
-    if (points.empty() || skin.empty()) return {};
-    const auto [low, high] = std::minmax_element(
-        skin.begin(), skin.end(), [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a.x() < b.x(); });
+    const auto& vertices = skin.mesh().vertices_in_ct;
+    const std::vector<Eigen::Vector3d> points = points_on_skin(plan);
+    if (points.empty() || vertices.empty()) return {};
+    const auto [low, high] =
+        std::minmax_element(vertices.begin(), vertices.end(),
+                            [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a.x() < b.x(); });
     for (const double edge : {low->x(), high->x()}) {
-        const auto at_edge = std::count_if(skin.begin(), skin.end(),
+        const auto at_edge = std::count_if(vertices.begin(), vertices.end(),
                                            [&](const Eigen::Vector3d& p) { return std::abs(p.x() - edge) < kEdge_mm; });
-        if (static_cast<double>(at_edge) > kMostAtEdge * static_cast<double>(skin.size())) return {};
+        if (static_cast<double>(at_edge) > kMostAtEdge * static_cast<double>(vertices.size())) return {};
     }
-    const double middle = (low->x() + high->x()) / 2;
+    const auto middle = find_mid_plane(skin);
+    if (!middle) return {};
     bool left = false, right = false;
     for (const auto& p : points) {
-        left = left || p.x() > middle + kMiddle_mm;  // +x is the patient's left
-        right = right || p.x() < middle - kMiddle_mm;
+        left = left || middle->left_mm(p) > kMiddle_mm;
+        right = right || middle->left_mm(p) < -kMiddle_mm;
     }
     return left && right ? "BOTH SIDES" : left ? "LEFT" : right ? "RIGHT" : "MIDDLE";
 }
@@ -84,7 +87,7 @@ OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing) {
     if (model.case_plan.empty()) model.case_plan = "Plan without a name";
     if (!names.plan_version.empty()) model.case_plan += ", version " + names.plan_version;
     if (!names.series_date.empty()) model.case_plan += " \u00b7 series of " + names.series_date;
-    model.case_side = side_of_plan(the_case);
+    model.case_side = side_of_plan(plan, drawing.skin);
     const auto counted = [](std::size_t count, const char* one, const char* many) {
         return fmt::format("{} {}", count, count == 1 ? one : many);
     };

@@ -9,9 +9,9 @@
 namespace planlight {
 
 /// The patient's side on which the plan lies on the skin: LEFT, RIGHT, BOTH SIDES or MIDDLE (within 10 mm), against the
-/// middle of the skin from left to right (+x in ct is the patient's left). Empty without a plan, and where the volume
-/// ends within the head at the left or the right, so that its middle is not the head's.
-std::string side_of_plan(const Case& the_case);
+/// plane that mirrors the head onto itself (`find_mid_plane`: a turned head lies across the middle of its box). Empty
+/// without a plan, where no such plane is found, and where the volume ends within the head at the left or the right.
+std::string side_of_plan(const Plan& plan, const SkinSurface& skin);
 
 /// What the operator window shows of a case before anything is scanned: title, skin, plan, table of its items.
 OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing);

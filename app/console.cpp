@@ -160,7 +160,8 @@ int run_and_explain(const std::function<int()>& command) {
     try {
         code = command();
     } catch (const Error& error) {
-        say(fmt::format("{}. {}", error.what(), error.remedy));
+        const std::string_view what = error.what();
+        say(fmt::format("{}{} {}", what, what.ends_with('?') ? "" : ".", error.remedy));
         code = static_cast<int>(error.exit_code);
     } catch (const std::bad_alloc&) {
         code = explain_short_memory();

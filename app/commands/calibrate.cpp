@@ -109,6 +109,7 @@ int run_calibrate(const CalibrateOptions& options) {
         rig.serials = observed.serials;
         if (const auto before = previous_rig(options.out); before && before->whole() && rig.whole())
             report.changes = changes_since(*before, rig);
+        keep_previous_rig(options.out);
         write_rig(rig, options.out);
         report.rig_file = options.out;
     }
@@ -136,6 +137,21 @@ std::optional<RigCalibration> previous_rig(const std::filesystem::path& file) {
         warn(fmt::format("the rig file there cannot be read and will be replaced: {}", error.what()));
         return std::nullopt;
     }
+}
+
+Path unused(const Path& file, const std::string& end) {
+    const auto with = [&](const std::string& name) {
+        Path other = file;
+        other.replace_extension();
+        return other += name + file.extension().string();
+    };
+    Path other = with(end);
+    for (int i = 2; std::filesystem::exists(other); ++i) other = with(fmt::format("{}-{}", end, i));
+    return other;
+}
+
+void keep_previous_rig(const Path& file) {
+    if (std::filesystem::exists(file)) write_safely(unused(file, "-before"), read_whole(file));
 }
 
 Run add_calibrate(CLI::App& app) {

@@ -187,19 +187,6 @@ std::vector<std::string> beside_former(const RigCalibration& former, const Calib
     return words;
 }
 
-path beside(const path& file, const std::string& end) {
-    path other = file;
-    other.replace_extension();
-    return other += end + file.extension().string();
-}
-
-/// A rig that worked is never written over, however often one calibrates.
-path unused(const path& file, const std::string& end) {
-    path other = beside(file, end);
-    for (int i = 2; std::filesystem::exists(other); ++i) other = beside(file, fmt::format("{}-{}", end, i));
-    return other;
-}
-
 bool ask_at_terminal() {
     fmt::print("Keep the new rig? [y/n] ");
     std::fflush(stdout);
@@ -222,11 +209,11 @@ Keeping decide(const CalibrateOptions& options, const std::vector<std::string>& 
 path write_as_decided(const RigCalibration& rig, const CalibrateOptions& options, Keeping keeping) {
     if (keeping == Keeping::discard) return {};
     if (keeping == Keeping::beside) {
-        const path file = beside(options.out, "-new");
+        const path file = unused(options.out, "-new");
         write_rig(rig, file);
         return file;
     }
-    if (std::filesystem::exists(options.out)) write_safely(unused(options.out, "-before"), read_whole(options.out));
+    keep_previous_rig(options.out);
     write_rig(rig, options.out);
     return options.out;
 }

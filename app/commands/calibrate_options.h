@@ -29,4 +29,10 @@ int run_calibrate_live(const CalibrateOptions& options);
 /// The calibration that this one would take the place of, if it can be read.
 std::optional<RigCalibration> previous_rig(const std::filesystem::path& file);
 
+/// "rig-new.json" for "rig.json" and "-new", or "rig-new-2.json" and on where it is there.
+std::filesystem::path unused(const std::filesystem::path& file, const std::string& end);
+
+/// A rig that worked is never written over: what is there is copied to NAME-before.json, or NAME-before-2.json and on.
+void keep_previous_rig(const std::filesystem::path& file);
+
 }  // namespace planlight

@@ -53,12 +53,12 @@ double epipolar_of(const Json& entry) {
     return known(entry.at(entry.contains("epipolar_px") ? "epipolar_px" : "epipolar_rms_px"));
 }
 
+/// What goes into the trend: a device that was knocked, or another room's rig file, is no drift.
 std::vector<EarlierCheck> earlier_checks(const Json& log, const std::string& rig_made_on, const Path& file) {
     std::vector<EarlierCheck> checks;
     try {
         for (const auto& entry : log.at("checks"))
-            if (entry.at("rig_made_on") == rig_made_on &&
-                entry.at("verdict") != text_of(DriftCheck::Verdict::cannot_tell))
+            if (entry.at("rig_made_on") == rig_made_on && entry.at("verdict") == text_of(DriftCheck::Verdict::good))
                 checks.push_back({entry.at("at_unix_s").get<double>() / 86400, epipolar_of(entry),
                                   known(entry.at("projector_rms_px"))});
     } catch (const Json::exception&) {
@@ -97,7 +97,8 @@ int run_check(CheckOptions options) {
     if (options.live) room = read_room(options.room);
     if (options.rig.empty() && room) options.rig = room->rig;
     if (options.rig.empty())
-        throw InputError({}, "no rig file was named", "Give --rig rig.json, or --room room.json, which names one.");
+        throw Error(ExitCode::usage, "no rig file was named",
+                    "Give --rig rig.json, or --room room.json, which names one.");
     const RigCalibration rig = read_rig(options.rig);
     Path file = options.log;
     if (file.empty()) {

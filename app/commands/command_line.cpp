@@ -12,6 +12,17 @@ void json_flag(CLI::App* command, bool& json) {
     command->add_flag("--json", json, "Print the result as JSON on standard output");
 }
 
+const CLI::Validator& png_file() {
+    static const CLI::Validator validator(
+        [](std::string& name) {
+            std::string ending = Path(name).extension().string();
+            for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+            return ending == ".png" ? std::string() : name + " does not end in .png: pictures are written as PNG";
+        },
+        "FILE.png");
+    return validator;
+}
+
 CLI::Option* preset_option(CLI::App* command, std::string& preset) {
     return command
         ->add_option("--preset", preset,

@@ -16,6 +16,9 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
 /// --json: the result as JSON on standard output, and nothing else there.
 void json_flag(CLI::App* command, bool& json);
 
+/// What a picture's file must be called: only PNG is written.
+const CLI::Validator& png_file();
+
 /// --preset: the simulated room.
 CLI::Option* preset_option(CLI::App* command, std::string& preset);
 

@@ -29,8 +29,9 @@ std::vector<Monitor> monitors_or_none() {
 /// The room that these devices may be: the first two cameras, and the first monitor that is not the operator's.
 RoomFile first_room(const std::vector<FoundCamera>& cameras, const std::vector<Monitor>& monitors) {
     if (cameras.size() < 2)
-        throw DeviceError("Cameras", fmt::format("{} of the two that a room needs answer", cameras.size()),
-                          "Look at their cables and power; GigE cameras must be in this machine's network.");
+        throw DeviceError(
+            "Cameras", fmt::format("{} of the two that a room needs answer; no room file was written", cameras.size()),
+            "Look at their cables and power; GigE cameras must be in this machine's network.");
     RoomFile room;
     room.name = "Room";
     room.rig = "rig.json";

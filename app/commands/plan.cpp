@@ -114,20 +114,23 @@ void list_plan(Listing& list, const Plan& plan) {
             way += (o.points_in_ct[i] - o.points_in_ct[i - 1]).norm();
         if (o.closed) way += (o.points_in_ct.front() - o.points_in_ct.back()).norm();
         list.add("osteotomy line", o.name,
-                 fmt::format("{}, {} points, {}", o.closed ? "closed" : "open", o.points_in_ct.size(),
-                             length_text(way, list.site)),
+                 fmt::format("{}, {} points, {} from point to point", o.closed ? "closed" : "open",
+                             o.points_in_ct.size(), length_text(way, list.site)),
                  o.points_in_ct.front());
     }
     for (const auto& b : plan.boreholes)
-        list.add("borehole", b.name, fmt::format("diameter {:g} mm, depth {:g} mm", b.diameter_mm, b.depth_mm),
+        list.add("borehole", b.name,
+                 fmt::format("diameter {}, depth {}", length_text(b.diameter_mm, list.site),
+                             length_text(b.depth_mm, list.site)),
                  b.position_in_ct);
     for (const auto& t : plan.trajectories)
         list.add("trajectory", t.name,
                  fmt::format("{}{}", length_text(t.length_mm(), list.site),
-                             t.diameter_mm > 0 ? fmt::format(", diameter {:g} mm", t.diameter_mm) : ""),
+                             t.diameter_mm > 0 ? ", diameter " + length_text(t.diameter_mm, list.site) : ""),
                  t.entry_in_ct);
     for (const auto& c : plan.cut_planes)
-        list.add("cut plane", c.name, fmt::format("{:g} x {:g} mm", c.width_mm, c.height_mm), c.origin_in_ct);
+        list.add("cut plane", c.name, length_text(c.width_mm, list.site) + " x " + length_text(c.height_mm, list.site),
+                 c.origin_in_ct);
 }
 
 void write(const PlanImport& read, const Patient& patient, const PlanOptions& options) {

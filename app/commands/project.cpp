@@ -156,7 +156,7 @@ Run add_project(CLI::App& app) {
         ->capture_default_str()
         ->check(CLI::IsMember({"dim", "hidden"}))
         ->needs(item);
-    sub->add_option("--out", o.out, "Picture to write (.png)")->required();
+    sub->add_option("--out", o.out, "Picture to write (.png)")->required()->check(png_file());
     json_flag(sub, o.json);
     return [options] { return run_project(*options); };
 }

@@ -145,6 +145,9 @@ int run_review(const ReviewOptions& options) {
     if (const auto report = options.case_folder / "report.html"; std::filesystem::exists(report))
         fmt::print("Report: {}\n", report.string());
     if (!options.landmarks.empty()) return run_landmarks(options, drawing, *cloud, model);
+    if (!display_is_there())
+        throw DeviceError("Display", "no window can be opened here",
+                          "Start the program in a desktop session, or give --picture FILE.png of `planlight review`.");
     show_model(model, view, words_of_window({}, read_site_settings()));
     return 0;
 }
@@ -172,7 +175,8 @@ Run add_review(CLI::App& app) {
         ->capture_default_str()
         ->needs(match);
     sub->add_option("--picture", o.picture, "Write a picture (.png) instead of opening a window; needs no display")
-        ->excludes(landmarks);
+        ->excludes(landmarks)
+        ->check(png_file());
     sub->add_option(
         "--out", o.recorded.out,
         "Of a recording: folder for its page (time line, errors, events) and pictures (default: beside it)");

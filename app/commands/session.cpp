@@ -48,6 +48,8 @@ Path recordings_folder(const SessionOptions& options) {
     return options.recordings.empty() ? options.case_folder / kRecordingsFolder : options.recordings;
 }
 
+constexpr const char* kLookedAt = "The last session is being looked at.";
+
 /// What the session may go on with. What was asked for and cannot be is refused; what would merely be offered is said.
 /// `rig`: null where it is not known yet.
 std::optional<ResumeOffer> resume_of(const SessionOptions& options, const Case& the_case, const RigCalibration* rig) {
@@ -56,10 +58,10 @@ std::optional<ResumeOffer> resume_of(const SessionOptions& options, const Case& 
         offer.at_once = true;
         return offer;
     }
-    const auto last = newest_recording(recordings_folder(options));
-    if (!last) return std::nullopt;
+    auto session = last_session(recordings_folder(options));
+    if (!session) return std::nullopt;
     try {
-        return resume_offer(*last, the_case, rig);
+        return resume_offer(std::move(session->last), session->recording, the_case, rig);
     } catch (const Error& why_not) {
         fmt::print(stderr, "The last session cannot be gone on with: {}.\n", why_not.what());
         return std::nullopt;
@@ -136,8 +138,8 @@ CaseDrawing drawing_of(const Case& the_case, const SiteSettings& site, SessionWi
 int run_in_simulated_room(const SessionOptions& options, const Case& the_case, const SiteSettings& site,
                           SessionWindow& window) {
     if (options.volume.empty())
-        throw InputError({}, "neither a room nor a simulated patient was named",
-                         "Give --room room.json for real devices, or --volume VOLUME for the simulated room.");
+        throw Error(ExitCode::usage, "neither a room nor a simulated patient was named",
+                    "Give --room room.json for real devices, or --volume VOLUME for the simulated room.");
     const Volume volume = window.while_made("The volume of the simulated patient is being read.", 0.3,
                                             [&] { return read_volume(options.volume, options.series_uid); });
     if (hash_of(volume) != the_case.volume_hash)
@@ -146,7 +148,7 @@ int run_in_simulated_room(const SessionOptions& options, const Case& the_case, c
     simulation::RoomSettings room;
     room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     room.seed = options.seed;
-    auto resume = resume_of(options, the_case, nullptr);
+    auto resume = window.while_made(kLookedAt, 0.5, [&] { return resume_of(options, the_case, nullptr); });
     const auto recorder = recorder_of(options, the_case, site);
     LiveOptions live = live_options(options, site, recorder.get());
     live.resume = std::move(resume);
@@ -165,7 +167,7 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
     const RigCalibration rig = read_rig(room.rig);
     if (options.projector_monitor.empty()) options.projector_monitor = room.monitor;
     if (options.projector_file.empty() && options.light_delay_ms < 0) options.projector_file = room.projector_file;
-    auto resume = resume_of(options, the_case, &rig);
+    auto resume = window.while_made(kLookedAt, 0.3, [&] { return resume_of(options, the_case, &rig); });
     const auto recorder = recorder_of(options, the_case, site);
     LiveOptions live = live_options(options, site, recorder.get());
     live.resume = std::move(resume);

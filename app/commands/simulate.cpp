@@ -52,7 +52,8 @@ std::vector<StereoFrame> record_frames(simulation::SimulatedRig& rig, const Simu
 int run_simulate(const SimulateOptions& options) {
     if (!options.board.empty()) return run_simulate_board(options);
     if (options.volume.empty())
-        throw InputError({}, "neither a patient nor a board is given", "Name a volume, or a board with --board.");
+        throw Error(ExitCode::usage, "neither a patient nor a board is given",
+                    "Name a volume, or a board with --board.");
     const Volume volume = read_volume(options.volume, options.series_uid);
     const Plan plan = options.plan.empty()
                           ? Plan{}
@@ -110,11 +111,12 @@ Run add_simulate(CLI::App& app) {
     SimulateOptions& o = *options;
     auto* sub = add_command(app, "simulate", "Captures of a simulated room, with ground truth in a file of its own",
                             "simulate Cranium.inv3 --plan frontal_defect.mrk.json --preset paper --seed 3 --out room");
-    sub->add_option("volume", o.volume, "The patient: DICOM folder or file, or InVesalius project");
+    auto* volume = sub->add_option("volume", o.volume, "The patient: DICOM folder or file, or InVesalius project");
     sub->add_option(
-        "--board", o.board,
-        "Instead of a patient a calibration board, as for `calibrate`; writes captures/ and truth.json. Served: "
-        "a person carries it about");
+           "--board", o.board,
+           "Instead of a patient a calibration board, as for `calibrate`; writes captures/ and truth.json. Served: "
+           "a person carries it about")
+        ->excludes(volume);
     sub->add_option("--poses", o.poses, "Of the board")->capture_default_str()->check(CLI::Range(1, 1000));
     sub->add_option("--plan", o.plan, "Plan, so that markers keep clear of it");
     series_option(sub, o.series_uid);

@@ -21,6 +21,7 @@ struct Figure {
     double goal_p95;  ///< 0: none
     std::vector<double> (*values)(const ChainFigures&);
 };
+constexpr double kUpdatesPerSecond = 10;  // what surgeons ask for
 constexpr Figure kFigures[] = {
     {"scan points to true skin", "mm", "/scan/error_mm", 0, [](auto& r) { return r.scan_error_mm; }},
     {"registration at plan points (TRE)", "mm", "/tre_mm", 1, [](auto& r) { return r.tre_mm; }},
@@ -123,7 +124,8 @@ Json summary_json(const PresetSummary& s) {
             {"updates", s.updates},
             {"one_marker_lost", {{"updates", s.lost_marker_updates}, {"lit", s.lost_marker_lit}}},
             {"two_markers_left", {{"updates", s.too_few_updates}, {"lit", s.too_few_lit}}},
-            {"reached", s.reached()}};
+            {"reached", s.missed().empty()},
+            {"missed", s.missed()}};
 }
 
 Json preparation_json(const Preparation& prepared) {
@@ -143,9 +145,15 @@ Json preparation_json(const Preparation& prepared) {
 
 }  // namespace
 
-bool PresetSummary::reached() const {
-    return matched_right == rooms && refused == 0 && updates_per_s >= 10 && too_few_lit == 0 &&
-           std::all_of(rows.begin(), rows.end(), [](const auto& r) { return r.reached; });
+std::vector<std::string> PresetSummary::missed() const {
+    std::vector<std::string> goals;
+    if (matched_right < rooms) goals.push_back("every patient found where it is");
+    if (refused > 0) goals.push_back("no room refused");
+    if (!(updates_per_s >= kUpdatesPerSecond)) goals.push_back(fmt::format("{:g} updates a second", kUpdatesPerSecond));
+    if (too_few_lit > 0) goals.push_back("dark with two markers left");
+    for (const ReportRow& r : rows)
+        if (!r.reached) goals.push_back(r.name + ", " + r.goal);
+    return goals;
 }
 
 PresetSummary summarise(const std::vector<ChainFigures>& all, const std::string& preset) {
@@ -180,10 +188,11 @@ PresetSummary summarise(const std::vector<ChainFigures>& all, const std::string&
 }
 
 std::string summary_text(const PresetSummary& s) {
+    const std::vector<std::string> missed = s.missed();
     std::string text =
         fmt::format("\n{} room: {} of {} patients found ({} yes, {} ask), {} refused; {:.1f} ms of work an update{}\n",
                     s.preset, s.matched_right, s.rooms, s.said_yes, s.said_ask, s.refused, s.rows.back().found.median,
-                    s.reached() ? "" : "   (a goal was missed)");
+                    missed.empty() ? "" : fmt::format("\n  MISSED: {}", fmt::join(missed, "; ")));
     text += fmt::format("  {:<38}{:>9}{:>9}{:>9}\n", "", "median", "95 %", "worst");
     for (const auto& r : s.rows)
         text += fmt::format("  {:<38}{:>9.3f}{:>9.3f}{:>9.3f} {:<4}{}\n", r.name, r.found.median, r.found.p95,

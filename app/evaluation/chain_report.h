@@ -28,7 +28,8 @@ struct PresetSummary {
     int dark_updates = 0, updates = 0;
     int lost_marker_lit = 0, lost_marker_updates = 0, too_few_lit = 0, too_few_updates = 0;
     double updates_per_s = 0;  ///< of the product's own work, at its median
-    bool reached() const;
+    /// Every goal that was missed, in words; empty when all were reached.
+    std::vector<std::string> missed() const;
 };
 
 /// Of the rooms of `preset`; the others in `rooms` are left out. Without any, all counts are 0.

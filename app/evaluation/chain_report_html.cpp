@@ -10,13 +10,15 @@ namespace planlight {
 namespace {
 
 std::string preset_section(const PresetSummary& s) {
-    const char* mark = s.reached() ? "yes" : "no";
+    const std::vector<std::string> missed = s.missed();
+    const char* mark = missed.empty() ? "yes" : "no";
     std::string html = fmt::format(
         "<h2>{} room</h2><div class=\"verdict {}\">{} {} of {} patients found from a random pose ({} by the program "
         "alone, {} "
-        "after a person's look), {} refused.</div>",
-        s.preset == "paper" ? "The paper's" : "The modern", mark, s.reached() ? "&#10003;" : "&#10007;",
-        s.matched_right, s.rooms, s.said_yes, s.said_ask, s.refused);
+        "after a person's look), {} refused.{}</div>",
+        s.preset == "paper" ? "The paper's" : "The modern", mark, missed.empty() ? "&#10003;" : "&#10007;",
+        s.matched_right, s.rooms, s.said_yes, s.said_ask, s.refused,
+        missed.empty() ? "" : xml_escaped(fmt::format(" Missed: {}.", fmt::join(missed, "; "))));
     html +=
         "<table><tr><th>Error against the simulator's truth</th><th>median</th><th>95 "
         "%</th><th>worst</th><th>count</th>"

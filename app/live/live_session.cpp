@@ -46,6 +46,8 @@ LiveSession::~LiveSession() {
     {
         const std::lock_guard lock(mutex_);
         ending_ = true;
+        ++darks_;  // a scan that runs ends at its next picture
+        light_ = {nullptr, light_.number + 1};
     }
     wake_.notify_all();
     thread_.join();
@@ -60,25 +62,37 @@ std::string LiveSession::refused_press(OperatorAction action) const {
     return {};
 }
 
+/// Under the lock: where the session stands once the presses that wait are given up.
+SessionState LiveSession::without_waiting() const {
+    for (const Press& press : presses_) {
+        const bool matches =
+            press.action == OperatorAction::do_register || press.action == OperatorAction::use_landmarks;
+        if (matches && state_ == SessionState::matching) return after(state_, SessionHappening::failed);
+        if (press.action == OperatorAction::confirm && press.from == SessionState::unsure) return SessionState::unsure;
+    }
+    return state_;
+}
+
 std::string LiveSession::post(OperatorAction action, AskedBy by) {
     if (action == OperatorAction::none) return {};
     {
         const std::lock_guard lock(mutex_);
         if (std::string why = refused_press(action); !why.empty()) return why;
         const bool dark = action == OperatorAction::dark || action == OperatorAction::stop;
+        const SessionState from = dark ? without_waiting() : state_;
         if (dark) {
             presses_.clear();
             ++darks_;
             light_ = {nullptr, light_.number + 1};
         }
         if (action == OperatorAction::scan) scan_there_ = false;  // the former one is given up
-        const SessionState next = after_press(state_, action, scan_there_).value_or(state_);
-        if (next != state_ && !(next == SessionState::verifying || state_ == SessionState::unsure))
+        const SessionState next = after_press(from, action, scan_there_).value_or(from);
+        if (next != state_ && (dark || !(next == SessionState::verifying || state_ == SessionState::unsure)))
             enter(next, blank_, model_, scan_there_);
+        presses_.push_back({action, darks_, state_});
         state_ = next;
         if (dark) model_.status = dark_status(state_);
         if (action == OperatorAction::confirm) model_.confirm = false;  // until there is something new to look at
-        presses_.push_back({action, darks_});
     }
     wake_.notify_all();
     if (observer_ && by == AskedBy::person) observer_->pressed(kActions.at(static_cast<std::size_t>(action)));
@@ -102,18 +116,21 @@ std::string LiveSession::post_light_item(std::optional<std::size_t> which) {
     return post(OperatorAction::light_item);
 }
 
-void LiveSession::happened(SessionHappening happening, const std::function<void(OperatorModel&)>& change) {
+bool LiveSession::happened(SessionHappening happening, const std::function<void(OperatorModel&)>& change) {
+    // Of these there are words where they lead nowhere, too; the others were overtaken by DARK then.
+    const bool may_stay = happening == SessionHappening::failed || happening == SessionHappening::skin_checked;
     {
         const std::lock_guard lock(mutex_);
-        if (view_of(state_).lights && permitted_ != darks_) return;
+        if (view_of(state_).lights && permitted_ != darks_) return false;
         const SessionState next = after(state_, happening);
-        if (happening == SessionHappening::scan_done) scan_there_ = true;
-        if (next == state_ && !change) return;
+        if (happening == SessionHappening::scan_done && next != state_) scan_there_ = true;
+        if (next == state_ && !(may_stay && change)) return false;
         if (next != state_) enter(next, blank_, model_, scan_there_);
         state_ = next;
         if (change) change(model_);
     }
     said();
+    return true;
 }
 
 /// Tells the observer what the banner says.

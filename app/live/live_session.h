@@ -19,6 +19,7 @@
 #include "app/session.h"
 #include "app/update_latency.h"
 #include "app/windows/operator_model.h"
+#include "planning_io/types/error.h"
 #include "planning_io/types/steady_clock.h"
 
 namespace planlight {
@@ -77,9 +78,17 @@ private:
     struct Press {
         OperatorAction action = OperatorAction::none;
         std::uint64_t darks = 0;
+        SessionState from = SessionState::opening;  ///< in which it was pressed
     };
     void run(const MakeRoom& make_room);
+    std::unique_ptr<Room> make(const MakeRoom& make_room);
+    void enter_room(const Room& room);
+    void device_lost(const Press& press, Session& session, const DeviceError& lost);
+    void refused(const Press& press, Session& session, const Error& refusal);
     void act(const Press& press, Session& session, Room& room);
+    void begin_anew(Session& session, Room& room);
+    void begin_to_follow(Session& session, Room& room);
+    void answer_dark(const Press& press, Session& session);
     void scan(Session& session);
     void find_patient(Session& session, const std::vector<PointPair>& landmarks);
     void confirm(Session& session);
@@ -89,6 +98,8 @@ private:
     ResumeCheck look_whether_it_holds(Session& session, const KeptMatch& match);
     void look_again(Session& session);
     void check_skin(Session& session);
+    bool looked_at(Instant now) const;
+    void show_measured(const Session::Update& update, OperatorModel& m) const;
     void show_verification(const Session::Update& update, LightGate::Ruling& ruling);
     void end_verification(Session& session);
     void light_item(Session& session);
@@ -102,9 +113,10 @@ private:
     std::optional<double> lit_per_s(const Session::Update& update);
     void play_fault(const LightGate::Ruling& ruling, Room& room);
     void stop_light(Session& session, const LightGate::Ruling& ruling);
-    /// What came of something: it leads on, and `change` is made with it; nothing of both where DARK was pressed
-    /// meanwhile and has led elsewhere.
-    void happened(SessionHappening happening, const std::function<void(OperatorModel&)>& change = {});
+    /// What came of something: it leads on, and `change` is made with it. False, and nothing of both, where DARK was
+    /// pressed meanwhile and has led elsewhere.
+    bool happened(SessionHappening happening, const std::function<void(OperatorModel&)>& change = {});
+    SessionState without_waiting() const;
     bool still_wanted(const Press& press) const;
     void set_progress(const std::string& headline, double share);
     void said();
@@ -148,10 +160,12 @@ private:
     Instant seen_at_{};                 ///< of the last frame, on the room's clock
     int landmark_ = -1;                 ///< that is lit for a person to look at; -1: the plan is lit
     int landmarks_to_look_at_ = 0;
-    std::string landmark_place_;        ///< of the one that is lit, in words: "front, left, high"
-    std::deque<Instant> lit_at_;        ///< of the last pictures, on the room's clock
-    int good_updates_ = 0;              ///< ALIGNED so often; then the simulated fault begins
-    std::optional<ResumeOffer> offer_;  ///< of the session's thread
+    std::optional<Instant> landmark_lit_from_;  ///< without a break since; empty: not lit yet
+    std::string cannot_verify_;                 ///< why no landmarks can be looked at, in sentences; empty: they can
+    std::string landmark_place_;                ///< of the one that is lit, in words: "front, left, high"
+    std::deque<Instant> lit_at_;                ///< of the last pictures, on the room's clock
+    int good_updates_ = 0;                      ///< ALIGNED so often; then the simulated fault begins
+    std::optional<ResumeOffer> offer_;          ///< of the session's thread
     std::atomic<bool> look_first_{false};
     std::optional<KeptMatch> away_;  ///< this session's own, while it is not known whether it still holds
     bool ending_ = false, following_ = false;

@@ -26,7 +26,9 @@ public:
             projector_.go_dark();
             return projector_.show(RgbImage(width(), height()), valid_until);
         }
-        return projector_.show(picture, valid_until);
+        const Instant lit = projector_.show(picture, valid_until);
+        if (!session_.light_permitted()) go_dark();  // DARK was pressed while it was handed over
+        return lit;
     }
     void go_dark() noexcept override {
         session_.show_alive();
@@ -56,7 +58,7 @@ void LiveSession::look(const Session& session, Room& room) {
         const auto found = [&](const GrayImage& picture) {
             std::vector<FoundMarker> shown;
             for (const auto& marker : find_markers(picture, session.tracking_settings().markers))
-                shown.push_back({marker.pixel, marker.radius_px});
+                shown.push_back({marker.pixel, marker.radius_px, FoundMarker::Pairing::not_asked});
             return shown;
         };
         view_.found(frame.at, found(frame.left), found(frame.right));
@@ -65,29 +67,39 @@ void LiveSession::look(const Session& session, Room& room) {
     }
 }
 
-void LiveSession::run(const MakeRoom& make_room) {
-    const std::unique_ptr<Room> room = make_room([this](const std::string& doing, std::optional<double> share) {
+/// Made while the window says what is being made.
+std::unique_ptr<Room> LiveSession::make(const MakeRoom& make_room) {
+    std::unique_ptr<Room> room = make_room([this](const std::string& doing, std::optional<double> share) {
         show_alive();
         change_model([&](OperatorModel& m) {
             if (state_ == SessionState::opening) m.status.headline = doing, m.status.share = share;
         });
     });
-    LightTap tap(room->projector(), *this);
-    CameraTap cameras(room->cameras(), view_);
     view_.set_old_after(std::max<Instant>(kOldAfter, 3 * room->look_interval()));
-    SessionSettings session_settings = settings_for(room->markers());
-    session_settings.observer = observer_;
     if (observer_)
         observer_->room_entered(
             {room->name(), room->simulated(), room->markers(), room->rig(), room->notes(), room->clock().now()});
-    session_settings.while_computing = [&room] { room->computing(); };
-    Session session(case_, drawing_, room->rig(), tap, cameras, room->clock(), session_settings);
-    const std::vector<std::string> notes = room->notes();
+    return room;
+}
+
+void LiveSession::enter_room(const Room& room) {
+    const std::vector<std::string> notes = room.notes();
     happened(SessionHappening::room_made, [&](OperatorModel& m) {
         m.status.details.insert(m.status.details.end(), notes.begin(), notes.end());
-        m.simulated = room->simulated();
-        m.case_subtitle = room->name() + " \u00b7 " + m.case_subtitle;
+        m.simulated = room.simulated();
+        m.case_subtitle = room.name() + " \u00b7 " + m.case_subtitle;
     });
+}
+
+void LiveSession::run(const MakeRoom& make_room) {
+    const std::unique_ptr<Room> room = make(make_room);
+    LightTap tap(room->projector(), *this);
+    CameraTap cameras(room->cameras(), view_);
+    SessionSettings session_settings = settings_for(room->markers());
+    session_settings.observer = observer_;
+    session_settings.while_computing = [&room] { room->computing(); };
+    Session session(case_, drawing_, room->rig(), tap, cameras, room->clock(), session_settings);
+    enter_room(*room);
     offer_to_resume();
     for (;;) {
         const Press press = next_press(following_ ? Instant{} : room->look_interval());
@@ -100,29 +112,40 @@ void LiveSession::run(const MakeRoom& make_room) {
         try {
             act(press, session, *room);
         } catch (const DeviceError& lost) {
-            // What is lost comes back by itself: the patient is still where the scan and the match say.
-            projecting_ = false;
-            session.go_dark();
-            view_.failed(lost.what());
-            happened(following_ ? SessionHappening::skin_checked : SessionHappening::failed, [&](OperatorModel& m) {
-                m.status = {StatusKind::dark,
-                            std::string("Dark: ") + lost.what() + ".",
-                            {lost.remedy, following_ ? "The light comes back by itself." : "Press the button again."}};
-            });
-            if (following_) std::this_thread::sleep_for(kLostPause);
+            device_lost(press, session, lost);
         } catch (const Error& refusal) {
-            following_ = projecting_ = false;
-            session.go_dark();
-            if (press.darks != darks_now()) {  // it was ended by DARK, and that has been said
-                happened(SessionHappening::failed);
-                continue;
-            }
-            happened(SessionHappening::failed, [&](OperatorModel& m) {
-                if (press.action == OperatorAction::scan) show_refused_scan(session, m);
-                m.status = {StatusKind::refused, std::string(refusal.what()) + ".", {refusal.remedy}};
-            });
+            refused(press, session, refusal);
         }
     }
+}
+
+/// What is lost comes back by itself: the patient is still where the scan and the match say.
+void LiveSession::device_lost(const Press& press, Session& session, const DeviceError& lost) {
+    projecting_ = false;
+    session.go_dark();
+    view_.failed(lost.what());
+    happened(following_ ? SessionHappening::skin_checked : SessionHappening::failed, [&](OperatorModel& m) {
+        if (press.action == OperatorAction::check_skin)  // the light comes back, and must not look as if it was checked
+            m.evidence.insert(m.evidence.begin(),
+                              std::string("The skin was not checked: ") + lost.what() + "; check it again.");
+        m.status = {StatusKind::dark,
+                    std::string("Dark: ") + lost.what() + ".",
+                    {lost.remedy, following_ ? "The light comes back by itself." : "Press the button again."}};
+    });
+    if (following_) std::this_thread::sleep_for(kLostPause);
+}
+
+void LiveSession::refused(const Press& press, Session& session, const Error& refusal) {
+    following_ = projecting_ = false;
+    session.go_dark();
+    if (press.darks != darks_now()) {  // it was ended by DARK, and that has been said
+        happened(SessionHappening::failed);
+        return;
+    }
+    happened(SessionHappening::failed, [&](OperatorModel& m) {
+        if (press.action == OperatorAction::scan) show_refused_scan(session, m);
+        m.status = {StatusKind::refused, std::string(refusal.what()) + ".", {refusal.remedy}};
+    });
 }
 
 std::uint64_t LiveSession::darks_now() const {
@@ -168,37 +191,27 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
     begin(press);
     // A scan's pictures are stripes, in which nobody looks for markers.
     view_.expect_found(press.action != OperatorAction::scan && press.action != OperatorAction::check_skin);
+    if (const bool lights = press.action == OperatorAction::scan || press.action == OperatorAction::check_skin ||
+                            press.action == OperatorAction::track || press.action == OperatorAction::confirm;
+        lights)
+        permit_light(press);
     switch (press.action) {
         case OperatorAction::scan:
-            offer_.reset();
-            away_.reset();
-            look_first_ = false;
-            following_ = projecting_ = false;
-            permit_light(press);
-            room.let_patient_move(false);
-            scan(session);
+            begin_anew(session, room);
             return;
         case OperatorAction::do_register:
         case OperatorAction::use_landmarks:
             find_patient(session, newest_landmarks());
             return;
         case OperatorAction::check_skin:
-            permit_light(press);
             room.let_patient_move(false);  // was asked to lie still
             check_skin(session);
             room.let_patient_move(following_);
             break;
         case OperatorAction::track:
-            permit_light(press);
-            if (look_first_) room.let_patient_move(false);  // was asked to lie still
-            look_again(session);
-            gate_.restart();
-            end_verification(session);
-            following_ = true;
-            room.let_patient_move(true);
+            begin_to_follow(session, room);
             break;
         case OperatorAction::confirm:
-            permit_light(press);
             if (offer_)
                 resume(session);
             else
@@ -209,19 +222,42 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
             break;
         case OperatorAction::dark:
         case OperatorAction::stop:
-            following_ = projecting_ = false;
-            session.go_dark();
-            change_model([&](OperatorModel& m) {
-                darks_answered_ = press.darks;
-                m.scene.light = nullptr;
-                if (!view_of(state_).lights) m.status = dark_status(state_);
-            });
+            answer_dark(press, session);
             return;
         case OperatorAction::none:
         case OperatorAction::quit:
             break;
     }
     if (following_) follow(session, room);
+}
+
+void LiveSession::begin_anew(Session& session, Room& room) {
+    offer_.reset();
+    away_.reset();
+    look_first_ = false;
+    following_ = projecting_ = false;
+    room.let_patient_move(false);
+    scan(session);
+}
+
+void LiveSession::begin_to_follow(Session& session, Room& room) {
+    if (look_first_) room.let_patient_move(false);  // was asked to lie still
+    look_again(session);
+    gate_.restart();
+    end_verification(session);
+    following_ = true;
+    room.let_patient_move(true);
+}
+
+void LiveSession::answer_dark(const Press& press, Session& session) {
+    following_ = projecting_ = false;
+    session.go_dark();
+    change_model([&](OperatorModel& m) {
+        darks_answered_ = press.darks;
+        m.scene.light = nullptr;
+        if (!view_of(state_).lights) m.status = dark_status(state_);
+    });
+    said();
 }
 
 }  // namespace planlight

@@ -13,6 +13,11 @@
 #include "planning_io/types/error.h"
 
 namespace planlight {
+namespace {
+
+constexpr int kLandmarksToVerify = 2;
+
+}  // namespace
 
 void LiveSession::scan(Session& session) {
     {
@@ -112,7 +117,15 @@ void LiveSession::confirm(Session& session) {
 /// lit again, and verified.
 void LiveSession::confirm_light(Session& session) {
     landmarks_to_look_at_ = static_cast<int>(session.landmarks().size());
-    if (++landmark_ < landmarks_to_look_at_) {
+    landmark_lit_from_.reset();
+    cannot_verify_.clear();
+    if (landmarks_to_look_at_ < kLandmarksToVerify) {
+        cannot_verify_ = fmt::format(
+            "{} of the two places to look at can be lit and seen by both cameras. Uncover more of the head or turn it, "
+            "and scan again.",
+            landmarks_to_look_at_ == 0 ? "None" : "Only one");
+        happened(SessionHappening::landmarks_seen);
+    } else if (++landmark_ < landmarks_to_look_at_) {
         session.light_landmark(static_cast<std::size_t>(landmark_));
         landmark_place_ = words_of_place(drawing_.skin, session.landmarks()[static_cast<std::size_t>(landmark_)]);
     } else {
@@ -133,6 +146,7 @@ void LiveSession::confirm_light(Session& session) {
 
 void LiveSession::end_verification(Session& session) {
     landmark_ = -1;
+    cannot_verify_.clear();
     session.light_landmark(std::nullopt);
     change_model([&](OperatorModel& m) {
         m.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
@@ -157,7 +171,11 @@ void LiveSession::light_item(Session& session) {
 
 /// What is said while a landmark is lit, where nothing worse is to be said.
 void LiveSession::show_verification(const Session::Update& update, LightGate::Ruling& ruling) {
+    if (!update.overlay.lit) landmark_lit_from_.reset();
+    if (landmark_ < 0 && !cannot_verify_.empty() && update.overlay.lit && !ruling.stop)
+        ruling.details.insert(ruling.details.begin(), "The light cannot be verified: " + cannot_verify_);
     if (landmark_ < 0 || !update.overlay.lit || ruling.stop) return;
+    if (!landmark_lit_from_) landmark_lit_from_ = update.overlay.lit_from;
     std::erase_if(ruling.details, [](const std::string& detail) {  // that has been done
         return detail.find("\"Show landmarks\"") != std::string::npos;
     });
@@ -176,7 +194,7 @@ void LiveSession::check_skin(Session& session) {
         if (!light_permitted()) throw CheckFailedError("The check was ended by DARK", "Press Track to go on.");
         set_progress(view_of(SessionState::checking_skin).headline, static_cast<double>(done) / std::max(1, of));
     });
-    std::string words = "Skin checked: " + check.why_not + "; check it again.";
+    std::string words = "The skin was not checked: " + check.why_not + "; check it again.";
     if (check.known) {
         gate_.skin_checked(check.off_mm);
         words = fmt::format("Skin checked: the plan's points lie within {:.1f} mm of where the markers put them.",
@@ -267,6 +285,23 @@ void LiveSession::note_latency(const Session::Update& update, OperatorModel& m) 
         m.evidence.push_back(latency_words_);
 }
 
+/// A landmark that has only just been lit cannot have been looked at: a press that bounces says nothing.
+bool LiveSession::looked_at(Instant now) const {
+    constexpr Instant kLeast = std::chrono::milliseconds(500);
+    return landmark_ < 0 || (landmark_lit_from_ && now - *landmark_lit_from_ >= kLeast);
+}
+
+/// Beside each item how far its light was seen off; nothing while the plan is not lit.
+void LiveSession::show_measured(const Session::Update& update, OperatorModel& m) const {
+    const bool plan_lit = update.overlay.lit && landmark_ < 0;
+    for (std::size_t i = 0; i < m.rows.size(); ++i) {
+        if (!plan_lit) m.rows[i].light_off_mm.reset();
+        if (!plan_lit || !update.light || i >= update.light->items.size()) continue;
+        const ItemLight& item = update.light->items[i];
+        m.rows[i].light_off_mm = item.known() ? std::optional(item.off_mm) : std::nullopt;
+    }
+}
+
 void LiveSession::show_update(const Session& session, const Room& room, const Session::Update& update,
                               const LightGate::Ruling& ruling) {
     const auto light = room.true_light(session.lit_drawing(), update.overlay);
@@ -296,14 +331,10 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
         // A yes that waits for its turn is not asked for twice: the second would be of what has not been lit yet.
         const bool said_yes = std::any_of(presses_.begin(), presses_.end(),
                                           [](const Press& press) { return press.action == OperatorAction::confirm; });
-        m.confirm = update.overlay.lit && ruling.ask_to_verify && !said_yes;
+        m.confirm = update.overlay.lit && ruling.ask_to_verify && !said_yes && looked_at(update.frame.at);
         m.next = m.confirm ? OperatorAction::confirm : OperatorAction::none;
         m.confirm_words = landmark_ >= 0 ? fmt::format("Light {} is right", landmark_ + 1) : "Show landmarks";
-        for (std::size_t i = 0;
-             landmark_ < 0 && update.light && i < std::min(m.rows.size(), update.light->items.size()); ++i) {
-            const ItemLight& item = update.light->items[i];
-            m.rows[i].light_off_mm = item.known() ? std::optional(item.off_mm) : std::nullopt;
-        }
+        show_measured(update, m);
         m.figures = figures;
         m.scene.light = light;
         if (update.overlay.lit) m.projector_view = projector_view(session.rig(), update.overlay.rig_from_ct.inverse());

@@ -34,7 +34,7 @@ bool alike(const SeenPicture& a, const SeenPicture& b) {
     if (a.searched != b.searched || a.found.size() != b.found.size()) return false;
     for (const FoundMarker& one : a.found)
         if (std::none_of(b.found.begin(), b.found.end(), [&](const FoundMarker& other) {
-                return (other.pixel - one.pixel).norm() < kSamePlace_px && other.used == one.used;
+                return (other.pixel - one.pixel).norm() < kSamePlace_px && other.pairing == one.pairing;
             }))
             return false;
     const std::vector<double> of_a = block_means(*a.picture), of_b = block_means(*b.picture);
@@ -93,6 +93,8 @@ void LiveView::failed(const std::string& why) {
 
 void LiveView::put_into(OperatorModel& model) const {
     const std::lock_guard lock(mutex_);
+    if (!left_note_.empty()) model.left.note = left_note_;
+    if (!right_note_.empty()) model.right.note = right_note_;
     if (!shown_.left.picture) return;
     const Instant age = clock_.now() - shown_.taken;
     const int old_s = age < old_after_ ? 0 : std::max(1, static_cast<int>(seconds(age)));

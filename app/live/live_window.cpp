@@ -24,8 +24,6 @@ namespace {
 
 constexpr double kLongestRest_s = 0.03;  ///< between two looks at the session
 
-/// Set by Ctrl-C or a polite kill: the loop ends as if the window had been closed, and everything is dark on the way
-/// out.
 /// The monitor for the light: as asked for, else the first that is not the primary one; empty when there is only one.
 std::string light_monitor(const LiveOptions& options) {
     if (!options.projector_monitor.empty()) return options.projector_monitor;
@@ -187,7 +185,6 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
             projector->session_lives(session.alive_at());
         }
         if (action == OperatorAction::quit) return 0;
-        if (projector && (action == OperatorAction::dark || action == OperatorAction::stop)) projector->go_dark();
         // Landmarks that stand in the window count for every match of their scan: a match that they refuse stays
         // refused.
         if (action == OperatorAction::do_register || action == OperatorAction::use_landmarks)
@@ -196,6 +193,8 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
             window.say(session.post_light_item(window.item_wanted()));
         else
             window.say(session.post(action));
+        // After the post: what the session hands over from now on is no light any more.
+        if (projector && (action == OperatorAction::dark || action == OperatorAction::stop)) projector->go_dark();
         if (options.autoplay && meter.idle_s() >= options.idle_first_s)
             session.post(autoplay.next(model), AskedBy::program);
         screenshots.take(window, model, session);

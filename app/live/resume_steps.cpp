@@ -25,7 +25,7 @@ void LiveSession::offer_to_resume() {
         m.status.headline =
             fmt::format("Ready to scan, or to go on with the match of {}.", time_of_day(offer_->match.made_utc));
     });
-    if (offer_->at_once) post(OperatorAction::confirm);
+    if (offer_->at_once && darks_now() == 0) post(OperatorAction::confirm, AskedBy::program);
 }
 
 /// Light only when markers, rig and skin agree with the match; what does not is said by whoever catches it.
@@ -43,7 +43,6 @@ void LiveSession::resume(Session& session) {
     const ResumeCheck check = look_whether_it_holds(session, match);
     gate_.new_match();
     landmark_ = -1;
-    offer_.reset();
     const RegistrationResult& found = *session.registration();
     OperatorModel shown = blank_;
     show_match(case_, found, nullptr, shown);
@@ -56,7 +55,8 @@ void LiveSession::resume(Session& session) {
                     time_of_day(match.made_utc), check.markers, check.marker_off_mm, check.skin_off_mm));
     shown.evidence.insert(shown.evidence.end(), blank_.evidence.begin(), blank_.evidence.end());
     const bool unsure = found.verdict == Verdict::ask && !match.confirmed;
-    happened(unsure ? SessionHappening::match_resumed_unsure : SessionHappening::match_resumed, [&](OperatorModel& m) {
+    const auto happening = unsure ? SessionHappening::match_resumed_unsure : SessionHappening::match_resumed;
+    const bool taken = happened(happening, [&](OperatorModel& m) {
         m.scene = shown.scene;
         m.rows = shown.rows;
         m.fit = shown.fit;
@@ -69,6 +69,7 @@ void LiveSession::resume(Session& session) {
                         {"Press Track, and look at the light on two landmarks before you use it."},
                         {}};
     });
+    if (taken) offer_.reset();  // else it stands as it stood: DARK was pressed while it was looked at
 }
 
 void LiveSession::look_before_light() {

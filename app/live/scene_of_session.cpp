@@ -50,7 +50,8 @@ std::vector<FoundMarker> found_markers(const std::vector<PatientTracker::Seen>& 
     std::vector<FoundMarker> found;
     for (const auto& one : seen)
         if (all || one.marker >= 0)
-            found.push_back({one.left_or_right.pixel, one.left_or_right.radius_px, one.marker >= 0});
+            found.push_back({one.left_or_right.pixel, one.left_or_right.radius_px,
+                             one.marker >= 0 ? FoundMarker::Pairing::both : FoundMarker::Pairing::alone});
     return found;
 }
 

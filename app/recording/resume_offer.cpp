@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "app/recording/recording_head.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/recording/recording_reader.h"
@@ -20,17 +22,23 @@ struct Fate {
     std::string found;  ///< the last one
     std::string why_none = "nobody was found in that session, or it was recorded without what that takes (--anonymous)";
     bool confirmed = false;
+    bool untouched = true;
     std::string stopped;  ///< why its light was stopped, and not asked for again
 
     void take(const RecordingChunk& chunk) {
         const std::string& text = chunk.payload;
         if (chunk.type == chunk_types::kMatch) {
+            untouched = false;
             match = found = text;
             confirmed = false;
             stopped.clear();
         } else if (text.starts_with(R"({"what":"asked","call":"scan")")) {
+            untouched = false;
             match.clear();
             why_none = "a new scan had begun in that session, and it did not come to a match";
+        } else if (text.starts_with(R"({"what":"asked","call":"find_patient")")) {
+            match.clear();  // by landmarks, say: a match that they refuse stays refused
+            why_none = "the patient was looked for anew in that session, and was not found";
         } else if (text.starts_with(R"({"what":"asked","call":"confirm")")) {
             confirmed = true;
         } else if (text.starts_with(R"({"what":"gate","call":"restart")")) {
@@ -80,6 +88,7 @@ LastMatch last_match_of(const fs::path& recording) {
     if (!headed)
         throw DamagedFileError(recording, "does not say whose it is",
                                "It ends before its first chunk: there is nothing in it.");
+    last.untouched = fate.untouched;
     if (!fate.found.empty()) last.found = kept_match_of(fate.found, recording);
     if (fate.match.empty()) {
         last.why_none = fate.why_none;
@@ -93,7 +102,10 @@ LastMatch last_match_of(const fs::path& recording) {
 }
 
 ResumeOffer resume_offer(const fs::path& recording, const Case& the_case, const RigCalibration* rig) {
-    LastMatch last = last_match_of(recording);
+    return resume_offer(last_match_of(recording), recording, the_case, rig);
+}
+
+ResumeOffer resume_offer(LastMatch last, const fs::path& recording, const Case& the_case, const RigCalibration* rig) {
     check_names(last, the_case, recording);
     if (!last.match) throw InputError(recording, "has no match to go on with: " + last.why_none, kScan);
     const auto& state = last.match->registration.rig;
@@ -105,20 +117,25 @@ ResumeOffer resume_offer(const fs::path& recording, const Case& the_case, const 
     return {std::move(*last.match), recording, false};
 }
 
-std::optional<fs::path> newest_recording(const fs::path& folder) {
+std::optional<LastSession> last_session(const fs::path& folder) {
     constexpr auto kOldest = std::chrono::hours(12);
-    std::optional<fs::path> newest;
-    fs::file_time_type newest_at{};
+    const auto now = fs::file_time_type::clock::now();
+    std::vector<std::pair<fs::file_time_type, fs::path>> recordings;
     std::error_code fault;
     for (fs::directory_iterator entry(folder, fault), end; !fault && entry != end; entry.increment(fault)) {
         if (entry->path().extension() != ".plrec") continue;
         const auto at = fs::last_write_time(entry->path(), fault);
-        if (fault || (newest && at <= newest_at)) continue;
-        newest = entry->path();
-        newest_at = at;
+        if (!fault && now - at <= kOldest) recordings.emplace_back(at, entry->path());
     }
-    if (newest && fs::file_time_type::clock::now() - newest_at > kOldest) return std::nullopt;
-    return newest;
+    std::sort(recordings.rbegin(), recordings.rend());
+    for (const auto& [at, recording] : recordings) {
+        try {
+            LastMatch last = last_match_of(recording);
+            if (!last.untouched) return LastSession{recording, std::move(last)};
+        } catch (const Error&) {  // no recording, or none that says whose it is
+        }
+    }
+    return std::nullopt;
 }
 
 }  // namespace planlight

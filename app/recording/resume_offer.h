@@ -21,17 +21,28 @@ struct ResumeOffer {
 struct LastMatch {
     RecordingHead head;
     std::optional<KeptMatch> match;
-    std::string why_none;            ///< in words, where there is none
+    std::string why_none;   ///< in words, where there is none
+    bool untouched = true;  ///< nobody scanned or went on with anything: a session before it may be gone on with
     std::optional<KeptMatch> found;  ///< the last one that was found, whatever became of it
 };
+/// Throws DamagedFileError where it does not say whose it is.
 LastMatch last_match_of(const std::filesystem::path& recording);
 
 /// What a session of this case can go on with. Throws InputError, with both names, when the recording is of another
 /// case, plan, program or (where it is given) rig, or has no match to go on with; DamagedFileError.
 ResumeOffer resume_offer(const std::filesystem::path& recording, const Case& the_case,
                          const RigCalibration* rig = nullptr);
+/// The same of what `last_match_of` gave.
+ResumeOffer resume_offer(LastMatch last, const std::filesystem::path& recording, const Case& the_case,
+                         const RigCalibration* rig = nullptr);
 
-/// The recording of that folder that was written to last, if that was in the last twelve hours; empty: none.
-std::optional<std::filesystem::path> newest_recording(const std::filesystem::path& folder);
+/// The last session of that folder, by when its recording was written to, that did anything, if that was in the last
+/// twelve hours: what ended before anybody pressed anything, or before it said whose it was, is passed over. Empty:
+/// none.
+struct LastSession {
+    std::filesystem::path recording;
+    LastMatch last;
+};
+std::optional<LastSession> last_session(const std::filesystem::path& folder);
 
 }  // namespace planlight

@@ -8,7 +8,8 @@ namespace {
 
 constexpr ImU32 kShadow = IM_COL32(0, 0, 0, 200), kGreyed = IM_COL32(105, 105, 105, 255);
 
-/// Rings round what was found: whole where both cameras have it, amber and broken where this one alone has.
+/// Rings round what was found: whole where both cameras have it, amber and broken where this one alone has, grey where
+/// nobody has compared them.
 void draw_found(const Pen& pen, const std::vector<FoundMarker>& found, ImVec2 low, float zoom) {
     constexpr int kArcs = 6;
     constexpr float kTurn = 2 * 3.14159265F;
@@ -19,8 +20,9 @@ void draw_found(const Pen& pen, const std::vector<FoundMarker>& found, ImVec2 lo
                         low.y + zoom * (static_cast<float>(marker.pixel.y()) + 0.5F));
         const float radius = std::max(7 * s, zoom * static_cast<float>(marker.radius_px) + 4 * s);
         pen.list->AddCircle(at, radius, kShadow, 32, 4);
-        if (marker.used) {
-            pen.list->AddCircle(at, radius, theme::kGreen, 32, 2);
+        if (marker.pairing != FoundMarker::Pairing::alone) {
+            const bool both = marker.pairing == FoundMarker::Pairing::both;
+            pen.list->AddCircle(at, radius, both ? theme::kGreen : theme::kText, 32, both ? 2.0F : 1.5F);
             continue;
         }
         for (int i = 0; i < kArcs; ++i) {
@@ -32,7 +34,8 @@ void draw_found(const Pen& pen, const std::vector<FoundMarker>& found, ImVec2 lo
 }
 
 std::string counted(const Pen& pen, const std::vector<FoundMarker>& found) {
-    const auto alone = std::count_if(found.begin(), found.end(), [](const FoundMarker& m) { return !m.used; });
+    const auto alone = std::count_if(found.begin(), found.end(),
+                                     [](const FoundMarker& m) { return m.pairing == FoundMarker::Pairing::alone; });
     std::string words = pen.say(std::to_string(found.size()) + (found.size() == 1 ? " marker" : " markers"));
     if (alone > 0) words += ", " + pen.say(std::to_string(alone) + " here alone");
     return words;

@@ -107,7 +107,8 @@ enum class StepState { waiting, active, done, attention };
 struct FoundMarker {
     Eigen::Vector2d pixel;
     double radius_px = 0;
-    bool used = true;  ///< both cameras have it; false: this one alone
+    enum class Pairing { both, alone, not_asked };
+    Pairing pairing = Pairing::both;  ///< whether both cameras have it, or this one alone
 
     bool operator==(const FoundMarker&) const = default;
 };

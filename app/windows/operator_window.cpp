@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <map>
+#include <thread>
 #include <utility>
 
 #include "app/windows/camera_texture.h"
@@ -219,6 +220,13 @@ struct OperatorWindow::Parts {
         return wanted;
     }
 
+    /// The question whether the light may go out is not asked of darkness.
+    void forget_question(const OperatorModel& model) {
+        if (!asks_to_close || model.light_on) return;
+        asks_to_close = false;
+        drawn.reset();
+    }
+
     /// True when the window is to be closed.
     bool take_close(const OperatorModel& model) {
         if (!gui.asked_to_close()) return false;
@@ -236,7 +244,9 @@ OperatorWindow::~OperatorWindow() = default;
 OperatorAction OperatorWindow::frame(const OperatorModel& model) {
     Parts& parts = *parts_;
     parts.gui.take_input(0);
-    if (parts.take_close(model)) return parts.dark_pressed ? OperatorAction::dark : OperatorAction::quit;
+    if (parts.take_close(model))
+        return std::exchange(parts.dark_pressed, false) ? OperatorAction::dark : OperatorAction::quit;
+    parts.forget_question(model);
     OperatorAction wanted = OperatorAction::none;
     if (parts.must_draw(model)) {
         const OperatorAction by_key = parts.take_key(model);
@@ -270,7 +280,11 @@ void OperatorWindow::open_evidence() {
 }
 
 void OperatorWindow::rest(double longest_s) {
-    if (!parts_->gui.touched()) parts_->gui.take_input(longest_s);
+    constexpr auto kLeast = std::chrono::milliseconds(5);  // while a mouse moves, too: the light is made beside it
+    if (parts_->gui.touched())
+        std::this_thread::sleep_for(kLeast);
+    else
+        parts_->gui.take_input(longest_s);
 }
 
 std::size_t OperatorWindow::frames_drawn() const {

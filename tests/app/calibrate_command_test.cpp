@@ -21,6 +21,7 @@ TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
     const auto simulated =
         run_planlight("simulate" + board + " --preset paper --seed 2 --poses 4 --out room --json", root);
     ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
+    std::ofstream(root / "rig.json") << "what stood here before";
     const auto run = run_planlight(
         "calibrate room/captures" + board + " --serial-left L-1 --serial-projector P-9 --out rig.json --json", root);
     ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -31,6 +32,7 @@ TEST(CalibrateCommand, MakesARigOfCapturesAndNeverSavesABadOneOverAGoodOne) {
         EXPECT_LT(report["devices"][device]["held_out_rms_px"].get<double>(), 0.2) << device;
     }
     EXPECT_EQ(report["poses"], 4);
+    EXPECT_EQ(whole(root / "rig-before.json"), "what stood here before") << "a file is never written over in silence";
     const std::string page = whole(root / "rig-calibration.html");
     EXPECT_NE(page.find("Predicted error over the working volume"), std::string::npos);
     EXPECT_EQ(page.find("http"), std::string::npos) << "nothing comes from a network";
@@ -123,7 +125,7 @@ TEST(BoardCommand, WritesTheSheetTwice) {
 
 TEST(SimulateCommand, NeedsAPatientOrABoard) {
     const TemporaryFolder folder;
-    expect_refused(run_planlight("simulate --out room", folder.path()), 3, "neither a patient nor a board");
+    expect_refused(run_planlight("simulate --out room", folder.path()), 2, "neither a patient nor a board");
 }
 
 }  // namespace

@@ -120,7 +120,36 @@ TEST_F(ResumeRecording, AScanThatBeganAfterItOrLightThatWasStoppedEndsTheOffer) 
         EXPECT_THROW(resume_offer(file, test::example_case().prepared), InputError);
     };
     refused(R"({"what":"asked","call":"scan","utc":"2026-01-01T00:00:00Z"})");
+    // Looked for anew, by landmarks, and not found: the match that they contradict is not offered again.
+    refused(R"({"what":"asked","call":"find_patient","utc":"2026-01-01T00:00:00Z","landmarks":[]})");
     refused(R"({"what":"gate","call":"step","at_ns":1,"trust":"dark","headline":"x","stop":true})");
+}
+
+// A power cut, and then a start that a missing camera ended: the session before is the one to go on with.
+TEST_F(ResumeRecording, SessionsThatDidNothingArePassedOver) {
+    const auto all = chunks();
+    const test::TemporaryFolder folder;
+    EXPECT_FALSE(last_session(folder.path()));
+    const auto older = [&](const fs::path& file, int minutes) {
+        fs::last_write_time(file, fs::file_time_type::clock::now() - std::chrono::minutes(minutes));
+        return file;
+    };
+    const fs::path before = older(written(all, all.size(), folder.path() / "before.plrec"), 30);
+    older(written(all, 1, folder.path() / "ended-at-once.plrec"), 20);
+    std::ofstream(folder.path() / "empty.plrec");
+    older(folder.path() / "empty.plrec", 10);
+    const auto found = last_session(folder.path());
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->recording, before);
+    EXPECT_TRUE(found->last.match);
+
+    const auto scanned = std::find_if(all.begin(), all.end(),
+                                      [](const auto& c) { return c.payload.find("scanned") != std::string::npos; });
+    const fs::path scan_only =
+        older(written(all, static_cast<std::size_t>(scanned - all.begin()) + 1, folder.path() / "scan.plrec"), 5);
+    EXPECT_EQ(last_session(folder.path())->recording, scan_only) << "there the patient was scanned anew";
+    older(before, 13 * 60), older(scan_only, 13 * 60);
+    EXPECT_FALSE(last_session(folder.path())) << "of yesterday";
 }
 
 TEST_F(ResumeRecording, OfAnotherCasePlanProgramOrRigIsRefusedByName) {

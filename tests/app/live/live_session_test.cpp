@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <stdexcept>
 #include <thread>
 
@@ -27,6 +28,53 @@ OperatorModel wait_for(LiveSession& session, const char* what, const Holds& hold
     }
 }
 
+/// Cameras that give no frame while they are held: the session's thread waits, and what is pressed waits with it.
+class HeldCameras final : public StereoCamera {
+public:
+    HeldCameras(StereoCamera& cameras, std::atomic<bool>& held, std::atomic<bool>& waits)
+        : cameras_(cameras), held_(held), waits_(waits) {}
+    StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override {
+        return cameras_.grab(not_before, patience);
+    }
+    StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) override {
+        for (; held_; std::this_thread::sleep_for(1ms)) waits_ = true;
+        waits_ = false;
+        return cameras_.newest(not_before, patience);
+    }
+
+private:
+    StereoCamera& cameras_;
+    std::atomic<bool>&held_, &waits_;
+};
+
+class HeldRoom final : public Room {
+public:
+    HeldRoom(std::unique_ptr<Room> room, std::atomic<bool>& held, std::atomic<bool>& waits)
+        : room_(std::move(room)), cameras_(room_->cameras(), held, waits) {}
+    std::string name() const override { return room_->name(); }
+    const RigCalibration& rig() const override { return room_->rig(); }
+    Projector& projector() override { return room_->projector(); }
+    StereoCamera& cameras() override { return cameras_; }
+    const Clock& clock() const override { return room_->clock(); }
+    bool simulated() const override { return true; }
+    void computing() override { room_->computing(); }
+    void let_patient_move(bool moves) override { room_->let_patient_move(moves); }
+
+private:
+    std::unique_ptr<Room> room_;
+    HeldCameras cameras_;
+};
+
+/// Counts the updates since a landmark was lit.
+class CountsUpdates final : public SessionObserver {
+public:
+    void asked(SessionCall call, const std::vector<PointPair>&, int) noexcept override {
+        if (call == SessionCall::light_landmark) since = 0;
+    }
+    void updated(const Session&, const Session::Update&) noexcept override { ++since; }
+    std::atomic<int> since{0};
+};
+
 /// A session in the simulated room, from its first moment.
 class LiveSessionTest : public testing::Test {
 protected:
@@ -36,11 +84,14 @@ protected:
         session = std::make_unique<LiveSession>(
             [this](const RoomProgress& progress) {
                 progress("The room of a test.", 0.25);
-                return std::make_unique<SimulatedRoom>(test::example_case().volume, test::example_case().prepared.plan,
-                                                       room, 5);
+                return std::make_unique<HeldRoom>(
+                    std::make_unique<SimulatedRoom>(test::example_case().volume, test::example_case().prepared.plan,
+                                                    room, 5),
+                    held, waits);
             },
-            test::example_case().prepared, drawing(), std::filesystem::path{});
+            test::example_case().prepared, drawing(), std::filesystem::path{}, &counts);
     }
+    void TearDown() override { held = false; }  // its thread is waited for
     static const CaseDrawing& drawing() {
         static const CaseDrawing made(test::example_case().prepared);
         return made;
@@ -62,7 +113,15 @@ protected:
                         [](const OperatorModel& m) { return m.figures.delay_to_light_ms.has_value(); });
     }
 
+    /// The thread waits for a frame: what is pressed now waits until `held` is over.
+    void hold() {
+        held = true;
+        wait_for(*session, "the cameras", [&](const OperatorModel&) { return waits.load(); });
+    }
+
     simulation::RoomSettings room;
+    std::atomic<bool> held{false}, waits{false};
+    CountsUpdates counts;
     std::unique_ptr<LiveSession> session;
 };
 
@@ -118,13 +177,32 @@ TEST_F(LiveSessionTest, AScanThatIsEndedByDarkLeavesButtonsAndWordsRight) {
     wait_for(*session, "the scan", [](const OperatorModel& m) { return m.do_register.enabled; });
 }
 
+TEST_F(LiveSessionTest, RegisterThatDarkOvertookCanBePressedAgain) {
+    ready();
+    session->post(OperatorAction::scan);
+    wait_for(*session, "the scan", [](const OperatorModel& m) { return m.do_register.enabled; });
+    hold();
+    EXPECT_EQ(session->post(OperatorAction::do_register), "");
+    session->post(OperatorAction::dark);
+    const OperatorModel dark = session->model();
+    held = false;
+    EXPECT_EQ(dark.status.kind, StatusKind::dark);
+    EXPECT_TRUE(dark.do_register.enabled) << "the scan is kept, and nobody looks for the patient";
+    EXPECT_TRUE(dark.landmarks);
+    EXPECT_EQ(session->post(OperatorAction::do_register), "");
+    wait_for(*session, "the match", [](const OperatorModel& m) { return m.track.enabled || m.confirm; });
+}
+
 TEST_F(LiveSessionTest, LightIsConfirmedOncePerPressAndDarkLeadsBackToTheMatch) {
     followed();
     wait_for(*session, "the question", [](const OperatorModel& m) { return m.confirm; });
+    hold();
     EXPECT_EQ(session->post(OperatorAction::confirm), "");
     EXPECT_NE(session->post(OperatorAction::confirm), "") << "the next landmark has not been lit yet";
+    held = false;
     const OperatorModel first =
         wait_for(*session, "the first landmark", [](const OperatorModel& m) { return m.confirm; });
+    EXPECT_GE(counts.since, 12) << "half a second at 25 frames/s: a press that bounces has looked at nothing";
     EXPECT_EQ(first.confirm_words, "Light 1 is right");
     EXPECT_EQ(first.next, OperatorAction::confirm);
     for (const std::string& detail : first.status.details)

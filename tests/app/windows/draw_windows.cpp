@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
     if (special == "refused") {
         model.left.refused = model.left.live;
         model.right.refused = model.right.live;
-        for (std::size_t i = 3; i < 6; ++i) model.left.refused->found[i].used = false;
+        for (std::size_t i = 3; i < 6; ++i) model.left.refused->found[i].pairing = FoundMarker::Pairing::alone;
         model.right.refused->found.resize(3);
         model.status = {StatusKind::refused,
                         "Only 3 markers were found by both cameras; 5 are needed.",
