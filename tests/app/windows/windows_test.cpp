@@ -317,9 +317,8 @@ TEST(RenderScene, ARingOnASideOfTheHeadLiesAtItsLetterInEveryView) {
             if (ring[2] < 50) continue;  // the analytic head hides it
             const ViewAxes axes = axes_of(view);
             const double across = side.dot(axes.right_in_ct), up = side.dot(axes.up_in_ct);
-            if (std::abs(across) > 0.5)
-                EXPECT_GT((ring[0] - 0.5) * across, 0) << letter << " seen from " << view_letter;
-            if (std::abs(up) > 0.5) EXPECT_GT((0.5 - ring[1]) * up, 0) << letter << " seen from " << view_letter;
+            const double seen = std::abs(across) > 0.5 ? (ring[0] - 0.5) * across : (0.5 - ring[1]) * up;
+            EXPECT_GT(seen, 0) << letter << " seen from " << view_letter;
         }
     }
 }

@@ -37,7 +37,7 @@ std::vector<std::string> literals_in(const std::filesystem::path& source) {
         if (code.compare(at, 2, "//") == 0) {
             at = std::min(code.find('\n', at), code.size());
         } else if (code.compare(at, 3, "R\"(") == 0) {
-            at = std::min(code.find(")\"", at), code.size());
+            at = std::min(code.find(")\"", at), code.size() - 1) + 1;
             beside = false;
         } else if (code[at] == '\'' && at + 2 < code.size()) {  // a character, or between the digits of a number
             const std::size_t end = code.find('\'', at + (code[at + 1] == '\\' ? 3 : 2));
