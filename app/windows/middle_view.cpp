@@ -113,7 +113,13 @@ void MiddleView::draw_scene(const Pen& pen, const Box& place, const OperatorMode
     const Box corner = corner_button(place, pen.scale);
     look_at_what_is_lit(pen, place,
                         {corner.right(), place.y + above, place.right() - corner.right(), place.height - above}, model);
-    scene_.draw(pen, place, shown);
+    // Where buttons reach the middle of an edge, its letter stands beside them.
+    const float middle = place.y + place.height / 2, reach = 24 * pen.scale;
+    LetterInsets insets;
+    if (place.bottom() - below < middle + reach) insets.left = static_cast<double>(corner.right() - place.x);
+    if (views_.open() && place.y + above > middle - reach)
+        insets.right = static_cast<double>(place.right() - fit_row(place, pen.scale).x);
+    scene_.draw(pen, place, shown, insets);
     draw_title(pen, place, model, shown);
 }
 

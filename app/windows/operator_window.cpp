@@ -279,6 +279,11 @@ void OperatorWindow::open_evidence() {
     parts_->drawn.reset();
 }
 
+void OperatorWindow::open_views() {
+    parts_->middle->press(KeyMeaning::views, {});
+    parts_->drawn.reset();
+}
+
 void OperatorWindow::rest(double longest_s) {
     constexpr auto kLeast = std::chrono::milliseconds(5);  // while a mouse moves, too: the light is made beside it
     if (parts_->gui.touched())

@@ -57,6 +57,8 @@ public:
     void open_landmarks(const std::vector<PointPair>& pairs = {});
     /// Shows the page of the plan and the evidence; the person opens it by a press on the table.
     void open_evidence();
+    /// Shows the buttons of the views; the person opens them by the button "Views".
+    void open_views();
     /// What has been clicked on both sides, of the scan that the last frame's model had; empty before.
     std::vector<PointPair> landmarks() const;
 

@@ -71,6 +71,26 @@ float text_width(const ImFont* font, const std::string& text) {
     return font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str(), text.c_str() + text.size()).x;
 }
 
+std::string shortened_in_the_middle(const ImFont* font, const std::string& text, float width) {
+    if (text_width(font, text) <= width) return text;
+    std::vector<std::string> signs;
+    for (const char c : text) {
+        if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U) signs.emplace_back();
+        if (!signs.empty()) signs.back() += c;
+    }
+    std::string head, tail;
+    std::size_t from = 0, to = signs.size();
+    for (bool front = true; from < to; front = !front) {
+        const std::string longer = front ? head + signs[from] + kMore + tail : head + kMore + signs[to - 1] + tail;
+        if (text_width(font, longer) > width) break;
+        if (front)
+            head += signs[from++];
+        else
+            tail = signs[--to] + tail;
+    }
+    return head + kMore + tail;
+}
+
 float line_height(const ImFont* font) {
     return std::round(font->FontSize * 1.12F);
 }

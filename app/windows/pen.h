@@ -58,6 +58,10 @@ float line_height(const ImFont* font);
 /// The text broken at spaces into lines no wider than `width`, at most `most` of them; what is left out is marked "…".
 std::vector<std::string> broken(const ImFont* font, const std::string& text, float width, std::size_t most);
 
+/// One line no wider than `width`: what stands in the middle gives way to "…", so that a name is known by its
+/// beginning, and its figures at the end are read.
+std::string shortened_in_the_middle(const ImFont* font, const std::string& text, float width);
+
 ImU32 colour_of(const Rgb& colour);
 
 }  // namespace planlight

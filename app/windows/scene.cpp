@@ -72,6 +72,7 @@ struct Scene::Parts {
     SceneOverlay overlay;
     SceneModel shown;
     SceneView shown_view;
+    LetterInsets insets;
     int width = 0, height = 0;
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     double reach_mm = 120;  ///< half the picture's smaller side at zoom 1
@@ -170,21 +171,24 @@ Scene::Scene(vtkRenderWindow& window, const FontFiles& fonts) : parts_(std::make
 Scene::~Scene() = default;
 
 bool Scene::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale,
-                   const Words* words) {
+                   const Words* words, const LetterInsets& insets) {
     Parts& parts = *parts_;
     const bool changed = static_cast<int>(parts.take_skin_and_markers(scene)) |
                          static_cast<int>(parts.take_cloud(scene)) | static_cast<int>(parts.take_lines(scene));
-    if (!changed && view == parts.shown_view && width == parts.width && height == parts.height) return false;
+    if (!changed && insets == parts.insets && view == parts.shown_view && width == parts.width &&
+        height == parts.height)
+        return false;
     if (scene.on_paper)
         parts.renderer->SetBackground(1, 1, 1);
     else
         parts.renderer->SetBackground(0.055, 0.067, 0.086);
     parts.shown_view = view;
+    parts.insets = insets;
     parts.width = width;
     parts.height = height;
     parts.cloud.actor->GetProperty()->SetPointSize(static_cast<float>(std::max(2.0, 2.2 * scale)));
     parts.place_camera();
-    parts.overlay.update(scene, view, width, height, scale, words);
+    parts.overlay.update(scene, view, width, height, scale, words, insets);
     return true;
 }
 

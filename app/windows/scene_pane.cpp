@@ -51,14 +51,15 @@ std::optional<ImVec2> ScenePane::take_mouse(const char* name, const Box& sensiti
     return std::nullopt;
 }
 
-void ScenePane::draw(const Pen& pen, const Box& box, const SceneModel& model) {
+void ScenePane::draw(const Pen& pen, const Box& box, const SceneModel& model, const LetterInsets& insets) {
     const int width = static_cast<int>(box.width) - 4, height = static_cast<int>(box.height) - 4;
     using std::chrono::steady_clock;
     const auto began = steady_clock::now();
     const int* const size = target_->GetSize();
-    const bool turned = !(view_ == rendered_view_) || size[0] != width || size[1] != height;
+    const bool turned =
+        !(view_ == rendered_view_) || !(insets == rendered_insets_) || size[0] != width || size[1] != height;
     behind_ = !turned && began < not_before_ && !(model == rendered_);
-    if (!behind_ && scene_->update(model, view_, width, height, pen.scale, pen.words)) {
+    if (!behind_ && scene_->update(model, view_, width, height, pen.scale, pen.words, insets)) {
         target_->SetSize(width, height);
         target_->GetState()->Reset();
         target_->GetState()->ResetFramebufferBindings();
@@ -66,6 +67,7 @@ void ScenePane::draw(const Pen& pen, const Box& box, const SceneModel& model) {
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         rendered_view_ = view_;
         rendered_ = model;
+        rendered_insets_ = insets;
         const auto ended = steady_clock::now();
         not_before_ = ended + 2 * (ended - began);
     }

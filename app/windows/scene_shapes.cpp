@@ -162,12 +162,13 @@ vtkSmartPointer<vtkPolyData> cloud_shape(const PointCloud& cloud, const std::vec
 }
 
 vtkSmartPointer<vtkPolyData> plan_shape(const PlanDrawing& plan, int bright_item) {
-    constexpr double kDim = 0.35;
+    constexpr double kOwn = 0.25;  // of a dim item's colour; the rest is skin
     Shape lines, text;
     const auto colour = [&](const Rgb& own, int item) {
-        Rgb shown = own;
-        for (std::uint8_t& part : shown)
-            if (bright_item >= 0 && item != bright_item) part = static_cast<std::uint8_t>(kDim * part);
+        if (bright_item < 0 || item == bright_item) return own;
+        Rgb shown;
+        for (std::size_t c = 0; c < 3; ++c)
+            shown[c] = static_cast<std::uint8_t>(kOwn * own[c] + 0.75 * (1 - kOwn) * kSkinColour[c]);
         return shown;
     };
     for (const Stroke& stroke : plan.strokes) {

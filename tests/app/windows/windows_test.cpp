@@ -138,6 +138,23 @@ TEST(Fonts, LettersOfOtherScriptsComeFromOtherFontsOfTheComputer) {
     EXPECT_EQ(missing_glyphs(*fonts.word, "准备"), std::vector<std::string>{});
 }
 
+// "B3 left sphenoid ... ⌀7  6 mm deep": the figures at the end are what is read from the row.
+TEST(Fonts, ALongNameIsShortenedInTheMiddleAndKeepsItsFigures) {
+    const LoadedFonts loaded(find_fonts());
+    const ImFont* const font = loaded.fonts.body;
+    const std::string name = "Bohrloch für die Schraube am linken Keilbeinflügel  ⌀7  6 mm deep";
+    for (const float width : {160.0F, 240.0F, 400.0F}) {
+        const std::string shown = shortened_in_the_middle(font, name, width);
+        EXPECT_LE(text_width(font, shown), width);
+        EXPECT_GT(text_width(font, shown), width - 40) << "no more than it takes";
+        EXPECT_TRUE(shown.starts_with("Bohr")) << shown;
+        EXPECT_TRUE(shown.ends_with("deep")) << shown;
+        EXPECT_NE(shown.find("…"), std::string::npos) << shown;
+    }
+    EXPECT_EQ(shortened_in_the_middle(font, "B3", 160), "B3");
+    EXPECT_EQ(shortened_in_the_middle(font, name, 3), "…");
+}
+
 TEST(Fonts, DejaVuAloneIsEnough) {
     const std::filesystem::path folder = "/usr/share/fonts/truetype/dejavu";
     if (!std::filesystem::exists(folder / "DejaVuSans.ttf")) GTEST_SKIP() << "fonts-dejavu-core is not installed";
