@@ -91,16 +91,14 @@ void judge(const Volume& volume, const SkinSettings& skin, const PreparationWatc
 void warn_of_labels(const PlanDrawing& drawing, const PreparationWatcher& watcher, Case& the_case) {
     const auto bare =
         std::count_if(drawing.items.begin(), drawing.items.end(), [](auto& item) { return !item.labelled; });
-    const auto by_number = std::count_if(drawing.labels.begin(), drawing.labels.end(), [&](const Label& label) {
-        return !label.of_moment && label.words == number_of(label.item) &&
-               drawing.items[static_cast<std::size_t>(label.item)].lit_name != label.words;
-    });
-    if (by_number > 0)
-        add_warnings(
-            {fmt::format("the plan is crowded: {} of {} items are lit with their number in the plan (#1 is the "
-                         "first) in place of the name",
-                         by_number, drawing.items.size())},
-            watcher, the_case);
+    std::string by_code;
+    for (const DrawnItem& item : drawing.items)
+        if (item.lit_by_code) by_code += fmt::format("{}{} is {}", by_code.empty() ? "" : ", ", item.code, item.name);
+    if (!by_code.empty())
+        add_warnings({fmt::format("not every name has room in the light, or can be lit. In its place stands: {}. Each "
+                                  "item's code stands beside its name in the window, too",
+                                  by_code)},
+                     watcher, the_case);
     if (bare > 0)
         add_warnings({fmt::format("the plan is crowded: the names of {} of {} items find no free skin, and are not "
                                   "written there",

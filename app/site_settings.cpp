@@ -54,7 +54,7 @@ SiteSettings read_site_settings() {
     const Json json = parse_json(read_whole(file), file);
     const JsonValue root(json, file);
     check_format(root, "planlight config", 1, file);
-    root.has_only({"format", "version", "units", "surgeon_side", "monitors", "language"});
+    root.has_only({"format", "version", "units", "surgeon_side", "monitors", "language", "openigtlink"});
     if (const auto units = root.find("units")) site.units = one_of(*units, kUnits);
     if (const auto side = root.find("surgeon_side")) site.surgeon_side = one_of(*side, kSides);
     if (const auto language = root.find("language")) site.language = language->text();
@@ -62,6 +62,10 @@ SiteSettings read_site_settings() {
         monitors->has_only({"operator", "projector"});
         if (const auto name = monitors->find("operator")) site.operator_monitor = name->text();
         if (const auto name = monitors->find("projector")) site.projector_monitor = name->text();
+    }
+    if (const auto link = root.find("openigtlink")) {
+        link->has_only({"names"});
+        if (const auto names = link->find("names")) site.openigtlink_names = names->flag();
     }
     site.read_from = file;
     return site;

@@ -10,8 +10,8 @@ namespace planlight {
 
 /// What a site sets once, in planlight/config.json under $XDG_CONFIG_HOME (~/.config where that is not set):
 /// {"format": "planlight config", "version": 1, "units": "mm" | "cm" | "inch", "surgeon_side": "feet" | "head" | "left"
-/// | "right" | "view", "monitors": {"operator": "DP-1", "projector": "HDMI-2"}, "language": "de"}. Every name but the
-/// first two may be missing.
+/// | "right" | "view", "monitors": {"operator": "DP-1", "projector": "HDMI-2"}, "language": "de",
+/// "openigtlink": {"names": true}}. Every name but the first two may be missing.
 struct SiteSettings {
     /// Unit of the lengths that commands print for a person. Files, JSON, windows and the light stay in mm.
     std::string units = "mm";
@@ -20,7 +20,8 @@ struct SiteSettings {
     std::string surgeon_side = "feet";
     std::string language = "en";                      ///< of the operator's windows (app/words/README.md)
     std::string operator_monitor, projector_monitor;  ///< names; empty: not set. An option of a command overrides them
-    std::filesystem::path read_from;                  ///< empty: there is no such file, and these are the defaults
+    bool openigtlink_names = false;   ///< `session --igtl` says names of patient, case and plan to whoever listens
+    std::filesystem::path read_from;  ///< empty: there is no such file, and these are the defaults
 };
 
 /// Throws InputError for a file with an unknown name or word in it, DamagedFileError for one that is no JSON.

@@ -6,22 +6,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "app/without_numbers.h"
+
 namespace planlight {
-
-namespace {
-
-/// Alike for all figures.
-std::string without_figures(const std::string& reason) {
-    std::string words;
-    for (const char c : reason) {
-        const bool digit = c >= '0' && c <= '9';
-        const bool in_figure = !words.empty() && words.back() == '#' && (digit || c == '.');
-        if (!in_figure) words += digit ? '#' : c;
-    }
-    return words;
-}
-
-}  // namespace
 
 void UpdateLatency::add(const Session::Update& update) {
     constexpr Instant kPause = std::chrono::seconds(1);  // more is no frame that is missing, but a session that paused
@@ -38,7 +25,7 @@ void UpdateLatency::add(const Session::Update& update) {
     last_at_ = update.frame.at;
     last_number_ = update.frame.number;
     if (!update.overlay.lit) {
-        ++dark[without_figures(update.overlay.reason)];
+        ++dark[without_numbers(update.overlay.reason)];
         return;
     }
     ++lit;

@@ -20,7 +20,7 @@ public:
     std::size_t missed = 0;     ///< exposures of which no pair came
     std::size_t late = 0;       ///< drawn more than 30 ms after the pair had come
     std::size_t overtaken = 0;  ///< drawn more than a frame's interval after it had come
-    /// Why the others were dark, and how often; figures in a reason are left out ("the last pose is # ms old").
+    /// Why the others were dark, and how often; figures in a reason are left out ("the last pose is … ms old").
     std::map<std::string, std::size_t> dark;
     LogHistogram to_swap_ms;       ///< of what was lit: from mid-exposure to the display
     LogHistogram from_arrival_ms;  ///< of what was lit: from the arrival of the pair to the display

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "projection/check_items.h"
 #include "projection/label_names.h"
@@ -79,6 +80,7 @@ private:
     void wish(int item_index, std::vector<std::string> figures, std::vector<Point> anchors, double keep_off_mm,
               std::optional<Vector3d> away_from = {});
     void wish_along(int item_index, const std::string& figure, const SkinLine& line);
+    double planned_length_mm(const CutPlane& plane, const SkinLine& drawn) const;
 
     const SkinSurface& ct_skin_;  ///< on which was planned
     const SkinSurface& skin_;     ///< as it is now: what is drawn on
@@ -91,7 +93,8 @@ int Drawer::begin(StrokeKind kind, const std::string& name, const Vector3d& anch
                   std::vector<std::string> warnings) {
     const LitName& lit = names_[drawing.items.size()];
     if (!lit.warning.empty()) warnings.push_back(lit.warning);
-    drawing.items.push_back({kind, name, name, anchor, distance_mm, std::move(warnings), true, lit.name});
+    drawing.items.push_back(
+        {kind, name, name, anchor, distance_mm, std::move(warnings), true, lit.name, lit.code, lit.by_code});
     return static_cast<int>(drawing.items.size()) - 1;
 }
 
@@ -134,10 +137,13 @@ void Drawer::wish(int item_index, std::vector<std::string> figures, std::vector<
         static const std::string kDiameter = "⌀";
         if (figure.rfind(kDiameter, 0) == 0) figure = figure.substr(kDiameter.size()) + " mm wide";
     }
-    if (named.lit_name.empty() && figures.empty()) return;
+    // Figures alone would be read as those of an item without a name.
+    const bool none = names_[static_cast<std::size_t>(item_index)].none;
+    named.labelled = !none;
+    if (none || (named.lit_name.empty() && figures.empty())) return;
     wishes_.push_back({item_index,
                        {named.lit_name, std::move(figures)},
-                       number_of(item_index),
+                       named.code,
                        std::move(anchors),
                        keep_off_mm,
                        away_from,
@@ -268,7 +274,30 @@ void Drawer::draw(const CutPlane& plane) {
         drawing.strokes.back().gap_mm = kPlaneGap_mm;
         add_ticks(i, colour, line);
     }
-    wish_along(i, fmt::format("{:.0f} mm", length_mm(lines.front())), lines.front());
+    wish_along(i, fmt::format("{:.0f} mm", planned_length_mm(plane, lines.front())), lines.front());
+}
+
+/// The plan's own length of a plane's trace, as every page and window has it: of that line on the CT's skin which lies
+/// nearest to the one drawn on the skin as it is now.
+double Drawer::planned_length_mm(const CutPlane& plane, const SkinLine& drawn) const {
+    if (&ct_skin_ == &skin_) return length_mm(drawn);
+    const auto apart_mm = [&](const SkinLine& line) {
+        double sum_mm = 0;
+        for (std::size_t i = 0; i < drawn.points.size(); i += 8) {
+            double nearest_mm = std::numeric_limits<double>::infinity();
+            for (const Point& p : line.points)
+                nearest_mm = std::min(nearest_mm, (p.p_in_ct - drawn.points[i].p_in_ct).norm());
+            sum_mm += nearest_mm;
+        }
+        return sum_mm;
+    };
+    const std::vector<SkinLine> planned = trace(ct_skin_, plane, settings_.max_segment_mm);
+    if (planned.empty()) return length_mm(drawn);
+    if (planned.size() == 1) return length_mm(planned.front());
+    std::vector<double> apart;
+    for (const SkinLine& line : planned) apart.push_back(apart_mm(line));
+    const auto nearest = std::min_element(apart.begin(), apart.end()) - apart.begin();
+    return length_mm(planned[static_cast<std::size_t>(nearest)]);
 }
 
 /// What the light calls each item; warned of where it is not the plan's name.

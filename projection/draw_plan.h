@@ -46,6 +46,7 @@ struct Label {
     std::vector<Eigen::Vector3d> field_in_ct;          ///< the skin under it, 3 mm apart: all of it must be lit
     std::vector<Eigen::Vector3d> field_normals_in_ct;  ///< outward
     Stroke leader;                                     ///< from the item to a label far from it; no points where near
+    bool by_code = false;    ///< says the item's code in place of its name
     bool of_moment = false;  ///< drawn while its item is the item of the moment, and then alone
 };
 
@@ -58,7 +59,9 @@ struct DrawnItem {
     double distance_to_skin_mm = 0;     ///< of the plan's point(s) to the skin, largest
     std::vector<std::string> warnings;  ///< in words, with the item's name
     bool labelled = true;               ///< false where a crowded plan left no free skin for its label
-    std::string lit_name;               ///< the name as the light has it: whole, shortened, or "#3" for the third item
+    std::string lit_name;               ///< the name as the light has it: whole, shortened, or the code
+    std::string code;                   ///< "#3" or "#C": for where the name cannot be lit or has no room; may be empty
+    bool lit_by_code = false;           ///< the light has the code in place of the name
 };
 
 /// The plan in the skin's own metric: what is light on the skin, independent of projector and pose.
@@ -84,7 +87,7 @@ struct DrawingSettings {
     double tick_every_mm = 10, tick_length_mm = 2;  ///< along osteotomy lines; 0 = none
     Eigen::Vector3d up_in_ct{0, 0, 1};              ///< which way text stands up; zero: +z, as nobody said
     std::optional<LightView> light;                 ///< where it is not known, labels may lie where no light comes
-    /// So much of the light's area at most is text: beyond it labels say the name alone, then the number, then nothing.
+    /// So much of the light's area at most is text: beyond it labels say the name alone, then the code, then nothing.
     double most_text = 0.85;
     double max_distance_to_skin_mm = 10;  ///< a plan point farther from skin is warned of, by name
     bool labels = true;

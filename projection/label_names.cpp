@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <map>
 
+#include "projection/label_codes.h"
 #include "projection/lay_out_label.h"
+#include "projection/stroke_font.h"
 #include "projection/text_signs.h"
 
 namespace planlight {
@@ -24,44 +27,62 @@ std::string signs_in_words(std::vector<char32_t> codes) {
     return words;
 }
 
-std::string cannot_be_drawn(const std::string& name, const std::vector<char32_t>& lacks, const std::string& number) {
+/// What a reader sees of a name: two that differ in less look the same as light.
+std::string seen_of(const std::string& name) {
+    std::string seen;
+    for (const char32_t code : code_points(name)) {
+        if (is_control(code) || has_no_ink(code) || (code == U' ' && (seen.empty() || seen.back() == ' '))) continue;
+        seen += utf8_of(code);
+    }
+    while (!seen.empty() && seen.back() == ' ') seen.pop_back();
+    return seen;
+}
+
+/// "the light has #3 in its place"
+std::string in_its_place(const std::string& code) {
+    return code.empty() ? "the light has no label there" : "the light has " + code + " in its place";
+}
+
+std::string cannot_be_drawn(const std::string& name, const std::vector<char32_t>& lacks, const std::string& code) {
     if (lacks.front() == 0xFFFD)
-        return fmt::format(
-            "{}: its name holds bytes that are no UTF-8 text; the light has {} in its place. Write the "
-            "name anew in the plan.",
-            name, number);
+        return fmt::format("{}: its name holds bytes that are no UTF-8 text; {}. Write the name anew in the plan.", name,
+                           in_its_place(code));
     return fmt::format(
-        "{}: no font of this computer has {}; the light has {} in place of the name. Install a font for "
-        "it (fonts-noto-core or fonts-noto-cjk) or rename the item.",
-        name, signs_in_words(lacks), number);
+        "{}: no font of this computer has {}; {}. Install a font for it (fonts-noto-core or fonts-noto-cjk) or rename "
+        "the item.",
+        name, signs_in_words(lacks), in_its_place(code));
+}
+
+std::string same_as_another(const std::string& name, const std::string& lit, const std::string& code) {
+    if (lit == name)
+        return fmt::format("{}: another item has the same name; {}. Give each item a name of its own.", name,
+                           in_its_place(code));
+    return fmt::format("{}: shortened to \"{}\" its name would be the same as another's; {}. Give the items shorter names.",
+                       name, lit, in_its_place(code));
 }
 
 }  // namespace
 
-std::string number_of(int item) {
-    return fmt::format("#{}", item + 1);
-}
-
 std::vector<LitName> lit_names(const std::vector<std::string>& names, double text_height_mm, const Lettering& letters) {
-    std::vector<LitName> lit(names.size());
-    std::map<std::string, std::vector<std::size_t>> same;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        const auto lacks = letters.outline(names[i]).lacks;
-        if (!lacks.empty())
-            lit[i] = {number_of(static_cast<int>(i)), cannot_be_drawn(names[i], lacks, number_of(static_cast<int>(i)))};
-        else
-            lit[i].name = shortened(names[i], text_height_mm, letters);
-        same[lit[i].name].push_back(i);
+    std::vector<std::string> shorter;
+    std::vector<std::vector<char32_t>> lacks;
+    std::map<std::string, int> count;
+    for (const std::string& name : names) {
+        lacks.push_back(letters.outline(name).lacks);
+        shorter.push_back(lacks.back().empty() ? shortened(name, text_height_mm, letters) : std::string());
+        ++count[seen_of(shorter.back())];
     }
-    for (const auto& [name, items] : same) {
-        const bool shorter = std::any_of(items.begin(), items.end(), [&](auto i) { return names[i] != name; });
-        if (items.size() < 2 || !shorter) continue;
-        for (const std::size_t i : items)
-            if (names[i] != name && lit[i].warning.empty())
-                lit[i] = {number_of(static_cast<int>(i)),
-                          fmt::format("{}: shortened to \"{}\" its name would be the same as another's; the light has "
-                                      "{} in its place. Give the items shorter names.",
-                                      names[i], name, number_of(static_cast<int>(i)))};
+    const auto codes = codes_of(names, shorter);
+    std::vector<LitName> lit(names.size());
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        lit[i] = {shorter[i], {}, codes[i]};
+        if (!lacks[i].empty())
+            lit[i].warning = cannot_be_drawn(names[i], lacks[i], codes[i]);
+        else if (!shorter[i].empty() && count[seen_of(shorter[i])] > 1)
+            lit[i].warning = same_as_another(names[i], shorter[i], codes[i]);
+        if (lit[i].warning.empty()) continue;
+        lit[i].name = codes[i];
+        lit[i].by_code = !codes[i].empty(), lit[i].none = codes[i].empty();
     }
     return lit;
 }
@@ -75,12 +96,24 @@ std::vector<std::string> names_of(const Plan& plan) {
     return names;
 }
 
+std::string fault_of_own_font(const Lettering& letters) {
+    const char* own = std::getenv("PLANLIGHT_FONT");
+    if (!own || !*own) return {};
+    const auto families = letters.families();  // the first is that of all letters
+    if (!families.empty() && families.front() == own) return {};
+    return fmt::format(
+        "PLANLIGHT_FONT names {}, which is no file of a font with outlines: the light has other letters. Name the font's "
+        "file (.ttf, .otf, .ttc), or take the setting away.",
+        own);
+}
+
 std::vector<std::string> check_names(const Plan& plan, double text_height_mm) {
     std::vector<std::string> warnings;
     if (lettering().families().empty())
         warnings.push_back(
             "no font with outlines was found on this computer: names are written in plain lines, and only those in "
             "Western European letters. Install fonts-dejavu-core and fonts-wqy-microhei.");
+    if (const auto fault = fault_of_own_font(); !fault.empty()) warnings.push_back(fault);
     for (const LitName& name : lit_names(names_of(plan), text_height_mm))
         if (!name.warning.empty()) warnings.push_back(name.warning);
     return warnings;

@@ -192,7 +192,7 @@ Lettering::~Lettering() = default;
 
 TextOutline Lettering::outline(const std::string& utf8) const {
     std::u32string text = code_points(utf8);
-    std::erase_if(text, is_control);
+    std::erase_if(text, [](char32_t code) { return is_control(code) || orders_direction(code); });
     TextOutline out;
     if (text.empty()) return out;
     std::copy_if(text.begin(), text.end(), std::back_inserter(out.lacks), is_no_letter);

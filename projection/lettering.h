@@ -34,7 +34,8 @@ public:
     explicit Lettering(const std::vector<FontFile>& fonts);
     ~Lettering();
 
-    /// One line of UTF-8 text. Control signs are left out.
+    /// One line of UTF-8 text. Control signs are left out, and those that order a direction of reading: letters and
+    /// figures stand in the order of their own script, as in every window.
     TextOutline outline(const std::string& utf8) const;
 
     /// Families in use so far, the first font always; empty without fonts.

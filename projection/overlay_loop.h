@@ -16,7 +16,8 @@ namespace planlight {
 struct OverlaySettings {
     Instant max_pose_age = std::chrono::milliseconds(75);  ///< an older pose is not drawn
     Instant picture_validity = std::chrono::milliseconds(75);
-    /// From the pose to light, for the prediction, until the projector's own promises of the last pictures tell it.
+    /// From the beginning of a step (not from the moment of its pose) to light, for the prediction, until the
+    /// projector's own promises of the last pictures tell it.
     Instant light_delay = std::chrono::milliseconds(25);
     double max_predicted_error_mm = 1.0;  ///< above: dark
     bool predict = true;
@@ -59,7 +60,7 @@ public:
     /// Light was found to come so much later than the projector promises; negative: earlier.
     void set_found_delay(Instant later);
 
-    /// From the pose to light, as the last pictures tell it, with what was found.
+    /// From the beginning of a step to light, as the last pictures tell it, with what was found.
     Instant light_delay() const;
 
     /// How much later the last light could have come and still be drawn ahead; negative: it came later than that.

@@ -11,14 +11,14 @@ namespace {
 using Eigen::Vector3d;
 using Point = SkinSurface::Point;
 
-/// What a label says: all, the name alone, or the item's number in the plan where there is no room for its name.
-enum class Form { whole, name, number };
-constexpr std::array kShorter{Form::name, Form::number};
+/// What a label says: all, the name alone, or the item's code where there is no room for its name.
+enum class Form { whole, name, code };
+constexpr std::array kShorter{Form::name, Form::code};
 
 LabelWish in_form(LabelWish wish, Form form) {
     if (form == Form::whole || wish.text.name.empty()) return wish;
     wish.text.figures.clear();
-    if (form == Form::number && !wish.number.empty()) wish.text.name = wish.number;
+    if (form == Form::code && !wish.code.empty()) wish.text.name = wish.code;
     return wish;
 }
 
@@ -64,7 +64,7 @@ private:
     bool put(const LabelWish& wish);
     void put_whole_first();
     int told() const;
-    void put_numbers_first();
+    void put_codes_first();
     void keep_to_share();
     void put_of_moment();
 
@@ -108,6 +108,7 @@ bool AllLabels::put(const LabelWish& wish) {
     auto label = place_label(wish, skin_, settings_, occupied_);
     if (!label) return false;
     if (const auto former = put_.find(wish.item); former != put_.end()) vacate(former->second, occupied_);
+    label->by_code = !wish.code.empty() && wish.text.name == wish.code;
     occupy(*label, occupied_);
     put_.insert_or_assign(wish.item, std::move(*label));
     return true;
@@ -118,7 +119,7 @@ void AllLabels::put_whole_first() {
     occupied_ = plan_;
     put_.clear();
     for (const LabelWish& wish : wishes_)
-        for (const Form form : {Form::whole, Form::name, Form::number})
+        for (const Form form : {Form::whole, Form::name, Form::code})
             if (put(in_form(wish, form))) break;
 }
 
@@ -128,17 +129,17 @@ int AllLabels::told() const {
     for (const LabelWish& wish : wishes_) {
         const auto label = put_.find(wish.item);
         if (label == put_.end()) continue;
-        const bool number = label->second.words == wish.number;
-        told += number ? 4 : label->second.words.size() > wish.text.name.size() + 2 ? 6 : 5;
+        const bool code = wish.text.name != wish.code && label->second.by_code;
+        told += code ? 4 : label->second.words.size() > wish.text.name.size() + 2 ? 6 : 5;
     }
     return told;
 }
 
-/// A crowded plan: a number for as many as can have one, then names, then figures where room is left.
-void AllLabels::put_numbers_first() {
+/// A crowded plan: a code for as many as can have one, then names, then figures where room is left.
+void AllLabels::put_codes_first() {
     occupied_ = plan_;
     put_.clear();
-    for (const LabelWish& wish : wishes_) put(in_form(wish, Form::number));
+    for (const LabelWish& wish : wishes_) put(in_form(wish, Form::code));
     for (const Form form : {Form::name, Form::whole})
         for (const LabelWish& wish : wishes_) {
             LabelWish longer = in_form(wish, form);
@@ -178,6 +179,7 @@ void AllLabels::put_of_moment() {
         if (!label) label = place_label(in_form(wish, Form::name), skin_, settings_, plan_);
         if (!label) continue;
         label->of_moment = true;
+        label->by_code = !wish.code.empty() && wish.text.name == wish.code;
         drawing_.labels.push_back(std::move(*label));
     }
 }
@@ -187,7 +189,7 @@ void AllLabels::place() {
     put_whole_first();
     if (const int first = told(); first < kAll * static_cast<int>(wishes_.size())) {
         const auto whole_first = put_;
-        put_numbers_first();
+        put_codes_first();
         if (told() <= first) put_ = whole_first;
         occupied_ = plan_;
         for (const auto& [item, label] : put_) occupy(label, occupied_);
@@ -195,8 +197,11 @@ void AllLabels::place() {
     keep_to_share();
     for (const LabelWish& wish : wishes_) {
         const auto label = put_.find(wish.item);
-        drawing_.items[static_cast<std::size_t>(wish.item)].labelled = label != put_.end();
-        if (label != put_.end()) drawing_.labels.push_back(label->second);
+        DrawnItem& item = drawing_.items[static_cast<std::size_t>(wish.item)];
+        item.labelled = label != put_.end();
+        if (label == put_.end()) continue;
+        if (label->second.by_code) item.lit_by_code = true, item.lit_name = item.code;
+        drawing_.labels.push_back(label->second);
     }
     put_of_moment();
 }

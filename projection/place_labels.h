@@ -41,7 +41,7 @@ private:
 struct LabelWish {
     int item = -1;
     LabelText text;
-    std::string number;                              ///< "#3": where there is no room for the name
+    std::string code;                                ///< "#3": where there is no room for the name; may be empty
     std::vector<SkinSurface::Point> anchors;         ///< places it may stand beside, best first
     double keep_off_mm = 1.5;                        ///< half size of what is drawn at the anchor
     std::optional<Eigen::Vector3d> away_from_in_ct;  ///< the side that is left free: the middle of a closed line

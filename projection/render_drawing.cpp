@@ -1,7 +1,5 @@
 #include "projection/render_drawing.h"
 
-#include <fmt/format.h>
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <mutex>
 
 #include "planning_io/types/error.h"
+#include "projection/dark_discs.h"
 #include "projection/depth_picture.h"
 #include "projection/stroke_raster.h"
 
@@ -33,45 +32,6 @@ Rgb dimmed(Rgb colour, double brightness) {
     for (auto& channel : colour)
         channel = static_cast<std::uint8_t>(std::lround(std::clamp(channel * brightness, 0.0, 255.0)));
     return colour;
-}
-
-/// A disc that no light may touch, in the projector's picture. It faces the projector, so that a sticker at any slant
-/// is covered.
-struct DarkDisc {
-    Vector2d centre;
-    Eigen::Matrix2d disc_by_pixel;
-    double reach = 0;
-    bool covers(const Vector2d& pixel) const { return (disc_by_pixel * (pixel - centre)).squaredNorm() < 1; }
-};
-
-std::vector<DarkDisc> dark_discs(const CameraModel& projector, const RigidTransform& rig_from_patient,
-                                 const RenderSettings& s) {
-    std::vector<DarkDisc> discs;
-    const double radius_mm = s.keep_dark_radius_mm + s.halo_mm;
-    for (const Vector3d& marker : s.keep_dark_in_patient) {
-        const Vector3d p = rig_from_patient * marker;
-        Eigen::Matrix<double, 2, 3> pixel_by_rig;
-        const auto centre = project(projector, p, pixel_by_rig);
-        if (!centre) continue;
-        const Vector3d towards = (projector.centre_in_rig() - p).normalized(), first = towards.unitOrthogonal();
-        Eigen::Matrix2d pixel_by_disc;
-        pixel_by_disc << pixel_by_rig * first * radius_mm, pixel_by_rig * towards.cross(first) * radius_mm;
-        const DarkDisc disc{*centre, pixel_by_disc.inverse(), pixel_by_disc.norm() + 1};
-        if (disc.disc_by_pixel.allFinite() && centre->norm() + disc.reach < 1e6) discs.push_back(disc);
-    }
-    return discs;
-}
-
-void darken(const std::vector<DarkDisc>& discs, RgbImage& picture) {
-    for (const DarkDisc& disc : discs) {
-        const int x0 = std::max(0, static_cast<int>(disc.centre.x() - disc.reach)),
-                  x1 = std::min(picture.width - 1, static_cast<int>(disc.centre.x() + disc.reach) + 1);
-        const int y0 = std::max(0, static_cast<int>(disc.centre.y() - disc.reach)),
-                  y1 = std::min(picture.height - 1, static_cast<int>(disc.centre.y() + disc.reach) + 1);
-        for (int y = y0; y <= y1; ++y)
-            for (int x = x0; x <= x1; ++x)
-                if (disc.covers(Vector2d(x, y))) picture.at(x, y) = {0, 0, 0};
-    }
 }
 
 /// How bright an item is.
@@ -243,17 +203,6 @@ void DrawingRenderer::Parts::draw_label(const Label& label, const RenderSettings
     if (!label.leader.points_in_ct.empty()) draw_stroke(label.leader, settings, not_of_lines, picture);
 }
 
-std::string sentence_of_labels(const RenderCounts& counts, const PlanDrawing& drawing) {
-    std::string names;
-    for (const int item : counts.labels_left_out)
-        names += (names.empty() ? "" : ", ") + drawing.items.at(static_cast<std::size_t>(item)).name;
-    if (names.empty()) return {};
-    return fmt::format(
-        "Left out because not all of it can be lit from here: the label of {}. Turn the patient or the "
-        "projector, or read it in the operator's window.",
-        names);
-}
-
 bool DrawingRenderer::Parts::is_partly_lit_ring(const Stroke& stroke, const RenderSettings& settings,
                                                 RenderCounts& counts) const {
     const bool is_ring =
@@ -264,21 +213,6 @@ bool DrawingRenderer::Parts::is_partly_lit_ring(const Stroke& stroke, const Rend
     if (share >= settings.whole_ring) return false;
     counts.partly_lit.push_back({stroke.item, share});
     return true;
-}
-
-std::vector<std::string> sentences(const std::vector<PartlyLitRing>& rings, const PlanDrawing& drawing) {
-    std::vector<std::string> said;
-    for (const PartlyLitRing& ring : rings) {
-        const bool named = ring.item >= 0 && static_cast<std::size_t>(ring.item) < drawing.items.size();
-        const std::string name = named ? drawing.items[static_cast<std::size_t>(ring.item)].name : "a circle";
-        said.push_back(
-            ring.lit_share > 0
-                ? fmt::format("{}: only {:.0f} % of its rim can be lit from here; it is drawn broken. Turn the "
-                              "patient or the projector.",
-                              name, 100 * ring.lit_share)
-                : fmt::format("{}: no light reaches it from here. Turn the patient or the projector.", name));
-    }
-    return said;
 }
 
 DrawingRenderer::DrawingRenderer(const SkinSurface& skin, const CameraModel& projector)

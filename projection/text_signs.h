@@ -10,6 +10,9 @@ bool has_no_ink(char32_t code);
 
 bool is_control(char32_t code);
 
+/// Orders another direction of reading than the letters' own: "B", U+202E, "12" would be lit as "B21".
+bool orders_direction(char32_t code);
+
 /// A damaged byte, or a sign that means something else in every font.
 bool is_no_letter(char32_t code);
 

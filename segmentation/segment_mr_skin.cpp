@@ -21,7 +21,8 @@ constexpr double kBandSteps = 3;       // of the survey, inwards from its outlin
 constexpr double kOuterBandSteps = 2;  // and outwards
 constexpr double kSmoothing_mm = 1.2;  // standard deviation of one smoothing, at most
 constexpr int kMostSmoothings = 3;
-constexpr double kLoudAir = 0.6;  // of the threshold: air that is louder is smoothed
+constexpr double kByThing_mm = 5;  // from what shines outside the head, no air's noise is learnt
+constexpr double kLoudAir = 0.6;   // of the threshold: air that is louder is smoothed
 constexpr double kLeastBody_ml = 50;
 
 [[noreturn]] void refuse(const std::string& what) {
@@ -30,9 +31,12 @@ constexpr double kLeastBody_ml = 50;
 }
 
 /// One smoothing by w, 1 - 2w, w along each axis, where `w` keeps it within kSmoothing_mm also across thick slices;
-/// only where the map asks for more than `done` of them.
+/// only as far as the nodes near by ask for more than `done` of them: the mask, made step by step, and the surface,
+/// made from the whole map, see the same values.
 void smooth_once(Volume& volume, const LevelMap& map, int done) {
     const std::vector<float> before = volume.values;
+    std::vector<float> asked = map.smoothings;
+    for (float& times : asked) times = std::clamp(times - static_cast<float>(done), 0.0F, 1.0F);
     std::vector<float> next(volume.values.size());
     const std::array<std::size_t, 3> strides{1, volume.index(0, 1, 0), volume.index(0, 0, 1)};
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -54,9 +58,7 @@ void smooth_once(Volume& volume, const LevelMap& map, int done) {
     tbb::parallel_for(0, volume.size[2], [&](int k) {
         for (int j = 0; j < volume.size[1]; ++j)
             for (int from = 0; from < volume.size[0]; from += kEvery) {
-                const float asked = value_at(map, map.smoothings,
-                                             volume.ct_from_voxel * Vector3d(from + 0.5 * kEvery, j, k)),
-                            share = std::clamp(asked - static_cast<float>(done), 0.0F, 1.0F);
+                const float share = value_at(map, asked, volume.ct_from_voxel * Vector3d(from + 0.5 * kEvery, j, k));
                 for (int i = from; i < std::min(from + kEvery, volume.size[0]); ++i) {
                     const std::size_t v = volume.index(i, j, k);
                     volume.values[v] =
@@ -75,12 +77,13 @@ std::vector<float> signed_distance(const HeadSurvey& survey, const Mask& head, d
     return distance;
 }
 
-enum Place : std::uint8_t { kOutside = 0, kInside = 1, kBand = 2 };
+enum Place : std::uint8_t { kOutside = 0, kInside = 1, kBand = 2, kByThing = 3 };  // kByThing: outside, no air
 
 /// For each voxel of the volume, where it lies to the outline.
 Mask places_of(const Volume& volume, const HeadSurvey& survey, const HeadOutline& outline) {
     const double band_mm = kBandSteps * survey.step_mm(), outer_mm = kOuterBandSteps * survey.step_mm();
     const std::vector<float> distance = signed_distance(survey, outline.head, band_mm + 2 * survey.step_mm());
+    const Mask by_thing = dilate(outline.gone, survey.grid, kByThing_mm);
     Mask places(volume.values.size());
     const Eigen::Affine3d survey_from_voxel =
         Eigen::Scaling(1 / survey.step_mm()) * Eigen::Translation3d(-survey.first_in_ct) * volume.ct_from_voxel;
@@ -94,15 +97,17 @@ Mask places_of(const Volume& volume, const HeadSurvey& survey, const HeadOutline
                                                                 survey.grid.size[static_cast<std::size_t>(a)] - 1);
                 const std::size_t near = survey.index(s[0], s[1], s[2]);
                 const double d = static_cast<double>(distance[near]);
-                places[volume.index(i, j, k)] = d <= -band_mm                             ? kInside
-                                                : d > outer_mm || outline.gone[near] != 0 ? kOutside
-                                                                                          : kBand;
+                places[volume.index(i, j, k)] = d <= -band_mm                                            ? kInside
+                                                : outline.gone[near] || (d > outer_mm && by_thing[near]) ? kByThing
+                                                : d > outer_mm                                           ? kOutside
+                                                                                                         : kBand;
             }
     });
     return places;
 }
 
-/// The nodes of the map round which air is loud: of the voxels where it is sure one in fifty passes kLoudAir.
+/// The nodes of the map round which air is loud: of the voxels where it is sure one in fifty passes kLoudAir. What
+/// shines outside the head (a coil's shell, a cushion) is no noise.
 std::vector<std::uint8_t> loud_nodes(const Volume& leveled, const Mask& places, const LevelMap& map) {
     std::vector<std::vector<float>> air(map.air.size());
     for (std::size_t v = 0; v < places.size(); v += 3) {
@@ -135,7 +140,7 @@ void smooth_loud_places(Volume& leveled, const Mask& places, LevelMap& map, int&
         if (std::find(loud.begin(), loud.end(), 1) == loud.end()) break;
         loud = dilate(loud, nodes, 1.5);  // the nodes within the head know no air
         for (std::size_t n = 0; n < loud.size(); ++n)
-            if (loud[n]) map.smoothings[n] = static_cast<float>(smoothings + 1);
+            if (loud[n] && map.smoothings[n] == static_cast<float>(smoothings)) map.smoothings[n] += 1;
         smooth_once(leveled, map, smoothings);
         ++smoothings;
     }

@@ -25,7 +25,7 @@ constexpr double kFaintInBlur = 0.35, kNoBrain_mm = 72;  // an adult's brain hol
 constexpr double kStrand_mm = 75;                        // ears, lips and fins of noise lead away by 50
 constexpr double kBoneless_cm2 = 15;
 constexpr double kGap_cm2 = 15;
-constexpr double kOneSided_cm2 = 15, kBumps_cm2 = 10, kWidth = 1.35, kThickest_mm = 15;
+constexpr double kOneSided_cm2 = 15, kBumps_cm2 = 10, kShelf_cm2 = 15, kWidth = 1.35, kThickest_mm = 15;
 
 const char* const kGiveHead =
     "Give the CT or MR series of the whole head as the scanner made it; for a phantom or a dry skull use `planlight "
@@ -163,6 +163,13 @@ void judge_things(SkinJudgement& r) {
                         "strap, a mask): there the surface is not the skin",
                         r.bumps_cm2),
             kLook);
+    if (r.shelf_cm2 > kShelf_cm2)
+        add(r.doubts,
+            fmt::format(
+                "Behind the neck {:.0f} square cm of the surface look up, where a head recedes: something may lie "
+                "under the neck (a cushion, a roll)",
+                r.shelf_cm2),
+            kLook);
     if (r.width > kWidth)
         add(r.doubts,
             fmt::format("At ears or jaw the head is {:.1f} times as wide as its skull (heads are 0.9 to 1.2 times): "
@@ -218,6 +225,7 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     result.one_sided_cm2 = things.one_sided_cm2;
     result.bumps_cm2 = things.bumps_cm2;
     result.width = things.width;
+    result.shelf_cm2 = things.shelf_cm2;
     result.bright_bone = layers.bright_bone;
     result.sigma_mm = std::max(skin_edge_sigma_mm(volume, mask, skin), 0.25 * std::max(0.0, result.edge_blur_mm - 1.5));
     judge_size(result);

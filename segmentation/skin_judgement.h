@@ -30,9 +30,10 @@ struct SkinJudgement {
     double edge_blur_mm = 0;     ///< median way from 20 to 80 % of the step from air to skin
     double gap_cm2 = 0;          ///< of skin under which air is again (a mask, a cushion, a cloth)
     double boneless_cm2 = 0;     ///< of an MR: patch of the upper head with no bone within 16 mm (a shining cushion)
-    double one_sided_cm2 = NAN;  ///< `ThingsOnSkin`, and the next two
+    double one_sided_cm2 = NAN;  ///< `ThingsOnSkin`, and the next three
     double bumps_cm2 = NAN;
     double width = NAN;
+    double shelf_cm2 = NAN;
     double strand_mm = 0;           ///< of an MR: how long a thin thing is that hangs on the head
     bool unsure = false;            ///< much of the outline moves with the threshold: other thresholds are to be seen
     double sigma_mm = 0;            ///< `skin_edge_sigma_mm`, or more where the edge is blurred

@@ -21,6 +21,7 @@ constexpr double kOneSided_mm = 10, kFar_mm = 40;
 constexpr double kLargestSkull_mm = 80;  // radius of an adult's
 constexpr double kChin = 1.1;            // of the skull's radius below its middle
 constexpr double kLeastMirrored = 0.5;   // of the skin: whose mirror image the volume shows
+constexpr double kShelfBehind = 0.35, kShelfFrom = 0.25, kShelfTo = 1.4, kLooksUp = 0.5;  // radii; of the normal
 constexpr std::size_t kMostPoints = 6000;
 
 /// Signed distances from the body's surface (positive outside), where the volume reaches.
@@ -177,6 +178,21 @@ double width(const TriangleMesh& skin, const MiddlePlane& plane, const HeadBall&
     return widest;
 }
 
+double shelf(const TriangleMesh& skin, const HeadBall& ball) {
+    const double r = std::min(ball.radius_mm, kLargestSkull_mm);
+    double up_cm2 = 0, all = 0;
+    for (const auto& t : skin.triangles) {
+        const Vector3d from = skin.vertices_in_ct[static_cast<std::size_t>(t[0])] - ball.centre_in_ct;
+        if (from.y() < kShelfBehind * r || from.z() > -kShelfFrom * r || from.z() < -kShelfTo * r) continue;
+        if (std::any_of(t.begin(), t.end(), [&](auto c) { return is_end(skin, static_cast<std::size_t>(c)); }))
+            continue;
+        const Vector3d area = area_in_ct(skin, t);
+        all += area.norm() / 100;
+        if (area.z() > kLooksUp * area.norm()) up_cm2 += area.norm() / 100;
+    }
+    return all > 0 ? up_cm2 : NAN;
+}
+
 }  // namespace
 
 ThingsOnSkin things_on_skin(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin,
@@ -185,7 +201,8 @@ ThingsOnSkin things_on_skin(const Volume& volume, const SkinMask& mask, const Tr
     const Distances distances(coarse_body(volume, mask, skin, kGrid_mm, 0), volume);
     const std::vector<Point> points = points_of(skin, ball);
     const MiddlePlane plane = middle_plane(distances, points, ball);
-    return {one_sided(distances, points, plane), bumps(distances, skin, ball), width(skin, plane, ball)};
+    return {one_sided(distances, points, plane), bumps(distances, skin, ball), width(skin, plane, ball),
+            shelf(skin, ball)};
 }
 
 }  // namespace planlight

@@ -18,6 +18,9 @@ struct ThingsOnSkin {
     double bumps_cm2 = NAN;
     /// Half the width at ears and jaw over the radius of the skull's ball; 0.9 to 1.2 on heads, 1.5 with head phones.
     double width = NAN;
+    /// Behind and below the skull's middle, down to where shoulders begin: what looks up. A head recedes there towards
+    /// the neck: 0 to 8 on heads, 30 and more with a cushion behind the neck.
+    double shelf_cm2 = NAN;
 };
 
 ThingsOnSkin things_on_skin(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin, const HeadBall& ball);

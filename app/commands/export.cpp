@@ -8,7 +8,8 @@
 #include "app/commands/commands.h"
 #include "app/console.h"
 #include "app/export/export_study.h"
-#include "app/recording/resume_offer.h"
+#include "app/export/match_that_stood.h"
+#include "app/report/operation_report.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/case/registration_file.h"
 #include "planning_io/surface/mesh_file.h"
@@ -47,12 +48,11 @@ ExportedOperation operation_of(const ExportOptions& options, const Case& the_cas
     ExportedOperation operation;
     Path cloud = options.cloud, file = options.registration;
     if (!options.recording.empty()) {
-        LastMatch last = last_match_of(options.recording);
-        if (!last.found)
-            throw InputError(options.recording, "holds no match of a patient",
-                             "Name the recording of a session in which the patient was found.");
-        operation.match = std::move(last.found->registration);
-        operation.made = last.found->made_utc;
+        MatchThatStood stood = match_that_stood(options.recording);
+        if (stood.scanned_later)
+            warn("a later scan of that session came to no match: what is written is the match before it");
+        operation.match = std::move(stood.match.registration);
+        operation.made = stood.match.made_utc;
         operation.facts = facts_of_operation(options.recording);
         file = options.recording;
     } else {
@@ -105,7 +105,8 @@ Run add_export(CLI::App& app) {
     auto* sub = add_command(app, "export", "A match and its operation for other systems: DICOM objects, 3D Slicer",
                             "export case --recording session.plrec --slicer for-slicer");
     sub->add_option("case", o.case_folder, "Case folder")->required();
-    auto* recording = sub->add_option("--recording", o.recording, "Recording of a session: its last match, its report");
+    auto* recording = sub->add_option("--recording", o.recording,
+                                      "Recording of a session: the last match that stood, and its report");
     sub->add_option("--registration", o.registration, "Or a match alone (registration.json)")->excludes(recording);
     sub->add_option("--cloud", o.cloud,
                     "The scan that was matched (.ply; default: the one kept in CASE/registrations)");

@@ -2,6 +2,7 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/review_recording.h"
 #include "app/recording/replay_session.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/types/error.h"
@@ -15,9 +16,11 @@ namespace fs = std::filesystem;
 std::vector<std::string> left_of(const Path& recording, const Path& case_folder) {
     std::vector<std::string> left;
     std::error_code ignored;
-    for (const char* ending : {".html", ".json"})
+    for (const char* ending : {".html", ".json", ".pdf"})
         if (const Path report = Path(recording).replace_extension(ending); fs::exists(report, ignored))
             left.push_back(report.string() + " (its report)");
+    if (const Path review = review_folder_of(recording); fs::exists(review, ignored))
+        left.push_back(review.string() + " (its review: pictures that show the face)");
     if (case_folder.empty()) return left;
     if (const Path matches = case_folder / kRegistrationsFolder; fs::exists(matches, ignored))
         left.push_back(matches.string() + " (matches with scans of the skin, of all sessions)");

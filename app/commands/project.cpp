@@ -110,6 +110,8 @@ int run_project(const ProjectOptions& options) {
         items.push_back({{"name", item.name},
                          {"label", item.label},
                          {"lit_name", item.lit_name},
+                         {"code", item.code},
+                         {"lit_by_code", item.lit_by_code},
                          {"distance_to_skin_mm", item.distance_to_skin_mm},
                          {"warnings", item.warnings}});
         for (const auto& warning : item.warnings) warn(warning);

@@ -72,7 +72,7 @@ const char* heading_of(const ReplayResult& r) {
 /// Throws unless all that the recording holds was compared. One that was cut holds no more.
 void check_compared(const ReplayResult& result, const Path& recording) {
     if (result.difference) tell_difference(result);
-    if (result.end == RecordingEnd::damaged)
+    if (may_be_damaged(result.end))
         throw DamagedFileError(recording, "is alike up to where it is damaged",
                                "Copy the file again from where it was written.");
     if (result.compared() == 0)

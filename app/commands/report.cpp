@@ -18,31 +18,38 @@ struct ReportOptions {
     bool json = false;
 };
 
-/// Neither the page nor its figures may stand where a recording does, or in each other's place.
-void check_out(const Path& out, const Path& recording) {
+/// Neither the page nor its figures nor the PDF may stand where a recording does, or in each other's place.
+void check_out(const Path& out, const Path& pdf, const Path& recording) {
     const auto refuse = [&](const Path& file, const std::string& problem) {
-        throw InputError(file, problem, "Name a page: `planlight report RECORDING --out report.html`.");
+        throw InputError(file, problem, "Name pages: `planlight report RECORDING --out report.html --pdf report.pdf`.");
     };
-    std::error_code not_there;
-    for (const Path& file : {out, Path(out).replace_extension(".json")})
-        if (std::filesystem::equivalent(file, recording, not_there))
-            refuse(file, "is the recording itself, and a report would take its place");
-    if (out.extension() == ".plrec") refuse(out, "is the name of a recording, not of a page");
+    const auto same = [](const Path& a, const Path& b) {
+        std::error_code not_there;
+        const auto whole = [&](const Path& path) {
+            return std::filesystem::weakly_canonical(std::filesystem::absolute(path, not_there), not_there);
+        };
+        return std::filesystem::equivalent(a, b, not_there) || whole(a) == whole(b);
+    };
+    const Path figures = Path(out).replace_extension(".json");
+    for (const Path& file : {out, figures, pdf}) {
+        if (file.empty()) continue;
+        if (same(file, recording)) refuse(file, "is the recording itself, and a report would take its place");
+        if (file.extension() == ".plrec") refuse(file, "is the name of a recording, not of a page");
+    }
     if (out.extension() == ".json") refuse(out, "is where the figures of the page go, not the page");
+    if (!pdf.empty() && (same(pdf, out) || same(pdf, figures)))
+        refuse(pdf, "is where the page or its figures go, not the PDF");
 }
 
 int run_report(const ReportOptions& options) {
     const Path out = options.out.empty() ? Path(options.recording).replace_extension(".html") : options.out;
-    check_out(out, options.recording);
+    check_out(out, options.pdf, options.recording);
     check_can_write(out);
+    if (!options.pdf.empty()) check_can_write(options.pdf);
     const OperationFacts facts = facts_of_operation(options.recording);
     const std::string json = operation_json(facts);
     write_operation_report(facts, json, out);
-    if (!options.pdf.empty()) {
-        write_safely(options.pdf, operation_pdf(facts));
-        std::filesystem::permissions(options.pdf,
-                                     std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
-    }
+    if (!options.pdf.empty()) write_safely(options.pdf, operation_pdf(facts), ReadableBy::owner);
     if (options.json)
         std::cout << json;
     else

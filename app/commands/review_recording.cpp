@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "app/console.h"
 #include "app/report/recording_review.h"
@@ -25,25 +26,57 @@ double nearest_frame(const RecordingTimeLine& line, double at_s, const fs::path&
                              [&](double a, double b) { return std::abs(a - at_s) < std::abs(b - at_s); });
 }
 
-/// A PNG a frame, "clip/000000.png" on.
+/// A PNG a frame, "clip/000000.png" on; a former clip goes as a whole.
 int write_clip(const RecordingReviewOptions& options, const fs::path& folder) {
-    fs::create_directories(folder);
     int number = 0;
-    std::string times = "file,seconds\n";
-    for_each_moment(options.recording, options.clip_s[0], options.clip_s[1], [&](const RecordedMoment& moment) {
-        const std::string name = fmt::format("{:06d}.png", number++);
-        write_png(picture_of(moment), folder / name);
-        times += fmt::format("{},{:.6f}\n", name, moment.at_s);
+    write_folder_safely(folder, true, [&](const fs::path& into) {
+        std::string times = "file,seconds\n";
+        for_each_moment(options.recording, options.clip_s[0], options.clip_s[1], [&](const RecordedMoment& moment) {
+            const std::string name = fmt::format("{:06d}.png", number++);
+            write_png(picture_of(moment), into / name);
+            times += fmt::format("{},{:.6f}\n", name, moment.at_s);
+        });
+        if (number == 0)
+            throw InputError(options.recording,
+                             fmt::format("kept no frame from {:g} to {:g} s", options.clip_s[0], options.clip_s[1]),
+                             "The times of its frames stand in review.json (\"frames_s\").");
+        write_safely(into / "times.csv", times);
     });
-    if (number == 0)
-        throw InputError(options.recording,
-                         fmt::format("kept no frame from {:g} to {:g} s", options.clip_s[0], options.clip_s[1]),
-                         "The times of its frames stand in review.json (\"frames_s\").");
-    write_safely(folder / "times.csv", times);
     return number;
 }
 
+/// Whether a former review made it: then it may be written over.
+bool is_review(const fs::path& folder) {
+    std::error_code fault;
+    if (!fs::is_regular_file(folder / "review.json", fault)) return false;
+    try {
+        const auto json = nlohmann::json::parse(read_whole(folder / "review.json"), nullptr, false);
+        return json.is_object() && json.value("format", nlohmann::json()) == kReviewFormat;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
+/// A folder for its owner only, for it shows the face: new, empty, or one that a former review made.
+void make_review_folder(const fs::path& folder) {
+    std::error_code fault;
+    if (fs::exists(folder, fault) && !fs::is_directory(folder, fault))
+        throw InputError(folder, "is a file, and a review is a folder", "Name a new folder with --out.");
+    if (fs::is_directory(folder, fault) && !fs::is_empty(folder, fault) && !is_review(folder))
+        throw InputError(folder, "holds something that is no review of a recording",
+                         "Name a new folder with --out, or an empty one.");
+    fs::create_directories(folder, fault);
+    if (!fault) fs::permissions(folder, fs::perms::owner_all, fault);
+    if (fault)
+        throw DiskError(folder, "cannot be made, or kept from others: " + fault.message(),
+                        "Name a folder with --out where you may write.");
+}
+
 }  // namespace
+
+fs::path review_folder_of(const fs::path& recording) {
+    return fs::path(recording).replace_extension("") += "-review";
+}
 
 bool is_recording(const fs::path& path) {
     std::error_code fault;
@@ -54,11 +87,10 @@ int run_recording_review(const RecordingReviewOptions& options) {
     if (options.clip_s.size() == 2 && options.clip_s[1] < options.clip_s[0])
         throw Error(ExitCode::usage, "the clip ends before it begins", "Give --clip FROM TO, in seconds.");
     const fs::path out =
-        options.out.empty() ? fs::path(options.recording).replace_extension("") += "-review" : options.out;
+        options.out.empty() ? review_folder_of(options.recording) : options.out;
     const RecordingTimeLine line = time_line_of(options.recording);
     const std::string figures = review_json(line);
-    fs::create_directories(out);
-    fs::permissions(out, fs::perms::owner_all);
+    make_review_folder(out);
     write_safely(out / "index.html", review_page(line, {}));
     write_safely(out / "review.json", figures);
     if (!options.json) fmt::print("{}\n", (out / "index.html").string());

@@ -8,7 +8,7 @@ namespace planlight {
 /// What of a recorded session is to be looked at.
 struct RecordingReviewOptions {
     std::filesystem::path recording;
-    std::filesystem::path out;   ///< folder; empty: beside the recording
+    std::filesystem::path out;   ///< folder, new, empty or of a former review; empty: beside the recording
     double at_s = -1;            ///< of a picture; below 0: none
     std::vector<double> clip_s;  ///< from, to; empty: none
     bool json = false;
@@ -16,6 +16,9 @@ struct RecordingReviewOptions {
 
 /// Whether this is a recording and not a case.
 bool is_recording(const std::filesystem::path& path);
+
+/// Where its review stands when no other folder was named.
+std::filesystem::path review_folder_of(const std::filesystem::path& recording);
 
 /// `planlight review RECORDING`: its page, then the pictures that were asked for. Gives the exit code.
 int run_recording_review(const RecordingReviewOptions& options);

@@ -5,12 +5,14 @@
 #include "app/commands/language_option.h"
 #include "app/commands/surgeon_option.h"
 #include "app/console.h"
+#include "app/igtl/session_link.h"
 #include "app/live/live_window.h"
 #include "app/live/real_room.h"
 #include "app/live/simulated_fault.h"
 #include "app/live/simulated_room.h"
 #include "app/recording/recording_head.h"
 #include "app/report/html_page.h"
+#include "app/session_observers.h"
 #include "app/site_settings.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/case/rig_file.h"
@@ -36,6 +38,8 @@ struct SessionOptions {
     unsigned seed = 1;
     double speed_mm_s = 20;
     std::string fault;
+    int igtl_port = 0;  ///< 0: no other system is told
+    std::string igtl_address = MessageServerSettings{}.address;
     bool autoplay = false, json = false;
     double end_after_s = 0;  ///< wall time; 0 = until the window is closed
     double idle_first_s = 0;
@@ -113,9 +117,38 @@ Recorder recorder_of(const SessionOptions& options, const Case& the_case, const 
     return Recorder(new SessionRecorder(std::move(sink), head));
 }
 
-LiveOptions live_options(const SessionOptions& options, const SiteSettings& site, SessionRecorder* recorder) {
+/// Other systems are told by OpenIGTLink; null where nobody is.
+std::unique_ptr<SessionLink> link_of(const SessionOptions& options, const Case& the_case, const SiteSettings& site) {
+    if (options.igtl_port == 0) return nullptr;
+    SessionLinkSettings settings;
+    settings.server.port = options.igtl_port;
+    settings.server.address = options.igtl_address;
+    settings.names = site.openigtlink_names;
+    auto link = std::make_unique<SessionLink>(the_case, settings);
+    fmt::print(
+        stderr,
+        "Whoever connects to port {} of {} (OpenIGTLink) is told poses and what the gate says, and is given skin "
+        "and plan, {}; the skin is the patient's face, and nothing is encrypted.\n",
+        link->port(), options.igtl_address, settings.names ? "with their names" : "without names");
+    return link;
+}
+
+/// Who is told of a session, for as long as it runs.
+struct Listeners {
+    Recorder recorder;
+    std::unique_ptr<SessionLink> link;
+    SessionObservers all;
+    Listeners(const SessionOptions& options, const Case& the_case, const SiteSettings& site)
+        : recorder(recorder_of(options, the_case, site)), link(link_of(options, the_case, site)) {
+        all.add(recorder.get());
+        all.add(link.get());
+    }
+};
+
+LiveOptions live_options(const SessionOptions& options, const SiteSettings& site, Listeners& listeners) {
     LiveOptions live;
-    live.observer = recorder;
+    SessionRecorder* recorder = listeners.recorder.get();
+    live.observer = listeners.all.all();
     live.projector_monitor = options.projector_monitor.empty() ? site.projector_monitor : options.projector_monitor;
     live.operator_monitor = options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor;
     if (!options.projector_file.empty()) live.projector = read_projector_file(options.projector_file);
@@ -149,8 +182,8 @@ int run_in_simulated_room(const SessionOptions& options, const Case& the_case, c
     room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     room.seed = options.seed;
     auto resume = window.while_made(kLookedAt, 0.5, [&] { return resume_of(options, the_case, nullptr); });
-    const auto recorder = recorder_of(options, the_case, site);
-    LiveOptions live = live_options(options, site, recorder.get());
+    Listeners listeners(options, the_case, site);
+    LiveOptions live = live_options(options, site, listeners);
     live.resume = std::move(resume);
     const CaseDrawing drawing = drawing_of(the_case, site, window);
     return run_live_simulated(
@@ -168,8 +201,8 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
     if (options.projector_monitor.empty()) options.projector_monitor = room.monitor;
     if (options.projector_file.empty() && options.light_delay_ms < 0) options.projector_file = room.projector_file;
     auto resume = window.while_made(kLookedAt, 0.3, [&] { return resume_of(options, the_case, &rig); });
-    const auto recorder = recorder_of(options, the_case, site);
-    LiveOptions live = live_options(options, site, recorder.get());
+    Listeners listeners(options, the_case, site);
+    LiveOptions live = live_options(options, site, listeners);
     live.resume = std::move(resume);
     const CaseDrawing drawing = drawing_of(the_case, site, window);
     return run_live(
@@ -239,6 +272,14 @@ Run add_session(CLI::App& app) {
     sub->add_option("--fault", o.fault, "To see what it looks like: begins some seconds after the light is ALIGNED")
         ->excludes(room)
         ->check(CLI::IsMember(simulated_faults()));
+    auto* igtl = sub->add_option("--igtl", o.igtl_port,
+                                 "Tell other systems (3D Slicer) by OpenIGTLink on this port: T_ini, T_cur, T_global, "
+                                 "what the gate says, its error, skin and plan; nothing is received")
+                     ->check(CLI::Range(1, 65535));
+    sub->add_option("--igtl-address", o.igtl_address,
+                    "The network card that it listens on, as a number (0.0.0.0: all of them)")
+        ->capture_default_str()
+        ->needs(igtl);
     sub->add_flag("--autoplay", o.autoplay,
                   "Scan, register and track by itself; that the light is right is said in the simulated room only");
     sub->add_option("--idle-first-s", o.idle_first_s,

@@ -120,10 +120,11 @@ private:
     }
 
     void look_at_monitor() {
-        monitor_.emplace();
-        monitor_->wanted = room_.monitor;
-        for (const Monitor& monitor : list_monitors())
-            if (monitor.name == room_.monitor) monitor_->found = monitor;
+        MonitorFigures figures;
+        figures.wanted = room_.monitor;
+        for (const Monitor& monitor : list_monitors())  // throws without a display: then there is nothing to judge
+            if (monitor.name == room_.monitor) figures.found = monitor;
+        monitor_ = figures;
         if (!room_.projector_file.empty()) monitor_->measured = read_projector_file(room_.projector_file);
     }
 

@@ -41,12 +41,6 @@ DicomStudy study_of_case(const Case& the_case, const fs::path& series_folder, co
     return study;
 }
 
-RgbImage rgb_of(const GrayImage& picture) {
-    RgbImage rgb(picture.width, picture.height);
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i) rgb.pixels[i].fill(picture.pixels[i]);
-    return rgb;
-}
-
 struct KeyPicture {
     std::string what;
     RgbImage picture;
@@ -73,6 +67,25 @@ std::vector<KeyPicture> key_pictures(const Case& the_case, const CaseDrawing& dr
     pictures.push_back({"Right camera" + at, rgb_of(brightened(moment.right))});
     if (!moment.light.empty()) pictures.push_back({"What the projector was given" + at, moment.light});
     return pictures;
+}
+
+/// A stroke as it is lit: without its gaps, in as many lines as they leave.
+std::vector<SlicerLine> lit_lines(const Stroke& stroke) {
+    if (!(stroke.gap_mm > 0)) return {{stroke.points_in_ct, stroke.closed, stroke.colour}};
+    std::vector<Eigen::Vector3d> way = stroke.points_in_ct;
+    if (stroke.closed && !way.empty()) way.push_back(way.front());
+    std::vector<SlicerLine> lines;
+    bool going_on = false;
+    double way_mm = 0;
+    for (std::size_t i = 0; i + 1 < way.size(); ++i) {
+        const double step_mm = (way[i + 1] - way[i]).norm();
+        const bool lit = !stroke.in_gap(way_mm + step_mm / 2);  // as `DrawingRenderer` has it
+        way_mm += step_mm;
+        if (lit && !going_on) lines.push_back({{way[i]}, false, stroke.colour});
+        if (lit) lines.back().points_in_ct.push_back(way[i + 1]);
+        going_on = lit;
+    }
+    return lines;
 }
 
 }  // namespace
@@ -125,8 +138,10 @@ void export_for_slicer(const Case& the_case, const ExportedOperation& operation,
     scene.plan = the_case.plan;
     if (operation.cloud) scene.cloud = *operation.cloud;
     scene.ct_from_rig = operation.match.patient_from_ct.inverse();
-    for (const Stroke& stroke : drawing.drawing.strokes)
-        scene.light.push_back({stroke.points_in_ct, stroke.closed, stroke.colour});
+    for (const Stroke& stroke : drawing.drawing.strokes) {
+        const auto lines = lit_lines(stroke);
+        scene.light.insert(scene.light.end(), lines.begin(), lines.end());
+    }
     write_slicer_scene(scene, folder);
 }
 

@@ -12,16 +12,34 @@ namespace {
 
 constexpr double kRound_mm = 12;  // of the plan's lines the picture is kept so far
 constexpr double kApart_mm = 4;
+constexpr double kLabel_mm = 4;  // round places of a label's field, which lie 3 mm apart: also while the head moves
 
-PlanRegion::InPicture region_in(const CameraModel& camera, const std::vector<Eigen::Vector3d>& points_in_rig) {
-    PlanRegion::InPicture region;
+/// Those of the points that the camera sees; the radius grows to what `round_mm` are there.
+std::vector<Eigen::Vector2d> pixels_of(const CameraModel& camera, const std::vector<Eigen::Vector3d>& points_in_rig,
+                                       double round_mm, double& radius_px) {
+    std::vector<Eigen::Vector2d> pixels;
     for (const Eigen::Vector3d& p : points_in_rig) {
         const auto pixel = project(camera, p);
         if (!pixel || !in_picture(camera, *pixel)) continue;
-        region.pixels.push_back(*pixel);
-        region.radius_px = std::max(region.radius_px, kRound_mm * camera.focal_x / (camera.device_from_rig * p).z());
+        pixels.push_back(*pixel);
+        radius_px = std::max(radius_px, round_mm * camera.focal_x / (camera.device_from_rig * p).z());
     }
+    return pixels;
+}
+
+PlanRegion::InPicture region_in(const CameraModel& camera, const std::vector<Eigen::Vector3d>& lines_in_rig,
+                                const std::vector<Eigen::Vector3d>& labels_in_rig) {
+    PlanRegion::InPicture region;
+    region.pixels = pixels_of(camera, lines_in_rig, kRound_mm, region.radius_px);
+    region.of_labels = pixels_of(camera, labels_in_rig, kLabel_mm, region.label_radius_px);
     return region;
+}
+
+template <class Do>
+void for_each_near(const GrayImage& picture, const Eigen::Vector2d& p, double r, const Do& act) {
+    for (int y = std::max(0, static_cast<int>(p.y() - r)); y <= std::min(picture.height - 1.0, p.y() + r); ++y)
+        for (int x = std::max(0, static_cast<int>(p.x() - r)); x <= std::min(picture.width - 1.0, p.x() + r); ++x)
+            if ((Eigen::Vector2d(x, y) - p).norm() <= r) act(x, y);
 }
 
 }  // namespace
@@ -38,7 +56,10 @@ PlanRegion plan_region(const Session& session, const TrackedPose& pose) {
             last = p;
         }
     }
-    return {region_in(session.rig().left_camera, points), region_in(session.rig().right_camera, points)};
+    std::vector<Eigen::Vector3d> labels;  // also those that are lit for a moment only
+    for (const Label& label : session.drawing().labels)
+        for (const Eigen::Vector3d& p : label.field_in_ct) labels.push_back(rig_from_ct * p);
+    return {region_in(session.rig().left_camera, points, labels), region_in(session.rig().right_camera, points, labels)};
 }
 
 GrayImage blurred_outside(const GrayImage& picture, const PlanRegion::InPicture& region) {
@@ -55,11 +76,11 @@ GrayImage blurred_outside(const GrayImage& picture, const PlanRegion::InPicture&
             for (int y = top; y < bottom; ++y)
                 for (int x = left; x < right; ++x) blurred.at(x, y) = mean;
         }
-    const double r = region.radius_px;
+    const GrayImage mosaic = blurred;
     for (const Eigen::Vector2d& p : region.pixels)
-        for (int y = std::max(0, static_cast<int>(p.y() - r)); y <= std::min(picture.height - 1.0, p.y() + r); ++y)
-            for (int x = std::max(0, static_cast<int>(p.x() - r)); x <= std::min(picture.width - 1.0, p.x() + r); ++x)
-                if ((Eigen::Vector2d(x, y) - p).norm() <= r) blurred.at(x, y) = picture.at(x, y);
+        for_each_near(picture, p, region.radius_px, [&](int x, int y) { blurred.at(x, y) = picture.at(x, y); });
+    for (const Eigen::Vector2d& p : region.of_labels)
+        for_each_near(picture, p, region.label_radius_px, [&](int x, int y) { blurred.at(x, y) = mosaic.at(x, y); });
     return blurred;
 }
 

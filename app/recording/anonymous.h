@@ -12,10 +12,11 @@ namespace planlight {
 
 /// Where the plan lies in both pictures of a frame; empty: nowhere that is known.
 struct PlanRegion {
-    /// Pixels on the plan's lines, and how far round them the picture is kept.
+    /// Pixels on the plan's lines, and how far round them the picture is kept; pixels on its labels, and how far round
+    /// them it is not: they hold the names of the items.
     struct InPicture {
-        std::vector<Eigen::Vector2d> pixels;
-        double radius_px = 0;
+        std::vector<Eigen::Vector2d> pixels, of_labels;
+        double radius_px = 0, label_radius_px = 0;
     };
     InPicture left, right;
 };
@@ -36,9 +37,10 @@ public:
     void add_items(const PlanDrawing& drawing);
     /// An event (JSON) without the names in what it says; empty where it is none.
     std::string out_of(const std::string& json) const;
+    /// A sentence without them.
+    std::string text_without(std::string text) const;
 
 private:
-    std::string text_without(std::string text) const;
     void add(const std::string& name, const std::string& instead);
     std::vector<std::pair<std::string, std::string>> names_;
 };

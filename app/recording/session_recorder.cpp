@@ -103,7 +103,9 @@ void SessionRecorder::room_entered(const RoomFacts& room) noexcept {
     try {
         const std::lock_guard lock(mutex_);
         now_ = room.now;
-        writer_.add({chunk_types::kRoom, now_, session_events::room(room)});
+        std::string text = session_events::room(room);
+        if (anonymous_) text = anonymous_->out_of(text);
+        writer_.add({chunk_types::kRoom, now_, std::move(text)});
     } catch (const std::exception&) {
     }
 }
@@ -213,6 +215,7 @@ void SessionRecorder::picture_shown(const RgbImage& picture, Instant valid_until
         std::string hash = hash_of(picture);
         const std::lock_guard lock(mutex_);
         input({Kind::shown, lit_from, valid_until, 0, std::move(hash), {}});
+        if (anonymous_) return;  // the names of the plan's items stand in it
         if (!scanning_ && kept_frame_ && (mode_ == RecordMode::events || now_ - pictured_ > kPictureEvery))
             keep_picture(picture);
     } catch (const std::exception&) {
@@ -276,10 +279,13 @@ void SessionRecorder::matched(const Session& session) noexcept {
 }
 
 /// Of an anonymous recording: items have numbers, and of the face nothing is known until the next pose.
-void SessionRecorder::name_items(const Session& session) {
-    const std::lock_guard lock(mutex_);
-    region_ = {};
-    if (anonymous_) anonymous_->add_items(session.drawing());
+void SessionRecorder::name_items(const Session& session) noexcept {
+    try {
+        const std::lock_guard lock(mutex_);
+        region_ = {};
+        if (anonymous_) anonymous_->add_items(session.drawing());
+    } catch (const std::exception&) {  // as in `event`
+    }
 }
 
 /// All that it takes to go on with this match after whatever ends this session.

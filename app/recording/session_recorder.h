@@ -87,7 +87,7 @@ private:
     void event(const MakeText& make_text) noexcept;
     static StereoFrame blurred(const Frame& frame);
     void write(const Frame& frame);
-    void name_items(const Session& session);
+    void name_items(const Session& session) noexcept;
     void choose(const Frame& frame);
     /// A press, a fault, a refusal, another word of the gate: the frames round it are kept.
     void something_happened() noexcept;

@@ -2,12 +2,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "app/recording/recording_head.h"
 #include "app/report/operation_report.h"
+#include "app/without_numbers.h"
 #include "planning_io/files/content_hash.h"
 #include "planning_io/recording/packed_pictures.h"
 #include "planning_io/types/error.h"
@@ -19,24 +19,8 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr double kLongestStep_s = 1;  // between two updates that follow each other
+constexpr double kPressBeside_s = 2;  // a press may wait for the picture that is being made
 constexpr double kBreak_s = 0.5;      // of light that is the same showing still
-
-/// "the last pose is 83 ms old" and "... 91 ms old" are one reason.
-std::string without_numbers(const std::string& text) {
-    std::string out;
-    for (std::size_t i = 0; i < text.size();) {
-        if (!std::isdigit(static_cast<unsigned char>(text[i]))) {
-            out += text[i++];
-            continue;
-        }
-        while (i < text.size() &&
-               (std::isdigit(static_cast<unsigned char>(text[i])) ||
-                (text[i] == '.' && i + 1 < text.size() && std::isdigit(static_cast<unsigned char>(text[i + 1])))))
-            ++i;
-        out += "…";
-    }
-    return out;
-}
 
 /// Null is not known, never 0.
 std::optional<double> number(const Json& value) {
@@ -95,6 +79,22 @@ private:
         facts_.said.push_back({at_s_, event.value("utc", ""), what, grave});
     }
 
+    /// What a person says is right has its press beside it: before it, or, as the two are noted by two threads, at once
+    /// after it. Else the program said it of itself (`--autoplay`).
+    void say_by(const std::string& what, const Json& event, bool verified = false) {
+        by_program_ = {facts_.said.size(), at_s_, what, verified};
+        say("By the program itself, without a press, " + what, event);
+        if (press_at_s_ && at_s_ - *press_at_s_ <= kPressBeside_s) take_confirming_press();
+    }
+
+    void take_confirming_press() {
+        press_at_s_ = at_s_;
+        if (by_program_.what.empty() || at_s_ - by_program_.at_s > kPressBeside_s) return;
+        facts_.said[by_program_.place].what = "By a press " + by_program_.what;
+        if (by_program_.verified) --facts_.verified_by_program;
+        by_program_ = {}, press_at_s_.reset();
+    }
+
     void take_event(const Json& event) {
         const std::string what = event.value("what", "");
         if (what == "updated") take_update(event);
@@ -102,6 +102,7 @@ private:
         if (what == "matched") take_match(event);
         if (what == "resumed") take_resumption(event);
         if (what == "asked") take_call(event);
+        if (what == "pressed" && event.value("action", "") == "confirm") take_confirming_press();
         if (what == "pressed" && event.value("action", "") == "dark") say("DARK was pressed.", event);
         if (what == "pressed" && event.value("action", "") == "projector_lost")
             say("The projector was lost, and the session made dark.", event, true);
@@ -124,7 +125,7 @@ private:
         if (call == "find_patient") utc_of_match_ = event.value("utc", "");
         if (call == "confirm") {
             use_match();
-            say("By a press the match was said to fit.", event);
+            say_by("the match was said to fit.", event);
         }
         if (call == "light_landmark") landmark_ = event.value("which", -1);
         if (call != "update") following_ = false;
@@ -249,8 +250,8 @@ private:
     void take_ruling(const Json& event) {
         const std::string call = event.value("call", "");
         if (call == "verify") {
-            ++facts_.verified;
-            say("By a press the light on landmarks was said to be right.", event);
+            ++facts_.verified, ++facts_.verified_by_program;
+            say_by("the light on landmarks was said to be right.", event, true);
         }
         if (call != "step") return;
         const std::string trust = event.value("trust", "");
@@ -300,6 +301,14 @@ private:
     std::string moment_trust_;
     int moment_worth_ = 0;
     bool light_seen_ = false;  ///< in the last frame
+    /// The last word that has no press beside it yet: its place in `facts_.said`, when, and what.
+    struct Unpressed {
+        std::size_t place = 0;
+        double at_s = 0;
+        std::string what;
+        bool verified = false;
+    } by_program_;
+    std::optional<double> press_at_s_;  ///< of a press that has no word beside it yet
     double moment_at_s_ = 0;
 };
 
@@ -323,7 +332,7 @@ OperationFacts facts_of_operation(const fs::path& recording) {
     facts.file = recording.filename().string();
     facts.chunks = reader.chunks(), facts.bytes = reader.bytes();
     facts.ended = reader.sentence();
-    facts.damaged = reader.end() == RecordingEnd::damaged;
+    facts.damaged = may_be_damaged(reader.end());
     return facts;
 }
 

@@ -11,17 +11,6 @@
 namespace planlight {
 namespace {
 
-std::string clock_text(double s) {
-    const auto whole = static_cast<long>(s);
-    return fmt::format("{}:{:02}:{:02}", whole / 3600, whole % 3600 / 60, whole % 60);
-}
-
-RgbImage rgb_of(const GrayImage& picture) {
-    RgbImage rgb(picture.width, picture.height);
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i) rgb.pixels[i].fill(picture.pixels[i]);
-    return rgb;
-}
-
 void add_facts(PdfPages& pdf, const OperationFacts& facts) {
     const RecordingHead& head = facts.head;
     std::vector<std::vector<std::string>> rows{{"", ""}};
@@ -45,16 +34,34 @@ void add_items(PdfPages& pdf, const OperationFacts& facts) {
         {"Plan item", "shown (room clock)", "for", "predicted, 95 %", "measured: median", "95 %", "worst", "times"}};
     for (const OperationItem& item : facts.items) {
         const Distribution d = distribution_of(item.measured_mm);
-        const auto mm = [&](double value) { return d.count > 0 ? fmt::format("{:.2f}", value) : std::string("-"); };
+        const auto mm = [&](double value) {
+            return d.count > 0 ? fmt::format("{:.2f} {}", value, sign_of(value)) : std::string("-");
+        };
         rows.push_back(
             {item.name,
-             item.shown.empty() ? (item.looked_at ? "not shown" : "no camera looked")
-                                : clock_text(item.shown.front().first) + " to " + clock_text(item.shown.back().second),
+             shown_text(item, facts),
              duration_text(item.shown_s), item.predicted_mm ? fmt::format("{:.2f}", *item.predicted_mm) : "not known",
              mm(d.median), mm(d.p95), mm(d.worst), std::to_string(d.count)});
     }
     if (facts.items.empty()) rows.push_back({"No match was found: nothing could be shown."});
     pdf.table(rows, {0.24, 0.18, 0.1, 0.12, 0.12, 0.08, 0.08, 0.08});
+    pdf.paragraph(kWhatIsMeasured);
+}
+
+void add_matches(PdfPages& pdf, const OperationFacts& facts) {
+    pdf.heading("Matches");
+    if (facts.matches.empty()) {
+        pdf.paragraph("None.");
+        return;
+    }
+    std::vector<std::vector<std::string>> rows{{"Room clock", "Verdict", "Points of skin", "Residual", "Why"}};
+    for (const OperationMatch& match : facts.matches) {
+        std::string why;
+        for (const std::string& reason : match.reasons) why += (why.empty() ? "" : " ") + reason;
+        rows.push_back({clock_text(match.at_s), match.verdict, std::to_string(match.points),
+                        match.residual_rms_mm ? fmt::format("{:.2f} mm rms", *match.residual_rms_mm) : "not known", why});
+    }
+    pdf.table(rows, {0.12, 0.1, 0.14, 0.16, 0.48});
 }
 
 void add_course(PdfPages& pdf, const OperationFacts& facts) {
@@ -98,7 +105,7 @@ std::string operation_pdf(const OperationFacts& facts) {
                  fmt::format("Case {}, {}. Planlight {}. For research; not a medical device.", facts.head.case_code,
                              facts.head.began_utc, facts.head.program));
     const OperationVerdict verdict = verdict_of(facts);
-    pdf.heading(verdict.sentence);
+    pdf.heading(sign_of(verdict.kind) + " " + verdict.sentence);
     for (const std::string& reason : verdict.reasons) pdf.paragraph("- " + reason);
     add_facts(pdf, facts);
     add_items(pdf, facts);
@@ -120,6 +127,7 @@ std::string operation_pdf(const OperationFacts& facts) {
             rows.push_back({reason, std::to_string(how.first), duration_text(how.second)});
         pdf.table(rows, {0.7, 0.15, 0.15});
     }
+    add_matches(pdf, facts);
     add_events(pdf, "What people said and did", facts.said);
     add_events(pdf, "Refused, or failed", facts.refusals);
     pdf.heading("Hashes (XXH3-128)");

@@ -19,12 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr double kLook_mm = kOperationLook_mm, kStop_mm = kOperationStop_mm;
 
-/// Of the room's clock: "0:03:12".
-std::string moment_text(double s) {
-    const auto whole = static_cast<long>(s);
-    return fmt::format("{}:{:02}:{:02}", whole / 3600, whole % 3600 / 60, whole % 60);
-}
-
 /// Cut where a word ends, as far as there is one; what is cut stands in the figures.
 std::string short_text(const std::string& text, std::size_t most) {
     if (text.size() <= most) return text;
@@ -57,18 +51,10 @@ std::string mm(const std::optional<double>& value) {
     return value ? fmt::format("{:.2f} mm", *value) : "not known";
 }
 
-std::string shown_text(const OperationItem& item, const OperationFacts& facts) {
-    if (item.shown.empty()) return item.looked_at || facts.lit_s <= 0 ? "not shown" : "not known";
-    const std::string text = moment_text(item.shown.front().first) + "&ndash;" + moment_text(item.shown.back().second);
-    return item.shown.size() == 1 ? text : fmt::format("{}, {} times", text, item.shown.size());
-}
-
-/// A figure beyond what the gate lets pass is marked by a sign and a word, not by its colour alone.
 std::string marked(double value_mm) {
-    const char* sign = value_mm > kStop_mm   ? "&nbsp;<span class=\"stop\">&#10007;</span>"
-                       : value_mm > kLook_mm ? "&nbsp;<span class=\"look\">&#9888;</span>"
-                                             : "";
-    return fmt::format("{:.2f}{}", value_mm, sign);
+    const std::string sign = sign_of(value_mm);
+    if (sign.empty()) return fmt::format("{:.2f}", value_mm);
+    return fmt::format("{:.2f}&nbsp;<span class=\"{}\">{}</span>", value_mm, value_mm > kStop_mm ? "stop" : "look", sign);
 }
 
 std::string items_html(const OperationFacts& facts) {
@@ -95,11 +81,7 @@ std::string items_html(const OperationFacts& facts) {
             "page</td></tr>",
             facts.items.size() - kMost);
     if (facts.items.empty()) html += "<tr><td colspan=\"8\">No match was found: nothing could be shown.</td></tr>";
-    return html +
-           "</table><p class=\"muted\">Predicted: within this in 95 of 100 cases, by the last match. Measured: where "
-           "both "
-           "cameras saw the light, against where it belongs on the skin as the scan found it, mm. What cameras, CT and "
-           "markers share is not seen by either: skin that slid over the bone, markers that moved all together.</p>";
+    return html + "</table><p class=\"muted\">" + kWhatIsMeasured + "</p>";
 }
 
 std::string time_html(const OperationFacts& facts) {
@@ -167,7 +149,7 @@ std::string matches_html(const OperationFacts& facts) {
         const OperationMatch& match = facts.matches[i];
         std::string why;
         for (const std::string& reason : match.reasons) why += (why.empty() ? "" : " ") + reason;
-        html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>", moment_text(match.at_s),
+        html += fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td></tr>", clock_text(match.at_s),
                             xml_escaped(match.verdict), match.points,
                             match.residual_rms_mm ? mm(match.residual_rms_mm) + " rms" : mm({}),
                             xml_escaped(short_text(why, kLongest)));
@@ -191,7 +173,7 @@ std::string events_html(const std::string& title, const std::vector<OperationEve
     if (events.empty()) return html + "<p>None.</p>";
     html += "<table>";
     for (const OperationEvent* event : chosen_of(events, most))
-        html += fmt::format("<tr><td style=\"width:16%\">{}</td><td>{}</td></tr>", moment_text(event->at_s),
+        html += fmt::format("<tr><td style=\"width:16%\">{}</td><td>{}</td></tr>", clock_text(event->at_s),
                             xml_escaped(event->what));
     html += "</table>";
     if (events.size() > most)
@@ -205,19 +187,13 @@ std::string picture_html(const std::string& title, const RgbImage& picture) {
                        embedded_png(picture), title);
 }
 
-RgbImage rgb_of(const GrayImage& picture) {
-    RgbImage rgb(picture.width, picture.height);
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i) rgb.pixels[i].fill(picture.pixels[i]);
-    return rgb;
-}
-
 std::string moment_html(const OperationFacts& facts) {
     if (!facts.moment) return "<h2>Pictures</h2><p>No frame with light on the skin was kept.</p>";
     const OperationMoment& m = *facts.moment;
     std::string html = fmt::format(
         "<h2>At {} (room clock), {}</h2><div class=\"row\" "
         "style=\"grid-template-columns:repeat({},1fr)\">",
-        moment_text(m.at_s), m.trust == "aligned" ? "aligned" : "to be looked at", m.light.empty() ? 2 : 3);
+        clock_text(m.at_s), m.trust == "aligned" ? "aligned" : "to be looked at", m.light.empty() ? 2 : 3);
     html += picture_html("Left camera", rgb_of(brightened(m.left)));
     html += picture_html("Right camera", rgb_of(brightened(m.right)));
     if (!m.light.empty()) html += picture_html("What the projector was given", m.light);
@@ -243,13 +219,8 @@ std::string hashes_html(const OperationFacts& facts) {
 }
 
 std::string verdict_html(const OperationVerdict& verdict) {
-    const char* kind = verdict.kind == OperationVerdict::Kind::good   ? "good"
-                       : verdict.kind == OperationVerdict::Kind::look ? "look"
-                                                                      : "stop";
-    const char* sign = verdict.kind == OperationVerdict::Kind::good   ? "&#10003;"
-                       : verdict.kind == OperationVerdict::Kind::look ? "&#9888;"
-                                                                      : "&#10007;";
-    std::string html = fmt::format("<div class=\"verdict {}\">{} {}</div>", kind, sign, xml_escaped(verdict.sentence));
+    std::string html = fmt::format("<div class=\"verdict {}\">{} {}</div>", word_of(verdict.kind), sign_of(verdict.kind),
+                                   xml_escaped(verdict.sentence));
     if (verdict.reasons.empty()) return html;
     html += "<ul>";
     for (const std::string& reason : verdict.reasons) html += "<li>" + xml_escaped(reason) + "</li>";

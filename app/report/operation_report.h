@@ -72,6 +72,7 @@ struct OperationFacts {
     std::vector<double> light_off_mm;   ///< of all of the light (95 % of it lies within), each measurement
     std::optional<OperationMoment> moment;
     int updates = 0, verified = 0, stops = 0;
+    int verified_by_program = 0;  ///< of `verified`: without anybody's press (`--autoplay`)
     std::uint64_t chunks = 0, bytes = 0, kept_frames = 0;
     std::uint64_t lost_chunks = 0;  ///< that the disk did not take, by LOST and by the recording's last word
     std::string ended;              ///< how the recording ends, in words; empty: it is whole
@@ -86,6 +87,20 @@ inline constexpr double kOperationLook_mm = 1, kOperationStop_mm = 2;
 
 /// "3 min 12 s", "12.4 s".
 std::string duration_text(double s);
+/// Of the room's clock: "0:03:12".
+std::string clock_text(double s);
+
+/// When an item was shown, first to last, or why nothing is known of it.
+std::string shown_text(const OperationItem& item, const OperationFacts& facts);
+
+/// A figure beyond what the gate lets pass is marked by a sign, not by its colour alone: empty, "⚠", "✗".
+std::string sign_of(double value_mm);
+
+/// What measured and predicted mean, and what neither can see: stands under the table of the items.
+inline constexpr const char* kWhatIsMeasured =
+    "Predicted: within this in 95 of 100 cases, by the last match. Measured: where both cameras saw the light, against "
+    "where it belongs on the skin as the scan found it, mm. What cameras, CT and markers share is not seen by either: "
+    "skin that slid over the bone, markers that moved all together.";
 
 /// The verdict of a page, first of all that stands on it.
 struct OperationVerdict {
@@ -94,8 +109,12 @@ struct OperationVerdict {
     std::vector<std::string> reasons;
 };
 OperationVerdict verdict_of(const OperationFacts& facts);
+/// "✓", "⚠", "✗"; and "good", "look", "stop".
+std::string sign_of(OperationVerdict::Kind kind);
+std::string word_of(OperationVerdict::Kind kind);
 
-/// Those that were off first, by how far, then those that were shown and never seen; the rest as in the plan.
+/// By how far off they were (95 %), the farthest first. Those that were shown and never seen stand behind what was off by
+/// more than the gate lets pass; those that are as far off as each other, and those without light, as in the plan.
 std::vector<const OperationItem*> worst_first(const std::vector<OperationItem>& items);
 
 /// All figures of the page, and those for which it has no room.

@@ -47,12 +47,37 @@ std::vector<const OperationItem*> worst_first(const std::vector<OperationItem>& 
     for (const OperationItem& item : items) {
         const Distribution d = distribution_of(item.measured_mm);
         const bool unseen = d.count == 0 && !item.shown.empty();
-        by_rank.emplace_back(unseen ? kLook_mm : d.p95 > kLook_mm ? d.p95 : 0, &item);
+        by_rank.emplace_back(unseen ? kLook_mm : d.count > 0 ? d.p95 : 0, &item);
     }
     std::stable_sort(by_rank.begin(), by_rank.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
     std::vector<const OperationItem*> sorted;
     for (const auto& [rank, item] : by_rank) sorted.push_back(item);
     return sorted;
+}
+
+std::string clock_text(double s) {
+    const auto whole = static_cast<long>(s);
+    return fmt::format("{}:{:02}:{:02}", whole / 3600, whole % 3600 / 60, whole % 60);
+}
+
+std::string shown_text(const OperationItem& item, const OperationFacts& facts) {
+    if (item.shown.empty()) return item.looked_at || facts.lit_s <= 0 ? "not shown" : "not known";
+    const std::string text = clock_text(item.shown.front().first) + "–" + clock_text(item.shown.back().second);
+    return item.shown.size() == 1 ? text : fmt::format("{}, {} times", text, item.shown.size());
+}
+
+std::string sign_of(double value_mm) {
+    return value_mm > kStop_mm ? "✗" : value_mm > kLook_mm ? "⚠" : "";
+}
+
+std::string sign_of(OperationVerdict::Kind kind) {
+    using Kind = OperationVerdict::Kind;
+    return kind == Kind::good ? "✓" : kind == Kind::look ? "⚠" : "✗";
+}
+
+std::string word_of(OperationVerdict::Kind kind) {
+    using Kind = OperationVerdict::Kind;
+    return kind == Kind::good ? "good" : kind == Kind::look ? "look" : "stop";
 }
 
 std::string duration_text(double s) {
@@ -98,6 +123,8 @@ OperationVerdict verdict_of(const OperationFacts& facts) {
     if (facts.stops > 0)
         lower(Kind::look, fmt::format("The light was stopped by the system {}.",
                                       facts.stops == 1 ? "once" : fmt::format("{} times", facts.stops)));
+    if (facts.verified > 0 && facts.verified == facts.verified_by_program)
+        lower(Kind::look, "That the light on landmarks is right was said by the program itself: nobody looked.");
     if (facts.lit_s > 0 && facts.verified == 0) lower(Kind::look, "Nobody said that the light on landmarks is right.");
     if (std::any_of(facts.matches.begin(), facts.matches.end(),
                     [](const OperationMatch& match) { return match.verdict == "ask"; }))
@@ -127,11 +154,10 @@ OperationVerdict verdict_of(const OperationFacts& facts) {
 
 std::string operation_json(const OperationFacts& facts) {
     const OperationVerdict verdict = verdict_of(facts);
-    constexpr const char* kKinds[] = {"good", "look", "stop"};
     const RecordingHead& head = facts.head;
     Json json = {{"format", "planlight operation"},
                  {"version", 1},
-                 {"verdict", kKinds[static_cast<std::size_t>(verdict.kind)]},
+                 {"verdict", word_of(verdict.kind)},
                  {"sentence", verdict.sentence},
                  {"reasons", verdict.reasons},
                  {"case", head.case_code},
@@ -159,6 +185,7 @@ std::string operation_json(const OperationFacts& facts) {
                  {"look_s", facts.look_s},
                  {"updates", facts.updates},
                  {"verified", facts.verified},
+                 {"verified_by_program", facts.verified_by_program},
                  {"stops", facts.stops},
                  {"skin_off_mm", facts.skin_off_mm ? Json(*facts.skin_off_mm) : Json()},
                  {"light_off_mm", json_of(distribution_of(facts.light_off_mm))}};

@@ -13,6 +13,7 @@
 #include "app/report/operation_report.h"
 #include "app/report/svg_chart.h"
 #include "app/windows/camera_picture.h"
+#include "app/without_numbers.h"
 #include "planning_io/recording/packed_pictures.h"
 #include "planning_io/recording/recording_reader.h"
 #include "planning_io/types/error.h"
@@ -81,13 +82,27 @@ private:
         const bool anew = all.empty() || all.back().trust != trust || at_s_ - all.back().to_s > kBreak_s ||
                           at_s_ - all.back().from_s >= RecordingTimeLine::kLongest_s;
         if (!all.empty() && anew && at_s_ - all.back().to_s <= kBreak_s) all.back().to_s = at_s_;
+        // Another reason at the same trust is another event; one that differs in its numbers alone is none.
+        const std::string reason = without_numbers(headline_of(text));
+        if (all.empty() || all.back().trust != trust || reason != reason_) tell_of(trust, text);
+        reason_ = reason;
         if (anew) {
-            if (all.empty() || all.back().trust != trust) tell_of(trust, text);
             all.push_back({at_s_, at_s_, trust, -1, -1});
         }
         all.back().to_s = at_s_;
         if (measured_) all.back().off_mm = std::max(all.back().off_mm, number_after(text, "\"off_mm\":").value_or(-1));
         if (lit_) all.back().predicted_mm = std::max(all.back().predicted_mm, predicted_mm_);
+    }
+
+    /// As it stands in the line, not parsed.
+    static std::string headline_of(const std::string& text) {
+        constexpr std::string_view kBegins = R"("headline":")";
+        const std::size_t at = text.find(kBegins);
+        if (at == std::string::npos) return {};
+        const std::size_t from = at + kBegins.size();
+        std::size_t to = from;
+        while (to < text.size() && text[to] != '"') to += text[to] == '\\' ? 2 : 1;
+        return text.substr(from, to - from);
     }
 
     void tell_of(LightTrust trust, const std::string& text) {
@@ -125,6 +140,7 @@ private:
     std::optional<double> match_mm_;
     double at_s_ = 0, predicted_mm_ = -1;
     bool lit_ = false, measured_ = false;
+    std::string reason_;  ///< of the last ruling, without its numbers
 };
 
 const char* colour_of(LightTrust trust) {
@@ -184,7 +200,7 @@ RecordingTimeLine time_line_of(const fs::path& recording) {
     }
     if (!headed) throw DamagedFileError(recording, "does not say whose it is", "There is nothing in it to look at.");
     line.ended = reader.sentence();
-    line.damaged = reader.end() == RecordingEnd::damaged;
+    line.damaged = may_be_damaged(reader.end());
     return line;
 }
 
@@ -284,7 +300,7 @@ std::string review_page(const RecordingTimeLine& line,
 std::string review_json(const RecordingTimeLine& line) {
     constexpr const char* kTrusts[] = {"dark", "look", "aligned"};
     const auto known = [](double mm) { return mm >= 0 ? Json(mm) : Json(); };
-    Json json{{"format", "planlight review"}, {"version", 1},
+    Json json{{"format", kReviewFormat}, {"version", 1},
               {"case", line.head.case_code},  {"began", line.head.began_utc},
               {"lasted_s", line.lasted_s},    {"ended", line.ended},
               {"stretches", Json::array()},   {"events", Json::array()},

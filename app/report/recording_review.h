@@ -57,7 +57,8 @@ RgbImage picture_of(const RecordedMoment& moment);
 std::string review_page(const RecordingTimeLine& line,
                         const std::vector<std::pair<std::string, std::string>>& pictures);
 
-/// The same as figures (JSON).
+/// The same as figures (JSON, `format` says `kReviewFormat`).
+inline constexpr const char* kReviewFormat = "planlight review";
 std::string review_json(const RecordingTimeLine& line);
 
 }  // namespace planlight

@@ -35,4 +35,10 @@ GrayImage brightened(GrayImage picture) {
     return picture;
 }
 
+RgbImage rgb_of(const GrayImage& picture) {
+    RgbImage rgb(picture.width, picture.height);
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i) rgb.pixels[i].fill(picture.pixels[i]);
+    return rgb;
+}
+
 }  // namespace planlight

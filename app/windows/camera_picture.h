@@ -12,4 +12,7 @@ GrayImage shrunk(const GrayImage& picture, int by);
 /// most 16 times brighter, so that noise alone stays dark.
 GrayImage brightened(GrayImage picture);
 
+/// Grey as a picture in colours.
+RgbImage rgb_of(const GrayImage& picture);
+
 }  // namespace planlight

@@ -66,7 +66,8 @@ void check_rig(const RigCalibration& rig, const fs::path& file) {
 
 }  // namespace
 
-std::string text_of(const RigCalibration& rig) {
+std::string text_of(const RigCalibration& rig, const fs::path& file) {
+    check_rig(rig, file);
     Json json{{"format", kFormat},
               {"version", kVersion},
               {"made_on", rig.made_on},
@@ -78,8 +79,7 @@ std::string text_of(const RigCalibration& rig) {
 }
 
 void write_rig(const RigCalibration& rig, const fs::path& file) {
-    check_rig(rig, file);
-    write_safely(file, text_of(rig));
+    write_safely(file, text_of(rig, file));
 }
 
 RigCalibration read_rig(const fs::path& file) {

@@ -1,5 +1,6 @@
 #include "planning_io/dicom/dicom_objects.h"
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <vtkDICOMDictionary.h>
@@ -9,6 +10,7 @@
 #include <vtkDICOMValue.h>
 #include <vtkNew.h>
 
+#include <ctime>
 #include <vector>
 
 #include "planning_io/dicom/dicom_write.h"
@@ -51,16 +53,31 @@ vtkDICOMItem code_item(const char* value, const char* scheme, const char* meanin
     return code;
 }
 
-/// Patient, study, series, equipment, object: what all of them have.
+/// A moment of UTC as this computer's clock on the wall has it, as the scanner's times are: yyyymmddhhmmss. What is
+/// no such moment stays as it is, without its separators.
+std::string on_the_wall(const std::string& iso) {
+    const std::string digits = digits_of(iso, 0, 14);
+    std::tm parts{};
+    if (digits.empty() || !iso.ends_with('Z') || strptime(digits.c_str(), "%Y%m%d%H%M%S", &parts) == nullptr)
+        return digits.empty() ? digits_of(iso, 0, 8) : digits;
+    const std::time_t moment = timegm(&parts);
+    std::tm here{};
+    if (localtime_r(&moment, &here) == nullptr) return digits;
+    return fmt::format("{:%Y%m%d%H%M%S}", here);
+}
+
+/// Patient, study, series, equipment, object: what all of them have. `content`: what else makes the object what it is.
 Elements set_head(vtkDICOMMetaData* meta, const DicomStudy& study, const DicomObjectName& name, const char* sop_class,
-                  const char* modality) {
+                  const char* modality, const std::string& content) {
     meta->Initialize();
     Elements set(meta);
     const std::string of = study.study_uid + study.series_uid + name.series;
-    const std::string date = digits_of(name.made, 0, 8), time = digits_of(name.made, 8, 6);
+    const std::string made = on_the_wall(name.made), date = made.substr(0, 8),
+                      time = made.size() > 8 ? made.substr(8) : std::string();
+    const std::string object = uid_of(name.made + '\n' + name.program + '\n' + name.description + '\n' + content);
     set.text(DC::SpecificCharacterSet, vtkDICOMVR::CS, "ISO_IR 192");
     set.text(DC::SOPClassUID, vtkDICOMVR::UI, sop_class);
-    set.text(DC::SOPInstanceUID, vtkDICOMVR::UI, uid_of("object" + of + name.id + std::to_string(name.number)));
+    set.text(DC::SOPInstanceUID, vtkDICOMVR::UI, uid_of("object" + of + name.id + std::to_string(name.number) + object));
     set.text(DC::StudyInstanceUID, vtkDICOMVR::UI, study.study_uid);
     set.text(DC::SeriesInstanceUID, vtkDICOMVR::UI, uid_of("series" + of + name.id));
     set.text(DC::PatientName, vtkDICOMVR::PN, study.patient_name);
@@ -80,7 +97,6 @@ Elements set_head(vtkDICOMMetaData* meta, const DicomStudy& study, const DicomOb
     set.text(DC::InstanceNumber, vtkDICOMVR::IS, std::to_string(name.number));
     set.text(DC::ContentDate, vtkDICOMVR::DA, date);
     set.text(DC::ContentTime, vtkDICOMVR::TM, time);
-    set.text(DC::TimezoneOffsetFromUTC, vtkDICOMVR::SH, "+0000");
     set.text(DC::Manufacturer, vtkDICOMVR::LO, "Planlight");
     set.text(DC::ManufacturerModelName, vtkDICOMVR::LO, "Planlight");
     set.text(DC::DeviceSerialNumber, vtkDICOMVR::LO, "none");
@@ -129,7 +145,9 @@ std::string dicom_uid_of(const std::string& content) {
 void write_spatial_registration(const DicomStudy& study, const DicomObjectName& name, const RigidTransform& ct_from_rig,
                                 const std::string& frame_uid_of_rig, const fs::path& file) {
     vtkNew<vtkDICOMMetaData> meta;
-    Elements set = set_head(meta, study, name, kSpatialRegistration, "REG");
+    std::string content = frame_uid_of_rig;
+    for (Eigen::Index i = 0; i < 16; ++i) content += fmt::format(" {}", ct_from_rig.matrix()(i));
+    Elements set = set_head(meta, study, name, kSpatialRegistration, "REG", content);
     set.text(DC::FrameOfReferenceUID, vtkDICOMVR::UI, study.frame_of_reference_uid);
     set.text(DC::PositionReferenceIndicator, vtkDICOMVR::LO, "");
     set.text(DC::ContentLabel, vtkDICOMVR::CS, "PATIENT_MATCH");
@@ -154,9 +172,9 @@ void write_spatial_registration(const DicomStudy& study, const DicomObjectName& 
 void write_encapsulated_pdf(const DicomStudy& study, const DicomObjectName& name, const std::string& title,
                             const std::string& pdf, const fs::path& file) {
     vtkNew<vtkDICOMMetaData> meta;
-    Elements set = set_head(meta, study, name, kEncapsulatedPdf, "DOC");
+    Elements set = set_head(meta, study, name, kEncapsulatedPdf, "DOC", title + '\n' + pdf);
     set.text(DC::ConversionType, vtkDICOMVR::CS, "WSD");
-    set.text(DC::AcquisitionDateTime, vtkDICOMVR::DT, digits_of(name.made, 0, 14));
+    set.text(DC::AcquisitionDateTime, vtkDICOMVR::DT, on_the_wall(name.made));
     set.text(DC::BurnedInAnnotation, vtkDICOMVR::CS, "YES");
     set.text(DC::RecognizableVisualFeatures, vtkDICOMVR::CS, "YES");
     set.text(DC::DocumentTitle, vtkDICOMVR::ST, title);
@@ -169,8 +187,12 @@ void write_encapsulated_pdf(const DicomStudy& study, const DicomObjectName& name
 
 void write_secondary_capture(const DicomStudy& study, const DicomObjectName& name, const std::string& comment,
                              const RgbImage& picture, bool shows_face, const fs::path& file) {
+    std::string pixels(3 * picture.pixels.size(), '\0');
+    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+        for (std::size_t k = 0; k < 3; ++k) pixels[3 * i + k] = static_cast<char>(picture.pixels[i][k]);
     vtkNew<vtkDICOMMetaData> meta;
-    Elements set = set_head(meta, study, name, kSecondaryCapture, "OT");
+    Elements set = set_head(meta, study, name, kSecondaryCapture, "OT",
+                            fmt::format("{}\n{} {} {}\n", comment, picture.width, picture.height, shows_face) + pixels);
     set.text(DC::ConversionType, vtkDICOMVR::CS, "WSD");
     set.text(DC::ImageType, vtkDICOMVR::CS, "DERIVED\\SECONDARY");
     set.text(DC::PatientOrientation, vtkDICOMVR::CS, "");
@@ -187,9 +209,6 @@ void write_secondary_capture(const DicomStudy& study, const DicomObjectName& nam
     set.number(DC::BitsStored, 8);
     set.number(DC::HighBit, 7);
     set.number(DC::PixelRepresentation, 0);
-    std::string pixels(3 * picture.pixels.size(), '\0');
-    for (std::size_t i = 0; i < picture.pixels.size(); ++i)
-        for (std::size_t k = 0; k < 3; ++k) pixels[3 * i + k] = static_cast<char>(picture.pixels[i][k]);
     set.bytes(DC::PixelData, pixels.size() % 2 == 0 ? pixels : pixels + '\0');
     write_safely(file, compile(meta, kExplicitLittleEndian, file));
 }

@@ -9,10 +9,10 @@
 
 namespace planlight {
 
-/// What each object that is added to a study says of itself. The same content has the same UIDs, so that what is
-/// written twice is one object.
+/// What each object that is added to a study says of itself. The same content, title and program have the same UID, so
+/// that what is written twice is one object; with any other byte of picture, document or match it is another.
 struct DicomObjectName {
-    std::string made;         ///< ISO 8601, UTC
+    std::string made;         ///< ISO 8601, UTC; written in local time without a zone, as the study's own times are
     std::string program;      ///< version
     std::string series;       ///< what the series is told by from others of this program: the objects of one are one
     std::string description;  ///< of the series, for people

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "planning_io/dicom/dicom_folder.h"
 #include "planning_io/files/sandboxed_process.h"
@@ -49,7 +50,9 @@ void parse(Parcel& parcel, const fs::path& path, const std::string& wanted) {
     if (!series.is_volume())
         throw InputError(path, "is no series of CT or MR images", "Name the series that the case was made from.");
     std::vector<std::string> uids;
+    bool told = false;
     for (const DicomFile& file : series.files) {
+        if (file.localizer) continue;  // none of the slices, and of another kind than they are
         vtkNew<vtkDICOMMetaData> meta;
         vtkNew<vtkDICOMParser> parser;
         parser->SetFileName(file.readable_as.c_str());
@@ -57,11 +60,13 @@ void parse(Parcel& parcel, const fs::path& path, const std::string& wanted) {
         parser->Update();
         if (parser->GetErrorCode() != 0)
             throw DamagedFileError(file.path, "is damaged or cut short", "Copy the series again.");
-        if (uids.empty())
+        if (!std::exchange(told, true))
             for (const auto& [member, tag] : texts()) parcel.put(text(meta, tag));
-        if (file.localizer) continue;
         uids.push_back(text(meta, DC::SOPInstanceUID));
     }
+    if (!told)
+        throw InputError(path, "holds localizer pictures and no slice",
+                         "Name the series that the case was made from.");
     parcel.put(static_cast<std::uint64_t>(uids.size()));
     for (const std::string& uid : uids) parcel.put(uid);
 }

@@ -36,12 +36,23 @@ std::uint32_t crc_of(std::string_view a, std::string_view b = {}) {
                         "`planlight session --record none`.");
 }
 
+/// The names in a folder are on the disk afterwards: without that a power cut may leave a file's bytes and no name.
+void sync_folder(const fs::path& folder) {
+    const int descriptor = ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (descriptor < 0) return;  // one that may be written and not read: nothing more can be done
+    const int failed = ::fsync(descriptor), code = errno;
+    ::close(descriptor);
+    errno = code;
+    if (failed != 0 && code != EINVAL) refuse(folder, "cannot be synced to the disk");  // EINVAL: some shares cannot
+}
+
 /// The folder is for its owner only; one that is there already stays as it is.
 void make_folder(const fs::path& folder) {
     std::error_code unknown;  // without permission to look, `mkdir` says why
     if (folder.empty() || fs::is_directory(folder, unknown)) return;
     if (folder.has_parent_path() && folder.parent_path() != folder) make_folder(folder.parent_path());
     if (::mkdir(folder.c_str(), 0700) != 0 && errno != EEXIST) refuse(folder, "cannot be made");
+    sync_folder(folder.parent_path());
 }
 
 /// A limit on the size of files is told by an error code, not by a signal that ends the program in the middle of an
@@ -78,6 +89,12 @@ RecordingFile::RecordingFile(const fs::path& file) : file_(file) {
     ignore_size_signal();
     descriptor_ = ::open(file.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC | O_NOFOLLOW, 0600);
     if (descriptor_ < 0) refuse(file, "cannot be written");
+    try {
+        sync_folder(file.parent_path());
+    } catch (...) {
+        ::close(descriptor_);
+        throw;
+    }
 }
 
 RecordingFile::~RecordingFile() {

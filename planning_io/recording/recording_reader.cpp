@@ -80,24 +80,42 @@ std::optional<RecordingChunk> RecordingReader::whole_chunk_at(std::uint64_t at, 
     return chunk;
 }
 
+/// What the header of a chunk there says of its payload; empty where there is none that could be whole.
+std::optional<std::uint64_t> RecordingReader::payload_bytes_at(std::uint64_t at) {
+    if (at > bytes_ || bytes_ - at < kChunkHeaderBytes) return std::nullopt;
+    std::array<char, kChunkHeaderBytes> header{};
+    in_.clear();
+    in_.seekg(static_cast<std::streamoff>(at));
+    if (!in_.read(header.data(), header.size())) unreadable(at);
+    const std::uint64_t size = number_at<std::uint32_t>(header.data() + 24);
+    if (size > kMostPayloadBytes || size > bytes_ - at - kChunkHeaderBytes) return std::nullopt;
+    return size;
+}
+
 /// Whether any whole chunk stands in the file from that place on, whatever its number: then what does not read there
-/// was changed, for a recording that was cut ends there.
-bool RecordingReader::whole_chunk_from(std::uint64_t at) {
+/// was changed, for a recording that was cut ends there. Not known where the budget does not last for the search.
+RecordingEnd RecordingReader::end_from(std::uint64_t at) {
     constexpr std::size_t kBlock = std::size_t{1} << 20;
-    constexpr int kMostTried = 1000;  // markers in a hostile file: each would be read whole
+    std::uint64_t left = search_budget_;
+    const auto spend = [&](std::uint64_t bytes) {
+        if (bytes > left) return false;
+        left -= bytes;
+        return true;
+    };
     std::string block;
-    int tried = 0;
     for (std::uint64_t from = at; from + kChunkHeaderBytes <= bytes_; from += kBlock) {
         block.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBlock + kMarker.size() - 1, bytes_ - from)));
+        if (!spend(block.size())) return RecordingEnd::unknown;
         in_.clear();
         in_.seekg(static_cast<std::streamoff>(from));
         if (!in_.read(block.data(), static_cast<std::streamsize>(block.size()))) unreadable(from);
         for (std::size_t i = block.find(kMarker); i != std::string::npos; i = block.find(kMarker, i + 1)) {
-            if (whole_chunk_at(from + i, std::nullopt)) return true;
-            if (++tried > kMostTried) return false;
+            const auto size = payload_bytes_at(from + i);
+            if (!spend(kChunkHeaderBytes + size.value_or(0))) return RecordingEnd::unknown;
+            if (size && whole_chunk_at(from + i, std::nullopt)) return RecordingEnd::damaged;
         }
     }
-    return false;
+    return RecordingEnd::cut;
 }
 
 /// Past a chunk that nobody wants, as far as its header tells; false where it is wanted, or is to be read to be judged:
@@ -135,7 +153,7 @@ std::optional<RecordingChunk> RecordingReader::next() {
     if (at_ == bytes_)
         end_ = done_seen_ ? RecordingEnd::whole : RecordingEnd::cut;
     else
-        end_ = done_seen_ || whole_chunk_from(at_) ? RecordingEnd::damaged : RecordingEnd::cut;
+        end_ = done_seen_ ? RecordingEnd::damaged : end_from(at_);
     return std::nullopt;
 }
 
@@ -145,6 +163,11 @@ std::string RecordingReader::sentence() const {
             "The recording ends without a closing word, {} chunks long: the session was stopped from "
             "outside, or the disk was full{}.",
             chunks_, bytes_ > at_ ? fmt::format("; the last {} bytes are no whole chunk", bytes_ - at_) : "");
+    if (end_ == RecordingEnd::unknown)
+        return fmt::format(
+            "The recording does not read from byte {} on, and is cut or damaged there: what follows, {} of {} bytes, "
+            "looks like more chunks than were searched, and is not used.",
+            at_, bytes_ - at_, bytes_);
     if (end_ == RecordingEnd::damaged)
         return fmt::format("The recording is damaged at byte {}: what follows, {} of {} bytes, is not used.", at_,
                            bytes_ - at_, bytes_);

@@ -18,7 +18,13 @@ enum class RecordingEnd {
     whole,    ///< the session ended by itself
     cut,      ///< the program or the computer stopped, or the disk was full: after the last whole chunk there is none
     damaged,  ///< bytes were changed: whole chunks follow after what cannot be read
+    unknown,  ///< cut or damaged: what follows looks like so many chunks that not all of it was searched
 };
+
+/// Whether it may be more than a recording that was cut off at its end.
+inline bool may_be_damaged(RecordingEnd end) {
+    return end == RecordingEnd::damaged || end == RecordingEnd::unknown;
+}
 
 /// Reads a recording chunk by chunk, however long it is; only one chunk is held in memory.
 class RecordingReader {
@@ -26,6 +32,10 @@ public:
     /// Throws InputError when there is no such file or it is no recording, DamagedFileError when its first bytes are
     /// damaged or of another version, DiskError when the disk does not give its bytes.
     explicit RecordingReader(const std::filesystem::path& file);
+
+    /// So many bytes are read at most to find out whether whole chunks follow what does not read; a hostile file could
+    /// ask for each of its bytes a thousand times.
+    void search_at_most(std::uint64_t bytes) { search_budget_ = bytes; }
 
     /// From now on `next` gives the chunks that are wanted, by type and time, only. The others are passed over by their
     /// headers, so that an hour's pictures cost no time; that what they hold is whole is then not looked at.
@@ -46,7 +56,8 @@ public:
 
 private:
     std::optional<RecordingChunk> whole_chunk_at(std::uint64_t at, std::optional<std::uint64_t> number);
-    bool whole_chunk_from(std::uint64_t at);
+    std::optional<std::uint64_t> payload_bytes_at(std::uint64_t at);
+    RecordingEnd end_from(std::uint64_t at);
     [[noreturn]] void unreadable(std::uint64_t at) const;
 
     bool pass_over();
@@ -55,6 +66,7 @@ private:
     Wanted wanted_;  ///< empty: all
     std::ifstream in_;
     std::uint64_t bytes_ = 0, at_ = 0, chunks_ = 0;
+    std::uint64_t search_budget_ = std::uint64_t{1} << 30;
     bool done_seen_ = false;
     RecordingEnd end_ = RecordingEnd::open;
 };

@@ -52,6 +52,10 @@ bool RecordingWriter::add_picture(ChunkType type, Instant at, std::size_t bytes,
     return queue({{type, at, {}}, bytes, std::move(pack)}, settings_.most_waiting_bytes);
 }
 
+bool RecordingWriter::is_own_word(const Waiting& piece) {
+    return piece.chunk.type == chunk_types::kLost || piece.chunk.type == chunk_types::kDone;
+}
+
 RecordingWriter::Waiting RecordingWriter::lost(Instant at, std::uint64_t chunks, std::uint64_t bytes) {
     return {{chunk_types::kLost, at, fmt::format(R"({{"chunks": {}, "bytes": {}}})", chunks, bytes)}, 0, {}};
 }
@@ -133,7 +137,7 @@ RecordingWriter::Written RecordingWriter::try_to_write(Waiting& piece) {
         return Written::not_yet;
     } catch (const std::exception& fault) {
         note_problem(fault.what());
-        return piece.chunk.type == chunk_types::kLost ? Written::not_yet : Written::never;
+        return is_own_word(piece) ? Written::not_yet : Written::never;
     }
 }
 
@@ -160,6 +164,8 @@ void RecordingWriter::write(Waiting piece) {
 /// Asks for the lock.
 void RecordingWriter::drop(const Waiting& piece) {
     state_.waiting_bytes -= piece.bytes;
+    // Words of the writer's own, not pieces that anybody handed over.
+    if (is_own_word(piece)) return;
     ++state_.dropped_chunks;
     state_.dropped_bytes += piece.bytes;
 }

@@ -63,6 +63,7 @@ private:
         std::size_t bytes = 0;
         std::function<std::string()> pack;  ///< empty: the chunk holds its payload
     };
+    static bool is_own_word(const Waiting& piece);
     static Waiting lost(Instant at, std::uint64_t chunks, std::uint64_t bytes);
     bool queue(Waiting piece, std::size_t limit) noexcept;
     void tell_dropped(Instant at);

@@ -2,12 +2,14 @@
 // VTK's readers, whose frames are worked out here anew.
 #include <gdcmAttribute.h>
 #include <gdcmImageReader.h>
+#include <gdcmReader.h>
 #include <gtest/gtest.h>
 #include <vtkCell.h>
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkFieldData.h>
 #include <vtkNew.h>
+#include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkSmartPointer.h>
 #include <vtkStringArray.h>
@@ -16,12 +18,17 @@
 #include <vtkXMLUtilities.h>
 
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 
 #include "app/export/export_study.h"
+#include "app/export/match_that_stood.h"
 #include "app/prepare_case.h"
+#include "planning_io/dicom/dicom_objects.h"
+#include "planning_io/recording/recording_chunk.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
 #include "tests/planning_io/synthetic_series.h"
@@ -100,6 +107,14 @@ protected:
         EXPECT_NE(std::system((command + " > '" + out.string() + "' 2>&1").c_str()), -1);
         std::ifstream in(out);
         return {std::istreambuf_iterator<char>(in), {}};
+    }
+    static std::string uid_of(const fs::path& file) {
+        gdcm::Reader reader;
+        reader.SetFileName(file.c_str());
+        if (!reader.Read()) return {};
+        gdcm::Attribute<0x0008, 0x0018> uid;
+        uid.SetFromDataSet(reader.GetFile().GetDataSet());
+        return uid.GetValue();
     }
     static bool is_there(const char* program) {
         return std::system(("command -v " + std::string(program) + " >/dev/null 2>&1").c_str()) == 0;
@@ -180,8 +195,155 @@ TEST_F(Export, ThePdfIsOneAndThePictureHasItsPixels) {
 TEST_F(Export, TheSameIsTheSameObject) {
     const fs::path again = world().folder.path() / "again";
     export_into_study(world().prepared, world().operation, world().series, {}, again);
+    for (const auto& file : fs::directory_iterator(exported()))
+        EXPECT_EQ(uid_of(file.path()), uid_of(again / file.path().filename())) << file.path();
     std::ifstream a(exported() / "registration.dcm", std::ios::binary), b(again / "registration.dcm", std::ios::binary);
     EXPECT_EQ(std::string(std::istreambuf_iterator<char>(a), {}), std::string(std::istreambuf_iterator<char>(b), {}));
+}
+
+TEST_F(Export, OtherBytesTitleOrProgramAreAnotherObject) {
+    const DicomStudy study = read_dicom_study(world().series);
+    const fs::path folder = world().folder.path() / "objects";
+    fs::create_directory(folder);
+    DicomObjectName name{"2026-03-14T09:30:00Z", "1.0", "pictures", "Pictures", 1, 1, "the same hashes"};
+    const auto picture = [&](const DicomObjectName& called, const std::string& comment, Rgb colour) {
+        write_secondary_capture(study, called, comment, RgbImage(4, 4, colour), true, folder / "picture.dcm");
+        return uid_of(folder / "picture.dcm");
+    };
+    const auto pdf = [&](const std::string& title, const std::string& bytes) {
+        write_encapsulated_pdf(study, name, title, bytes, folder / "report.dcm");
+        return uid_of(folder / "report.dcm");
+    };
+    DicomObjectName newer = name, later = name;
+    newer.program = "1.1", later.made = "2026-03-14T10:30:00Z";
+    const std::vector<std::string> uids{
+        picture(name, "a", {0, 255, 0}),  picture(name, "a", {0, 254, 0}),  picture(name, "b", {0, 255, 0}),
+        picture(newer, "a", {0, 255, 0}), picture(later, "a", {0, 255, 0}), pdf("t", "%PDF-1"),
+        pdf("t", "%PDF-2"),               pdf("u", "%PDF-1")};
+    EXPECT_EQ(std::set<std::string>(uids.begin(), uids.end()).size(), uids.size());
+    EXPECT_EQ(picture(name, "a", {0, 255, 0}), uids[0]);
+    EXPECT_EQ(pdf("t", "%PDF-1"), uids[5]);
+}
+
+TEST_F(Export, ItsTimesAreThoseOfTheClockOnTheWallAsTheScannersAre) {
+    const char* was = std::getenv("TZ");
+    const std::string zone = was ? was : "";
+    ASSERT_EQ(setenv("TZ", "UTC-5:30", 1), 0);  // India: 5.5 h ahead
+    tzset();
+    const DicomObjectName name{"2026-03-14T20:30:05Z", "1.0", "pictures", "Pictures", 1, 1, "x"};
+    const fs::path file = world().folder.path() / "time.dcm";
+    write_secondary_capture(read_dicom_study(world().series), name, "a", RgbImage(4, 4, {1, 2, 3}), true, file);
+    was ? setenv("TZ", zone.c_str(), 1) : unsetenv("TZ");
+    tzset();
+    gdcm::Reader reader;
+    reader.SetFileName(file.c_str());
+    ASSERT_TRUE(reader.Read());
+    gdcm::Attribute<0x0008, 0x0023> date;
+    gdcm::Attribute<0x0008, 0x0033> time;
+    date.SetFromDataSet(reader.GetFile().GetDataSet()), time.SetFromDataSet(reader.GetFile().GetDataSet());
+    EXPECT_EQ(date.GetValue(), "20260315");
+    EXPECT_EQ(time.GetValue(), "020005");
+    EXPECT_FALSE(reader.GetFile().GetDataSet().FindDataElement(gdcm::Tag(0x0008, 0x0201)))
+        << "a zone would move the study's own times, which have none";
+}
+
+// Scanners put the localizer into the series, often as its first file.
+TEST_F(Export, ALocalizerThatIsTheFirstFileIsPassedOver) {
+    auto slices = test::synthetic_series(test::Grid{});
+    auto scout = slices[3];
+    scout.text(0x00080008, "CS", "ORIGINAL\\PRIMARY\\LOCALIZER");
+    scout.decimals(0x00200037, {0, 1, 0, 0, 0, -1});
+    const auto with = [&](int scouts, const char* name, bool alone) {
+        std::vector<test::DicomObject> all;
+        for (int i = 0; i < scouts; ++i) {
+            scout.text(0x00080018, "UI", "1.2.826.0.1.3680043.9.9999.9." + std::to_string(i));
+            all.push_back(scout);
+        }
+        if (!alone) all.insert(all.end(), slices.begin(), slices.end());
+        test::write_series(all, world().folder.path() / name);
+        return world().folder.path() / name;
+    };
+    const DicomStudy plain = read_dicom_study(world().series);
+    for (const int scouts : {1, 20}) {  // by chance the first of the folder, and nearly surely
+        const DicomStudy study = read_dicom_study(with(scouts, scouts == 1 ? "scout" : "scouts", false));
+        EXPECT_EQ(study.image_uids, plain.image_uids);
+        EXPECT_EQ(study.image_class, plain.image_class);
+        EXPECT_EQ(study.series_uid, plain.series_uid);
+    }
+    EXPECT_THROW(read_dicom_study(with(3, "scouts-alone", true)), InputError);
+}
+
+/// A recording by hand: matches, and what became of them.
+class Matches : public ::testing::Test {
+protected:
+    void event(const nlohmann::ordered_json& json) { chunks_.push_back({chunk_types::kEvent, {}, json.dump()}); }
+    void scan() { event({{"what", "asked"}, {"call", "scan"}}); }
+    void offered(const std::string& made) {
+        KeptMatch match;
+        match.registration.verdict = Verdict::yes;
+        match.registration.patient_from_ct = RigidTransform::Identity();
+        match.made_utc = made;
+        chunks_.push_back({chunk_types::kMatch, {}, text_of(match)});
+    }
+    void found(const char* verdict, const std::string& made = {}) {
+        event({{"what", "asked"}, {"call", "find_patient"}});
+        event({{"what", "matched"}, {"verdict", verdict}});
+        if (!made.empty()) offered(made);
+    }
+    void resume(const char* what) {
+        event({{"what", "asked"}, {"call", "resume"}});
+        event({{"what", what}, {"call", "resume"}, {"why", "the skin lies 3 mm off"}});
+    }
+    /// The moment at which the one that stood was made, or why none did.
+    std::string stood() {
+        const fs::path file = folder_.path() / "made.plrec";
+        std::ofstream out(file, std::ios::binary);
+        out << recording_header();
+        for (std::size_t i = 0; i < chunks_.size(); ++i) out << chunk_bytes(chunks_[i], i);
+        out.close();
+        try {
+            const MatchThatStood found = match_that_stood(file);
+            return found.match.made_utc + (found.scanned_later ? ", scanned later" : "");
+        } catch (const InputError& refusal) {
+            return refusal.what();
+        }
+    }
+    bool refused(const std::string& why) {
+        const std::string said = stood();
+        return said.find("no match that stood") != std::string::npos && said.find(why) != std::string::npos;
+    }
+    test::TemporaryFolder folder_;
+    std::vector<RecordingChunk> chunks_;
+};
+
+TEST_F(Matches, WhatWasNeverUsedIsNotExported) {
+    EXPECT_TRUE(refused("nobody was found"));
+    offered("earlier");
+    resume("refused");
+    EXPECT_TRUE(refused("the skin lies 3 mm off")) << stood();
+    scan();
+    found("ask", "doubtful");
+    EXPECT_TRUE(refused("nobody confirmed it")) << stood();
+    event({{"what", "asked"}, {"call", "confirm"}});
+    EXPECT_EQ(stood(), "doubtful");
+    found("no");
+    EXPECT_TRUE(refused("the match was refused")) << "landmarks spoke against it: " << stood();
+}
+
+TEST_F(Matches, TheLastOneThatStoodIsExported) {
+    scan();
+    found("yes", "first");
+    EXPECT_EQ(stood(), "first");
+    scan();
+    EXPECT_EQ(stood(), "first, scanned later");
+    found("ask", "second");
+    EXPECT_EQ(stood(), "first, scanned later") << "an unconfirmed one takes nothing's place";
+    offered("earlier");
+    resume("refused");
+    EXPECT_EQ(stood(), "first, scanned later");
+    offered("earlier");
+    resume("resumed");
+    EXPECT_EQ(stood(), "earlier");
 }
 
 TEST_F(Export, WithoutItsDicomSeriesItIsRefusedByName) {
@@ -326,6 +488,19 @@ TEST_F(SlicerFolder, SkinLightAndPlanAreInMillimetresOfTheCt) {
     ASSERT_EQ(skin->GetNumberOfPolys(), static_cast<vtkIdType>(mesh.triangles.size()));
     EXPECT_EQ(Vector3d(skin->GetPoint(10)), mesh.vertices_in_ct[10]);
     ASSERT_GT(light->GetNumberOfLines(), 0);
+    // The cut plane is broken at each tick but the first: no piece of its colour is longer than from gap to gap.
+    int of_plane = 0;
+    for (vtkIdType i = 0; i < light->GetNumberOfCells(); ++i) {
+        const double* colour = light->GetCellData()->GetScalars()->GetTuple(i);
+        if (!(colour[0] > 200 && colour[1] < 100 && colour[2] > 200)) continue;
+        double length_mm = 0;
+        vtkPoints* points = light->GetCell(i)->GetPoints();
+        for (vtkIdType k = 0; k + 1 < points->GetNumberOfPoints(); ++k)
+            length_mm += (Vector3d(points->GetPoint(k + 1)) - Vector3d(points->GetPoint(k))).norm();
+        EXPECT_LT(length_mm, 10) << "a whole stroke, without its gaps";
+        of_plane += length_mm > 4.5;  // no tick
+    }
+    EXPECT_GE(of_plane, 2);
     EXPECT_EQ(light->GetCellData()->GetScalars()->GetNumberOfComponents(), 3);
     std::ifstream in(folder() / "plan-2.mrk.json");
     const auto hole = nlohmann::json::parse(in);

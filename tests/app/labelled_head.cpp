@@ -6,10 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <filesystem>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -198,16 +195,16 @@ LabelsRead LabelledHead::read(simulation::Preset preset, unsigned seed, bool eye
                               : Seen([&](const Vector2d& pixel) { return between(picture, pixel); });
         const auto read = read_label(label, seen, camera, rig_from_ct,
                                      folder.empty() ? folder : folder / fmt::format("{}_label{}", name, label.item));
-        if (read.empty()) {
+        if (!read) {  // part of it is out of the picture; one of which nothing is read is not read right
             ++result.unseen;
             continue;
         }
         std::string written = label.words;
         std::replace(written.begin(), written.end(), '\n', '/');
-        const Reading reading = compare(written, read);
+        const Reading reading = compare(written, *read);
         result.right += reading == Reading::right;
-        if (reading != Reading::right) result.wrong.push_back(written + " | " + read);
-        if (reading == Reading::other_number) result.other_number.push_back(written + " | " + read);
+        if (reading != Reading::right) result.wrong.push_back(written + " | " + *read);
+        if (reading == Reading::other_number) result.other_number.push_back(written + " | " + *read);
     }
     return result;
 }

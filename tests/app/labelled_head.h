@@ -13,7 +13,7 @@ struct LabelsRead {
     int items = 0, lit = 0;                 ///< of the plan; with a label that was lit whole
     int left_out = 0;                       ///< labels that could not be lit whole from there
     int name_alone = 0;                     ///< of those lit: without their figures
-    int unseen = 0;                         ///< lit, and in the shadow of both cameras: not read
+    int unseen = 0;                         ///< lit, and in the shadow of both cameras or out of their pictures
     int right = 0;                          ///< read as they are written
     std::vector<std::string> wrong;         ///< "written | read", lines parted by '/'
     std::vector<std::string> other_number;  ///< of those: read as another number

@@ -231,6 +231,28 @@ TEST_F(Operation, AProjectorThatWasLostIsNobodysPress) {
     EXPECT_EQ(f.said[0].what, "The projector was lost, and the session made dark.");
 }
 
+TEST_F(Operation, WhoSaidThatTheLightIsRightIsTold) {
+    const auto press = [&] { event({{"what", "pressed"}, {"action", "confirm"}, {"utc", "x"}}); };
+    const auto verify = [&] { event({{"what", "gate"}, {"call", "verify"}, {"utc", "x"}}); };
+    match("ask");
+    press();
+    event({{"what", "asked"}, {"call", "confirm"}, {"utc", "x"}});
+    step_ += 100;
+    verify();
+    press();  // noted by another thread, at once after it
+    step_ += 100;
+    verify();
+    step_ += 100;
+    press();  // of something else
+    const OperationFacts f = facts();
+    ASSERT_EQ(f.said.size(), 3u);
+    EXPECT_EQ(f.said[0].what, "By a press the match was said to fit.");
+    EXPECT_EQ(f.said[1].what, "By a press the light on landmarks was said to be right.");
+    EXPECT_EQ(f.said[2].what, "By the program itself, without a press, the light on landmarks was said to be right.");
+    EXPECT_EQ(f.verified, 2);
+    EXPECT_EQ(f.verified_by_program, 1);
+}
+
 TEST_F(Operation, ItsLastWordCountsWhatTheDiskDidNotTake) {
     add(chunk_types::kLost, R"({"chunks": 2, "bytes": 10})");
     EXPECT_EQ(facts(true, R"({"dropped_chunks": 5, "dropped_bytes": 20})").lost_chunks, 5u);
@@ -240,14 +262,17 @@ TEST_F(Operation, OfMoreItemsThanThePageHasRoomForTheWorstAreNamedAndTheGravestW
     OperationFacts f;
     f.updates = 100, f.lit_s = 10, f.aligned_s = 9.5, f.verified = 1;
     for (int i = 0; i < 30; ++i)
-        f.items.push_back({"Item " + std::to_string(i), {{0, 10}}, 10, 0.5, {i == 29 ? 1.7 : 0.2}, true});
+        f.items.push_back({"Item " + std::to_string(i), {{0, 10}}, 10, 0.5, {i == 29 ? 1.7 : i == 27 ? 0.9 : 0.2}, true});
     for (int i = 0; i < 20; ++i) f.said.push_back({1.0 * i, "", "DARK was pressed.", false});
     f.said.push_back({21, "", "The light was stopped: it lies 3 mm beside.", true});
     const fs::path page = folder_.path() / "many.html";
     write_operation_report(f, operation_json(f), page);
     std::ifstream in(page);
     const std::string html{std::istreambuf_iterator<char>(in), {}};
-    EXPECT_NE(html.find("<td class=\"name\">Item 29</td>"), std::string::npos);
+    for (const char* name : {"Item 29", "Item 27", "Item 9"})
+        EXPECT_NE(html.find(std::string("<td class=\"name\">") + name + "</td>"), std::string::npos) << name;
+    EXPECT_EQ(html.find("<td class=\"name\">Item 10</td>"), std::string::npos);
+    EXPECT_NE(html.find("none of them farther off"), std::string::npos);
     EXPECT_NE(html.find("The light was stopped"), std::string::npos);
 }
 
@@ -262,6 +287,7 @@ TEST_F(Operation, IsGoodOnlyWhereItWasMeasuredVerifiedAndWhole) {
     };
     EXPECT_EQ(verdict_with([](OperationFacts&) {}), Kind::good);
     EXPECT_EQ(verdict_with([](OperationFacts& f) { f.verified = 0; }), Kind::look);
+    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.verified_by_program = 1; }), Kind::look) << "nobody looked";
     EXPECT_EQ(verdict_with([](OperationFacts& f) { f.stops = 1; }), Kind::look);
     EXPECT_EQ(verdict_with([](OperationFacts& f) { f.aligned_s = 5; }), Kind::look);
     EXPECT_EQ(verdict_with([](OperationFacts& f) { f.ended = "It was cut."; }), Kind::look);

@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <stdexcept>
 #include <thread>
 
-#include "app/live/live_session.h"
 #include "app/live/simulated_room.h"
 #include "app/prepare_case.h"
 #include "planning_io/plan/plan_file.h"
@@ -142,19 +140,6 @@ private:
     Doubtful cameras_;
 };
 
-/// Waits until it holds; a session that does not come to it in five minutes is a failure.
-template <class Holds>
-void wait_for(const LiveSession& session, const char* what, Holds holds) {
-    const auto until = std::chrono::steady_clock::now() + 300s;
-    while (!holds(session.model())) {
-        session.rethrow_fault();
-        if (std::chrono::steady_clock::now() > until)
-            throw std::runtime_error(std::string("waited in vain for ") + what + ": " +
-                                     session.model().status.headline);
-        std::this_thread::sleep_for(5ms);
-    }
-}
-
 void press_when_free(LiveSession& session, OperatorAction action, ButtonState OperatorModel::*button,
                      const char* name) {
     wait_for(session, name, [&](const OperatorModel& m) { return (m.*button).enabled; });
@@ -164,16 +149,14 @@ void press_when_free(LiveSession& session, OperatorAction action, ButtonState Op
 /// Says that the light is right on each landmark that is lit, as far as it is asked.
 void verify(LiveSession& session, const Counting& counting, int until) {
     std::string confirmed;
-    while (counting.updates() < until) {
-        const OperatorModel model = session.model();
+    wait_for(session, "the updates", [&](const OperatorModel& model) {
+        if (counting.updates() >= until) return true;
         if (model.confirm && model.confirm_words != confirmed) {
             confirmed = model.confirm_words;
             session.post(OperatorAction::confirm);
         }
-        session.rethrow_fault();
-        if (!model.stop.enabled && model.status.kind == StatusKind::refused) return;  // the gate has stopped the light
-        std::this_thread::sleep_for(5ms);
-    }
+        return !model.stop.enabled && model.status.kind == StatusKind::refused;  // the gate has stopped the light
+    });
 }
 
 }  // namespace

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
+#include <stdexcept>
 #include <string>
+#include <thread>
 
+#include "app/live/live_session.h"
 #include "app/recording/session_recorder.h"
 #include "app/session.h"
 #include "planning_io/types/volume.h"
@@ -16,6 +20,21 @@ struct ExampleCase {
     Case prepared;
 };
 const ExampleCase& example_case();
+
+/// Looks at the session until it holds of its model. A session that does not come to it in five minutes has failed: this
+/// throws std::runtime_error with what was waited for, or what the session itself has thrown.
+template <class Holds>
+void wait_for(LiveSession& session, const char* what, Holds holds) {
+    const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(5);
+    for (;;) {
+        const OperatorModel model = session.model();
+        if (holds(model)) return;
+        session.rethrow_fault();
+        if (std::chrono::steady_clock::now() > until)
+            throw std::runtime_error(std::string("waited in vain for ") + what + ": " + model.status.headline);
+        std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+}
 
 /// How a session in the simulated room (the paper's) is played without a window.
 struct PlayedSession {

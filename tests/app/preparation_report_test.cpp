@@ -46,8 +46,8 @@ TEST(PlanFacts, DepthAndAngleAreThoseOfThePlan) {
     plan.boreholes.push_back({"B", Vector3d(0, 0, 0), std::nullopt, 7, 6, std::nullopt});
     plan.trajectories.push_back({"T", Vector3d(0, 0, 0), Vector3d(30, 40, 0), 2, std::nullopt});
     PlanDrawing drawing;
-    drawing.items = {{StrokeKind::borehole, "B", "B", Vector3d(0, 0, 0), 0, {}, true, {}},
-                     {StrokeKind::trajectory, "T", "T", Vector3d(0, 0, 0), 3, {}, true, {}}};
+    drawing.items = {{StrokeKind::borehole, "B", "B", Vector3d(0, 0, 0), 0, {}, true, {}, {}},
+                     {StrokeKind::trajectory, "T", "T", Vector3d(0, 0, 0), 3, {}, true, {}, {}}};
     const auto facts = plan_facts(plan, drawing, flat_skin());
     ASSERT_EQ(facts.size(), 2U);
     EXPECT_EQ(*facts[0].tilt, 0);

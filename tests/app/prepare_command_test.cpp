@@ -77,9 +77,17 @@ TEST_F(CommandsTest, ACaseIsCalledAsTheSiteCallsIt) {
     EXPECT_FALSE(fs::exists(root() / "never"));
 }
 
+/// Commands before the program that leave it so much address space, on one core and with one arena of memory: with more
+/// threads it would take more of it for nothing.
+std::string little_memory(int kib) {
+    return "ulimit -v " + std::to_string(kib) +
+           "; export MALLOC_ARENA_MAX=1; "
+           "taskset -p -c $(taskset -p -c $$ | sed 's/.*: //; s/[-,].*//') $$ >/dev/null; ";
+}
+
 TEST_F(CommandsTest, WhereMemoryIsShortTheNeedIsSaid) {
     const auto run = run_planlight("prepare " + patient() + " --plan " + plan() + " --voxel-mm 0.25 --out never",
-                                   root(), "ulimit -v 900000; ");
+                                   root(), little_memory(900000));
     EXPECT_TRUE(run.exit_code == 3 || run.exit_code == 7) << run.exit_code << run.err;
     EXPECT_NE(run.err.find("MiB"), std::string::npos) << run.err;
     EXPECT_FALSE(fs::exists(root() / "never"));
@@ -88,7 +96,7 @@ TEST_F(CommandsTest, WhereMemoryIsShortTheNeedIsSaid) {
 TEST_F(CommandsTest, WhereMemoryIsTooShortToDrawTheCaseIsMadeWithoutViewsAndSaysSo) {
     // The renderer without a card would end the whole program, where it is given no memory.
     const auto run = run_planlight("prepare " + patient() + " --plan " + plan() + " --voxel-mm 4 --out viewless",
-                                   root(), "ulimit -v 1000000; ");
+                                   root(), little_memory(1000000));
     EXPECT_EQ(run.exit_code, 0) << run.err;
     EXPECT_NE(run.err.find("no views of the head"), std::string::npos) << run.err;
     EXPECT_NE(run.err.find("MiB"), std::string::npos) << run.err;

@@ -5,27 +5,19 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <map>
-#include <numbers>
-#include <optional>
-#include <random>
+#include <utility>
 
-#include "app/prepare_case.h"
-#include "app/session.h"
 #include "planning_io/files/image_file.h"
-#include "planning_io/plan/plan_file.h"
-#include "planning_io/volume/read_volume.h"
-#include "projection/place_all_labels.h"
 #include "tests/support/test_data.h"
 
 namespace planlight::test {
 namespace {
 
-using namespace std::chrono_literals;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
@@ -251,11 +243,12 @@ std::vector<GrayImage> upright(const Label& label, const Seen& seen, const Camer
     return pictures;
 }
 
-std::string read_label(const Label& label, const Seen& seen, const CameraModel& camera,
-                       const RigidTransform& rig_from_ct, const std::filesystem::path& keep) {
+std::optional<std::string> read_label(const Label& label, const Seen& seen, const CameraModel& camera,
+                                      const RigidTransform& rig_from_ct, const std::filesystem::path& keep) {
     std::vector<std::map<std::string, int>> votes;
     for (const double pixel_mm : {0.16, 0.125, 0.2}) {
         const auto pictures = upright(label, seen, camera, rig_from_ct, pixel_mm);
+        if (pictures.empty()) return std::nullopt;
         votes.resize(pictures.size());
         for (std::size_t k = 0; k < pictures.size(); ++k) {
             ++votes[k][read_text(pictures[k])];
@@ -263,10 +256,11 @@ std::string read_label(const Label& label, const Seen& seen, const CameraModel& 
         }
     }
     std::string read;
+    bool first = true;
     for (const auto& line : votes) {
         const auto most = std::max_element(line.begin(), line.end(),
                                            [](const auto& a, const auto& b) { return a.second < b.second; });
-        read += (read.empty() ? "" : "/") + most->first;
+        read += (std::exchange(first, false) ? "" : "/") + most->first;
     }
     return read;
 }

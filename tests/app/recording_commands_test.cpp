@@ -33,10 +33,52 @@ TEST(ReportCommand, NeverTakesTheRecordingsPlace) {
     expect_refused(run_planlight("report a.plrec --out b.plrec", folder.path()), 3, "name of a recording");
     expect_refused(run_planlight("report a.plrec --out page.json", folder.path()), 3, "figures");
     expect_refused(run_planlight("report odd.json", folder.path()), 3, "the recording itself");
+    expect_refused(run_planlight("report a.plrec --pdf a.plrec", folder.path()), 3, "the recording itself");
+    expect_refused(run_planlight("report a.plrec --pdf link.html", folder.path()), 3, "the recording itself");
+    expect_refused(run_planlight("report a.plrec --pdf c.plrec", folder.path()), 3, "name of a recording");
+    expect_refused(run_planlight("report a.plrec --out p.html --pdf p.html", folder.path()), 3, "not the PDF");
+    expect_refused(run_planlight("report a.plrec --out p.html --pdf ./p.json", folder.path()), 3, "not the PDF");
     EXPECT_EQ(whole(file), bytes);
     EXPECT_EQ(whole(odd), bytes);
     EXPECT_EQ(run_planlight("report a.plrec", folder.path()).exit_code, 0);
     EXPECT_TRUE(fs::exists(folder.path() / "a.html"));
+}
+
+TEST(ReportCommand, ItsPdfIsReadableByItsOwnerAlone) {
+    const TemporaryFolder folder;
+    write_recording(folder.path() / "a.plrec");
+    const CommandRun run = run_planlight("report a.plrec --pdf a.pdf", folder.path(), "umask 0022; ");
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(whole(folder.path() / "a.pdf").substr(0, 5), "%PDF-");
+    EXPECT_EQ(fs::status(folder.path() / "a.pdf").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST(ReviewCommand, WritesOnlyIntoANewFolderOrOneOfItsOwn) {
+    const TemporaryFolder folder;
+    write_recording(folder.path() / "a.plrec");
+    fs::create_directory(folder.path() / "mine");
+    fs::permissions(folder.path() / "mine", fs::perms::owner_all | fs::perms::group_read);
+    std::ofstream(folder.path() / "mine" / "index.html") << "my own page";
+    expect_refused(run_planlight("review a.plrec --out mine", folder.path()), 3, "no review of a recording");
+    EXPECT_EQ(whole(folder.path() / "mine" / "index.html"), "my own page");
+    EXPECT_EQ(fs::status(folder.path() / "mine").permissions(), fs::perms::owner_all | fs::perms::group_read);
+    fs::create_directory(folder.path() / "empty");
+    for (int time = 0; time < 2; ++time)
+        EXPECT_EQ(run_planlight("review a.plrec --out empty", folder.path()).exit_code, 0) << "once more into its own";
+    expect_refused(run_planlight("review a.plrec --out a.plrec", folder.path()), 3, "is a file");
+}
+
+TEST(ForgetCommand, NamesAllThatShowsTheFace) {
+    const TemporaryFolder folder;
+    write_recording(folder.path() / "a.plrec");
+    ASSERT_EQ(run_planlight("review a.plrec", folder.path()).exit_code, 0);
+    ASSERT_EQ(run_planlight("report a.plrec --pdf a.pdf", folder.path()).exit_code, 0);
+    const CommandRun run = run_planlight("forget a.plrec", folder.path());
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    for (const char* left : {"a-review", "a.pdf", "a.html", "a.json"}) {
+        EXPECT_NE(run.out.find(std::string("Left: ") + left), std::string::npos) << run.out;
+        EXPECT_TRUE(fs::exists(folder.path() / left)) << "named, not removed";
+    }
 }
 
 TEST(ForgetCommand, OfALinkRemovesWhatItLeadsTo) {

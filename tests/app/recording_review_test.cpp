@@ -8,8 +8,7 @@
 #include "app/recording/recording_head.h"
 #include "app/report/recording_review.h"
 #include "planning_io/recording/packed_pictures.h"
-#include "planning_io/recording/recording_file.h"
-#include "planning_io/recording/recording_reader.h"
+#include "planning_io/recording/recording_chunk.h"
 #include "planning_io/types/error.h"
 #include "tests/support/test_data.h"
 
@@ -101,6 +100,24 @@ TEST_F(RecordingReview, ShowsTheGatesColoursAndTheErrorsOverTime) {
     const auto figures = nlohmann::json::parse(review_json(line));
     EXPECT_EQ(figures["frames_s"].size(), 30u);
     EXPECT_EQ(figures["stretches"].size(), line.stretches.size());
+}
+
+TEST_F(RecordingReview, AnotherReasonOfTheSameColourIsAnEventAndAnotherNumberIsNone) {
+    make();
+    const auto rule = [&](int ms, const char* headline) {
+        event(milliseconds(ms), {{"what", "updated"}, {"at_ns", (kBegan + milliseconds(ms)).count()}, {"light", {{"lit", true}}}});
+        event(milliseconds(ms),
+              {{"what", "gate"}, {"call", "step"}, {"trust", "look"}, {"headline", headline}, {"details", {"x"}}});
+    };
+    rule(30100, "the light is 0.7 mm off");
+    rule(30200, "the light is 0.8 mm off");
+    rule(30300, "a hand is in the light");
+    rule(30400, "a hand is in the light");
+    finish(true);
+    std::vector<std::string> last;
+    for (const auto& event : time_line_of(file_).events)
+        if (event.at_s > 30) last.push_back(event.what);
+    EXPECT_EQ(last, (std::vector<std::string>{"Amber: the light is 0.7 mm off", "Amber: a hand is in the light"}));
 }
 
 TEST_F(RecordingReview, AFrameByItsTimeHasThePictureThatCameAfterIt) {

@@ -1,9 +1,9 @@
 // Which match of a recording is offered, and the live session that goes on with it.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "app/live/live_session.h"
 #include "app/live/simulated_room.h"
@@ -11,9 +11,8 @@
 #include "app/recording/replay_session.h"
 #include "app/recording/resume_offer.h"
 #include "planning_io/case/rig_file.h"
-#include "planning_io/plan/plan_file.h"
+#include "planning_io/recording/recording_reader.h"
 #include "planning_io/types/error.h"
-#include "registration/simulation/simulated_rig.h"
 #include "tests/app/played_session.h"
 #include "tests/support/test_data.h"
 
@@ -21,8 +20,6 @@ namespace planlight {
 namespace {
 
 namespace fs = std::filesystem;
-using Eigen::Vector3d;
-using simulation::SimulatedRig;
 
 /// Recordings of sessions that were cut short.
 class ResumeRecording : public ::testing::Test {
@@ -76,21 +73,18 @@ protected:
                                                        std::string());
             },
             the_case, drawing, {}, observer, offer);
-        const auto wait = [&](auto holds) {
-            for (int i = 0; i < 30000 && !holds(session.model()); ++i) {
-                session.rethrow_fault();
-                std::this_thread::sleep_for(std::chrono::milliseconds(10));
-            }
-        };
-        wait([](const OperatorModel& m) { return m.track.enabled || m.status.kind == StatusKind::refused; });
+        test::wait_for(session, "the match or a refusal", [](const OperatorModel& m) {
+            return m.track.enabled || m.status.kind == StatusKind::refused;
+        });
         EXPECT_FALSE(session.projecting());
         if (!session.model().track.enabled) return session.model();
         session.post(OperatorAction::track);
         OperatorModel lit;
-        wait([&](const OperatorModel& m) {
+        test::wait_for(session, "light", [&](const OperatorModel& m) {
             lit = m;
             return m.status.kind == StatusKind::check && m.confirm;
         });
+        EXPECT_TRUE(session.projecting());
         return lit;
     }
 };

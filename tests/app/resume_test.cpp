@@ -1,16 +1,10 @@
 // A session goes on with the match of one that was cut short when all is as it was; else it stays dark and says why.
 #include <gtest/gtest.h>
 
-#include <fstream>
-#include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "app/live/live_session.h"
-#include "app/live/simulated_room.h"
-#include "app/recording/recording_head.h"
-#include "app/recording/replay_session.h"
-#include "app/recording/resume_offer.h"
-#include "planning_io/case/rig_file.h"
+#include "app/kept_match.h"
+#include "app/session.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 #include "registration/simulation/simulated_rig.h"
@@ -20,7 +14,6 @@
 namespace planlight {
 namespace {
 
-namespace fs = std::filesystem;
 using Eigen::Vector3d;
 using simulation::SimulatedRig;
 

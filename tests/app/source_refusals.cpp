@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <optional>
 #include <regex>
 #include <sstream>
 
@@ -59,36 +60,85 @@ std::string plain(const std::string& literal) {
     return std::regex_replace(text, std::regex("\\{[^}]*\\}"), "…");
 }
 
-/// The words of an expression: its literals in their order, "…" for anything else between them.
-std::string words(const std::string& expression, const std::string& source) {
+/// Where a sign stands in an expression, within no bracket and no literal and, for ':', not in "::" and after as many
+/// others as there are '?' in between; npos: nowhere.
+std::size_t find_outside(const std::string& expression, char sign, std::size_t from) {
+    int depth = 0, inner = 0;
+    for (std::size_t i = from; i < expression.size(); ++i) {
+        const char c = expression[i];
+        if (c == '"') {
+            i = end_of_literal(expression, i);
+            continue;
+        }
+        if (c == '(' || c == '{' || c == '[') ++depth;
+        if (c == ')' || c == '}' || c == ']') --depth;
+        if (depth != 0) continue;
+        if (expression.compare(i, 2, "::") == 0) {
+            ++i;
+            continue;
+        }
+        if (sign == ':' && c == '?') ++inner;
+        if (c == sign && (sign != ':' || inner-- == 0)) return i;
+    }
+    return std::string::npos;
+}
+
+std::string words_in(const std::string& expression, const std::string& source);
+
+/// Of `condition ? one : other`: both, parted by " / "; empty where the expression is none of these.
+std::optional<std::string> words_of_both(const std::string& expression, const std::string& source) {
+    const std::size_t question = find_outside(expression, '?', 0);
+    if (question == std::string::npos) return std::nullopt;
+    const std::size_t colon = find_outside(expression, ':', question + 1);
+    if (colon == std::string::npos) return std::nullopt;
+    const std::string one = words_in(expression.substr(question + 1, colon - question - 1), source),
+                      other = words_in(expression.substr(colon + 1), source);
+    return one.empty() || other.empty() || one == other ? (one.empty() ? other : one) : one + " / " + other;
+}
+
+/// The literals of an expression in their order, "…" for anything else between them.
+std::string words_in(const std::string& expression, const std::string& source) {
     std::smatch name;
     static const std::regex kConstant("^\\s*(k[A-Z]\\w*)\\s*$");
     if (std::regex_match(expression, name, kConstant)) {
         const std::regex definition("\\b" + name[1].str() + "(\\[\\])?\\s*=\\s*(\"[^;]*\");");
         std::smatch found;
-        return std::regex_search(source, found, definition) ? words(found[2].str(), source) : "…";
+        return std::regex_search(source, found, definition) ? words_in(found[2].str(), source) : "…";
     }
+    if (auto both = words_of_both(expression, source)) return *both;
     std::string text;
     bool between = false;  // something that is no literal stands since the last one
+    const auto add = [&](const std::string& words) {
+        text += (between ? "…" : "") + words;
+        between = false;
+    };
     for (std::size_t i = 0; i < expression.size(); ++i) {
+        std::size_t close = 0;
         if (expression[i] == '"') {
-            const std::size_t end = end_of_literal(expression, i);
-            if (between) text += "…";
-            text += plain(expression.substr(i + 1, end - i - 1));
-            between = false;
-            i = end;
+            close = end_of_literal(expression, i);
+            add(plain(expression.substr(i + 1, close - i - 1)));
+            i = close;
         } else if (expression.compare(i, 12, "fmt::format(") == 0) {  // its first argument has the words
-            std::size_t close = 0;
-            text += (between ? "…" : "") + words(arguments(expression, i + 11, close).front(), source);
-            between = false;
+            add(words_in(arguments(expression, i + 11, close).front(), source));
             i = close;
         } else if (expression.compare(i, 12, "std::string(") == 0) {
-            i += 11;
+            i += 10;
+        } else if (expression[i] == '(') {
+            const auto inside = arguments(expression, i, close);
+            const auto both = inside.size() == 1 ? words_of_both(inside.front(), source) : std::nullopt;
+            if (!both) continue;
+            add(*both);
+            i = close;
         } else if (std::isalnum(static_cast<unsigned char>(expression[i]))) {
             between = true;
         }
     }
-    return text.empty() || between ? text + "…" : text;
+    return between ? text + "…" : text;
+}
+
+std::string words(const std::string& expression, const std::string& source) {
+    const std::string text = std::regex_replace(words_in(expression, source), std::regex("(…){2,}"), "…");
+    return text.empty() ? "…" : text;
 }
 
 }  // namespace

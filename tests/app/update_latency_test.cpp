@@ -68,8 +68,8 @@ TEST(UpdateLatency, CountsDarknessByItsReason) {
         latency.add(dark);
     }
     const auto json = nlohmann::json::parse(latency.json());
-    EXPECT_EQ(json.at("dark").at("the last pose is # ms old (at most # ms)"), 2);
-    EXPECT_EQ(json.at("dark").at("the patient is not tracked: \"#\" markers"), 1);
+    EXPECT_EQ(json.at("dark").at("the last pose is … ms old (at most … ms)"), 2);
+    EXPECT_EQ(json.at("dark").at("the patient is not tracked: \"…\" markers"), 1);
 }
 
 }  // namespace

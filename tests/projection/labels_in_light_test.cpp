@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <set>
 
 #include "projection/place_all_labels.h"
 #include "projection/render_drawing.h"
@@ -163,7 +164,7 @@ TEST(LabelsInLight, ACutPlaneIsDashedBetweenItsTicksAndAnOsteotomyLineIsNot) {
     }
 }
 
-TEST(LabelsInLight, FortyItemsKeepNamesThatOverlapNothingAndNoMoreTextThanMayBe) {
+TEST(LabelsInLight, FortyItemsHaveNamesOrCodesThatOverlapNothingAndNoMoreTextThanMayBe) {
     Plan plan;
     for (int i = 0; i < 40; ++i)
         plan.boreholes.push_back(
@@ -174,6 +175,26 @@ TEST(LabelsInLight, FortyItemsKeepNamesThatOverlapNothingAndNoMoreTextThanMayBe)
     EXPECT_LE(share_of_text(drawing), settings.most_text);
     int of_moment = 0;
     for (const Label& label : drawing.labels) of_moment += label.of_moment;
+    // What is drawn together: no place of a label's field lies on another's or on what is drawn.
+    OccupiedSkin taken;
+    for (const Stroke& stroke : drawing.strokes)
+        for (const Vector3d& p : stroke.points_in_ct) taken.add(p);
+    for (const Label& label : drawing.labels)
+        if (!label.of_moment)
+            for (const Vector3d& p : label.field_in_ct) taken.add(p, label.item);
+    int named = 0, by_code = 0;
+    for (const Label& label : drawing.labels) {
+        if (label.of_moment) continue;
+        for (const Vector3d& p : label.field_in_ct)
+            ASSERT_FALSE(taken.within(p, 0.5, label.item)) << label.words << " lies over something";
+        const DrawnItem& item = drawing.items[static_cast<std::size_t>(label.item)];
+        (label.by_code ? by_code : named) += 1;
+        EXPECT_EQ(label.words.substr(0, (label.by_code ? item.code : item.name).size()),
+                  label.by_code ? item.code : item.name);
+    }
+    RecordProperty("named", named), RecordProperty("by_code", by_code);
+    EXPECT_GE(named + by_code, 24) << named << " names and " << by_code << " codes of 40 items";
+    EXPECT_GE(named, 1);
     EXPECT_GE(of_moment, 36) << "nearly every item has a label for when it is the item of the moment";
     RgbImage picture = renderer().render(drawing, RigidTransform::Identity());
     test::keep_picture(picture, "forty_items.png");
@@ -183,14 +204,46 @@ TEST(LabelsInLight, FortyItemsKeepNamesThatOverlapNothingAndNoMoreTextThanMayBe)
     test::keep_picture(picture, "forty_items_one_of_moment.png");
 }
 
-TEST(LabelsInLight, ANameThatCannotBeDrawnIsNumberedAndTheFiguresStay) {
+TEST(LabelsInLight, ANameThatCannotBeDrawnHasItsCodeAndTheFiguresStay) {
     Plan plan;
     plan.boreholes.push_back({"\U0010FFFD", on_ball(0, 0), {}, 7, 6, {}});
     const PlanDrawing drawing = draw_plan(plan, ball());
     ASSERT_FALSE(drawing.labels.empty());
     EXPECT_EQ(drawing.labels[0].words, "#1\n7 mm wide\n6 mm deep");
     EXPECT_EQ(drawing.items[0].name, "\U0010FFFD");
+    EXPECT_EQ(drawing.items[0].code, "#1");
+    EXPECT_TRUE(drawing.items[0].lit_by_code);
     ASSERT_EQ(drawing.items[0].warnings.size(), 1u);
+}
+
+// Whether by its signs or by want of room: a code that names another item is never lit.
+TEST(LabelsInLight, ACodeOfACrowdedPlanIsNobodysNameAndIsTold) {
+    Plan plan;
+    plan.osteotomy_lines.push_back({"Osteotomy", {on_ball(-0.4, 0.5), on_ball(0.4, 0.5)}, false, {}});
+    for (int i = 0; i < 12; ++i)
+        plan.boreholes.push_back({"Bohrung unten links " + std::to_string(i + 1),
+                                  on_ball(-0.3 + 0.15 * (i % 4), -0.3 + 0.15 * (i / 4)),
+                                  {},
+                                  4,
+                                  6,
+                                  {}});
+    DrawingSettings settings;
+    settings.light = LightView{projector(), RigidTransform::Identity()};
+    const PlanDrawing drawing = draw_plan(plan, ball(), settings);
+    int by_code = 0;
+    std::set<std::string> first_lines;
+    for (const Label& label : drawing.labels) {
+        if (label.of_moment) continue;
+        const DrawnItem& item = drawing.items[static_cast<std::size_t>(label.item)];
+        EXPECT_EQ(item.lit_by_code, label.by_code) << item.name;
+        if (!label.by_code) continue;
+        ++by_code;
+        EXPECT_EQ(item.lit_name, item.code);
+        EXPECT_EQ(label.words.substr(0, label.words.find('\n')), item.code);
+        EXPECT_EQ(item.code.find_first_of("0123456789"), std::string::npos) << item.code << " for " << item.name;
+        EXPECT_TRUE(first_lines.insert(item.code).second) << item.code << " is lit twice";
+    }
+    EXPECT_GE(by_code, 2) << "else this plan is not crowded enough to tell";
 }
 
 }  // namespace

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
+#include <set>
 
+#include "projection/label_codes.h"
 #include "projection/label_names.h"
 #include "projection/lay_out_label.h"
 
@@ -131,7 +134,7 @@ TEST(LayOutLabel, LinesTouchNeitherEachOtherNorTheBlocksEdge) {
     }
 }
 
-TEST(LitNames, WhatCannotBeDrawnIsLeftOutAndTheNumberKept) {
+TEST(LitNames, WhatCannotBeDrawnIsLeftOutAndHasItsCode) {
     const auto names = lit_names({"B1", "\U0010FFFD links", "B3"}, 5);
     EXPECT_EQ(names[0].name, "B1");
     EXPECT_TRUE(names[0].warning.empty());
@@ -141,14 +144,73 @@ TEST(LitNames, WhatCannotBeDrawnIsLeftOutAndTheNumberKept) {
     EXPECT_EQ(names[2].name, "B3");
 }
 
-TEST(LitNames, NamesThatShorteningMakesTheSameAreNumbered) {
+TEST(Lettering, NoSignInANameTurnsItsFiguresRound) {
+    // B12 in every window: an override of direction would light it as B21.
+    const TextOutline plain = lettering().outline("B12");
+    for (const char* name : {"B\u202E12", "B\u202E12\u202C", "\u202EB12", "B\u206712\u2069", "\u202BB12"}) {
+        const TextOutline text = lettering().outline(name);
+        ASSERT_EQ(text.signs.size(), plain.signs.size()) << name;
+        for (std::size_t i = 0; i < plain.signs.size(); ++i)
+            EXPECT_EQ(text.signs[i].outlines, plain.signs[i].outlines) << name << " sign " << i;
+    }
+}
+
+TEST(Lettering, AFontOfTheSitesThatIsNoneIsToldOf) {
+    EXPECT_TRUE(fault_of_own_font().empty());
+    ASSERT_EQ(setenv("PLANLIGHT_FONT", "/no/such/font.ttf", 1), 0);
+    EXPECT_NE(fault_of_own_font(Lettering(font_files())).find("/no/such/font.ttf"), std::string::npos);
+    const auto all = [] {
+        unsetenv("PLANLIGHT_FONT");
+        return font_files();
+    }();
+    if (!all.empty() && all.front().index == 0) {
+        ASSERT_EQ(setenv("PLANLIGHT_FONT", all.front().file.c_str(), 1), 0);
+        EXPECT_EQ(fault_of_own_font(Lettering(font_files())), "") << all.front().file;
+    }
+    unsetenv("PLANLIGHT_FONT");
+}
+
+TEST(LitNames, NamesThatShorteningMakesTheSameHaveTheirCodes) {
     const std::string a = "Osteotomiefrontaleinslinksaussen", b = "Osteotomiefrontalzweilinksaussen";
-    const auto names = lit_names({a, b, "B1", "B1"}, 5);
+    const auto names = lit_names({a, b, "left", "right"}, 5);
     EXPECT_EQ(names[0].name, "#1");
     EXPECT_EQ(names[1].name, "#2");
+    EXPECT_TRUE(names[1].by_code);
     EXPECT_FALSE(names[1].warning.empty());
-    EXPECT_EQ(names[2].name, "B1") << "the plan's own names, even where they are the same";
-    EXPECT_EQ(names[3].name, "B1");
+    EXPECT_EQ(names[2].name, "left");
+    EXPECT_EQ(names[2].code, "#3");
+}
+
+TEST(LitNames, NothingIsLitTwiceTheSame) {
+    for (const char* same : {"B7", "B7 ", "B\u200E7"}) {
+        const auto names = lit_names({"B7", "C", same}, 5);
+        EXPECT_EQ(names[0].name, "#1") << same;
+        EXPECT_EQ(names[2].name, "#3") << same;
+        EXPECT_NE(names[2].warning.find("name"), std::string::npos);
+    }
+}
+
+TEST(Codes, NoCodeCanBeTakenForTheNameOfAnotherItem) {
+    using Names = std::vector<std::string>;
+    const auto codes = [](const Names& names) { return codes_of(names, names); };
+    EXPECT_EQ(codes({"Drill 1", "Drill 2", "Drill 3"}), (Names{"#1", "#2", "#3"})) << "each its own number";
+    // A line before the holes: #2 would be Drill 1.
+    EXPECT_EQ(codes({"Cut", "Drill 1", "Drill 2"}), (Names{"#A", "#B", "#C"}));
+    EXPECT_EQ(codes({"Cut", "Drill 001"}), (Names{"#A", "#B"})) << "leading zeros";
+    EXPECT_EQ(codes({"Cut", "Drill 12"}), (Names{"#1", "#2"})) << "12 is not 1 or 2";
+    EXPECT_EQ(codes({"A", "C", "Drill 1"}), (Names{"#B", "#D", "#E"})) << "letters that are names are passed over";
+    EXPECT_EQ(codes({"x", "b1", "Drill 1"}), (Names{"#A", "#C", "#D"}));
+    EXPECT_EQ(codes({"Cut", "切口一"}), (Names{"#A", "#B"})) << "a Chinese one";
+    EXPECT_EQ(codes({"Cut", "Ⅰ"}), (Names{"#A", "#B"})) << "a Roman one";
+    EXPECT_EQ(codes({"Разрез А", "Разрез 1"}), (Names{"#B", "#C"})) << "a Cyrillic A looks as the Latin one";
+    Names many;
+    for (int i = 0; i < 60; ++i) many.push_back("Drill " + std::to_string(60 - i));
+    const auto of_many = codes(many);
+    EXPECT_EQ(of_many[0], "#A");
+    EXPECT_EQ(std::set<std::string>(of_many.begin(), of_many.end()).size(), 60u);
+    for (const auto& code : of_many) EXPECT_EQ(code.find_first_of("0123456789"), std::string::npos) << code;
+    // A name shortened in the midst of its number shows another number than it has.
+    EXPECT_EQ(codes_of({"Drill 4512", "x"}, {"Dri…2", "x"}), (Names{"#A", "#B"}));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "projection/skin_now.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -55,6 +56,22 @@ TEST(SkinNow, ALineIsCalledByItsPlannedLength) {
     const PlanDrawing drawing = draw_plan(plan, ball(), now);
     ASSERT_FALSE(drawing.labels.empty());
     EXPECT_NE(drawing.labels.front().words.find("100 mm"), std::string::npos) << drawing.labels.front().words;
+}
+
+// A plane of 130 mm cuts another length of skin that lies 4 mm deeper; the plan's page says the CT's, and so must the light.
+TEST(SkinNow, ACutPlaneIsCalledByItsPlannedLength) {
+    const SkinSurface now = skin_as_scanned(ball().mesh(), scanned([](auto&) { return -4.; }));
+    Plan plan;
+    plan.cut_planes.push_back({"C", on_ball(0, 0), Vector3d::UnitZ(), Vector3d::UnitY(), 130, 120, {}});
+    const auto words = [&](const SkinSurface& skin) {
+        const PlanDrawing drawing = draw_plan(plan, ball(), skin);
+        return drawing.labels.empty() ? std::string("no label") : drawing.labels.front().words;
+    };
+    const double planned_mm = 2 * kRadius_mm * std::asin(65 / kRadius_mm);
+    EXPECT_EQ(words(now), fmt::format("C\n{:.0f} mm", planned_mm));
+    EXPECT_EQ(words(now), words(ball()));
+    const double now_mm = 2 * (kRadius_mm - 4) * std::asin(65 / (kRadius_mm - 4));
+    EXPECT_GT(std::abs(planned_mm - now_mm), 1) << "or else it would not be noticed";
 }
 
 // Skin 2 mm deeper, an axis that leans by 45 degrees: the place on the skin moves aside by 2 mm. The nearest point

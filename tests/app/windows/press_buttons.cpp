@@ -76,7 +76,7 @@ int main(int, char** argv) {
     using std::chrono::steady_clock;
     const std::string folder = argv[1];
     OperatorModel model = test::fake_model();
-    OperatorWindow window({"Planlight buttons", 1280, 800, std::nullopt, true});
+    OperatorWindow window({"Planlight buttons", 1280, 800, std::nullopt, true, {}});
     for (int i = 0; i < 30; ++i) window.frame(model);
     const std::size_t without_need = drawn_in(window, model, 60);
     model.status.headline += " And more.";

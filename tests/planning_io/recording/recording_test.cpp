@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cstring>
 #include <fstream>
 #include <random>
 #include <thread>
@@ -198,6 +199,33 @@ TEST(Recording, HostileBytesGiveNoChunkOrAWholeOneAndEndSoon) {
         EXPECT_NE(reader.end(), RecordingEnd::open);
         EXPECT_LE(reader.bytes_read(), bytes.size());
     }
+}
+
+// A thousand headers that each promise the rest of the file: read whole one by one that is 50 times the file and more.
+TEST(Recording, ASearchForWholeChunksEndsWithItsBudgetAndSaysThatItIsNotKnown) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "hostile.plrec";
+    std::string lies(std::size_t{1} << 20, 'x');
+    for (std::size_t at = 0; at < 1000; ++at) {
+        const auto left = static_cast<std::uint32_t>(lies.size() - 64 * at - kChunkHeaderBytes);
+        std::string header = chunk_bytes({chunk_types::kEvent, Instant(0), ""}, 7).substr(0, kChunkHeaderBytes);
+        std::memcpy(header.data() + 24, &left, sizeof left);
+        lies.replace(64 * at, header.size(), header);
+    }
+    const std::string good = chunk_bytes({chunk_types::kEvent, Instant(0), text(0)}, 0);
+    const auto end_of = [&](const std::string& bytes, std::uint64_t budget) {
+        put_bytes(file, bytes);
+        RecordingReader reader(file);
+        reader.search_at_most(budget);
+        EXPECT_EQ(read_all(reader).size(), 1u);
+        EXPECT_EQ(reader.sentence().empty(), reader.end() == RecordingEnd::whole);
+        return reader.end();
+    };
+    const std::string whole_behind = chunk_bytes({chunk_types::kEvent, Instant(1), text(1)}, 9);
+    EXPECT_EQ(end_of(recording_header() + good + lies + whole_behind, 50 << 20), RecordingEnd::unknown);
+    EXPECT_EQ(end_of(recording_header() + good + lies + whole_behind, std::uint64_t{2} << 30), RecordingEnd::damaged);
+    EXPECT_EQ(end_of(recording_header() + good + lies, std::uint64_t{2} << 30), RecordingEnd::cut);
+    EXPECT_EQ(end_of(recording_header() + good + "xxx" + whole_behind, 50 << 20), RecordingEnd::damaged);
 }
 
 TEST(Recording, AFrameThatLiesAboutItsSizeIsRefusedWithoutAskingForItsMemory) {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <thread>
+#include <functional>
 
 #include "planning_io/types/error.h"
 
@@ -29,10 +29,16 @@ private:
     FrameQueue frames_;
 };
 
-/// Every look at the clock takes a millisecond.
+/// Every look at the clock takes a millisecond; at one of them something may happen.
 struct RunningClock final : Clock {
     mutable Instant t{};
-    Instant now() const override { return t += milliseconds(1); }
+    mutable int looks = 0;
+    int happens_at = 0;  ///< which look, from 1; 0: none
+    std::function<void()> happens;
+    Instant now() const override {
+        if (++looks == happens_at) happens();
+        return t += milliseconds(1);
+    }
 };
 
 struct PairedCamerasTest : ::testing::Test {
@@ -131,14 +137,14 @@ TEST_F(PairedCamerasTest, ACameraThatSendsNothingOrFailedIsNamed) {
 }
 
 TEST_F(PairedCamerasTest, WhoseFramesLosePacketsIsNamedWhetherAnyComeOrNone) {
-    std::thread network([&] {
-        std::this_thread::sleep_for(milliseconds(5));
+    clock.happens_at = clock.looks + 2;  // while a pair is waited for
+    clock.happens = [&] {
         for (int i = 0; i < 4; ++i) left->frames().count_incomplete();
         left->expose(0, 1);
         right->expose(40, 1);
-    });
+    };
     EXPECT_NE(refusal().find("left camera: of its frames 1 came whole"), std::string::npos);
-    network.join();
+    EXPECT_GT(clock.looks, clock.happens_at);
     EXPECT_EQ(cameras->doubt(), "left camera: 4 of its last 5 frames lost packets");
     for (int i = 0; i < 25; ++i) left->expose(40 * i, 1);
     EXPECT_EQ(cameras->doubt(), "") << "all of the last came whole";

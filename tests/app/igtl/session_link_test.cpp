@@ -1,0 +1,198 @@
+// A whole session in the simulated room, as another system hears of it.
+#include "app/igtl/session_link.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "app/session_observers.h"
+#include "tests/app/igtl/igtl_receiver.h"
+#include "tests/app/played_session.h"
+
+namespace planlight {
+namespace {
+
+using test::ReceivedMessage;
+
+const Eigen::Matrix4d kFlip = Eigen::Vector4d(-1, -1, 1, 1).asDiagonal();
+
+/// What the session itself had.
+class Watcher final : public SessionObserver {
+public:
+    void matched(const Session& session) noexcept override {
+        patient_from_ct = session.registration()->patient_from_ct;
+    }
+    void updated(const Session&, const Session::Update& update) noexcept override {
+        if (update.pose.rig_from_patient) poses.push_back(*update.pose.rig_from_patient);
+    }
+    RigidTransform patient_from_ct = RigidTransform::Identity();
+    std::vector<RigidTransform> poses;
+};
+
+/// A session of a case with names in it, heard from its beginning to its end.
+struct HeardSession {
+    Watcher session;
+    std::vector<ReceivedMessage> messages;
+    test::ExampleCase patient;
+};
+
+HeardSession hear() {
+    HeardSession heard;
+    heard.patient = test::example_case();
+    heard.patient.prepared.names.patient = "Erika Mustermann";
+    heard.patient.prepared.names.title = "Erika Mustermann, frontal defect";
+    for (auto& line : heard.patient.prepared.plan.osteotomy_lines) line.name = "Erika's line";
+    SessionLinkSettings settings;
+    settings.server.port = 0;
+    auto link = std::make_unique<SessionLink>(heard.patient.prepared, settings);
+    test::IgtlReceiver receiver(link->port());
+    SessionObservers both;
+    both.add(&heard.session);
+    both.add(nullptr);
+    both.add(link.get());
+    test::PlayedSession how;
+    how.seed = 3;
+    how.updates = 40;
+    test::play_session(how, heard.patient, both.all());
+    link.reset();
+    heard.messages = receiver.all();
+    return heard;
+}
+
+std::vector<ReceivedMessage> of(const HeardSession& heard, const std::string& device) {
+    std::vector<ReceivedMessage> found;
+    std::copy_if(heard.messages.begin(), heard.messages.end(), std::back_inserter(found),
+                 [&](const ReceivedMessage& message) { return message.device == device; });
+    return found;
+}
+
+bool has_word(const HeardSession& heard, const std::string& word, int code) {
+    const auto gate = of(heard, "Gate");
+    return std::any_of(gate.begin(), gate.end(), [&](const ReceivedMessage& status) {
+        return status.word == word && status.code == code && !status.text.empty();
+    });
+}
+
+void expect_sound(const HeardSession& heard) {
+    EXPECT_GT(heard.messages.size(), 60u);
+    for (const ReceivedMessage& message : heard.messages) EXPECT_TRUE(message.sound) << message.device;
+}
+
+void expect_skin_and_plan_once_and_first(const HeardSession& heard) {
+    ASSERT_GE(heard.messages.size(), 2u);
+    const ReceivedMessage &skin = heard.messages[0], &plan = heard.messages[1];
+    EXPECT_EQ(skin.device, "Skin");
+    EXPECT_EQ(skin.points, static_cast<int>(heard.patient.prepared.skin.vertices_in_ct.size()));
+    EXPECT_EQ(skin.polygons, static_cast<int>(heard.patient.prepared.skin.triangles.size()));
+    EXPECT_EQ(plan.device, "Plan");
+    EXPECT_GE(plan.lines, static_cast<int>(heard.patient.prepared.plan.osteotomy_lines.size()));
+    EXPECT_EQ(of(heard, "Skin").size(), 1u);
+    EXPECT_EQ(of(heard, "Plan").size(), 1u);
+}
+
+void expect_match_in_slicers_axes(const HeardSession& heard) {
+    const auto match = of(heard, "T_ini");
+    ASSERT_EQ(match.size(), 1u);
+    const Eigen::Matrix4d expected = kFlip * heard.session.patient_from_ct.matrix() * kFlip;
+    EXPECT_LT((match[0].matrix - expected).cwiseAbs().maxCoeff(), 2e-4);  // 32 bit at a metre
+}
+
+void expect_poses_of_the_session(const HeardSession& heard) {
+    const auto poses = of(heard, "Poses");
+    ASSERT_GT(poses.size(), 10u);
+    for (const ReceivedMessage& pose : poses) {
+        const Eigen::Matrix4d& cur = pose.transforms.at("T_cur");
+        EXPECT_TRUE(std::any_of(heard.session.poses.begin(), heard.session.poses.end(), [&](const auto& p) {
+            return (kFlip * p.matrix() * kFlip - cur).cwiseAbs().maxCoeff() < 2e-4;
+        }));
+        // T_global = T_cur T_ini
+        EXPECT_LT((pose.transforms.at("T_global") - cur * pose.transforms.at("T_ini")).cwiseAbs().maxCoeff(), 1e-3);
+    }
+    EXPECT_GT(of(heard, "T_cur").size(), 10u);
+    EXPECT_GT(of(heard, "T_global").size(), 10u);
+}
+
+void expect_words_of_the_gate(const HeardSession& heard) {
+    EXPECT_TRUE(has_word(heard, "dark", 15));
+    EXPECT_TRUE(has_word(heard, "look", 13));
+    EXPECT_TRUE(has_word(heard, "aligned", 1));
+    EXPECT_EQ(heard.messages.back().word, "ended");
+    EXPECT_EQ(heard.messages.back().code, 19);
+}
+
+void expect_errors_in_mm(const HeardSession& heard) {
+    for (const char* device : {"LightError", "PoseError"}) {
+        const auto errors = of(heard, device);
+        ASSERT_FALSE(errors.empty()) << device;
+        for (const ReceivedMessage& error : errors) {
+            EXPECT_TRUE(error.in_mm);
+            ASSERT_EQ(error.numbers.size(), 2u);
+            EXPECT_GE(error.numbers[0], 0);
+            EXPECT_LT(error.numbers[0], 5);
+        }
+    }
+}
+
+void expect_no_names(const HeardSession& heard) {
+    EXPECT_TRUE(of(heard, "Case").empty());
+    for (const ReceivedMessage& message : heard.messages)
+        EXPECT_EQ(message.text.find("Erika"), std::string::npos) << message.text;
+}
+
+TEST(SessionLink, AnotherSystemHearsASessionAsItWas) {
+    if (!test::example_case().there) GTEST_SKIP() << "the package invesalius-examples is not installed";
+    const HeardSession heard = hear();
+    expect_sound(heard);
+    expect_skin_and_plan_once_and_first(heard);
+    expect_match_in_slicers_axes(heard);
+    expect_poses_of_the_session(heard);
+    expect_words_of_the_gate(heard);
+    expect_errors_in_mm(heard);
+    expect_no_names(heard);
+}
+
+TEST(SessionLink, NamesAreSaidWhereTheSiteSaysSo) {
+    Case the_case;
+    the_case.names.title = "Erika Mustermann, frontal defect";
+    SessionLinkSettings settings;
+    settings.server.port = 0;
+    settings.names = true;
+    auto link = std::make_unique<SessionLink>(the_case, settings);
+    test::IgtlReceiver receiver(link->port());
+    while (link->counts().clients == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    link.reset();
+    const auto& all = receiver.all();
+    EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const ReceivedMessage& message) {
+        return message.device == "Case" && message.text.find("Erika") != std::string::npos;
+    }));
+}
+
+TEST(SessionLink, ASessionThatSaysNothingMoreIsCalledStale) {
+    Case the_case;
+    SessionLinkSettings settings;
+    settings.server.port = 0;
+    settings.alive_every = std::chrono::milliseconds(20);
+    settings.stale_after = std::chrono::milliseconds(60);
+    auto link = std::make_unique<SessionLink>(the_case, settings);
+    test::IgtlReceiver receiver(link->port());
+    LightGate::Ruling ruling;
+    ruling.trust = LightTrust::aligned;
+    ruling.headline = "ALIGNED";
+    link->gate(GateCall::step, {}, 0, &ruling);
+    std::this_thread::sleep_for(std::chrono::milliseconds(400));
+    link.reset();
+    const auto& all = receiver.all();
+    const auto is = [](const char* word) {
+        return [word](const ReceivedMessage& message) { return message.word == word; };
+    };
+    const auto aligned = std::find_if(all.begin(), all.end(), is("aligned"));
+    const auto stale = std::find_if(all.begin(), all.end(), is("stale"));
+    ASSERT_NE(aligned, all.end());
+    ASSERT_NE(stale, all.end());
+    EXPECT_LT(aligned - all.begin(), stale - all.begin());
+    EXPECT_EQ(std::find_if(stale, all.end(), is("aligned")), all.end());
+}
+
+}  // namespace
+}  // namespace planlight
