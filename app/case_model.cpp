@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "app/belonging.h"
+#include "app/windows/orientation.h"
 #include "projection/mid_plane.h"
 
 namespace planlight {
@@ -100,6 +101,7 @@ OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing) {
     model.scene.skin = std::make_shared<TriangleMesh>(the_case.skin);
     model.scene.plan = std::make_shared<PlanDrawing>(drawing.drawing);
     model.rows = rows_of(plan, drawing.drawing);
+    if (drawing.settings.up_in_ct.norm() > 0) model.surgeon_view = surgeon_view(drawing.settings.up_in_ct);
     for (const auto& warning : the_case.warnings) model.evidence.push_back("Warning: " + warning);
     model.status = {StatusKind::dark, "Nothing is projected.", {}};
     for (auto* button : {&model.scan, &model.do_register, &model.track, &model.stop}) *button = {false, "no rig"};

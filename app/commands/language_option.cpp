@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "app/console.h"
 #include "planning_io/types/error.h"
 
@@ -9,9 +11,11 @@ namespace planlight {
 namespace {
 
 /// How many entries of the source that language lacks.
-std::size_t lacking(const Words& words) {
+std::size_t lacking(const std::string& code) {
+    std::set<std::string> there;
+    for (const auto& entry : language_of(code).words) there.insert(entry.first);
     std::size_t count = 0;
-    for (const auto& entry : language_of("en").words) count += words.knows(entry.first) ? 0 : 1;
+    for (const auto& entry : language_of("en").words) count += there.contains(entry.first) ? 0 : 1;
     return count;
 }
 
@@ -21,7 +25,7 @@ std::shared_ptr<const Words> words_of_window(const std::string& option, const Si
     const std::string& code = option.empty() ? site.language : option;
     try {
         const auto words = words_of(code);
-        if (const std::size_t count = code == "en" ? 0 : lacking(*words); count > 0)
+        if (const std::size_t count = code == "en" ? 0 : lacking(code); count > 0)
             warn(fmt::format("The language \"{}\" lacks {} texts; these are shown in English.", code, count));
         return words;
     } catch (const Error& fault) {

@@ -10,8 +10,8 @@ namespace planlight {
 namespace {
 
 // For an observer, in the order of their enumerations.
-constexpr std::array kActions{"none", "scan", "register", "track",         "stop",
-                              "dark", "quit", "confirm",  "use landmarks", "check skin"};
+constexpr std::array kActions{"none", "scan",    "register",      "track",      "stop",      "dark",
+                              "quit", "confirm", "use landmarks", "check skin", "light item"};
 constexpr std::array kStatusKinds{"ready", "scanning", "matching", "aligned", "check", "refused", "dark", "waiting"};
 
 }  // namespace
@@ -27,7 +27,7 @@ LiveSession::LiveSession(MakeRoom make_room, const Case& the_case, const CaseDra
       model_(blank_),
       gate_(observer),
       offer_(std::move(offer)) {
-    enter(state_, blank_, model_);
+    enter(state_, blank_, model_, scan_there_);
     said();
     show_alive();
     thread_ = std::thread([this, make_room = std::move(make_room)] {
@@ -55,7 +55,7 @@ LiveSession::~LiveSession() {
 
 /// Under the lock: why the press does nothing now; empty: it is taken.
 std::string LiveSession::refused_press(OperatorAction action) const {
-    if (const std::string why = why_not(state_, action);
+    if (const std::string why = why_not(state_, action, scan_there_);
         !why.empty() && action != OperatorAction::stop && action != OperatorAction::dark)
         return why;
     if (action == OperatorAction::confirm && !model_.confirm) return why_not(SessionState::ready, action);
@@ -85,9 +85,10 @@ std::string LiveSession::post(OperatorAction action, AskedBy by) {
             ++darks_;
             light_ = {nullptr, light_.number + 1};
         }
-        const SessionState next = after_press(from, action).value_or(from);
+        if (action == OperatorAction::scan) scan_there_ = false;  // the former one is given up
+        const SessionState next = after_press(from, action, scan_there_).value_or(from);
         if (next != state_ && (dark || !(next == SessionState::verifying || state_ == SessionState::unsure)))
-            enter(next, blank_, model_);
+            enter(next, blank_, model_, scan_there_);
         presses_.push_back({action, darks_, state_});
         state_ = next;
         if (dark) model_.status = dark_status(state_);
@@ -107,6 +108,14 @@ std::string LiveSession::post_find_patient(std::vector<PointPair> landmarks) {
     return post(OperatorAction::do_register);
 }
 
+std::string LiveSession::post_light_item(std::optional<std::size_t> which) {
+    {
+        const std::lock_guard lock(mutex_);
+        item_ = which;
+    }
+    return post(OperatorAction::light_item);
+}
+
 bool LiveSession::happened(SessionHappening happening, const std::function<void(OperatorModel&)>& change) {
     // Of these there are words where they lead nowhere, too; the others were overtaken by DARK then.
     const bool may_stay = happening == SessionHappening::failed || happening == SessionHappening::skin_checked;
@@ -114,8 +123,9 @@ bool LiveSession::happened(SessionHappening happening, const std::function<void(
         const std::lock_guard lock(mutex_);
         if (view_of(state_).lights && permitted_ != darks_) return false;
         const SessionState next = after(state_, happening);
+        if (happening == SessionHappening::scan_done && next != state_) scan_there_ = true;
         if (next == state_ && !(may_stay && change)) return false;
-        if (next != state_) enter(next, blank_, model_);
+        if (next != state_) enter(next, blank_, model_, scan_there_);
         state_ = next;
         if (change) change(model_);
     }

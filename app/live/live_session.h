@@ -47,6 +47,9 @@ public:
     /// Finding the patient with these landmarks (none: without), clicked on the last scan; queued.
     std::string post_find_patient(std::vector<PointPair> landmarks);
 
+    /// This item of the plan alone is bright from now on (empty: all are); queued.
+    std::string post_light_item(std::optional<std::size_t> which);
+
     /// The projector was away: before the plan is lit again a short scan looks whether all is as it was.
     void look_before_light();
 
@@ -99,6 +102,7 @@ private:
     void show_measured(const Session::Update& update, OperatorModel& m) const;
     void show_verification(const Session::Update& update, LightGate::Ruling& ruling);
     void end_verification(Session& session);
+    void light_item(Session& session);
     std::vector<PointPair> newest_landmarks() const;
     std::string keep(const RegistrationResult& found, const PointCloud& cloud,
                      const std::vector<PointPair>& landmarks) const;
@@ -138,10 +142,12 @@ private:
     LiveView view_{wall_};
     mutable std::mutex mutex_;
     SessionState state_ = SessionState::opening;
+    bool scan_there_ = false;    ///< of this session
     const OperatorModel blank_;  ///< of the case alone
     std::condition_variable wake_;
     std::deque<Press> presses_;
     std::vector<PointPair> landmarks_;  ///< of the last `post_find_patient`
+    std::optional<std::size_t> item_;   ///< of the last `post_light_item`
     OperatorModel model_;
     Light light_;
     UpdateLatency latency_;

@@ -169,6 +169,8 @@ bool LiveSession::still_wanted(const Press& press) const {
         case OperatorAction::confirm:
             return state_ == SessionState::found || state_ == SessionState::verifying ||
                    state_ == SessionState::looking_again;
+        case OperatorAction::light_item:
+            return view_of(state_).has_match;
         default:
             return true;
     }
@@ -176,9 +178,11 @@ bool LiveSession::still_wanted(const Press& press) const {
 
 /// The words of what begins now; since it was pressed what ran before it may have said something else.
 void LiveSession::begin(const Press& press) {
-    if (press.action == OperatorAction::none || press.action == OperatorAction::confirm) return;
+    if (press.action == OperatorAction::none || press.action == OperatorAction::confirm ||
+        press.action == OperatorAction::light_item)
+        return;
     change_model([&](OperatorModel& m) {
-        if (press.darks == darks_) enter(state_, blank_, m);
+        if (press.darks == darks_) enter(state_, blank_, m, scan_there_);
     });
 }
 
@@ -213,6 +217,9 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
             else
                 confirm(session);
             return;
+        case OperatorAction::light_item:
+            light_item(session);
+            break;
         case OperatorAction::dark:
         case OperatorAction::stop:
             answer_dark(press, session);

@@ -55,6 +55,7 @@ void LiveSession::find_patient(Session& session, const std::vector<PointPair>& l
     following_ = projecting_ = false;
     session.go_dark();
     said();
+    session.light_item(std::nullopt);  // of the former match
     const RegistrationResult& found = session.find_patient(landmarks);
     gate_.new_match();
     landmark_ = -1;
@@ -76,6 +77,8 @@ void LiveSession::find_patient(Session& session, const std::vector<PointPair>& l
         m.rows = shown.rows;
         m.fit = shown.fit;
         m.evidence = shown.evidence;
+        m.item_of_moment = std::nullopt;
+        m.projector_view = projector_view(session.rig(), shown.scene.ct_from_rig);
         if (found.verdict == Verdict::no) show_refused_scan(session, m);
         if (state_ != SessionState::found)
             m.status.details.insert(m.status.details.end(), found.reasons.begin(), found.reasons.end());
@@ -101,7 +104,7 @@ void LiveSession::confirm(Session& session) {
     if (session.registration() == nullptr || session.registration()->verdict != Verdict::ask) return;
     session.confirm();
     change_model([&](OperatorModel& m) {
-        enter(state_, blank_, m);
+        enter(state_, blank_, m, scan_there_);
         m.evidence.insert(m.evidence.begin(), "Confirmed by the operator, who looked at the fit.");
         m.status = {StatusKind::ready,
                     "The match is used on your word.",
@@ -133,6 +136,11 @@ void LiveSession::confirm_light(Session& session) {
     change_model([&](OperatorModel& m) {
         m.confirm = false;  // until the light of this is there to be looked at
         m.scene.plan = std::make_shared<PlanDrawing>(session.lit_drawing());
+        if (landmark_ >= 0) {
+            const Eigen::Vector3d& place = session.landmarks()[static_cast<std::size_t>(landmark_)];
+            m.look_at = LookAt{place, drawing_.skin.nearest(place).normal_in_ct};
+            m.scene.bright_item = landmark_;
+        }
     });
 }
 
@@ -140,7 +148,25 @@ void LiveSession::end_verification(Session& session) {
     landmark_ = -1;
     cannot_verify_.clear();
     session.light_landmark(std::nullopt);
-    change_model([&](OperatorModel& m) { m.scene.plan = std::make_shared<PlanDrawing>(session.drawing()); });
+    change_model([&](OperatorModel& m) {
+        m.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
+        m.scene.bright_item = session.item_of_moment() ? static_cast<int>(*session.item_of_moment()) : -1;
+        m.look_at = std::nullopt;
+    });
+}
+
+/// What is lit for a person to look at goes on; the plan behind it changes.
+void LiveSession::light_item(Session& session) {
+    std::optional<std::size_t> which;
+    {
+        const std::lock_guard lock(mutex_);
+        which = item_;
+    }
+    session.light_item(which);
+    change_model([&](OperatorModel& m) {
+        m.item_of_moment = session.item_of_moment();
+        if (landmark_ < 0) m.scene.bright_item = which ? static_cast<int>(*which) : -1;
+    });
 }
 
 /// What is said while a landmark is lit, where nothing worse is to be said.
@@ -223,6 +249,9 @@ Status status_of(const Session& session, const Session::Update& update, const Li
     std::vector<std::string> details = sentences(update.overlay.counts.partly_lit, session.lit_drawing());
     details.insert(details.end(), ruling.details.begin(), ruling.details.end());
     if (!update.camera_doubt.empty()) details.push_back(update.camera_doubt + ".");
+    if (const auto item = session.item_of_moment(); item && *item < session.drawing().items.size())
+        details.push_back(fmt::format("Only \"{}\" is bright; the rest of the plan is dim or dark.",
+                                      session.drawing().items[*item].name));
     return {ruling.trust == LightTrust::aligned ? StatusKind::aligned : StatusKind::check, ruling.headline, details};
 }
 
@@ -308,6 +337,7 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
         show_measured(update, m);
         m.figures = figures;
         m.scene.light = light;
+        if (update.overlay.lit) m.projector_view = projector_view(session.rig(), update.overlay.rig_from_ct.inverse());
     });
     if (told) said();
 }

@@ -189,6 +189,8 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         // refused.
         if (action == OperatorAction::do_register || action == OperatorAction::use_landmarks)
             window.say(session.post_find_patient(window.landmarks()));
+        else if (action == OperatorAction::light_item)
+            window.say(session.post_light_item(window.item_wanted()));
         else
             window.say(session.post(action));
         // After the post: what the session hands over from now on is no light any more.

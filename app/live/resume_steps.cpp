@@ -61,6 +61,8 @@ void LiveSession::resume(Session& session) {
         m.rows = shown.rows;
         m.fit = shown.fit;
         m.evidence = shown.evidence;
+        m.item_of_moment = std::nullopt;
+        m.projector_view = projector_view(session.rig(), found.patient_from_ct.inverse());
         if (!unsure)
             m.status = {StatusKind::ready,
                         "Markers, rig and skin agree with the match.",

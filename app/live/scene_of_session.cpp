@@ -1,5 +1,7 @@
 #include "app/live/scene_of_session.h"
 
+#include "app/windows/orientation.h"
+
 namespace planlight {
 
 std::shared_ptr<const std::vector<SceneMarker>> markers_in_ct(const PatientTracker& tracker,
@@ -37,6 +39,11 @@ std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing
             for (const auto& outline : sign) add(outline, true);
     }
     return lines;
+}
+
+SceneView projector_view(const RigCalibration& rig, const RigidTransform& ct_from_rig) {
+    const Eigen::Matrix3d ct_from_projector = ct_from_rig.linear() * rig.projector.device_from_rig.linear().transpose();
+    return view_along(-ct_from_projector.col(2), -ct_from_projector.col(1));  // z forward, y down
 }
 
 std::vector<FoundMarker> found_markers(const std::vector<PatientTracker::Seen>& seen, bool all) {

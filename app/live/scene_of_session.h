@@ -21,6 +21,9 @@ std::shared_ptr<const std::vector<LightLine>> true_light_lines(const PlanDrawing
                                                                const OverlayStep& overlay,
                                                                const simulation::SimulatedRig& rig);
 
+/// The head as the light of this rig falls on it.
+SceneView projector_view(const RigCalibration& rig, const RigidTransform& ct_from_rig);
+
 /// The discs that the tracker found, for the camera pictures; `all`: also those that are none of the patient's markers.
 std::vector<FoundMarker> found_markers(const std::vector<PatientTracker::Seen>& seen, bool all = false);
 

@@ -70,19 +70,26 @@ const char* label_of(A press) {
             return "Yes";
         case A::check_skin:
             return "Check skin";
+        case A::light_item:
+            return "Only this";
         default:
             return "";
     }
 }
 
-const char* obstacle(S state, A press) {
+/// Why Register is not enabled; null: it is.
+const char* no_register(const SessionView& view, bool scan_there) {
+    return view.no_register == nullptr && !scan_there ? "scan first" : view.no_register;
+}
+
+const char* obstacle(S state, A press, bool scan_there) {
     const SessionView& view = view_of(state);
     switch (press) {
         case A::scan:
             return view.no_scan;
         case A::do_register:
         case A::use_landmarks:
-            return view.no_register;
+            return no_register(view, scan_there);
         case A::track:
             return view.no_track;
         case A::stop:
@@ -91,6 +98,8 @@ const char* obstacle(S state, A press) {
             return view.confirm ? nullptr : "there is nothing to say yes to";
         case A::check_skin:
             return view.check_skin ? nullptr : "the light does not follow the patient";
+        case A::light_item:
+            return view.has_match ? nullptr : "no match";
         default:
             return nullptr;
     }
@@ -109,9 +118,9 @@ const SessionView& view_of(SessionState state) {
     return kViews[static_cast<std::size_t>(state)];
 }
 
-std::optional<SessionState> after_press(SessionState state, OperatorAction press) {
+std::optional<SessionState> after_press(SessionState state, OperatorAction press, bool scan_there) {
     if (press == A::dark || press == A::stop) return after_dark(state);
-    if (obstacle(state, press) != nullptr) return std::nullopt;
+    if (obstacle(state, press, scan_there) != nullptr) return std::nullopt;
     switch (press) {
         case A::scan:
             return S::scanning;
@@ -129,8 +138,8 @@ std::optional<SessionState> after_press(SessionState state, OperatorAction press
     }
 }
 
-std::string why_not(SessionState state, OperatorAction press) {
-    const char* const reason = obstacle(state, press);
+std::string why_not(SessionState state, OperatorAction press, bool scan_there) {
+    const char* const reason = obstacle(state, press, scan_there);
     return reason == nullptr ? std::string{} : std::string(label_of(press)) + " is not possible now: " + reason + ".";
 }
 
@@ -166,24 +175,26 @@ Status dark_status(SessionState state) {
     return {StatusKind::dark, "Dark: no light on the patient.", {view_of(state).what_next}, {}};
 }
 
-void enter(SessionState state, const OperatorModel& blank, OperatorModel& model) {
+void enter(SessionState state, const OperatorModel& blank, OperatorModel& model, bool scan_there) {
     const SessionView& view = view_of(state);
     const auto button = [](const char* no) { return ButtonState{no == nullptr, no == nullptr ? "" : no}; };
     model.status = {view.kind, view.headline, {view.what_next}, {}};
     model.scan = button(view.no_scan);
-    model.do_register = button(view.no_register);
+    model.do_register = button(no_register(view, scan_there));
     model.track = button(view.no_track);
     model.stop = button(view.no_stop);
     model.next = view.next;
     model.confirm = view.confirm && !view.lights;  // of light it is asked when there is light to look at
     model.confirm_words = state == SessionState::offered ? "Go on with the last match" : "It fits: use it";
     model.check_skin = view.check_skin;
+    model.may_light_item = view.has_match;
     model.light_on = view.lights && view.has_match;
     for (int i = 0; i < static_cast<int>(model.steps.size()); ++i)
         model.steps[static_cast<std::size_t>(i)] = i < view.step    ? StepState::done
                                                    : i == view.step ? view.step_state
                                                                     : StepState::waiting;
     if (!view.lights || !view.has_match) {
+        model.look_at = std::nullopt;
         model.figures = {};
         model.scene.light = nullptr;
         for (PlanRow& row : model.rows) row.light_off_mm = std::nullopt;
@@ -192,9 +203,11 @@ void enter(SessionState state, const OperatorModel& blank, OperatorModel& model)
         model.rows = blank.rows;
         model.evidence = blank.evidence;
         model.fit = std::nullopt;
+        model.item_of_moment = std::nullopt;
+        model.projector_view = std::nullopt;
         model.scene = blank.scene;
     }
-    if (!view.has_scan) model.landmarks = std::nullopt;
+    if (!view.has_scan || !scan_there) model.landmarks = std::nullopt;
     if (state == SessionState::scanning) model.left.refused = model.right.refused = std::nullopt;
 }
 

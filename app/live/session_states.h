@@ -64,17 +64,18 @@ struct SessionView {
 const SessionView& view_of(SessionState state);
 
 /// Where a press leads; empty: it does nothing here, and `why_not` says why. DARK and Stop lead somewhere from
-/// everywhere.
-std::optional<SessionState> after_press(SessionState state, OperatorAction press);
+/// everywhere. `scan_there`: false where a match of an earlier session is gone on with, and nothing was scanned in this
+/// one: then Register waits for a scan.
+std::optional<SessionState> after_press(SessionState state, OperatorAction press, bool scan_there = true);
 /// One sentence for a press that does nothing.
-std::string why_not(SessionState state, OperatorAction press);
+std::string why_not(SessionState state, OperatorAction press, bool scan_there = true);
 
 /// Where that leads; a state in which it means nothing stays.
 SessionState after(SessionState state, SessionHappening happening);
 
 /// Puts a state into the model: words, buttons, steps; what is not true in it is taken out (scan, match, figures,
 /// light), as it is in `blank`, the model of the case alone.
-void enter(SessionState state, const OperatorModel& blank, OperatorModel& model);
+void enter(SessionState state, const OperatorModel& blank, OperatorModel& model, bool scan_there = true);
 
 /// What is said after DARK in that state.
 Status dark_status(SessionState state);

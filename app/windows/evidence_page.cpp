@@ -27,16 +27,30 @@ ImU32 colour_for(const PlanRow& row, const OperatorModel& model) {
 
 }  // namespace
 
-float EvidencePage::draw_items(const Pen& pen, Box box, const OperatorModel& model) const {
-    const float from = box.y, swatch = 30 * pen.scale, size = 8 * pen.scale;
-    box.y += pen.paragraph(pen.fonts.title, pen.say("The plan"), box, theme::kText);
-    for (const PlanRow& row : model.rows) {
+float EvidencePage::draw_items(const Pen& pen, Box box, const Box& seen, const OperatorModel& model, Pressed& pressed) {
+    const float from = box.y, swatch = 30 * pen.scale, size = 8 * pen.scale, gap = 8 * pen.scale;
+    const float button_height = std::max(72.0F, 76 * pen.scale), button_width = 250 * pen.scale;
+    box.y += pen.paragraph(pen.fonts.title, pen.say("The plan"), box, theme::kText) + gap;
+    for (std::size_t i = 0; i < model.rows.size(); ++i) {
+        const PlanRow& row = model.rows[i];
+        const bool alone = model.item_of_moment == i;
+        const Box at{box.right() - button_width, box.y, button_width, button_height};
+        // Half of a button at the page's edge is drawn, and not pressed.
+        const bool whole = at.y >= seen.y && at.bottom() <= seen.bottom();
+        if (whole) places_["item-" + std::to_string(i + 1)] = at;
+        if (at.bottom() > seen.y && at.y < seen.bottom()) {
+            ImGui::PushID(static_cast<int>(i));
+            const ButtonState state{model.may_light_item, model.may_light_item ? "" : "no match"};
+            const bool hit = button(pen, at, alone ? "Whole plan" : "Only this", state, {alone, false, {}});
+            if (hit && whole) pressed.item = i;
+            ImGui::PopID();
+        }
         const float middle = box.y + line_height(pen.fonts.body) / 2;
         pen.list->AddRectFilled({box.x, middle - size}, {box.x + 2 * size, middle + size}, colour_of(row.colour),
                                 3 * pen.scale);
-        box.y += pen.paragraph(pen.fonts.body, words_of(pen, row), {box.x + swatch, box.y, box.width - swatch, 1e5F},
-                               colour_for(row, model)) +
-                 6 * pen.scale;
+        const Box words{box.x + swatch, box.y, box.width - swatch - button_width - 2 * gap, 1e5F};
+        const float used = pen.paragraph(pen.fonts.body, words_of(pen, row), words, colour_for(row, model));
+        box.y += std::max(used, button_height) + gap;
     }
     return box.y - from;
 }
@@ -52,29 +66,36 @@ float EvidencePage::draw_sentences(const Pen& pen, Box box, const OperatorModel&
     return box.y - from;
 }
 
-bool EvidencePage::draw(const Pen& pen, const Box& place, const OperatorModel& model) {
-    pen.panel(place);
-    const float pad = 22 * pen.scale, height = std::max(72.0F, 76 * pen.scale);
-    close_ = {place.right() - pad - 260 * pen.scale, place.bottom() - pad / 2 - height, 260 * pen.scale, height};
-    const Box words{place.x + pad, place.y + pad, place.width - 2 * pad, close_.y - place.y - 1.5F * pad};
-
+void EvidencePage::take_drag(const Box& words) {
     ImGui::SetCursorScreenPos({words.x, words.y});
     ImGui::InvisibleButton("evidence page", {words.width, words.height});
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemActive()) scrolled_ -= io.MouseDelta.y;
-    if (ImGui::IsItemHovered()) scrolled_ -= 60 * pen.scale * io.MouseWheel;
+    if (ImGui::IsItemHovered()) scrolled_ -= 60 * words.width / 1200 * io.MouseWheel;
     scrolled_ = std::clamp(scrolled_, 0.0F, std::max(0.0F, height_ - words.height));
+}
+
+EvidencePage::Pressed EvidencePage::draw(const Pen& pen, const Box& place, const OperatorModel& model) {
+    Pressed pressed;
+    places_.clear();
+    pen.panel(place);
+    const float pad = 22 * pen.scale, height = std::max(72.0F, 76 * pen.scale);
+    const Box close{place.right() - pad - 260 * pen.scale, place.bottom() - pad / 2 - height, 260 * pen.scale, height};
+    places_["close"] = close;
+    const Box words{place.x + pad, place.y + pad, place.width - 2 * pad, close.y - place.y - 1.5F * pad};
 
     pen.list->PushClipRect({words.x, words.y}, {words.right(), words.bottom()}, true);
     Box at{words.x, words.y - scrolled_, words.width, 1e5F};
-    const float items = draw_items(pen, at, model) + 14 * pen.scale;
+    const float items = draw_items(pen, at, words, model, pressed) + 14 * pen.scale;
     at.y += items;
     height_ = items + draw_sentences(pen, at, model);
     pen.list->PopClipRect();
+    take_drag(words);  // after the items' buttons, which a finger must meet first
     if (height_ > words.height)
         pen.line(pen.fonts.small, pen.say("Drag, or turn the mouse wheel, for the rest."), place.x + pad,
-                 close_.y + close_.height / 2, close_.x - place.x - 2 * pad, theme::kAmber);
-    return button(pen, close_, "Close", {true, {}}, {false, false, key_text(KeyMeaning::evidence)});
+                 close.y + close.height / 2, close.x - place.x - 2 * pad, theme::kAmber);
+    pressed.close = button(pen, close, "Close", {true, {}}, {false, false, key_text(KeyMeaning::evidence)});
+    return pressed;
 }
 
 }  // namespace planlight

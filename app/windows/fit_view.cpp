@@ -7,7 +7,7 @@ bool SceneModel::operator==(const SceneModel& o) const {
            cloud_distance_mm == o.cloud_distance_mm && ct_from_rig.matrix() == o.ct_from_rig.matrix() &&
            markers == o.markers && plan == o.plan && light == o.light && skin_offset_mm == o.skin_offset_mm &&
            largest_distance_mm == o.largest_distance_mm && skin_error_mm == o.skin_error_mm &&
-           warn_above_mm == o.warn_above_mm && stop_above_mm == o.stop_above_mm;
+           bright_item == o.bright_item && warn_above_mm == o.warn_above_mm && stop_above_mm == o.stop_above_mm;
 }
 
 bool FitViews::operator==(const FitViews& o) const {

@@ -9,6 +9,11 @@ namespace {
 
 constexpr std::array<const char*, 6> kSteps{"Case", "Rig", "Scan", "Match", "Verify", "Project"};
 
+/// The words of the program beside names that stay; a name alone is never a word, whatever it is.
+std::string around_names(const Pen& pen, const std::string& text) {
+    return text.find(" · ") == std::string::npos ? text : pen.say(text);
+}
+
 void draw_step(const Pen& pen, const Box& chip, std::size_t index, StepState state) {
     const bool active = state == StepState::active;
     pen.panel(chip, active ? theme::kActive : theme::kPanel, active ? theme::kBlue : theme::kEdge, active ? 2 : 1);
@@ -54,12 +59,12 @@ void draw_header(const Pen& pen, const WindowLayout& place, const OperatorModel&
     Box title = place.title;
     title.width -= draw_side(pen, title, model.case_side);
     const float large = line_height(pen.fonts.title), small = line_height(pen.fonts.small);
-    const std::string last = model.simulated ? pen.say("SIMULATED ROOM") : model.case_subtitle;
+    const std::string last = model.simulated ? pen.say("SIMULATED ROOM") : around_names(pen, model.case_subtitle);
     const float plan = model.case_plan.empty() ? 0 : small, rest = last.empty() ? 0 : small;
     float y = title.y + std::max(0.0F, (title.height - large - plan - rest) / 2);
     pen.line(pen.fonts.title, model.case_title, title.x, y + large / 2, title.width, theme::kText);
     y += large;
-    pen.line(pen.fonts.small, model.case_plan, title.x, y + plan / 2, title.width, theme::kText);
+    pen.line(pen.fonts.small, around_names(pen, model.case_plan), title.x, y + plan / 2, title.width, theme::kText);
     y += plan;
     pen.line(model.simulated ? pen.fonts.strong : pen.fonts.small, last, title.x, y + rest / 2, title.width,
              model.simulated ? theme::kAmber : theme::kQuiet);

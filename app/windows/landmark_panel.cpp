@@ -59,7 +59,7 @@ std::shared_ptr<const TriangleMesh> turned_mesh(const TriangleMesh& mesh, const 
 
 LandmarkPanel::LandmarkPanel(const FontFiles& fonts, std::function<void()> make_current)
     : skin_pane_(fonts, make_current), scan_pane_(fonts, make_current) {
-    scan_pane_.set_view({0, 0, 1, Eigen::Vector2d::Zero()});
+    scan_pane_.set_view({0, 0, 0, 1, Eigen::Vector2d::Zero()});
     scan_scene_.of_scan = true;
 }
 

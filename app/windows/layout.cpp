@@ -4,6 +4,23 @@
 #include <cmath>
 
 namespace planlight {
+namespace {
+
+float button_height(float scale) {
+    return std::max(72.0F, 76 * scale);
+}
+
+}  // namespace
+
+Box fit_row(const Box& scene, float scale) {
+    const float from = scene.x + 0.5F * scene.width + 44 * scale;
+    return {from, scene.y + 12 * scale, scene.right() - 12 * scale - from, button_height(scale)};
+}
+
+Box corner_button(const Box& scene, float scale) {
+    const float height = button_height(scale);
+    return {scene.x + 12 * scale, scene.bottom() - 12 * scale - height, 0.7F * fit_row(scene, scale).width, height};
+}
 
 WindowLayout layout_of(int width, int height) {
     WindowLayout place;

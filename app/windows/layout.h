@@ -16,6 +16,13 @@ struct WindowLayout {
     Box title, steps, dark, scene, left_camera, right_camera, table, buttons, banner;
 };
 
+/// Right half of the upper edge of the 3-D view, so that the letters at the middle of its edges stay free: Before,
+/// After, Error.
+Box fit_row(const Box& scene, float scale);
+
+/// The lowest button in the lower left corner of the 3-D view; the others stand above it.
+Box corner_button(const Box& scene, float scale);
+
 /// For a window of that size, at least 1280 x 720. Buttons are never lower than 72 pixels (20 mm on a 24 inch screen).
 WindowLayout layout_of(int width, int height);
 

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <utility>
 
+#include "app/windows/orientation.h"
 #include "app/windows/panels.h"
 
 namespace planlight {
@@ -15,19 +16,6 @@ namespace {
 
 float button_height(const Pen& pen) {
     return std::max(72.0F, 76 * pen.scale);
-}
-
-/// Right half of the view's upper edge, so that the letters at the middle of its edges stay free.
-Box fit_row(const Pen& pen, const Box& place) {
-    const float from = place.x + 0.5F * place.width + 44 * pen.scale;
-    return {from, place.y + 12 * pen.scale, place.right() - 12 * pen.scale - from, button_height(pen)};
-}
-
-/// Lower left corner of the view.
-Box corner_of(const Pen& pen, const Box& place) {
-    const float height = button_height(pen);
-    return {place.x + 12 * pen.scale, place.bottom() - 12 * pen.scale - height, 0.7F * fit_row(pen, place).width,
-            height};
 }
 
 }  // namespace
@@ -41,14 +29,17 @@ OperatorAction MiddleView::draw(const Pen& pen, const Box& place, const Operator
     if (landmarks_ && model.landmarks) landmarks_->follow(*model.landmarks);
     landmarks_open_ = landmarks_open_ && model.landmarks;
     if (evidence_open_) {
-        evidence_open_ = !evidence_.draw(pen, place, model);
-        places_["close"] = evidence_.close_button();
-        return OperatorAction::none;
+        const EvidencePage::Pressed pressed = evidence_.draw(pen, place, model);
+        evidence_open_ = !pressed.close;
+        places_ = evidence_.places();
+        if (!pressed.item) return OperatorAction::none;
+        item_wanted_ = model.item_of_moment == pressed.item ? std::nullopt : pressed.item;
+        return OperatorAction::light_item;
     }
     if (landmarks_open_) return draw_landmarks(pen, place, model);
     draw_scene(pen, place, model);
-    if (model.fit) draw_fit_buttons(pen, fit_row(pen, place));
-    return draw_corner_buttons(pen, corner_of(pen, place), model);
+    draw_fit_buttons(pen, fit_row(place, pen.scale), model);
+    return draw_corner_buttons(pen, corner_button(place, pen.scale), model);
 }
 
 OperatorAction MiddleView::press(KeyMeaning key, const OperatorModel& model) {
@@ -69,6 +60,8 @@ OperatorAction MiddleView::press(KeyMeaning key, const OperatorModel& model) {
         else
             why_not_ = "Landmarks are clicked on a scan, and there is none.";
     }
+    if (const std::string why = views_.press(key, model, scene_); !why.empty()) why_not_ = why;
+    if (key == KeyMeaning::next_item || key == KeyMeaning::all_items) return press_item(key, model);
     // Only what is seen is pressed: not under another page.
     if (key == KeyMeaning::confirm && model.confirm && places_.contains("confirm")) return OperatorAction::confirm;
     if (key == KeyMeaning::confirm) why_not_ = "There is nothing to say yes to now.";
@@ -77,12 +70,23 @@ OperatorAction MiddleView::press(KeyMeaning key, const OperatorModel& model) {
     return OperatorAction::none;
 }
 
+/// One item after the other, then all of the plan again.
+OperatorAction MiddleView::press_item(KeyMeaning key, const OperatorModel& model) {
+    if (!model.may_light_item) {
+        why_not_ = "One item alone is lit once the patient is found.";
+        return OperatorAction::none;
+    }
+    const std::size_t next = model.item_of_moment ? *model.item_of_moment + 1 : 0;
+    item_wanted_ = key == KeyMeaning::next_item && next < model.rows.size() ? std::optional(next) : std::nullopt;
+    return OperatorAction::light_item;
+}
+
 LandmarkPanel& MiddleView::open_landmarks() {
     evidence_open_ = false;
     landmarks_open_ = true;
     if (!landmarks_) {
         landmarks_ = std::make_unique<LandmarkPanel>(fonts_, make_current_);
-        landmarks_->set_skin_view({scene_.view().azimuth, scene_.view().elevation, 1, Eigen::Vector2d::Zero()});
+        landmarks_->set_skin_view({scene_.view().azimuth, scene_.view().elevation, 0, 1, Eigen::Vector2d::Zero()});
     }
     return *landmarks_;
 }
@@ -98,11 +102,24 @@ void MiddleView::draw_scene(const Pen& pen, const Box& place, const OperatorMode
     pen.panel(place);
     const SceneModel shown = scene_of_fit(model, fit_view);
     const float strip = button_height(pen) + 24 * pen.scale;  // of buttons, which a finger must meet at once
-    const float above = model.fit ? strip : 0;
-    const float below = (model.landmarks ? strip : 0) + (model.confirm ? strip : 0) + (model.check_skin ? strip : 0);
-    scene_.take_mouse("scene", {place.x, place.y + above, place.width, place.height - above - below});
+    const float above = strip + (views_.open() ? ViewButtons::height(pen.scale) : 0);
+    const int rows = (model.landmarks ? 1 : 0) + (model.confirm ? 1 : 0) + (model.check_skin ? 1 : 0) +
+                     (model.item_of_moment ? 1 : 0);
+    const float below = strip * static_cast<float>(rows);
+    const Box sensitive{place.x, place.y + above, place.width, std::max(1.0F, place.height - above - below)};
+    scene_.take_mouse("scene", sensitive);
     if (!shown.skin && !shown.cloud) return;  // nothing to be seen yet
-    scene_.draw(pen, place, shown);
+    views_.follow(model, scene_);
+    const Box corner = corner_button(place, pen.scale);
+    look_at_what_is_lit(pen, place,
+                        {corner.right(), place.y + above, place.right() - corner.right(), place.height - above}, model);
+    // Where buttons reach the middle of an edge, its letter stands beside them.
+    const float middle = place.y + place.height / 2, reach = 24 * pen.scale;
+    LetterInsets insets;
+    if (place.bottom() - below < middle + reach) insets.left = static_cast<double>(corner.right() - place.x);
+    if (views_.open() && place.y + above > middle - reach)
+        insets.right = static_cast<double>(place.right() - fit_row(place, pen.scale).x);
+    scene_.draw(pen, place, shown, insets);
     draw_title(pen, place, model, shown);
 }
 
@@ -128,13 +145,41 @@ void MiddleView::draw_title(const Pen& pen, const Box& place, const OperatorMode
         theme::kText);
 }
 
-void MiddleView::draw_fit_buttons(const Pen& pen, const Box& row) {
+/// When a place begins to be lit for a person to look at, the picture shows its side of the head, with the place beside
+/// the buttons; afterwards it is as it was before.
+void MiddleView::look_at_what_is_lit(const Pen& pen, const Box& place, const Box& free, const OperatorModel& model) {
+    if (model.look_at == looked_at_) return;
+    looked_at_ = model.look_at;
+    if (!looked_at_) {
+        if (view_before_) scene_.look(*view_before_);
+        view_before_.reset();
+        return;
+    }
+    if (!view_before_) view_before_ = scene_.view();
+    SceneView view = view_along(looked_at_->normal_in_ct, {0, 0, 1});
+    view = {view.azimuth, std::clamp(view.elevation, -0.5, 0.9), 0, scene_.view().zoom, Eigen::Vector2d::Zero()};
+    scene_.look(view);
+    scene_.draw(pen, place, scene_of_fit(model, fit_view));
+    const ImVec2 at = scene_.pixel_of(looked_at_->p_in_ct);
+    const float wanted_x = std::clamp(at.x, free.x + 0.2F * free.width, free.x + 0.8F * free.width),
+                wanted_y = std::clamp(at.y, free.y + 0.2F * free.height, free.y + 0.8F * free.height);
+    view.shift_mm = scene_.mm_per_pixel() *
+                    Eigen::Vector2d(static_cast<double>(wanted_x - at.x), static_cast<double>(at.y - wanted_y));
+    scene_.look(view);
+}
+
+void MiddleView::draw_fit_buttons(const Pen& pen, const Box& row, const OperatorModel& model) {
     const std::array<std::tuple<FitView, const char*, const char*, KeyMeaning>, 3> views{
         {{FitView::before, "Before", "before", KeyMeaning::before},
          {FitView::after, "After", "after", KeyMeaning::after},
          {FitView::predicted_error, "Error", "error", KeyMeaning::error}}};
     const float gap = 8 * pen.scale;
-    Box box{row.x, row.y, (row.width - 2 * gap) / 3, row.height};
+    Box box{row.x, row.y, (row.width - 3 * gap) / 4, row.height};
+    const Box last{row.right() - box.width, row.y, box.width, row.height};
+    views_.draw_opener(pen, last);
+    views_.draw(pen, {row.x, row.bottom() + gap, row.width, row.height}, model, scene_);
+    for (const auto& [word, at] : views_.places()) places_[word] = at;
+    if (!model.fit) return;
     for (const auto& [view, label, word, key] : views) {
         places_[word] = box;
         if (button(pen, box, label, {true, {}}, {fit_view == view, false, key_text(key)})) fit_view = view;
@@ -150,6 +195,12 @@ OperatorAction MiddleView::draw_corner_buttons(const Pen& pen, Box corner, const
         corner.y -= corner.height + 12 * pen.scale;
     }
     OperatorAction wanted = OperatorAction::none;
+    if (model.item_of_moment) {
+        places_["all-items"] = corner;
+        if (button(pen, corner, "Show the whole plan", {true, {}}, {false, false, key_text(KeyMeaning::all_items)}))
+            wanted = press_item(KeyMeaning::all_items, model);
+        corner.y -= corner.height + 12 * pen.scale;
+    }
     if (model.check_skin) {
         places_["check-skin"] = corner;
         if (button(pen, corner, "Check skin", {true, {}}, {false, false, key_text(KeyMeaning::check_skin)}))

@@ -20,6 +20,17 @@ enum class KeyMeaning {
     before,
     after,
     error,
+    views,  ///< opens and closes the buttons of the views
+    view_front,
+    view_back,
+    view_right,
+    view_left,
+    view_above,
+    view_projector,
+    view_surgeon,
+    view_reset,
+    next_item,     ///< the next item of the plan alone is bright
+    all_items,     ///< all of the plan is
     close_window,  ///< while that is asked
     stay,
 };

@@ -47,6 +47,7 @@ struct SceneModel {
     double largest_distance_mm = 1.5;  ///< the red end of the colour scale
     /// Per vertex of the skin, how far off it may be (95 %), mm; null: the skin has its own colour.
     std::shared_ptr<const std::vector<float>> skin_error_mm;
+    int bright_item = -1;                         ///< of the plan: the others are dim; -1: none is
     double warn_above_mm = 1, stop_above_mm = 2;  ///< its colours: green, amber above, red above
 
     bool operator==(const SceneModel& other) const;
@@ -79,14 +80,24 @@ struct LandmarkViews {
     bool operator==(const LandmarkViews&) const = default;
 };
 
-/// From where the head is looked at. Turning never tilts it: S stays up.
+/// From where the head is looked at. Turning never tilts it: S stays up, but where a view of its own is asked for (the
+/// projector's, the surgeon's).
 struct SceneView {
     double azimuth = 0.44;    ///< radians; 0 = from the front (anterior), positive = from the patient's right
-    double elevation = 0.28;  ///< radians, positive = from above; at most 1.5
+    double elevation = 0.28;  ///< radians, positive = from above; at most a quarter turn
+    double roll = 0;          ///< radians, of the viewer's head to the left
     double zoom = 1;          ///< 1 = the skin fills the view
     Eigen::Vector2d shift_mm = Eigen::Vector2d::Zero();  ///< of the picture's middle, along the view's right and up
 
     bool operator==(const SceneView&) const = default;
+};
+
+/// A place on the skin, for a person to look at; in ct, mm.
+struct LookAt {
+    Eigen::Vector3d p_in_ct;
+    Eigen::Vector3d normal_in_ct;  ///< outward, unit
+
+    bool operator==(const LookAt&) const = default;
 };
 
 /// Of a step in the list of the session's steps; `attention` wants the operator before it goes on.
@@ -159,7 +170,19 @@ struct ButtonState {
 };
 
 /// What the operator pressed, by mouse, key or pedal.
-enum class OperatorAction { none, scan, do_register, track, stop, dark, quit, confirm, use_landmarks, check_skin };
+enum class OperatorAction {
+    none,
+    scan,
+    do_register,
+    track,
+    stop,
+    dark,
+    quit,
+    confirm,
+    use_landmarks,
+    check_skin,
+    light_item
+};
 
 /// All that the operator window shows, as values: the window draws it and knows nothing else.
 struct OperatorModel {
@@ -186,6 +209,11 @@ struct OperatorModel {
     bool confirm = false;  ///< the match, or its light, needs a person's look: a button says that it is right
     std::string confirm_words = "It fits: use it";  ///< on that button
     OperatorAction next = OperatorAction::none;     ///< what leads on: its button stands out; none: nothing does
+    std::optional<std::size_t> item_of_moment;      ///< row whose light alone is bright; empty: all of the plan
+    bool may_light_item = false;                    ///< there is a match: an item of the moment may be chosen
+    std::optional<LookAt> look_at;                  ///< what a person is asked to look at in the 3-D view
+    std::optional<SceneView> surgeon_view;          ///< as the surgeon stands; empty: not known
+    std::optional<SceneView> projector_view;        ///< as the light falls; empty: not known yet
     bool light_on = false;                          ///< light may be on the patient: closing the window asks first
 
     bool operator==(const OperatorModel&) const = default;

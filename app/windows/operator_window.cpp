@@ -279,6 +279,11 @@ void OperatorWindow::open_evidence() {
     parts_->drawn.reset();
 }
 
+void OperatorWindow::open_views() {
+    parts_->middle->press(KeyMeaning::views, {});
+    parts_->drawn.reset();
+}
+
 void OperatorWindow::rest(double longest_s) {
     constexpr auto kLeast = std::chrono::milliseconds(5);  // while a mouse moves, too: the light is made beside it
     if (parts_->gui.touched())
@@ -311,6 +316,10 @@ void OperatorWindow::open_landmarks(const std::vector<PointPair>& pairs) {
 std::vector<PointPair> OperatorWindow::landmarks() const {
     const LandmarkPanel* const panel = parts_->middle->landmarks();
     return panel ? panel->clicks().pairs() : std::vector<PointPair>{};
+}
+
+std::optional<std::size_t> OperatorWindow::item_wanted() const {
+    return parts_->middle->item_wanted();
 }
 
 FitView OperatorWindow::fit_view() const {

@@ -41,6 +41,9 @@ public:
     /// What the last frame showed.
     RgbImage screenshot();
 
+    /// With `light_item`: the row of the plan whose light alone is to be bright; empty: all of it.
+    std::optional<std::size_t> item_wanted() const;
+
     /// What the 3-D view shows of a match; the person changes it with the buttons over the view.
     FitView fit_view() const;
     void set_fit_view(FitView view);
@@ -54,15 +57,17 @@ public:
     void open_landmarks(const std::vector<PointPair>& pairs = {});
     /// Shows the page of the plan and the evidence; the person opens it by a press on the table.
     void open_evidence();
+    /// Shows the buttons of the views; the person opens them by the button "Views".
+    void open_views();
     /// What has been clicked on both sides, of the scan that the last frame's model had; empty before.
     std::vector<PointPair> landmarks() const;
 
     /// Where a control is, in window pixels (x, y, width, height), as the last frame drew it; for tests by mouse.
     std::array<int, 4> place_of(OperatorAction control) const;
-    /// The same for other controls by their word: before, after, error, landmarks, check-skin, evidence, left-camera,
-    /// right-camera; while landmarks are clicked: undo, turn, use, close, skin-view, scan-view; on the page of the
-    /// evidence: close; while it is asked whether to close the window: close-window, stay. Zeros for what was not
-    /// drawn.
+    /// The same for other controls by their word: before, after, error, landmarks, check-skin, evidence, views,
+    /// left-camera, right-camera; while landmarks are clicked: undo, turn, use, close, skin-view, scan-view; on the
+    /// page of the evidence: close; while it is asked whether to close the window: close-window, stay. Zeros for what
+    /// was not drawn.
     std::array<int, 4> place_of(const std::string& button) const;
 
 private:

@@ -71,6 +71,26 @@ float text_width(const ImFont* font, const std::string& text) {
     return font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str(), text.c_str() + text.size()).x;
 }
 
+std::string shortened_in_the_middle(const ImFont* font, const std::string& text, float width) {
+    if (text_width(font, text) <= width) return text;
+    std::vector<std::string> signs;
+    for (const char c : text) {
+        if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U) signs.emplace_back();
+        if (!signs.empty()) signs.back() += c;
+    }
+    std::string head, tail;
+    std::size_t from = 0, to = signs.size();
+    for (bool front = true; from < to; front = !front) {
+        const std::string longer = front ? head + signs[from] + kMore + tail : head + kMore + signs[to - 1] + tail;
+        if (text_width(font, longer) > width) break;
+        if (front)
+            head += signs[from++];
+        else
+            tail = signs[--to] + tail;
+    }
+    return head + kMore + tail;
+}
+
 float line_height(const ImFont* font) {
     return std::round(font->FontSize * 1.12F);
 }
@@ -90,7 +110,7 @@ std::vector<std::string> broken(const ImFont* font, const std::string& text, flo
             continue;
         }
         if (lines.size() + 1 == most) {
-            line = longer;
+            line = longer;  // too long with all that follows, and so marked
             while (++i < words.size()) line += (words[i].spaced ? " " : "") + words[i].text;
             break;
         }
@@ -110,6 +130,7 @@ void Pen::panel(const Box& box, ImU32 fill, ImU32 edge, float edge_width) const 
 void Pen::line(const ImFont* font, const std::string& text, float x, float middle_y, float width, ImU32 colour,
                Side side) const {
     const std::string shown = width > 0 ? shortened(font, text, width) : text;
+    if (cut && shown != text) cut->push_back(text);
     if (lacking) note_lacking(font, shown, *lacking);
     const float spare = (width > 0 ? width : 0) - text_width(font, shown);
     if (side == Side::right) x += spare;
@@ -121,9 +142,13 @@ void Pen::line(const ImFont* font, const std::string& text, float x, float middl
 float Pen::paragraph(const ImFont* font, const std::string& text, const Box& box, ImU32 colour, Side side) const {
     const float height = line_height(font);
     const auto most = static_cast<std::size_t>(std::max(0.0F, std::floor(box.height / height)));
+    const std::vector<std::string> parts = broken(font, text, box.width, most);
+    const auto ends_early = [&](const std::string& part) { return part.ends_with(kMore) && !text.ends_with(kMore); };
+    if (cut && !text.empty() && (most == 0 || std::any_of(parts.begin(), parts.end(), ends_early)))
+        cut->push_back(text);
     if (most == 0) return 0;
     float y = box.y;
-    for (const std::string& part : broken(font, text, box.width, most)) {
+    for (const std::string& part : parts) {
         line(font, part, box.x, y + height / 2, box.width, colour, side);
         y += height;
     }

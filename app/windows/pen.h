@@ -34,6 +34,8 @@ struct Pen {
 
     enum class Side { left, centre, right };
 
+    std::vector<std::string>* cut = nullptr;  ///< takes the texts that had no room; may be null
+
     /// In the window's language.
     std::string say(const std::string& english) const { return words ? words->say(english) : english; }
 
@@ -55,6 +57,10 @@ float line_height(const ImFont* font);
 
 /// The text broken at spaces into lines no wider than `width`, at most `most` of them; what is left out is marked "…".
 std::vector<std::string> broken(const ImFont* font, const std::string& text, float width, std::size_t most);
+
+/// One line no wider than `width`: what stands in the middle gives way to "…", so that a name is known by its
+/// beginning, and its figures at the end are read.
+std::string shortened_in_the_middle(const ImFont* font, const std::string& text, float width);
 
 ImU32 colour_of(const Rgb& colour);
 

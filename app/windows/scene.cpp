@@ -40,9 +40,13 @@ struct Thing {
         mapper->SetInputData(data);
         actor->SetVisibility(data != nullptr && data->GetNumberOfPoints() > 0);
     }
-    void lift(const Eigen::Vector3d& towards_viewer, const RigidTransform& ct_from_shape = RigidTransform::Identity()) {
-        Eigen::Matrix4d matrix = ct_from_shape.matrix();
-        matrix.block<3, 1>(0, 3) += lift_mm * towards_viewer;
+    /// Along the lines of sight: its place in the picture stays.
+    void lift(const Eigen::Vector3d& eye, double distance_mm,
+              const RigidTransform& ct_from_shape = RigidTransform::Identity()) {
+        const Eigen::Affine3d nearer = Eigen::Translation3d(eye) *
+                                       Eigen::UniformScaling<double>(1 - lift_mm / distance_mm) *
+                                       Eigen::Translation3d(-eye);
+        const Eigen::Matrix4d matrix = nearer.matrix() * ct_from_shape.matrix();
         vtkNew<vtkMatrix4x4> placed;
         for (int row = 0; row < 4; ++row)
             for (int column = 0; column < 4; ++column) placed->SetElement(row, column, matrix(row, column));
@@ -63,11 +67,12 @@ struct Scene::Parts {
     vtkRenderWindow& window;
     vtkNew<vtkRenderer> renderer;
     vtkNew<vtkLightKit> lights;
-    Thing skin{*renderer, 0, true}, cloud{*renderer, 0.9, false}, markers{*renderer, 1.0, false},
-        plan{*renderer, 1.4, false}, light{*renderer, 2.0, false};
+    Thing skin{*renderer, 0, true}, cloud{*renderer, 0.9, false}, markers{*renderer, 3.5, false},
+        plan{*renderer, 4.0, false}, light{*renderer, 4.6, false};
     SceneOverlay overlay;
     SceneModel shown;
     SceneView shown_view;
+    LetterInsets insets;
     int width = 0, height = 0;
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     double reach_mm = 120;  ///< half the picture's smaller side at zoom 1
@@ -131,8 +136,9 @@ struct Scene::Parts {
     }
 
     bool take_lines(const SceneModel& scene) {
-        const bool new_plan = replace(shown.plan, scene.plan), new_light = replace(shown.light, scene.light);
-        if (new_plan) plan.show(shown.plan ? plan_shape(*shown.plan) : nullptr);
+        const bool new_plan = replace(shown.plan, scene.plan) | replace(shown.bright_item, scene.bright_item),
+                   new_light = replace(shown.light, scene.light);
+        if (new_plan) plan.show(shown.plan ? plan_shape(*shown.plan, shown.bright_item) : nullptr);
         if (new_light) light.show(shown.light ? light_shape(*shown.light) : nullptr);
         return new_plan || new_light;
     }
@@ -155,8 +161,8 @@ struct Scene::Parts {
         camera->SetFocalPoint(focus.data());
         camera->SetPosition(eye.data());
         camera->SetViewUp(axes.up_in_ct.data());
-        cloud.lift(axes.backward_in_ct, shown.ct_from_rig);
-        for (Thing* thing : {&markers, &plan, &light}) thing->lift(axes.backward_in_ct);
+        cloud.lift(eye, distance_mm(), shown.ct_from_rig);
+        for (Thing* thing : {&markers, &plan, &light}) thing->lift(eye, distance_mm());
         renderer->ResetCameraClippingRange();
     }
 };
@@ -165,21 +171,24 @@ Scene::Scene(vtkRenderWindow& window, const FontFiles& fonts) : parts_(std::make
 Scene::~Scene() = default;
 
 bool Scene::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale,
-                   const Words* words) {
+                   const Words* words, const LetterInsets& insets) {
     Parts& parts = *parts_;
     const bool changed = static_cast<int>(parts.take_skin_and_markers(scene)) |
                          static_cast<int>(parts.take_cloud(scene)) | static_cast<int>(parts.take_lines(scene));
-    if (!changed && view == parts.shown_view && width == parts.width && height == parts.height) return false;
+    if (!changed && insets == parts.insets && view == parts.shown_view && width == parts.width &&
+        height == parts.height)
+        return false;
     if (scene.on_paper)
         parts.renderer->SetBackground(1, 1, 1);
     else
         parts.renderer->SetBackground(0.055, 0.067, 0.086);
     parts.shown_view = view;
+    parts.insets = insets;
     parts.width = width;
     parts.height = height;
     parts.cloud.actor->GetProperty()->SetPointSize(static_cast<float>(std::max(2.0, 2.2 * scale)));
     parts.place_camera();
-    parts.overlay.update(scene, view, width, height, scale, words);
+    parts.overlay.update(scene, view, width, height, scale, words, insets);
     return true;
 }
 

@@ -4,6 +4,7 @@
 
 #include "app/windows/fonts.h"
 #include "app/windows/operator_model.h"
+#include "app/windows/scene_overlay.h"
 #include "app/words/words.h"
 #include "planning_io/types/camera_model.h"
 
@@ -20,7 +21,7 @@ public:
     /// Takes over what has changed; true when the picture must be rendered again.
     /// `words`: of the legend; null: English.
     bool update(const SceneModel& scene, const SceneView& view, int width, int height, double scale,
-                const Words* words = nullptr);
+                const Words* words = nullptr, const LetterInsets& insets = {});
 
     /// The line of sight through a pixel of the last picture (from its top left), and the pixel of a point; in the
     /// scene's frame.

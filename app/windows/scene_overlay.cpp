@@ -114,12 +114,12 @@ struct SceneOverlay::Parts {
 
     std::string say(const std::string& english) const { return words ? words->say(english) : english; }
 
-    void letters_at_edges(const SceneView& view, int width, int height, double scale) {
+    void letters_at_edges(const SceneView& view, int width, int height, double scale, const LetterInsets& insets) {
         const ViewAxes axes = axes_of(view);
         const int size = static_cast<int>(32 * scale);
         const double gap = 34 * scale;
-        letters[0].place(direction_letters(-axes.right_in_ct), gap, 0.5 * height, size);
-        letters[1].place(direction_letters(axes.right_in_ct), width - gap, 0.5 * height, size);
+        letters[0].place(direction_letters(-axes.right_in_ct), insets.left + gap, 0.5 * height, size);
+        letters[1].place(direction_letters(axes.right_in_ct), width - insets.right - gap, 0.5 * height, size);
         letters[2].place(direction_letters(axes.up_in_ct), 0.5 * width, height - gap, size);
         letters[3].place(direction_letters(-axes.up_in_ct), 0.5 * width, gap, size);
     }
@@ -179,7 +179,7 @@ SceneOverlay::SceneOverlay(vtkRenderer& renderer, const FontFiles& fonts) : part
 SceneOverlay::~SceneOverlay() = default;
 
 void SceneOverlay::update(const SceneModel& scene, const SceneView& view, int width, int height, double scale,
-                          const Words* words) {
+                          const Words* words, const LetterInsets& insets) {
     parts_->words = words;
     scale = std::max(scale, 0.85);     // smaller letters are not readable
     if (scene.on_paper) scale *= 1.6;  // the picture is shown at half its size and less
@@ -190,7 +190,7 @@ void SceneOverlay::update(const SceneModel& scene, const SceneView& view, int wi
         letter.actor->SetVisibility(!scene.of_scan);
         letter.set_ink(scene.on_paper);
     }
-    parts_->letters_at_edges(view, width, height, scale);
+    parts_->letters_at_edges(view, width, height, scale, insets);
     parts_->legend(scene, width, scale);
     parts_->boxes.done();
 }

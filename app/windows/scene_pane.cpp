@@ -7,6 +7,7 @@
 #include <vtkOpenGLState.h>
 #include <vtkTextureObject.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -37,10 +38,11 @@ std::optional<ImVec2> ScenePane::take_mouse(const char* name, const Box& sensiti
     }
     if (ImGui::IsItemActive()) {
         if (io.MouseDown[0] && !still) {
-            view_.azimuth =
-                std::remainder(view_.azimuth + kRadiansPerPixel * static_cast<double>(io.MouseDelta.x), 2 * M_PI);
-            view_.elevation =
-                std::clamp(view_.elevation + kRadiansPerPixel * static_cast<double>(io.MouseDelta.y), -1.5, 1.5);
+            // Along the picture's own axes, which a view of its own may have turned.
+            const Eigen::Vector2d by =
+                Eigen::Rotation2Dd(view_.roll) * Eigen::Vector2d(io.MouseDelta.x, -io.MouseDelta.y);
+            view_.azimuth = std::remainder(view_.azimuth + kRadiansPerPixel * by.x(), 2 * M_PI);
+            view_.elevation = std::clamp(view_.elevation - kRadiansPerPixel * by.y(), -1.5, 1.5);
         } else if (!io.MouseDown[0]) {
             view_.shift_mm += scene_->mm_per_pixel() * Eigen::Vector2d(io.MouseDelta.x, -io.MouseDelta.y);
         }
@@ -49,14 +51,15 @@ std::optional<ImVec2> ScenePane::take_mouse(const char* name, const Box& sensiti
     return std::nullopt;
 }
 
-void ScenePane::draw(const Pen& pen, const Box& box, const SceneModel& model) {
+void ScenePane::draw(const Pen& pen, const Box& box, const SceneModel& model, const LetterInsets& insets) {
     const int width = static_cast<int>(box.width) - 4, height = static_cast<int>(box.height) - 4;
     using std::chrono::steady_clock;
     const auto began = steady_clock::now();
     const int* const size = target_->GetSize();
-    const bool turned = !(view_ == rendered_view_) || size[0] != width || size[1] != height;
+    const bool turned =
+        !(view_ == rendered_view_) || !(insets == rendered_insets_) || size[0] != width || size[1] != height;
     behind_ = !turned && began < not_before_ && !(model == rendered_);
-    if (!behind_ && scene_->update(model, view_, width, height, pen.scale, pen.words)) {
+    if (!behind_ && scene_->update(model, view_, width, height, pen.scale, pen.words, insets)) {
         target_->SetSize(width, height);
         target_->GetState()->Reset();
         target_->GetState()->ResetFramebufferBindings();
@@ -64,6 +67,7 @@ void ScenePane::draw(const Pen& pen, const Box& box, const SceneModel& model) {
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         rendered_view_ = view_;
         rendered_ = model;
+        rendered_insets_ = insets;
         const auto ended = steady_clock::now();
         not_before_ = ended + 2 * (ended - began);
     }

@@ -30,7 +30,7 @@ public:
 
     /// Renders what has changed and draws the picture into the box. Where only the scene changed, not the view, it is
     /// rendered in a third of the time at most, so that a slow machine has time for the rest; `wants_frame` then.
-    void draw(const Pen& pen, const Box& box, const SceneModel& model);
+    void draw(const Pen& pen, const Box& box, const SceneModel& model, const LetterInsets& insets = {});
 
     /// The picture is behind what was drawn last, and may be rendered now.
     bool wants_frame() const;
@@ -39,8 +39,14 @@ public:
     Ray sight(const ImVec2& window_pixel) const;
     ImVec2 pixel_of(const Eigen::Vector3d& p) const;
 
+    /// Millimetres of the head that a pixel in the middle covers.
+    double mm_per_pixel() const { return scene_->mm_per_pixel(); }
+
     const SceneView& view() const { return view_; }
     void set_view(const SceneView& view) { view_ = first_view_ = view; }
+    /// From there, until the person turns it; a double click still goes back to the first view.
+    void look(const SceneView& view) { view_ = view; }
+    const SceneView& first_view() const { return first_view_; }
 
 private:
     vtkSmartPointer<vtkGenericOpenGLRenderWindow> target_;
@@ -48,6 +54,7 @@ private:
     SceneView view_, first_view_;
     SceneView rendered_view_;
     SceneModel rendered_;
+    LetterInsets rendered_insets_;
     bool behind_ = false;
     std::chrono::steady_clock::time_point not_before_{};
     ImVec2 corner_{0, 0};  ///< of the picture, window pixels

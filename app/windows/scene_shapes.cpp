@@ -161,23 +161,31 @@ vtkSmartPointer<vtkPolyData> cloud_shape(const PointCloud& cloud, const std::vec
     return data;
 }
 
-vtkSmartPointer<vtkPolyData> plan_shape(const PlanDrawing& plan) {
+vtkSmartPointer<vtkPolyData> plan_shape(const PlanDrawing& plan, int bright_item) {
+    constexpr double kOwn = 0.25;  // of a dim item's colour; the rest is skin
     Shape lines, text;
+    const auto colour = [&](const Rgb& own, int item) {
+        if (bright_item < 0 || item == bright_item) return own;
+        Rgb shown;
+        for (std::size_t c = 0; c < 3; ++c)
+            shown[c] = static_cast<std::uint8_t>(kOwn * own[c] + 0.75 * (1 - kOwn) * kSkinColour[c]);
+        return shown;
+    };
     for (const Stroke& stroke : plan.strokes) {
         std::vector<Eigen::Vector3d> points = stroke.points_in_ct;
         for (std::size_t i = 0; i < points.size() && i < stroke.normals_in_ct.size(); ++i)
             points[i] += kAboveSkinMm * stroke.normals_in_ct[i];
         const bool fine = stroke.kind == StrokeKind::tick;
-        add_line(fine ? text : lines, points, stroke.closed, stroke.colour);
+        add_line(fine ? text : lines, points, stroke.closed, colour(stroke.colour, stroke.item));
     }
     for (const Label& label : plan.labels) {
         if (label.of_moment || label.field_normals_in_ct.empty()) continue;
-        add_line(text, label.leader.points_in_ct, false, label.colour);
+        add_line(text, label.leader.points_in_ct, false, colour(label.colour, label.item));
         const Eigen::Vector3d up = kAboveSkinMm * label.field_normals_in_ct[label.field_normals_in_ct.size() / 2];
         for (const auto& sign : label.signs_in_ct)
             for (std::vector<Eigen::Vector3d> outline : sign) {
                 for (Eigen::Vector3d& p : outline) p += up;
-                add_line(text, outline, true, label.colour);
+                add_line(text, outline, true, colour(label.colour, label.item));
             }
     }
     vtkNew<vtkAppendPolyData> all;

@@ -15,8 +15,9 @@ vtkSmartPointer<vtkPolyData> skin_shape(const SceneModel& scene);
 vtkSmartPointer<vtkPolyData> cloud_shape(const PointCloud& cloud, const std::vector<float>* distance_mm,
                                          double largest_mm);
 
-/// The plan's strokes as coloured tubes, thick enough to be seen.
-vtkSmartPointer<vtkPolyData> plan_shape(const PlanDrawing& plan);
+/// The plan's strokes as coloured tubes, thick enough to be seen; all but `bright_item` are dim where there is one (-1:
+/// none).
+vtkSmartPointer<vtkPolyData> plan_shape(const PlanDrawing& plan, int bright_item = -1);
 
 /// The light as white tubes, thinner than the plan's.
 vtkSmartPointer<vtkPolyData> light_shape(const std::vector<LightLine>& light);

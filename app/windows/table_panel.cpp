@@ -51,11 +51,13 @@ void draw_error(const Pen& pen, const OperatorModel& model, const std::optional<
         pen.triangle(mark, radius, theme::kAmber);
 }
 
-void draw_row(const Pen& pen, const OperatorModel& model, const PlanRow& row, const Columns& c, float y) {
+/// `dim`: another item is that of the moment.
+void draw_row(const Pen& pen, const OperatorModel& model, const PlanRow& row, const Columns& c, float y, bool dim) {
     const float size = 7 * pen.scale, swatch = 22 * pen.scale;
     pen.list->AddRectFilled({c.name_x, y - size}, {c.name_x + 2 * size, y + size}, colour_of(row.colour),
                             3 * pen.scale);
-    pen.line(pen.fonts.body, row.name, c.name_x + swatch, y, c.name_width - swatch, theme::kText);
+    pen.line(pen.fonts.body, shortened_in_the_middle(pen.fonts.body, row.name, c.name_width - swatch),
+             c.name_x + swatch, y, c.name_width - swatch, dim ? theme::kQuiet : theme::kText);
     pen.line(pen.fonts.body, number_text(row.depth_mm, ""), c.depth_x, y, 0.75F * c.width, theme::kText,
              Pen::Side::right);
     draw_error(pen, model, row.predicted_error_mm, c.predicted_x, c.width, y);
@@ -100,7 +102,8 @@ int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int f
     float y = rule + 4 * pen.scale;
     for (int i = 0; i < shown; ++i, y += row_height)
         draw_row(pen, model, model.rows[static_cast<std::size_t>(first_row + i)], columns,
-                 std::round(y + row_height / 2));
+                 std::round(y + row_height / 2),
+                 model.item_of_moment && static_cast<int>(*model.item_of_moment) != first_row + i);
     if (rows < count)
         pen.line(pen.fonts.small,
                  pen.say("rows " + std::to_string(first_row + 1) + "–" + std::to_string(first_row + shown) + " of " +

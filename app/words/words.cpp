@@ -37,11 +37,13 @@ bool is_upper(const std::string& text) {
     return !text.empty() && std::isupper(static_cast<unsigned char>(text[0])) != 0;
 }
 
-/// Where the next part begins after `between`, which must be followed by what can begin one.
+/// Where the next part begins after `between`, which must be followed by what can begin one; not within brackets.
 std::size_t next_part(const std::string& text, const std::string& between, std::size_t from) {
     for (std::size_t at = text.find(between, from); at != std::string::npos; at = text.find(between, at + 1)) {
         const std::size_t then = at + between.size();
         if (then >= text.size()) return std::string::npos;
+        const auto before = text.begin() + static_cast<std::ptrdiff_t>(at);
+        if (std::count(text.begin(), before, '(') > std::count(text.begin(), before, ')')) continue;
         const auto c = static_cast<unsigned char>(text[then]);
         if (between != ". " || std::isupper(c) || c == '"' || c == '`') return at;
     }

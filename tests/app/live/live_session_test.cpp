@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <stdexcept>
 #include <thread>
@@ -215,6 +216,39 @@ TEST_F(LiveSessionTest, LightIsConfirmedOncePerPressAndDarkLeadsBackToTheMatch) 
     EXPECT_FALSE(dark.light_on);
     EXPECT_TRUE(dark.track.enabled) << "the match is kept";
     EXPECT_TRUE(dark.fit);
+}
+
+// The others are dim on the skin, and the light of the one that is bright is what is measured.
+TEST_F(LiveSessionTest, OneItemOfThePlanAloneIsBrightAndThenTheWholePlanAgain) {
+    EXPECT_NE(session->post_light_item(0), "") << "there is no match yet";
+    const OperatorModel plan = followed();
+    ASSERT_TRUE(plan.may_light_item);
+    ASSERT_GT(plan.rows.size(), 2U);
+    const auto bright_pixels = [&] {
+        const auto picture = session->light().picture;
+        if (!picture) return -1L;
+        return static_cast<long>(std::count_if(picture->pixels.begin(), picture->pixels.end(), [](const Rgb& p) {
+            return std::max({p[0], p[1], p[2]}) > 120;
+        }));
+    };
+    const auto lit = [&](const char* what, const auto& holds) {
+        wait_for(*session, what, [&](const OperatorModel& m) { return holds(m) && bright_pixels() > 0; });
+        return bright_pixels();
+    };
+    const long whole = lit("the plan", [](const OperatorModel& m) { return !m.item_of_moment; });
+    EXPECT_EQ(session->post_light_item(1), "");
+    const auto told = [](const OperatorModel& m) {
+        return std::any_of(m.status.details.begin(), m.status.details.end(),
+                           [](const std::string& detail) { return detail.find("\" is bright") != std::string::npos; });
+    };
+    const long alone = lit("one item", [&](const OperatorModel& m) { return m.item_of_moment == 1U && told(m); });
+    EXPECT_LT(alone, whole / 2);
+    EXPECT_EQ(session->model().scene.bright_item, 1);
+    EXPECT_EQ(session->post_light_item(std::nullopt), "");
+    const long again = lit("the plan", [&](const OperatorModel& m) { return !m.item_of_moment && !told(m); });
+    EXPECT_GT(again, 0.8 * static_cast<double>(whole));
+    session->post(OperatorAction::scan);
+    EXPECT_FALSE(session->model().item_of_moment);
 }
 
 }  // namespace

@@ -127,6 +127,39 @@ TEST(SessionStates, AnAbortedScanLeavesNothingOfTheFormerMatch) {
     EXPECT_TRUE(entered(after_it).scan.enabled) << "it can be begun again";
 }
 
+// A match of an earlier session is gone on with: its scan was another session's, and there is nothing to register.
+TEST(SessionStates, WithoutAScanOfThisSessionRegisterWaitsForOne) {
+    const OperatorModel blank;
+    for (const SessionState state : kSessionStates) {
+        if (!view_of(state).has_scan) continue;
+        OperatorModel model;
+        model.landmarks.emplace();
+        enter(state, blank, model, false);
+        EXPECT_FALSE(model.do_register.enabled) << name(state);
+        EXPECT_FALSE(model.landmarks) << name(state) << ": they would be clicked on nothing";
+        for (const OperatorAction press : {OperatorAction::do_register, OperatorAction::use_landmarks}) {
+            EXPECT_FALSE(after_press(state, press, false)) << name(state);
+            EXPECT_FALSE(why_not(state, press, false).empty()) << name(state);
+        }
+    }
+    EXPECT_TRUE(after_press(SessionState::found, OperatorAction::do_register, true));
+    EXPECT_EQ(why_not(SessionState::found, OperatorAction::do_register, false),
+              "Register is not possible now: scan first.");
+}
+
+TEST(SessionStates, AnItemOfTheMomentNeedsAMatchAndGoesWithIt) {
+    const OperatorModel blank;
+    for (const SessionState state : kSessionStates) {
+        OperatorModel model;
+        model.item_of_moment = 1;
+        enter(state, blank, model);
+        EXPECT_EQ(model.may_light_item, view_of(state).has_match) << name(state);
+        EXPECT_EQ(model.item_of_moment.has_value(), view_of(state).has_match) << name(state);
+        const auto stays = view_of(state).has_match ? std::optional(state) : std::nullopt;
+        EXPECT_EQ(after_press(state, OperatorAction::light_item), stays) << name(state);
+    }
+}
+
 TEST(SessionStates, FiguresStayOnlyWhereLightIsJudged) {
     for (const SessionState state : kSessionStates) {
         const bool judged = view_of(state).lights && view_of(state).has_match;

@@ -24,7 +24,8 @@ std::string states_page() {
         "Made from the program's own table by `build/tests/app/list_states > app/guide/states.md`. \"Yes\" is the "
         "button "
         "over the 3-D view: *It fits: use it*, *Show landmarks*, *Light 1 is right*. A press that does nothing is "
-        "answered with its reason.\n\n"
+        "answered with its reason. After going on with the match of an earlier session there is no scan of this one: "
+        "Register, and landmarks, wait for one (\"scan first\").\n\n"
         "## What it says\n\n| state | word | sentence | and |\n|---|---|---|---|\n";
     for (const SessionState state : kSessionStates) {
         const SessionView& view = view_of(state);

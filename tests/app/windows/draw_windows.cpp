@@ -2,11 +2,12 @@
 
 #include "app/windows/operator_window.h"
 #include "app/windows/scene_view.h"
+#include "app/words/words.h"
 #include "fake_model.h"
 #include "write_picture.h"
 
 /// draw_windows scene FILE [azimuth elevation], or draw_windows window FILE [width height status [view of the match: 0
-/// to 2 [old, refused, evidence or answer]]]
+/// to 2 [old, refused, evidence, answer, views, alone, landmark or plain [language]]]]
 int main(int argc, char** argv) {
     using namespace planlight;
     OperatorModel model = test::fake_model();
@@ -20,6 +21,7 @@ int main(int argc, char** argv) {
     if (argc > 4) settings.width = std::stoi(argv[3]), settings.height = std::stoi(argv[4]);
     if (argc > 5) model = test::fake_model_with(static_cast<StatusKind>(std::stoi(argv[5])));
     const std::string special = argc > 7 ? argv[7] : "";
+    if (argc > 8) settings.words = words_of(argv[8]);
     if (special == "old") {
         model.left.old_s = model.right.old_s = 7;
         model.left.note = "Left camera: no frame came for 7 s. Look at its cable and its power.";
@@ -33,8 +35,22 @@ int main(int argc, char** argv) {
                         "Only 3 markers were found by both cameras; 5 are needed.",
                         {"Paste markers where both cameras see them, or turn the light up, and scan again."}};
     }
+    if (special == "alone") {
+        model.may_light_item = true;
+        model.item_of_moment = 2;
+        model.scene.bright_item = 2;
+    }
+    if (special == "landmark") {
+        const Eigen::Vector3d ear(90, 5, -15);
+        model.look_at = LookAt{ear, Eigen::Vector3d(1, 0.1, 0).normalized()};
+        model.status = {StatusKind::check, "LOOK: is the ring of light on landmark 2 of 2?", {}, {}};
+        model.confirm_words = "Light 2 is right";
+        model.next = OperatorAction::confirm;
+        model.check_skin = true;
+    }
     OperatorWindow window(settings);
-    if (special == "evidence") window.open_evidence();
+    if (special == "evidence" || special == "alone-page") window.open_evidence();
+    if (special == "views") window.open_views();
     if (special == "answer") window.say("Track is not possible now: register first.");
     window.set_view(view);
     if (argc > 6) window.set_fit_view(static_cast<FitView>(std::stoi(argv[6])));

@@ -103,8 +103,8 @@ std::pair<Eigen::Vector2d, Eigen::Vector2d> drawn_and_said(const Vector3d& p, co
 
 TEST(Scene, SaysInWhichPixelItDrewAPoint) {
     unsetenv("DISPLAY");
-    for (const SceneView& view :
-         {SceneView{0, 0, 1, {0, 0}}, SceneView{0.5, 0.3, 2, {-15, -10}}, SceneView{-0.4, -0.2, 0.6, {-15, 40}}}) {
+    for (const SceneView& view : {SceneView{0, 0, 0, 1, {0, 0}}, SceneView{0.5, 0.3, 0, 2, {-15, -10}},
+                                  SceneView{-0.4, -0.2, 0, 0.6, {-15, 40}}}) {
         const Vector3d p = test::on_analytic_head({-20, -90, 40});
         const auto [drawn, said] = drawn_and_said(p, view);
         EXPECT_LT((drawn - said).norm(), 3) << "drawn at " << drawn.transpose() << ", said " << said.transpose();

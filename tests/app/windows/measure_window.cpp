@@ -37,7 +37,7 @@ int main(int argc, char** argv) {
     const int width = argc > 2 ? std::atoi(argv[1]) : 1920, height = argc > 2 ? std::atoi(argv[2]) : 1080;
     const double seconds = argc > 3 ? std::atof(argv[3]) : 10;
     OperatorModel model = test::fake_model();
-    OperatorWindow window({"Planlight measures", width, height, std::nullopt, nullptr, true});
+    OperatorWindow window({"Planlight measures", width, height, std::nullopt, true, {}});
     for (int i = 0; i < 30; ++i) window.frame(model);
     WindowMeter meter;
     const auto run = [&](WindowMeter::Phase phase, const auto& change) {

@@ -76,12 +76,13 @@ int main(int, char** argv) {
     using std::chrono::steady_clock;
     const std::string folder = argv[1];
     OperatorModel model = test::fake_model();
-    OperatorWindow window({"Planlight buttons", 1280, 800, std::nullopt, nullptr, true});
+    OperatorWindow window({"Planlight buttons", 1280, 800, std::nullopt, true, {}});
     for (int i = 0; i < 30; ++i) window.frame(model);
     const std::size_t without_need = drawn_in(window, model, 60);
     model.status.headline += " And more.";
     fmt::print("drawn {} and {} times\n", without_need, drawn_in(window, model, 20));
     model.light_on = true;
+    model.may_light_item = true;
     test::write_picture(folder + "/operator.ppm", window.screenshot());
     const auto write_places = [&](const std::string& name, const std::vector<std::string>& words) {
         std::ofstream places(folder + "/" + name + ".part");
@@ -100,19 +101,31 @@ int main(int, char** argv) {
             write_place(places, name, window.place_of(action));
         }
     }
-    write_places("views", {"before", "after", "error", "landmarks", "evidence"});
-    const char* const names[] = {"none", "scan", "register", "track",         "stop",
-                                 "dark", "quit", "confirm",  "use landmarks", "check skin"};
+    write_places("views", {"before", "after", "error", "landmarks", "evidence", "views"});
+    const char* const names[] = {"none", "scan",    "register",      "track",      "stop",      "dark",
+                                 "quit", "confirm", "use landmarks", "check skin", "light item"};
     const auto start = steady_clock::now();
     const char* const views[] = {"view after", "view before", "view error"};
     FitView last_view = window.fit_view();
-    bool opened = false, asked = false, page = false;
+    bool opened = false, asked = false, page = false, view_buttons = false;
     std::string answer;
     std::size_t clicked = 0;
     double last_azimuth = window.view().azimuth;
     while (steady_clock::now() - start < std::chrono::seconds(120)) {
         const OperatorAction action = window.frame(model);
-        if (action != OperatorAction::none) fmt::print("{}\n", names[static_cast<int>(action)]);
+        if (action == OperatorAction::light_item) {
+            model.item_of_moment = window.item_wanted();
+            fmt::print("item {}\n", model.item_of_moment ? static_cast<int>(*model.item_of_moment) + 1 : 0);
+        } else if (action != OperatorAction::none) {
+            fmt::print("{}\n", names[static_cast<int>(action)]);
+        }
+        if (const bool now = window.place_of("view-R")[2] > 0; now != view_buttons) {
+            view_buttons = now;
+            if (now)
+                write_places("view-buttons", {"view-A", "view-P", "view-R", "view-L", "view-S", "view-reset",
+                                              "view-projector", "view-surgeon", "views-close"});
+            fmt::print("view buttons {}\n", now ? "open" : "closed");
+        }
         if (window.view().azimuth != last_azimuth)
             fmt::print("turned {}\n", window.view().azimuth > last_azimuth ? "+" : "-");
         last_azimuth = window.view().azimuth;
@@ -122,7 +135,7 @@ int main(int, char** argv) {
         answer = window.answer();
         if (const bool now = window.place_of("close")[2] > 0 && window.place_of("undo")[2] == 0; now != page) {
             page = now;
-            if (page) write_places("page", {"close"});
+            if (page) write_places("page", {"close", "item-1", "item-2"});
             fmt::print("page {}\n", page ? "open" : "closed");
         }
         if (std::remove((folder + "/close").c_str()) == 0) ask_to_close("Planlight buttons");

@@ -24,7 +24,7 @@ wait_for() {  # wait_for WORD WHAT: a line WORD was said since the last look
 }
 silent() { sleep 1; if [ "$(wc -l <"$folder/said")" != "$seen" ]; then echo "FAIL $1: $(tail -1 "$folder/said")"; failed=1; else echo "ok   $1"; fi; seen=$(wc -l <"$folder/said"); }
 click() { xdotool mousemove "$1" "$2"; sleep 0.4; xdotool mousedown 1; sleep 0.4; xdotool mouseup 1; }
-place() { cat "$folder"/{actions,views,landmarks,page,question} 2>/dev/null | awk -v n="$1" '$1 == n { print $2, $3 }'; }
+place() { cat "$folder"/{actions,views,view-buttons,landmarks,page,question} 2>/dev/null | awk -v n="$1" '$1 == n { print $2, $3 }'; }
 large_enough() { awk '$4 < 72 || $5 < 72 { print "FAIL " $1 " is " $4 "x" $5 " pixels, less than 72"; bad = 1 } END { exit bad }' "$@" || failed=1; }
 
 seen=0
@@ -45,7 +45,22 @@ click $(place evidence); wait_for "page open" "the evidence by one press"
 for i in $(seq 50); do [ -e "$folder/page" ] && break; sleep 0.2; done
 large_enough "$folder/page"
 xdotool key c; wait_for "answer There is nothing to say yes to now." "what the page hides is not pressed by its key"
+click $(place item-2); wait_for "item 2" "one item of the plan alone"
+click $(place item-2); wait_for "item 0" "and the whole plan again"
 click $(place close); wait_for "page closed" "and closed"
+xdotool key i; wait_for "item 1" "the first item by its key"
+xdotool key i; wait_for "item 2" "the next"
+xdotool key 0; wait_for "item 0" "all of the plan by its key"
+click $(place views); wait_for "view buttons open" "the buttons of the views"
+for i in $(seq 50); do [ -e "$folder/view-buttons" ] && break; sleep 0.2; done
+large_enough "$folder/view-buttons"
+click $(place view-L); wait_for "turned -" "from the patient's left"
+click $(place view-R); wait_for "turned +" "from the patient's right"
+click $(place view-projector); silent "a view that is not known does nothing"
+xdotool key F1; wait_for "turned -" "from the front by its key"
+xdotool key F7; wait_for "answer The projector's view is known once the patient is found." "the key of a view that is not known says why"
+click $(place view-reset); wait_for "turned +" "as at first"
+click $(place views-close); wait_for "view buttons closed" "and closed"
 xdotool key e; wait_for "page open" "the evidence by its key"
 xdotool key e; wait_for "page closed" "and closed by it"
 xdotool mousemove 600 500; sleep 0.4; xdotool mousedown 1; sleep 0.4; xdotool mousemove 700 500; sleep 0.4; xdotool mouseup 1

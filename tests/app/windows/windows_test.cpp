@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <vector>
 
 #include "app/windows/camera_picture.h"
@@ -22,7 +23,7 @@ namespace planlight {
 namespace {
 
 std::string letters(double azimuth, double elevation) {
-    const ViewAxes axes = axes_of({azimuth, elevation, 1, Eigen::Vector2d::Zero()});
+    const ViewAxes axes = axes_of({azimuth, elevation, 0, 1, Eigen::Vector2d::Zero()});
     return direction_letters(-axes.right_in_ct) + " " + direction_letters(axes.right_in_ct) + " " +
            direction_letters(axes.up_in_ct) + " " + direction_letters(-axes.up_in_ct);
 }
@@ -37,10 +38,49 @@ TEST(Orientation, LettersAreThoseOfThePatientNotOfTheViewer) {
     EXPECT_EQ(letters(M_PI / 4, 0), "RP LA S I") << "half from the right: two letters";
 }
 
+std::string letters(const SceneView& view) {
+    const ViewAxes axes = axes_of(view);
+    return direction_letters(-axes.right_in_ct) + " " + direction_letters(axes.right_in_ct) + " " +
+           direction_letters(axes.up_in_ct) + " " + direction_letters(-axes.up_in_ct);
+}
+
+TEST(Orientation, TheStandardViewsHaveTheLettersOfTheirSides) {
+    EXPECT_EQ(letters(standard_view('A')), "R L S I");
+    EXPECT_EQ(letters(standard_view('P')), "L R S I");
+    EXPECT_EQ(letters(standard_view('R')), "P A S I") << "from the patient's right the face looks to the right";
+    EXPECT_EQ(letters(standard_view('L')), "A P S I");
+    EXPECT_EQ(letters(standard_view('S')), "R L P A");
+}
+
+// The patient lies on the back. Who stands at the head has the patient's right hand at the right, and the feet above.
+TEST(Orientation, TheSurgeonSeesThePatientAsFromThere) {
+    const auto seen = [](const Eigen::Vector3d& away) {
+        const ViewAxes axes = axes_of(surgeon_view(away));
+        return direction_letters(axes.right_in_ct).substr(0, 1) + direction_letters(axes.up_in_ct).substr(0, 1) +
+               direction_letters(axes.backward_in_ct).substr(0, 1);
+    };
+    EXPECT_EQ(seen({0, 0, 1}), "LSA") << "from the feet, as face to face";
+    EXPECT_EQ(seen({0, 0, -1}), "RIA") << "from the head";
+    EXPECT_EQ(seen({-1, 0, 0}), "SRA") << "from the left side: the head at the right hand, the right ear away";
+    EXPECT_EQ(seen({1, 0, 0}), "ILA") << "from the right side";
+}
+
+TEST(Orientation, AViewAlongADirectionHasItAndItsUpright) {
+    for (const Eigen::Vector3d& backward : {Eigen::Vector3d(0.3, -0.8, 0.2), Eigen::Vector3d(0, 0, 1),
+                                            Eigen::Vector3d(-1, 0.1, -0.4), Eigen::Vector3d(0, 1, 0)})
+        for (const Eigen::Vector3d& up : {Eigen::Vector3d(0.1, 0.2, -1), Eigen::Vector3d(1, 0.3, 0.1)}) {
+            const ViewAxes axes = axes_of(view_along(backward, up));
+            const Eigen::Vector3d b = backward.normalized();
+            EXPECT_NEAR((axes.backward_in_ct - b).norm(), 0, 1e-9);
+            EXPECT_NEAR(axes.up_in_ct.dot((up - up.dot(b) * b).normalized()), 1, 1e-9);
+            EXPECT_NEAR((axes.right_in_ct.cross(axes.up_in_ct) - axes.backward_in_ct).norm(), 0, 1e-9);
+        }
+}
+
 TEST(Orientation, TheAxesOfAViewAreRightHanded) {
     for (double az = -3; az < 3; az += 0.37)
         for (double el = -1.5; el < 1.5; el += 0.31) {
-            const ViewAxes a = axes_of({az, el, 1, Eigen::Vector2d::Zero()});
+            const ViewAxes a = axes_of({az, el, 0, 1, Eigen::Vector2d::Zero()});
             EXPECT_NEAR((a.right_in_ct.cross(a.up_in_ct) - a.backward_in_ct).norm(), 0, 1e-12);
             EXPECT_GT(a.up_in_ct.z(), 0) << "the head is never upside down";
         }
@@ -85,6 +125,34 @@ TEST(Fonts, EveryShownCharacterExistsInEverySize) {
             EXPECT_TRUE(missing_glyphs(*f.word, status_word(kind)).empty()) << status_word(kind);
         EXPECT_EQ(missing_glyphs(*f.body, "a漢b"), std::vector<std::string>{"漢"}) << "what is missing is found out";
     }
+}
+
+// The patient's name, or the words of a language that the site added.
+TEST(Fonts, LettersOfOtherScriptsComeFromOtherFontsOfTheComputer) {
+    if (!std::filesystem::exists("/usr/share/fonts/truetype/wqy/wqy-microhei.ttc"))
+        GTEST_SKIP() << "no fonts-wqy-microhei";
+    ImFontAtlas atlas;
+    const FontSet fonts = load_fonts(atlas, find_fonts(), 1, {"患者王小明", "准备"});
+    for (const ImFont* font : {fonts.small, fonts.body, fonts.strong, fonts.number, fonts.title})
+        EXPECT_EQ(missing_glyphs(*font, "患者: 王小明, 8.5 mm"), std::vector<std::string>{});
+    EXPECT_EQ(missing_glyphs(*fonts.word, "准备"), std::vector<std::string>{});
+}
+
+// "B3 left sphenoid ... ⌀7  6 mm deep": the figures at the end are what is read from the row.
+TEST(Fonts, ALongNameIsShortenedInTheMiddleAndKeepsItsFigures) {
+    const LoadedFonts loaded(find_fonts());
+    const ImFont* const font = loaded.fonts.body;
+    const std::string name = "Bohrloch für die Schraube am linken Keilbeinflügel  ⌀7  6 mm deep";
+    for (const float width : {160.0F, 240.0F, 400.0F}) {
+        const std::string shown = shortened_in_the_middle(font, name, width);
+        EXPECT_LE(text_width(font, shown), width);
+        EXPECT_GT(text_width(font, shown), width - 40) << "no more than it takes";
+        EXPECT_TRUE(shown.starts_with("Bohr")) << shown;
+        EXPECT_TRUE(shown.ends_with("deep")) << shown;
+        EXPECT_NE(shown.find("…"), std::string::npos) << shown;
+    }
+    EXPECT_EQ(shortened_in_the_middle(font, "B3", 160), "B3");
+    EXPECT_EQ(shortened_in_the_middle(font, name, 3), "…");
 }
 
 TEST(Fonts, DejaVuAloneIsEnough) {
@@ -211,13 +279,90 @@ SceneModel head_with_a_green_ring_near(const Eigen::Vector3d& near_in_ct) {
 TEST(RenderScene, ShowsThePatientsRightAtTheViewersLeftWithoutAnyDisplay) {
     unsetenv("DISPLAY");
     const SceneModel scene = head_with_a_green_ring_near({-55, -75, 55});
-    const SceneView from_the_front{0, 0, 1, Eigen::Vector2d::Zero()}, from_behind{M_PI, 0, 1, Eigen::Vector2d::Zero()};
+    const SceneView from_the_front{0, 0, 0, 1, Eigen::Vector2d::Zero()},
+        from_behind{M_PI, 0, 0, 1, Eigen::Vector2d::Zero()};
     const auto front = centre_of(render_scene(scene, from_the_front, 640, 480), is_plan_green);
     EXPECT_GT(front[2], 100) << "the ring is seen";
     EXPECT_LT(front[0], 0.45) << "the patient's right is at the viewer's left";
     EXPECT_LT(front[1], 0.5) << "the forehead is in the upper half";
     const auto behind = centre_of(render_scene(scene, from_behind, 640, 480), is_plan_green);
     EXPECT_EQ(behind[2], 0) << "the head hides it from behind";
+}
+
+/// How unlike two places of two pictures are, 40 pixels wide, laid on each other as well as they can be: mean grey.
+double unlike(const RgbImage& a, const Eigen::Vector2i& at_a, const RgbImage& b, const Eigen::Vector2i& at_b) {
+    double least = 1e9;
+    for (int dy = -2; dy <= 2; ++dy)
+        for (int dx = -2; dx <= 2; ++dx) {
+            double sum = 0;
+            for (int y = -18; y < 18; ++y)
+                for (int x = -18; x < 18; ++x)
+                    sum +=
+                        std::abs(a.at(at_a.x() + x, at_a.y() + y)[1] - b.at(at_b.x() + x + dx, at_b.y() + y + dy)[1]);
+            least = std::min(least, sum / (36 * 36));
+        }
+    return least;
+}
+
+TEST(RenderScene, TheLettersStandAtTheSidesOfThePictureTheyName) {
+    constexpr int kGap = 29;  // from the edge to the letter's middle at this size
+    const Eigen::Vector2i left(kGap, 240), right(640 - kGap, 240), top(320, kGap);
+    const std::vector<RgbImage> views =
+        render_views({}, {standard_view('A'), standard_view('P'), standard_view('R'), standard_view('L')}, 640, 480);
+    const RgbImage &front = views[0], &back = views[1], &from_right = views[2], &from_left = views[3];
+    constexpr double kSame = 8, kOther = 20;
+    EXPECT_LT(unlike(front, left, back, right), kSame) << "R";
+    EXPECT_LT(unlike(front, right, back, left), kSame) << "L";
+    EXPECT_LT(unlike(from_right, right, from_left, left), kSame) << "A";
+    EXPECT_LT(unlike(from_right, left, from_left, right), kSame) << "P";
+    EXPECT_GT(unlike(front, left, front, right), kOther) << "R is not L";
+    EXPECT_GT(unlike(front, left, back, left), kOther);
+    EXPECT_GT(unlike(from_right, left, from_right, right), kOther) << "P is not A";
+    EXPECT_LT(unlike(front, top, back, top), kSame) << "S";
+}
+
+// What a letter says is where that side of the patient is seen: a ring on the skin there lies in that half.
+TEST(RenderScene, ARingOnASideOfTheHeadLiesAtItsLetterInEveryView) {
+    const std::map<char, Eigen::Vector3d> sides{
+        {'R', {-1, 0, 0}}, {'L', {1, 0, 0}}, {'A', {0, -1, 0}}, {'P', {0, 1, 0}}, {'S', {0, 0, 1}}};
+    for (const auto& [view_letter, towards_viewer] : sides) {
+        const SceneView view = standard_view(view_letter);
+        for (const auto& [letter, side] : sides) {
+            if (std::abs(side.dot(towards_viewer)) > 0.5) continue;
+            const SceneModel scene = head_with_a_green_ring_near(75 * side + 90 * towards_viewer);
+            const auto ring = centre_of(render_scene(scene, view, 640, 480), is_plan_green);
+            if (ring[2] < 50) continue;  // the analytic head hides it
+            const ViewAxes axes = axes_of(view);
+            const double across = side.dot(axes.right_in_ct), up = side.dot(axes.up_in_ct);
+            const double seen = std::abs(across) > 0.5 ? (ring[0] - 0.5) * across : (0.5 - ring[1]) * up;
+            EXPECT_GT(seen, 0) << letter << " seen from " << view_letter;
+        }
+    }
+}
+
+TEST(RenderScene, TheCloudDoesNotHideThePlan) {
+    SceneModel scene = head_with_a_green_ring_near({-55, -75, 55});
+    const SceneView view = view_of_plan(*scene.plan);
+    const double bare = centre_of(render_scene(scene, view, 640, 480), is_plan_green)[2];
+    auto cloud = std::make_shared<PointCloud>();
+    const Eigen::Vector3d middle = test::on_analytic_head({-55, -75, 55}), n = test::analytic_head_normal(middle),
+                          u = n.unitOrthogonal(), v = n.cross(u);
+    for (double a = -20; a <= 20; a += 0.2)
+        for (double b = -20; b <= 20; b += 0.2)
+            cloud->points_in_rig.push_back(test::on_analytic_head(middle + a * u + b * v) + 1.5 * n);
+    scene.cloud = cloud;
+    const double covered = centre_of(render_scene(scene, view, 640, 480), is_plan_green)[2];
+    EXPECT_GT(bare, 300);
+    EXPECT_GT(covered, 0.9 * bare) << "a cloud that stands 1.5 mm off the skin";
+}
+
+TEST(RenderScene, TheItemOfTheMomentIsBrightAndTheOthersDim) {
+    SceneModel scene = head_with_a_green_ring_near({-55, -75, 55});
+    const SceneView view = view_of_plan(*scene.plan);
+    scene.bright_item = 0;
+    EXPECT_GT(centre_of(render_scene(scene, view, 640, 480), is_plan_green)[2], 300);
+    scene.bright_item = 1;
+    EXPECT_EQ(centre_of(render_scene(scene, view, 640, 480), is_plan_green)[2], 0);
 }
 
 TEST(RenderScene, AnEmptySceneIsDarkButHasItsLetters) {

@@ -1,0 +1,163 @@
+// Every text of the operator's window has room in its place, in every language, at the sizes of monitors.
+#include <gtest/gtest.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "app/live/session_states.h"
+#include "app/windows/fonts.h"
+#include "app/windows/layout.h"
+#include "app/windows/operator_keys.h"
+#include "app/windows/panels.h"
+#include "app/words/words.h"
+#include "tests/app/windows/fake_model.h"
+
+namespace planlight {
+namespace {
+
+/// A window without a display: it is laid out and drawn into a list, which nobody sees.
+class DrawnWords {
+public:
+    DrawnWords(const std::string& language, int width, int height)
+        : words_(words_of(language)), place(layout_of(width, height)) {
+        ImGui::SetCurrentContext(context_);
+        ImGui::GetIO().DisplaySize = {static_cast<float>(width), static_cast<float>(height)};
+        ImGui::GetIO().IniFilename = nullptr;
+        FontLetters letters{words_->letters(), {}};
+        for (int kind = 0; kind <= static_cast<int>(StatusKind::waiting); ++kind)
+            letters.word += words_->say(status_word(static_cast<StatusKind>(kind)));
+        pen.fonts = load_fonts(*ImGui::GetIO().Fonts, find_fonts(), place.scale, letters);
+        unsigned char* pixels = nullptr;
+        int w = 0, h = 0;
+        ImGui::GetIO().Fonts->GetTexDataAsRGBA32(&pixels, &w, &h);
+        pen.scale = place.scale;
+        pen.words = words_.get();
+        pen.cut = &cut;
+        pen.lacking = &lacking;
+        ImGui::NewFrame();
+        ImGui::Begin("all");
+        pen.list = ImGui::GetWindowDrawList();
+    }
+    ~DrawnWords() {
+        ImGui::End();
+        ImGui::EndFrame();
+        ImGui::DestroyContext(context_);
+    }
+    DrawnWords(const DrawnWords&) = delete;
+    DrawnWords& operator=(const DrawnWords&) = delete;
+
+    void way_buttons(const OperatorModel& model) {
+        const float width = (place.buttons.width - 3 * place.gap) / 4;
+        Box box = place.buttons;
+        box.width = width;
+        for (const auto& [label, state] : {std::pair{"Scan", &model.scan},
+                                           {"Register", &model.do_register},
+                                           {"Track", &model.track},
+                                           {"Stop", &model.stop}}) {
+            button(pen, box, label, *state, {false, true, "S · Enter"});
+            button(pen, box, label, {true, {}}, {false, true, "S · Enter"});
+            box.x += width + place.gap;
+        }
+    }
+
+private:
+    ImGuiContext* const context_ = ImGui::CreateContext();
+    std::shared_ptr<const Words> words_;
+
+public:
+    const WindowLayout place;
+    std::vector<std::string> cut;
+    std::set<unsigned> lacking;
+    Pen pen{};
+};
+
+class WordsInPlace : public testing::TestWithParam<std::tuple<const char*, std::pair<int, int>>> {
+protected:
+    DrawnWords drawn_{std::get<0>(GetParam()), std::get<1>(GetParam()).first, std::get<1>(GetParam()).second};
+    void expect_whole(const std::string& where) {
+        for (const std::string& text : drawn_.cut) ADD_FAILURE() << where << ": no room for \"" << text << "\"";
+        drawn_.cut.clear();
+        EXPECT_TRUE(drawn_.lacking.empty()) << where << ": a letter has no sign in the font";
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Windows, WordsInPlace,
+                         testing::Combine(testing::Values("en", "de", "ru"),
+                                          testing::Values(std::pair{1280, 720}, std::pair{1920, 1080},
+                                                          std::pair{3840, 2160})));
+
+TEST_P(WordsInPlace, EveryButtonHasRoomForItsWordAndItsReason) {
+    const OperatorModel blank;
+    for (const SessionState state : kSessionStates) {
+        OperatorModel model;
+        enter(state, blank, model);
+        drawn_.way_buttons(model);
+        expect_whole(view_of(state).name);
+    }
+    const float scale = drawn_.place.scale;
+    const Box corner = corner_button(drawn_.place.scene, scale);
+    for (const char* label : {"It fits: use it", "Show landmarks", "Light 2 is right", "Go on with the last match",
+                              "Check skin", "Landmarks", "Show the whole plan"})
+        button(drawn_.pen, corner, label, {true, {}}, {false, true, "C · Enter"});
+    expect_whole("in the corner of the view");
+    Box fit = fit_row(drawn_.place.scene, scale);
+    fit.width = (fit.width - 16 * scale) / 3;
+    for (const char* label : {"Before", "After", "Error"})
+        button(drawn_.pen, fit, label, {true, {}}, {true, false, "1"});
+    expect_whole("over the view");
+    draw_dark_button(drawn_.pen, drawn_.place.dark, false, false, key_text(KeyMeaning::dark));
+    expect_whole("DARK");
+}
+
+TEST_P(WordsInPlace, EveryStateHasRoomForItsSentences) {
+    const OperatorModel blank, lit = test::fake_model();
+    for (const SessionState state : kSessionStates) {
+        OperatorModel model = lit;
+        enter(state, blank, model);
+        draw_banner(drawn_.pen, drawn_.place.banner, model);
+        model.status = dark_status(state);
+        draw_banner(drawn_.pen, drawn_.place.banner, model);
+        expect_whole(view_of(state).name);
+    }
+}
+
+TEST_P(WordsInPlace, TheLightsWordsHaveRoomBesideItsFigures) {
+    OperatorModel model = test::fake_model();
+    for (const auto& [kind, headline, details] :
+         {std::tuple{StatusKind::aligned, "The plan is on the skin.",
+                     "Measured by the cameras: 95 % of the light within 0.3 mm of the plan."},
+          std::tuple{StatusKind::check, "LOOK at the light on two landmarks.",
+                     "The cameras measure it within 0.3 mm of the plan."},
+          std::tuple{StatusKind::check, "LOOK: the light lies up to 1.3 mm beside the plan.",
+                     "Wait until the patient lies still; if it stays so, scan again."},
+          std::tuple{StatusKind::dark, "Dark: the patient is not tracked: only 3 of 6 markers seen; 4 are needed.",
+                     "The light comes back by itself when the pose is good."}}) {
+        model.status = {kind, headline, {details}};
+        if (kind == StatusKind::dark) model.figures = {};
+        draw_banner(drawn_.pen, drawn_.place.banner, model);
+        expect_whole(headline);
+    }
+}
+
+TEST_P(WordsInPlace, HeaderAndTableHaveRoom) {
+    OperatorModel model = test::fake_model();
+    model.case_title = model.case_plan = model.case_subtitle = "E. M.";
+    for (const char* side : {"LEFT", "RIGHT", "BOTH SIDES", "MIDDLE"})
+        for (const StepState state : {StepState::active, StepState::attention, StepState::done}) {
+            model.case_side = side;
+            model.steps.fill(state);
+            model.simulated = true;
+            draw_header(drawn_.pen, drawn_.place, model);
+            expect_whole(side);
+        }
+    for (PlanRow& row : model.rows) row.name = "B";
+    model.evidence.clear();
+    draw_table(drawn_.pen, drawn_.place.table, model, 0, false);
+    expect_whole("table");
+    CameraPicture camera{"Right camera", {}, 0, "no picture yet", {}};
+    draw_camera(drawn_.pen, drawn_.place.left_camera, camera, false, nullptr);
+    expect_whole("camera");
+}
+
+}  // namespace
+}  // namespace planlight
