@@ -43,7 +43,8 @@ void sync_folder(const fs::path& folder) {
     const int failed = ::fsync(descriptor), code = errno;
     ::close(descriptor);
     errno = code;
-    if (failed != 0 && code != EINVAL) refuse(folder, "cannot be synced to the disk");  // EINVAL: some shares cannot
+    const bool unknown_there = code == EINVAL || code == ENOTSUP || code == ENOSYS;  // some shares cannot
+    if (failed != 0 && !unknown_there) refuse(folder, "cannot be synced to the disk");
 }
 
 /// The folder is for its owner only; one that is there already stays as it is.
