@@ -144,7 +144,7 @@ TEST_F(CommandsTest, AWindowWithoutADisplayIsADeviceError) {
     if (std::getenv("DISPLAY")) GTEST_SKIP() << "there is a display";
     prepared();
     const auto run = run_planlight("review case", root());
-    expect_one_clear_sentence(run, 5, "DISPLAY");
+    expect_one_clear_sentence(run, 5, "--picture");
 }
 
 }  // namespace
