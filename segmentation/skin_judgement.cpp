@@ -195,13 +195,16 @@ void judge_steps(const Volume& volume, SkinJudgement& r) {
 }
 
 void judge_cuts(SkinJudgement& r) {
+    std::string sides;
+    int count = 0;
     for (const CutSide& side : r.cut_sides)
-        if (!side.usual)
-            add(r.doubts,
-                fmt::format(
-                    "The volume ends within the head: the {} is cut off over {:.0f} square cm, which is no skin",
-                    side.name, side.area_cm2),
-                "Scan, match and draw elsewhere, or give a series that shows the whole head.");
+        if (!side.usual) {
+            sides += fmt::format("{}the {} ({:.0f} square cm)", count == 0 ? "" : ", ", side.name, side.area_cm2);
+            ++count;
+        }
+    if (count > 0)
+        add(r.doubts, fmt::format("The volume ends within the head: it cuts off {}; what lies there is no skin", sides),
+            "Scan, match and draw elsewhere, or give a series that shows the whole head.");
 }
 
 }  // namespace

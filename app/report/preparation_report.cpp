@@ -161,6 +161,8 @@ std::string views_html(const Preparation& done, const PreparationPictures& pictu
         html += figures_in_a_row({pictures.views.begin(), pictures.views.begin() + 4}, 4);
     else
         html += fmt::format("<p class=\"look\">{}</p>", xml_escaped(pictures.no_views));
+    if (!cut_sides_of(done.judgement).empty())
+        html += "<p class=\"muted\">Grey on the skin: where the scan ends within the head; that is no skin.</p>";
     if (done.on_given_surface)
         return html + (pictures.views.size() > 4 ? figures_in_a_row({pictures.views[4]}, 4) : "") +
                "<p>The surface was given: nothing was thrown away here.</p>";

@@ -4,9 +4,11 @@
 // or silent where a warning is due; or refused where all is well.
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <random>
 
 #include "planning_io/files/image_file.h"
 #include "planning_io/volume/read_volume.h"
@@ -24,6 +26,21 @@ bool is_as_due(const SkinScore& score, Fate fate) {
     if (fate == Fate::said) return score.refused || score.doubted;
     if (fate == Fate::not_bad) return !score.taken_wrongly();
     return !score.refused && score.off_percent <= 1;
+}
+
+/// A CT as a scanner blurs it, weights 1 2 1 along each axis, with noise of 12 HU: what was drawn into it has no edges
+/// of a voxel's sharpness, and air not one value.
+Volume blurred(Volume ct) {
+    const std::array<std::size_t, 3> strides{1, ct.index(0, 1, 0), ct.index(0, 0, 1)};
+    for (const std::size_t stride : strides) {
+        const std::vector<float> before = ct.values;
+        for (std::size_t v = stride; v + stride < before.size(); ++v)
+            ct.values[v] = (before[v - stride] + 2 * before[v] + before[v + stride]) / 4;
+    }
+    std::mt19937 random(1);
+    std::normal_distribution<float> noise(0, 12);
+    for (float& value : ct.values) value += noise(random);
+    return ct;
 }
 
 std::string word_for(const SkinScore& score) {
@@ -58,7 +75,7 @@ int main(int argc, char** argv) {
         if (as_ct ? strange.only_mr : strange.only_ct) continue;
         const StrangeHead head = strange.make();
         for (std::uint32_t seed = first; seed < (as_ct ? first + 1 : first + count); ++seed) {
-            const MrDraw draw = as_ct ? MrDraw{head.ct, "CT"}
+            const MrDraw draw = as_ct ? MrDraw{strange.sharp ? head.ct : blurred(head.ct), "CT"}
                                       : mr_like(head.ct, head.body, seed,
                                                 {.least_mm = 1.1, .coil = strange.coil, .contrast = strange.contrast});
             const SkinScore score = score_of(draw.volume, head.skin);

@@ -265,6 +265,7 @@ void add_what_a_ct_shows(Cases& of) {
         if (std::hypot(p.x(), p.y() + 0.4 * r) > r) hu = kAir_hu;
         return out <= 0;
     });
+    of.all.back().sharp = true;
     of.in_ct("darker is denser", Fate::refused, [](const Vector3d&, double out, double, float& hu) {
         hu = -hu - 900;
         return out <= 0;

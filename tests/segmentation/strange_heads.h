@@ -34,6 +34,7 @@ struct StrangeCase {
     double coil = 0;                                    ///< brightest to darkest place along the head; 0: as drawn
     std::optional<MrContrast> contrast = std::nullopt;  ///< else the seed's
     bool only_mr = false, only_ct = false;
+    bool sharp = false;  ///< a CT that shows what was drawn as it was drawn
 };
 
 /// Of a head in HU with its body and skin (which must outlive the cases): children, hair with gel, electrodes,
