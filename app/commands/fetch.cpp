@@ -73,7 +73,7 @@ int run_fetch(const FetchOptions& options) {
     const auto found = find_series(archive, options.query);
     if (found.empty())
         throw InputError({}, fmt::format("the archive {} finds no such series", archive.name()),
-                         "Look for less, or for something with * in it.");
+                         "Leave out what you are not sure of, or write * in its place.");
     if (options.out.empty()) {
         print_found(found, options.json);
         return 0;

@@ -69,9 +69,10 @@ std::vector<std::string> store_objects(const DicomPeer& peer, const std::vector<
         const OFCondition sent = association.sendSTORERequest(context, one.file.c_str(), nullptr, status);
         if (sent.bad()) {
             if (stored > 0 || !refused.empty())
-                throw CheckFailedError(fmt::format("The DICOM archive {} took {} of {} objects, then: {}", peer.name(),
-                                                   stored, objects.size(), sent.text()),
-                                       "Send all of them again: what it has already is the same object to it.");
+                throw DeviceError(
+                    "The DICOM archive " + peer.name(),
+                    fmt::format("took {} of {} objects, then was gone: {}", stored, objects.size(), sent.text()),
+                    "Send all of them again: what it has already is the same object to it.");
             association.check(sent);
         }
         if (status != STATUS_Success && !is_warning(status)) {

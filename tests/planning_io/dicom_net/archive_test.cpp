@@ -168,7 +168,7 @@ TEST_F(Archive, WhatWasCutIsStoredWholeTheNextTime) {
         try {
             store_objects(cut, files_);
             FAIL() << "the line was cut";
-        } catch (const CheckFailedError& fault) {
+        } catch (const DeviceError& fault) {
             EXPECT_NE(std::string(fault.what()).find("of 24 objects"), std::string::npos) << fault.what();
         }
     }
