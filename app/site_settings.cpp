@@ -54,7 +54,7 @@ SiteSettings read_site_settings() {
     const Json json = parse_json(read_whole(file), file);
     const JsonValue root(json, file);
     check_format(root, "planlight config", 1, file);
-    root.has_only({"format", "version", "units", "surgeon_side", "monitors", "language", "openigtlink"});
+    root.has_only({"format", "version", "units", "surgeon_side", "monitors", "language", "openigtlink", "dicom"});
     if (const auto units = root.find("units")) site.units = one_of(*units, kUnits);
     if (const auto side = root.find("surgeon_side")) site.surgeon_side = one_of(*side, kSides);
     if (const auto language = root.find("language")) site.language = language->text();
@@ -66,6 +66,13 @@ SiteSettings read_site_settings() {
     if (const auto link = root.find("openigtlink")) {
         link->has_only({"names"});
         if (const auto names = link->find("names")) site.openigtlink_names = names->flag();
+    }
+    if (const auto archive = root.find("dicom")) {
+        archive->has_only({"own_title", "host", "port", "title"});
+        if (const auto title = archive->find("own_title")) site.archive.own_title = title->text();
+        if (const auto host = archive->find("host")) site.archive.host = host->text();
+        if (const auto port = archive->find("port")) site.archive.port = static_cast<int>(port->integer(1, 65535));
+        if (const auto title = archive->find("title")) site.archive.title = title->text();
     }
     site.read_from = file;
     return site;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "planning_io/dicom_net/dicom_peer.h"
 #include "projection/draw_plan.h"
 
 namespace planlight {
@@ -11,7 +12,8 @@ namespace planlight {
 /// What a site sets once, in planlight/config.json under $XDG_CONFIG_HOME (~/.config where that is not set):
 /// {"format": "planlight config", "version": 1, "units": "mm" | "cm" | "inch", "surgeon_side": "feet" | "head" | "left"
 /// | "right" | "view", "monitors": {"operator": "DP-1", "projector": "HDMI-2"}, "language": "de",
-/// "openigtlink": {"names": true}}. Every name but the first two may be missing.
+/// "openigtlink": {"names": true}, "dicom": {"own_title": "PLANLIGHT", "host": "pacs", "port": 104, "title": "PACS"}}.
+/// Every name but the first two may be missing.
 struct SiteSettings {
     /// Unit of the lengths that commands print for a person. Files, JSON, windows and the light stay in mm.
     std::string units = "mm";
@@ -21,6 +23,7 @@ struct SiteSettings {
     std::string language = "en";                      ///< of the operator's windows (app/words/README.md)
     std::string operator_monitor, projector_monitor;  ///< names; empty: not set. An option of a command overrides them
     bool openigtlink_names = false;   ///< `session --igtl` says names of patient, case and plan to whoever listens
+    DicomPeer archive;                ///< that `fetch` and `store` talk with; what is not set is as `DicomPeer` has it
     std::filesystem::path read_from;  ///< empty: there is no such file, and these are the defaults
 };
 

@@ -29,7 +29,7 @@ struct SkinJudgement {
     double nose_mm = 0;          ///< how far the nose stands out before the cheeks
     double edge_blur_mm = 0;     ///< median way from 20 to 80 % of the step from air to skin
     double gap_cm2 = 0;          ///< of skin under which air is again (a mask, a cushion, a cloth)
-    double boneless_cm2 = 0;     ///< of an MR: patch of the upper head with no bone within 16 mm (a shining cushion)
+    double boneless_cm2 = 0;     ///< patch of the upper head with no bone within 16 mm (a shining cushion)
     double one_sided_cm2 = NAN;  ///< `ThingsOnSkin`, and the next three
     double bumps_cm2 = NAN;
     double width = NAN;

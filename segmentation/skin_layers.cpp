@@ -170,10 +170,11 @@ Layer bone_of(const Sample& s, double brain) {
 }
 
 /// The largest area of samples without bone that have hardly any with bone within kPatch_mm: share of all samples.
-double boneless_share(const std::vector<Sample>& samples, double brain) {
+template <typename HasBone>
+double boneless_share(const std::vector<Sample>& samples, HasBone&& has_bone) {
     std::vector<Vector3d> boneless, bony;
     for (const Sample& s : samples)
-        if (s.upper) (bone_of(s, brain).dark ? bony : boneless).push_back(s.at_in_ct);
+        if (s.upper) (has_bone(s) ? bony : boneless).push_back(s.at_in_ct);
     const auto near = [](const std::vector<Vector3d>& all, const Vector3d& p) {
         return static_cast<double>(
             std::count_if(all.begin(), all.end(), [&](const Vector3d& q) { return (p - q).norm() < kPatch_mm; }));
@@ -230,8 +231,10 @@ SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const Triang
     layers.dip = levels.empty() ? NAN : median(std::move(levels));
     double area_cm2 = 0;
     for (const auto& t : skin.triangles) area_cm2 += area_in_ct(skin, t).norm() / 100;
-    if (!volume.is_hu && !layers.bright_bone && layers.layered_share > kLayeredAllOver)
-        layers.boneless_cm2 = area_cm2 * boneless_share(samples, brain);
+    if (!layers.bright_bone && layers.layered_share > kLayeredAllOver)
+        layers.boneless_cm2 = area_cm2 * boneless_share(samples, [&](const Sample& s) {
+                                  return volume.is_hu ? bone_in_hu(s) <= kBoneTo_mm : bone_of(s, brain).dark;
+                              });
     layers.gap_cm2 = samples.empty() || !volume.is_hu ? 0 : area_cm2 * off / static_cast<double>(samples.size());
     return layers;
 }

@@ -15,7 +15,7 @@ struct SkinLayers {
     double faint_share =
         0;  ///< of the vault: a layer that is darker than what lies over and under it, if only by a sixth
     bool air_is_blank = false;  ///< what lies before the skin shows one value and no noise
-    /// Of an MR: largest patch of the head's upper part where no bone lies within 16 mm of the skin, square cm; 0 where
+    /// Largest patch of the head's upper part where no bone lies within 16 mm of the skin, square cm; 0 where
     /// bone was not found all over.
     double boneless_cm2 = 0;
     double dip = 0;        ///< median of the darkest place 2 to 16 mm under the vault's skin, as a share of the brain

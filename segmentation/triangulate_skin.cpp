@@ -11,6 +11,7 @@
 #include <numeric>
 
 #include "planning_io/types/error.h"
+#include "segmentation/blanked_edges.h"
 #include "segmentation/decimate_skin.h"
 #include "segmentation/fill_tunnels.h"
 #include "segmentation/mr_skin_edge.h"
@@ -179,6 +180,7 @@ TriangleMesh triangulate_skin(const Volume& given, const SkinMask& mask, const S
     for (auto& p : mesh.vertices_in_ct) p = volume.ct_from_voxel * (p - Vector3d::Ones());
     if (mirrored)
         for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
+    flag_blanked_edges(mesh, given, mask.threshold_said);
     smooth_lids(mesh);
     mend_normals(mesh);
     if (volume.modality == "MR") move_to_edges(mesh, volume, mask.threshold);

@@ -34,6 +34,8 @@ Run add_replay(CLI::App& app);
 Run add_report(CLI::App& app);
 Run add_forget(CLI::App& app);
 Run add_export(CLI::App& app);
+Run add_fetch(CLI::App& app);
+Run add_store(CLI::App& app);
 Run add_simulate(CLI::App& app);
 Run add_merge(CLI::App& app);
 

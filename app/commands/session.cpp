@@ -135,11 +135,11 @@ std::unique_ptr<SessionLink> link_of(const SessionOptions& options, const Case& 
 
 /// Who is told of a session, for as long as it runs.
 struct Listeners {
+    std::unique_ptr<SessionLink> link;  // a port that is taken is said before a recording is begun
     Recorder recorder;
-    std::unique_ptr<SessionLink> link;
     SessionObservers all;
     Listeners(const SessionOptions& options, const Case& the_case, const SiteSettings& site)
-        : recorder(recorder_of(options, the_case, site)), link(link_of(options, the_case, site)) {
+        : link(link_of(options, the_case, site)), recorder(recorder_of(options, the_case, site)) {
         all.add(recorder.get());
         all.add(link.get());
     }

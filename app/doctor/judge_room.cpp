@@ -191,46 +191,49 @@ std::vector<DoctorLine> judge_picture(const PictureFigures& picture) {
     return lines;
 }
 
-std::vector<DoctorLine> judge_monitor(const MonitorFigures& monitor, const CameraModel& projector) {
-    const std::string remedy =
-        "Connect that projector, set its resolution back (`xrandr`), or calibrate and measure this one.";
-    if (!monitor.found)
-        return {line("projector, monitor", Health::stop, "there is no monitor " + monitor.wanted,
-                     "Connect the projector and switch it on; `planlight devices` lists what is there.")};
-    const Monitor& m = *monitor.found;
-    std::vector<DoctorLine> lines;
+namespace {
+
+constexpr const char* kOtherMonitor =
+    "Connect that projector, set its resolution back (`xrandr`), or calibrate and measure this one.";
+
+DoctorLine judge_mode(const Monitor& m, const CameraModel& projector, const ProjectorFacts& measured) {
     const std::string mode = fmt::format("{}: {} x {}{}", m.name, m.width, m.height,
                                          m.refresh_hz > 0 ? fmt::format(", {:g} Hz", m.refresh_hz) : "");
     const auto differs = [&](int width, int height) { return width > 0 && (m.width != width || m.height != height); };
     if (differs(projector.width, projector.height))
-        lines.push_back(
-            line("projector, mode", Health::stop,
-                 mode + fmt::format(", and the rig was calibrated with {} x {}", projector.width, projector.height),
-                 remedy));
-    else if (differs(monitor.measured.width, monitor.measured.height))
-        lines.push_back(line("projector, mode", Health::stop,
-                             mode + fmt::format(", and its delay was measured at {} x {}", monitor.measured.width,
-                                                monitor.measured.height),
-                             remedy));
-    else
-        lines.push_back(line("projector, mode", m.refresh_hz > 0 ? Health::good : Health::look,
-                             mode + (m.refresh_hz > 0 ? "" : ", refresh rate not told"),
-                             "Look in the projector's menu which refresh rate it runs at."));
-    const std::string is =
-        m.model.empty() && m.serial.empty() ? "it tells no name (EDID)" : fmt::format("{} {}", m.model, m.serial);
-    if (!monitor.measured.serial.empty() && !m.serial.empty() && m.serial != monitor.measured.serial)
-        lines.push_back(line("projector, identity", Health::stop,
-                             fmt::format("its serial is {}, and {} was measured", m.serial, monitor.measured.serial),
-                             remedy));
-    else if (!monitor.measured.monitor.empty() && m.name != monitor.measured.monitor)
-        lines.push_back(
-            line("projector, identity", Health::stop,
-                 fmt::format("it is connected to {}, and {} was measured", m.name, monitor.measured.monitor), remedy));
-    else
-        lines.push_back(line("projector, identity", Health::good, is, {}));
-    lines.push_back(line("projector, window", monitor.covered ? Health::good : Health::stop,
-                         monitor.covered ? "covers its monitor exactly" : monitor.problem, monitor.remedy));
-    return lines;
+        return line("projector, mode", Health::stop,
+                    mode + fmt::format(", and the rig was calibrated with {} x {}", projector.width, projector.height),
+                    kOtherMonitor);
+    if (differs(measured.width, measured.height))
+        return line("projector, mode", Health::stop,
+                    mode + fmt::format(", and its delay was measured at {} x {}", measured.width, measured.height),
+                    kOtherMonitor);
+    return line("projector, mode", m.refresh_hz > 0 ? Health::good : Health::look,
+                mode + (m.refresh_hz > 0 ? "" : ", refresh rate not told"),
+                "Look in the projector's menu which refresh rate it runs at.");
+}
+
+DoctorLine judge_identity(const Monitor& m, const ProjectorFacts& measured) {
+    if (!measured.serial.empty() && !m.serial.empty() && m.serial != measured.serial)
+        return line("projector, identity", Health::stop,
+                    fmt::format("its serial is {}, and {} was measured", m.serial, measured.serial), kOtherMonitor);
+    if (!measured.monitor.empty() && m.name != measured.monitor)
+        return line("projector, identity", Health::stop,
+                    fmt::format("it is connected to {}, and {} was measured", m.name, measured.monitor), kOtherMonitor);
+    const bool nameless = m.model.empty() && m.serial.empty();
+    return line("projector, identity", Health::good,
+                nameless ? "it tells no name (EDID)" : fmt::format("{} {}", m.model, m.serial), {});
+}
+
+}  // namespace
+
+std::vector<DoctorLine> judge_monitor(const MonitorFigures& monitor, const CameraModel& projector) {
+    if (!monitor.found)
+        return {line("projector, monitor", Health::stop, "there is no monitor " + monitor.wanted,
+                     "Connect the projector and switch it on; `planlight devices` lists what is there.")};
+    return {judge_mode(*monitor.found, projector, monitor.measured), judge_identity(*monitor.found, monitor.measured),
+            line("projector, window", monitor.covered ? Health::good : Health::stop,
+                 monitor.covered ? "covers its monitor exactly" : monitor.problem, monitor.remedy)};
 }
 
 std::vector<DoctorLine> judge_delay(const DelayFigures& delay) {

@@ -66,8 +66,8 @@ void SessionLink::run(LinkedValues told) {
     LinkedValues next;
     auto heard_at = SteadyClockOfWall::now(), said_at = heard_at;
     bool stale = false;
+    const auto longest = std::min(settings_.alive_every, settings_.stale_after) / 4;
     while (!ending_) {
-        server_.turn(std::min(settings_.alive_every, settings_.stale_after) / 4);
         const auto at = SteadyClockOfWall::now();
         if (mailbox_.take(next)) {
             set_messages(server_, next, stale ? nullptr : &told);
@@ -81,9 +81,11 @@ void SessionLink::run(LinkedValues told) {
             set_gate_message(server_, told, utc_now_s());
             said_at = at;
         } else {
+            server_.turn(longest);  // a word of the session ends it
             continue;
         }
         server_.turn(std::chrono::milliseconds(0));
+        if (stale) server_.turn(longest);
     }
 }
 

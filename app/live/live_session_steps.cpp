@@ -120,10 +120,10 @@ void LiveSession::confirm_light(Session& session) {
     landmark_lit_from_.reset();
     cannot_verify_.clear();
     if (landmarks_to_look_at_ < kLandmarksToVerify) {
-        cannot_verify_ = fmt::format(
-            "{} of the two places to look at can be lit and seen by both cameras. Uncover more of the head or turn it, "
-            "and scan again.",
-            landmarks_to_look_at_ == 0 ? "None" : "Only one");
+        cannot_verify_ =
+            std::string(landmarks_to_look_at_ == 0 ? "None" : "Only one") +
+            " of the two places to look at can be lit and seen by both cameras, so the light cannot be verified. "
+            "Uncover more of the head or turn it, and scan again.";
         happened(SessionHappening::landmarks_seen);
     } else if (++landmark_ < landmarks_to_look_at_) {
         session.light_landmark(static_cast<std::size_t>(landmark_));
@@ -173,7 +173,7 @@ void LiveSession::light_item(Session& session) {
 void LiveSession::show_verification(const Session::Update& update, LightGate::Ruling& ruling) {
     if (!update.overlay.lit) landmark_lit_from_.reset();
     if (landmark_ < 0 && !cannot_verify_.empty() && update.overlay.lit && !ruling.stop)
-        ruling.details.insert(ruling.details.begin(), "The light cannot be verified: " + cannot_verify_);
+        ruling.details.insert(ruling.details.begin(), cannot_verify_);
     if (landmark_ < 0 || !update.overlay.lit || ruling.stop) return;
     if (!landmark_lit_from_) landmark_lit_from_ = update.overlay.lit_from;
     std::erase_if(ruling.details, [](const std::string& detail) {  // that has been done

@@ -1,7 +1,7 @@
 // Strange heads and what is no head, as an MR of the example patient would show them: taken rightly, said, refused, or
-// wrong. measure_strange_heads FIRST_SEED COUNT [--only WORD] [--pictures FOLDER] [--ct VOLUME]. Wrong: taken without a
-// warning with more than 1 % of the true skin further than 2 mm off; or silent where a warning is due; or refused where
-// all is well.
+// wrong. measure_strange_heads FIRST_SEED COUNT [--only WORD] [--pictures FOLDER] [--ct VOLUME] [--as ct]. --as ct: the
+// CT itself is judged, once. Wrong: taken without a warning with more than 1 % of the true skin further than 2 mm off;
+// or silent where a warning is due; or refused where all is well.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
     for (int a = 3; a + 1 < argc; a += 2) options[argv[a]] = argv[a + 1];
     if (argc < 3 || (!options.contains("--ct") && !example_patient())) {
         fmt::print(stderr,
-                   "measure_strange_heads FIRST_SEED COUNT [--only WORD] [--pictures FOLDER] [--ct VOLUME]; "
+                   "measure_strange_heads FIRST_SEED COUNT [--only WORD] [--pictures FOLDER] [--ct VOLUME] [--as ct]; "
                    "without --ct it needs Debian's invesalius-examples\n");
         return 2;
     }
@@ -54,9 +54,13 @@ int main(int argc, char** argv) {
     int all = 0, wrong = 0;
     for (const StrangeCase& strange : strange_heads_of(ct, body, skin)) {
         if (strange.name.find(options["--only"]) == std::string::npos) continue;
+        const bool as_ct = options["--as"] == "ct";
+        if (as_ct ? strange.only_mr : strange.only_ct) continue;
         const StrangeHead head = strange.make();
-        for (std::uint32_t seed = first; seed < first + count; ++seed) {
-            const MrDraw draw = mr_like(head.ct, head.body, seed, {.least_mm = 1.1, .coil = strange.coil});
+        for (std::uint32_t seed = first; seed < (as_ct ? first + 1 : first + count); ++seed) {
+            const MrDraw draw = as_ct ? MrDraw{head.ct, "CT"}
+                                      : mr_like(head.ct, head.body, seed,
+                                                {.least_mm = 1.1, .coil = strange.coil, .contrast = strange.contrast});
             const SkinScore score = score_of(draw.volume, head.skin);
             const bool right = is_as_due(score, strange.fate);
             ++all;

@@ -17,13 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Signal of fat, of muscle and skin, of brain, of fluid, of bone; the fluid is unknown to a CT, its share is the
-/// bones' rims'.
-struct Contrast {
-    const char* name;
-    float fat, soft, bone;
-};
-constexpr std::array<Contrast, 4> kContrasts{
+constexpr std::array<MrContrast, 4> kContrasts{
     {{"T1", 1.0F, 0.45F, 0.06F}, {"T2", 0.7F, 0.4F, 0.04F}, {"FLAIR", 0.8F, 0.45F, 0.05F}, {"PD", 0.8F, 0.7F, 0.08F}}};
 
 /// Fat and all else apart, because the scanner shifts fat.
@@ -31,7 +25,7 @@ struct Signals {
     Volume fat, water;
 };
 
-Signals signals_of(const Volume& ct, const SkinMask& body, const Contrast& contrast) {
+Signals signals_of(const Volume& ct, const SkinMask& body, const MrContrast& contrast) {
     Signals s{ct, ct};
     const VoxelGrid grid = grid_of(ct);
     for (std::size_t v = 0; v < ct.values.size(); ++v) {
@@ -83,7 +77,7 @@ MrDraw mr_like(const Volume& ct, const SkinMask& body, std::uint32_t seed, const
     const auto uniform = [&](double from, double to) {
         return std::uniform_real_distribution<double>(from, to)(random);
     };
-    const Contrast& contrast = kContrasts[seed % kContrasts.size()];
+    const MrContrast contrast = look.contrast.value_or(kContrasts[seed % kContrasts.size()]);
     const Signals signals = signals_of(ct, body, contrast);
     Vector3d spacing = Vector3d::Constant(uniform(look.least_mm, 2.0));
     double slice_mm = spacing.z();  // of what is measured of each step: the rest is a gap

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "planning_io/types/volume.h"
@@ -14,10 +15,17 @@ struct MrDraw {
     std::string said;  ///< contrast, voxel, noise, bias ...
 };
 
+/// Signal of fat, of all other soft tissue, and of bone.
+struct MrContrast {
+    const char* name = "";
+    float fat = 1, soft = 1, bone = 0;
+};
+
 /// What is not drawn.
 struct MrLook {
-    double least_mm = 0.8;  ///< of a voxel
-    double coil = 0;        ///< brightest to darkest place; 0: drawn up to 3
+    double least_mm = 0.8;               ///< of a voxel
+    double coil = 0;                     ///< brightest to darkest place; 0: drawn up to 3
+    std::optional<MrContrast> contrast;  ///< else T1, T2, FLAIR or PD by the seed
 };
 
 /// Dark bone, bright fat (T1), bright water (T2), dark water (FLAIR) or all alike (PD), 0.8 to 2 mm (thick slices with

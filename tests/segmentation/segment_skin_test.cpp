@@ -294,5 +294,47 @@ TEST(SegmentSkin, ReportsProgressToTheEnd) {
     EXPECT_TRUE(rises);
 }
 
+/// Whether a vertex lies where the scan of `synthetic_scan` ends below.
+bool is_below(const Vector3d& p) {
+    return p.z() < kCutZ_mm - 0.01;
+}
+
+TEST(TriangulateSkin, TakesTheEndOfARoundFieldOfViewForNoSkin) {
+    constexpr double kView_mm = 65;  // of the axis; the head is wider behind and at the sides
+    Volume scan = bare().scan;
+    for (int k = 0; k < scan.size[2]; ++k)
+        for (int j = 0; j < scan.size[1]; ++j)
+            for (int i = 0; i < scan.size[0]; ++i)
+                if ((scan.ct_from_voxel * Vector3d(i, j, k)).head<2>().norm() > kView_mm)
+                    scan.values[scan.index(i, j, k)] = -1000;  // as padding is read
+    const SkinMask mask = segment_skin(scan);
+    const TriangleMesh skin = triangulate_skin(scan, mask);
+    std::size_t ends = 0, misplaced = 0, wall = 0, missed = 0;
+    for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
+        const Vector3d& p = skin.vertices_in_ct[v];
+        if (is_below(p)) continue;
+        const bool end = skin.flags[v] == kCutPlane, on_wall = std::abs(p.head<2>().norm() - kView_mm) < 1.3,
+                   in_head = analytic_head_distance(p) < -4;
+        ends += end;
+        misplaced += end && !on_wall;
+        wall += on_wall && in_head;
+        missed += on_wall && in_head && !end;
+    }
+    EXPECT_GT(wall, 1000U);
+    EXPECT_LT(missed, wall / 20);     // where the wall is a narrow strip
+    EXPECT_LT(misplaced, ends / 20);  // at its rim
+}
+
+TEST(TriangulateSkin, TakesNoSkinForABlankedEdgeWhereAirShowsOneValue) {
+    Volume scan = bare().scan;
+    for (float& value : scan.values)
+        if (value < -940) value = -1000;
+    const TriangleMesh skin = triangulate_skin(scan, segment_skin(scan));
+    std::size_t ends = 0;
+    for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v)
+        ends += skin.flags[v] == kCutPlane && !is_below(skin.vertices_in_ct[v]);
+    EXPECT_EQ(ends, 0U);
+}
+
 }  // namespace
 }  // namespace planlight::test

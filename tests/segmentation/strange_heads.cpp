@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <numbers>
 
 #include "segmentation/head_survey.h"
 #include "segmentation/skin_shape.h"
@@ -49,6 +50,17 @@ public:
         return head;
     }
 
+    /// Turned about the skull's middle.
+    StrangeHead turned(double degrees, const Vector3d& about) const {
+        StrangeHead head{ct_, body_, skin_};
+        const Eigen::Affine3d turn = Eigen::Translation3d(ball_.centre_in_ct) *
+                                     Eigen::AngleAxisd(degrees * std::numbers::pi / 180, about.normalized()) *
+                                     Eigen::Translation3d(-ball_.centre_in_ct);
+        head.ct.ct_from_voxel = turn * ct_.ct_from_voxel;
+        for (auto& p : head.skin.vertices_in_ct) p = turn * p;
+        return head;
+    }
+
 private:
     const Volume& ct_;
     const SkinMask& body_;
@@ -91,6 +103,19 @@ public:
     void scaled(const std::string& name, Fate fate, double by, double coil = 0) {
         all.push_back({name, fate, [of = of_, by] { return of->scaled(by); }, coil});
     }
+    void turned(const std::string& name, double degrees, const Vector3d& about) {
+        all.push_back({name, Fate::right, [of = of_, degrees, about] { return of->turned(degrees, about); }});
+    }
+    void in_contrast(const std::string& name, Fate fate, const MrContrast& contrast) {
+        StrangeCase strange{name, fate, [of = of_] { return of->scaled(1); }};
+        strange.contrast = contrast;
+        strange.only_mr = true;
+        all.push_back(std::move(strange));
+    }
+    void in_ct(const std::string& name, Fate fate, Maker::Change change) {
+        made(name, fate, std::move(change));
+        all.back().only_ct = true;
+    }
     void solid(const std::string& name, std::function<bool(const Vector3d&)> inside) {
         made(name, Fate::refused, [inside = std::move(inside)](const Vector3d& p, double, double, float& hu) {
             hu = inside(p) ? kWet_hu : kAir_hu;
@@ -118,6 +143,9 @@ void add_things_that_lie_on_it(Cases& of) {
     of.with("cushion behind the neck", Fate::said, [r](const Vector3d& p, double out) {
         return p.y() > 0 && out < 40 && std::abs(p.x()) < 70 && p.z() < -0.6 * r;
     });
+    of.with("pads of 12 mm at both temples", Fate::said, [r](const Vector3d& p, double out) {
+        return out < 12 && std::hypot(p.y(), p.z() - 0.1 * r) < 45 && std::abs(p.x()) > 0.5 * r;
+    });
     of.with("cushion on the face", Fate::said,
             [r](const Vector3d& p, double out) { return p.y() < -0.5 * r && out < 40 && p.z() < 0.2 * r; });
     of.with("wet bandage round the forehead", Fate::said,
@@ -126,6 +154,7 @@ void add_things_that_lie_on_it(Cases& of) {
             [r](const Vector3d& p, double out) { return out > 10 && out < 16 && p.y() > -0.5 * r && p.z() < 0.3 * r; });
     of.with("shell of a coil, 25 mm off", Fate::right,
             [](const Vector3d&, double out) { return out > 25 && out < 28; });
+    of.all.back().only_mr = true;  // a CT's air does not get in under a closed one: refused
     of.with("head phones filled with gel", Fate::said, [](const Vector3d& p, double out) {
         return std::hypot(p.y(), p.z() + 30) < 40 && out < 28 && std::abs(p.x()) > 40;
     });
@@ -152,6 +181,16 @@ void add_what_is_missing(Cases& of) {
     of.made("mouth full of metal", Fate::not_bad, [r](const Vector3d& p, double out, double, float& hu) {
         if ((p - Vector3d(0, -1.1 * r, -1.2 * r)).norm() < 45) hu = kAir_hu;
         return out <= 0 && hu > -900;
+    });
+    of.made("valve that wipes out the scalp beside it", Fate::not_bad,
+            [r](const Vector3d& p, double out, double, float& hu) {
+                const bool wiped = (p - Vector3d(0.75 * r, 0.6 * r, 0.4 * r)).norm() < 32;
+                if (wiped) hu = kAir_hu;
+                return out <= 0 && !wiped;
+            });
+    of.made("fontanelle and thin bone", Fate::not_bad, [r](const Vector3d& p, double out, double depth, float& hu) {
+        if (hu > 130 && (depth > 8 || (p - Vector3d(0, -0.3 * r, 1.0 * r)).norm() < 35)) hu = kWet_hu;
+        return out <= 0;
     });
     of.made("face taken away", Fate::said, [r](const Vector3d& p, double out, double, float& hu) {
         const bool face = p.y() < -0.55 * r - 0.5 * (p.z() + 0.2 * r) && p.z() < 0;
@@ -182,6 +221,56 @@ void add_no_heads(Cases& of) {
     });
 }
 
+void add_heads_askew(Cases& of) {
+    of.turned("chin on the chest, 30 degrees", -30, {1, 0, 0});
+    of.turned("chin up, 30 degrees", 30, {1, 0, 0});
+    of.turned("leaning to the side, 30 degrees", 30, {0, 1, 0});
+    of.turned("looking aside, 40 degrees", 40, {0, 0, 1});
+    of.turned("on its side", 90, {0, 0, 1});
+    of.turned("on its face", 180, {0, 0, 1});
+}
+
+void add_rare_contrasts(Cases& of) {
+    of.in_contrast("fat is dark", Fate::not_bad, {"fat-suppressed", 0.08F, 0.5F, 0.04F});
+    of.in_contrast("bone shines half", Fate::not_bad, {"UTE", 0.8F, 0.7F, 0.4F});
+    of.in_contrast("blood alone is bright", Fate::not_bad, {"ToF", 0.35F, 0.22F, 0.03F});
+}
+
+void add_what_a_ct_shows(Cases& of) {
+    const double r = of.radius_mm();
+    of.in_ct("metal teeth with streaks", Fate::not_bad, [r](const Vector3d& p, double out, double, float& hu) {
+        const Vector3d q = p - Vector3d(0, -0.9 * r, -0.95 * r);
+        if (std::abs(q.z()) > 6) return out <= 0;
+        const double turn = std::atan2(q.y(), q.x()), far = q.head<2>().norm();
+        hu += static_cast<float>(900 * std::cos(24 * turn) * std::exp(-far / 60));
+        if (far < 8) hu = 3000;
+        return out <= 0;
+    });
+    of.in_ct("posts and pins of a frame", Fate::not_bad, [](const Vector3d& p, double out, double depth, float& hu) {
+        const double aside = std::abs(p.x()), back = std::abs(p.y());
+        if (std::hypot(aside - 105, back - 95) < 8) hu = 2500;
+        const double along = (aside * 105 + back * 95) / 141.6, across = std::abs(aside * 95 - back * 105) / 141.6;
+        if (std::hypot(across, p.z() - 20) < 3.5 && along > 20 && along < 145 && depth < 8) hu = 2500;
+        return out <= 0;
+    });
+    of.in_ct("bun of wet hair", Fate::said, [r](const Vector3d& p, double out, double, float& hu) {
+        if (out > 0 && (p - Vector3d(0, 1.25 * r, 0.5 * r)).norm() < 35) hu = -300;
+        return out <= 0;
+    });
+    of.in_ct("gauze round the forehead", Fate::said, [r](const Vector3d& p, double out, double, float& hu) {
+        if (out > 0 && out < 8 && p.z() > 0.2 * r && p.z() < 0.7 * r) hu = -350;
+        return out <= 0;
+    });
+    of.in_ct("round field of view", Fate::not_bad, [r](const Vector3d& p, double out, double, float& hu) {
+        if (std::hypot(p.x(), p.y() + 0.4 * r) > r) hu = kAir_hu;
+        return out <= 0;
+    });
+    of.in_ct("darker is denser", Fate::refused, [](const Vector3d&, double out, double, float& hu) {
+        hu = -hu - 900;
+        return out <= 0;
+    });
+}
+
 }  // namespace
 
 std::vector<StrangeCase> strange_heads_of(const Volume& ct, const SkinMask& body, const TriangleMesh& skin) {
@@ -195,6 +284,9 @@ std::vector<StrangeCase> strange_heads_of(const Volume& ct, const SkinMask& body
     add_things_that_lie_on_it(of);
     add_what_is_missing(of);
     add_no_heads(of);
+    add_heads_askew(of);
+    add_rare_contrasts(of);
+    add_what_a_ct_shows(of);
     return std::move(of.all);
 }
 

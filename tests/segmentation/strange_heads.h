@@ -1,12 +1,14 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "planning_io/types/triangle_mesh.h"
 #include "planning_io/types/volume.h"
 #include "segmentation/segment_skin.h"
+#include "tests/segmentation/mr_like.h"
 
 namespace planlight::test {
 
@@ -29,12 +31,14 @@ struct StrangeCase {
     std::string name;
     Fate fate = Fate::right;
     std::function<StrangeHead()> make;
-    double coil = 0;  ///< brightest to darkest place along the head; 0: as drawn
+    double coil = 0;                                    ///< brightest to darkest place along the head; 0: as drawn
+    std::optional<MrContrast> contrast = std::nullopt;  ///< else the seed's
+    bool only_mr = false, only_ct = false;
 };
 
 /// Of a head in HU with its body and skin (which must outlive the cases): children, hair with gel, electrodes,
 /// cushions, bandages, blankets, head phones, masks, coils on one side, a flap of bone that is out, a mouth full of
-/// metal, and what is no head.
+/// metal, heads that lie askew, rare contrasts, metal in a CT, and what is no head.
 std::vector<StrangeCase> strange_heads_of(const Volume& ct, const SkinMask& body, const TriangleMesh& skin);
 
 }  // namespace planlight::test

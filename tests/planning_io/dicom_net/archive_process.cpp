@@ -1,0 +1,147 @@
+#include "tests/planning_io/dicom_net/archive_process.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <fstream>
+
+#include "planning_io/types/error.h"
+
+namespace planlight::test {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+constexpr const char* kOrthanc = "/usr/sbin/Orthanc";
+
+sockaddr_in this_computer(int port) {
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<std::uint16_t>(port));
+    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+    return address;
+}
+
+int listen_somewhere(int& port) {
+    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address = this_computer(0);
+    socklen_t size = sizeof(address);
+    if (::bind(socket, reinterpret_cast<sockaddr*>(&address), size) != 0 || ::listen(socket, 4) != 0 ||
+        ::getsockname(socket, reinterpret_cast<sockaddr*>(&address), &size) != 0)
+        throw std::runtime_error("no free port");
+    port = ntohs(address.sin_port);
+    return socket;
+}
+
+/// False where nothing is left to be passed on, or not any more.
+bool pass_on(int from, int to, std::size_t& left) {
+    std::array<char, 4096> bytes{};
+    const ssize_t got = ::recv(from, bytes.data(), std::min(bytes.size(), left), 0);
+    if (got <= 0) return false;
+    left -= static_cast<std::size_t>(got);
+    return ::send(to, bytes.data(), static_cast<std::size_t>(got), MSG_NOSIGNAL) == got && left > 0;
+}
+
+}  // namespace
+
+int free_port() {
+    int port = 0;
+    ::close(listen_somewhere(port));
+    return port;
+}
+
+bool answers_soon(const DicomPeer& peer) {
+    for (int attempt = 0; attempt < 300; ++attempt) {
+        try {
+            ask_whether_it_answers(peer);
+            return true;
+        } catch (const Error&) {  // it is still starting
+            std::this_thread::sleep_for(100ms);
+        }
+    }
+    return false;
+}
+
+RunningProgram::RunningProgram(const std::vector<std::string>& words, const fs::path& log) {
+    std::vector<char*> arguments;
+    for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+    arguments.push_back(nullptr);
+    process_ = ::fork();
+    if (process_ != 0) return;
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    const int out = ::open(log.c_str(), O_CREAT | O_WRONLY | O_TRUNC, 0600);
+    ::dup2(out, 1);
+    ::dup2(out, 2);
+    ::execv(arguments[0], arguments.data());
+    ::_exit(127);
+}
+
+RunningProgram::~RunningProgram() {
+    if (process_ <= 0) return;
+    ::kill(process_, SIGKILL);
+    ::waitpid(process_, nullptr, 0);
+}
+
+Orthanc::Orthanc(const fs::path& folder, int port) : storage_(folder / "storage") {
+    peer_.host = "127.0.0.1";
+    peer_.port = port;
+    peer_.title = "ARCHIVE";
+    peer_.patience = std::chrono::seconds(20);
+    fs::create_directories(storage_);
+    std::ofstream(folder / "orthanc.json") << fmt::format(
+        R"({{"Name": "test", "StorageDirectory": "{0}", "IndexDirectory": "{0}", "HttpServerEnabled": false,
+"DicomServerEnabled": true, "DicomAet": "ARCHIVE", "DicomCheckCalledAet": true, "DicomPort": {1},
+"DicomModalities": {{"planlight": ["PLANLIGHT", "127.0.0.1", 104]}}, "DicomAlwaysAllowEcho": false,
+"DicomAlwaysAllowStore": false, "Plugins": [], "MaximumStorageCacheSize": 0, "ConcurrentJobs": 1}})",
+        storage_.string(), port);
+    program_ = std::make_unique<RunningProgram>(std::vector<std::string>{kOrthanc, (folder / "orthanc.json").string()},
+                                                folder / "orthanc.log");
+}
+
+std::unique_ptr<Orthanc> Orthanc::start(const fs::path& folder) {
+    if (!fs::exists(kOrthanc)) return nullptr;
+    std::unique_ptr<Orthanc> archive(new Orthanc(folder, free_port()));
+    if (!answers_soon(archive->peer())) return nullptr;
+    return archive;
+}
+
+CutLine::CutLine(int to_port, std::size_t bytes_from_there, std::size_t bytes_to_there)
+    : listener_(listen_somewhere(port_)), thread_([=, this] { run(to_port, bytes_from_there, bytes_to_there); }) {}
+
+CutLine::~CutLine() {
+    ending_ = true;
+    thread_.join();
+    ::close(listener_);
+}
+
+void CutLine::run(int to_port, std::size_t from_there, std::size_t to_there) const {
+    while (!ending_) {
+        pollfd waiting{listener_, POLLIN, 0};
+        if (::poll(&waiting, 1, 20) <= 0) continue;
+        const int here = ::accept(listener_, nullptr, nullptr),
+                  there = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+        const sockaddr_in address = this_computer(to_port);
+        if (::connect(there, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0) {
+            std::size_t from_left = from_there, to_left = to_there;
+            for (bool open = true; open && !ending_;) {
+                std::array<pollfd, 2> lines{pollfd{here, POLLIN, 0}, pollfd{there, POLLIN, 0}};
+                if (::poll(lines.data(), lines.size(), 20) <= 0) continue;
+                if (lines[0].revents) open = pass_on(here, there, to_left);
+                if (open && lines[1].revents) open = pass_on(there, here, from_left);
+            }
+        }
+        ::close(here);
+        ::close(there);
+    }
+}
+
+}  // namespace planlight::test

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <sys/types.h>
+
+#include <atomic>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "planning_io/dicom_net/dicom_peer.h"
+
+namespace planlight::test {
+
+/// A port of this computer that nobody listens on.
+int free_port();
+
+/// Whether it answers within half a minute: a program takes a while to start.
+bool answers_soon(const DicomPeer& peer);
+
+/// A program that runs until the object ends.
+class RunningProgram {
+public:
+    RunningProgram(const std::vector<std::string>& words, const std::filesystem::path& log);
+    ~RunningProgram();
+    RunningProgram(const RunningProgram&) = delete;
+    RunningProgram& operator=(const RunningProgram&) = delete;
+
+private:
+    pid_t process_ = -1;
+};
+
+/// Debian's orthanc on a free port of this computer, empty, with a folder of its own. It is called ARCHIVE, knows
+/// PLANLIGHT alone and answers nobody else.
+class Orthanc {
+public:
+    /// Empty where the package orthanc is not installed, or it does not answer in half a minute.
+    static std::unique_ptr<Orthanc> start(const std::filesystem::path& folder);
+    const DicomPeer& peer() const { return peer_; }
+    /// Where it keeps the objects, a file each.
+    std::filesystem::path storage() const { return storage_; }
+
+private:
+    Orthanc(const std::filesystem::path& folder, int port);
+    DicomPeer peer_;
+    std::filesystem::path storage_;
+    std::unique_ptr<RunningProgram> program_;
+};
+
+/// A line to another port of this computer that is cut after so many bytes from there, or to there.
+class CutLine {
+public:
+    CutLine(int to_port, std::size_t bytes_from_there, std::size_t bytes_to_there);
+    ~CutLine();
+    int port() const { return port_; }
+
+private:
+    void run(int to_port, std::size_t from_there, std::size_t to_there) const;
+    int port_ = 0;
+    int listener_ = -1;
+    std::atomic<bool> ending_{false};
+    std::thread thread_;
+};
+
+}  // namespace planlight::test
