@@ -28,7 +28,8 @@ std::vector<PlanRow> rows_of(const Plan& plan, const PlanDrawing& drawing) {
         const DrawnItem& item = drawing.items[i];
         PlanRow row;
         row.name = item.label.empty() ? item.name : item.label;
-        // What the light calls it where the name has no room; that is known at the match only, so it always stands there.
+        // What the light calls it where the name has no room; that is known at the match only, so it always stands
+        // there.
         if (!item.code.empty()) row.name = item.code + "  " + row.name;
         row.depth_mm = depth_of(plan, item);
         for (const auto& stroke : drawing.strokes)

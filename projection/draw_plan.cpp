@@ -141,13 +141,8 @@ void Drawer::wish(int item_index, std::vector<std::string> figures, std::vector<
     const bool none = names_[static_cast<std::size_t>(item_index)].none;
     named.labelled = !none;
     if (none || (named.lit_name.empty() && figures.empty())) return;
-    wishes_.push_back({item_index,
-                       {named.lit_name, std::move(figures)},
-                       named.code,
-                       std::move(anchors),
-                       keep_off_mm,
-                       away_from,
-                       {}});
+    wishes_.push_back(
+        {item_index, {named.lit_name, std::move(figures)}, named.code, std::move(anchors), keep_off_mm, away_from, {}});
 }
 
 void Drawer::wish_along(int item_index, const std::string& figure, const SkinLine& line) {

@@ -46,7 +46,7 @@ struct Label {
     std::vector<Eigen::Vector3d> field_in_ct;          ///< the skin under it, 3 mm apart: all of it must be lit
     std::vector<Eigen::Vector3d> field_normals_in_ct;  ///< outward
     Stroke leader;                                     ///< from the item to a label far from it; no points where near
-    bool by_code = false;    ///< says the item's code in place of its name
+    bool by_code = false;                              ///< says the item's code in place of its name
     bool of_moment = false;  ///< drawn while its item is the item of the moment, and then alone
 };
 

@@ -45,8 +45,8 @@ std::string in_its_place(const std::string& code) {
 
 std::string cannot_be_drawn(const std::string& name, const std::vector<char32_t>& lacks, const std::string& code) {
     if (lacks.front() == 0xFFFD)
-        return fmt::format("{}: its name holds bytes that are no UTF-8 text; {}. Write the name anew in the plan.", name,
-                           in_its_place(code));
+        return fmt::format("{}: its name holds bytes that are no UTF-8 text; {}. Write the name anew in the plan.",
+                           name, in_its_place(code));
     return fmt::format(
         "{}: no font of this computer has {}; {}. Install a font for it (fonts-noto-core or fonts-noto-cjk) or rename "
         "the item.",
@@ -57,8 +57,9 @@ std::string same_as_another(const std::string& name, const std::string& lit, con
     if (lit == name)
         return fmt::format("{}: another item has the same name; {}. Give each item a name of its own.", name,
                            in_its_place(code));
-    return fmt::format("{}: shortened to \"{}\" its name would be the same as another's; {}. Give the items shorter names.",
-                       name, lit, in_its_place(code));
+    return fmt::format(
+        "{}: shortened to \"{}\" its name would be the same as another's; {}. Give the items shorter names.", name, lit,
+        in_its_place(code));
 }
 
 }  // namespace
@@ -102,7 +103,8 @@ std::string fault_of_own_font(const Lettering& letters) {
     const auto families = letters.families();  // the first is that of all letters
     if (!families.empty() && families.front() == own) return {};
     return fmt::format(
-        "PLANLIGHT_FONT names {}, which is no file of a font with outlines: the light has other letters. Name the font's "
+        "PLANLIGHT_FONT names {}, which is no file of a font with outlines: the light has other letters. Name the "
+        "font's "
         "file (.ttf, .otf, .ttc), or take the setting away.",
         own);
 }

@@ -86,8 +86,7 @@ bool is_recording(const fs::path& path) {
 int run_recording_review(const RecordingReviewOptions& options) {
     if (options.clip_s.size() == 2 && options.clip_s[1] < options.clip_s[0])
         throw Error(ExitCode::usage, "the clip ends before it begins", "Give --clip FROM TO, in seconds.");
-    const fs::path out =
-        options.out.empty() ? review_folder_of(options.recording) : options.out;
+    const fs::path out = options.out.empty() ? review_folder_of(options.recording) : options.out;
     const RecordingTimeLine line = time_line_of(options.recording);
     const std::string figures = review_json(line);
     make_review_folder(out);

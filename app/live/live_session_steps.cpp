@@ -220,7 +220,7 @@ void LiveSession::follow(Session& session, Room& room) {
 }
 
 void LiveSession::play_fault(const LightGate::Ruling& ruling, Room& room) {
-    constexpr int kGoodBefore = 40;
+    constexpr int kGoodBefore = 20;
     if (ruling.trust == LightTrust::aligned && ++good_updates_ == kGoodBefore) room.begin_fault();
 }
 

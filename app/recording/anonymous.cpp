@@ -59,7 +59,8 @@ PlanRegion plan_region(const Session& session, const TrackedPose& pose) {
     std::vector<Eigen::Vector3d> labels;  // also those that are lit for a moment only
     for (const Label& label : session.drawing().labels)
         for (const Eigen::Vector3d& p : label.field_in_ct) labels.push_back(rig_from_ct * p);
-    return {region_in(session.rig().left_camera, points, labels), region_in(session.rig().right_camera, points, labels)};
+    return {region_in(session.rig().left_camera, points, labels),
+            region_in(session.rig().right_camera, points, labels)};
 }
 
 GrayImage blurred_outside(const GrayImage& picture, const PlanRegion::InPicture& region) {

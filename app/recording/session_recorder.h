@@ -18,7 +18,7 @@ enum class RecordMode {
     none,
     events,  ///< all that happened, and as many frames as a gigabyte an hour holds: round presses, faults and what the
              ///< gate says, and now and then
-    all,  ///< every frame as well: what `replay` needs
+    all,     ///< every frame as well: what `replay` needs
 };
 
 /// What a recording says of itself first.

@@ -37,11 +37,9 @@ void add_items(PdfPages& pdf, const OperationFacts& facts) {
         const auto mm = [&](double value) {
             return d.count > 0 ? fmt::format("{:.2f} {}", value, sign_of(value)) : std::string("-");
         };
-        rows.push_back(
-            {item.name,
-             shown_text(item, facts),
-             duration_text(item.shown_s), item.predicted_mm ? fmt::format("{:.2f}", *item.predicted_mm) : "not known",
-             mm(d.median), mm(d.p95), mm(d.worst), std::to_string(d.count)});
+        rows.push_back({item.name, shown_text(item, facts), duration_text(item.shown_s),
+                        item.predicted_mm ? fmt::format("{:.2f}", *item.predicted_mm) : "not known", mm(d.median),
+                        mm(d.p95), mm(d.worst), std::to_string(d.count)});
     }
     if (facts.items.empty()) rows.push_back({"No match was found: nothing could be shown."});
     pdf.table(rows, {0.24, 0.18, 0.1, 0.12, 0.12, 0.08, 0.08, 0.08});
@@ -59,7 +57,8 @@ void add_matches(PdfPages& pdf, const OperationFacts& facts) {
         std::string why;
         for (const std::string& reason : match.reasons) why += (why.empty() ? "" : " ") + reason;
         rows.push_back({clock_text(match.at_s), match.verdict, std::to_string(match.points),
-                        match.residual_rms_mm ? fmt::format("{:.2f} mm rms", *match.residual_rms_mm) : "not known", why});
+                        match.residual_rms_mm ? fmt::format("{:.2f} mm rms", *match.residual_rms_mm) : "not known",
+                        why});
     }
     pdf.table(rows, {0.12, 0.1, 0.14, 0.16, 0.48});
 }

@@ -54,7 +54,8 @@ std::string mm(const std::optional<double>& value) {
 std::string marked(double value_mm) {
     const std::string sign = sign_of(value_mm);
     if (sign.empty()) return fmt::format("{:.2f}", value_mm);
-    return fmt::format("{:.2f}&nbsp;<span class=\"{}\">{}</span>", value_mm, value_mm > kStop_mm ? "stop" : "look", sign);
+    return fmt::format("{:.2f}&nbsp;<span class=\"{}\">{}</span>", value_mm, value_mm > kStop_mm ? "stop" : "look",
+                       sign);
 }
 
 std::string items_html(const OperationFacts& facts) {
@@ -219,8 +220,8 @@ std::string hashes_html(const OperationFacts& facts) {
 }
 
 std::string verdict_html(const OperationVerdict& verdict) {
-    std::string html = fmt::format("<div class=\"verdict {}\">{} {}</div>", word_of(verdict.kind), sign_of(verdict.kind),
-                                   xml_escaped(verdict.sentence));
+    std::string html = fmt::format("<div class=\"verdict {}\">{} {}</div>", word_of(verdict.kind),
+                                   sign_of(verdict.kind), xml_escaped(verdict.sentence));
     if (verdict.reasons.empty()) return html;
     html += "<ul>";
     for (const std::string& reason : verdict.reasons) html += "<li>" + xml_escaped(reason) + "</li>";

@@ -113,8 +113,8 @@ OperationVerdict verdict_of(const OperationFacts& facts);
 std::string sign_of(OperationVerdict::Kind kind);
 std::string word_of(OperationVerdict::Kind kind);
 
-/// By how far off they were (95 %), the farthest first. Those that were shown and never seen stand behind what was off by
-/// more than the gate lets pass; those that are as far off as each other, and those without light, as in the plan.
+/// By how far off they were (95 %), the farthest first. Those that were shown and never seen stand behind what was off
+/// by more than the gate lets pass; those that are as far off as each other, and those without light, as in the plan.
 std::vector<const OperationItem*> worst_first(const std::vector<OperationItem>& items);
 
 /// All figures of the page, and those for which it has no room.

@@ -300,10 +300,10 @@ std::string review_page(const RecordingTimeLine& line,
 std::string review_json(const RecordingTimeLine& line) {
     constexpr const char* kTrusts[] = {"dark", "look", "aligned"};
     const auto known = [](double mm) { return mm >= 0 ? Json(mm) : Json(); };
-    Json json{{"format", kReviewFormat}, {"version", 1},
-              {"case", line.head.case_code},  {"began", line.head.began_utc},
-              {"lasted_s", line.lasted_s},    {"ended", line.ended},
-              {"stretches", Json::array()},   {"events", Json::array()},
+    Json json{{"format", kReviewFormat},     {"version", 1},
+              {"case", line.head.case_code}, {"began", line.head.began_utc},
+              {"lasted_s", line.lasted_s},   {"ended", line.ended},
+              {"stretches", Json::array()},  {"events", Json::array()},
               {"frames_s", line.frames_s}};
     for (const auto& s : line.stretches)
         json["stretches"].push_back(

@@ -16,9 +16,9 @@ void write_registration(const RegistrationResult& result, const std::filesystem:
 /// without a checksum a `yes` is read as `ask`.
 RegistrationResult read_registration(const std::filesystem::path& file);
 
-/// What `write_registration` writes, and what `read_registration` makes of it (`file`: for its words). The latter throws
-/// as `read_registration` does: DamagedFileError for a checksum that does not fit or another version, InputError for
-/// what is no registration.
+/// What `write_registration` writes, and what `read_registration` makes of it (`file`: for its words). The latter
+/// throws as `read_registration` does: DamagedFileError for a checksum that does not fit or another version, InputError
+/// for what is no registration.
 std::string text_of(const RegistrationResult& result);
 RegistrationResult registration_of_text(const std::string& text, const std::filesystem::path& file);
 

@@ -18,8 +18,8 @@ RigCalibration read_rig(const std::filesystem::path& file);
 /// As `read_rig`, but the right camera or the projector may be missing in the file (`present` says so).
 RigCalibration read_partial_rig(const std::filesystem::path& file);
 
-/// What `write_rig` writes, and what `read_partial_rig` makes of it (`file`: for its words). Both throw InputError for a
-/// rig that `read_partial_rig` refuses, `rig_of_text` DamagedFileError, too, for text of another version.
+/// What `write_rig` writes, and what `read_partial_rig` makes of it (`file`: for its words). Both throw InputError for
+/// a rig that `read_partial_rig` refuses, `rig_of_text` DamagedFileError, too, for text of another version.
 std::string text_of(const RigCalibration& rig, const std::filesystem::path& file = {});
 RigCalibration rig_of_text(const std::string& text, const std::filesystem::path& file);
 

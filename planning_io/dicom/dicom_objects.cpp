@@ -77,7 +77,8 @@ Elements set_head(vtkDICOMMetaData* meta, const DicomStudy& study, const DicomOb
     const std::string object = uid_of(name.made + '\n' + name.program + '\n' + name.description + '\n' + content);
     set.text(DC::SpecificCharacterSet, vtkDICOMVR::CS, "ISO_IR 192");
     set.text(DC::SOPClassUID, vtkDICOMVR::UI, sop_class);
-    set.text(DC::SOPInstanceUID, vtkDICOMVR::UI, uid_of("object" + of + name.id + std::to_string(name.number) + object));
+    set.text(DC::SOPInstanceUID, vtkDICOMVR::UI,
+             uid_of("object" + of + name.id + std::to_string(name.number) + object));
     set.text(DC::StudyInstanceUID, vtkDICOMVR::UI, study.study_uid);
     set.text(DC::SeriesInstanceUID, vtkDICOMVR::UI, uid_of("series" + of + name.id));
     set.text(DC::PatientName, vtkDICOMVR::PN, study.patient_name);

@@ -65,8 +65,7 @@ void parse(Parcel& parcel, const fs::path& path, const std::string& wanted) {
         uids.push_back(text(meta, DC::SOPInstanceUID));
     }
     if (!told)
-        throw InputError(path, "holds localizer pictures and no slice",
-                         "Name the series that the case was made from.");
+        throw InputError(path, "holds localizer pictures and no slice", "Name the series that the case was made from.");
     parcel.put(static_cast<std::uint64_t>(uids.size()));
     for (const std::string& uid : uids) parcel.put(uid);
 }

@@ -18,8 +18,8 @@ public:
 /// A file that only grows, readable and writable by its owner alone (0600).
 class RecordingFile final : public RecordingSink {
 public:
-    /// Makes the file and, where it is missing, its folder (0700); their names are on the disk afterwards. Throws DiskError when it is there already or cannot
-    /// be made.
+    /// Makes the file and, where it is missing, its folder (0700); their names are on the disk afterwards. Throws
+    /// DiskError when it is there already or cannot be made.
     explicit RecordingFile(const std::filesystem::path& file);
     ~RecordingFile() override;
     RecordingFile(const RecordingFile&) = delete;

@@ -52,7 +52,7 @@ protected:
             << R"(", "port": )" << archive_->peer().port << "}}";
     }
     test::CommandRun run(const std::string& arguments) {
-        return run_planlight(arguments, folder_.path(), "export XDG_CONFIG_HOME=$PWD");
+        return run_planlight(arguments, folder_.path(), "export XDG_CONFIG_HOME=$PWD && ");
     }
     test::TemporaryFolder folder_;
     std::unique_ptr<test::Orthanc> archive_;

@@ -216,10 +216,14 @@ TEST_F(Export, OtherBytesTitleOrProgramAreAnotherObject) {
     };
     DicomObjectName newer = name, later = name;
     newer.program = "1.1", later.made = "2026-03-14T10:30:00Z";
-    const std::vector<std::string> uids{
-        picture(name, "a", {0, 255, 0}),  picture(name, "a", {0, 254, 0}),  picture(name, "b", {0, 255, 0}),
-        picture(newer, "a", {0, 255, 0}), picture(later, "a", {0, 255, 0}), pdf("t", "%PDF-1"),
-        pdf("t", "%PDF-2"),               pdf("u", "%PDF-1")};
+    const std::vector<std::string> uids{picture(name, "a", {0, 255, 0}),
+                                        picture(name, "a", {0, 254, 0}),
+                                        picture(name, "b", {0, 255, 0}),
+                                        picture(newer, "a", {0, 255, 0}),
+                                        picture(later, "a", {0, 255, 0}),
+                                        pdf("t", "%PDF-1"),
+                                        pdf("t", "%PDF-2"),
+                                        pdf("u", "%PDF-1")};
     EXPECT_EQ(std::set<std::string>(uids.begin(), uids.end()).size(), uids.size());
     EXPECT_EQ(picture(name, "a", {0, 255, 0}), uids[0]);
     EXPECT_EQ(pdf("t", "%PDF-1"), uids[5]);

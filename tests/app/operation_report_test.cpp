@@ -262,7 +262,14 @@ TEST_F(Operation, OfMoreItemsThanThePageHasRoomForTheWorstAreNamedAndTheGravestW
     OperationFacts f;
     f.updates = 100, f.lit_s = 10, f.aligned_s = 9.5, f.verified = 1;
     for (int i = 0; i < 30; ++i)
-        f.items.push_back({"Item " + std::to_string(i), {{0, 10}}, 10, 0.5, {i == 29 ? 1.7 : i == 27 ? 0.9 : 0.2}, true});
+        f.items.push_back({"Item " + std::to_string(i),
+                           {{0, 10}},
+                           10,
+                           0.5,
+                           {i == 29   ? 1.7
+                            : i == 27 ? 0.9
+                                      : 0.2},
+                           true});
     for (int i = 0; i < 20; ++i) f.said.push_back({1.0 * i, "", "DARK was pressed.", false});
     f.said.push_back({21, "", "The light was stopped: it lies 3 mm beside.", true});
     const fs::path page = folder_.path() / "many.html";

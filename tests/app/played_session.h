@@ -21,8 +21,8 @@ struct ExampleCase {
 };
 const ExampleCase& example_case();
 
-/// Looks at the session until it holds of its model. A session that does not come to it in five minutes has failed: this
-/// throws std::runtime_error with what was waited for, or what the session itself has thrown.
+/// Looks at the session until it holds of its model. A session that does not come to it in five minutes has failed:
+/// this throws std::runtime_error with what was waited for, or what the session itself has thrown.
 template <class Holds>
 void wait_for(LiveSession& session, const char* what, Holds holds) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(5);

@@ -50,16 +50,17 @@ protected:
         session.post(OperatorAction::dark);
         wait_for(session, "DARK", [&](const OperatorModel& m) { return m.track.enabled && !session.projecting(); });
         session.post(OperatorAction::track);
-        wait_for(session, "light or a refusal", [&](const OperatorModel& m) {
-            return session.projecting() || m.status.kind == StatusKind::refused;
-        });
+        wait_for(session, "light or a refusal",
+                 [&](const OperatorModel& m) { return session.projecting() || m.status.kind == StatusKind::refused; });
         const OperatorModel model = session.model();
         EXPECT_EQ(session.projecting(), model.status.kind != StatusKind::refused);
         if (model.status.kind == StatusKind::refused) {
             // And so it stays: another press looks again.
             session.post(OperatorAction::track);
-            wait_for(session, "another look", [](const OperatorModel& m) { return m.status.kind != StatusKind::refused; });
-            wait_for(session, "the refusal", [](const OperatorModel& m) { return m.status.kind == StatusKind::refused; });
+            wait_for(session, "another look",
+                     [](const OperatorModel& m) { return m.status.kind != StatusKind::refused; });
+            wait_for(session, "the refusal",
+                     [](const OperatorModel& m) { return m.status.kind == StatusKind::refused; });
             EXPECT_FALSE(session.projecting());
         }
         return model;

@@ -31,10 +31,11 @@ using Seen = std::function<double(const Eigen::Vector2d& pixel)>;
 std::vector<GrayImage> upright(const Label& label, const Seen& seen, const CameraModel& camera,
                                const RigidTransform& rig_from_ct, double pixel_mm);
 
-/// What is read in the label's lines, parted by '/': at three scales, the reading that comes most ("" of a line in which
-/// nothing is read). No value where part of it is out of the picture. `keep`: where its pictures are kept, without their ending; empty: nowhere.
+/// What is read in the label's lines, parted by '/': at three scales, the reading that comes most ("" of a line in
+/// which nothing is read). No value where part of it is out of the picture. `keep`: where its pictures are kept,
+/// without their ending; empty: nowhere.
 std::optional<std::string> read_label(const Label& label, const Seen& seen, const CameraModel& camera,
-                       const RigidTransform& rig_from_ct, const std::filesystem::path& keep = {});
+                                      const RigidTransform& rig_from_ct, const std::filesystem::path& keep = {});
 
 /// Of a grey picture, between its pixels (Catmull-Rom).
 double between(const GrayImage& picture, const Eigen::Vector2d& at);

@@ -105,7 +105,8 @@ TEST_F(RecordingReview, ShowsTheGatesColoursAndTheErrorsOverTime) {
 TEST_F(RecordingReview, AnotherReasonOfTheSameColourIsAnEventAndAnotherNumberIsNone) {
     make();
     const auto rule = [&](int ms, const char* headline) {
-        event(milliseconds(ms), {{"what", "updated"}, {"at_ns", (kBegan + milliseconds(ms)).count()}, {"light", {{"lit", true}}}});
+        event(milliseconds(ms),
+              {{"what", "updated"}, {"at_ns", (kBegan + milliseconds(ms)).count()}, {"light", {{"lit", true}}}});
         event(milliseconds(ms),
               {{"what", "gate"}, {"call", "step"}, {"trust", "look"}, {"headline", headline}, {"details", {"x"}}});
     };

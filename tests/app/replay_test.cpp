@@ -76,7 +76,7 @@ TEST_F(Replay, OfAScanThatDarkEndedAndOfAFaultIsAlike) {
     how.seed = 3;
     how.dark_in_scan = true;
     how.fault = "late";
-    how.updates = 80;
+    how.updates = 130;
     expect_alike(how, {R"({"what":"asked","call":"go_dark")", R"({"what":"refused","call":"scan")",
                        R"("fault":"late_picture")"});
 }

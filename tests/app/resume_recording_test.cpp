@@ -73,9 +73,8 @@ protected:
                                                        std::string());
             },
             the_case, drawing, {}, observer, offer);
-        test::wait_for(session, "the match or a refusal", [](const OperatorModel& m) {
-            return m.track.enabled || m.status.kind == StatusKind::refused;
-        });
+        test::wait_for(session, "the match or a refusal",
+                       [](const OperatorModel& m) { return m.track.enabled || m.status.kind == StatusKind::refused; });
         EXPECT_FALSE(session.projecting());
         if (!session.model().track.enabled) return session.model();
         session.post(OperatorAction::track);

@@ -55,8 +55,9 @@ TEST(RecordedEvents, FramesRoundAPersonsPressAreKept) {
 }
 
 TEST(RecordedEvents, FramesRoundAFaultOfADeviceAreKept) {
-    EXPECT_EQ(kept_when([](SessionRecorder& r) { r.device_failed(DeviceError("left camera", "is gone", "plug it in")); }),
-              round_frame_40());
+    EXPECT_EQ(
+        kept_when([](SessionRecorder& r) { r.device_failed(DeviceError("left camera", "is gone", "plug it in")); }),
+        round_frame_40());
 }
 
 TEST(RecordedEvents, FramesRoundAnotherWordOfTheGateAreKeptAndRoundTheSameWordAreNot) {

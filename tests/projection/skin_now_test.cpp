@@ -58,7 +58,8 @@ TEST(SkinNow, ALineIsCalledByItsPlannedLength) {
     EXPECT_NE(drawing.labels.front().words.find("100 mm"), std::string::npos) << drawing.labels.front().words;
 }
 
-// A plane of 130 mm cuts another length of skin that lies 4 mm deeper; the plan's page says the CT's, and so must the light.
+// A plane of 130 mm cuts another length of skin that lies 4 mm deeper; the plan's page says the CT's, and so must the
+// light.
 TEST(SkinNow, ACutPlaneIsCalledByItsPlannedLength) {
     const SkinSurface now = skin_as_scanned(ball().mesh(), scanned([](auto&) { return -4.; }));
     Plan plan;

@@ -52,7 +52,7 @@ HeardSession hear() {
     both.add(link.get());
     test::PlayedSession how;
     how.seed = 3;
-    how.updates = 40;
+    how.updates = 90;
     test::play_session(how, heard.patient, both.all());
     link.reset();
     heard.messages = receiver.all();
