@@ -27,10 +27,6 @@ std::vector<PlanRow> rows_of(const Plan& plan, const PlanDrawing& drawing) {
     for (std::size_t i = 0; i < drawing.items.size(); ++i) {
         const DrawnItem& item = drawing.items[i];
         PlanRow row;
-        row.name = item.label.empty() ? item.name : item.label;
-        // What the light calls it where the name has no room; that is known at the match only, so it always stands
-        // there.
-        if (!item.code.empty()) row.name = item.code + "  " + row.name;
         row.depth_mm = depth_of(plan, item);
         for (const auto& stroke : drawing.strokes)
             if (stroke.item == static_cast<int>(i) && stroke.kind == item.kind) {
@@ -39,6 +35,7 @@ std::vector<PlanRow> rows_of(const Plan& plan, const PlanDrawing& drawing) {
             }
         rows.push_back(std::move(row));
     }
+    name_rows(drawing, rows);
     return rows;
 }
 
@@ -77,6 +74,13 @@ std::string side_of_plan(const Plan& plan, const SkinSurface& skin) {
         right = right || middle->left_mm(p) < -kMiddle_mm;
     }
     return left && right ? "BOTH SIDES" : left ? "LEFT" : right ? "RIGHT" : "MIDDLE";
+}
+
+void name_rows(const PlanDrawing& drawing, std::vector<PlanRow>& rows) {
+    for (std::size_t i = 0; i < std::min(rows.size(), drawing.items.size()); ++i) {
+        const DrawnItem& item = drawing.items[i];
+        rows[i].name = (item.lit_by_code ? item.code + "  " : "") + (item.label.empty() ? item.name : item.label);
+    }
 }
 
 OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing) {

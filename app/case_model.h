@@ -13,6 +13,10 @@ namespace planlight {
 /// without a plan, where no such plane is found, and where the volume ends within the head at the left or the right.
 std::string side_of_plan(const Plan& plan, const SkinSurface& skin);
 
+/// Calls each row of the table as the light calls its item: by its name and figures, and where the light has a code in
+/// place of the name (`DrawnItem::lit_by_code`) by that first.
+void name_rows(const PlanDrawing& drawing, std::vector<PlanRow>& rows);
+
 /// What the operator window shows of a case before anything is scanned: title, skin, plan, table of its items.
 OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing);
 

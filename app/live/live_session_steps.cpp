@@ -64,6 +64,7 @@ void LiveSession::find_patient(Session& session, const std::vector<PointPair>& l
     if (found.verdict != Verdict::no) {
         shown.scene.markers = markers_in_ct(session.tracker(), shown.scene.ct_from_rig);
         shown.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
+        name_rows(session.drawing(), shown.rows);  // the match decides which labels have room
         for (const DrawnItem& item : session.drawing().items)
             shown.evidence.insert(shown.evidence.end(), item.warnings.begin(), item.warnings.end());
     }

@@ -48,6 +48,7 @@ void LiveSession::resume(Session& session) {
     show_match(case_, found, nullptr, shown);
     shown.scene.markers = markers_in_ct(session.tracker(), found.patient_from_ct.inverse());
     shown.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
+    name_rows(session.drawing(), shown.rows);
     shown.evidence.insert(
         shown.evidence.begin(),
         fmt::format("The match of {} is used again: {} markers within {:.2f} mm, the plan's skin within {:.1f} mm of "
