@@ -19,7 +19,6 @@ constexpr const char* kScan = "Begin the session without it: scan and register t
 /// What the events after a match say of it.
 struct Fate {
     std::string match;  ///< its chunk; empty: none
-    std::string found;  ///< the last one
     std::string why_none = "nobody was found in that session, or it was recorded without what that takes (--anonymous)";
     bool confirmed = false;
     bool untouched = true;
@@ -29,7 +28,7 @@ struct Fate {
         const std::string& text = chunk.payload;
         if (chunk.type == chunk_types::kMatch) {
             untouched = false;
-            match = found = text;
+            match = text;
             confirmed = false;
             stopped.clear();
         } else if (text.starts_with(R"({"what":"asked","call":"scan")")) {
@@ -89,7 +88,6 @@ LastMatch last_match_of(const fs::path& recording) {
         throw DamagedFileError(recording, "does not say whose it is",
                                "It ends before its first chunk: there is nothing in it.");
     last.untouched = fate.untouched;
-    if (!fate.found.empty()) last.found = kept_match_of(fate.found, recording);
     if (fate.match.empty()) {
         last.why_none = fate.why_none;
     } else if (!fate.stopped.empty()) {

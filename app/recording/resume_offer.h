@@ -23,7 +23,6 @@ struct LastMatch {
     std::optional<KeptMatch> match;
     std::string why_none;   ///< in words, where there is none
     bool untouched = true;  ///< nobody scanned or went on with anything: a session before it may be gone on with
-    std::optional<KeptMatch> found;  ///< the last one that was found, whatever became of it
 };
 /// Throws DamagedFileError where it does not say whose it is.
 LastMatch last_match_of(const std::filesystem::path& recording);

@@ -22,13 +22,13 @@ struct ExampleCase {
 const ExampleCase& example_case();
 
 /// Looks at the session until it holds of its model. A session that does not come to it in five minutes has failed:
-/// this throws std::runtime_error with what was waited for, or what the session itself has thrown.
+/// this throws std::runtime_error with what was waited for, or what the session itself has thrown. Returns that model.
 template <class Holds>
-void wait_for(LiveSession& session, const char* what, Holds holds) {
+OperatorModel wait_for(LiveSession& session, const char* what, Holds holds) {
     const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(5);
     for (;;) {
         const OperatorModel model = session.model();
-        if (holds(model)) return;
+        if (holds(model)) return model;
         session.rethrow_fault();
         if (std::chrono::steady_clock::now() > until)
             throw std::runtime_error(std::string("waited in vain for ") + what + ": " + model.status.headline);

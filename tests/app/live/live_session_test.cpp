@@ -14,20 +14,7 @@ namespace planlight {
 namespace {
 
 using namespace std::chrono_literals;
-
-/// Waits as long as it takes on a busy machine; nothing here is a question of time.
-template <typename Holds>
-OperatorModel wait_for(LiveSession& session, const char* what, const Holds& holds) {
-    const auto until = std::chrono::steady_clock::now() + 300s;
-    for (;;) {
-        const OperatorModel model = session.model();
-        if (holds(model)) return model;
-        session.rethrow_fault();
-        if (std::chrono::steady_clock::now() > until)
-            throw std::runtime_error(std::string("waited in vain for ") + what + ": " + model.status.headline);
-        std::this_thread::sleep_for(5ms);
-    }
-}
+using test::wait_for;
 
 /// Cameras that give no frame while they are held: the session's thread waits, and what is pressed waits with it.
 class HeldCameras final : public StereoCamera {
