@@ -157,7 +157,7 @@ TEST(JudgeSkin, SaysThatACushionLiesAtOneCheek) {
 /// The mirror image of the right side lies where nothing was measured, not in air.
 TEST(JudgeSkin, OfAHeadThatTheVolumeCutsAtOneSideNothingIsSaidToLieAtTheOther) {
     const Judged head = judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p - Vector3d(50, 0, 0))); }));
-    EXPECT_TRUE(doubts(head.skin, "left side is cut off"));
+    EXPECT_TRUE(doubts(head.skin, "cuts off the left side"));
     EXPECT_FALSE(doubts(head.skin, "one side of the head")) << head.skin.one_sided_cm2;
     EXPECT_LT(head.skin.one_sided_cm2, 3);
 }
