@@ -15,7 +15,7 @@ echo '{"format": "planlight projector", "version": 1, "made_on": "2026", "projec
 check "a projector of another resolution than the one measured is refused" "$(number "$code == 6")" "exit code $code: $(cat "$folder/errors")"
 cat "$folder/errors"
 "$PLANLIGHT" session "$folder/case" --volume $patient --preset paper --projector DUMMY1 --autoplay --speed-mm-s 5 \
-  --end-after-s 12 --screenshots "$folder/pictures" 2>"$folder/errors" & session=$!
+  --end-after-s 40 --screenshots "$folder/pictures" 2>"$folder/errors" & session=$!
 trap 'kill $session 2>/dev/null' EXIT
 for i in $(seq 150); do xdotool search --name Planlight >/dev/null 2>&1 && break; sleep 0.1; done
 import -window root "$folder/before.png"
