@@ -10,7 +10,7 @@ namespace planlight::test {
 /// are resolved, placeholders of fmt stay.
 std::vector<std::string> literals_in(const std::filesystem::path& source);
 
-/// The text as it may be when it is said: each placeholder ("{}", "{:.1f}", "…") is a number, or nothing.
+/// The text as it may be when it is said: each field ("{}", "{:.1f}", "…") is a number, or nothing.
 std::vector<std::string> as_said(const std::string& text);
 
 /// It is written for a person: several words, of which one is longer than two letters.

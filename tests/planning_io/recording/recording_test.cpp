@@ -225,7 +225,7 @@ TEST(Recording, ASearchForWholeChunksEndsWithItsBudgetAndSaysThatItIsNotKnown) {
     EXPECT_EQ(end_of(recording_header() + good + lies + whole_behind, 50 << 20), RecordingEnd::unknown);
     EXPECT_EQ(end_of(recording_header() + good + lies + whole_behind, std::uint64_t{2} << 30), RecordingEnd::damaged);
     EXPECT_EQ(end_of(recording_header() + good + lies, std::uint64_t{2} << 30), RecordingEnd::cut);
-    EXPECT_EQ(end_of(recording_header() + good + "xxx" + whole_behind, 50 << 20), RecordingEnd::damaged);
+    EXPECT_EQ(end_of(recording_header() + good + "???" + whole_behind, 50 << 20), RecordingEnd::damaged);
 }
 
 TEST(Recording, AFrameThatLiesAboutItsSizeIsRefusedWithoutAskingForItsMemory) {
