@@ -9,6 +9,7 @@
 #include "app/prepare_case.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/volume/read_volume.h"
+#include "tests/app/room_with.h"
 #include "tests/support/test_data.h"
 
 namespace planlight::test {
@@ -103,41 +104,23 @@ private:
     std::vector<double> told_ms_;  ///< of each update
 };
 
-/// The simulated room with cameras that doubt themselves in every second dozen of frames.
-class DoubtfulRoom final : public Room {
+/// Cameras that doubt themselves in every second dozen of frames.
+class Doubtful final : public StereoCamera {
 public:
-    DoubtfulRoom(std::unique_ptr<Room> room, std::string doubt)
-        : room_(std::move(room)), cameras_(room_->cameras(), std::move(doubt)) {}
-    std::string name() const override { return room_->name(); }
-    const RigCalibration& rig() const override { return room_->rig(); }
-    Projector& projector() override { return room_->projector(); }
-    StereoCamera& cameras() override { return cameras_; }
-    const Clock& clock() const override { return room_->clock(); }
-    bool simulated() const override { return true; }
-    void computing() override { room_->computing(); }
-    void let_patient_move(bool moves) override { room_->let_patient_move(moves); }
-    void begin_fault() override { room_->begin_fault(); }
+    Doubtful(StereoCamera& cameras, std::string doubt) : cameras_(cameras), doubt_(std::move(doubt)) {}
+    StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override {
+        return cameras_.grab(not_before, patience);
+    }
+    StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) override {
+        ++frames_;
+        return cameras_.newest(not_before, patience);
+    }
+    std::string doubt() const override { return frames_ / 12 % 2 == 1 ? doubt_ : ""; }
 
 private:
-    class Doubtful final : public StereoCamera {
-    public:
-        Doubtful(StereoCamera& cameras, std::string doubt) : cameras_(cameras), doubt_(std::move(doubt)) {}
-        StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override {
-            return cameras_.grab(not_before, patience);
-        }
-        StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) override {
-            ++frames_;
-            return cameras_.newest(not_before, patience);
-        }
-        std::string doubt() const override { return frames_ / 12 % 2 == 1 ? doubt_ : ""; }
-
-    private:
-        StereoCamera& cameras_;
-        std::string doubt_;
-        int frames_ = 0;
-    };
-    std::unique_ptr<Room> room_;
-    Doubtful cameras_;
+    StereoCamera& cameras_;
+    std::string doubt_;
+    int frames_ = 0;
 };
 
 void press_when_free(LiveSession& session, OperatorAction action, ButtonState OperatorModel::*button,
@@ -189,7 +172,7 @@ PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, 
                 auto simulated = std::make_unique<SimulatedRoom>(patient.volume, patient.prepared.plan, room,
                                                                  how.speed_mm_s, how.fault);
                 if (how.doubt.empty()) return simulated;
-                return std::make_unique<DoubtfulRoom>(std::move(simulated), how.doubt);
+                return std::make_unique<RoomWith<Doubtful>>(std::move(simulated), how.doubt);
             },
             patient.prepared, drawing, {}, &counting);
         press_when_free(session, OperatorAction::scan, &OperatorModel::scan, "Scan");

@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <functional>
 #include <stdexcept>
 #include <thread>
 
 #include "app/live/simulated_room.h"
 #include "tests/app/played_session.h"
+#include "tests/app/room_with.h"
 
 namespace planlight {
 namespace {
@@ -35,24 +37,6 @@ private:
     std::atomic<bool>&held_, &waits_;
 };
 
-class HeldRoom final : public Room {
-public:
-    HeldRoom(std::unique_ptr<Room> room, std::atomic<bool>& held, std::atomic<bool>& waits)
-        : room_(std::move(room)), cameras_(room_->cameras(), held, waits) {}
-    std::string name() const override { return room_->name(); }
-    const RigCalibration& rig() const override { return room_->rig(); }
-    Projector& projector() override { return room_->projector(); }
-    StereoCamera& cameras() override { return cameras_; }
-    const Clock& clock() const override { return room_->clock(); }
-    bool simulated() const override { return true; }
-    void computing() override { room_->computing(); }
-    void let_patient_move(bool moves) override { room_->let_patient_move(moves); }
-
-private:
-    std::unique_ptr<Room> room_;
-    HeldCameras cameras_;
-};
-
 /// Counts the updates since a landmark was lit.
 class CountsUpdates final : public SessionObserver {
 public:
@@ -72,10 +56,10 @@ protected:
         session = std::make_unique<LiveSession>(
             [this](const RoomProgress& progress) {
                 progress("The room of a test.", 0.25);
-                return std::make_unique<HeldRoom>(
+                return std::make_unique<test::RoomWith<HeldCameras>>(
                     std::make_unique<SimulatedRoom>(test::example_case().volume, test::example_case().prepared.plan,
                                                     room, 5),
-                    held, waits);
+                    std::ref(held), std::ref(waits));
             },
             test::example_case().prepared, drawing(), std::filesystem::path{}, &counts);
     }

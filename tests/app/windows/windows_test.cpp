@@ -9,8 +9,8 @@
 #include "app/windows/layout.h"
 #include "app/windows/number_text.h"
 #include "app/windows/operator_keys.h"
+#include "app/windows/operator_model.h"
 #include "app/windows/orientation.h"
-#include "fake_model.h"
 
 namespace planlight {
 namespace {
