@@ -12,6 +12,11 @@ namespace {
 constexpr auto kLostPause = std::chrono::milliseconds(100);
 constexpr auto kOldAfter = std::chrono::milliseconds(1500);  // a picture is not called live any more
 
+bool asks_for_light(OperatorAction action) {
+    return action == OperatorAction::scan || action == OperatorAction::check_skin || action == OperatorAction::track ||
+           action == OperatorAction::confirm;
+}
+
 }  // namespace
 
 /// Passes everything to the room's projector and keeps the newest picture for the windows.
@@ -191,10 +196,7 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
     begin(press);
     // A scan's pictures are stripes, in which nobody looks for markers.
     view_.expect_found(press.action != OperatorAction::scan && press.action != OperatorAction::check_skin);
-    if (const bool lights = press.action == OperatorAction::scan || press.action == OperatorAction::check_skin ||
-                            press.action == OperatorAction::track || press.action == OperatorAction::confirm;
-        lights)
-        permit_light(press);
+    if (asks_for_light(press.action)) permit_light(press);
     switch (press.action) {
         case OperatorAction::scan:
             begin_anew(session, room);
