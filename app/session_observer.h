@@ -14,7 +14,7 @@ namespace planlight {
 enum class SessionCall { scan, find_patient, confirm, update, check_skin, light_landmark, go_dark, light_item, resume };
 
 /// What can be asked of a session's light gate.
-enum class GateCall { step, verify, skin_checked, new_match, restart };
+enum class GateCall { step, verify, skin_checked, new_match, restart, other_light, forbids };
 
 /// Where a session takes place, as far as it goes into what it does.
 struct RoomFacts {

@@ -73,10 +73,11 @@ SessionState LiveSession::without_waiting() const {
     return state_;
 }
 
-std::string LiveSession::post(OperatorAction action, AskedBy by) {
+std::string LiveSession::post(OperatorAction action, AskedBy by, std::optional<std::uint64_t> darks) {
     if (action == OperatorAction::none) return {};
     {
         const std::lock_guard lock(mutex_);
+        if (darks && *darks != darks_) return "DARK was pressed meanwhile.";
         if (std::string why = refused_press(action); !why.empty()) return why;
         const bool dark = action == OperatorAction::dark || action == OperatorAction::stop;
         const SessionState from = dark ? without_waiting() : state_;

@@ -224,11 +224,23 @@ private:
             case GateCall::restart:
                 gate_.restart();
                 return;
-            case GateCall::step:
-                break;
+            case GateCall::other_light:
+                gate_.other_light(at);
+                return;
+            case GateCall::forbids: {
+                const auto forbidden = gate_.forbids();
+                expect_ruling(session_events::gate(call, at, 0, forbidden ? &*forbidden : nullptr), event, recorded);
+                return;
+            }
+            case GateCall::step: {
+                const auto ruling = gate_.step(last_.frame.at, last_.overlay.lit, last_.light, last_.causes);
+                expect_ruling(session_events::gate(call, last_.frame.at, 0, &ruling), event, recorded);
+                return;
+            }
         }
-        const LightGate::Ruling ruling = gate_.step(last_.frame.at, last_.overlay.lit, last_.light, last_.causes);
-        const std::string now = session_events::gate(call, last_.frame.at, 0, &ruling);
+    }
+
+    void expect_ruling(const std::string& now, const Json& event, const std::string& recorded) {
         if (now != recorded) throw ReplayDiffers{"the gate's decision, " + difference_of(event, Json::parse(now), {})};
         ++result_.rulings;
     }

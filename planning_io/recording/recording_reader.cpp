@@ -140,15 +140,15 @@ bool RecordingReader::pass_over() {
 
 std::optional<RecordingChunk> RecordingReader::next() {
     if (end_ != RecordingEnd::open) return std::nullopt;
-    while (pass_over()) {
-    }
-    std::optional<RecordingChunk> chunk = whole_chunk_at(at_, chunks_);
-    if (chunk) {
+    for (;;) {
+        while (pass_over()) {
+        }
+        std::optional<RecordingChunk> chunk = whole_chunk_at(at_, chunks_);
+        if (!chunk) break;
         at_ += kChunkHeaderBytes + chunk->payload.size();
         ++chunks_;
         done_seen_ = chunk->type == chunk_types::kDone;
-        if (!wanted_ || wanted_(chunk->type, chunk->at)) return chunk;
-        return next();  // the last, or DONE
+        if (!wanted_ || wanted_(chunk->type, chunk->at)) return chunk;  // else the last, or DONE
     }
     if (at_ == bytes_)
         end_ = done_seen_ ? RecordingEnd::whole : RecordingEnd::cut;
