@@ -2,6 +2,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,8 +15,9 @@ using Eigen::Vector3d;
 
 constexpr double kBone_hu = 300;
 constexpr double kStep_mm = 1.5, kUnder_mm = 25, kAround_mm = 150;
-constexpr int kWays = 12;                                                // in the end's plane
-constexpr double kSurrounded = 0.5;                                      // of the ways that meet bone
+constexpr double kWithin_voxels = 0.75;  // from the end, half a voxel beyond the last voxel's middle
+constexpr int kWays = 12;                // in the end's plane
+constexpr double kSurrounded = 0.5;      // of the ways that meet bone
 constexpr double kLowest = -0.25, kBehindFace = -0.5, kAboveFace = 0.2;  // of the skull's radius from its middle
 
 class Ends {
@@ -32,7 +34,8 @@ public:
     }
 
     bool is_boneless(const Vector3d& p_in_ct, const Vector3d& out_in_ct) const {
-        const Vector3d within = p_in_ct - kStep_mm * out_in_ct;
+        const double voxel_mm = 1 / (voxel_from_ct_.linear() * out_in_ct).norm();
+        const Vector3d within = p_in_ct - std::max(kStep_mm, kWithin_voxels * voxel_mm) * out_in_ct;
         if (meets_bone(within, -out_in_ct, kUnder_mm)) return false;
         const Vector3d u = out_in_ct.unitOrthogonal(), v = out_in_ct.cross(u);
         int met = 0;
