@@ -63,7 +63,6 @@ void check_tls(const DicomTls& tls) {
 
 [[noreturn]] void refuse(const DicomPeer& peer, const OFCondition& condition) {
     const std::string who = "The DICOM archive " + peer.name(), why = one_line(condition.text());
-    if (condition.module() == OFM_dcmnet && condition.code() == DULC_TLSERROR) refuse_tls(who, why, peer.host);
     if (condition.module() == OFM_dcmnet) switch (condition.code()) {
             case DULC_ASSOCIATIONREJECTED:
                 throw DeviceError(
@@ -169,6 +168,8 @@ void DicomAssociation::open() {
     if (opened == NET_EC_NoAcceptablePresentationContexts)
         throw CheckFailedError("The DICOM archive " + peer_.name() + " does nothing of what is asked of it",
                                "Ask those who run it to allow this computer to search, to fetch and to store.");
+    if (opened.bad() && peer_.tls.wanted && (opened.module() == OFM_dcmtls || !why_not_trusted().empty()))
+        refuse_tls("The DICOM archive " + peer_.name(), one_line(opened.text()), peer_.host);
     check(opened);
 }
 

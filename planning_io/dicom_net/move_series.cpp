@@ -33,8 +33,8 @@ public:
         setDIMSETimeout(static_cast<Uint32>(peer.patience.count()));
         setACSETimeout(static_cast<Uint32>(peer.patience.count()));
         setHostLookupEnabled(OFFalse);
-        setDatasetStorageMode(DSM_StoreBitPreserving);
-        setFilenameGenerationMode(FNG_UniqueFromNewUID);
+        setDatasetStorageMode(DGM_StoreBitPreserving);
+        setFilenameGenerationMode(FGM_UniqueFromNewUID);
         if (setOutputDirectory(folder_.c_str()).bad())
             throw DiskError(folder_, "cannot be written to", "Look at its permissions.");
         OFList<OFString> syntaxes;
@@ -42,7 +42,6 @@ public:
             for (const std::string& syntax : *some) syntaxes.push_back(syntax.c_str());
         for (const std::string& storage_class : storage_classes_of(images))
             addPresentationContext(storage_class.c_str(), syntaxes);
-        addPresentationContext(UID_VerificationSOPClass, syntaxes);
         if (peer.tls.wanted) {
             tls_ = tls_layer(peer, TlsRole::is_asked);
             getConfig().setTransportLayer(tls_.get());

@@ -106,10 +106,17 @@ int record(const fs::path& devices, const fs::path& case_folder, const fs::path&
     return result.difference ? 1 : 0;
 }
 
+/// Without the time of day that it was asked for something.
+std::string without_utc(std::string event) {
+    const std::size_t at = event.find(",\"utc\":\"");
+    if (at != std::string::npos) event.erase(at, event.find('"', at + 8) + 1 - at);
+    return event;
+}
+
 std::vector<std::string> events_of(const fs::path& file, RecordingReader& reader) {
     std::vector<std::string> events;
     while (const auto chunk = reader.next())
-        if (chunk->type == chunk_types::kEvent) events.push_back(chunk->payload);
+        if (chunk->type == chunk_types::kEvent) events.push_back(without_utc(chunk->payload));
     if (reader.end() == RecordingEnd::open) throw std::runtime_error(file.string() + " has no end");
     return events;
 }
@@ -190,7 +197,11 @@ private:
         must(reader.chunks() >= told.written,
              fmt::format("{} of {} chunks that were written", reader.chunks(), told.written.load()));
         const bool first = events.size() <= events_.size() && std::equal(events.begin(), events.end(), events_.begin());
-        must(first, "its events are not the first ones of the session");
+        std::size_t i = 0;
+        while (i < std::min(events.size(), events_.size()) && events[i] == events_[i]) ++i;
+        must(first, fmt::format("event {} of {} is another than that of the session ({}): {}, not {}", i, events.size(),
+                                events_.size(), i < events.size() ? events[i].substr(0, 300) : "",
+                                i < events_.size() ? events_[i].substr(0, 300) : ""));
         sums.ended += first && reader.chunks() >= told.written && !may_be_damaged(reader.end());
         time_line_of(file);  // what `review` shows of it
         offer_of(file, told, sums, must);
