@@ -5,6 +5,7 @@
 // there that its program had been told is written, and is a match offered exactly where one stood. Exit code 0 when
 // all of it holds.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <fcntl.h>
 #include <signal.h>
@@ -41,6 +42,7 @@ constexpr std::array kPhaseWords{"before the scan", "scanning", "finding the pat
 struct Told {
     std::atomic<bool> began{false}, match_written{false}, match_handed_over{false}, done{false};
     std::atomic<std::uint64_t> written{0}, updates{0};
+    std::atomic<double> share{0};  ///< of the session that is over
     std::atomic<Phase> phase{Phase::starting};
 };
 
@@ -100,7 +102,8 @@ int record(const fs::path& devices, const fs::path& case_folder, const fs::path&
     SessionObservers both;
     both.add(&telling);  // before the recorder has it: else a match may be in the file that nobody told of
     both.add(&recorder);
-    const ReplayResult result = replay_session(devices, the_case, {}, both.all());
+    const ReplayResult result = replay_session(
+        devices, the_case, [&](double share) { told.share = share; }, both.all());
     recorder.finish();
     told.done = true;
     return result.difference ? 1 : 0;
@@ -126,7 +129,7 @@ struct Sums {
     int opened = 0, ended = 0, torn = 0, offered = 0, whole = 0;
     std::uint64_t chunks = 0, most_waiting_events = 0;
     std::map<std::string, int> phases, why_none;
-    std::vector<double> killed_after_s;
+    std::array<int, 10> tenths{};  ///< of the session, in which it was killed
     std::vector<std::string> faults;
 };
 
@@ -146,16 +149,17 @@ public:
     }
     double lasts_s() const { return lasts_s_; }
 
-    void kill_one(RecordMode mode, double after_s, Sums& sums) {
+    /// When that share of the session is over, and so much later.
+    void kill_one(RecordMode mode, double share, std::chrono::microseconds later, Sums& sums) {
         const std::string name = "killed";
-        const auto began = steady_clock::now();
         const auto [child, told] = start(name, mode);
         // Until its first chunk is there it is no recording yet, only a file's name.
         while (told->written == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        std::this_thread::sleep_until(began + std::chrono::duration<double>(after_s));
+        while (told->share < share && !told->done) std::this_thread::sleep_for(std::chrono::microseconds(200));
+        std::this_thread::sleep_for(later);
         ::kill(child, SIGKILL);
         ::waitpid(child, nullptr, 0);
-        sums.killed_after_s.push_back(after_s);
+        sums.tenths[std::min<std::size_t>(9, static_cast<std::size_t>(10 * told->share))]++;
         ++sums.phases[told->done ? "ended before it was killed"
                                  : kPhaseWords[static_cast<std::size_t>(told->phase.load())]];
         const fs::path file = folder_ / (name + ".plrec");
@@ -231,6 +235,7 @@ void print(const Sums& sums, int count) {
         "the session ({} chunks; {} with the beginning of a chunk behind them, which is left out; {} had ended by "
         "themselves); {} offer a match\n",
         sums.opened, count, sums.ended, count, sums.chunks, sums.torn, sums.whole, sums.offered);
+    fmt::print("killed in the tenths of the session: {}\n", fmt::join(sums.tenths, ", "));
     for (const auto& [phase, times] : sums.phases) fmt::print("killed while {}: {}\n", phase, times);
     for (const auto& [why, times] : sums.why_none) fmt::print("no match offered, {}: {}\n", why, times);
     for (const std::string& fault : sums.faults) fmt::print("FAULT: {}\n", fault);
@@ -254,10 +259,12 @@ int main(int argc, char** argv) {
     Kills kills("/proc/self/exe", folder.path(), folder.path() / "devices.plrec", folder.path() / "case");
     fmt::print("A session lasts {:.1f} s.\n", kills.lasts_s());
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> instant(0, kills.lasts_s());
+    std::uniform_real_distribution<double> share(0, 1);
+    std::uniform_int_distribution<int> later_us(0, 30000);  // into a step: how far it is is told between two of them
     Sums sums;
     for (int i = 0; i < count; ++i) {
-        kills.kill_one(i % 2 == 0 ? RecordMode::events : RecordMode::all, instant(random), sums);
+        kills.kill_one(i % 2 == 0 ? RecordMode::events : RecordMode::all, share(random),
+                       std::chrono::microseconds(later_us(random)), sums);
         if ((i + 1) % 20 == 0) fmt::print(stderr, "{} of {}\n", i + 1, count);
     }
     print(sums, count);
