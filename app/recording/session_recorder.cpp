@@ -103,6 +103,7 @@ void SessionRecorder::room_entered(const RoomFacts& room) noexcept {
     try {
         const std::lock_guard lock(mutex_);
         now_ = room.now;
+        room_entered_ = true;
         std::string text = session_events::room(room);
         if (anonymous_) text = anonymous_->out_of(text);
         writer_.add({chunk_types::kRoom, now_, std::move(text)});
