@@ -199,6 +199,14 @@ private:
                     session_.light_item(which < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(which)));
                     break;
                 }
+                case SessionCall::hide_item:
+                    session_.hide_item(event.value("which", std::size_t{0}));
+                    break;
+                case SessionCall::show_item: {
+                    const int which = event.value("which", -1);
+                    session_.show_item(which < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(which)));
+                    break;
+                }
                 case SessionCall::go_dark:
                     session_.go_dark();
                     break;
@@ -296,6 +304,7 @@ ReplayResult replay_session(const fs::path& recording, const Case& the_case,
         throw DamagedFileError(recording, "does not say in which room it was made", "Copy the file again.");
     DrawingSettings how;
     how.up_in_ct = result.head.up_in_ct;
+    how.card = result.head.card;
     const CaseDrawing drawing(the_case, how);
     const MarkerDesign markers = markers_of(room, recording);
     Replay(cursor, the_case, drawing, rig_of_text(room["rig"].dump(), recording), markers, result).run(progress);
