@@ -77,6 +77,12 @@ std::string side_of_plan(const Plan& plan, const SkinSurface& skin) {
     return left && right ? "BOTH SIDES" : left ? "LEFT" : right ? "RIGHT" : "MIDDLE";
 }
 
+std::vector<std::string> card_of(const Case& the_case, const SkinSurface& skin, bool anonymous) {
+    std::vector<std::string> card{anonymous || the_case.names.patient.empty() ? the_case.code : the_case.names.patient};
+    if (std::string side = side_of_plan(the_case.plan, skin); !side.empty()) card.push_back(std::move(side));
+    return card;
+}
+
 void name_rows(const PlanDrawing& drawing, std::vector<PlanRow>& rows) {
     for (std::size_t i = 0; i < std::min(rows.size(), drawing.items.size()); ++i) {
         const DrawnItem& item = drawing.items[i];

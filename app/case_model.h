@@ -13,6 +13,10 @@ namespace planlight {
 /// without a plan, where no such plane is found, and where the volume ends within the head at the left or the right.
 std::string side_of_plan(const Plan& plan, const SkinSurface& skin);
 
+/// What stands on the skin with the first light (`DrawingSettings::card`): the patient as the site names them, or the
+/// case's code where nobody is named or nobody may be (`anonymous`), and the side of the plan where it is known.
+std::vector<std::string> card_of(const Case& the_case, const SkinSurface& skin, bool anonymous);
+
 /// Calls each row of the table as the light calls its item: by its name and figures, and where the light has a code in
 /// place of the name (`DrawnItem::lit_by_code`) by that first.
 void name_rows(const PlanDrawing& drawing, std::vector<PlanRow>& rows);

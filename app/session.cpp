@@ -120,6 +120,7 @@ void Session::use_rig(const RigCalibration& rig) {
     overlay_.reset();
     rig_ = rig;
     tracker_ = PatientTracker(rig_, settings_.tracking);
+    set_hidden({});
     now_.reset();
     renderer_ = std::make_unique<DrawingRenderer>(planned_.skin, rig_.projector);
 }
@@ -183,6 +184,7 @@ void Session::match(const std::vector<PointPair>& landmarks) {
     overlay_.reset();
     landmarks_.reset();
     lit_landmark_.reset();
+    set_hidden({});
     registration_ = register_with_landmarks(scanned_->clean.kept, case_.lut, landmarks, settings);
     registration_->moved_in_scan_mm = motion_in_scan_mm_;
     take_case_and_rig(case_, rig_state_, *registration_);
@@ -197,6 +199,7 @@ void Session::draw_on_skin_as_found() {
     for (const auto& marker : tracker_.markers())
         drawing.keep_clear_in_ct.push_back(ct_from_patient * marker.centre_in_patient);
     now_.emplace(case_, planned_, registration_->skin, drawing);
+    card_wanted_ = true;
     renderer_ = std::make_unique<DrawingRenderer>(now_->skin, rig_.projector);
 }
 
@@ -207,12 +210,13 @@ void Session::start_overlay() {
     settings_.overlay.render.only_item = lit_landmark_ ? static_cast<int>(*lit_landmark_) : -1;
     settings_.overlay.render.item_of_moment =
         item_of_moment_ && !lit_landmark_ ? static_cast<int>(*item_of_moment_) : -1;
+    settings_.overlay.render.card = card_wanted() && !lit_landmark_ && !all_hidden();
     overlay_ =
         std::make_unique<OverlayLoop>(projector_, clock_, *renderer_, lit_drawing(), *registration_, settings_.overlay);
     if (confirmed_) overlay_->set_operator_confirmed(true);
     overlay_->set_found_delay(found_delay_);
     const auto looked_at = lit_landmark_ ? lit_landmark_ : item_of_moment_;
-    checker_.emplace(looked_at ? only(lit_drawing(), *looked_at) : drawing(), skin_of_light(), rig_,
+    checker_.emplace(looked_at ? only(lit_drawing(), *looked_at) : lit_drawing(), skin_of_light(), rig_,
                      settings_.check_light);
     watch_.emplace(rig_, settings_.light_cause);
     jumps_.emplace(rig_);
@@ -254,6 +258,7 @@ Session::Update Session::make_update() {
     update.times.draw_s = elapsed_s(drawing_began);
     if (update.overlay.lit) update.swapped_at = clock_.now();
     name_lost_pose(update);
+    name_hidden_plan(update);
     update.camera_doubt = cameras_.doubt();
     if (!update.overlay.lit && !update.camera_doubt.empty()) update.overlay.reason += "; " + update.camera_doubt;
     const auto checking_began = std::chrono::steady_clock::now();
@@ -288,6 +293,12 @@ void Session::name_lost_pose(Update& update) {
     if (lost_poses_ > 0 && exchanged_)
         update.overlay.reason = update.pose.reason =
             "left and right camera are exchanged: connect them as they were calibrated";
+}
+
+/// Darkness that a person asked for is called that, whatever else is wrong.
+void Session::name_hidden_plan(Update& update) const {
+    if (!update.overlay.lit && !lit_landmark_ && all_hidden())
+        update.overlay.reason = "every item of the plan is hidden";
 }
 
 void Session::note_shown(const OverlayStep& overlay) {

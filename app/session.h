@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -148,8 +149,20 @@ public:
     /// (`RenderSettings::others`); the light is measured on it alone. Empty: all are bright.
     void light_item(std::optional<std::size_t> which);
     std::optional<std::size_t> item_of_moment() const { return item_of_moment_; }
-    /// What is lit: the plan, or the landmarks.
-    const PlanDrawing& lit_drawing() const { return lit_landmark_ ? landmark_drawing_ : drawing(); }
+    /// From the next `update` on this item of the plan is neither lit nor looked for. Until it is shown again, lit alone,
+    /// or the next match; landmarks are lit as ever. With all items hidden it is dark, and says so.
+    void hide_item(std::size_t which);
+    /// It is lit again. Empty: the whole plan is, and none is the item of the moment.
+    void show_item(std::optional<std::size_t> which);
+    const std::set<std::size_t>& hidden_items() const { return hidden_; }
+    /// The card with the patient's name and side (`DrawingSettings::card`) is lit with the plan from the match until a
+    /// landmark has been lit.
+    bool card_wanted() const { return card_wanted_ && lit_drawing().card; }
+    bool all_hidden() const { return !hidden_.empty() && hidden_.size() == drawing().items.size(); }
+    /// What is lit: the plan without its hidden items, or the landmarks.
+    const PlanDrawing& lit_drawing() const {
+        return lit_landmark_ ? landmark_drawing_ : without_hidden_ ? *without_hidden_ : drawing();
+    }
 
     /// How much later than told the light of this match was found to be; it is drawn ahead by that.
     Instant found_delay() const { return found_delay_; }
@@ -190,6 +203,8 @@ private:
     void use_rig(const RigCalibration& rig);
     StereoFrame next_frame();
     void name_lost_pose(Update& update);
+    void name_hidden_plan(Update& update) const;
+    void set_hidden(std::set<std::size_t> hidden);
     std::size_t reference_markers(const ScanCapture& capture);
     void take_reference(const ScanCapture& capture);
     void take_rig(const ScanCapture& capture);
@@ -233,9 +248,12 @@ private:
     std::optional<std::vector<Eigen::Vector3d>> landmarks_;
     PlanDrawing landmark_drawing_;
     std::optional<std::size_t> lit_landmark_, item_of_moment_;
+    std::set<std::size_t> hidden_;               ///< items of the plan
+    std::optional<PlanDrawing> without_hidden_;  ///< the drawing without them; empty where there are none
     Instant lit_since_ = Instant::max();  ///< light without a break; max: it is dark
     int updates_ = 0;
-    bool confirmed_ = false;  ///< the last match, by the operator
+    bool confirmed_ = false;    ///< the last match, by the operator
+    bool card_wanted_ = false;  ///< nobody has looked at a landmark of this match yet
     double motion_in_scan_mm_ = 0;
     int scans_repeated_ = 0;
 };

@@ -59,6 +59,7 @@ void Session::light_landmark(std::optional<std::size_t> which) {
     const auto light = [&] {
         overlay_.reset();
         lit_landmark_ = which && *which < landmarks().size() ? which : std::nullopt;
+        if (lit_landmark_) card_wanted_ = false;
     };
     told(SessionCall::light_landmark, light, {}, which ? static_cast<int>(*which) : -1);
 }
@@ -68,8 +69,49 @@ void Session::light_item(std::optional<std::size_t> which) {
     const auto light = [&] {
         overlay_.reset();
         item_of_moment_ = which && *which < drawing().items.size() ? which : std::nullopt;
+        std::set<std::size_t> hidden = hidden_;
+        if (item_of_moment_ && hidden.erase(*item_of_moment_) > 0) set_hidden(std::move(hidden));
     };
     told(SessionCall::light_item, light, {}, which ? static_cast<int>(*which) : -1);
+}
+
+void Session::hide_item(std::size_t which) {
+    if (which >= drawing().items.size() || hidden_.contains(which)) return;
+    const auto hide = [&] {
+        overlay_.reset();
+        if (item_of_moment_ == which) item_of_moment_.reset();
+        std::set<std::size_t> hidden = hidden_;
+        hidden.insert(which);
+        set_hidden(std::move(hidden));
+    };
+    told(SessionCall::hide_item, hide, {}, static_cast<int>(which));
+}
+
+void Session::show_item(std::optional<std::size_t> which) {
+    if (which ? !hidden_.contains(*which) : hidden_.empty() && !item_of_moment_) return;
+    const auto show = [&] {
+        overlay_.reset();
+        std::set<std::size_t> hidden = hidden_;
+        if (which)
+            hidden.erase(*which);
+        else
+            hidden.clear(), item_of_moment_.reset();
+        set_hidden(std::move(hidden));
+    };
+    told(SessionCall::show_item, show, {}, which ? static_cast<int>(*which) : -1);
+}
+
+/// The light that is on was made of the drawing as it was: the caller has given it up.
+void Session::set_hidden(std::set<std::size_t> hidden) {
+    hidden_ = std::move(hidden);
+    without_hidden_.reset();
+    if (hidden_.empty()) return;
+    const auto is_hidden = [&](const auto& drawn) {
+        return drawn.item >= 0 && hidden_.contains(static_cast<std::size_t>(drawn.item));
+    };
+    without_hidden_ = drawing();
+    std::erase_if(without_hidden_->strokes, is_hidden);
+    std::erase_if(without_hidden_->labels, is_hidden);
 }
 
 Session::Update Session::update() {

@@ -11,7 +11,7 @@
 namespace planlight {
 
 /// What a session can be asked for.
-enum class SessionCall { scan, find_patient, confirm, update, check_skin, light_landmark, go_dark, light_item, resume };
+enum class SessionCall { scan, find_patient, confirm, update, check_skin, light_landmark, go_dark, light_item, resume, hide_item, show_item };
 
 /// What can be asked of a session's light gate.
 enum class GateCall { step, verify, skin_checked, new_match, restart, other_light, forbids };
@@ -39,7 +39,8 @@ public:
     virtual void said(const std::string& /*kind*/, const std::string& /*headline*/,
                       const std::vector<std::string>& /*details*/) noexcept {}
 
-    /// Before the session does it. `which`: of `light_landmark` and `light_item`, -1 for the plan.
+    /// Before the session does it. `which`: of `light_landmark`, `light_item`, `hide_item` and `show_item`, -1 for the
+    /// plan.
     virtual void asked(SessionCall /*call*/, const std::vector<PointPair>& /*landmarks*/, int /*which*/) noexcept {}
 
     /// Before `resume` is asked for: what the session is to go on with.

@@ -11,9 +11,9 @@ namespace planlight {
 
 /// What a site sets once, in planlight/config.json under $XDG_CONFIG_HOME (~/.config where that is not set):
 /// {"format": "planlight config", "version": 1, "units": "mm" | "cm" | "inch", "surgeon_side": "feet" | "head" | "left"
-/// | "right" | "view", "monitors": {"operator": "DP-1", "projector": "HDMI-2"}, "language": "de",
-/// "openigtlink": {"names": true}, "dicom": {"own_title": "PLANLIGHT", "host": "pacs", "port": 104, "title": "PACS"}}.
-/// Every name but the first two may be missing.
+/// | "right" | "view", "monitors": {"operator": "DP-1", "projector": "HDMI-2"}, "language": "de", "theme": "dark" |
+/// "bright", "openigtlink": {"names": true}, "dicom": {"own_title": "PLANLIGHT", "host": "pacs", "port": 104, "title":
+/// "PACS"}}. Every name but the first two may be missing.
 struct SiteSettings {
     /// Unit of the lengths that commands print for a person. Files, JSON, windows and the light stay in mm.
     std::string units = "mm";
@@ -21,6 +21,7 @@ struct SiteSettings {
     /// the operator's window, sees them at the match.
     std::string surgeon_side = "feet";
     std::string language = "en";                      ///< of the operator's windows (app/words/README.md)
+    std::string theme = "dark";                       ///< of the operator's windows
     std::string operator_monitor, projector_monitor;  ///< names; empty: not set. An option of a command overrides them
     bool openigtlink_names = false;   ///< `session --igtl` says names of patient, case and plan to whoever listens
     DicomPeer archive;                ///< that `fetch` and `store` talk with; what is not set is as `DicomPeer` has it

@@ -69,6 +69,8 @@ struct PlanDrawing {
     std::vector<DrawnItem> items;
     std::vector<Stroke> strokes;
     std::vector<Label> labels;
+    /// Whose plan it is and on which side: `DrawingSettings::card`, of no item (-1); empty where no skin was free for it.
+    std::optional<Label> card;
 };
 
 /// From where the light will come: labels are put where all of them can be lit.
@@ -94,6 +96,9 @@ struct DrawingSettings {
     std::vector<Eigen::Vector3d>
         keep_clear_in_ct;  ///< marker centres: labels are not put within `keep_clear_radius_mm`
     double keep_clear_radius_mm = 11;
+    /// A card on the skin near the plan, a line each: the patient's name, then the plan's side; empty: none. It is put
+    /// after all labels, apart from everything drawn, and without a leader.
+    std::vector<std::string> card;
 };
 
 /// Draws every item of the plan on the skin: lengths along geodesics, circles of their diameter, labels upright.

@@ -67,6 +67,7 @@ private:
     void put_codes_first();
     void keep_to_share();
     void put_of_moment();
+    void put_card();
 
     std::vector<LabelWish> wishes_;
     const SkinSurface& skin_;
@@ -184,6 +185,27 @@ void AllLabels::put_of_moment() {
     }
 }
 
+/// Far enough from every item that it is not taken for one's name.
+void AllLabels::put_card() {
+    if (settings_.card.empty() || wishes_.empty()) return;
+    LabelWish wish;
+    wish.text.name = settings_.card.front();
+    wish.text.figures.assign(settings_.card.begin() + 1, settings_.card.end());
+    // Half a name can be another's: rather smaller letters.
+    constexpr double kLeast_mm = 4.2;
+    if (shortened(wish.text.name, settings_.text_height_mm) != wish.text.name)
+        wish.text_height_mm = std::min(kLeast_mm, settings_.text_height_mm);
+    wish.facing_in_ct = wishes_.front().facing_in_ct;
+    wish.gaps_mm = {9, 14, 20, 28, 38, 50};
+    wish.leader = false;
+    for (const LabelWish& item : wishes_) {
+        wish.anchors.push_back(item.anchors.front());
+        wish.keep_off_mm = std::max(wish.keep_off_mm, item.keep_off_mm);
+        if (item.anchors.size() == 1) wish.others.push_back({item.anchors[0].p_in_ct, item.keep_off_mm});
+    }
+    drawing_.card = place_label(wish, skin_, settings_, occupied_);
+}
+
 void AllLabels::place() {
     constexpr int kAll = 6;
     put_whole_first();
@@ -195,6 +217,8 @@ void AllLabels::place() {
         for (const auto& [item, label] : put_) occupy(label, occupied_);
     }
     keep_to_share();
+    occupied_ = plan_;
+    for (const auto& [item, label] : put_) occupy(label, occupied_);
     for (const LabelWish& wish : wishes_) {
         const auto label = put_.find(wish.item);
         DrawnItem& item = drawing_.items[static_cast<std::size_t>(wish.item)];
@@ -203,6 +227,7 @@ void AllLabels::place() {
         if (label->second.by_code) item.lit_by_code = true, item.lit_name = item.code;
         drawing_.labels.push_back(label->second);
     }
+    put_card();
     put_of_moment();
 }
 

@@ -40,7 +40,7 @@ public:
         : wish_(wish), skin_(skin), settings_(settings), occupied_(occupied), block_(block) {}
 
     std::optional<Candidate> best() {
-        for (const double gap_mm : {0.0, 3.0, 7.0, 12.0, 18.0, 26.0}) {
+        for (const double gap_mm : wish_.gaps_mm) {
             for (std::size_t a = 0; a < wish_.anchors.size(); ++a) try_round(a, gap_mm);
             if (best_) return best_;
         }
@@ -140,7 +140,7 @@ void Search::try_round(std::size_t anchor, double gap_mm) {
         const TextFrame frame = text_frame(*middle, settings_.up_in_ct);
         if (!is_free(frame)) continue;
         std::vector<Point> way;
-        if (gap_mm >= kLeaderFrom_mm) {
+        if (wish_.leader && gap_mm >= kLeaderFrom_mm) {
             auto found = leader(wish_.anchors[anchor], frame);
             if (!found) continue;
             way = std::move(*found);
@@ -227,11 +227,12 @@ void vacate(const Label& label, OccupiedSkin& occupied) {
 
 std::optional<Label> place_label(const LabelWish& wish, const SkinSurface& skin, const DrawingSettings& settings,
                                  const OccupiedSkin& occupied) {
-    const TextBlock block = lay_out(wish.text, settings.text_height_mm);
+    const double height_mm = wish.text_height_mm > 0 ? wish.text_height_mm : settings.text_height_mm;
+    const TextBlock block = lay_out(wish.text, height_mm);
     if (block.lines.empty()) return std::nullopt;
     const auto found = Search(wish, skin, settings, occupied, block).best();
     if (!found) return std::nullopt;
-    auto label = draw_label(skin, found->frame, block, wish.item, settings.text_height_mm);
+    auto label = draw_label(skin, found->frame, block, wish.item, height_mm);
     if (!label) return std::nullopt;
     constexpr std::size_t kLongEnoughToBeSeen = 5;  // points, half a millimetre apart
     if (found->leader.size() >= kLongEnoughToBeSeen)

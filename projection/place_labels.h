@@ -53,6 +53,10 @@ struct LabelWish {
     };
     std::vector<Other> others = {};
     int but_of = OccupiedSkin::kNobody;  ///< whose labels may lie there
+    std::vector<double> gaps_mm = {0,  3,  7,
+                                   12, 18, 26};  ///< beyond what is drawn at the anchor: these are tried in turn
+    double text_height_mm = 0;                   ///< of its capitals; 0: the settings'
+    bool leader = true;                          ///< from far away a line leads to it
 };
 
 /// The label where it overlaps nothing, the skin is flat and, where the light is known, all of it can be lit: the

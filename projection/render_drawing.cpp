@@ -52,8 +52,9 @@ struct DrawingRenderer::Parts {
     void add_ribbon(const Stroke& stroke, bool broken);
     void draw_stroke(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts, RgbImage& picture);
     bool can_be_lit_whole(const Label& label, const RenderSettings& settings, const std::vector<DarkDisc>& discs);
-    void draw_label(const Label& label, const RenderSettings& settings, const std::vector<DarkDisc>& discs,
-                    RenderCounts& counts, RgbImage& picture);
+    /// False where it cannot be lit whole: then nothing of it is.
+    bool draw_label(const Label& label, const RenderSettings& settings, const std::vector<DarkDisc>& discs,
+                    RgbImage& picture);
     /// True when the stroke is a circle that is lit in part; `counts` is told.
     bool is_partly_lit_ring(const Stroke& stroke, const RenderSettings& settings, RenderCounts& counts) const;
     /// The two edge points of the ribbon at one end of a segment.
@@ -180,15 +181,11 @@ bool DrawingRenderer::Parts::can_be_lit_whole(const Label& label, const RenderSe
     return !label.field_in_ct.empty();
 }
 
-void DrawingRenderer::Parts::draw_label(const Label& label, const RenderSettings& settings,
-                                        const std::vector<DarkDisc>& discs, RenderCounts& counts, RgbImage& picture) {
+bool DrawingRenderer::Parts::draw_label(const Label& label, const RenderSettings& settings,
+                                        const std::vector<DarkDisc>& discs, RgbImage& picture) {
     if (label.field_normals_in_ct.size() != label.field_in_ct.size())
         throw InputError("", "a label of the drawing has not one normal per point", "Draw the plan again.");
-    if (!can_be_lit_whole(label, settings, discs)) {
-        counts.labels_left_out.push_back(label.item);
-        return;
-    }
-    counts.labels_lit.push_back(label.item);
+    if (!can_be_lit_whole(label, settings, discs)) return false;
     for (const Label::Outlines& sign : label.signs_in_ct) {
         outlines.resize(sign.size());
         for (std::size_t k = 0; k < sign.size(); ++k) {
@@ -201,6 +198,7 @@ void DrawingRenderer::Parts::draw_label(const Label& label, const RenderSettings
     raster.flush(dimmed(label.colour, settings.brightness), picture);
     RenderCounts not_of_lines;
     if (!label.leader.points_in_ct.empty()) draw_stroke(label.leader, settings, not_of_lines, picture);
+    return true;
 }
 
 bool DrawingRenderer::Parts::is_partly_lit_ring(const Stroke& stroke, const RenderSettings& settings,
@@ -258,9 +256,12 @@ RenderCounts DrawingRenderer::render_into(RgbImage& picture, const PlanDrawing& 
     for (const Label& label : drawing.labels) {
         const bool wanted =
             settings.item_of_moment < 0 ? !label.of_moment : label.of_moment && label.item == settings.item_of_moment;
-        if (wanted && (settings.only_item < 0 || label.item == settings.only_item))
-            parts.draw_label(label, settings, discs, counts, picture);
+        if (!wanted || (settings.only_item >= 0 && label.item != settings.only_item)) continue;
+        const bool lit = parts.draw_label(label, settings, discs, picture);
+        (lit ? counts.labels_lit : counts.labels_left_out).push_back(label.item);
     }
+    if (drawing.card && settings.card && settings.only_item < 0 && settings.item_of_moment < 0)
+        counts.card_lit = parts.draw_label(*drawing.card, settings, discs, picture);
     darken(discs, picture);
     return counts;
 }

@@ -21,6 +21,7 @@ struct RenderSettings {
     /// The item that is worked on: bright, with its whole label; no other label is drawn then. -1: none.
     int item_of_moment = -1;
     double others = 0.25;         ///< brightness of the other items then; 0 hides them
+    bool card = false;            ///< `PlanDrawing::card` is lit as well, while no item is that of the moment
     double steepest_text = 1.13;  ///< radians (65 degrees): a label of which a part is steeper is left out whole
 };
 
@@ -39,6 +40,7 @@ struct RenderCounts {
     std::size_t outside = 0;    ///< out of the projector's picture
     std::vector<PartlyLitRing> partly_lit;
     std::vector<int> labels_lit, labels_left_out;  ///< items; a label is left out when not all of it can be lit
+    bool card_lit = false;
 };
 
 /// One sentence for every circle of which only a part can be lit.

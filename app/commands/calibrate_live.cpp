@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "app/commands/calibrate_options.h"
+#include "app/commands/language_option.h"
 #include "app/console.h"
 #include "app/live/guide_screen.h"
 #include "app/live/guided_calibration.h"
@@ -83,6 +84,9 @@ public:
         if (options.headless) return;
         WindowSettings settings;
         settings.title = "Planlight calibration";
+        const SiteSettings site = read_site_settings();
+        settings.words = words_of_window({}, site);
+        settings.theme = site.theme == "bright" ? ThemeKind::bright : ThemeKind::dark;
         if (!options.operator_monitor.empty()) settings.monitor = options.operator_monitor;
         window_ = std::make_unique<GuideWindow>(settings);
         if (!screenshots_.empty()) std::filesystem::create_directories(screenshots_);

@@ -6,6 +6,7 @@
 #include "app/commands/archive_options.h"
 #include "app/commands/commands.h"
 #include "app/console.h"
+#include "planning_io/case/case_names.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -26,17 +27,11 @@ nlohmann::ordered_json json_of(const FoundSeries& series) {
             {"description", series.description}, {"images", series.images}};
 }
 
-/// Characters of the archive's texts that would move the terminal's cursor are left out.
-std::string shown(std::string text) {
-    std::erase_if(text, [](unsigned char c) { return c < ' ' || c == 0x7F; });
-    return text;
-}
-
 std::string line_of(const FoundSeries& series) {
-    return shown(fmt::format("{}  {}  {}  series {} {}  {}{}  {}", series.study_date, series.patient_id,
-                             series.patient_name, series.number, series.modality, series.description,
-                             series.images.empty() ? "" : fmt::format("  ({} images)", series.images),
-                             series.series_uid));
+    return without_control_characters(
+        fmt::format("{}  {}  {}  series {} {}  {}{}  {}", series.study_date, series.patient_id, series.patient_name,
+                    series.number, series.modality, series.description,
+                    series.images.empty() ? "" : fmt::format("  ({} images)", series.images), series.series_uid));
 }
 
 void print_found(const std::vector<FoundSeries>& found, bool json) {
@@ -92,8 +87,8 @@ int run_fetch(const FetchOptions& options) {
         told["files"] = images;
         std::cout << told.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
     } else {
-        fmt::print("{} images in {}, as `planlight prepare` reads them. They name the patient.\n", images,
-                   options.out.string());
+        fmt::print("{}\n{} images in {}, as `planlight prepare` reads them. They name the patient.\n", line_of(series),
+                   images, options.out.string());
     }
     return 0;
 }

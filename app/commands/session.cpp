@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include "app/case_model.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/language_option.h"
@@ -35,6 +36,7 @@ struct SessionOptions {
     Path resume;             ///< recording of the session to go on with; empty: the last one is offered
     std::string series_uid;
     std::string language;  ///< of the window; empty: as the site says
+    std::string theme;     ///< empty: the site's
     std::string surgeon;   ///< where he stands; empty: as the site says
     std::string preset = "paper", projector_monitor, operator_monitor;
     unsigned seed = 1;
@@ -127,7 +129,7 @@ private:
 };
 
 /// The recording of this session, said where and how much; none with `--record none`.
-Recorded recorder_of(const SessionOptions& options, const Case& the_case, const SiteSettings& site) {
+Recorded recorder_of(const SessionOptions& options, const Case& the_case, const DrawingSettings& drawing) {
     const RecordMode mode = record_mode_of(options.record);
     if (mode == RecordMode::none) {
         fmt::print(stderr, "This session is not recorded, and there will be no report of it.\n");
@@ -138,7 +140,7 @@ Recorded recorder_of(const SessionOptions& options, const Case& the_case, const 
                     "Give --record events with --anonymous.");
     const Path file = new_recording_name(recordings_folder(options));
     auto sink = std::make_unique<RecordingFile>(file);
-    const RecordingHead head = recording_head(the_case, options.case_folder, mode, drawing_settings(site));
+    const RecordingHead head = recording_head(the_case, options.case_folder, mode, drawing);
     if (options.anonymous) {
         fmt::print(
             stderr,
@@ -180,8 +182,9 @@ struct Listeners {
     std::unique_ptr<SessionLink> link;  // a port that is taken is said before a recording is begun
     Recorded recorded;
     SessionObservers all;
-    Listeners(const SessionOptions& options, const Case& the_case, const SiteSettings& site)
-        : link(link_of(options, the_case, site)), recorded(recorder_of(options, the_case, site)) {
+    Listeners(const SessionOptions& options, const Case& the_case, const SiteSettings& site,
+              const DrawingSettings& drawing)
+        : link(link_of(options, the_case, site)), recorded(recorder_of(options, the_case, drawing)) {
         all.add(recorded.get());
         all.add(link.get());
     }
@@ -210,9 +213,13 @@ LiveOptions live_options(const SessionOptions& options, const SiteSettings& site
     return live;
 }
 
-CaseDrawing drawing_of(const Case& the_case, const SiteSettings& site, SessionWindow& window) {
-    return window.while_made("The plan is being drawn on the skin.", 0.7,
-                             [&] { return CaseDrawing(the_case, drawing_settings(site)); });
+CaseDrawing drawing_of(const SessionOptions& options, const Case& the_case, const SiteSettings& site,
+                       SessionWindow& window) {
+    return window.while_made("The plan is being drawn on the skin.", 0.7, [&] {
+        CaseDrawing drawing(the_case, drawing_settings(site));
+        drawing.settings.card = card_of(the_case, drawing.skin, options.anonymous);  // for the light of the session
+        return drawing;
+    });
 }
 
 int run_in_simulated_room(const SessionOptions& options, const Case& the_case, const SiteSettings& site,
@@ -229,10 +236,10 @@ int run_in_simulated_room(const SessionOptions& options, const Case& the_case, c
     room.preset = options.preset == "paper" ? simulation::Preset::paper : simulation::Preset::modern;
     room.seed = options.seed;
     auto resume = window.while_made(kLookedAt, 0.5, [&] { return resume_of(options, the_case, nullptr); });
-    Listeners listeners(options, the_case, site);
+    const CaseDrawing drawing = drawing_of(options, the_case, site, window);
+    Listeners listeners(options, the_case, site, drawing.settings);
     LiveOptions live = live_options(options, site, listeners);
     live.resume = std::move(resume);
-    const CaseDrawing drawing = drawing_of(the_case, site, window);
     const int code = run_live_simulated(
         window,
         [&](const RoomProgress& progress) {
@@ -250,10 +257,10 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
     if (options.projector_monitor.empty()) options.projector_monitor = room.monitor;
     if (options.projector_file.empty() && options.light_delay_ms < 0) options.projector_file = room.projector_file;
     auto resume = window.while_made(kLookedAt, 0.3, [&] { return resume_of(options, the_case, &rig); });
-    Listeners listeners(options, the_case, site);
+    const CaseDrawing drawing = drawing_of(options, the_case, site, window);
+    Listeners listeners(options, the_case, site, drawing.settings);
     LiveOptions live = live_options(options, site, listeners);
     live.resume = std::move(resume);
-    const CaseDrawing drawing = drawing_of(the_case, site, window);
     const int code = run_live(
         window,
         [&](Projector& projector, const RoomProgress& progress) {
@@ -266,8 +273,10 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
 
 int run_session(const SessionOptions& options) {
     const SiteSettings site = site_with(options.surgeon);
-    SessionWindow window(options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor,
-                         words_of_window(options.language, site));
+    SessionWindow window(
+        options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor,
+        words_of_window(options.language, site),
+        (options.theme.empty() ? site.theme : options.theme) == "bright" ? ThemeKind::bright : ThemeKind::dark);
     const Case the_case =
         window.while_made("The case is being read.", 0.1, [&] { return read_case(options.case_folder); });
     if (!options.json) fmt::print("{}\n", title_of(the_case));
@@ -317,6 +326,10 @@ Run add_session(CLI::App& app) {
     sub->add_option("--operator", o.operator_monitor, "Monitor of the operator window (default: the primary one)");
     surgeon_option(sub, o.surgeon);
     language_option(sub, o.language);
+    sub->add_option(
+           "--theme", o.theme,
+           "Colours of the operator's window: dark, or bright for a bright room (default: the site's, else dark)")
+        ->check(CLI::IsMember({"dark", "bright"}));
     sub->add_option("--seed", o.seed, "Of the simulated room")->capture_default_str()->excludes(room);
     sub->add_option("--speed-mm-s", o.speed_mm_s, "Peak speed of the head")
         ->capture_default_str()

@@ -11,7 +11,8 @@ namespace {
 
 // For an observer, in the order of their enumerations.
 constexpr std::array kActions{"none", "scan",    "register",      "track",      "stop",      "dark",
-                              "quit", "confirm", "use landmarks", "check skin", "light item"};
+                              "quit", "confirm", "use landmarks", "check skin", "light item",
+                              "hide item", "show item"};
 constexpr std::array kStatusKinds{"ready", "scanning", "matching", "aligned", "check", "refused", "dark", "waiting"};
 
 }  // namespace
@@ -73,7 +74,8 @@ SessionState LiveSession::without_waiting() const {
     return state_;
 }
 
-std::string LiveSession::post(OperatorAction action, AskedBy by, std::optional<std::uint64_t> darks) {
+std::string LiveSession::post(OperatorAction action, AskedBy by, std::optional<std::size_t> item,
+                              std::optional<std::uint64_t> darks) {
     if (action == OperatorAction::none) return {};
     {
         const std::lock_guard lock(mutex_);
@@ -90,7 +92,7 @@ std::string LiveSession::post(OperatorAction action, AskedBy by, std::optional<s
         const SessionState next = after_press(from, action, scan_there_).value_or(from);
         if (next != state_ && (dark || !(next == SessionState::verifying || state_ == SessionState::unsure)))
             enter(next, blank_, model_, scan_there_);
-        presses_.push_back({action, darks_, state_});
+        presses_.push_back({action, darks_, state_, item});
         state_ = next;
         if (dark) model_.status = dark_status(state_);
         if (action == OperatorAction::confirm) model_.confirm = false;  // until there is something new to look at
@@ -109,12 +111,8 @@ std::string LiveSession::post_find_patient(std::vector<PointPair> landmarks) {
     return post(OperatorAction::do_register);
 }
 
-std::string LiveSession::post_light_item(std::optional<std::size_t> which) {
-    {
-        const std::lock_guard lock(mutex_);
-        item_ = which;
-    }
-    return post(OperatorAction::light_item);
+std::string LiveSession::post_item(OperatorAction action, std::optional<std::size_t> which) {
+    return post(action, AskedBy::person, which);
 }
 
 bool LiveSession::happened(SessionHappening happening, const std::function<void(OperatorModel&)>& change) {

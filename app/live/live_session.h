@@ -41,14 +41,17 @@ public:
     ~LiveSession();
 
     /// Queued; `dark` and `stop` overtake everything that waits. The model says so at once. Returns why it does nothing
-    /// in the state of now, as a sentence; empty: it is taken. `darks`: only while DARK was pressed so often.
-    std::string post(OperatorAction action, AskedBy by = AskedBy::person, std::optional<std::uint64_t> darks = {});
+    /// in the state of now, as a sentence; empty: it is taken. `item`: of `light_item`, `hide_item` and `show_item`, empty
+    /// for the whole plan. `darks`: only while DARK was pressed so often.
+    std::string post(OperatorAction action, AskedBy by = AskedBy::person, std::optional<std::size_t> item = {},
+                     std::optional<std::uint64_t> darks = {});
 
     /// Finding the patient with these landmarks (none: without), clicked on the last scan; queued.
     std::string post_find_patient(std::vector<PointPair> landmarks);
 
-    /// This item of the plan alone is bright from now on (empty: all are); queued.
-    std::string post_light_item(std::optional<std::size_t> which);
+    /// `light_item`: this item of the plan alone is bright from now on (empty: all are). `hide_item`, `show_item`: it is
+    /// not lit, or it is again (empty: the whole plan). Queued.
+    std::string post_item(OperatorAction action, std::optional<std::size_t> which);
 
     /// The projector was away: before the plan is lit again a short scan looks whether all is as it was.
     void look_before_light();
@@ -79,6 +82,7 @@ private:
         OperatorAction action = OperatorAction::none;
         std::uint64_t darks = 0;
         SessionState from = SessionState::opening;  ///< in which it was pressed
+        std::optional<std::size_t> item{};          ///< of what is done with one
     };
     void run(const MakeRoom& make_room);
     std::unique_ptr<Room> make(const MakeRoom& make_room);
@@ -102,7 +106,8 @@ private:
     void show_measured(const Session::Update& update, OperatorModel& m) const;
     void show_verification(const Session::Update& update, LightGate::Ruling& ruling);
     void end_verification(Session& session);
-    void light_item(Session& session);
+    void light_items(const Press& press, Session& session);
+    void show_lit_items(const Session& session, OperatorModel& m) const;
     std::vector<PointPair> newest_landmarks() const;
     std::string keep(const RegistrationResult& found, const PointCloud& cloud,
                      const std::vector<PointPair>& landmarks) const;
@@ -147,7 +152,6 @@ private:
     std::condition_variable wake_;
     std::deque<Press> presses_;
     std::vector<PointPair> landmarks_;  ///< of the last `post_find_patient`
-    std::optional<std::size_t> item_;   ///< of the last `post_light_item`
     OperatorModel model_;
     Light light_;
     UpdateLatency latency_;

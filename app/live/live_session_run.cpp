@@ -26,6 +26,11 @@ void show_no_light(OperatorModel& m) {
     for (PlanRow& row : m.rows) row.light_off_mm.reset();
 }
 
+bool is_of_items(OperatorAction action) {
+    return action == OperatorAction::light_item || action == OperatorAction::hide_item ||
+           action == OperatorAction::show_item;
+}
+
 }  // namespace
 
 /// Passes everything to the room's projector and keeps the newest picture for the windows.
@@ -185,6 +190,8 @@ bool LiveSession::still_wanted(const Press& press) const {
             return state_ == SessionState::found || state_ == SessionState::verifying ||
                    state_ == SessionState::looking_again;
         case OperatorAction::light_item:
+        case OperatorAction::hide_item:
+        case OperatorAction::show_item:
             return view_of(state_).has_match;
         default:
             return true;
@@ -193,8 +200,7 @@ bool LiveSession::still_wanted(const Press& press) const {
 
 /// The words of what begins now; since it was pressed what ran before it may have said something else.
 void LiveSession::begin(const Press& press) {
-    if (press.action == OperatorAction::none || press.action == OperatorAction::confirm ||
-        press.action == OperatorAction::light_item)
+    if (press.action == OperatorAction::none || press.action == OperatorAction::confirm || is_of_items(press.action))
         return;
     change_model([&](OperatorModel& m) {
         if (press.darks == darks_) enter(state_, blank_, m, scan_there_);
@@ -230,7 +236,9 @@ void LiveSession::act(const Press& press, Session& session, Room& room) {
                 confirm(session);
             return;
         case OperatorAction::light_item:
-            light_item(session);
+        case OperatorAction::hide_item:
+        case OperatorAction::show_item:
+            light_items(press, session);
             break;
         case OperatorAction::dark:
         case OperatorAction::stop:

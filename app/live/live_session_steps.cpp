@@ -153,25 +153,28 @@ void LiveSession::end_verification(Session& session) {
     cannot_verify_.clear();
     session.light_landmark(std::nullopt);
     change_model([&](OperatorModel& m) {
-        m.scene.plan = std::make_shared<PlanDrawing>(session.drawing());
-        m.scene.bright_item = session.item_of_moment() ? static_cast<int>(*session.item_of_moment()) : -1;
+        show_lit_items(session, m);
         m.look_at = std::nullopt;
     });
 }
 
-/// What is lit for a person to look at goes on; the plan behind it changes.
-void LiveSession::light_item(Session& session) {
-    std::optional<std::size_t> which;
-    {
-        const std::lock_guard lock(mutex_);
-        which = item_;
-    }
-    session.light_item(which);
+/// Which items are bright, and which are hidden. What is lit for a person to look at goes on; the plan behind it
+/// changes, and its light is not trusted before it is measured.
+void LiveSession::light_items(const Press& press, Session& session) {
+    if (press.action == OperatorAction::light_item) session.light_item(press.item);
+    if (press.action == OperatorAction::show_item) session.show_item(press.item);
+    if (press.action == OperatorAction::hide_item && press.item) session.hide_item(*press.item);
     if (following_) gate_.other_light(seen_at_);
-    change_model([&](OperatorModel& m) {
-        m.item_of_moment = session.item_of_moment();
-        if (landmark_ < 0) m.scene.bright_item = which ? static_cast<int>(*which) : -1;
-    });
+    change_model([&](OperatorModel& m) { show_lit_items(session, m); });
+}
+
+/// In the table and in the 3-D view, where that does not show a landmark.
+void LiveSession::show_lit_items(const Session& session, OperatorModel& m) const {
+    m.item_of_moment = session.item_of_moment();
+    for (std::size_t i = 0; i < m.rows.size(); ++i) m.rows[i].hidden = session.hidden_items().contains(i);
+    if (landmark_ >= 0) return;
+    m.scene.plan = std::make_shared<PlanDrawing>(session.lit_drawing());
+    m.scene.bright_item = m.item_of_moment ? static_cast<int>(*m.item_of_moment) : -1;
 }
 
 /// What is said while a landmark is lit, where nothing worse is to be said.
@@ -255,20 +258,44 @@ void LiveSession::stop_light(Session& session, const LightGate::Ruling& ruling) 
 
 namespace {
 
-std::vector<std::string> why_dark(const std::vector<LightCause>& causes) {
+std::vector<std::string> why_dark(const Session& session, const std::vector<LightCause>& causes) {
+    if (session.all_hidden()) return {"Show an item on the page of the plan, or the whole plan (key 0)."};
     if (causes.empty()) return {"The light comes back by itself when the pose is good."};
     return {causes.front().sentence(), causes.front().remedy()};
 }
 
-Status status_of(const Session& session, const Session::Update& update, const LightGate::Ruling& ruling) {
-    if (!update.overlay.lit) return {StatusKind::dark, "Dark: " + update.overlay.reason + ".", why_dark(update.causes)};
+/// Empty where nothing is hidden.
+std::string sentence_of_hidden(const Session& session) {
+    const auto& hidden = session.hidden_items();
+    if (hidden.empty()) return {};
+    if (hidden.size() == 1)
+        return fmt::format("\"{}\" is hidden: it is not lit.", session.drawing().items[*hidden.begin()].name);
+    return fmt::format("{} of {} items are hidden: they are not lit.", hidden.size(), session.drawing().items.size());
+}
+
+/// `card_asked`: a card with the patient's name is to be lit until the light is verified.
+Status status_of(const Session& session, const Session::Update& update, const LightGate::Ruling& ruling,
+                 bool card_asked) {
+    if (!update.overlay.lit)
+        return {StatusKind::dark, "Dark: " + update.overlay.reason + ".", why_dark(session, update.causes)};
     std::vector<std::string> details = sentences(update.overlay.counts.partly_lit, session.lit_drawing());
     details.insert(details.end(), ruling.details.begin(), ruling.details.end());
     if (!update.camera_doubt.empty()) details.push_back(update.camera_doubt + ".");
+    if (card_asked && ruling.ask_to_verify && !session.item_of_moment() &&
+        (session.card_wanted() || !session.drawing().card))
+        details.push_back(update.overlay.counts.card_lit
+                              ? "Read the card on the skin: is it this patient, and this side?"
+                              : "The card with the patient's name cannot be lit whole: ask who the patient is.");
     if (const auto item = session.item_of_moment(); item && *item < session.drawing().items.size())
         details.push_back(fmt::format("Only \"{}\" is bright; the rest of the plan is dim or dark.",
                                       session.drawing().items[*item].name));
-    return {ruling.trust == LightTrust::aligned ? StatusKind::aligned : StatusKind::check, ruling.headline, details};
+    const bool aligned = ruling.trust == LightTrust::aligned;
+    Status status{aligned ? StatusKind::aligned : StatusKind::check, ruling.headline, details};
+    if (const std::string hidden = sentence_of_hidden(session); !hidden.empty()) {
+        status.details.push_back(hidden);
+        if (aligned) status.headline = "What is shown of the plan is on the skin.";
+    }
+    return status;
 }
 
 }  // namespace
@@ -334,7 +361,7 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
     figures.overlay_error_mm = ruling.off_mm;
     view_.found(update.frame.at, found_markers(session.tracker().seen_left()),
                 found_markers(session.tracker().seen_right()));
-    const Status status = status_of(session, update, ruling);
+    const Status status = status_of(session, update, ruling, !drawing_.settings.card.empty() && landmark_ < 0);
     bool told = false;
     change_model([&](OperatorModel& m) {
         note_latency(update, m);

@@ -138,8 +138,8 @@ WindowMeter::Phase phase_of(const OperatorModel& model) {
 
 }  // namespace
 
-SessionWindow::SessionWindow(const std::string& operator_monitor, std::shared_ptr<const Words> words)
-    : monitor_(operator_monitor), words_(std::move(words)) {
+SessionWindow::SessionWindow(const std::string& operator_monitor, std::shared_ptr<const Words> words, ThemeKind theme)
+    : monitor_(operator_monitor), words_(std::move(words)), theme_(theme) {
     if (!display_is_there()) return;
     window();
     show("Planlight starts.", 0);
@@ -148,6 +148,7 @@ SessionWindow::SessionWindow(const std::string& operator_monitor, std::shared_pt
 OperatorWindow& SessionWindow::window() {
     WindowSettings settings;
     settings.words = words_;
+    settings.theme = theme_;
     if (!monitor_.empty()) settings.monitor = monitor_;
     if (!window_) window_ = std::make_unique<OperatorWindow>(settings);
     return *window_;
@@ -198,8 +199,9 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         // refused.
         if (action == OperatorAction::do_register || action == OperatorAction::use_landmarks)
             window.say(session.post_find_patient(window.landmarks()));
-        else if (action == OperatorAction::light_item)
-            window.say(session.post_light_item(window.item_wanted()));
+        else if (action == OperatorAction::light_item || action == OperatorAction::hide_item ||
+                 action == OperatorAction::show_item)
+            window.say(session.post_item(action, window.item_wanted()));
         else
             window.say(session.post(action));
         // After the post: what the session hands over from now on is no light any more.

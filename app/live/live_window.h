@@ -43,7 +43,8 @@ class SessionWindow {
 public:
     /// Opens it where there is a display. `operator_monitor` empty: the primary one. Throws DeviceError.
     /// `words`: its language; null: English.
-    explicit SessionWindow(const std::string& operator_monitor, std::shared_ptr<const Words> words = {});
+    explicit SessionWindow(const std::string& operator_monitor, std::shared_ptr<const Words> words = {},
+                           ThemeKind theme = ThemeKind::dark);
 
     /// What `make` makes in a thread of its own, while the window says so. Throws what it throws.
     template <class Make>
@@ -62,6 +63,7 @@ private:
 
     std::string monitor_;
     std::shared_ptr<const Words> words_;
+    ThemeKind theme_;
     std::unique_ptr<OperatorWindow> window_;
     bool closed_ = false;
 };

@@ -25,7 +25,7 @@ void LiveSession::offer_to_resume() {
         m.status.headline =
             fmt::format("Ready to scan, or to go on with the match of {}.", time_of_day(offer_->match.made_utc));
     });
-    if (offer_->at_once) post(OperatorAction::confirm, AskedBy::program, 0);
+    if (offer_->at_once) post(OperatorAction::confirm, AskedBy::program, {}, 0);
 }
 
 /// Light only when markers, rig and skin agree with the match; what does not is said by whoever catches it.
@@ -83,13 +83,12 @@ void LiveSession::look_again(Session& session) {
         away_ = std::move(match);
     }
     if (!away_) return;
-    change_model([&](OperatorModel& m) {  // the session gives up the scan, and the item of the moment
+    change_model([&](OperatorModel& m) {  // the session gives up the scan
         scan_there_ = false;
-        m.item_of_moment = std::nullopt;
-        m.scene.bright_item = -1;
         enter(state_, blank_, m, scan_there_);
     });
     look_whether_it_holds(session, *away_);
+    change_model([&](OperatorModel& m) { show_lit_items(session, m); });
     look_first_ = false;
     away_.reset();
 }

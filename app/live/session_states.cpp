@@ -72,6 +72,10 @@ const char* label_of(A press) {
             return "Check skin";
         case A::light_item:
             return "Only this";
+        case A::hide_item:
+            return "Hide";
+        case A::show_item:
+            return "Show";
         default:
             return "";
     }
@@ -99,6 +103,8 @@ const char* obstacle(S state, A press, bool scan_there) {
         case A::check_skin:
             return view.check_skin ? nullptr : "the light does not follow the patient";
         case A::light_item:
+        case A::hide_item:
+        case A::show_item:
             return view.has_match ? nullptr : "no match";
         default:
             return nullptr;

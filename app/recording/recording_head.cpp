@@ -58,6 +58,7 @@ RecordingHead recording_head(const Case& the_case, const fs::path& case_folder, 
     std::error_code ignored;
     head.case_folder = fs::absolute(case_folder, ignored);
     head.up_in_ct = drawing.up_in_ct;
+    head.card = drawing.card;
     head.began_utc = today();
     head.operator_name = operator_name();
     head.computer = computer_name();
@@ -70,6 +71,7 @@ RecordingHead without_names(RecordingHead head) {
     head.plan_name.clear(), head.plan_version.clear();
     head.operator_name.clear(), head.computer.clear();
     head.case_folder.clear();
+    head.card.clear();
     return head;
 }
 
@@ -90,6 +92,7 @@ std::string text_of(const RecordingHead& head) {
                       {"plan_version", head.plan_version},
                       {"folder", head.case_folder.string()}}},
                     {"up_in_ct", to_json(head.up_in_ct)},
+                    {"card", head.card},
                     {"began", head.began_utc},
                     {"operator", head.operator_name},
                     {"computer", head.computer}};
@@ -117,6 +120,8 @@ RecordingHead head_of(const std::string& text, const fs::path& file) {
     head.plan_version = of_case.at("plan_version").text();
     head.case_folder = of_case.at("folder").text();
     head.up_in_ct = root.at("up_in_ct").vector3();
+    if (const auto card = root.find("card"))
+        for (std::size_t i = 0; i < card->size(); ++i) head.card.push_back((*card)[i].text());
     head.began_utc = root.at("began").text();
     head.operator_name = root.at("operator").text();
     head.computer = root.at("computer").text();

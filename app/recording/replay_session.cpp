@@ -206,6 +206,14 @@ private:
                     session_.light_item(which < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(which)));
                     break;
                 }
+                case SessionCall::hide_item:
+                    session_.hide_item(event.value("which", std::size_t{0}));
+                    break;
+                case SessionCall::show_item: {
+                    const int which = event.value("which", -1);
+                    session_.show_item(which < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(which)));
+                    break;
+                }
                 case SessionCall::go_dark:
                     session_.go_dark();
                     break;
@@ -218,7 +226,8 @@ private:
 
     void ask_gate(GateCall call, const Json& event, const std::string& recorded) {
         const Instant at(event.value("at_ns", std::int64_t{0}));
-        if (watcher_ && call != GateCall::step) watcher_->gate(call, at, event.value("off_mm", 0.0), nullptr);
+        if (watcher_ && call != GateCall::step && call != GateCall::forbids)
+            watcher_->gate(call, at, event.value("off_mm", 0.0), nullptr);
         switch (call) {
             case GateCall::verify:
                 gate_.verify(at);
@@ -237,21 +246,24 @@ private:
                 return;
             case GateCall::forbids: {
                 const auto forbidden = gate_.forbids();
-                expect_ruling(session_events::gate(call, at, 0, forbidden ? &*forbidden : nullptr), event, recorded);
+                if (!forbidden) throw ReplayDiffers{"the gate's decision: it forbids no light now"};
+                expect_ruling(call, at, *forbidden, event, recorded);
                 return;
             }
             case GateCall::step: {
                 const auto ruling = gate_.step(last_.frame.at, last_.overlay.lit, last_.light, last_.causes);
-                expect_ruling(session_events::gate(call, last_.frame.at, 0, &ruling), event, recorded);
+                expect_ruling(call, last_.frame.at, ruling, event, recorded);
                 return;
             }
         }
     }
 
-    void expect_ruling(const std::string& now, const Json& event, const std::string& recorded) {
+    void expect_ruling(GateCall call, Instant at, const LightGate::Ruling& ruling, const Json& event,
+                       const std::string& recorded) {
+        const std::string now = session_events::gate(call, at, 0, &ruling);
         if (now != recorded) throw ReplayDiffers{"the gate's decision, " + difference_of(event, Json::parse(now), {})};
         ++result_.rulings;
-        if (watcher_) watcher_->gate(call, last_.frame.at, 0, &ruling);
+        if (watcher_) watcher_->gate(call, at, 0, &ruling);
     }
 
     RecordingCursor& cursor_;
@@ -319,6 +331,7 @@ ReplayResult replay_session(const fs::path& recording, const Case& the_case,
         throw DamagedFileError(recording, "does not say in which room it was made", "Copy the file again.");
     DrawingSettings how;
     how.up_in_ct = result.head.up_in_ct;
+    how.card = result.head.card;
     const CaseDrawing drawing(the_case, how);
     RoomFacts facts;
     facts.name = room.value("name", "");

@@ -13,8 +13,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array kCalls{"scan",           "find_patient", "confirm",    "update", "check_skin",
-                            "light_landmark", "go_dark",      "light_item", "resume"};
+constexpr std::array kCalls{"scan",    "find_patient", "confirm", "update",    "check_skin", "light_landmark",
+                            "go_dark", "light_item",   "resume",  "hide_item", "show_item"};
 constexpr std::array kGateCalls{"step", "verify", "skin_checked", "new_match", "restart", "other_light", "forbids"};
 constexpr std::array kVerdicts{"yes", "ask", "no"};
 constexpr std::array kTrusts{"dark", "look", "aligned"};
@@ -136,7 +136,9 @@ bool from_word(const std::string& word, GateCall& call) {
 std::string asked(SessionCall call, const std::vector<PointPair>& landmarks, int which) {
     Json json = {{"what", "asked"}, {"call", word_of(call)}};
     if (call != SessionCall::update) json["utc"] = today();
-    if (call == SessionCall::light_landmark || call == SessionCall::light_item) json["which"] = which;
+    if (call == SessionCall::light_landmark || call == SessionCall::light_item || call == SessionCall::hide_item ||
+        call == SessionCall::show_item)
+        json["which"] = which;
     if (call == SessionCall::find_patient) {
         json["landmarks"] = Json::array();
         for (const PointPair& pair : landmarks)

@@ -30,6 +30,7 @@ struct RecordingHead {
     std::string case_code, case_title, volume_hash, mesh_hash, plan_hash, plan_name, plan_version;
     std::filesystem::path case_folder;  ///< where it was then
     Eigen::Vector3d up_in_ct{0, 0, 1};  ///< of the drawing's labels
+    std::vector<std::string> card;      ///< as it was lit (`DrawingSettings::card`)
     std::string began_utc, operator_name, computer;
 };
 

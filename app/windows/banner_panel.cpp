@@ -11,25 +11,10 @@
 namespace planlight {
 namespace {
 
-struct Look {
-    const char* word;
-    ImU32 fill, edge, shape, text;
-};
+using Look = BannerLook;
 
-const Look& look_of(StatusKind kind) {
-    static const std::array<Look, 8> looks{{
-        {"READY", IM_COL32(26, 31, 40, 255), IM_COL32(120, 134, 158, 255), IM_COL32(160, 172, 192, 255), theme::kText},
-        {"SCANNING", IM_COL32(14, 36, 66, 255), theme::kBlue, theme::kBlue, IM_COL32(220, 236, 255, 255)},
-        {"MATCHING", IM_COL32(14, 36, 66, 255), theme::kBlue, theme::kBlue, IM_COL32(220, 236, 255, 255)},
-        {"ALIGNED", IM_COL32(16, 58, 38, 255), IM_COL32(47, 190, 116, 255), theme::kGreen,
-         IM_COL32(222, 255, 236, 255)},
-        {"CHECK", IM_COL32(62, 46, 8, 255), theme::kAmber, theme::kAmber, IM_COL32(255, 240, 205, 255)},
-        {"REFUSED", IM_COL32(70, 18, 20, 255), theme::kRed, theme::kRed, IM_COL32(255, 225, 225, 255)},
-        {"DARK", IM_COL32(38, 28, 31, 255), IM_COL32(158, 104, 110, 255), IM_COL32(168, 112, 118, 255),
-         IM_COL32(240, 222, 224, 255)},
-        {"WAIT", IM_COL32(26, 31, 40, 255), IM_COL32(120, 134, 158, 255), IM_COL32(160, 172, 192, 255), theme::kText},
-    }};
-    return looks[static_cast<std::size_t>(kind)];
+const Look& look_of(const Pen& pen, StatusKind kind) {
+    return pen.theme->banner[static_cast<std::size_t>(kind)];
 }
 
 /// Each status has a shape of its own, so that it is known without colour.
@@ -91,22 +76,30 @@ std::vector<std::pair<std::string, const char*>> figures_of(const Figures& f) {
     return said;
 }
 
-/// Returns the width that was used; 0: there is nothing to show.
-float draw_figures(const Pen& pen, const Box& box, const Figures& figures, const Look& look) {
+/// Rows of a figure and its words, which break where they have to. Returns the width that was used; 0: there is nothing
+/// to show.
+float draw_figures(const Pen& pen, const Box& box, const Figures& figures, const Look& look, bool narrow) {
     const auto rows = figures_of(figures);
     if (rows.empty()) return 0;
+    const ImFont* const font = narrow ? pen.fonts.small : pen.fonts.body;
     const float gap = 12 * pen.scale, step = box.height / 4;
     float values = 0, words = 0;
     for (const auto& [value, sentence] : rows) {
         values = std::max(values, text_width(pen.fonts.number, value));
-        words = std::max(words, text_width(pen.fonts.body, pen.say(sentence)));
+        words = std::max(words, text_width(font, pen.say(sentence)));
     }
     words = std::min(words, box.width - values - gap);
     const float top = box.y + (box.height - step * static_cast<float>(rows.size())) / 2;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const float y = top + step * (static_cast<float>(i) + 0.5F), x = box.right() - words;
-        pen.line(pen.fonts.number, rows[i].first, x - gap - values, y, values + 1, IM_COL32_WHITE, Pen::Side::right);
-        pen.line(pen.fonts.body, pen.say(rows[i].second), x, y, words + 1, look.text);
+        pen.line(pen.fonts.number, rows[i].first, x - gap - values, y, values + 1, look.strong, Pen::Side::right);
+        const std::string sentence = pen.say(rows[i].second);
+        if (!narrow) {
+            pen.line(font, sentence, x, y, words + 1, look.text);
+            continue;
+        }
+        const auto lines = static_cast<float>(broken(font, sentence, words + 1, 9).size());
+        pen.paragraph(font, sentence, {x, y - lines * line_height(font) / 2, words + 1, step + 1}, look.text);
     }
     return values + gap + words;
 }
@@ -114,7 +107,8 @@ float draw_figures(const Pen& pen, const Box& box, const Figures& figures, const
 void draw_bar(const Pen& pen, const Box& banner, double share, const Look& look) {
     const float pad = 18 * pen.scale, height = 12 * pen.scale, y = banner.bottom() - pad / 2 - height;
     const float width = banner.width - 2 * pad;
-    pen.list->AddRectFilled({banner.x + pad, y}, {banner.x + pad + width, y + height}, theme::kBackground, height / 2);
+    pen.list->AddRectFilled({banner.x + pad, y}, {banner.x + pad + width, y + height}, pen.theme->background,
+                            height / 2);
     const float done = width * static_cast<float>(std::clamp(share, 0.0, 1.0));
     pen.list->AddRectFilled({banner.x + pad, y}, {banner.x + pad + std::max(done, height), y + height}, look.shape,
                             height / 2);
@@ -131,47 +125,63 @@ void draw_sentences(const Pen& pen, Box rest, const Status& status, const Look& 
     for (const std::string& detail : status.details) all += lines(pen.fonts.body, pen.say(detail));
     if (all < rest.height) rest.y += (rest.height - all) / 2;
     rest.height = bottom - rest.y;
-    rest.y += pen.paragraph(pen.fonts.strong, headline, rest, IM_COL32_WHITE);
+    rest.y += pen.paragraph(pen.fonts.strong, headline, rest, look.strong);
     for (const std::string& detail : status.details) {
         rest.height = bottom - rest.y;
         rest.y += pen.paragraph(pen.fonts.body, pen.say(detail), rest, look.text);
     }
 }
 
+/// Over the sentences, in as many lines as it takes; returns the place that is left.
+Box draw_notice(const Pen& pen, Box rest, const std::string& notice) {
+    const float pad = 18 * pen.scale;
+    const std::string words = pen.say(notice);
+    const auto lines = static_cast<float>(broken(pen.fonts.strong, words, rest.width - pad / 2, 3).size());
+    const float height = lines * line_height(pen.fonts.strong);
+    pen.panel({rest.x - pad / 2, rest.y - pad / 2, rest.width + pad / 2, height + pad / 2}, pen.theme->notice.fill,
+              pen.theme->notice.edge, 2);
+    pen.paragraph(pen.fonts.strong, words, {rest.x, rest.y - pad / 4, rest.width - pad / 2, height + 2},
+                  pen.theme->notice.text);
+    rest.y += height + pad / 2;
+    rest.height -= height + pad / 2;
+    return rest;
+}
+
 }  // namespace
 
 const char* status_word(StatusKind kind) {
-    return look_of(kind).word;
+    constexpr std::array kWords{"READY", "SCANNING", "MATCHING", "ALIGNED", "CHECK", "REFUSED", "DARK", "WAIT"};
+    return kWords[static_cast<std::size_t>(kind)];
 }
 
 void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model, const std::string& notice) {
-    const Look& look = look_of(model.status.kind);
+    const Look& look = look_of(pen, model.status.kind);
     const float s = pen.scale, pad = 18 * s;
+    // On a screen that stands on end the word has a row of its own.
+    const bool narrow = box.width < 1300 * s;
+    const float word_height = narrow ? 132 * s : box.height;
     pen.panel(box, look.fill, look.edge, 3);
-    const float radius = 0.30F * box.height, middle_y = box.y + box.height / 2;
+    const float radius = narrow ? 50 * s : 0.30F * box.height, middle_y = box.y + word_height / 2;
     const ImVec2 middle(box.x + 1.6F * pad + radius, middle_y);
     draw_shape(pen, model.status.kind, middle, radius, look);
 
-    const float word_x = middle.x + 1.15F * radius + 1.2F * pad, word = text_width(pen.fonts.word, pen.say(look.word));
-    pen.line(pen.fonts.word, pen.say(look.word), word_x, middle_y, 0, look.text);
+    const std::string status = pen.say(status_word(model.status.kind));
+    const float word_x = middle.x + 1.15F * radius + 1.2F * pad, word = text_width(pen.fonts.word, status);
+    pen.line(pen.fonts.word, status, word_x, middle_y, 0, look.text);
 
-    const float figures_width = 600 * s;
-    const Box figures{box.right() - 1.6F * pad - figures_width, box.y + 0.6F * pad, figures_width,
-                      box.height - 1.2F * pad};
-    const float used = draw_figures(pen, figures, model.figures, look);
+    const float figures_width = narrow ? 0.46F * box.width : 600 * s;
+    const Box figures =
+        narrow
+            ? Box{box.right() - pad - figures_width, box.y + word_height, figures_width, box.height - word_height - pad}
+            : Box{box.right() - 1.6F * pad - figures_width, box.y + 0.6F * pad, figures_width, box.height - 1.2F * pad};
+    const float used = draw_figures(pen, figures, model.figures, look, narrow);
     if (model.status.share) draw_bar(pen, box, *model.status.share, look);
 
-    const float text_x = word_x + word + 2 * pad, right = box.right() - 1.6F * pad - (used > 0 ? used + pad : 0);
-    Box rest{text_x, box.y + pad, right - text_x, box.height - 2 * pad};
-    if (!notice.empty()) {
-        const float height = line_height(pen.fonts.strong);
-        pen.panel({rest.x - pad / 2, rest.y - pad / 2, rest.width + pad / 2, height + pad / 2},
-                  IM_COL32(62, 46, 8, 255), theme::kAmber, 2);
-        pen.line(pen.fonts.strong, pen.say(notice), rest.x, rest.y + height / 2 - pad / 4, rest.width - pad / 2,
-                 IM_COL32(255, 240, 205, 255));
-        rest.y += height + pad / 2;
-        rest.height -= height + pad / 2;
-    }
+    const float text_x = narrow ? box.x + 1.2F * pad : word_x + word + 2 * pad;
+    const float right = box.right() - (narrow ? 1.0F : 1.6F) * pad - (used > 0 ? used + pad : 0);
+    Box rest{text_x, box.y + (narrow ? word_height : pad), right - text_x,
+             box.height - (narrow ? word_height + pad : 2 * pad)};
+    if (!notice.empty()) rest = draw_notice(pen, rest, notice);
     draw_sentences(pen, rest, model.status, look);
 }
 

@@ -22,22 +22,24 @@ std::string keys_in_words(const Pen& pen, const std::string& keys) {
 void draw_button(const Pen& pen, const Box& box, const std::string& label, const ButtonState& state,
                  const ButtonLook& look, bool hovered, bool held) {
     const bool blue = held || look.chosen || look.leads_on;
-    const ImU32 fill = !state.enabled ? IM_COL32(22, 25, 32, 255)
-                       : hovered      ? theme::kHovered
-                       : blue         ? theme::kActive
-                                      : theme::kControl;
-    const ImU32 edge = !state.enabled  ? theme::kEdge
-                       : look.leads_on ? IM_COL32(130, 190, 255, 255)
-                                       : IM_COL32(96, 112, 140, 255);
+    const ImU32 fill = !state.enabled ? pen.theme->disabled
+                       : hovered      ? pen.theme->hovered
+                       : blue         ? pen.theme->active
+                                      : pen.theme->control;
+    const ImU32 edge = !state.enabled  ? pen.theme->edge
+                       : look.leads_on ? pen.theme->leads_edge
+                                       : pen.theme->control_edge;
     pen.panel(box, fill, edge, !state.enabled ? 1 : look.leads_on ? 4 : 2);
     const float pad = 8 * pen.scale;
     if (state.enabled) {
-        const bool fits = text_width(pen.fonts.title, label) <= box.width - 2 * pad;
-        pen.line(fits ? pen.fonts.title : pen.fonts.strong, label, box.x + pad,
-                 box.y + (look.key.empty() ? 0.5F : 0.40F) * box.height, box.width - 2 * pad, theme::kText,
-                 Pen::Side::centre);
+        const auto fits = [&](const ImFont* font) { return text_width(font, label) <= box.width - 2 * pad; };
+        const ImFont* const font = fits(pen.fonts.title)    ? pen.fonts.title
+                                   : fits(pen.fonts.strong) ? pen.fonts.strong
+                                                            : pen.fonts.small;
+        pen.line(font, label, box.x + pad, box.y + (look.key.empty() ? 0.5F : 0.40F) * box.height, box.width - 2 * pad,
+                 pen.theme->text, Pen::Side::centre);
         pen.line(pen.fonts.small, keys_in_words(pen, look.key), box.x + pad, box.y + 0.77F * box.height,
-                 box.width - 2 * pad, look.leads_on ? theme::kText : theme::kQuiet, Pen::Side::centre);
+                 box.width - 2 * pad, look.leads_on ? pen.theme->text : pen.theme->quiet, Pen::Side::centre);
         return;
     }
     const float height = line_height(pen.fonts.small);
@@ -46,10 +48,10 @@ void draw_button(const Pen& pen, const Box& box, const std::string& label, const
     const float all = line_height(pen.fonts.strong) + height * static_cast<float>(lines);
     const float top = box.y + (box.height - all) / 2;
     pen.line(pen.fonts.strong, label, box.x + pad, top + line_height(pen.fonts.strong) / 2, box.width - 2 * pad,
-             IM_COL32(120, 128, 142, 255), Pen::Side::centre);
+             pen.theme->disabled_text, Pen::Side::centre);
     pen.paragraph(pen.fonts.small, why,
                   {box.x + pad, top + line_height(pen.fonts.strong), box.width - 2 * pad, 2 * height + 1},
-                  theme::kQuiet, Pen::Side::centre);
+                  pen.theme->quiet, Pen::Side::centre);
 }
 
 }  // namespace
@@ -64,14 +66,14 @@ bool button(const Pen& pen, const Box& box, const std::string& label, const Butt
 
 void draw_dark_button(const Pen& pen, const Box& box, bool hovered, bool held, const std::string& keys) {
     pen.panel(box,
-              held      ? IM_COL32(150, 156, 168, 255)
-              : hovered ? IM_COL32_WHITE
-                        : IM_COL32(222, 226, 234, 255),
-              IM_COL32_WHITE, 2);
+              held      ? pen.theme->badge_held
+              : hovered ? pen.theme->badge_hovered
+                        : pen.theme->badge,
+              pen.theme->badge_edge, 2);
     const float top = box.y + 0.38F * box.height;
-    pen.line(pen.fonts.number, pen.say("DARK"), box.x, top, box.width, IM_COL32(12, 14, 18, 255), Pen::Side::centre);
+    pen.line(pen.fonts.number, pen.say("DARK"), box.x, top, box.width, pen.theme->badge_text, Pen::Side::centre);
     pen.line(pen.fonts.small, keys_in_words(pen, keys), box.x, box.y + 0.78F * box.height, box.width,
-             IM_COL32(52, 58, 70, 255), Pen::Side::centre);
+             pen.theme->badge_quiet, Pen::Side::centre);
 }
 
 }  // namespace planlight

@@ -22,13 +22,13 @@ void draw_found(const Pen& pen, const std::vector<FoundMarker>& found, ImVec2 lo
         pen.list->AddCircle(at, radius, kShadow, 32, 4);
         if (marker.pairing != FoundMarker::Pairing::alone) {
             const bool both = marker.pairing == FoundMarker::Pairing::both;
-            pen.list->AddCircle(at, radius, both ? theme::kGreen : theme::kText, 32, both ? 2.0F : 1.5F);
+            pen.list->AddCircle(at, radius, both ? on_pictures().green : on_pictures().text, 32, both ? 2.0F : 1.5F);
             continue;
         }
         for (int i = 0; i < kArcs; ++i) {
             const float from = kTurn * static_cast<float>(i) / kArcs;
             pen.list->PathArcTo(at, radius, from, from + 0.55F * kTurn / kArcs, 6);
-            pen.list->PathStroke(theme::kAmber, 0, 2.5F);
+            pen.list->PathStroke(on_pictures().amber, 0, 2.5F);
         }
     }
 }
@@ -57,15 +57,15 @@ void draw_camera(const Pen& pen, const Box& box, const CameraPicture& camera, bo
     const SeenPicture& seen = refused ? *camera.refused : camera.live;
     const bool old = !refused && camera.old_s > 0;
     pen.panel(box, IM_COL32(8, 9, 12, 255),
-              refused ? theme::kRed
-              : old   ? theme::kAmber
-                      : theme::kEdge,
+              refused ? pen.theme->red
+              : old   ? pen.theme->amber
+                      : pen.theme->edge,
               refused || old ? 3 : 1);
     if (!seen.picture || seen.picture->empty() || texture == nullptr) {
         pen.paragraph(pen.fonts.small, pen.say(camera.note),
-                      {box.x + 16 * s, box.y + 0.4F * box.height, box.width - 32 * s, 0.6F * box.height}, theme::kQuiet,
-                      Pen::Side::centre);
-        draw_strip(pen, box, pen.say(camera.title), IM_COL32(10, 12, 16, 225), theme::kText, false);
+                      {box.x + 16 * s, box.y + 0.4F * box.height, box.width - 32 * s, 0.6F * box.height},
+                      on_pictures().quiet, Pen::Side::centre);
+        draw_strip(pen, box, pen.say(camera.title), IM_COL32(10, 12, 16, 225), on_pictures().text, false);
         return;
     }
     const auto width = static_cast<float>(seen.picture->width), height = static_cast<float>(seen.picture->height);
@@ -81,18 +81,20 @@ void draw_camera(const Pen& pen, const Box& box, const CameraPicture& camera, bo
     if (const auto at = camera.title.find(camera_word);
         text_width(pen.fonts.small, title) > box.width - 22 * s && at != std::string::npos)
         title = pen.say(camera.title.substr(0, at)) + state;
-    draw_strip(pen, box, title, IM_COL32(10, 12, 16, 225), theme::kText, false);
+    draw_strip(pen, box, title, IM_COL32(10, 12, 16, 225), on_pictures().text, false);
     if (refused)
-        draw_strip(pen, box, pen.say("Press for the live picture"), IM_COL32(70, 18, 20, 235), theme::kText, true);
+        draw_strip(pen, box, pen.say("Press for the live picture"), IM_COL32(70, 18, 20, 235), on_pictures().text,
+                   true);
     if (!refused && camera.refused)
-        draw_strip(pen, box, pen.say("Press for the refused picture"), IM_COL32(10, 12, 16, 225), theme::kText, true);
+        draw_strip(pen, box, pen.say("Press for the refused picture"), IM_COL32(10, 12, 16, 225), on_pictures().text,
+                   true);
     if (!old) return;
     const std::string age = pen.say(camera.old_s < 100 ? std::to_string(camera.old_s) + " s OLD" : "OLD");
-    pen.line(pen.fonts.number, age, box.x, box.y + box.height / 2, box.width, theme::kAmber, Pen::Side::centre);
+    pen.line(pen.fonts.number, age, box.x, box.y + box.height / 2, box.width, on_pictures().amber, Pen::Side::centre);
     if (!camera.note.empty())
         pen.paragraph(pen.fonts.small, pen.say(camera.note),
                       {box.x + 12 * s, box.y + box.height / 2 + 22 * s, box.width - 24 * s, 0.4F * box.height},
-                      theme::kText, Pen::Side::centre);
+                      on_pictures().text, Pen::Side::centre);
 }
 
 }  // namespace planlight

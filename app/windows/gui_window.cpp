@@ -19,7 +19,7 @@
 namespace planlight {
 namespace {
 
-constexpr int kLeastWidth = 1280, kLeastHeight = 720;
+constexpr int kLeastLong = 1280, kLeastShort = 720;  // sides of a window, upright or on end
 constexpr int kFramesAfterInput = 3;  ///< until Dear ImGui has settled: what is under the mouse is known a frame later
 
 Monitor monitor_for(const WindowSettings& settings) {
@@ -44,10 +44,14 @@ GLFWwindow* open_window(const WindowSettings& settings) {
     glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
     glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
     glfwWindowHint(GLFW_DECORATED, settings.fill_monitor ? GLFW_FALSE : GLFW_TRUE);
+    const bool on_end = monitor.height > monitor.width || settings.height > settings.width;
+    const auto [shorter, longer] = std::minmax(settings.width, settings.height);
+    const int wanted_width = on_end ? shorter : longer, wanted_height = on_end ? longer : shorter;
+    const int least_width = on_end ? kLeastShort : kLeastLong, least_height = on_end ? kLeastLong : kLeastShort;
     const int width =
-        settings.fill_monitor ? monitor.width : std::max(std::min(settings.width, monitor.width), kLeastWidth);
+        settings.fill_monitor ? monitor.width : std::max(std::min(wanted_width, monitor.width), least_width);
     const int height =
-        settings.fill_monitor ? monitor.height : std::max(std::min(settings.height, monitor.height), kLeastHeight);
+        settings.fill_monitor ? monitor.height : std::max(std::min(wanted_height, monitor.height), least_height);
     GLFWwindow* const window = glfwCreateWindow(width, height, settings.title.c_str(), nullptr, nullptr);
     if (window == nullptr)
         throw DeviceError("Operator window", "it could not be opened (" + last_window_error() + ")",
@@ -55,7 +59,7 @@ GLFWwindow* open_window(const WindowSettings& settings) {
     glfwSetWindowPos(window, monitor.x + std::max(0, (monitor.width - width) / 2),
                      monitor.y + std::max(0, (monitor.height - height) / 2));
     glfwShowWindow(window);
-    glfwSetWindowSizeLimits(window, kLeastWidth, kLeastHeight, GLFW_DONT_CARE, GLFW_DONT_CARE);
+    glfwSetWindowSizeLimits(window, least_width, least_height, GLFW_DONT_CARE, GLFW_DONT_CARE);
     return window;
 }
 
@@ -85,10 +89,12 @@ struct GuiWindow::Parts {
     Parts(const WindowSettings& settings, WindowListener told)
         : listener(std::move(told)), window(open_window(settings)), words(settings.words) {
         pen.words = words.get();
+        pen.theme = &theme_of(settings.theme);
         pen.lacking = &lacking;
         if (words) letters.text = words->letters();
         for (int kind = 0; words && kind <= static_cast<int>(StatusKind::waiting); ++kind)
             letters.word += words->say(status_word(static_cast<StatusKind>(kind)));
+        for (const std::string& word : settings.large_words) letters.word += words ? words->say(word) : word;
         glfwMakeContextCurrent(window);
         glfwSwapInterval(0);  // the loop that follows the patient must not wait for this screen
         listen();             // before Dear ImGui, which calls these and its own
@@ -181,7 +187,8 @@ struct GuiWindow::Parts {
         glViewport(0, 0, width, height);
         glDisable(GL_SCISSOR_TEST);
         glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-        glClearColor(11 / 255.0F, 13 / 255.0F, 17 / 255.0F, 1);
+        const ImVec4 behind = ImGui::ColorConvertU32ToFloat4(pen.theme->background);
+        glClearColor(behind.x, behind.y, behind.z, 1);
         glClear(GL_COLOR_BUFFER_BIT);
         ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
     }

@@ -50,6 +50,9 @@ struct GuideModel {
     std::vector<std::string> result;  ///< once it is there: sentences; then keep and discard may be pressed
 };
 
+/// Every word that `GuideModel::word` may be.
+std::vector<std::string> guide_words();
+
 enum class GuideAction { none, keep, discard, quit };
 
 }  // namespace planlight

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/windows/operator_model.h"
+
 namespace planlight {
 namespace {
 
@@ -25,29 +27,33 @@ void draw_cells(const Pen& pen, ImVec2 low, ImVec2 size, const GuideModel::Cells
 }
 
 void draw_title(const Pen& pen, const Box& box, const std::string& title) {
-    pen.line(pen.fonts.small, title, box.x + 14 * pen.scale, box.y + 20 * pen.scale, box.width - 28 * pen.scale,
-             theme::kQuiet);
+    pen.line(pen.fonts.small, pen.say(title), box.x + 14 * pen.scale, box.y + 20 * pen.scale,
+             box.width - 28 * pen.scale, pen.theme->quiet);
 }
 
-struct Look {
-    ImU32 fill, edge, text;
-};
+using Look = BannerLook;
 
-Look look_of(GuideModel::Mood mood) {
+const Look& look_of(const Pen& pen, GuideModel::Mood mood) {
+    const auto of = [&](StatusKind kind) -> const Look& { return pen.theme->banner[static_cast<std::size_t>(kind)]; };
     switch (mood) {
         case GuideModel::Mood::hold:
-            return {IM_COL32(14, 36, 66, 255), theme::kBlue, IM_COL32(220, 236, 255, 255)};
         case GuideModel::Mood::busy:
-            return {IM_COL32(14, 36, 66, 255), theme::kBlue, IM_COL32(220, 236, 255, 255)};
+            return of(StatusKind::scanning);
         case GuideModel::Mood::done:
-            return {IM_COL32(16, 58, 38, 255), theme::kGreen, IM_COL32(222, 255, 236, 255)};
+            return of(StatusKind::aligned);
         case GuideModel::Mood::wrong:
             break;
     }
-    return {IM_COL32(62, 46, 8, 255), theme::kAmber, IM_COL32(255, 240, 205, 255)};
+    return of(StatusKind::check);
 }
 
 }  // namespace
+
+std::vector<std::string> guide_words() {
+    return {"HOLD STILL", "NO BOARD",  "NOT SEEN", "TOO DARK", "TOO BRIGHT", "BLURRED",
+            "TILT IT",    "LESS TILT", "FARTHER",  "NEARER",   "NO LIGHT",   "WAIT",
+            "CAPTURING",  "LOOKING",   "AGAIN",    "TAKEN",    "DONE",       "KEEP IT?"};
+}
 
 void draw_guide_camera(const Pen& pen, const Box& box, const GuideModel::Camera& camera, ImTextureID texture) {
     pen.panel(box, IM_COL32(8, 9, 12, 255));
@@ -62,18 +68,18 @@ void draw_guide_camera(const Pen& pen, const Box& box, const GuideModel::Camera&
             const ImVec2 at(low.x + zoom * (static_cast<float>(p.x()) + 0.5F),
                             low.y + zoom * (static_cast<float>(p.y()) + 0.5F));
             pen.list->AddCircleFilled(at, 4.5F * pen.scale, IM_COL32(0, 0, 0, 200), 12);
-            pen.list->AddCircleFilled(at, 3 * pen.scale, theme::kBlue, 12);
+            pen.list->AddCircleFilled(at, 3 * pen.scale, pen.theme->blue, 12);
         }
     }
     const std::string title =
-        camera.title +
-        (camera.corners.empty() ? " · board not seen" : fmt::format(" · {} corners", camera.corners.size()));
+        pen.say(camera.title +
+                (camera.corners.empty() ? " · board not seen" : fmt::format(" · {} corners", camera.corners.size())));
     const float height = line_height(pen.fonts.small) + 8 * pen.scale,
                 width = std::min(text_width(pen.fonts.small, title) + 20 * pen.scale, box.width);
     pen.list->AddRectFilled({box.x + 1, box.y + 1}, {box.x + width, box.y + height}, IM_COL32(10, 12, 16, 225),
                             10 * pen.scale);
     pen.line(pen.fonts.small, title, box.x + 10 * pen.scale, box.y + height / 2, box.width - 20 * pen.scale,
-             camera.corners.empty() ? theme::kAmber : theme::kText);
+             camera.corners.empty() ? on_pictures().amber : on_pictures().text);
 }
 
 void draw_guide_cells(const Pen& pen, const Box& box, const std::string& title, const GuideModel::Cells& cells) {
@@ -84,7 +90,7 @@ void draw_guide_cells(const Pen& pen, const Box& box, const std::string& title, 
     const ImVec2 low(box.x + (box.width - width) / 2, box.y + top);
     pen.list->AddRectFilled(low, {low.x + width, low.y + height}, IM_COL32(8, 9, 12, 255));
     draw_cells(pen, low, {width, height}, cells);
-    pen.list->AddRect(low, {low.x + width, low.y + height}, theme::kEdge);
+    pen.list->AddRect(low, {low.x + width, low.y + height}, pen.theme->edge);
 }
 
 void draw_guide_tilts(const Pen& pen, const Box& box, const GuideModel& model) {
@@ -105,25 +111,26 @@ void draw_guide_tilts(const Pen& pen, const Box& box, const GuideModel& model) {
     for (std::size_t i = 0; i < 4; ++i) {
         pen.list->PathLineTo(middle);
         pen.list->PathArcTo(middle, radius, (turns[i] - 0.5F) * kQuarter, (turns[i] + 0.5F) * kQuarter, 24);
-        pen.list->PathFillConvex(model.by_edge[i] > 0 ? IM_COL32(20, 62, 44, 255) : IM_COL32(58, 44, 14, 255));
+        pen.list->PathFillConvex(
+            look_of(pen, model.by_edge[i] > 0 ? GuideModel::Mood::done : GuideModel::Mood::wrong).fill);
     }
-    pen.list->AddCircle(middle, radius, theme::kEdge, 48, 2);
-    pen.list->AddCircleFilled(middle, radius * static_cast<float>(model.useful_tilt / kRim), theme::kPanel, 48);
+    pen.list->AddCircle(middle, radius, pen.theme->edge, 48, 2);
+    pen.list->AddCircleFilled(middle, radius * static_cast<float>(model.useful_tilt / kRim), pen.theme->panel, 48);
     const char* words[4] = {"left", "right", "upper", "lower"};
     const ImVec2 places[4] = {{box.x + 6 * s, middle.y},
                               {middle.x + radius + 6 * s, middle.y},
                               {box.x + 6 * s, middle.y - radius - word / 2 - 2 * s},
                               {box.x + 6 * s, middle.y + radius + word / 2 + 2 * s}};
     for (std::size_t i = 0; i < 4; ++i) {
-        const std::string text = fmt::format("{} {}", words[i], model.by_edge[i]);
+        const std::string text = pen.say(fmt::format("{} {}", words[i], model.by_edge[i]));
         const float width = i == 0   ? middle.x - radius - box.x - 12 * s
                             : i == 1 ? box.right() - places[i].x - 6 * s
                                      : box.width - 12 * s;
         pen.line(pen.fonts.small, text, places[i].x, places[i].y, width,
-                 model.by_edge[i] > 0 ? theme::kGreen : theme::kAmber, Pen::Side::centre);
+                 model.by_edge[i] > 0 ? pen.theme->green : pen.theme->amber, Pen::Side::centre);
     }
-    for (const Eigen::Vector2d& tilt : model.tilts) pen.list->AddCircleFilled(at(tilt), 7 * s, theme::kGreen, 20);
-    if (model.tilt_now) pen.list->AddCircle(at(*model.tilt_now), 12 * s, theme::kText, 24, 3 * s);
+    for (const Eigen::Vector2d& tilt : model.tilts) pen.list->AddCircleFilled(at(tilt), 7 * s, pen.theme->green, 20);
+    if (model.tilt_now) pen.list->AddCircle(at(*model.tilt_now), 12 * s, pen.theme->text, 24, 3 * s);
 }
 
 void draw_guide_depths(const Pen& pen, const Box& box, const GuideModel& model) {
@@ -138,30 +145,31 @@ void draw_guide_depths(const Pen& pen, const Box& box, const GuideModel& model) 
     const auto at = [&](double mm) {
         return from + (to - from) * static_cast<float>(std::clamp((mm - low) / (high - low), 0.0, 1.0));
     };
-    pen.list->AddLine({from, y}, {to, y}, theme::kEdge, 4 * s);
-    pen.line(pen.fonts.small, "near", box.x + 12 * s, y, 60 * s, theme::kQuiet);
-    pen.line(pen.fonts.small, "far", to + 10 * s, y, 56 * s, theme::kQuiet);
-    for (const double mm : all) pen.list->AddCircleFilled({at(mm), y}, 7 * s, theme::kGreen, 20);
-    if (model.distance_now_mm) pen.list->AddCircle({at(*model.distance_now_mm), y}, 12 * s, theme::kText, 24, 3 * s);
+    pen.list->AddLine({from, y}, {to, y}, pen.theme->edge, 4 * s);
+    pen.line(pen.fonts.small, pen.say("near"), box.x + 12 * s, y, 60 * s, pen.theme->quiet);
+    pen.line(pen.fonts.small, pen.say("far"), to + 10 * s, y, 56 * s, pen.theme->quiet);
+    for (const double mm : all) pen.list->AddCircleFilled({at(mm), y}, 7 * s, pen.theme->green, 20);
+    if (model.distance_now_mm) pen.list->AddCircle({at(*model.distance_now_mm), y}, 12 * s, pen.theme->text, 24, 3 * s);
 }
 
 void draw_guide_banner(const Pen& pen, const Box& box, const GuideModel& model) {
-    const Look look = look_of(model.mood);
+    const Look& look = look_of(pen, model.mood);
     const float s = pen.scale, pad = 26 * s;
     pen.panel(box, look.fill, look.edge, 3);
-    const float word_width = std::min(0.42F * box.width, text_width(pen.fonts.word, model.word));
+    const std::string word = pen.say(model.word);
+    const float word_width = std::min(0.42F * box.width, text_width(pen.fonts.word, word));
     const float word_room = std::max(word_width, 0.36F * box.width);
-    pen.line(pen.fonts.word, model.word, box.x + pad, box.y + box.height / 2, 0, look.text);
-    const float x = box.x + pad + std::max(word_room, text_width(pen.fonts.word, model.word)) + pad;
+    pen.line(pen.fonts.word, word, box.x + pad, box.y + box.height / 2, 0, look.text);
+    const float x = box.x + pad + std::max(word_room, text_width(pen.fonts.word, word)) + pad;
     const float width = box.right() - pad - x;
     float y = box.y + 0.16F * box.height;
     if (!model.what.empty())
-        y += pen.paragraph(pen.fonts.title, model.what, {x, y, width, 0.5F * box.height}, theme::kText);
+        y += pen.paragraph(pen.fonts.title, pen.say(model.what), {x, y, width, 0.5F * box.height}, pen.theme->text);
     if (!model.why.empty())
-        pen.paragraph(pen.fonts.body, model.why, {x, y + 4 * s, width, box.bottom() - y - 34 * s}, look.text);
+        pen.paragraph(pen.fonts.body, pen.say(model.why), {x, y + 4 * s, width, box.bottom() - y - 34 * s}, look.text);
     if (model.share > 0) {
         const float bar = box.bottom() - 22 * s;
-        pen.list->AddRectFilled({x, bar}, {x + width, bar + 10 * s}, theme::kBackground, 5 * s);
+        pen.list->AddRectFilled({x, bar}, {x + width, bar + 10 * s}, pen.theme->background, 5 * s);
         pen.list->AddRectFilled({x, bar},
                                 {x + width * static_cast<float>(std::clamp(model.share, 0.0, 1.0)), bar + 10 * s},
                                 look.edge, 5 * s);
@@ -173,24 +181,28 @@ void draw_guide_progress(const Pen& pen, const Box& box, const GuideModel& model
     const float s = pen.scale, x = box.x + 20 * s, width = box.width - 40 * s;
     float y = box.y + 14 * s;
     const auto paragraph = [&](const ImFont* font, const std::string& text, ImU32 colour) {
-        y += pen.paragraph(font, text, {x, y, width, std::max(0.0F, box.bottom() - y - 8 * s)}, colour) + 4 * s;
+        y +=
+            pen.paragraph(font, pen.say(text), {x, y, width, std::max(0.0F, box.bottom() - y - 8 * s)}, colour) + 4 * s;
     };
     if (!model.result.empty()) {
-        for (const std::string& sentence : model.result) paragraph(pen.fonts.small, sentence, theme::kText);
+        for (const std::string& sentence : model.result) paragraph(pen.fonts.small, sentence, pen.theme->text);
         return;
     }
-    paragraph(pen.fonts.number, fmt::format("{} {}", model.poses, model.poses == 1 ? "pose" : "poses"), theme::kText);
+    paragraph(pen.fonts.number, fmt::format("{} {}", model.poses, model.poses == 1 ? "pose" : "poses"),
+              pen.theme->text);
     paragraph(pen.fonts.small, fmt::format("{} at least, {} at most", model.least_poses, model.most_poses),
-              theme::kQuiet);
+              pen.theme->quiet);
     if (model.predicted_mm)
         paragraph(pen.fonts.body,
                   fmt::format("Predicted error {:.3f} mm (to reach: {:g})", *model.predicted_mm, model.good_enough_mm),
-                  *model.predicted_mm <= model.good_enough_mm ? theme::kGreen : theme::kAmber);
+                  *model.predicted_mm <= model.good_enough_mm ? pen.theme->green : pen.theme->amber);
     else
-        paragraph(pen.fonts.body, "Predicted error: after three poses", theme::kQuiet);
+        paragraph(pen.fonts.body, "Predicted error: after three poses", pen.theme->quiet);
+    if (model.wanted.empty()) return;
     std::string wanted;
-    for (const std::string& one : model.wanted) wanted += (wanted.empty() ? "Still wanted: " : "; ") + one;
-    if (!wanted.empty()) paragraph(pen.fonts.body, wanted + ".", theme::kAmber);
+    for (const std::string& one : model.wanted) wanted += (wanted.empty() ? ": " : "; ") + pen.say(one);
+    pen.paragraph(pen.fonts.body, pen.say("Still wanted") + wanted + ".",
+                  {x, y, width, std::max(0.0F, box.bottom() - y - 8 * s)}, pen.theme->amber);
 }
 
 }  // namespace planlight

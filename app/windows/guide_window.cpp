@@ -52,8 +52,8 @@ struct GuideWindow::Parts {
 
     GuideAction draw(const Pen& pen, const GuideModel& model, float w, float h) {
         const float s = pen.scale, gap = 16 * s, title = 64 * s, banner = std::max(152.0F, 196 * s);
-        pen.line(pen.fonts.title, model.title, gap + 8 * s, gap + 14 * s, 0.6F * w, theme::kText);
-        pen.line(pen.fonts.small, model.subtitle, gap + 8 * s, gap + 42 * s, 0.9F * w, theme::kQuiet);
+        pen.line(pen.fonts.title, pen.say(model.title), gap + 8 * s, gap + 14 * s, 0.6F * w, pen.theme->text);
+        pen.line(pen.fonts.small, model.subtitle, gap + 8 * s, gap + 42 * s, 0.9F * w, pen.theme->quiet);
         const float top = gap + title, bottom = h - gap - banner - gap, column = std::max(420.0F, 0.28F * w);
         const float cameras = w - 3 * gap - column, camera_width = (cameras - gap) / 2;
         const float below = (model.result.empty() ? 240 : 430) * s;  // the result has more words
@@ -75,7 +75,10 @@ struct GuideWindow::Parts {
     }
 };
 
-GuideWindow::GuideWindow(const WindowSettings& settings) : parts_(std::make_unique<Parts>(settings)) {}
+GuideWindow::GuideWindow(WindowSettings settings) {
+    settings.large_words = guide_words();
+    parts_ = std::make_unique<Parts>(settings);
+}
 GuideWindow::~GuideWindow() = default;
 
 GuideAction GuideWindow::frame(const GuideModel& model) {

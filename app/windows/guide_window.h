@@ -11,7 +11,7 @@ namespace planlight {
 class GuideWindow {
 public:
     /// Throws DeviceError when there is no display, no such monitor, no OpenGL 3.3, or no font.
-    explicit GuideWindow(const WindowSettings& settings = {});
+    explicit GuideWindow(WindowSettings settings = {});
     ~GuideWindow();
 
     /// Draws the model and says what the person wants: Enter keeps, Delete discards, Escape or closing it is `quit`.

@@ -18,7 +18,7 @@ constexpr double kPoorFitMm = 5;  ///< as `PointPairSettings::max_residual_mm`: 
 /// A numbered dot; one that still waits for its partner is amber, one on the far side of the head dim.
 void draw_dot(const Pen& pen, const ImVec2& at, std::size_t number, bool waits, bool hidden) {
     const float radius = std::max(13.0F, 15 * pen.scale);
-    const ImU32 colour = waits ? theme::kAmber : theme::kGreen;
+    const ImU32 colour = waits ? on_pictures().amber : on_pictures().green;
     if (hidden) {
         pen.list->AddCircle(at, 0.6F * radius, IM_COL32(150, 160, 176, 160), 24, 1.5F);
         return;
@@ -29,7 +29,7 @@ void draw_dot(const Pen& pen, const ImVec2& at, std::size_t number, bool waits, 
     pen.list->AddLine(at, flag, colour, 2);
     pen.list->AddCircleFilled(flag, radius, IM_COL32(10, 12, 16, 235));
     pen.list->AddCircle(flag, radius, colour, 32, 2.5F);
-    pen.line(pen.fonts.strong, std::to_string(number), flag.x - radius, flag.y, 2 * radius, theme::kText,
+    pen.line(pen.fonts.strong, std::to_string(number), flag.x - radius, flag.y, 2 * radius, on_pictures().text,
              Pen::Side::centre);
 }
 
@@ -118,10 +118,10 @@ void LandmarkPanel::draw_words(const Pen& pen, const Box& box) const {
                             ? fmt::format("Landmark {}: click it on the skin and on the scan. Drag turns.", pairs + 1)
                         : skin > scan ? fmt::format("Landmark {}: now the same place on the scan.", skin)
                                       : fmt::format("Landmark {}: now the same place on the skin from CT.", scan);
-    ImU32 colour = skin == scan ? theme::kText : theme::kAmber;
+    ImU32 colour = skin == scan ? pen.theme->text : pen.theme->amber;
     if (!notice_.empty()) {
         words = notice_;
-        colour = theme::kAmber;
+        colour = pen.theme->amber;
     }
     const float pad = 18 * pen.scale, line = line_height(pen.fonts.body);
     pen.paragraph(pen.fonts.body, pen.say(words),
@@ -136,7 +136,7 @@ void LandmarkPanel::draw_words(const Pen& pen, const Box& box) const {
     pen.paragraph(
         pen.fonts.small, pen.say(fit),
         {box.x + pad, box.y + 10 * pen.scale + line, box.width - 2 * pad, 1.2F * line_height(pen.fonts.small)},
-        poor ? theme::kAmber : theme::kQuiet);
+        poor ? pen.theme->amber : pen.theme->quiet);
 }
 
 std::optional<LandmarkButton> LandmarkPanel::draw_buttons(const Pen& pen, const Box& strip,
@@ -172,9 +172,9 @@ std::optional<LandmarkButton> LandmarkPanel::draw(const Pen& pen, const Box& box
     draw_words(pen, box);
     draw_panes(pen, views);
     pen.line(pen.fonts.small, pen.say("Skin from CT"), boxes_[0].x + edge, boxes_[0].y + 16 * pen.scale, pane_width / 2,
-             theme::kText);
+             on_pictures().text);
     pen.line(pen.fonts.small, pen.say("Scan"), boxes_[1].x + edge, boxes_[1].y + 16 * pen.scale, pane_width - edge,
-             theme::kText);
+             on_pictures().text);
     const auto pressed = draw_buttons(
         pen, {box.x + edge, box.bottom() - edge - button_height, box.width - 2 * edge, button_height}, use_label);
     if (pressed == LandmarkButton::undo) clicks_.undo();

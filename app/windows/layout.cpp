@@ -19,12 +19,15 @@ Box fit_row(const Box& scene, float scale) {
 
 Box corner_button(const Box& scene, float scale) {
     const float height = button_height(scale);
-    return {scene.x + 12 * scale, scene.bottom() - 12 * scale - height, 0.7F * fit_row(scene, scale).width, height};
+    return {scene.x + 12 * scale, scene.bottom() - 12 * scale - height,
+            std::max(0.7F * fit_row(scene, scale).width, 372 * scale), height};
 }
 
-WindowLayout layout_of(int width, int height) {
+namespace {
+
+/// Beside the 3-D view stand pictures, table and buttons.
+WindowLayout lying(float w, float h) {
     WindowLayout place;
-    const auto w = static_cast<float>(width), h = static_cast<float>(height);
     const float s = place.scale = std::clamp(std::min(w / 1920, h / 1080), 0.6F, 3.0F);
     const float gap = place.gap = std::round(16 * s);
     const float button = std::max(76.0F, std::round(84 * s));
@@ -47,6 +50,37 @@ WindowLayout layout_of(int width, int height) {
     const float table_y = place.left_camera.bottom() + gap;
     place.table = {column_x, table_y, column, place.buttons.y - gap - table_y};
     return place;
+}
+
+/// Below the 3-D view stand pictures and table side by side, then the buttons.
+WindowLayout on_end(float w, float h) {
+    WindowLayout place;
+    const float s = place.scale = std::clamp(std::min(w / 1080, h / 1920), 0.6F, 3.0F);
+    const float gap = place.gap = std::round(16 * s), edge = std::round(10 * s);
+    const float button = std::max(76.0F, std::round(84 * s)), banner = std::round(360 * s);
+
+    place.dark = {w - gap - 250 * s, edge, 250 * s, button};
+    place.title = {gap + 8 * s, edge, place.dark.x - 2 * gap - 8 * s, button};
+    place.steps = {gap, place.title.bottom() + edge, w - 2 * gap, button};
+    place.banner = {gap, h - gap - banner, w - 2 * gap, banner};
+    place.buttons = {gap, place.banner.y - gap - button, w - 2 * gap, button};
+
+    const float camera_width = std::round(std::min(0.33F * w, 0.186F * h)), camera_height = std::round(0.64F * camera_width);
+    const float second_y = place.buttons.y - gap - camera_height, first_y = second_y - gap - camera_height;
+    place.left_camera = {gap, first_y, camera_width, camera_height};
+    place.right_camera = {gap, second_y, camera_width, camera_height};
+    const float table_x = place.left_camera.right() + gap;
+    place.table = {table_x, first_y, w - gap - table_x, place.buttons.y - gap - first_y};
+    const float top = place.steps.bottom() + edge;
+    place.scene = {gap, top, w - 2 * gap, first_y - gap - top};
+    return place;
+}
+
+}  // namespace
+
+WindowLayout layout_of(int width, int height) {
+    const auto w = static_cast<float>(width), h = static_cast<float>(height);
+    return height > width ? on_end(w, h) : lying(w, h);
 }
 
 }  // namespace planlight

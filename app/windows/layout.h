@@ -11,7 +11,7 @@ struct Box {
 
 /// Where everything stands in the operator window.
 struct WindowLayout {
-    float scale = 1;  ///< 1 at 1920 x 1080
+    float scale = 1;  ///< 1 at 1920 x 1080 and at 1080 x 1920
     float gap = 16;
     Box title, steps, dark, scene, left_camera, right_camera, table, buttons, banner;
 };
@@ -23,7 +23,7 @@ Box fit_row(const Box& scene, float scale);
 /// The lowest button in the lower left corner of the 3-D view; the others stand above it.
 Box corner_button(const Box& scene, float scale);
 
-/// For a window of that size, at least 1280 x 720. Buttons are never lower than 72 pixels (20 mm on a 24 inch screen).
+/// For a window of that size, at least 1280 x 720, or 720 x 1280 on end. Buttons are never lower than 72 pixels (20 mm on a 24 inch screen).
 WindowLayout layout_of(int width, int height);
 
 }  // namespace planlight

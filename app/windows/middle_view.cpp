@@ -18,6 +18,12 @@ float button_height(const Pen& pen) {
     return std::max(72.0F, 76 * pen.scale);
 }
 
+/// Not all of the plan is bright.
+bool part_of_plan(const OperatorModel& model) {
+    return model.item_of_moment ||
+           std::any_of(model.rows.begin(), model.rows.end(), [](const PlanRow& row) { return row.hidden; });
+}
+
 }  // namespace
 
 MiddleView::MiddleView(const FontFiles& fonts, std::function<void()> make_current)
@@ -29,9 +35,10 @@ OperatorAction MiddleView::draw(const Pen& pen, const Box& place, const Operator
     if (landmarks_ && model.landmarks) landmarks_->follow(*model.landmarks);
     landmarks_open_ = landmarks_open_ && model.landmarks;
     if (evidence_open_) {
-        const EvidencePage::Pressed pressed = evidence_.draw(pen, place, model);
+        const EvidencePage::Pressed pressed = evidence_.draw(pen, place, model, marked_);
         evidence_open_ = !pressed.close;
         places_ = evidence_.places();
+        if (pressed.hidden) return hide_or_show(*pressed.hidden, model);
         if (!pressed.item) return OperatorAction::none;
         item_wanted_ = model.item_of_moment == pressed.item ? std::nullopt : pressed.item;
         return OperatorAction::light_item;
@@ -61,7 +68,9 @@ OperatorAction MiddleView::press(KeyMeaning key, const OperatorModel& model) {
             why_not_ = "Landmarks are clicked on a scan, and there is none.";
     }
     if (const std::string why = views_.press(key, model, scene_); !why.empty()) why_not_ = why;
-    if (key == KeyMeaning::next_item || key == KeyMeaning::all_items) return press_item(key, model);
+    mark_row(key, model);
+    if (key == KeyMeaning::next_item || key == KeyMeaning::all_items || key == KeyMeaning::hide_item)
+        return press_item(key, model);
     // Only what is seen is pressed: not under another page.
     if (key == KeyMeaning::confirm && model.confirm && places_.contains("confirm")) return OperatorAction::confirm;
     if (key == KeyMeaning::confirm) why_not_ = "There is nothing to say yes to now.";
@@ -70,14 +79,40 @@ OperatorAction MiddleView::press(KeyMeaning key, const OperatorModel& model) {
     return OperatorAction::none;
 }
 
-/// One item after the other, then all of the plan again.
+OperatorAction MiddleView::hide_or_show(std::size_t row, const OperatorModel& model) {
+    item_wanted_ = row;
+    return model.rows[row].hidden ? OperatorAction::show_item : OperatorAction::hide_item;
+}
+
+/// The row above or below; at first the first or the last one.
+void MiddleView::mark_row(KeyMeaning key, const OperatorModel& model) {
+    const std::size_t count = model.rows.size();
+    if (count == 0 || (marked_ && *marked_ >= count)) marked_.reset();
+    if ((key != KeyMeaning::row_above && key != KeyMeaning::row_below) || count == 0) return;
+    if (!marked_)
+        marked_ = key == KeyMeaning::row_below ? 0 : count - 1;
+    else if (key == KeyMeaning::row_below)
+        marked_ = std::min(*marked_ + 1, count - 1);
+    else
+        marked_ = *marked_ > 0 ? *marked_ - 1 : 0;
+}
+
+/// One item after the other that is not hidden, then all of the plan again; or the marked one hidden or shown.
 OperatorAction MiddleView::press_item(KeyMeaning key, const OperatorModel& model) {
     if (!model.may_light_item) {
-        why_not_ = "One item alone is lit once the patient is found.";
+        why_not_ = "Items are lit alone, or hidden, once the patient is found.";
         return OperatorAction::none;
     }
-    const std::size_t next = model.item_of_moment ? *model.item_of_moment + 1 : 0;
-    item_wanted_ = key == KeyMeaning::next_item && next < model.rows.size() ? std::optional(next) : std::nullopt;
+    if (key == KeyMeaning::hide_item) {
+        if (marked_) return hide_or_show(*marked_, model);
+        why_not_ = "Mark a row of the plan with the arrow keys first; H hides it, or shows it again.";
+        return OperatorAction::none;
+    }
+    item_wanted_.reset();
+    if (key == KeyMeaning::all_items) return OperatorAction::show_item;
+    std::size_t next = model.item_of_moment ? *model.item_of_moment + 1 : 0;
+    while (next < model.rows.size() && model.rows[next].hidden) ++next;
+    if (next < model.rows.size()) item_wanted_ = marked_ = next;
     return OperatorAction::light_item;
 }
 
@@ -104,7 +139,7 @@ void MiddleView::draw_scene(const Pen& pen, const Box& place, const OperatorMode
     const float strip = button_height(pen) + 24 * pen.scale;  // of buttons, which a finger must meet at once
     const float above = strip + (views_.open() ? ViewButtons::height(pen.scale) : 0);
     const int rows = (model.landmarks ? 1 : 0) + (model.confirm ? 1 : 0) + (model.check_skin ? 1 : 0) +
-                     (model.item_of_moment ? 1 : 0);
+                     (part_of_plan(model) ? 1 : 0);
     const float below = strip * static_cast<float>(rows);
     const Box sensitive{place.x, place.y + above, place.width, std::max(1.0F, place.height - above - below)};
     scene_.take_mouse("scene", sensitive);
@@ -142,7 +177,7 @@ void MiddleView::draw_title(const Pen& pen, const Box& place, const OperatorMode
     pen.paragraph(
         pen.fonts.small, title,
         {place.x + indent, place.y + 14 * pen.scale, 0.44F * place.width - indent, 4.2F * line_height(pen.fonts.small)},
-        theme::kText);
+        on_pictures().text);
 }
 
 /// When a place begins to be lit for a person to look at, the picture shows its side of the head, with the place beside
@@ -195,7 +230,7 @@ OperatorAction MiddleView::draw_corner_buttons(const Pen& pen, Box corner, const
         corner.y -= corner.height + 12 * pen.scale;
     }
     OperatorAction wanted = OperatorAction::none;
-    if (model.item_of_moment) {
+    if (part_of_plan(model)) {
         places_["all-items"] = corner;
         if (button(pen, corner, "Show the whole plan", {true, {}}, {false, false, key_text(KeyMeaning::all_items)}))
             wanted = press_item(KeyMeaning::all_items, model);

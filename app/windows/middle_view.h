@@ -21,15 +21,17 @@ class MiddleView {
 public:
     MiddleView(const FontFiles& fonts, std::function<void()> make_current);
 
-    /// `confirm`, `check_skin`, `use_landmarks`, `light_item` or nothing.
+    /// `confirm`, `check_skin`, `use_landmarks`, `light_item`, `hide_item`, `show_item` or nothing.
     OperatorAction draw(const Pen& pen, const Box& place, const OperatorModel& model);
 
     /// What a key does here; `why_not` says why it did nothing, and is empty where it did something.
     OperatorAction press(KeyMeaning key, const OperatorModel& model);
     const std::string& why_not() const { return why_not_; }
 
-    /// With `light_item`: which row of the plan; empty: all of it.
+    /// With `light_item`, `hide_item` and `show_item`: which row of the plan; empty: all of it.
     std::optional<std::size_t> item_wanted() const { return item_wanted_; }
+    /// The row of the plan that the arrow keys have marked; empty: none.
+    std::optional<std::size_t> marked_row() const { return marked_; }
 
     /// The 3-D view is behind the model and is to be drawn again soon.
     bool wants_frame() const { return scene_.wants_frame(); }
@@ -48,6 +50,8 @@ private:
     void draw_title(const Pen& pen, const Box& place, const OperatorModel& model, const SceneModel& shown) const;
     void draw_fit_buttons(const Pen& pen, const Box& row, const OperatorModel& model);
     OperatorAction press_item(KeyMeaning key, const OperatorModel& model);
+    OperatorAction hide_or_show(std::size_t row, const OperatorModel& model);
+    void mark_row(KeyMeaning key, const OperatorModel& model);
     void look_at_what_is_lit(const Pen& pen, const Box& place, const Box& free, const OperatorModel& model);
     OperatorAction draw_corner_buttons(const Pen& pen, Box corner, const OperatorModel& model);
 
@@ -57,7 +61,7 @@ private:
     ViewButtons views_;
     std::optional<LookAt> looked_at_;       ///< in the last frame
     std::optional<SceneView> view_before_;  ///< the picture was turned to it
-    std::optional<std::size_t> item_wanted_;
+    std::optional<std::size_t> item_wanted_, marked_;
     std::unique_ptr<LandmarkPanel> landmarks_;  ///< from the first time it was opened
     EvidencePage evidence_;
     bool landmarks_open_ = false, evidence_open_ = false;

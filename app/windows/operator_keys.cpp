@@ -42,6 +42,9 @@ constexpr Key kKeys[] = {
     {GLFW_KEY_F8, KeyMeaning::view_surgeon, "F8"},
     {GLFW_KEY_I, KeyMeaning::next_item, "I"},
     {GLFW_KEY_0, KeyMeaning::all_items, "0"},
+    {GLFW_KEY_UP, KeyMeaning::row_above, "↑"},
+    {GLFW_KEY_DOWN, KeyMeaning::row_below, "↓"},
+    {GLFW_KEY_H, KeyMeaning::hide_item, "H"},
     {GLFW_KEY_Y, KeyMeaning::close_window, "Y"},
     {GLFW_KEY_N, KeyMeaning::stay, "N"},
 };

@@ -29,8 +29,11 @@ enum class KeyMeaning {
     view_projector,
     view_surgeon,
     view_reset,
-    next_item,     ///< the next item of the plan alone is bright
-    all_items,     ///< all of the plan is
+    next_item,  ///< the next item of the plan alone is bright
+    all_items,  ///< all of the plan is, and nothing of it is hidden
+    row_above,  ///< another row of the plan is marked
+    row_below,
+    hide_item,     ///< the marked row is hidden, or shown again
     close_window,  ///< while that is asked
     stay,
 };

@@ -139,6 +139,7 @@ struct PlanRow {
     Rgb colour{255, 255, 255};
     std::string name;  ///< "Borehole 1, ⌀7.0 mm"
     std::optional<double> depth_mm, predicted_error_mm, light_off_mm;
+    bool hidden = false;  ///< by a person: not lit, not in the 3-D view
 
     bool operator==(const PlanRow&) const = default;
 };
@@ -181,7 +182,9 @@ enum class OperatorAction {
     confirm,
     use_landmarks,
     check_skin,
-    light_item
+    light_item,
+    hide_item,
+    show_item
 };
 
 /// All that the operator window shows, as values: the window draws it and knows nothing else.
@@ -210,11 +213,11 @@ struct OperatorModel {
     std::string confirm_words = "It fits: use it";  ///< on that button
     OperatorAction next = OperatorAction::none;     ///< what leads on: its button stands out; none: nothing does
     std::optional<std::size_t> item_of_moment;      ///< row whose light alone is bright; empty: all of the plan
-    bool may_light_item = false;                    ///< there is a match: an item of the moment may be chosen
-    std::optional<LookAt> look_at;                  ///< what a person is asked to look at in the 3-D view
-    std::optional<SceneView> surgeon_view;          ///< as the surgeon stands; empty: not known
-    std::optional<SceneView> projector_view;        ///< as the light falls; empty: not known yet
-    bool light_on = false;                          ///< light may be on the patient: closing the window asks first
+    bool may_light_item = false;    ///< there is a match: an item of the moment may be chosen, items may be hidden
+    std::optional<LookAt> look_at;  ///< what a person is asked to look at in the 3-D view
+    std::optional<SceneView> surgeon_view;    ///< as the surgeon stands; empty: not known
+    std::optional<SceneView> projector_view;  ///< as the light falls; empty: not known yet
+    bool light_on = false;                    ///< light may be on the patient: closing the window asks first
 
     bool operator==(const OperatorModel&) const = default;
 };

@@ -56,6 +56,7 @@ struct OperatorWindow::Parts {
     CameraTexture left, right;
     float rows_scrolled = 0;
     int rows_shown = 1;
+    std::optional<std::size_t> marked_row;  ///< in the last frame
     std::map<OperatorAction, Box> controls;
     std::map<std::string, Box> places;
     bool live_instead_of_refused = false;
@@ -130,6 +131,11 @@ struct OperatorWindow::Parts {
         return wanted;
     }
 
+    void bring_into_sight(int row) {
+        rows_scrolled =
+            std::clamp(rows_scrolled, static_cast<float>(std::max(0, row - rows_shown + 1)), static_cast<float>(row));
+    }
+
     /// A press on the table opens the page with all of it.
     void draw_plan_table(const Pen& pen, const OperatorModel& model) {
         const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -140,7 +146,11 @@ struct OperatorWindow::Parts {
         ImGui::SetCursorScreenPos({place.table.x, place.table.y});
         if (ImGui::InvisibleButton("evidence", {place.table.width, place.table.height}))
             middle->press(KeyMeaning::evidence, model);
-        rows_shown = draw_table(pen, place.table, model, static_cast<int>(rows_scrolled), ImGui::IsItemHovered());
+        const std::optional<std::size_t> marked = middle->marked_row();
+        if (marked && marked != marked_row) bring_into_sight(static_cast<int>(*marked));
+        marked_row = marked;
+        rows_shown =
+            draw_table(pen, place.table, model, static_cast<int>(rows_scrolled), ImGui::IsItemHovered(), marked);
     }
 
     void draw_cameras(const Pen& pen, const OperatorModel& model) {
@@ -165,13 +175,13 @@ struct OperatorWindow::Parts {
         const float s = pen.scale, height = std::max(72.0F, 84 * s), pad = 24 * s;
         const Box card{scene.x + 0.08F * scene.width, scene.y + 0.2F * scene.height, 0.84F * scene.width,
                        height + 5 * line_height(pen.fonts.title) + 2 * pad};
-        pen.panel(card, IM_COL32(38, 30, 8, 255), theme::kAmber, 3);
+        pen.panel(card, pen.theme->notice.fill, pen.theme->notice.edge, 3);
         float y = card.y + pad;
         const float width = card.width - 2 * pad;
         y += pen.paragraph(pen.fonts.title, pen.say("The light is on the patient. Make it dark and close the window?"),
-                           {card.x + pad, y, width, 3 * line_height(pen.fonts.title)}, theme::kText);
+                           {card.x + pad, y, width, 3 * line_height(pen.fonts.title)}, pen.theme->notice.text);
         pen.paragraph(pen.fonts.body, pen.say("The light goes on until you answer. DARK works as always."),
-                      {card.x + pad, y + 8 * s, width, 2 * line_height(pen.fonts.body)}, theme::kText);
+                      {card.x + pad, y + 8 * s, width, 2 * line_height(pen.fonts.body)}, pen.theme->notice.text);
         const Box row{card.x + pad, card.bottom() - pad - height, (width - pad) / 2, height};
         const Box other{row.right() + pad, row.y, row.width, height};
         places["close-window"] = row;

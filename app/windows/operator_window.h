@@ -41,7 +41,7 @@ public:
     /// What the last frame showed.
     RgbImage screenshot();
 
-    /// With `light_item`: the row of the plan whose light alone is to be bright; empty: all of it.
+    /// With `light_item`, `hide_item` and `show_item`: the row of the plan; empty: all of it.
     std::optional<std::size_t> item_wanted() const;
 
     /// What the 3-D view shows of a match; the person changes it with the buttons over the view.
@@ -66,8 +66,8 @@ public:
     std::array<int, 4> place_of(OperatorAction control) const;
     /// The same for other controls by their word: before, after, error, landmarks, check-skin, evidence, views,
     /// left-camera, right-camera; while landmarks are clicked: undo, turn, use, close, skin-view, scan-view; on the
-    /// page of the evidence: close; while it is asked whether to close the window: close-window, stay. Zeros for what
-    /// was not drawn.
+    /// page of the evidence: close, item-1, hide-1 and so on; while it is asked whether to close the window:
+    /// close-window, stay. Zeros for what was not drawn.
     std::array<int, 4> place_of(const std::string& button) const;
 
 private:

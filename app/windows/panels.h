@@ -16,9 +16,10 @@ void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model, con
 /// says its age. `texture` is null when there is no picture.
 void draw_camera(const Pen& pen, const Box& box, const CameraPicture& camera, bool refused, ImTextureID texture);
 
-/// The plan items from row `first_row` on, then as much of the evidence as there is room for. Returns how many rows
-/// there was room for.
-int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int first_row, bool hovered);
+/// The plan items from row `first_row` on, then as much of the evidence as there is room for; the `marked` row stands
+/// out. Returns how many rows there was room for.
+int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int first_row, bool hovered,
+               std::optional<std::size_t> marked = {});
 
 struct ButtonLook {
     bool chosen = false;    ///< it shows what is on, and looks held

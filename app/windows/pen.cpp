@@ -155,6 +155,11 @@ float Pen::paragraph(const ImFont* font, const std::string& text, const Box& box
     return y - box.y;
 }
 
+void Pen::swatch(const Box& box, const Rgb& colour) const {
+    list->AddRectFilled({box.x, box.y}, {box.right(), box.bottom()}, colour_of(colour), 3 * scale);
+    list->AddRect({box.x, box.y}, {box.right(), box.bottom()}, theme->swatch_edge, 3 * scale, 0, 1.5F * scale);
+}
+
 void Pen::tick(ImVec2 middle, float size, ImU32 colour) const {
     const ImVec2 points[3] = {{middle.x - 0.5F * size, middle.y + 0.02F * size},
                               {middle.x - 0.12F * size, middle.y + 0.4F * size},

@@ -56,14 +56,22 @@ void check_case_names(const CaseNames& names) {
     check("series' date", names.series_date);
 }
 
-std::string fit_to_be_a_name(const std::string& text) {
+std::string without_control_characters(const std::string& text) {
+    const auto is_c1 = [&](std::size_t at) {  // U+0080 to U+009F
+        return text[at] == '\xC2' && static_cast<unsigned char>(text[at + 1]) < 0xA0;
+    };
     std::string fit;
     for (std::size_t at = 0; at < text.size();) {
         const std::size_t length = character_at(text, at);
-        fit += length == 0 || is_control(text[at]) ? "?" : text.substr(at, length);
+        const bool is_good = length > 0 && !is_control(text[at]) && !(length == 2 && is_c1(at));
+        fit += is_good ? text.substr(at, length) : "?";
         at += std::max<std::size_t>(length, 1);
     }
-    return shortened(fit, kLongestCaseName - 3);
+    return fit;
+}
+
+std::string fit_to_be_a_name(const std::string& text) {
+    return shortened(without_control_characters(text), kLongestCaseName - 3);
 }
 
 }  // namespace planlight

@@ -23,4 +23,7 @@ void check_case_names(const CaseNames& names);
 /// characters, UTF-8, not too long.
 std::string fit_to_be_a_name(const std::string& text);
 
+/// The same however long: fit to be printed on a terminal, whose cursor control characters (C0 and C1) would move.
+std::string without_control_characters(const std::string& text);
+
 }  // namespace planlight

@@ -65,8 +65,9 @@ std::vector<FoundSeries> find_series(const DicomPeer& peer, const SeriesQuery& q
 /// images there are, and each must have arrived. Gives their number. `progress`: images so far, and of how many, from
 /// any thread; may be empty.
 ///
-/// Throws CheckFailedError when some did not come or the peer gives none, InputError when the series holds none or the
-/// folder is there and not empty, DeviceError when our own port is another program's, DiskError.
+/// Throws CheckFailedError when some did not come, the peer gives none, or lists others after than before (the series
+/// is still being sent to it); InputError when the series holds none or the folder is there and not empty, DeviceError
+/// when our own port is another program's, DiskError.
 std::size_t fetch_series(const DicomPeer& peer, const FoundSeries& series, const std::filesystem::path& folder,
                          const std::function<void(std::size_t, std::size_t)>& progress = {});
 

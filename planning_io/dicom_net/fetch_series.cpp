@@ -69,10 +69,10 @@ private:
         if (!wanted_.contains(uid)) return ignoreSTORERequest(*context, *request);
         const fs::path file = folder_ / (uid + ".dcm");
         const OFCondition stored = DicomAssociation::handleSTORERequestFile(context, file.c_str(), request);
-        if (stored.bad()) {
-            note_full_disk();
-            return stored;
-        }
+        std::error_code ignored;
+        if (stored.good() && !fs::exists(file, ignored)) disk_ = "the disk did not take an image";
+        if (stored.bad()) note_full_disk();
+        if (stored.bad() || !disk_.empty()) return stored;
         came_.insert(uid);
         if (progress_) progress_(came_.size(), wanted_.size());
         return stored;
@@ -82,7 +82,7 @@ private:
     void note_full_disk() {
         const fs::path probe = folder_ / "probe";
         try {
-            write_safely(probe, std::string(1 << 16, ' '));
+            write_safely(probe, std::string(std::size_t{1} << 23, ' '));  // a large image
             std::error_code ignored;
             fs::remove(probe, ignored);
         } catch (const DiskError& fault) {
@@ -105,6 +105,21 @@ private:
     std::string disk_;
 };
 
+/// While images were fetched more of them may have come to the archive, at one end, where no gap shows it.
+void check_still_the_same(const DicomPeer& peer, const FoundSeries& series, const std::vector<ImageAtPeer>& before) {
+    const auto uids = [](const std::vector<ImageAtPeer>& images) {
+        std::set<std::string> all;
+        for (const ImageAtPeer& image : images) all.insert(image.uid);
+        return all;
+    };
+    const auto was = uids(before), is = uids(images_of(peer, series));
+    if (was != is)
+        throw CheckFailedError(
+            fmt::format("The DICOM archive {} listed {} images of series {} before they were fetched, and {} after",
+                        peer.name(), was.size(), series.series_uid, is.size()),
+            "The series is still being sent to it: nothing was kept; fetch it when it is whole.");
+}
+
 }  // namespace
 
 std::size_t fetch_series(const DicomPeer& peer, const FoundSeries& series, const fs::path& folder,
@@ -119,6 +134,8 @@ std::size_t fetch_series(const DicomPeer& peer, const FoundSeries& series, const
         Getter getter(peer, images, into, progress);
         const bool got = getter.get(series);
         came = got ? getter.came() : move_series(peer, series, images, into, progress);
+        check_still_the_same(peer, series, images);
+        fs::permissions(into, fs::perms::owner_all);  // it names the patient
     });
     return came;
 }

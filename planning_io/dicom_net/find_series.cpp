@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "planning_io/case/case_names.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -132,7 +133,12 @@ std::vector<ImageAtPeer> images_of(const DicomPeer& peer, const FoundSeries& ser
     std::vector<ImageAtPeer> images;
     for (const auto& answer : answers_to(association, peer, keys)) {
         ImageAtPeer image{text_of(*answer, DCM_SOPInstanceUID), text_of(*answer, DCM_SOPClassUID)};
-        if (is_uid(image.uid)) images.push_back(std::move(image));
+        if (!is_uid(image.uid))
+            throw CheckFailedError(
+                fmt::format("The DICOM archive {} lists an image of series {} without a right UID (\"{}\")",
+                            peer.name(), series.series_uid, without_control_characters(image.uid)),
+                "The series cannot be fetched whole: ask those who run the archive.");
+        images.push_back(std::move(image));
     }
     association.close();
     return images;

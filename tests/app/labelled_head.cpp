@@ -16,6 +16,7 @@
 #include "planning_io/files/image_file.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/volume/read_volume.h"
+#include "projection/check_light.h"
 #include "projection/place_all_labels.h"
 #include "tests/app/read_labels.h"
 #include "tests/support/test_data.h"
@@ -39,6 +40,11 @@ void LabelsRead::append(const LabelsRead& more) {
     unseen += more.unseen, right += more.right;
     wrong.insert(wrong.end(), more.wrong.begin(), more.wrong.end());
     other_number.insert(other_number.end(), more.other_number.begin(), more.other_number.end());
+    cards_lit += more.cards_lit, cards_seen += more.cards_seen, cards_right += more.cards_right;
+    cards_wrong.insert(cards_wrong.end(), more.cards_wrong.begin(), more.cards_wrong.end());
+    for (const auto& [kind, some] : more.contrast)
+        contrast[kind].insert(contrast[kind].end(), some.begin(), some.end());
+    check_expected += more.check_expected, check_seen += more.check_seen;
     share_of_text = more.share_of_text;
 }
 
@@ -129,17 +135,54 @@ Seen seen_by_eye(const simulation::SimulatedRig& rig, const RgbImage& light, con
     };
 }
 
+/// Where a stroke's middle and both sides of it are seen, and no other line is near.
+void add_contrast(const PlanDrawing& drawing, const SkinSurface& skin, const simulation::SimulatedRig& rig,
+                  const StereoFrame& frame, const RigidTransform& rig_from_ct, Instant lit, LabelsRead& result) {
+    constexpr double kBeside_mm = 3.5, kOther_mm = 3;
+    constexpr std::size_t kEvery = 8;
+    const CameraModel camera = rig.true_rig().left_camera;
+    const auto seen = [&](const Vector3d& p, const Vector3d& normal) -> std::optional<double> {
+        if (!rig.truly_seen(simulation::SimulatedRig::Camera::left, {p, normal}, lit)) return std::nullopt;
+        const auto pixel = project(camera, rig_from_ct * p);
+        return pixel ? std::optional(between(frame.left, *pixel)) : std::nullopt;
+    };
+    const auto near_another = [&](const Vector3d& p, const Stroke& own) {
+        return std::any_of(drawing.strokes.begin(), drawing.strokes.end(), [&](const Stroke& stroke) {
+            return &stroke != &own && std::any_of(stroke.points_in_ct.begin(), stroke.points_in_ct.end(),
+                                                  [&](const Vector3d& q) { return (q - p).norm() < kOther_mm; });
+        });
+    };
+    for (const Stroke& stroke : drawing.strokes)
+        for (std::size_t i = 1; i + 1 < stroke.points_in_ct.size(); i += kEvery) {
+            const Vector3d& p = stroke.points_in_ct[i];
+            const Vector3d& normal = stroke.normals_in_ct[i];
+            const Vector3d aside = kBeside_mm * normal.cross(stroke.points_in_ct[i + 1] - p).normalized();
+            const auto one = skin.nearest(p + aside), other = skin.nearest(p - aside);
+            if (near_another(p, stroke) || near_another(one.p_in_ct, stroke) || near_another(other.p_in_ct, stroke))
+                continue;
+            const auto on = seen(p, normal), left = seen(one.p_in_ct, one.normal_in_ct),
+                       right = seen(other.p_in_ct, other.normal_in_ct);
+            if (!on || !left || !right) continue;
+            const double beside = std::max((*left + *right) / 2, 1.0);
+            result.contrast[stroke.kind].push_back((*on - beside) / beside);
+        }
+}
+
+/// Patients as sites name them: initials, a name, a code.
+const std::array<const char*, 4> kCards{"E. M.", "Mustermann, Erika", "1a2b3c4d-9f3e", "Case 117"};
+
 }  // namespace
 
 LabelledHead::LabelledHead() : parts_(std::make_unique<Parts>()) {}
 LabelledHead::~LabelledHead() = default;
 
-LabelsRead LabelledHead::read(simulation::Preset preset, unsigned seed, bool eye) const {
+LabelsRead LabelledHead::read(simulation::Preset preset, unsigned seed, bool eye, double room_light) const {
     LabelsRead result;
     const Plan plan = parts_->plan(seed);
     simulation::RoomSettings settings;
     settings.preset = preset;
     settings.seed = seed;
+    settings.ambient = room_light;
     settings.skin_threshold_hu = parts_->prepared.threshold;
     simulation::SimulatedRig rig(parts_->volume, points_of(plan), settings);
     const RigidTransform rig_from_ct = rig.true_rig_from_ct(rig.clock().now());
@@ -147,10 +190,12 @@ LabelsRead LabelledHead::read(simulation::Preset preset, unsigned seed, bool eye
     if (seed % 2 == 0) how.up_in_ct.setZero();  // upright as the camera sees it; else in ct
     how = lit_by(rig.calibration(), rig_from_ct, how);
     how.keep_clear_in_ct = rig.true_markers_in_ct();
+    how.card = {kCards[seed % kCards.size()], seed % 2 == 0 ? "LEFT" : "RIGHT"};
     const PlanDrawing drawing = draw_plan(plan, parts_->skin, how);
     RenderSettings render;
     for (const Vector3d& marker : rig.true_markers_in_ct()) render.keep_dark_in_patient.push_back(rig_from_ct * marker);
     const DrawingRenderer renderer(parts_->skin, rig.calibration().projector);
+    render.card = true;
     RgbImage light;
     const RenderCounts counts = renderer.render_into(light, drawing, rig_from_ct, RigidTransform::Identity(), render);
     const Instant lit = rig.projector().show(light, rig.clock().now() + 10s);
@@ -165,24 +210,19 @@ LabelsRead LabelledHead::read(simulation::Preset preset, unsigned seed, bool eye
     result.left_out = static_cast<int>(counts.labels_left_out.size());
     result.share_of_text = share_of_text(drawing);
     const RigCalibration truth = rig.true_rig();
-    for (const Label& label : drawing.labels) {
-        const bool is_lit = !label.of_moment && std::find(counts.labels_lit.begin(), counts.labels_lit.end(),
-                                                          label.item) != counts.labels_lit.end();
-        if (!is_lit) continue;
-        ++result.lit;
-        result.name_alone += label.words == drawing.items[static_cast<std::size_t>(label.item)].lit_name;
+    add_contrast(drawing, parts_->skin, rig, frame, rig_from_ct, lit, result);
+    const LightCheck check = check_light(drawing, parts_->skin, rig.calibration(), rig_from_ct, frame);
+    result.check_expected = check.expected, result.check_seen = check.seen;
+    // As it is read from where it is seen best, as a person would look; empty where neither camera sees it whole.
+    const auto read_one = [&](const Label& label, const std::string& word) -> std::optional<std::string> {
         const auto sees = [&](simulation::SimulatedRig::Camera camera) {
             for (std::size_t i = 0; i < label.field_in_ct.size(); ++i)
                 if (!rig.truly_seen(camera, {label.field_in_ct[i], label.field_normals_in_ct[i]}, lit)) return false;
             return true;
         };
-        // From where it is seen best, as a person would look.
         const bool by_left = sees(simulation::SimulatedRig::Camera::left),
                    by_right = sees(simulation::SimulatedRig::Camera::right);
-        if (!by_left && !by_right) {
-            ++result.unseen;
-            continue;
-        }
+        if (!by_left && !by_right) return std::nullopt;
         const auto facing = [&](const CameraModel& one) {
             const std::size_t k = label.field_in_ct.size() / 2;
             const Vector3d way = rig_from_ct.inverse() * one.centre_in_rig() - label.field_in_ct[k];
@@ -193,19 +233,39 @@ LabelsRead LabelledHead::read(simulation::Preset preset, unsigned seed, bool eye
         const GrayImage& picture = left ? frame.left : frame.right;
         const Seen seen = eye ? seen_by_eye(rig, light, camera, lit)
                               : Seen([&](const Vector2d& pixel) { return between(picture, pixel); });
-        const auto read = read_label(label, seen, camera, rig_from_ct,
-                                     folder.empty() ? folder : folder / fmt::format("{}_label{}", name, label.item));
+        return read_label(label, seen, camera, rig_from_ct,
+                          folder.empty() ? folder : folder / fmt::format("{}_{}", name, word));
+    };
+    const auto written_in = [](const Label& label) {
+        std::string written = label.words;
+        std::replace(written.begin(), written.end(), '\n', '/');
+        return written;
+    };
+    for (const Label& label : drawing.labels) {
+        const bool is_lit = !label.of_moment && std::find(counts.labels_lit.begin(), counts.labels_lit.end(),
+                                                          label.item) != counts.labels_lit.end();
+        if (!is_lit) continue;
+        ++result.lit;
+        result.name_alone += label.words == drawing.items[static_cast<std::size_t>(label.item)].lit_name;
+        const auto read = read_one(label, fmt::format("label{}", label.item));
         if (!read) {  // part of it is out of the picture; one of which nothing is read is not read right
             ++result.unseen;
             continue;
         }
-        std::string written = label.words;
-        std::replace(written.begin(), written.end(), '\n', '/');
+        const std::string written = written_in(label);
         const Reading reading = compare(written, *read);
         result.right += reading == Reading::right;
         if (reading != Reading::right) result.wrong.push_back(written + " | " + *read);
         if (reading == Reading::other_number) result.other_number.push_back(written + " | " + *read);
     }
+    result.cards_lit = counts.card_lit;
+    if (!counts.card_lit) return result;
+    const auto card = read_one(*drawing.card, "card");
+    result.cards_seen = card.has_value();
+    if (card && compare(written_in(*drawing.card), *card) == Reading::right)
+        result.cards_right = 1;
+    else if (card)
+        result.cards_wrong.push_back(written_in(*drawing.card) + " | " + *card);
     return result;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "projection/draw_plan.h"
 #include "registration/simulation/simulated_rig.h"
 
 namespace planlight::test {
@@ -17,7 +19,13 @@ struct LabelsRead {
     int right = 0;                          ///< read as they are written
     std::vector<std::string> wrong;         ///< "written | read", lines parted by '/'
     std::vector<std::string> other_number;  ///< of those: read as another number
-    double share_of_text = 0;               ///< of the light's area; of the last picture
+    int cards_lit = 0, cards_seen = 0, cards_right = 0;  ///< the card with name and side; by a camera; read as written
+    std::vector<std::string> cards_wrong;
+    double share_of_text = 0;  ///< of the light's area; of the last picture
+    /// Of each kind of line in the left camera's picture: how much brighter it is than the skin 3.5 mm beside it, as a
+    /// share of that.
+    std::map<StrokeKind, std::vector<double>> contrast;
+    int check_expected = 0, check_seen = 0;  ///< stretches that CHECK should see in both pictures, and sees
     void append(const LabelsRead& more);
 };
 
@@ -28,7 +36,8 @@ public:
     ~LabelledHead();
     /// A plan, a room and a pose of that seed: the plan drawn, lit and read.
     /// `eye`: by an eye in the camera's place, without its blur, pixels and noise; else in the camera's picture.
-    LabelsRead read(simulation::Preset preset, unsigned seed, bool eye) const;
+    /// `room_light`: `simulation::RoomSettings::ambient`.
+    LabelsRead read(simulation::Preset preset, unsigned seed, bool eye, double room_light = 0.2) const;
 
 private:
     struct Parts;

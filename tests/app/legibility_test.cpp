@@ -28,6 +28,9 @@ TEST(Legibility, LabelsOnTheHeadAreReadAsTheyAreWritten) {
     EXPECT_GE(all.lit, 12);
     EXPECT_GE(all.right, all.lit - all.unseen - 1) << (all.wrong.empty() ? "" : all.wrong.front());
     EXPECT_TRUE(all.other_number.empty()) << all.other_number.front();
+    EXPECT_EQ(all.cards_lit, 2) << "the card with the patient's name and the side";
+    EXPECT_GE(all.cards_seen, 1);
+    EXPECT_EQ(all.cards_right, all.cards_seen) << all.cards_wrong.front();
 }
 
 }  // namespace

@@ -35,13 +35,15 @@ int run(int poses, unsigned first_seed, const std::string& preset, bool eye) {
                 name, seed, read.items, read.lit, read.left_out, read.name_alone, read.right, read.wrong.size(),
                 read.other_number.size(), 100 * read.share_of_text);
             for (const auto& wrong : read.wrong) fmt::print("      {}\n", wrong);
+            for (const auto& wrong : read.cards_wrong) fmt::print("      card: {}\n", wrong);
             std::fflush(stdout);
         }
         fmt::print(
             "{} room, {} poses: {} of {} items with a label lit whole; {} of {} labels read right ({:.1f} %), {} "
-            "read as another number\n\n",
+            "read as another number, {} in no camera's sight; the patient's card lit in {}, seen in {}, read right in "
+            "{}\n\n",
             name, poses, all.lit, all.items, all.right, all.lit, all.lit ? 100.0 * all.right / all.lit : 0.0,
-            all.other_number.size());
+            all.other_number.size(), all.unseen, all.cards_lit, all.cards_seen, all.cards_right);
         for (const auto& other : all.other_number) fmt::print("  another number: {}\n", other);
     }
     return 0;

@@ -142,6 +142,19 @@ void verify(LiveSession& session, const Counting& counting, int until) {
     });
 }
 
+void hide_and_show(LiveSession& session, const Counting& counting) {
+    const auto some_updates = [&] {
+        const int until = counting.updates() + 8;
+        wait_for(session, "updates", [&](const OperatorModel&) { return counting.updates() >= until; });
+    };
+    session.post_item(OperatorAction::hide_item, 0);
+    some_updates();
+    session.post_item(OperatorAction::light_item, 1);
+    some_updates();
+    session.post_item(OperatorAction::show_item, std::nullopt);
+    some_updates();
+}
+
 }  // namespace
 
 const ExampleCase& example_case() {
@@ -164,7 +177,8 @@ PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, 
     simulation::RoomSettings room;
     room.preset = simulation::Preset::paper;
     room.seed = how.seed;
-    const CaseDrawing drawing(patient.prepared);
+    CaseDrawing drawing(patient.prepared);
+    drawing.settings.card = how.card;
     PlayedResult result;
     {
         LiveSession session(
@@ -202,6 +216,7 @@ PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, 
             wait_for(session, "the check of the skin",
                      [&](const OperatorModel&) { return counting.skin_checks() > 0; });
         }
+        if (how.hide_items) hide_and_show(session, counting);
         session.post(OperatorAction::dark);
         wait_for(session, "DARK", [](const OperatorModel& m) { return !m.stop.enabled; });
         session.post(OperatorAction::track);
@@ -216,8 +231,10 @@ PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, 
 
 PlayedResult record_session(const PlayedSession& how, const ExampleCase& patient, RecordMode mode,
                             const std::filesystem::path& file) {
+    DrawingSettings drawing;
+    drawing.card = how.card;
     SessionRecorder recorder(std::make_unique<RecordingFile>(file),
-                             recording_head(patient.prepared, file.parent_path(), mode, {}));
+                             recording_head(patient.prepared, file.parent_path(), mode, drawing));
     return play_session(how, patient, &recorder);
 }
 

@@ -81,6 +81,15 @@ TEST_F(Replay, OfAScanThatDarkEndedAndOfAFaultIsAlike) {
                        R"("fault":"late_picture")"});
 }
 
+TEST_F(Replay, OfASessionInWhichItemsWereHiddenIsAlike) {
+    PlayedSession how;
+    how.seed = 5;
+    how.hide_items = true;
+    how.card = {"E. M.", "RIGHT"};
+    how.updates = 90;
+    expect_alike(how, {R"("call":"hide_item")", R"("call":"light_item")", R"("call":"show_item")"});
+}
+
 TEST_F(Replay, OfAMatchThatItsLandmarksRefuseIsAlike) {
     PlayedSession how;
     how.seed = 4;

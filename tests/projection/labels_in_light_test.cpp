@@ -82,6 +82,50 @@ TEST(LabelsInLight, ALabelIsLitWholeOrNotAtAllWhereverTheHeadIs) {
     }
 }
 
+/// The distance of a card's field to the nearest point of a stroke.
+double from_strokes_mm(const Label& card, const PlanDrawing& drawing) {
+    double nearest = 1e9;
+    for (const Stroke& stroke : drawing.strokes)
+        for (const Vector3d& p : stroke.points_in_ct)
+            for (const Vector3d& q : card.field_in_ct) nearest = std::min(nearest, (p - q).norm());
+    return nearest;
+}
+
+TEST(LabelsInLight, TheCardNamesThePatientApartFromThePlanAndIsLitOnlyWhenAskedFor) {
+    DrawingSettings settings;
+    settings.light = LightView{projector(), RigidTransform::Identity()};
+    const PlanDrawing without = draw_plan(plan_of_three(), ball(), settings);
+    EXPECT_FALSE(without.card);
+    settings.card = {"Mustermann, Erika", "RIGHT"};
+    for (const Vector3d& up : {Vector3d(0, 0, 1), Vector3d(0, 0, -1), Vector3d(0, 1, 0)}) {
+        settings.up_in_ct = up;
+        const PlanDrawing drawing = draw_plan(plan_of_three(), ball(), settings);
+        ASSERT_TRUE(drawing.card);
+        EXPECT_EQ(drawing.card->words, "Mustermann,\nErika\nRIGHT");
+        EXPECT_GT(from_strokes_mm(*drawing.card, drawing), 2) << "a line beside it could be taken for a letter";
+        for (const Label& label : drawing.labels) {
+            if (label.of_moment) continue;
+            for (const Vector3d& p : label.field_in_ct)
+                for (const Vector3d& q : drawing.card->field_in_ct) ASSERT_GT((p - q).norm(), 3);
+        }
+        // Upright for the viewer: its first line stands above its last.
+        const auto middle = [](const Label::Outlines& sign) { return sign.front().front(); };
+        EXPECT_GT((middle(drawing.card->signs_in_ct.front()) - middle(drawing.card->signs_in_ct.back())).dot(up), 5);
+        RenderSettings render;
+        RgbImage dark, lit;
+        const RigidTransform here = RigidTransform::Identity();
+        EXPECT_FALSE(renderer().render_into(dark, drawing, here, here, render).card_lit);
+        render.card = true;
+        EXPECT_TRUE(renderer().render_into(lit, drawing, here, here, render).card_lit);
+        EXPECT_GT(light_of(lit), light_of(dark));
+        render.item_of_moment = 1;
+        EXPECT_FALSE(renderer().render_into(lit, drawing, here, here, render).card_lit) << "that one has the light";
+        render.item_of_moment = -1;
+        render.keep_dark_in_patient = {drawing.card->field_in_ct.front()};
+        EXPECT_FALSE(renderer().render_into(lit, drawing, here, here, render).card_lit) << "whole, or not at all";
+    }
+}
+
 TEST(LabelsInLight, AMarkerThatWouldDarkenAPartOfALabelDarkensAllOfIt) {
     const PlanDrawing drawing = labels_of(draw_plan(plan_of_three(), ball()));
     RenderSettings settings;

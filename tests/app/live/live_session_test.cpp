@@ -1,5 +1,6 @@
 #include "app/live/live_session.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -65,7 +66,11 @@ protected:
     }
     void TearDown() override { held = false; }  // its thread is waited for
     static const CaseDrawing& drawing() {
-        static const CaseDrawing made(test::example_case().prepared);
+        static const CaseDrawing made = [] {
+            CaseDrawing drawn(test::example_case().prepared);
+            drawn.settings.card = {"E. M.", "RIGHT"};
+            return drawn;
+        }();
         return made;
     }
     OperatorModel ready() {
@@ -83,6 +88,15 @@ protected:
         session->post(OperatorAction::track);
         return wait_for(*session, "light",
                         [](const OperatorModel& m) { return m.figures.delay_to_light_ms.has_value(); });
+    }
+
+    /// Of the light of now; -1: it is dark.
+    long bright_pixels() const {
+        const auto picture = session->light().picture;
+        if (!picture) return -1;
+        return static_cast<long>(std::count_if(picture->pixels.begin(), picture->pixels.end(), [](const Rgb& p) {
+            return std::max({p[0], p[1], p[2]}) > 120;
+        }));
     }
 
     /// The thread waits for a frame: what is pressed now waits until `held` is over.
@@ -191,23 +205,16 @@ TEST_F(LiveSessionTest, LightIsConfirmedOncePerPressAndDarkLeadsBackToTheMatch) 
 
 // The others are dim on the skin, and the light of the one that is bright is what is measured.
 TEST_F(LiveSessionTest, OneItemOfThePlanAloneIsBrightAndThenTheWholePlanAgain) {
-    EXPECT_NE(session->post_light_item(0), "") << "there is no match yet";
+    EXPECT_NE(session->post_item(OperatorAction::light_item, 0), "") << "there is no match yet";
     const OperatorModel plan = followed();
     ASSERT_TRUE(plan.may_light_item);
     ASSERT_GT(plan.rows.size(), 2U);
-    const auto bright_pixels = [&] {
-        const auto picture = session->light().picture;
-        if (!picture) return -1L;
-        return static_cast<long>(std::count_if(picture->pixels.begin(), picture->pixels.end(), [](const Rgb& p) {
-            return std::max({p[0], p[1], p[2]}) > 120;
-        }));
-    };
     const auto lit = [&](const char* what, const auto& holds) {
         wait_for(*session, what, [&](const OperatorModel& m) { return holds(m) && bright_pixels() > 0; });
         return bright_pixels();
     };
     const long whole = lit("the plan", [](const OperatorModel& m) { return !m.item_of_moment; });
-    EXPECT_EQ(session->post_light_item(1), "");
+    EXPECT_EQ(session->post_item(OperatorAction::light_item, 1), "");
     const auto told = [](const OperatorModel& m) {
         return std::any_of(m.status.details.begin(), m.status.details.end(),
                            [](const std::string& detail) { return detail.find("\" is bright") != std::string::npos; });
@@ -215,11 +222,81 @@ TEST_F(LiveSessionTest, OneItemOfThePlanAloneIsBrightAndThenTheWholePlanAgain) {
     const long alone = lit("one item", [&](const OperatorModel& m) { return m.item_of_moment == 1U && told(m); });
     EXPECT_LT(alone, whole / 2);
     EXPECT_EQ(session->model().scene.bright_item, 1);
-    EXPECT_EQ(session->post_light_item(std::nullopt), "");
+    EXPECT_EQ(session->post_item(OperatorAction::light_item, std::nullopt), "");
     const long again = lit("the plan", [&](const OperatorModel& m) { return !m.item_of_moment && !told(m); });
     EXPECT_GT(again, 0.8 * static_cast<double>(whole));
     session->post(OperatorAction::scan);
     EXPECT_FALSE(session->model().item_of_moment);
+}
+
+bool says(const OperatorModel& model, const std::string& part) {
+    return model.status.headline.find(part) != std::string::npos ||
+           std::any_of(model.status.details.begin(), model.status.details.end(),
+                       [&](const std::string& detail) { return detail.find(part) != std::string::npos; });
+}
+
+// CHECK measures the plan beside it as ever: the gate comes to its question, and the words ask to read the card.
+TEST_F(LiveSessionTest, TheCardWithThePatientsNameIsLitUntilALandmarkHasBeen) {
+    followed();
+    const auto asks = [](const OperatorModel& m) { return says(m, "Read the card on the skin"); };
+    const OperatorModel first = wait_for(
+        *session, "the card", [&](const OperatorModel& m) { return asks(m) && says(m, "two landmarks") && m.confirm; });
+    for (const PlanRow& row : first.rows) EXPECT_LT(row.light_off_mm.value_or(0), 1);
+    const long with_card = bright_pixels();
+    for (int yes = 0; yes < 3; ++yes) {
+        wait_for(*session, "the question", [](const OperatorModel& m) { return m.confirm; });
+        session->post(OperatorAction::confirm);
+    }
+    const OperatorModel after =
+        wait_for(*session, "ALIGNED", [](const OperatorModel& m) { return m.status.kind == StatusKind::aligned; });
+    EXPECT_FALSE(asks(after));
+    EXPECT_LT(bright_pixels(), with_card);
+}
+
+// What a person hid is not lit, and not missed: the light of the rest is judged, and the words say that it is a part.
+TEST_F(LiveSessionTest, AHiddenItemIsNeitherLitNorMissedAndAllHiddenIsDarkAndSaysSo) {
+    EXPECT_NE(session->post_item(OperatorAction::hide_item, 0), "") << "there is no match yet";
+    const std::size_t count = followed().rows.size();
+    ASSERT_GT(count, 2U);
+    const auto lit = [&](const char* what, const auto& holds) {
+        return wait_for(*session, what, [&](const OperatorModel& m) { return holds(m) && bright_pixels() > 0; });
+    };
+    lit("the plan", [](const OperatorModel& m) { return m.rows[0].light_off_mm && m.rows[1].light_off_mm; });
+    const long whole = bright_pixels();
+    EXPECT_EQ(session->post_item(OperatorAction::hide_item, 0), "");
+    EXPECT_EQ(session->post_item(OperatorAction::hide_item, 1), "");
+    const OperatorModel rest = lit("the rest", [](const OperatorModel& m) {
+        return m.rows[1].hidden && m.rows[2].light_off_mm && says(m, "2 of ") && says(m, "two landmarks");
+    });
+    EXPECT_LT(bright_pixels(), 0.9 * static_cast<double>(whole));
+    EXPECT_TRUE(rest.rows[0].hidden);
+    EXPECT_FALSE(rest.rows[0].light_off_mm) << "nobody looks for light that is not there";
+    EXPECT_FALSE(says(rest, "is not measured")) << "the gate asks for what is shown alone";
+    for (const Stroke& stroke : rest.scene.plan->strokes) EXPECT_GT(stroke.item, 1) << "nor is it in the 3-D view";
+    // Landmarks are lit as ever, and the light of the part is trusted as a part.
+    for (int yes = 0; yes < 3; ++yes) {
+        wait_for(*session, "the question", [](const OperatorModel& m) { return m.confirm; });
+        session->post(OperatorAction::confirm);
+    }
+    const OperatorModel aligned =
+        wait_for(*session, "ALIGNED", [](const OperatorModel& m) { return m.status.kind == StatusKind::aligned; });
+    EXPECT_EQ(aligned.status.headline, "What is shown of the plan is on the skin.");
+    EXPECT_TRUE(says(aligned, fmt::format("2 of {} items are hidden", count)));
+    for (std::size_t i = 2; i < count; ++i) EXPECT_EQ(session->post_item(OperatorAction::hide_item, i), "");
+    const OperatorModel none = wait_for(*session, "darkness", [](const OperatorModel& m) {
+        return m.status.headline == "Dark: every item of the plan is hidden.";
+    });
+    EXPECT_EQ(none.status.kind, StatusKind::dark);
+    EXPECT_EQ(bright_pixels(), -1);
+    // One item alone is shown by that; then the whole plan, by one press.
+    EXPECT_EQ(session->post_item(OperatorAction::light_item, 1), "");
+    lit("an item that was hidden", [](const OperatorModel& m) { return m.item_of_moment == 1U && !m.rows[1].hidden; });
+    EXPECT_EQ(session->post_item(OperatorAction::show_item, std::nullopt), "");
+    const OperatorModel again = lit("the plan", [](const OperatorModel& m) {
+        return !m.item_of_moment && m.rows[0].light_off_mm && m.status.kind == StatusKind::aligned;
+    });
+    EXPECT_EQ(again.status.headline, "The plan is on the skin.");
+    for (const PlanRow& row : again.rows) EXPECT_FALSE(row.hidden);
 }
 
 }  // namespace

@@ -155,7 +155,11 @@ TEST(SessionStates, AnItemOfTheMomentNeedsAMatchAndGoesWithIt) {
         EXPECT_EQ(model.may_light_item, view_of(state).has_match) << name(state);
         EXPECT_EQ(model.item_of_moment.has_value(), view_of(state).has_match) << name(state);
         const auto stays = view_of(state).has_match ? std::optional(state) : std::nullopt;
-        EXPECT_EQ(after_press(state, OperatorAction::light_item), stays) << name(state);
+        for (const OperatorAction press :
+             {OperatorAction::light_item, OperatorAction::hide_item, OperatorAction::show_item}) {
+            EXPECT_EQ(after_press(state, press), stays) << name(state);
+            EXPECT_EQ(why_not(state, press).empty(), view_of(state).has_match) << name(state);
+        }
     }
 }
 

@@ -7,7 +7,8 @@
 #include "write_picture.h"
 
 /// draw_windows scene FILE [azimuth elevation], or draw_windows window FILE [width height status [view of the match: 0
-/// to 2 [old, refused, evidence, answer, views, alone, landmark or plain [language]]]]
+/// to 2 [old, refused, evidence, answer, views, alone,
+/// hidden, hidden-page, landmark or plain [language [dark or bright]]]]]
 int main(int argc, char** argv) {
     using namespace planlight;
     OperatorModel model = test::fake_model();
@@ -22,6 +23,7 @@ int main(int argc, char** argv) {
     if (argc > 5) model = test::fake_model_with(static_cast<StatusKind>(std::stoi(argv[5])));
     const std::string special = argc > 7 ? argv[7] : "";
     if (argc > 8) settings.words = words_of(argv[8]);
+    if (argc > 9 && std::string(argv[9]) == "bright") settings.theme = ThemeKind::bright;
     if (special == "old") {
         model.left.old_s = model.right.old_s = 7;
         model.left.note = "Left camera: no frame came for 7 s. Look at its cable and its power.";
@@ -40,6 +42,17 @@ int main(int argc, char** argv) {
         model.item_of_moment = 2;
         model.scene.bright_item = 2;
     }
+    if (special.starts_with("hidden")) {
+        model.may_light_item = true;
+        model.rows.at(0).hidden = model.rows.at(2).hidden = true;
+        model.rows[0].light_off_mm = model.rows[2].light_off_mm = std::nullopt;
+        PlanDrawing shown = *model.scene.plan;
+        std::erase_if(shown.strokes, [](const Stroke& stroke) { return stroke.item == 0 || stroke.item == 2; });
+        std::erase_if(shown.labels, [](const Label& label) { return label.item == 0 || label.item == 2; });
+        model.scene.plan = std::make_shared<PlanDrawing>(shown);
+        model.status.details.push_back("2 of 4 items are hidden: they are not lit.");
+        model.status.headline = "What is shown of the plan is on the skin.";
+    }
     if (special == "landmark") {
         const Eigen::Vector3d ear(90, 5, -15);
         model.look_at = LookAt{ear, Eigen::Vector3d(1, 0.1, 0).normalized()};
@@ -49,7 +62,7 @@ int main(int argc, char** argv) {
         model.check_skin = true;
     }
     OperatorWindow window(settings);
-    if (special == "evidence" || special == "alone-page") window.open_evidence();
+    if (special == "evidence" || special == "alone-page" || special == "hidden-page") window.open_evidence();
     if (special == "views") window.open_views();
     if (special == "answer") window.say("Track is not possible now: register first.");
     window.set_view(view);

@@ -116,6 +116,13 @@ int main(int, char** argv) {
         if (action == OperatorAction::light_item) {
             model.item_of_moment = window.item_wanted();
             fmt::print("item {}\n", model.item_of_moment ? static_cast<int>(*model.item_of_moment) + 1 : 0);
+        } else if (action == OperatorAction::hide_item || action == OperatorAction::show_item) {
+            const bool hide = action == OperatorAction::hide_item;
+            const auto which = window.item_wanted();
+            for (std::size_t i = 0; i < model.rows.size(); ++i)
+                if (!which || i == *which) model.rows[i].hidden = hide;
+            if (!which || model.item_of_moment == which) model.item_of_moment.reset();
+            fmt::print("{} {}\n", hide ? "hide" : "show", which ? static_cast<int>(*which) + 1 : 0);
         } else if (action != OperatorAction::none) {
             fmt::print("{}\n", names[static_cast<int>(action)]);
         }
@@ -126,6 +133,7 @@ int main(int, char** argv) {
                                               "view-projector", "view-surgeon", "views-close"});
             fmt::print("view buttons {}\n", now ? "open" : "closed");
         }
+        if (window.place_of("all-items")[2] > 0) write_places("whole", {"all-items"});
         if (window.view().azimuth != last_azimuth)
             fmt::print("turned {}\n", window.view().azimuth > last_azimuth ? "+" : "-");
         last_azimuth = window.view().azimuth;
@@ -135,7 +143,7 @@ int main(int, char** argv) {
         answer = window.answer();
         if (const bool now = window.place_of("close")[2] > 0 && window.place_of("undo")[2] == 0; now != page) {
             page = now;
-            if (page) write_places("page", {"close", "item-1", "item-2"});
+            if (page) write_places("page", {"close", "item-1", "item-2", "hide-1", "hide-2"});
             fmt::print("page {}\n", page ? "open" : "closed");
         }
         if (std::remove((folder + "/close").c_str()) == 0) ask_to_close("Planlight buttons");

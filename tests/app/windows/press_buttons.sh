@@ -24,7 +24,7 @@ wait_for() {  # wait_for WORD WHAT: a line WORD was said since the last look
 }
 silent() { sleep 1; if [ "$(wc -l <"$folder/said")" != "$seen" ]; then echo "FAIL $1: $(tail -1 "$folder/said")"; failed=1; else echo "ok   $1"; fi; seen=$(wc -l <"$folder/said"); }
 click() { xdotool mousemove "$1" "$2"; sleep 0.4; xdotool mousedown 1; sleep 0.4; xdotool mouseup 1; }
-place() { cat "$folder"/{actions,views,view-buttons,landmarks,page,question} 2>/dev/null | awk -v n="$1" '$1 == n { print $2, $3 }'; }
+place() { cat "$folder"/{actions,views,view-buttons,landmarks,page,question,whole} 2>/dev/null | awk -v n="$1" '$1 == n { print $2, $3 }'; }
 large_enough() { awk '$4 < 72 || $5 < 72 { print "FAIL " $1 " is " $4 "x" $5 " pixels, less than 72"; bad = 1 } END { exit bad }' "$@" || failed=1; }
 
 seen=0
@@ -47,10 +47,20 @@ large_enough "$folder/page"
 xdotool key c; wait_for "answer There is nothing to say yes to now." "what the page hides is not pressed by its key"
 click $(place item-2); wait_for "item 2" "one item of the plan alone"
 click $(place item-2); wait_for "item 0" "and the whole plan again"
+click $(place hide-2); wait_for "hide 2" "an item is hidden"
+click $(place hide-2); wait_for "show 2" "and shown again"
 click $(place close); wait_for "page closed" "and closed"
+xdotool key h; wait_for "answer Mark a row of the plan with the arrow keys first; H hides it, or shows it again." "hiding without a row says why"
 xdotool key i; wait_for "item 1" "the first item by its key"
 xdotool key i; wait_for "item 2" "the next"
-xdotool key 0; wait_for "item 0" "all of the plan by its key"
+xdotool key h; wait_for "hide 2" "the item that was lit is hidden by its key"
+xdotool key i; wait_for "item 1" "the first item again"
+xdotool key i; wait_for "item 3" "a hidden one is not lit alone"
+xdotool key 0; wait_for "show 0" "all of the plan by its key"
+xdotool key Up; sleep 0.4; xdotool key Up; sleep 0.4; xdotool key h; wait_for "hide 1" "a row that is marked by the arrow keys"
+xdotool key h; wait_for "show 1" "and shown again"
+xdotool key h; wait_for "hide 1" "hidden once more"
+click $(place all-items); wait_for "show 0" "and all of the plan by its button"
 click $(place views); wait_for "view buttons open" "the buttons of the views"
 for i in $(seq 50); do [ -e "$folder/view-buttons" ] && break; sleep 0.2; done
 large_enough "$folder/view-buttons"

@@ -41,7 +41,7 @@ SceneModel head_with_a_green_ring_near(const Eigen::Vector3d& near_in_ct) {
         ring.points_in_ct.push_back(test::on_analytic_head(middle + 10 * (std::cos(a) * u + std::sin(a) * v)));
         ring.normals_in_ct.push_back(test::analytic_head_normal(ring.points_in_ct.back()));
     }
-    scene.plan = std::make_shared<PlanDrawing>(PlanDrawing{{}, {ring}, {}});
+    scene.plan = std::make_shared<PlanDrawing>(PlanDrawing{{}, {ring}, {}, {}});
     return scene;
 }
 

@@ -84,7 +84,8 @@ protected:
 INSTANTIATE_TEST_SUITE_P(Windows, WordsInPlace,
                          testing::Combine(testing::Values("en", "de", "ru"),
                                           testing::Values(std::pair{1280, 720}, std::pair{1920, 1080},
-                                                          std::pair{3840, 2160})));
+                                                          std::pair{3840, 2160}, std::pair{1080, 1920},
+                                                          std::pair{720, 1280})));
 
 TEST_P(WordsInPlace, EveryButtonHasRoomForItsWordAndItsReason) {
     const OperatorModel blank;

@@ -143,7 +143,7 @@ TEST_P(ShippedWords, SayEveryStateAndEveryReasonOfTheTable) {
         for (const char* text :
              {view.headline, view.what_next, view.no_scan, view.no_register, view.no_track, view.no_stop})
             if (text != nullptr) expect_known(text, view.name);
-        for (int press = 0; press <= static_cast<int>(OperatorAction::check_skin); ++press)
+        for (int press = 0; press <= static_cast<int>(OperatorAction::show_item); ++press)
             expect_known(why_not(state, static_cast<OperatorAction>(press)), view.name);
         for (const Status& status : {dark_status(state)}) {
             expect_known(status.headline, view.name);
@@ -157,12 +157,16 @@ constexpr const char* kSaying[] = {
     "app/windows/banner_panel.cpp",
     "app/windows/camera_panel.cpp",
     "app/windows/evidence_page.cpp",
+    "app/windows/guide_panels.cpp",
+    "app/windows/guide_window.cpp",
     "app/windows/header_panel.cpp",
     "app/windows/landmark_panel.cpp",
     "app/windows/middle_view.cpp",
     "app/windows/operator_window.cpp",
     "app/windows/scene_overlay.cpp",
     "app/windows/table_panel.cpp",
+    "app/live/guide_screen.cpp",
+    "app/live/guided_calibration.cpp",
     "app/live/live_session.cpp",
     "app/live/live_session_run.cpp",
     "app/live/live_session_steps.cpp",
@@ -179,10 +183,14 @@ constexpr const char* kSaying[] = {
     "app/session.cpp",
     "app/update_latency.cpp",
     "app/verify_landmarks.cpp",
+    "projection/check_items.cpp",
     "projection/light_gate.cpp",
     "projection/light_cause_words.cpp",
     "projection/overlay_loop.cpp",
+    "projection/skin_now.cpp",
     "projection/projector_process.cpp",
+    "registration/calibration/pose_guide.cpp",
+    "registration/calibration/pose_wanted.cpp",
     "registration/matching/judge_match.cpp",
     "registration/matching/match_evidence.cpp",
     "registration/matching/point_pairs.cpp",
@@ -204,7 +212,12 @@ constexpr const char* kSaying[] = {
 /// What these sources say is shown in the window, but for the texts that stand here with the reason.
 const std::set<std::string> kNotShown{
     "evidence page", "landmark skin", "landmark scan",  // names of places in the window
-    "light item",                                       // what a recording calls a press
+    "light item", "hide item", "show item",             // what a recording calls a press
+    "Leave it as it is.",                               // on the terminal
+    "osteotomy line", "cut plane",                      // in the place of a name
+    // In the light of the projector, and names of faults on the terminal.
+    "BOARD HERE", "INTO THE LIGHT", "MORE INTO THE PICTURE", "{} CAMERA BLIND", "{} EDGE NEARER",
+    "as a pose that is there", "outside the projector's light", "seen in part only", "too near",
     "Not found", "Checking the skin", "Looking again",  // names of states, for the guide
     "Only one",                                         // begins a sentence
     "Show landmarks\"",

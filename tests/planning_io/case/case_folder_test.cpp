@@ -136,6 +136,10 @@ TEST_F(CaseFolderTest, ANameThatCannotBeReadIsRefusedWithItsLimit) {
         EXPECT_NO_THROW(check_case_names({{}, fit_to_be_a_name(bad), {}, {}, {}, {}})) << bad;
     }
     EXPECT_NO_THROW(check_case_names({{}, fit_to_be_a_name(std::string(600, 'n')), {}, {}, {}, {}}));
+    EXPECT_EQ(without_control_characters("M\xc3\xbcller\x1b[2J\xc2\x9b"
+                                         "1A"),
+              "M\xc3\xbcller?[2J?1A")
+        << "C0 and C1";
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "planning_io/dicom_net/dicom_peer.h"
 #include "planning_io/files/safe_write.h"
@@ -68,6 +69,21 @@ protected:
     std::vector<fs::path> files_;
     std::unique_ptr<Orthanc> archive_;
 };
+
+/// The rest of it comes to the archive while its first part is fetched: at one end, where no gap would show it.
+TEST_F(Archive, ASeriesThatIsStillBeingSentIsNotTakenForWhole) {
+    const std::vector<fs::path> first(files_.begin(), files_.end() - 4), rest(files_.end() - 4, files_.end());
+    EXPECT_TRUE(store_objects(archive_->peer(), first).empty());
+    bool sent = false;
+    EXPECT_THROW(fetch_series(archive_->peer(), found(), got_,
+                              [&](std::size_t, std::size_t) {
+                                  if (!std::exchange(sent, true)) store_objects(archive_->peer(), rest);
+                              }),
+                 CheckFailedError);
+    expect_nothing_left();
+    EXPECT_EQ(fetch_series(archive_->peer(), found(), got_), files_.size());
+    EXPECT_EQ(fs::status(got_).permissions() & fs::perms::all, fs::perms::owner_all) << "it names the patient";
+}
 
 TEST_F(Archive, ASeriesThatIsStoredIsFoundAndFetchedBitForBit) {
     store();
