@@ -240,7 +240,8 @@ TEST_F(LiveSessionTest, TheCardWithThePatientsNameIsLitUntilALandmarkHasBeen) {
     followed();
     const auto asks = [](const OperatorModel& m) { return says(m, "Read the card on the skin"); };
     const OperatorModel first = wait_for(
-        *session, "the card", [&](const OperatorModel& m) { return asks(m) && says(m, "two landmarks") && m.confirm; });
+        *session, "the question", [&](const OperatorModel& m) { return says(m, "two landmarks") && m.confirm; });
+    EXPECT_TRUE(asks(first)) << first.status.details.back();
     for (const PlanRow& row : first.rows) EXPECT_LT(row.light_off_mm.value_or(0), 1);
     const long with_card = bright_pixels();
     for (int yes = 0; yes < 3; ++yes) {
