@@ -48,8 +48,8 @@ public:
     /// Finding the patient with these landmarks (none: without), clicked on the last scan; queued.
     std::string post_find_patient(std::vector<PointPair> landmarks);
 
-    /// `light_item`: this item of the plan alone is bright from now on (empty: all are). `hide_item`, `show_item`: it is
-    /// not lit, or it is again (empty: the whole plan). Queued.
+    /// `light_item`: this item of the plan alone is bright from now on (empty: all are). `hide_item`, `show_item`: it
+    /// is not lit, or it is again (empty: the whole plan). Queued.
     std::string post_item(OperatorAction action, std::optional<std::size_t> which);
 
     /// The projector was away: before the plan is lit again a short scan looks whether all is as it was.

@@ -12,8 +12,9 @@ const Theme& dark_theme() {
         Theme t{};
         t.background = rgb(11, 13, 17), t.panel = rgb(18, 21, 28), t.edge = rgb(38, 44, 56);
         t.text = rgb(232, 236, 242), t.quiet = rgb(150, 160, 176);
-        t.green = rgb(46, 216, 156), t.amber = rgb(250, 184, 40), t.red = rgb(255, 108, 108), t.blue = rgb(72, 150, 240);
-        t.active = rgb(32, 82, 132), t.control = rgb(38, 46, 60), t.hovered = rgb(52, 64, 84);
+        t.green = rgb(46, 216, 156), t.amber = rgb(250, 184, 40), t.red = rgb(255, 108, 108),
+        t.blue = rgb(72, 150, 240);
+        t.active = rgb(26, 72, 120), t.control = rgb(38, 46, 60), t.hovered = rgb(52, 64, 84);
         t.control_edge = rgb(96, 112, 140), t.leads_edge = rgb(130, 190, 255);
         t.disabled = rgb(22, 25, 32), t.disabled_text = rgb(128, 136, 150), t.done = rgb(31, 142, 86);
         t.badge = rgb(222, 226, 234), t.badge_edge = rgb(255, 255, 255), t.badge_text = rgb(12, 14, 18);
