@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 
 #include "app/belonging.h"
@@ -14,20 +15,20 @@
 namespace planlight {
 namespace {
 
-std::optional<double> depth_of(const Plan& plan, const DrawnItem& item) {
-    for (const auto& t : plan.trajectories)
-        if (item.kind == StrokeKind::trajectory && t.name == item.name) return t.length_mm();
-    for (const auto& b : plan.boreholes)
-        if (item.kind == StrokeKind::borehole && b.name == item.name && b.depth_mm > 0) return b.depth_mm;
+/// Of the drawing's `n`-th item of its kind: names may be the same, or none, but the order is the plan's.
+std::optional<double> depth_of(const Plan& plan, StrokeKind kind, std::size_t n) {
+    if (kind == StrokeKind::trajectory) return plan.trajectories.at(n).length_mm();
+    if (kind == StrokeKind::borehole && plan.boreholes.at(n).depth_mm > 0) return plan.boreholes[n].depth_mm;
     return std::nullopt;
 }
 
 std::vector<PlanRow> rows_of(const Plan& plan, const PlanDrawing& drawing) {
     std::vector<PlanRow> rows;
+    std::map<StrokeKind, std::size_t> of_kind;
     for (std::size_t i = 0; i < drawing.items.size(); ++i) {
         const DrawnItem& item = drawing.items[i];
         PlanRow row;
-        row.depth_mm = depth_of(plan, item);
+        row.depth_mm = depth_of(plan, item.kind, of_kind[item.kind]++);
         for (const auto& stroke : drawing.strokes)
             if (stroke.item == static_cast<int>(i) && stroke.kind == item.kind) {
                 row.colour = stroke.colour;

@@ -26,7 +26,7 @@ enum class SessionCall {
 };
 
 /// What can be asked of a session's light gate.
-enum class GateCall { step, verify, skin_checked, new_match, restart };
+enum class GateCall { step, verify, skin_checked, new_match, restart, other_light, forbids };
 
 /// Where a session takes place, as far as it goes into what it does.
 struct RoomFacts {

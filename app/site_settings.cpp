@@ -34,6 +34,21 @@ std::string one_of(const JsonValue& value, const std::map<std::string, Value>& k
     value.refuse("is \"" + word + "\"", "Write one of: " + words + ".");
 }
 
+/// Of the line to the archive; paths that begin nowhere begin beside the settings.
+DicomTls tls_of(const JsonValue& value, const fs::path& settings) {
+    value.has_only({"trusted", "certificate", "key", "name"});
+    DicomTls tls;
+    tls.wanted = true;
+    const auto path = [&](const char* name, fs::path& to) {
+        if (const auto entry = value.find(name)) to = settings.parent_path() / entry->text();
+    };
+    path("trusted", tls.trusted);
+    path("certificate", tls.certificate);
+    path("key", tls.key);
+    if (const auto name = value.find("name")) tls.name = name->text();
+    return tls;
+}
+
 const char* set(const char* variable) {
     const char* value = std::getenv(variable);
     return value && *value ? value : nullptr;
@@ -72,11 +87,14 @@ SiteSettings read_site_settings() {
         if (const auto names = link->find("names")) site.openigtlink_names = names->flag();
     }
     if (const auto archive = root.find("dicom")) {
-        archive->has_only({"own_title", "host", "port", "title"});
+        archive->has_only({"own_title", "own_port", "host", "port", "title", "tls"});
         if (const auto title = archive->find("own_title")) site.archive.own_title = title->text();
         if (const auto host = archive->find("host")) site.archive.host = host->text();
         if (const auto port = archive->find("port")) site.archive.port = static_cast<int>(port->integer(1, 65535));
         if (const auto title = archive->find("title")) site.archive.title = title->text();
+        if (const auto port = archive->find("own_port"))
+            site.archive.own_port = static_cast<int>(port->integer(1, 65535));
+        if (const auto tls = archive->find("tls")) site.archive.tls = tls_of(*tls, file);
     }
     site.read_from = file;
     return site;

@@ -77,9 +77,9 @@ std::string words_of_place(const SkinSurface& skin, const Vector3d& place_in_ct)
         if (std::abs(share) < kClearly) return;
         words += (words.empty() ? "" : ", ") + std::string(share > 0 ? positive : negative);
     };
-    add(off.y(), "back", "front");
-    add(off.x(), "left", "right");
-    add(off.z(), "high", "low");
+    add(off.y(), "at the back of the head", "at the front of the head");
+    add(off.x(), "on the patient's left", "on the patient's right");
+    add(off.z(), "towards the crown", "towards the neck");
     return words;
 }
 

@@ -34,6 +34,16 @@ void LightGate::restart() {
     forget();
 }
 
+void LightGate::other_light(Instant at) {
+    forget();
+    lit_since_ = at;
+}
+
+std::optional<LightGate::Ruling> LightGate::forbids() const {
+    if (!stopped_) return std::nullopt;
+    return rule({}, {});
+}
+
 void LightGate::take(Instant at, const LightCheck& check) {
     last_ = check;
     measured_at_ = at;
@@ -83,6 +93,7 @@ bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
             "The cameras have not measured the light for a second or more: look at it on landmarks before you use it."};
         return true;
     }
+    ruling.found_wrong = true;
     if (last_->seen < settings_.least_seen || last_->seen_share() < settings_.least_seen_share) {
         ruling.headline = "LOOK: the cameras do not see the light.";
         ruling.details = {fmt::format("They see {} of {} stretches.", last_->seen, last_->expected)};
@@ -96,6 +107,7 @@ bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
     for (const Item& item : items_) {
         if (!within_fresh(item.lit_at, at)) continue;
         if (!within_fresh(item.seen_at, at)) {
+            ruling.found_wrong = false;
             ruling.headline = fmt::format("LOOK: \"{}\" is not measured.", item.name);
             ruling.details = {"The cameras do not see its light, or not apart from other light: look at it yourself."};
             return true;
@@ -106,6 +118,7 @@ bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
             return true;
         }
     }
+    ruling.found_wrong = false;
     if (!within_fresh(told_whole_at_, at)) {
         ruling.headline = "LOOK: the light is measured in one direction only.";
         ruling.details = {"Straight lines tell nothing along themselves: look at their ends on the skin."};
@@ -138,16 +151,19 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
     const auto wrong = std::find_if(causes.begin(), causes.end(), [](const LightCause& c) { return c.light_is_wrong; });
     if (rule_on_measurement(at, ruling)) {
         if (wrong == causes.end()) return ruling;
+        ruling.found_wrong = true;
         ruling.headline = "LOOK: " + wrong->headline();  // its sentence and remedy follow
         ruling.details.clear();
         return ruling;
     }
     if (skin_off_mm_ > settings_.warn_mm) {
+        ruling.found_wrong = true;
         ruling.headline = fmt::format("LOOK: the skin lies {:.1f} mm off where the markers put it.", skin_off_mm_);
         ruling.details = {"Check the skin again; if it stays so, scan and match anew."};
         return ruling;
     }
     if (wrong != causes.end()) {
+        ruling.found_wrong = true;
         ruling.headline = "LOOK: " + wrong->headline();
         return ruling;
     }

@@ -43,6 +43,7 @@ public:
         std::string headline;  ///< empty where it is dark for a reason of the caller's
         std::vector<std::string> details;
         bool ask_to_verify = false;
+        bool found_wrong = false;                ///< the headline says what was measured wrong, or known to be
         bool stop = false;                       ///< the light must go out now, and stays out until `restart`
         std::optional<double> off_mm, sigma_mm;  ///< of the light, as last measured
     };
@@ -60,6 +61,11 @@ public:
     void skin_checked(double off_mm);
     void new_match();  ///< nothing is verified or measured any more
     void restart();    ///< light is asked for again after a stop; what was verified still is
+    /// From now on something else is lit, a landmark in place of the plan say: what was measured was of other light.
+    void other_light(Instant at);
+
+    /// To be asked before anything is lit: why there must be no light, as `step` would rule; empty: there may be.
+    std::optional<Ruling> forbids() const;
 
 private:
     /// An item of the plan, as the checks of the last `fresh` saw it.

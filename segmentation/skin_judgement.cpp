@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "planning_io/types/error.h"
+#include "segmentation/boneless_ends.h"
 #include "segmentation/skin_layers.h"
 #include "segmentation/skin_shape.h"
 #include "segmentation/things_on_skin.h"
@@ -24,7 +25,8 @@ constexpr double kUnsure_doubted = 0.06, kUnsure_refused = 0.3;
 constexpr double kFaintInBlur = 0.35, kNoBrain_mm = 72;  // an adult's brain holds a ball of 65 mm
 constexpr double kStrand_mm = 75;                        // ears, lips and fins of noise lead away by 50
 constexpr double kBoneless_cm2 = 15;
-constexpr double kGap_cm2 = 15;
+constexpr double kGap_cm2 = 15, kLight_cm2 = 15;
+constexpr double kBonelessEnd_cm2 = 8;  // an ear that the volume cuts off has 4
 constexpr double kOneSided_cm2 = 15, kBumps_cm2 = 10, kShelf_cm2 = 15, kWidth = 1.35, kThickest_mm = 15;
 
 const char* const kGiveHead =
@@ -122,6 +124,12 @@ void judge_edges(const SkinMask& mask, SkinJudgement& r) {
                 "there the surface is not the skin",
                 r.gap_cm2),
             kLook);
+    if (r.light_cm2 > kLight_cm2)
+        add(r.doubts,
+            fmt::format("Over {:.0f} square cm (most at {}) what lies just under the surface is lighter than skin and "
+                        "fat: hair, a strap, a cloth or a cover lies on the skin there",
+                        r.light_cm2, r.light_at),
+            kLook);
     if (r.strand_mm > kStrand_mm)
         add(r.doubts,
             fmt::format(
@@ -202,6 +210,14 @@ void judge_cuts(SkinJudgement& r) {
             sides += fmt::format("{}the {} ({:.0f} square cm)", count == 0 ? "" : ", ", side.name, side.area_cm2);
             ++count;
         }
+    for (const CutSide& side : r.cut_sides)
+        if (side.boneless_cm2 > kBonelessEnd_cm2)
+            add(r.doubts,
+                fmt::format(
+                    "At the {} the volume ends over {:.0f} square cm within something that has no bone under it "
+                    "nor round it: something lies on the head there (a cushion, wet hair, a blanket)",
+                    side.name, side.boneless_cm2),
+                kLook);
     if (count > 0)
         add(r.doubts, fmt::format("The volume ends within the head: it cuts off {}; what lies there is no skin", sides),
             "Scan, match and draw elsewhere, or give a series that shows the whole head.");
@@ -215,16 +231,18 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     const HeadBall ball = largest_ball(volume, mask, skin);
     result.ball_radius_mm = ball.radius_mm;
     result.ball_centre_in_ct = ball.centre_in_ct;
-    result.cut_sides = cut_sides_of(skin, ball);
-    result.nose_mm = nose_length_mm(skin, ball);
+    result.cut_sides = cut_sides_of(skin, ball, boneless_ends(volume, mask, skin, ball));
     const SkinLayers layers = layers_under(volume, mask, skin, result.ball_centre_in_ct);
     result.layered_share = layers.layered_share;
     result.scalp_mm = layers.scalp_mm;
     result.edge_blur_mm = layers.edge_blur_mm;
     result.gap_cm2 = layers.gap_cm2;
     result.boneless_cm2 = layers.boneless_cm2;
+    result.light_cm2 = layers.light_cm2;
+    result.light_at = where_on_head(layers.light_in_ct, ball);
     if (!mask.levels.empty()) result.strand_mm = strand_length_mm(volume, mask, skin);
     const ThingsOnSkin things = things_on_skin(volume, mask, skin, ball);
+    result.nose_mm = nose_length_mm(skin, ball, things.plane);
     result.one_sided_cm2 = things.one_sided_cm2;
     result.bumps_cm2 = things.bumps_cm2;
     result.width = things.width;

@@ -30,6 +30,8 @@ struct SkinJudgement {
     double edge_blur_mm = 0;     ///< median way from 20 to 80 % of the step from air to skin
     double gap_cm2 = 0;          ///< of skin under which air is again (a mask, a cushion, a cloth)
     double boneless_cm2 = 0;     ///< patch of the upper head with no bone within 16 mm (a shining cushion)
+    double light_cm2 = 0;        ///< of a volume in HU: what lies just under the surface is lighter than fat (hair)
+    std::string light_at;        ///< where most of it is, in words
     double one_sided_cm2 = NAN;  ///< `ThingsOnSkin`, and the next three
     double bumps_cm2 = NAN;
     double width = NAN;

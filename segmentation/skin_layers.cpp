@@ -24,6 +24,8 @@ constexpr double kBrainFrom_mm = 22, kBrainTo_mm = 45;
 constexpr double kDark = 0.55;   // of the brain: bone with what thick voxels add to it
 constexpr double kBright = 1.6;  // of the brain: bone in a CT that is not in HU
 constexpr double kPatch_mm = 25, kPatchBoneless = 0.9, kLayeredAllOver = 0.5;
+constexpr double kLight_hu = -120, kLightAt_mm = 2, kLightAt_blurs = 0.75;  // fat is denser
+constexpr double kLightPatch_mm = 15, kPatchLight = 0.7;
 constexpr double kThinMatter_mm = 3.5, kGap_mm = 3;
 
 /// Values from 8 mm before the skin (index 0) to 50 mm under it.
@@ -169,23 +171,47 @@ Layer bone_of(const Sample& s, double brain) {
     return layer;
 }
 
+std::size_t count_near(const std::vector<Vector3d>& all, const Vector3d& p, double within_mm) {
+    return static_cast<std::size_t>(
+        std::count_if(all.begin(), all.end(), [&](const Vector3d& q) { return (p - q).norm() < within_mm; }));
+}
+
+/// Those of `odd` that lie by a place where hardly any of `others` do.
+std::vector<Vector3d> patches_of(const std::vector<Vector3d>& odd, const std::vector<Vector3d>& others, double patch_mm,
+                                 double least_share) {
+    std::vector<Vector3d> middles, patches;
+    for (const Vector3d& p : odd)
+        if (const auto n = static_cast<double>(count_near(odd, p, patch_mm));
+            n > least_share * (n + static_cast<double>(count_near(others, p, patch_mm))))
+            middles.push_back(p);
+    for (const Vector3d& p : odd)
+        if (count_near(middles, p, patch_mm) > 0) patches.push_back(p);
+    return patches;
+}
+
 /// The largest area of samples without bone that have hardly any with bone within kPatch_mm: share of all samples.
 template <typename HasBone>
 double boneless_share(const std::vector<Sample>& samples, HasBone&& has_bone) {
     std::vector<Vector3d> boneless, bony;
     for (const Sample& s : samples)
         if (s.upper) (has_bone(s) ? bony : boneless).push_back(s.at_in_ct);
-    const auto near = [](const std::vector<Vector3d>& all, const Vector3d& p) {
-        return static_cast<double>(
-            std::count_if(all.begin(), all.end(), [&](const Vector3d& q) { return (p - q).norm() < kPatch_mm; }));
-    };
-    std::vector<Vector3d> middles;
-    for (const Vector3d& p : boneless)
-        if (const double without = near(boneless, p); without > kPatchBoneless * (without + near(bony, p)))
-            middles.push_back(p);
-    const auto patch =
-        std::count_if(boneless.begin(), boneless.end(), [&](const Vector3d& p) { return near(middles, p) > 0; });
-    return static_cast<double>(patch) / static_cast<double>(samples.size());
+    return static_cast<double>(patches_of(boneless, bony, kPatch_mm, kPatchBoneless).size()) /
+           static_cast<double>(samples.size());
+}
+
+/// Where what lies just under the surface is lighter than skin and fat; deeper where the edge is less sharp, or slices
+/// are thick.
+std::vector<Vector3d> light_patches(const std::vector<Sample>& samples, const Volume& volume, const TriangleMesh& skin,
+                                    double edge_blur_mm) {
+    std::vector<Vector3d> light, others;
+    const Eigen::Matrix3d voxel_from_ct = volume.ct_from_voxel.linear().inverse();
+    for (const Sample& s : samples) {
+        const Vector3d& out = skin.normals_in_ct[s.vertex];
+        const double step_mm = 1 / (voxel_from_ct * out).norm();
+        const double at_mm = std::max({kLightAt_mm, kLightAt_blurs * step_mm, kLightAt_blurs * edge_blur_mm});
+        if (const double hu = s.at(at_mm); std::isfinite(hu)) (hu < kLight_hu ? light : others).push_back(s.at_in_ct);
+    }
+    return patches_of(light, others, kLightPatch_mm, kPatchLight);
 }
 
 }  // namespace
@@ -235,6 +261,11 @@ SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const Triang
         layers.boneless_cm2 = area_cm2 * boneless_share(samples, [&](const Sample& s) {
                                   return volume.is_hu ? bone_in_hu(s) <= kBoneTo_mm : bone_of(s, brain).dark;
                               });
+    if (volume.is_hu && !samples.empty()) {
+        layers.light_in_ct = light_patches(samples, volume, skin, layers.edge_blur_mm);
+        layers.light_cm2 =
+            area_cm2 * static_cast<double>(layers.light_in_ct.size()) / static_cast<double>(samples.size());
+    }
     layers.gap_cm2 = samples.empty() || !volume.is_hu ? 0 : area_cm2 * off / static_cast<double>(samples.size());
     return layers;
 }

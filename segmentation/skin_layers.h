@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "segmentation/segment_skin.h"
 
 namespace planlight {
@@ -18,6 +20,9 @@ struct SkinLayers {
     /// Largest patch of the head's upper part where no bone lies within 16 mm of the skin, square cm; 0 where
     /// bone was not found all over.
     double boneless_cm2 = 0;
+    /// Of a volume in HU: patches where what lies just under the surface is lighter than skin and fat (hair, a strap).
+    std::vector<Eigen::Vector3d> light_in_ct;  ///< places evenly over them
+    double light_cm2 = 0;
     double dip = 0;        ///< median of the darkest place 2 to 16 mm under the vault's skin, as a share of the brain
     double air_share = 0;  ///< of all skin: what lies 3 to 8 mm before it is air
 };

@@ -1,8 +1,12 @@
 #include "segmentation/skin_shape.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
+#include <numeric>
 
 #include "planning_io/types/statistics.h"
 #include "segmentation/coarse_body.h"
@@ -18,6 +22,8 @@ constexpr double kStrandGrid_mm = 3, kThin_mm = 7, kLongestStrand_mm = 300;
 constexpr double kLeastCut_cm2 = 1;
 constexpr double kUsualSkull_mm = 75;  // radius of an adult's: thick hair makes the ball larger, not the head longer
 constexpr double kCell_mm = 4, kSteep = 0.4;  // of the nose's search
+constexpr double kSureNose_mm = 25;  // of an adult's: what is less is sought askew, where less is no nose (a cut's rim)
+constexpr std::array<double, 5> kPitches_degrees{0, 20, -20, 40, -40};
 
 bool is_cut(const TriangleMesh& skin, const std::array<std::int32_t, 3>& t) {
     return std::all_of(t.begin(), t.end(),
@@ -37,17 +43,17 @@ const char* name_of_end(const Vector3d& normal, double below_mm, double radius_m
     return up ? "left side" : "right side";
 }
 
-/// The front of a head, seen from before it: the least y of each cell of x and z.
+/// The front of a head, seen from before it in a frame about the skull's middle: the least y of each cell of x and z.
 class Front {
 public:
-    Front(const TriangleMesh& skin, const HeadBall& ball) {
-        const Vector3d& c = ball.centre_in_ct;
-        lowest_mm_ = c.z();
+    Front(const TriangleMesh& skin, const HeadBall& ball, const Eigen::Matrix3d& head_from_ct, bool with_ends) {
         double sum = 0, count = 0;
-        for (const auto& p : skin.vertices_in_ct) {
-            if (p.z() > c.z() && p.y() < c.y()) sum += p.x(), count += 1;
+        for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v) {
+            if (!with_ends && !skin.flags.empty() && skin.flags[v] == kCutPlane) continue;
+            const Vector3d p = head_from_ct * (skin.vertices_in_ct[v] - ball.centre_in_ct);
+            if (p.z() > 0 && p.y() < 0) sum += p.x(), count += 1;
             lowest_mm_ = std::min(lowest_mm_, p.z());
-            if (p.y() > c.y() || std::abs(p.x() - c.x()) > 1.2 * ball.radius_mm) continue;
+            if (p.y() > 0 || std::abs(p.x()) > 1.2 * ball.radius_mm) continue;
             const auto [at, fresh] = least_y_.emplace(std::pair(cell(p.x()), cell(p.z())), p.y());
             if (!fresh) at->second = std::min(at->second, p.y());
         }
@@ -55,7 +61,7 @@ public:
     }
     static int cell(double mm) { return static_cast<int>(std::floor(mm / kCell_mm)); }
     double middle_x() const { return middle_x_; }    ///< of the forehead; not a number without one
-    double lowest_mm() const { return lowest_mm_; }  ///< the least z
+    double lowest_mm() const { return lowest_mm_; }  ///< the least z, at most 0
 
     /// How far the skin near `x` stands out before what lies `scale` times 24 to 36 mm to both sides, if it falls away
     /// as steeply as a nose; a round chin or crown falls away a quarter as much half as far out.
@@ -80,6 +86,22 @@ private:
     std::map<std::pair<int, int>, double> least_y_;
     double middle_x_ = 0, lowest_mm_ = 0;
 };
+
+double longest_ridge_mm(const Front& front, double radius_mm) {
+    double best = 0;
+    for (int z = Front::cell(-1.6 * radius_mm); z <= Front::cell(-0.2 * radius_mm); ++z)
+        for (double aside = -16; aside <= 16; aside += 4)  // a head may lie askew
+            best = std::max(best, front.ridge_mm(front.middle_x() + aside, z, radius_mm / 72));
+    return best;
+}
+
+/// The frame of a head that leans and looks aside as its middle plane does.
+Eigen::Matrix3d upright_from_ct(const MiddlePlane& plane) {
+    const Vector3d left = plane.left_in_ct(), back = Vector3d::UnitZ().cross(left).normalized();
+    Eigen::Matrix3d rows;
+    rows << left.transpose(), back.transpose(), left.cross(back).transpose();
+    return rows;
+}
 
 }  // namespace
 
@@ -121,7 +143,21 @@ double strand_length_mm(const Volume& volume, const SkinMask& mask, const Triang
     return reached_mm;
 }
 
-std::vector<CutSide> cut_sides_of(const TriangleMesh& skin, const HeadBall& ball) {
+std::string where_on_head(const std::vector<Vector3d>& places_in_ct, const HeadBall& ball) {
+    std::map<std::string, std::size_t> counts;
+    for (const Vector3d& p : places_in_ct) {
+        const Vector3d from = p - ball.centre_in_ct;
+        const std::string name = name_of_end(from.normalized(), -from.z(), ball.radius_mm);
+        ++counts[name == "face" && from.z() > 0 ? "forehead" : name];
+    }
+    std::string words;
+    for (const auto& [name, count] : counts)
+        if (5 * count >= places_in_ct.size()) words += (words.empty() ? "the " : ", the ") + name;
+    return words;
+}
+
+std::vector<CutSide> cut_sides_of(const TriangleMesh& skin, const HeadBall& ball,
+                                  const std::vector<std::uint8_t>& boneless) {
     std::map<std::string, CutSide> sides;
     if (!skin.flags.empty())
         for (const auto& t : skin.triangles) {
@@ -131,7 +167,11 @@ std::vector<CutSide> cut_sides_of(const TriangleMesh& skin, const HeadBall& ball
             const double below_mm = ball.centre_in_ct.z() - skin.vertices_in_ct[static_cast<std::size_t>(t[0])].z();
             const std::string name = name_of_end(area.normalized(), below_mm, ball.radius_mm);
             CutSide& side = sides[name];
-            side = {name, side.area_cm2 + cm2, name == "neck"};
+            const double bare =
+                boneless.empty() ? 0 : std::accumulate(t.begin(), t.end(), 0.0, [&](double sum, auto c) {
+                    return sum + boneless[static_cast<std::size_t>(c)] / 3.0;
+                });
+            side = {name, side.area_cm2 + cm2, name == "neck", side.boneless_cm2 + bare * cm2};
         }
     std::vector<CutSide> large;
     for (const auto& [name, side] : sides)
@@ -139,15 +179,19 @@ std::vector<CutSide> cut_sides_of(const TriangleMesh& skin, const HeadBall& ball
     return large;
 }
 
-double nose_length_mm(const TriangleMesh& skin, const HeadBall& ball) {
-    const Front front(skin, ball);
-    const Vector3d& c = ball.centre_in_ct;
+double nose_length_mm(const TriangleMesh& skin, const HeadBall& ball, const MiddlePlane& plane) {
     const double r = ball.radius_mm;
-    if (std::isnan(front.middle_x()) || c.z() - front.lowest_mm() < 0.75 * r) return NAN;
-    double best = 0;
-    for (int z = Front::cell(c.z() - 1.6 * r); z <= Front::cell(c.z() - 0.2 * r); ++z)
-        for (double aside = -16; aside <= 16; aside += 4)  // a head may lie askew
-            best = std::max(best, front.ridge_mm(front.middle_x() + aside, z, r / 72));
+    const Front straight(skin, ball, Eigen::Matrix3d::Identity(), true);
+    if (std::isnan(straight.middle_x()) || straight.lowest_mm() > -0.75 * r) return NAN;
+    double best = longest_ridge_mm(straight, r);
+    const Eigen::Matrix3d upright = upright_from_ct(plane);
+    for (const double pitch : kPitches_degrees) {
+        if (best > kSureNose_mm * r / 72) return best;
+        const Front front(skin, ball, Eigen::AngleAxisd(pitch * std::numbers::pi / 180, Vector3d::UnitX()) * upright,
+                          false);
+        if (std::isnan(front.middle_x())) continue;
+        if (const double ridge_mm = longest_ridge_mm(front, r); ridge_mm > kSureNose_mm * r / 72) return ridge_mm;
+    }
     return best;
 }
 

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "planning_io/types/triangle_mesh.h"
 #include "planning_io/types/volume.h"
+#include "segmentation/middle_plane.h"
 #include "segmentation/segment_skin.h"
 
 namespace planlight {
@@ -14,7 +16,8 @@ namespace planlight {
 struct CutSide {
     std::string name;  ///< "crown", "neck", "chin", "face", "back", "left side", "right side"
     double area_cm2 = 0;
-    bool usual = false;  ///< a neck's: every head scan ends there
+    bool usual = false;       ///< a neck's: every head scan ends there
+    double boneless_cm2 = 0;  ///< of it: what lies on the head ends there (`boneless_ends`)
 };
 
 /// The largest ball within the upper head: the skull's size and middle.
@@ -32,11 +35,18 @@ HeadBall largest_ball(const Volume& volume, const SkinMask& mask, const Triangle
 /// at most. Steps along the axes, so that a way aslant is longer than it is. `skin` has vertices.
 double strand_length_mm(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin);
 
-/// The ends of the volume within the head, by their anatomical names, of more than 1 square cm each.
-std::vector<CutSide> cut_sides_of(const TriangleMesh& skin, const HeadBall& ball);
+/// Where most of some places of the skin lie: "the forehead, the left side"; of those that hold a fifth of them.
+std::string where_on_head(const std::vector<Eigen::Vector3d>& places_in_ct, const HeadBall& ball);
+
+/// The ends of the volume within the head, by their anatomical names, of more than 1 square cm each. `boneless`: of
+/// each vertex, or empty.
+std::vector<CutSide> cut_sides_of(const TriangleMesh& skin, const HeadBall& ball,
+                                  const std::vector<std::uint8_t>& boneless);
 
 /// How far a nose stands out before the cheeks, mm, at the height where it does most; not a number where the volume
-/// ends above it or no front is in it.
-double nose_length_mm(const TriangleMesh& skin, const HeadBall& ball);
+/// ends above it or no front is in it. A head whose nose does not stand out straight ahead is looked at once more along
+/// its middle plane, and from above and below by up to 40 degrees: it may look aside, or lie with its chin on the
+/// chest.
+double nose_length_mm(const TriangleMesh& skin, const HeadBall& ball, const MiddlePlane& plane);
 
 }  // namespace planlight

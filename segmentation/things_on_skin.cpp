@@ -76,19 +76,6 @@ bool is_end(const TriangleMesh& skin, std::size_t vertex) {
     return !skin.flags.empty() && skin.flags[vertex] == kCutPlane;
 }
 
-/// The plane between left and right: n = (1, yaw, roll) normalised, `aside_mm` from the skull's middle.
-struct MiddlePlane {
-    Vector3d centre_in_ct;
-    double yaw = 0, roll = 0, aside_mm = 0;
-
-    double left_of(const Vector3d& p_in_ct) const {
-        return Vector3d(1, yaw, roll).normalized().dot(p_in_ct - centre_in_ct) - aside_mm;
-    }
-    Vector3d mirrored(const Vector3d& p_in_ct) const {
-        return p_in_ct - 2 * left_of(p_in_ct) * Vector3d(1, yaw, roll).normalized();
-    }
-};
-
 /// Some of the head's skin, to ask its mirror images.
 struct Point {
     Vector3d at_in_ct;
@@ -202,7 +189,7 @@ ThingsOnSkin things_on_skin(const Volume& volume, const SkinMask& mask, const Tr
     const std::vector<Point> points = points_of(skin, ball);
     const MiddlePlane plane = middle_plane(distances, points, ball);
     return {one_sided(distances, points, plane), bumps(distances, skin, ball), width(skin, plane, ball),
-            shelf(skin, ball)};
+            shelf(skin, ball), plane};
 }
 
 }  // namespace planlight

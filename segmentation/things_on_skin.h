@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "segmentation/middle_plane.h"
 #include "segmentation/segment_skin.h"
 #include "segmentation/skin_shape.h"
 
@@ -21,6 +22,7 @@ struct ThingsOnSkin {
     /// Behind and below the skull's middle, down to where shoulders begin: what looks up. A head recedes there towards
     /// the neck: 0 to 8 on heads, 30 and more with a cushion behind the neck.
     double shelf_cm2 = NAN;
+    MiddlePlane plane;  ///< that was sought for the first
 };
 
 ThingsOnSkin things_on_skin(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin, const HeadBall& ball);

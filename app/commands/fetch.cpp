@@ -114,7 +114,7 @@ Run add_fetch(CLI::App& app) {
     sub->add_option("--modality", o.query.modality, "CT, MR, RTSTRUCT, SEG");
     auto* out = sub->add_option("--out", o.out, "New folder for its files (default: what is found is listed)");
     sub->add_flag("--check", o.check, "Only ask whether the archive answers (C-ECHO)")->excludes(out);
-    archive_options(sub, o.archive);
+    archive_options(sub, o.archive, true);
     json_flag(sub, o.json);
     return [options] { return run_fetch(*options); };
 }

@@ -31,11 +31,13 @@ std::vector<std::string> left_of(const Path& recording, const Path& case_folder)
 /// The case that it names; empty where it cannot be read.
 Path case_of(const Path& recording) {
     try {
-        return head_of_recording(recording).case_folder;
+        if (const Path said = head_of_recording(recording).case_folder; !said.empty()) return said;
     } catch (const DamagedFileError&) {  // a recording all the same: its first words are
     } catch (const DiskError&) {         // what cannot be read can be removed all the same
     }
-    return {};
+    // Without names in it, it says no case; where it lies usually does.
+    const Path folder = std::filesystem::absolute(recording).parent_path();
+    return folder.filename() == "recordings" ? folder.parent_path() : Path();
 }
 
 /// False: somebody has removed it already.
@@ -61,7 +63,8 @@ int run_forget(const Path& named) {
         fmt::print("Left: the recording itself, under {} other name{} (hard links)\n", names - 1, names > 2 ? "s" : "");
     for (const std::string& what : left) fmt::print("Left: {}\n", what);
     fmt::print(
-        "Left: copies that somebody made, and until the disk writes over them the bytes themselves, unless it is "
+        "Left: matches of it where `session --keep` said another folder, copies that somebody made, and until the disk "
+        "writes over them the bytes themselves, unless it is "
         "encrypted.\n");
     return 0;
 }

@@ -5,7 +5,9 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/commands/language_option.h"
 #include "app/console.h"
+#include "app/live/shown_replay.h"
 #include "app/recording/recording_head.h"
 #include "app/recording/replay_session.h"
 #include "planning_io/types/error.h"
@@ -15,7 +17,9 @@ namespace {
 
 struct ReplayOptions {
     Path recording, case_folder;
-    bool json = false;
+    bool json = false, show = false;
+    std::string language;        ///< of the window; empty: as the site says
+    ShownReplaySettings window;  ///< with `show`
 };
 
 std::string counts_of(const ReplayResult& r) {
@@ -90,10 +94,21 @@ int run_replay(const ReplayOptions& options) {
     Path folder = options.case_folder;
     if (folder.empty()) folder = head_of_recording(options.recording).case_folder;
     const Case the_case = read_case(folder);
-    ProgressBar bar;
-    const ReplayResult result =
-        replay_session(options.recording, the_case, [&](double share) { bar.show("replay", share); });
-    bar.show("replay", 1);
+    ReplayResult result;
+    if (options.show) {
+        ShownReplaySettings window = options.window;
+        window.words = words_of_window(options.language, read_site_settings());
+        const auto shown = show_replay(options.recording, the_case, window);
+        if (!shown) {
+            fmt::print("The window was closed before the end of the replay.\n");
+            return 0;
+        }
+        result = *shown;
+    } else {
+        ProgressBar bar;
+        result = replay_session(options.recording, the_case, [&](double share) { bar.show("replay", share); });
+        bar.show("replay", 1);
+    }
     if (options.json)
         print_json(result);
     else
@@ -112,6 +127,15 @@ Run add_replay(CLI::App& app) {
                             "replay case/recordings/2026-03-14T09-30-00Z.plrec");
     sub->add_option("recording", o.recording, "Recording of a session (`session --record all`)")->required();
     sub->add_option("--case", o.case_folder, "Case folder (default: where it was when it was recorded)");
+    auto* show = sub->add_flag("--show", o.show,
+                               "In the operator's window, at the pace at which it was recorded (default: as fast as "
+                               "possible, without a window)");
+    sub->add_option("--speed", o.window.speed, "Of the window: 2 is twice as fast")
+        ->check(CLI::Range(0.05, 20.0))
+        ->needs(show);
+    sub->add_flag("--close", o.window.close_at_end, "The window is closed at the end")->needs(show);
+    sub->add_option("--screenshots", o.window.screenshots, "Folder for pictures of the window")->needs(show);
+    language_option(sub, o.language);
     json_flag(sub, o.json);
     return [options] { return run_replay(*options); };
 }

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <fstream>
 #include <iostream>
+#include <nlohmann/json.hpp>
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
@@ -17,6 +19,12 @@ struct ReportOptions {
     Path recording, out, pdf;
     bool json = false;
 };
+
+/// Figures that a former report wrote.
+bool is_of_a_report(const Path& figures) {
+    const auto json = nlohmann::json::parse(std::ifstream(figures), nullptr, false);
+    return json.is_object() && json.value("format", nlohmann::json()) == "planlight operation";
+}
 
 /// Neither the page nor its figures nor the PDF may stand where a recording does, or in each other's place.
 void check_out(const Path& out, const Path& pdf, const Path& recording) {
@@ -36,6 +44,8 @@ void check_out(const Path& out, const Path& pdf, const Path& recording) {
         if (same(file, recording)) refuse(file, "is the recording itself, and a report would take its place");
         if (file.extension() == ".plrec") refuse(file, "is the name of a recording, not of a page");
     }
+    if (std::filesystem::exists(figures) && !is_of_a_report(figures))
+        refuse(figures, "is no report's, and the figures of this one would take its place");
     if (out.extension() == ".json") refuse(out, "is where the figures of the page go, not the page");
     if (!pdf.empty() && (same(pdf, out) || same(pdf, figures)))
         refuse(pdf, "is where the page or its figures go, not the PDF");
@@ -45,6 +55,7 @@ int run_report(const ReportOptions& options) {
     const Path out = options.out.empty() ? Path(options.recording).replace_extension(".html") : options.out;
     check_out(out, options.pdf, options.recording);
     check_can_write(out);
+    check_can_write(Path(out).replace_extension(".json"));
     if (!options.pdf.empty()) check_can_write(options.pdf);
     const OperationFacts facts = facts_of_operation(options.recording);
     const std::string json = operation_json(facts);

@@ -182,6 +182,9 @@ Run add_review(CLI::App& app) {
         "Of a recording: folder for its page (time line, errors, events) and pictures (default: beside it)");
     sub->add_option("--at", o.recorded.at_s, "Of a recording: picture of the frame nearest to so many seconds")
         ->check(CLI::NonNegativeNumber);
+    sub->add_option("--case", o.recorded.case_folder,
+                    "Of a recording, with --at: its case, to lay the plan over the pictures and to say how far off its "
+                    "light was at each place (default: where it was when it was recorded)");
     sub->add_option("--clip", o.recorded.clip_s, "Of a recording: a PNG for each frame kept from .. to .. seconds")
         ->expected(2)
         ->check(CLI::NonNegativeNumber);

@@ -8,7 +8,9 @@
 #include <nlohmann/json.hpp>
 
 #include "app/console.h"
+#include "app/report/moment_comparison.h"
 #include "app/report/recording_review.h"
+#include "app/windows/camera_picture.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
@@ -72,6 +74,32 @@ void make_review_folder(const fs::path& folder) {
                         "Name a folder with --out where you may write.");
 }
 
+/// Plan and light of that frame, for the page: its pictures and its table are written beside it. Why not, where the
+/// case is not there: the page has the rest.
+std::string compared(const RecordingReviewOptions& options, const RecordingTimeLine& line, double at_s,
+                     const fs::path& out) {
+    const fs::path folder = options.case_folder.empty() ? line.head.case_folder : options.case_folder;
+    try {
+        const MomentComparison moment = compare_moment(options.recording, at_s, read_case(folder));
+        const auto name = [&](const char* what, const char* ends) {
+            return fmt::format("{}-{:.3f}.{}", what, at_s, ends);
+        };
+        if (moment.why_not.empty()) {
+            write_png(rgb_of(brightened(moment.pictures[0])), out / name("left", "png"));
+            write_png(rgb_of(brightened(moment.pictures[1])), out / name("right", "png"));
+            write_png(moment.scene, out / name("head", "png"));
+            write_safely(out / name("plan-and-light", "csv"), comparison_csv(moment));
+        } else if (!options.json) {
+            warn("plan and light cannot be compared at that moment. " + moment.why_not);
+        }
+        return comparison_section(moment, name("left", "png"), name("right", "png"), name("head", "png"));
+    } catch (const Error& fault) {
+        if (!options.case_folder.empty()) throw;
+        warn(std::string("plan and light cannot be compared: ") + fault.what() + ". Name the case with --case.");
+        return {};
+    }
+}
+
 }  // namespace
 
 fs::path review_folder_of(const fs::path& recording) {
@@ -100,8 +128,10 @@ int run_recording_review(const RecordingReviewOptions& options) {
         for_each_moment(options.recording, at_s, at_s,
                         [&](const RecordedMoment& moment) { write_png(picture_of(moment), out / name); });
         write_safely(out / "index.html",
-                     review_page(line, {{name, fmt::format("At {:.3f} s: left camera, right camera{}", at_s,
-                                                           ", and what the projector was given, if it was kept.")}}));
+                     review_page(line,
+                                 {{name, fmt::format("At {:.3f} s: left camera, right camera{}", at_s,
+                                                     ", and what the projector was given, if it was kept.")}},
+                                 compared(options, line, at_s, out)));
         if (!options.json) fmt::print("{}\n", (out / name).string());
     }
     if (options.clip_s.size() == 2) {

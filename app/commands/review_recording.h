@@ -8,6 +8,7 @@ namespace planlight {
 /// What of a recorded session is to be looked at.
 struct RecordingReviewOptions {
     std::filesystem::path recording;
+    std::filesystem::path case_folder;  ///< for `at_s`; empty: where it was when it was recorded
     std::filesystem::path out;   ///< folder, new, empty or of a former review; empty: beside the recording
     double at_s = -1;            ///< of a picture; below 0: none
     std::vector<double> clip_s;  ///< from, to; empty: none

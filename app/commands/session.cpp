@@ -13,6 +13,7 @@
 #include "app/live/simulated_room.h"
 #include "app/recording/recording_head.h"
 #include "app/report/html_page.h"
+#include "app/report/report_beside.h"
 #include "app/session_observers.h"
 #include "app/site_settings.h"
 #include "planning_io/case/case_folder.h"
@@ -30,6 +31,7 @@ struct SessionOptions {
     Path keep;  ///< folder for every match; empty: CASE/registrations
     std::string record = "events";
     bool anonymous = false;  ///< the recording
+    bool no_report = false;  ///< at the end, beside the recording
     Path recordings;         ///< folder; empty: CASE/recordings
     Path resume;             ///< recording of the session to go on with; empty: the last one is offered
     std::string series_uid;
@@ -74,25 +76,64 @@ std::optional<ResumeOffer> resume_of(const SessionOptions& options, const Case& 
     }
 }
 
-/// Ends the recording when the session ends, in whatever way, and says what it lacks.
-struct EndRecording {
-    void operator()(SessionRecorder* recorder) const {
-        const std::unique_ptr<SessionRecorder> owned(recorder);
+/// The recording of a session, and at its end the report beside it. Both are ended however the session ends, but for a
+/// kill; what they lack is said.
+class Recorded {
+public:
+    Recorded() = default;
+    Recorded(std::unique_ptr<SessionRecorder> recorder, Path file, bool report)
+        : recorder_(std::move(recorder)), file_(std::move(file)), report_(report) {}
+    ~Recorded() { end({}); }
+    Recorded(const Recorded&) = delete;
+    Recorded& operator=(const Recorded&) = delete;
+    SessionRecorder* get() const { return recorder_.get(); }  ///< null: nothing is recorded
+
+    /// While the window says so.
+    void end(SessionWindow& window) {
+        end([&](const std::function<ReportBeside()>& write) {
+            return window.while_made("The report of this session is being written.", 0.5, write);
+        });
+    }
+
+private:
+    using Meanwhile = std::function<ReportBeside(const std::function<ReportBeside()>&)>;
+    void end(const Meanwhile& meanwhile) noexcept {
+        if (!recorder_) return;
+        const std::unique_ptr<SessionRecorder> recorder = std::move(recorder_);
         try {
             if (const std::string lacks = recorder->finish(); !lacks.empty()) warn(lacks);
         } catch (const std::exception& fault) {
             warn(std::string("The recording could not be ended: ") + fault.what());
         }
+        if (report_ && recorder->room_was_entered()) report(meanwhile);
     }
-};
-using Recorder = std::unique_ptr<SessionRecorder, EndRecording>;
+    void report(const Meanwhile& meanwhile) noexcept {
+        try {
+            const auto write = [&] { return write_report_beside(file_); };
+            const ReportBeside report = meanwhile ? meanwhile(write) : write();
+            fmt::print(
+                stderr,
+                "{}\nThe report of this session: {} and {}. It shows the patient's face, as the recording does.\n",
+                report.verdict, report.page.string(), report.pdf.string());
+        } catch (const std::exception& fault) {
+            warn(fmt::format(
+                "The report of this session could not be written: {}. The recording is there; write it with "
+                "`planlight report {}`.",
+                fault.what(), file_.string()));
+        }
+    }
 
-/// The recording of this session, said where and how much; null with `--record none`.
-Recorder recorder_of(const SessionOptions& options, const Case& the_case, const DrawingSettings& drawing) {
+    std::unique_ptr<SessionRecorder> recorder_;
+    Path file_;
+    bool report_ = false;
+};
+
+/// The recording of this session, said where and how much; none with `--record none`.
+Recorded recorder_of(const SessionOptions& options, const Case& the_case, const DrawingSettings& drawing) {
     const RecordMode mode = record_mode_of(options.record);
     if (mode == RecordMode::none) {
-        fmt::print(stderr, "This session is not recorded.\n");
-        return nullptr;
+        fmt::print(stderr, "This session is not recorded, and there will be no report of it.\n");
+        return {};
     }
     if (options.anonymous && mode == RecordMode::all)
         throw Error(ExitCode::usage, "what is recorded to be replayed cannot be anonymous",
@@ -106,8 +147,9 @@ Recorder recorder_of(const SessionOptions& options, const Case& the_case, const 
             "Recorded in {}, without names, and blurred but for the plan's surroundings; no later session can go "
             "on with its match. Matches with the scan of the face are still kept ({}).\n",
             file.string(), options.keep.empty() ? "see --keep" : options.keep.string());
-        return Recorder(new SessionRecorder(std::move(sink), without_names(head), RecordingWriterSettings{},
-                                            FrameChoiceSettings{}, NamesLeftOut(the_case)));
+        return {std::make_unique<SessionRecorder>(std::move(sink), without_names(head), RecordingWriterSettings{},
+                                                  FrameChoiceSettings{}, NamesLeftOut(the_case)),
+                file, !options.no_report};
     }
     std::error_code ignored;
     fmt::print(
@@ -116,7 +158,7 @@ Recorder recorder_of(const SessionOptions& options, const Case& the_case, const 
         mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
                                    : "every frame, about 23 GB an hour in the paper's room",
         static_cast<double>(std::filesystem::space(file.parent_path(), ignored).available) / 1e9, operator_name());
-    return Recorder(new SessionRecorder(std::move(sink), head));
+    return {std::make_unique<SessionRecorder>(std::move(sink), head), file, !options.no_report};
 }
 
 /// Other systems are told by OpenIGTLink; null where nobody is.
@@ -138,19 +180,24 @@ std::unique_ptr<SessionLink> link_of(const SessionOptions& options, const Case& 
 /// Who is told of a session, for as long as it runs.
 struct Listeners {
     std::unique_ptr<SessionLink> link;  // a port that is taken is said before a recording is begun
-    Recorder recorder;
+    Recorded recorded;
     SessionObservers all;
     Listeners(const SessionOptions& options, const Case& the_case, const SiteSettings& site,
               const DrawingSettings& drawing)
-        : link(link_of(options, the_case, site)), recorder(recorder_of(options, the_case, drawing)) {
-        all.add(recorder.get());
+        : link(link_of(options, the_case, site)), recorded(recorder_of(options, the_case, drawing)) {
+        all.add(recorded.get());
         all.add(link.get());
+    }
+    /// After the session: the others hear at once that it has ended, not when its report is there.
+    void end(SessionWindow& window) {
+        link.reset();
+        recorded.end(window);
     }
 };
 
 LiveOptions live_options(const SessionOptions& options, const SiteSettings& site, Listeners& listeners) {
     LiveOptions live;
-    SessionRecorder* recorder = listeners.recorder.get();
+    SessionRecorder* recorder = listeners.recorded.get();
     live.observer = listeners.all.all();
     live.projector_monitor = options.projector_monitor.empty() ? site.projector_monitor : options.projector_monitor;
     live.operator_monitor = options.operator_monitor.empty() ? site.operator_monitor : options.operator_monitor;
@@ -193,13 +240,15 @@ int run_in_simulated_room(const SessionOptions& options, const Case& the_case, c
     Listeners listeners(options, the_case, site, drawing.settings);
     LiveOptions live = live_options(options, site, listeners);
     live.resume = std::move(resume);
-    return run_live_simulated(
+    const int code = run_live_simulated(
         window,
         [&](const RoomProgress& progress) {
             progress("The simulated room is being built.", std::nullopt);
             return std::make_unique<SimulatedRoom>(volume, the_case.plan, room, options.speed_mm_s, options.fault);
         },
         the_case, drawing, live);
+    listeners.end(window);
+    return code;
 }
 
 int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings& site, SessionWindow& window) {
@@ -212,12 +261,14 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
     Listeners listeners(options, the_case, site, drawing.settings);
     LiveOptions live = live_options(options, site, listeners);
     live.resume = std::move(resume);
-    return run_live(
+    const int code = run_live(
         window,
         [&](Projector& projector, const RoomProgress& progress) {
             return std::make_unique<RealRoom>(room, rig, projector, progress);
         },
         the_case, drawing, live);
+    listeners.end(window);
+    return code;
 }
 
 int run_session(const SessionOptions& options) {
@@ -259,6 +310,8 @@ Run add_session(CLI::App& app) {
                     "markers, rig and skin agree with it (otherwise the newest recording is offered in the window)");
     sub->add_flag("--anonymous", o.anonymous,
                   "The recording holds no names, and its pictures are blurred but for the plan's surroundings");
+    sub->add_flag("--no-report", o.no_report,
+                  "No report at the end; otherwise page (.html, .json) and PDF are written beside the recording");
     preset_option(sub, o.preset)->excludes(room);
     sub->add_option(
         "--projector", o.projector_monitor,

@@ -16,6 +16,8 @@ using Json = nlohmann::json;
 /// Goes through matches and what was said of them, in their order.
 class Fate {
 public:
+    explicit Fate(fs::path recording) : recording_(std::move(recording)) {}
+
     void take_match(std::string text) {
         last_ = std::move(text);
         const std::string verdict = std::exchange(verdict_, {});  // none: one of an earlier session, that is offered
@@ -33,7 +35,7 @@ public:
             why_ = "its scan came to no match";
         }
         if (what == "matched") take_verdict(event.value("verdict", ""));
-        if (what == "resumed") stand();
+        if (what == "resumed") take_resumption();
         if (what == "asked" && call == "confirm" && std::exchange(doubtful_, false)) {
             stand();
             confirmed_ = true;
@@ -42,16 +44,24 @@ public:
             why_ = "the match of an earlier session was offered and did not fit: " + event.value("why", "");
     }
 
-    MatchThatStood found(const fs::path& recording) const {
+    MatchThatStood found() const {
         if (standing_.empty())
-            throw InputError(recording, "holds no match that stood: " + why_,
+            throw InputError(recording_, "holds no match that stood: " + why_,
                              "Name the recording of a session in which the patient was found.");
-        MatchThatStood found{kept_match_of(standing_, recording), scanned_later_};
+        MatchThatStood found{kept_match_of(standing_, recording_), scanned_later_};
         found.match.confirmed |= confirmed_;
         return found;
     }
 
 private:
+    /// It agrees with markers and skin; that a doubtful one is right is said by a person alone.
+    void take_resumption() {
+        const KeptMatch match = kept_match_of(last_, recording_);
+        if (match.registration.verdict == Verdict::yes || match.confirmed) return stand();
+        doubtful_ = true;
+        why_ = "the match of an earlier session was gone on with, but it was doubtful, and nobody confirmed it";
+    }
+
     /// Told before the match itself.
     void take_verdict(const std::string& verdict) {
         verdict_ = verdict;
@@ -67,6 +77,7 @@ private:
         scanned_later_ = confirmed_ = doubtful_ = false;
     }
 
+    fs::path recording_;
     std::string last_, standing_, verdict_;
     std::string why_ = "nobody was found in it, or it was recorded without what that takes (--anonymous)";
     bool of_this_scan_ = false, doubtful_ = false, scanned_later_ = false, confirmed_ = false;
@@ -78,18 +89,20 @@ MatchThatStood match_that_stood(const fs::path& recording) {
     RecordingReader reader(recording);
     reader.want_only(
         [](const ChunkType& type, Instant) { return type == chunk_types::kEvent || type == chunk_types::kMatch; });
-    Fate fate;
-    while (const auto chunk = reader.next()) {
-        if (chunk->type == chunk_types::kMatch) {
-            fate.take_match(chunk->payload);
-            continue;
-        }
-        const Json event = Json::parse(chunk->payload, nullptr, false);
-        if (!event.is_object())
-            throw DamagedFileError(recording, "holds an event that cannot be understood", "Copy the file again.");
-        fate.take_event(event);
+    Fate fate(recording);
+    try {
+        while (const auto chunk = reader.next())
+            if (chunk->type == chunk_types::kMatch)
+                fate.take_match(chunk->payload);
+            else
+                fate.take_event(Json::parse(chunk->payload));
+    } catch (const Json::exception&) {
+        throw DamagedFileError(recording, "holds an event that cannot be understood", "Copy the file again.");
     }
-    return fate.found(recording);
+    if (may_be_damaged(reader.end()))  // what came of the match may stand in the part that cannot be read
+        throw DamagedFileError(recording, "is damaged: " + reader.sentence(),
+                               "Copy the file again from where it was written.");
+    return fate.found();
 }
 
 }  // namespace planlight

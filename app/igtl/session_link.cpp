@@ -56,8 +56,11 @@ SessionLink::~SessionLink() {
     ending_ = true;
     server_.wake();
     thread_.join();
-    server_.say_at_the_end(
-        made(status_message({"Gate", utc_now_s()}, LinkCode::shut_down, 0, "ended", "The session has ended.")));
+    try {
+        server_.say_at_the_end(
+            made(status_message({"Gate", utc_now_s()}, LinkCode::shut_down, 0, "ended", "The session has ended.")));
+    } catch (const std::exception&) {  // no memory: the end is not said, and seen all the same
+    }
 }
 
 void SessionLink::run(LinkedValues told) {
@@ -67,7 +70,7 @@ void SessionLink::run(LinkedValues told) {
     auto heard_at = SteadyClockOfWall::now(), said_at = heard_at;
     bool stale = false;
     const auto longest = std::min(settings_.alive_every, settings_.stale_after) / 4;
-    while (!ending_) {
+    const auto turn = [&] {
         const auto at = SteadyClockOfWall::now();
         if (mailbox_.take(next)) {
             set_messages(server_, next, stale ? nullptr : &told);
@@ -82,10 +85,17 @@ void SessionLink::run(LinkedValues told) {
             said_at = at;
         } else {
             server_.turn(longest);  // a word of the session ends it
-            continue;
+            return;
         }
         server_.turn(std::chrono::milliseconds(0));
         if (stale) server_.turn(longest);
+    };
+    while (!ending_) {
+        try {
+            turn();
+        } catch (const std::exception&) {  // no memory: listeners wait, and the session goes on
+            std::this_thread::sleep_for(longest);
+        }
     }
 }
 
@@ -138,7 +148,10 @@ void SessionLink::asked(SessionCall call, const std::vector<PointPair>&, int) no
             return;
         }
         values_.rig_from_patient.reset();
-        if (call == SessionCall::go_dark) return dark("The light was put out.");
+        if (call == SessionCall::go_dark) {
+            if (values_.trust != LightTrust::dark) dark("The light was put out.");
+            return;  // else why it is dark has been said: the gate has stopped it, say
+        }
         if (call == SessionCall::check_skin) return dark("A short scan looks whether the skin is where it was.");
         // A new scan is a new patient frame: the match of before means nothing in it.
         values_.patient_from_ct.reset();
@@ -204,8 +217,8 @@ void SessionLink::refused(SessionCall, const std::exception& why) noexcept {
     });
 }
 
-void SessionLink::gate(GateCall call, Instant, double, const LightGate::Ruling* ruling) noexcept {
-    if (call != GateCall::step || !ruling) return;
+void SessionLink::gate(GateCall, Instant, double, const LightGate::Ruling* ruling) noexcept {
+    if (!ruling) return;
     tell([&] {
         values_.off_mm = ruling->off_mm;
         values_.sigma_mm = ruling->sigma_mm;

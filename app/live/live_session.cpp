@@ -73,10 +73,12 @@ SessionState LiveSession::without_waiting() const {
     return state_;
 }
 
-std::string LiveSession::post(OperatorAction action, AskedBy by, std::optional<std::size_t> item) {
+std::string LiveSession::post(OperatorAction action, AskedBy by, std::optional<std::uint64_t> darks,
+                              std::optional<std::size_t> item) {
     if (action == OperatorAction::none) return {};
     {
         const std::lock_guard lock(mutex_);
+        if (darks && *darks != darks_) return "DARK was pressed meanwhile.";
         if (std::string why = refused_press(action); !why.empty()) return why;
         const bool dark = action == OperatorAction::dark || action == OperatorAction::stop;
         const SessionState from = dark ? without_waiting() : state_;
@@ -109,7 +111,7 @@ std::string LiveSession::post_find_patient(std::vector<PointPair> landmarks) {
 }
 
 std::string LiveSession::post_item(OperatorAction action, std::optional<std::size_t> which) {
-    return post(action, AskedBy::person, which);
+    return post(action, AskedBy::person, {}, which);
 }
 
 bool LiveSession::happened(SessionHappening happening, const std::function<void(OperatorModel&)>& change) {

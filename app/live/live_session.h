@@ -41,9 +41,10 @@ public:
     ~LiveSession();
 
     /// Queued; `dark` and `stop` overtake everything that waits. The model says so at once. Returns why it does nothing
-    /// in the state of now, as a sentence; empty: it is taken.
-    /// `item`: of `light_item`, `hide_item` and `show_item`, empty for the whole plan.
-    std::string post(OperatorAction action, AskedBy by = AskedBy::person, std::optional<std::size_t> item = {});
+    /// in the state of now, as a sentence; empty: it is taken. `darks`: only while DARK was pressed so often. `item`:
+    /// of `light_item`, `hide_item` and `show_item`, empty for the whole plan.
+    std::string post(OperatorAction action, AskedBy by = AskedBy::person, std::optional<std::uint64_t> darks = {},
+                     std::optional<std::size_t> item = {});
 
     /// Finding the patient with these landmarks (none: without), clicked on the last scan; queued.
     std::string post_find_patient(std::vector<PointPair> landmarks);
@@ -165,10 +166,11 @@ private:
     int landmarks_to_look_at_ = 0;
     std::optional<Instant> landmark_lit_from_;  ///< without a break since; empty: not lit yet
     std::string cannot_verify_;                 ///< why no landmarks can be looked at, in sentences; empty: they can
-    std::string landmark_place_;                ///< of the one that is lit, in words: "front, left, high"
-    std::deque<Instant> lit_at_;                ///< of the last pictures, on the room's clock
-    int good_updates_ = 0;                      ///< ALIGNED so often; then the simulated fault begins
-    std::optional<ResumeOffer> offer_;          ///< of the session's thread
+    std::string
+        landmark_place_;  ///< of the one that is lit, in words: "at the front of the head, on the patient's left"
+    std::deque<Instant> lit_at_;        ///< of the last pictures, on the room's clock
+    int good_updates_ = 0;              ///< ALIGNED so often; then the simulated fault begins
+    std::optional<ResumeOffer> offer_;  ///< of the session's thread
     std::atomic<bool> look_first_{false};
     std::optional<KeptMatch> away_;  ///< this session's own, while it is not known whether it still holds
     bool ending_ = false, following_ = false;

@@ -22,6 +22,15 @@ bool is_of_items(OperatorAction action) {
            action == OperatorAction::show_item;
 }
 
+/// Nothing is left of what was lit: no figure of it, and no yes to it.
+void show_no_light(OperatorModel& m) {
+    if (m.confirm && m.next == OperatorAction::confirm) m.next = OperatorAction::none;
+    m.confirm = false;
+    m.figures = {};
+    m.scene.light = nullptr;
+    for (PlanRow& row : m.rows) row.light_off_mm.reset();
+}
+
 }  // namespace
 
 /// Passes everything to the room's projector and keeps the newest picture for the windows.
@@ -134,6 +143,8 @@ void LiveSession::device_lost(const Press& press, Session& session, const Device
     projecting_ = false;
     session.go_dark();
     view_.failed(lost.what());
+    landmark_lit_from_.reset();
+    if (following_) gate_.other_light(seen_at_);  // what was measured was before
     happened(following_ ? SessionHappening::skin_checked : SessionHappening::failed, [&](OperatorModel& m) {
         if (press.action == OperatorAction::check_skin)  // the light comes back, and must not look as if it was checked
             m.evidence.insert(m.evidence.begin(),
@@ -141,6 +152,7 @@ void LiveSession::device_lost(const Press& press, Session& session, const Device
         m.status = {StatusKind::dark,
                     std::string("Dark: ") + lost.what() + ".",
                     {lost.remedy, following_ ? "The light comes back by itself." : "Press the button again."}};
+        show_no_light(m);
     });
     if (following_) std::this_thread::sleep_for(kLostPause);
 }
@@ -148,10 +160,8 @@ void LiveSession::device_lost(const Press& press, Session& session, const Device
 void LiveSession::refused(const Press& press, Session& session, const Error& refusal) {
     following_ = projecting_ = false;
     session.go_dark();
-    if (press.darks != darks_now()) {  // it was ended by DARK, and that has been said
-        happened(SessionHappening::failed);
-        return;
-    }
+    if (landmark_ >= 0) end_verification(session);
+    if (press.darks != darks_now()) return;  // it was ended by DARK: that has been said, and led on
     happened(SessionHappening::failed, [&](OperatorModel& m) {
         if (press.action == OperatorAction::scan) show_refused_scan(session, m);
         m.status = {StatusKind::refused, std::string(refusal.what()) + ".", {refusal.remedy}};
@@ -262,6 +272,7 @@ void LiveSession::begin_to_follow(Session& session, Room& room) {
 void LiveSession::answer_dark(const Press& press, Session& session) {
     following_ = projecting_ = false;
     session.go_dark();
+    if (landmark_ >= 0) end_verification(session);
     change_model([&](OperatorModel& m) {
         darks_answered_ = press.darks;
         m.scene.light = nullptr;

@@ -128,14 +128,17 @@ void LiveSession::confirm_light(Session& session) {
         happened(SessionHappening::landmarks_seen);
     } else if (++landmark_ < landmarks_to_look_at_) {
         session.light_landmark(static_cast<std::size_t>(landmark_));
+        gate_.other_light(seen_at_);
         landmark_place_ = words_of_place(drawing_.skin, session.landmarks()[static_cast<std::size_t>(landmark_)]);
     } else {
         end_verification(session);
         gate_.verify(seen_at_);
+        gate_.other_light(seen_at_);
         happened(SessionHappening::landmarks_seen);
     }
     change_model([&](OperatorModel& m) {
-        m.confirm = false;  // until the light of this is there to be looked at
+        if (permitted_ != darks_) return;  // DARK was pressed meanwhile, and stands there already
+        m.confirm = false;                 // until the light of this is there to be looked at
         m.scene.plan = std::make_shared<PlanDrawing>(session.lit_drawing());
         if (landmark_ >= 0) {
             const Eigen::Vector3d& place = session.landmarks()[static_cast<std::size_t>(landmark_)];
@@ -161,7 +164,7 @@ void LiveSession::light_items(const Press& press, Session& session) {
     if (press.action == OperatorAction::light_item) session.light_item(press.item);
     if (press.action == OperatorAction::show_item) session.show_item(press.item);
     if (press.action == OperatorAction::hide_item && press.item) session.hide_item(*press.item);
-    if (following_) gate_.restart();
+    if (following_) gate_.other_light(seen_at_);
     change_model([&](OperatorModel& m) { show_lit_items(session, m); });
 }
 
@@ -184,10 +187,14 @@ void LiveSession::show_verification(const Session::Update& update, LightGate::Ru
     std::erase_if(ruling.details, [](const std::string& detail) {  // that has been done
         return detail.find("\"Show landmarks\"") != std::string::npos;
     });
-    ruling.headline =
+    const std::string question =
         fmt::format("LOOK: is the ring of light on landmark {} of {}?", landmark_ + 1, landmarks_to_look_at_);
+    if (ruling.found_wrong)
+        ruling.details.insert(ruling.details.begin(), question);
+    else
+        ruling.headline = question;
     ruling.details.insert(
-        ruling.details.begin(),
+        ruling.details.begin() + (ruling.found_wrong ? 1 : 0),
         (landmark_place_.empty() ? "The picture of the head shows where it belongs."
                                  : "It belongs there: " + landmark_place_ + " (see the picture of the head).") +
             " If it lies elsewhere on the patient, press Stop, and scan again.");
@@ -195,6 +202,7 @@ void LiveSession::show_verification(const Session::Update& update, LightGate::Ru
 
 /// The short scan, and what it means for the light.
 void LiveSession::check_skin(Session& session) {
+    landmark_lit_from_.reset();  // stripes take its place
     const SkinCheck check = session.check_skin([&](int done, int of) {
         if (!light_permitted()) throw CheckFailedError("The check was ended by DARK", "Press Track to go on.");
         set_progress(view_of(SessionState::checking_skin).headline, static_cast<double>(done) / std::max(1, of));
@@ -210,6 +218,10 @@ void LiveSession::check_skin(Session& session) {
 }
 
 void LiveSession::follow(Session& session, Room& room) {
+    if (const auto forbidden = gate_.forbids(seen_at_)) {  // a check of the skin, or the match itself, says no
+        stop_light(session, *forbidden);
+        return;
+    }
     const auto update = session.update();
     if (!light_permitted()) return;  // DARK was pressed meanwhile; its own turn comes next
     seen_at_ = update.frame.at;
@@ -232,12 +244,14 @@ void LiveSession::play_fault(const LightGate::Ruling& ruling, Room& room) {
 void LiveSession::stop_light(Session& session, const LightGate::Ruling& ruling) {
     following_ = projecting_ = false;
     session.go_dark();
+    if (landmark_ >= 0) end_verification(session);
     happened(SessionHappening::failed, [&](OperatorModel& m) {  // what was seen then stays to be looked at
         OperatorModel seen;
         view_.put_into(seen);
         m.left.refused = seen.left.live;
         m.right.refused = seen.right.live;
         m.steps[4] = StepState::attention;
+        m.next = OperatorAction::scan;  // as is said; Track is there for who knows better
         m.status = {StatusKind::refused, ruling.headline, ruling.details};
     });
 }

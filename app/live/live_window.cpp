@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 #include <thread>
+#include <utility>
 
 #include "app/case_model.h"
 #include "app/console.h"
@@ -105,17 +106,25 @@ private:
     int kind_ = -1, frames_ = 0, number_ = 0;
 };
 
+/// What the window knows of its projector.
+struct ProjectorSeen {
+    unsigned starts = 0;
+    bool lost = false;
+};
+
 /// A projector that is lost is said in place of the status, and the session made dark once; match and markers are kept.
-void tell_of_projector(const ProjectorProblem& problem, LiveSession& session, bool& lost, OperatorModel& model) {
-    if (problem.empty()) {
-        lost = false;
-        return;
-    }
-    if (!lost) {
+void tell_of_projector(const ProjectorKeeper& projector, LiveSession& session, ProjectorSeen& seen,
+                       OperatorModel& model) {
+    const ProjectorProblem problem = projector.problem();
+    // It may have been away and back between two looks: then it was started again.
+    const unsigned starts = projector.starts();
+    const bool started_again = std::exchange(seen.starts, starts) != starts;
+    if ((!problem.empty() || started_again) && !seen.lost) {
         session.post(OperatorAction::dark, AskedBy::lost_projector);
         session.look_before_light();
     }
-    lost = true;
+    seen.lost = !problem.empty();
+    if (!seen.lost) return;
     model.status = {StatusKind::dark,
                     "No projector: " + problem.what + ".",
                     {problem.remedy, "It is looked for every second. Scan and match are kept."}};
@@ -169,13 +178,13 @@ namespace {
 /// The windows' loop, until the operator window is closed; `projector` is null where there is none.
 int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* projector, const LiveOptions& options,
                 Autoplay autoplay, WindowMeter& meter) {
-    bool projector_lost = false;
+    ProjectorSeen seen{projector ? projector->starts() : 0, false};
     Screenshots screenshots(options.screenshots);
     std::optional<std::chrono::steady_clock::time_point> projecting_since;
     note_end_signals();
     while (!asked_to_end()) {
         OperatorModel model = session.model();
-        if (projector) tell_of_projector(projector->problem(), session, projector_lost, model);
+        if (projector) tell_of_projector(*projector, session, seen, model);
         if (const std::string trouble = options.trouble ? options.trouble() : ""; !trouble.empty())
             model.status.details.push_back(trouble);
         const auto frame_began = std::chrono::steady_clock::now();

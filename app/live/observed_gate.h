@@ -32,6 +32,16 @@ public:
         gate_.restart();
         tell(GateCall::restart);
     }
+    void other_light(Instant at) {
+        gate_.other_light(at);
+        tell(GateCall::other_light, at);
+    }
+    /// Told only where it does.
+    std::optional<LightGate::Ruling> forbids(Instant at) const {
+        auto ruling = gate_.forbids();
+        if (ruling && observer_) observer_->gate(GateCall::forbids, at, 0, &*ruling);
+        return ruling;
+    }
 
 private:
     void tell(GateCall call, Instant at = {}, double off_mm = 0) const {

@@ -25,7 +25,7 @@ void LiveSession::offer_to_resume() {
         m.status.headline =
             fmt::format("Ready to scan, or to go on with the match of {}.", time_of_day(offer_->match.made_utc));
     });
-    if (offer_->at_once && darks_now() == 0) post(OperatorAction::confirm, AskedBy::program);
+    if (offer_->at_once) post(OperatorAction::confirm, AskedBy::program, 0);
 }
 
 /// Light only when markers, rig and skin agree with the match; what does not is said by whoever catches it.
@@ -55,20 +55,17 @@ void LiveSession::resume(Session& session) {
                     "where they put it.",
                     time_of_day(match.made_utc), check.markers, check.marker_off_mm, check.skin_off_mm));
     shown.evidence.insert(shown.evidence.end(), blank_.evidence.begin(), blank_.evidence.end());
-    const bool unsure = found.verdict == Verdict::ask && !match.confirmed;
-    const auto happening = unsure ? SessionHappening::match_resumed_unsure : SessionHappening::match_resumed;
-    const bool taken = happened(happening, [&](OperatorModel& m) {
+    const bool taken = happened(SessionHappening::match_resumed, [&](OperatorModel& m) {
         m.scene = shown.scene;
         m.rows = shown.rows;
         m.fit = shown.fit;
         m.evidence = shown.evidence;
         m.item_of_moment = std::nullopt;
         m.projector_view = projector_view(session.rig(), found.patient_from_ct.inverse());
-        if (!unsure)
-            m.status = {StatusKind::ready,
-                        "Markers, rig and skin agree with the match.",
-                        {"Press Track, and look at the light on two landmarks before you use it."},
-                        {}};
+        m.status = {StatusKind::ready,
+                    "Markers, rig and skin agree with the match.",
+                    {"Press Track, and look at the light on two landmarks before you use it."},
+                    {}};
     });
     if (taken) offer_.reset();  // else it stands as it stood: DARK was pressed while it was looked at
 }
@@ -86,6 +83,12 @@ void LiveSession::look_again(Session& session) {
         away_ = std::move(match);
     }
     if (!away_) return;
+    change_model([&](OperatorModel& m) {  // the session gives up the scan, and the item of the moment
+        scan_there_ = false;
+        m.item_of_moment = std::nullopt;
+        m.scene.bright_item = -1;
+        enter(state_, blank_, m, scan_there_);
+    });
     look_whether_it_holds(session, *away_);
     look_first_ = false;
     away_.reset();

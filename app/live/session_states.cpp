@@ -169,8 +169,6 @@ SessionState after(SessionState state, SessionHappening happening) {
             return state == S::ready ? S::offered : state;
         case H::match_resumed:
             return state == S::looking_again ? S::found : state;
-        case H::match_resumed_unsure:
-            return state == S::looking_again ? S::unsure : state;
         case H::failed:
             return state == S::matching ? S::scanned : after_dark(state);
     }

@@ -41,8 +41,7 @@ enum class SessionHappening {
     skin_checked,
     match_offered,
     match_resumed,
-    match_resumed_unsure,  ///< it needs a person's look, which it has not had
-    failed,                ///< refused, ended by DARK, or the gate has stopped the light
+    failed,  ///< refused, ended by DARK, or the gate has stopped the light
 };
 
 /// What a state looks like, and which presses it takes. A button that is not enabled says why.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -33,6 +34,35 @@ PlanRegion::InPicture region_in(const CameraModel& camera, const std::vector<Eig
     region.pixels = pixels_of(camera, lines_in_rig, kRound_mm, region.radius_px);
     region.of_labels = pixels_of(camera, labels_in_rig, kLabel_mm, region.label_radius_px);
     return region;
+}
+
+bool is_of_a_word(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || (static_cast<unsigned char>(c) & 0x80U) != 0;
+}
+
+bool has_letters(const std::string& name) {
+    return std::any_of(name.begin(), name.end(),
+                       [](char c) { return is_of_a_word(c) && std::isdigit(static_cast<unsigned char>(c)) == 0; });
+}
+
+bool stands_quoted(const std::string& text, std::size_t at, std::size_t size) {
+    return at > 0 && text[at - 1] == '"' && at + size < text.size() && text[at + size] == '"';
+}
+
+/// And is no part of a longer one.
+bool stands_as_a_word(const std::string& text, std::size_t at, std::size_t size) {
+    const bool goes_on_before = at > 0 && is_of_a_word(text[at - 1]) && is_of_a_word(text[at]);
+    const std::size_t after = at + size;
+    return !goes_on_before && !(after < text.size() && is_of_a_word(text[after]) && is_of_a_word(text[after - 1]));
+}
+
+/// A single letter or a short figure ("1.0", "10") is found in every sentence: it is a name only alone or in quotes. Of
+/// two or three letters it is one as a whole word, and a longer one also within words ("Meiers").
+bool is_meant(const std::string& text, std::size_t at, const std::string& name) {
+    if (stands_quoted(text, at, name.size())) return true;
+    const bool letters = has_letters(name);
+    if (name.size() < (letters ? 2U : 5U)) return false;
+    return (letters && name.size() > 3) || stands_as_a_word(text, at, name.size());
 }
 
 template <class Do>
@@ -97,8 +127,7 @@ void NamesLeftOut::add_items(const PlanDrawing& drawing) {
 }
 
 void NamesLeftOut::add(const std::string& name, const std::string& instead) {
-    constexpr std::size_t kLeast = 2;  // a single letter would be found in every word
-    if (name.size() < kLeast) return;
+    if (name.empty()) return;
     const auto known = [&](const auto& pair) { return pair.first == name; };
     if (std::none_of(names_.begin(), names_.end(), known)) names_.emplace_back(name, instead);
     // The longest first, so that no part of a name is left of it.
@@ -111,7 +140,8 @@ std::string NamesLeftOut::out_of(const std::string& json) const {
     // What the program itself chooses from: a plan's item may be called so as well.
     const auto is_word = [](const std::string& key) {
         return key == "what" || key == "call" || key == "trust" || key == "verdict" || key == "kind" ||
-               key == "fault" || key == "action";
+               key == "fault" || key == "action" || key == "utc" || key == "made_on" || key == "cloud" ||
+               key == "capture" || key.ends_with("hash");
     };
     const std::function<void(Json&)> walk = [&](Json& value) {
         if (value.is_string()) {
@@ -130,9 +160,14 @@ std::string NamesLeftOut::out_of(const std::string& json) const {
 }
 
 std::string NamesLeftOut::text_without(std::string text) const {
-    for (const auto& [name, instead] : names_)
-        for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + instead.size()))
-            text.replace(at, name.size(), instead);
+    for (const auto& [name, instead] : names_) {
+        if (text == name) return instead;
+        for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at)) {
+            const bool meant = is_meant(text, at, name);
+            if (meant) text.replace(at, name.size(), instead);
+            at += meant ? instead.size() : 1;
+        }
+    }
     return text;
 }
 

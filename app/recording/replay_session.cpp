@@ -7,6 +7,7 @@
 #include "app/recording/recorded_devices.h"
 #include "app/recording/recording_head.h"
 #include "app/recording/session_events.h"
+#include "app/session_observers.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/files/json_value.h"
 
@@ -106,13 +107,17 @@ std::vector<PointPair> landmarks_of(const Json& event) {
 /// A session that is asked what the recorded one was asked.
 class Replay {
 public:
-    Replay(RecordingCursor& cursor, const Case& the_case, const CaseDrawing& drawing, const RigCalibration& rig,
-           const MarkerDesign& markers, ReplayResult& result)
+    /// `watcher`: null, or told of all of it as the recorded session's observers were, after it was compared.
+    Replay(RecordingCursor& cursor, const Case& the_case, const CaseDrawing& drawing, const RoomFacts& room,
+           ReplayResult& result, SessionObserver* watcher)
         : cursor_(cursor),
           result_(result),
+          watcher_(watcher),
           comparer_(cursor, result),
-          devices_(cursor, rig.projector.width, rig.projector.height),
-          session_(the_case, drawing, rig, devices_, devices_, devices_, settings(markers)) {}
+          devices_(cursor, room.rig.projector.width, room.rig.projector.height),
+          session_(the_case, drawing, room.rig, devices_, devices_, devices_, settings(room.markers)) {
+        if (watcher_) watcher_->room_entered(room);
+    }
 
     /// To the end of the recording or the first difference.
     void run(const std::function<void(double)>& progress) {
@@ -141,8 +146,10 @@ public:
 
 private:
     SessionSettings settings(const MarkerDesign& markers) {
+        observers_.add(&comparer_);
+        observers_.add(watcher_);
         SessionSettings settings = settings_for(markers);
-        settings.observer = &comparer_;
+        settings.observer = observers_.all();
         return settings;
     }
 
@@ -219,6 +226,7 @@ private:
 
     void ask_gate(GateCall call, const Json& event, const std::string& recorded) {
         const Instant at(event.value("at_ns", std::int64_t{0}));
+        if (watcher_ && call != GateCall::step) watcher_->gate(call, at, event.value("off_mm", 0.0), nullptr);
         switch (call) {
             case GateCall::verify:
                 gate_.verify(at);
@@ -232,18 +240,33 @@ private:
             case GateCall::restart:
                 gate_.restart();
                 return;
-            case GateCall::step:
-                break;
+            case GateCall::other_light:
+                gate_.other_light(at);
+                return;
+            case GateCall::forbids: {
+                const auto forbidden = gate_.forbids();
+                expect_ruling(session_events::gate(call, at, 0, forbidden ? &*forbidden : nullptr), event, recorded);
+                return;
+            }
+            case GateCall::step: {
+                const auto ruling = gate_.step(last_.frame.at, last_.overlay.lit, last_.light, last_.causes);
+                expect_ruling(session_events::gate(call, last_.frame.at, 0, &ruling), event, recorded);
+                return;
+            }
         }
-        const LightGate::Ruling ruling = gate_.step(last_.frame.at, last_.overlay.lit, last_.light, last_.causes);
-        const std::string now = session_events::gate(call, last_.frame.at, 0, &ruling);
+    }
+
+    void expect_ruling(const std::string& now, const Json& event, const std::string& recorded) {
         if (now != recorded) throw ReplayDiffers{"the gate's decision, " + difference_of(event, Json::parse(now), {})};
         ++result_.rulings;
+        if (watcher_) watcher_->gate(call, last_.frame.at, 0, &ruling);
     }
 
     RecordingCursor& cursor_;
     ReplayResult& result_;
+    SessionObserver* watcher_;
     Comparer comparer_;
+    SessionObservers observers_;
     RecordedDevices devices_;
     Session session_;
     LightGate gate_;
@@ -288,7 +311,7 @@ RecordingHead head_of_recording(const fs::path& recording) {
 }
 
 ReplayResult replay_session(const fs::path& recording, const Case& the_case,
-                            const std::function<void(double)>& progress) {
+                            const std::function<void(double)>& progress, SessionObserver* watcher) {
     ReplayResult result;
     result.head = head_of_recording(recording);
     check_belongs(result.head, the_case, recording);
@@ -306,8 +329,13 @@ ReplayResult replay_session(const fs::path& recording, const Case& the_case,
     how.up_in_ct = result.head.up_in_ct;
     how.card = result.head.card;
     const CaseDrawing drawing(the_case, how);
-    const MarkerDesign markers = markers_of(room, recording);
-    Replay(cursor, the_case, drawing, rig_of_text(room["rig"].dump(), recording), markers, result).run(progress);
+    RoomFacts facts;
+    facts.name = room.value("name", "");
+    facts.simulated = room.value("simulated", false);
+    facts.markers = markers_of(room, recording);
+    facts.rig = rig_of_text(room["rig"].dump(), recording);
+    facts.now = cursor.room()->at;
+    Replay(cursor, the_case, drawing, facts, result, watcher).run(progress);
     result.end = cursor.reader().end();
     result.other_program = recording_head(the_case, {}, RecordMode::all, {}).program_hash != result.head.program_hash;
     return result;

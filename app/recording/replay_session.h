@@ -38,8 +38,11 @@ struct ReplayResult {
 ///
 /// `the_case`: that of the recording. Throws InputError when it is another, or when the recording does not hold every
 /// frame (`--record all`); DamagedFileError.
+///
+/// `watcher` (null: nobody) is told of all that the session does, as its observers were when it was recorded; presses
+/// and the banner's words were not the session's, and are not told. What `progress` throws ends the replay.
 ReplayResult replay_session(const std::filesystem::path& recording, const Case& the_case,
-                            const std::function<void(double)>& progress = {});
+                            const std::function<void(double)>& progress = {}, SessionObserver* watcher = nullptr);
 
 /// What a recording says of itself, without replaying it. Throws InputError, DamagedFileError.
 RecordingHead head_of_recording(const std::filesystem::path& recording);

@@ -42,8 +42,7 @@ struct Fate {
             confirmed = true;
         } else if (text.starts_with(R"({"what":"gate","call":"restart")")) {
             stopped.clear();
-        } else if (text.starts_with(R"({"what":"gate","call":"step")") &&
-                   text.find(R"("stop":true)") != std::string::npos) {
+        } else if (text.starts_with(R"({"what":"gate")") && text.find(R"("stop":true)") != std::string::npos) {
             stopped = "its light was stopped in that session, because it lay beside the plan or the skin beside it";
         }
     }
@@ -88,7 +87,9 @@ LastMatch last_match_of(const fs::path& recording) {
         throw DamagedFileError(recording, "does not say whose it is",
                                "It ends before its first chunk: there is nothing in it.");
     last.untouched = fate.untouched;
-    if (fate.match.empty()) {
+    if (may_be_damaged(reader.end())) {
+        last.why_none = "it is damaged, and what became of its match cannot be told";
+    } else if (fate.match.empty()) {
         last.why_none = fate.why_none;
     } else if (!fate.stopped.empty()) {
         last.why_none = fate.stopped;
@@ -106,6 +107,9 @@ ResumeOffer resume_offer(const fs::path& recording, const Case& the_case, const 
 ResumeOffer resume_offer(LastMatch last, const fs::path& recording, const Case& the_case, const RigCalibration* rig) {
     check_names(last, the_case, recording);
     if (!last.match) throw InputError(recording, "has no match to go on with: " + last.why_none, kScan);
+    if (last.match->registration.verdict != Verdict::yes && !last.match->confirmed)
+        throw InputError(recording, "has no match to go on with: its match was doubtful, and nobody confirmed it",
+                         kScan);
     const auto& state = last.match->registration.rig;
     if (rig != nullptr && (!state || state->calibrated.hash != hash_of(*rig)))
         throw InputError(recording,

@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array kCalls{"scan",    "find_patient", "confirm", "update",    "check_skin", "light_landmark",
                             "go_dark", "light_item",   "resume",  "hide_item", "show_item"};
-constexpr std::array kGateCalls{"step", "verify", "skin_checked", "new_match", "restart"};
+constexpr std::array kGateCalls{"step", "verify", "skin_checked", "new_match", "restart", "other_light", "forbids"};
 constexpr std::array kVerdicts{"yes", "ask", "no"};
 constexpr std::array kTrusts{"dark", "look", "aligned"};
 constexpr std::array kFaults{"late_picture",   "projector_moved", "left_camera_moved", "right_camera_moved",
@@ -245,6 +245,7 @@ std::string refused(SessionCall call, const std::exception& why) {
 std::string gate(GateCall call, Instant at, double off_mm, const LightGate::Ruling* ruling) {
     Json json = {{"what", "gate"}, {"call", word_of(call)}};
     if (call == GateCall::verify) json["at_ns"] = at.count(), json["utc"] = today();
+    if (call == GateCall::other_light) json["at_ns"] = at.count();
     if (call == GateCall::skin_checked) json["off_mm"] = off_mm;
     if (!ruling) return text_of(json);
     json["at_ns"] = at.count();

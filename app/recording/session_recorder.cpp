@@ -103,6 +103,7 @@ void SessionRecorder::room_entered(const RoomFacts& room) noexcept {
     try {
         const std::lock_guard lock(mutex_);
         now_ = room.now;
+        room_entered_ = true;
         std::string text = session_events::room(room);
         if (anonymous_) text = anonymous_->out_of(text);
         writer_.add({chunk_types::kRoom, now_, std::move(text)});
@@ -132,6 +133,9 @@ void SessionRecorder::said(const std::string& kind, const std::string& headline,
 void SessionRecorder::asked(SessionCall call, const std::vector<PointPair>& landmarks, int which) noexcept {
     event([&] { return session_events::asked(call, landmarks, which); });
     const std::lock_guard lock(mutex_);
+    // The head may lie elsewhere by now: what of it may be shown is known with the next pose.
+    if (call != SessionCall::update && call != SessionCall::light_landmark && call != SessionCall::light_item)
+        region_ = {};
     scanning_ = first_of_scan_ =
         call == SessionCall::scan || call == SessionCall::check_skin || call == SessionCall::resume;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <filesystem>
 #include <memory>
 #include <mutex>
@@ -49,6 +50,7 @@ public:
     ~SessionRecorder() override;  ///< as `finish` does
 
     RecordingState state() const { return writer_.state(); }
+    bool room_was_entered() const { return room_entered_; }
     /// What a person must hear of it now, one sentence: the disk is full or too slow; empty while all is well.
     std::string trouble() const;
     /// Ends the recording. What is missing in it, or may be, in one sentence; empty when all of it is on the disk.
@@ -104,6 +106,7 @@ private:
     std::shared_ptr<PackedSize> packed_;  ///< of the last frame that was packed
     bool scanning_ = false, first_of_scan_ = false;
     bool kept_frame_ = false;  ///< the last one
+    std::atomic<bool> room_entered_{false};
     std::string happening_;    ///< what the light was last; another is an event
     std::string said_;
     std::optional<NamesLeftOut> anonymous_;

@@ -253,7 +253,7 @@ private:
             ++facts_.verified, ++facts_.verified_by_program;
             say_by("the light on landmarks was said to be right.", event, true);
         }
-        if (call != "step") return;
+        if (call != "step" && call != "forbids") return;
         const std::string trust = event.value("trust", "");
         if (plan_lit_ && trust == "aligned") facts_.aligned_s += step_s_;
         if (plan_lit_ && trust == "look") facts_.look_s += step_s_;

@@ -140,6 +140,7 @@ std::vector<PlanFact> plan_facts(const Plan& plan, const PlanDrawing& drawing, c
             if (number >= drawing.items.size()) return;
             PlanFact fact;
             fact.name = item.name;
+            if (drawing.items[number].lit_by_code) fact.lit = drawing.items[number].lit_name;
             tell(fact, item, drawing.items[number], lut);
             if (const double mm = length_along_skin_mm(drawing, number, kind); has_length && mm > 0)
                 fact.length_mm = mm;

@@ -23,6 +23,8 @@ Json items_json(const PlanDrawing& drawing, const std::vector<PlanFact>& facts) 
         const DrawnItem& item = drawing.items[i];
         const PlanFact& fact = facts[i];
         items.push_back({{"name", item.name},
+                         {"lit_name", item.lit_name},
+                         {"code", item.code},
                          {"kind", fact.kind},
                          {"label", item.label},
                          {"left_of_middle_mm", or_null(fact.left_of_middle_mm)},

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "app/report/paper_page.h"
 #include "app/report/plan_facts.h"
@@ -30,6 +31,27 @@ std::string figures_in_a_row(const std::vector<ReportPicture>& pictures, int col
     std::string html = fmt::format("<div class=\"row\" style=\"grid-template-columns:repeat({},1fr)\">", columns);
     for (const auto& picture : pictures) html += figure(picture);
     return html + "</div>";
+}
+
+/// What is said of several items of the plan is said once: "A, B, C: it has no depth".
+std::vector<std::string> gathered(const std::vector<std::string>& warnings, const PlanDrawing& drawing) {
+    std::vector<std::pair<std::string, std::string>> lines;  // whom it is said of, what
+    for (const std::string& warning : warnings) {
+        std::string of;
+        for (const DrawnItem& item : drawing.items)
+            if (!item.name.empty() && item.name.size() > of.size() && warning.starts_with(item.name + ": "))
+                of = item.name;
+        const std::string what = of.empty() ? warning : warning.substr(of.size());
+        const auto said = std::find_if(lines.begin(), lines.end(),
+                                       [&](const auto& line) { return !of.empty() && line.second == what; });
+        if (said == lines.end())
+            lines.emplace_back(of, what);
+        else
+            said->first += ", " + of;
+    }
+    std::vector<std::string> result;
+    for (const auto& [of, what] : lines) result.push_back(of + what);
+    return result;
 }
 
 std::string warnings_html(const std::vector<std::string>& warnings) {
@@ -129,7 +151,7 @@ bool may_be_face(const RemovedPiece& piece, const Eigen::Vector3d& middle_in_ct)
 
 std::string pieces_html(const RemovedPieces& removed) {
     std::string html = fmt::format(
-        "<div><p><b>{} as dense as skin thrown away, {:.0f} ml in all</b> (table, head "
+        "<div class=\"small\"><p><b>{} as dense as skin thrown away, {:.0f} ml in all</b> (table, head "
         "holder, wires?). Look whether none of it is the patient.</p><table>",
         counted(static_cast<long long>(removed.pieces.size()), "piece"), removed.ml());
     for (std::size_t i = 0; i < std::min(kPiecesListed, removed.pieces.size()); ++i) {
@@ -179,8 +201,9 @@ std::string fact_html(const PlanFact& fact) {
     const char* gravity = fact.gravity == Gravity::stop ? "stop" : fact.gravity == Gravity::look ? "look" : "";
     return fmt::format(
         "<tr><td "
-        "class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
+        "class=\"name\">{}{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
         "class=\"{}\">{}</td></tr>",
+        fact.lit.empty() ? "" : fmt::format("<b>{}</b>&ensp;", xml_escaped(fact.lit)),
         xml_escaped(fact.name.empty() ? "without a name" : fact.name), fact.kind,
         fact.left_of_middle_mm ? side_in_words(*fact.left_of_middle_mm) : "–",
         number(fact.depth_mm ? fact.depth_mm : fact.length_mm, 1, " mm"), number(fact.diameter_mm, 1, " mm"),
@@ -196,8 +219,10 @@ std::string plan_html(const std::vector<PlanFact>& facts) {
         "length</th><th>Diameter</th><th>Tilt "
         "from the skin's perpendicular</th><th>Direction inwards</th><th>Soft tissue over bone</th><th>Its points "
         "lie</th></tr></thead>";
-    for (const auto& fact : facts) html += fact_html(fact);
-    return html + "</table>";
+    bool by_code = false;
+    for (const auto& fact : facts) html += fact_html(fact), by_code = by_code || !fact.lit.empty();
+    return html + "</table>" +
+           (by_code ? "<p class=\"muted\">In bold: the code that the light has in place of the name.</p>" : "");
 }
 
 std::string figures_html(const Preparation& done) {
@@ -227,16 +252,17 @@ PreparationReport preparation_report(const Preparation& done, const PlanDrawing&
                                      const PreparationPictures& pictures) {
     const Case& c = done.prepared;
     const std::vector<PlanFact> facts = plan_facts(c.plan, drawing, c.lut, find_mid_plane(SkinSurface(c.skin)));
+    const std::vector<std::string> warnings = gathered(c.warnings, drawing);
     const std::string first =
         fmt::format(
             "<h1>{}</h1><p class=\"muted\">Report of preparation. Research software, not a medical "
             "device.</p>",
             xml_escaped(title_of(c))) +
-        warnings_html(c.warnings) + identity_html(done) + slices_html(pictures);
+        warnings_html(warnings) + identity_html(done) + slices_html(pictures);
     const std::string second =
         views_html(done, pictures, removed) + plan_html(facts) + figures_html(done) + signatures_html();
-    const std::string body = fmt::format("<section class=\"sheet{}\">", fit_on_a_page(c.warnings) ? " fit" : "") +
-                             first + "</section><section class=\"sheet\">" + second + "</section>";
+    const std::string body = fmt::format("<section class=\"sheet{}\">", fit_on_a_page(warnings) ? " fit" : "") + first +
+                             "</section><section class=\"sheet\">" + second + "</section>";
     return {paper_page("Preparation: " + title_of(c), body,
                        fmt::format("{} · case {} · prepared {}", title_of(c), c.code, time_in_words(c.created))),
             preparation_json(done, drawing, facts, removed)};

@@ -258,8 +258,8 @@ RgbImage picture_of(const RecordedMoment& moment) {
     return all;
 }
 
-std::string review_page(const RecordingTimeLine& line,
-                        const std::vector<std::pair<std::string, std::string>>& pictures) {
+std::string review_page(const RecordingTimeLine& line, const std::vector<std::pair<std::string, std::string>>& pictures,
+                        const std::string& more) {
     constexpr double kMost_mm = 3;
     constexpr std::size_t kMostEvents = 400;
     const bool long_one = line.lasted_s > 300;
@@ -284,6 +284,7 @@ std::string review_page(const RecordingTimeLine& line,
     for (const auto& [file, caption] : pictures)
         body += fmt::format("<figure><img style=\"width:100%\" src=\"{}\"><figcaption>{}</figcaption></figure>",
                             xml_escaped(file), xml_escaped(caption));
+    body += more;
     body += "<h2>What happened</h2><table><tr><th>s</th><th></th></tr>";
     for (std::size_t i = 0; i < std::min(kMostEvents, line.events.size()); ++i)
         body += fmt::format("<tr><td>{:.2f}</td><td style=\"text-align:left\">{}</td></tr>", line.events[i].at_s,

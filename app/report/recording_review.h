@@ -53,9 +53,9 @@ int for_each_moment(const std::filesystem::path& recording, double from_s, doubl
 RgbImage picture_of(const RecordedMoment& moment);
 
 /// The page: time line in the gate's colours, measured and predicted error, events. `pictures`: files beside it that it
-/// shows, with their captions.
-std::string review_page(const RecordingTimeLine& line,
-                        const std::vector<std::pair<std::string, std::string>>& pictures);
+/// shows, with their captions; `more`: what stands behind them, as HTML.
+std::string review_page(const RecordingTimeLine& line, const std::vector<std::pair<std::string, std::string>>& pictures,
+                        const std::string& more = {});
 
 /// The same as figures (JSON, `format` says `kReviewFormat`).
 inline constexpr const char* kReviewFormat = "planlight review";

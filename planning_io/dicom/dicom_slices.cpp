@@ -135,7 +135,9 @@ std::optional<DicomRefusal> fault_of_stack(const std::vector<DicomSlice>& slices
                 fmt::format("{} missing {}: the gap is {:.3f} mm, elsewhere {:.3f} mm",
                             counted(static_cast<int>(steps) - 1, "slice") + (steps == 2 ? " is" : " are"), between,
                             gaps[i], usual),
-                "Export the whole series again."};
+                like_this < 3 ? "Export the whole series again."
+                              : "Export the whole series again; if it was scanned with two steps, lay it onto an even "
+                                "grid between the cuts (`planlight prepare --resample`)."};
         if (gaps[i] > kLongestStep_mm)
             return DicomRefusal{fmt::format("the gap {} is {:.1f} mm", between, gaps[i]),
                                 "Give a series of thinner slices."};

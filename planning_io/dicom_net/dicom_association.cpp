@@ -1,10 +1,15 @@
 #include "planning_io/dicom_net/dicom_association.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
+#include <cerrno>
+#include <cstring>
 
+#include "planning_io/dicom_net/dicom_tls.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -35,6 +40,27 @@ void check_title(const std::string& title, const std::string& whose) {
                          "Give at most 16 letters and digits without spaces.");
 }
 
+void check_tls(const DicomTls& tls) {
+    if (tls.certificate.empty() != tls.key.empty())
+        throw InputError(tls.certificate.empty() ? tls.key : tls.certificate,
+                         tls.key.empty() ? "is a certificate without its key" : "is a key without its certificate",
+                         "Give both --tls-certificate and --tls-key, or neither.");
+    if (!tls.wanted && !(tls.trusted.empty() && tls.certificate.empty() && tls.name.empty()))
+        throw InputError({}, "certificates are named for a line that is not encrypted", "Give --tls as well.");
+}
+
+/// What an encrypted line was refused for, by us or by the archive.
+[[noreturn]] void refuse_tls(const std::string& who, const std::string& why, const std::string& host) {
+    if (const std::string not_trusted = why_not_trusted(); !not_trusted.empty())
+        throw DeviceError(who, "shows a certificate that is not taken: " + not_trusted,
+                          fmt::format("Give its certificate, or that of who signed it, with --tls-trusted; where it is "
+                                      "made out to another name than {}, give that with --tls-name.",
+                                      host));
+    throw DeviceError(who, "does not agree on an encrypted line: " + why,
+                      "Check that this port of it speaks TLS. It may want to see a certificate of ours that it knows "
+                      "(--tls-certificate, --tls-key).");
+}
+
 [[noreturn]] void refuse(const DicomPeer& peer, const OFCondition& condition) {
     const std::string who = "The DICOM archive " + peer.name(), why = one_line(condition.text());
     if (condition.module() == OFM_dcmnet) switch (condition.code()) {
@@ -50,7 +76,9 @@ void check_title(const std::string& title, const std::string& whose) {
                 break;
         }
     throw DeviceError(who, "was gone in the middle, or gave no answer: " + why,
-                      "Look whether it runs, and do it again; what was there before is unchanged.");
+                      std::string("Look whether it runs, and do it again; what was there before is unchanged. ") +
+                          (peer.tls.wanted ? "It may want to see a certificate of ours that it knows."
+                                           : "It may want the line to be encrypted (--tls)."));
 }
 
 }  // namespace
@@ -67,6 +95,7 @@ void check_peer(const DicomPeer& peer) {
         throw InputError({}, fmt::format("{} is no port", peer.port), "Give a number from 1 to 65535.");
     check_title(peer.title, "the archive");
     check_title(peer.own_title, "this computer");
+    check_tls(peer.tls);
 }
 
 const std::vector<std::string>& plain_transfer_syntaxes() {
@@ -75,10 +104,26 @@ const std::vector<std::string>& plain_transfer_syntaxes() {
     return syntaxes;
 }
 
+const std::vector<std::string>& packed_transfer_syntaxes() {
+    static const std::vector<std::string> syntaxes{
+        UID_JPEGProcess14SV1TransferSyntax,     UID_JPEGProcess14TransferSyntax,
+        UID_JPEGLSLosslessTransferSyntax,       UID_RLELosslessTransferSyntax,
+        UID_JPEG2000LosslessOnlyTransferSyntax, UID_DeflatedExplicitVRLittleEndianTransferSyntax};
+    return syntaxes;
+}
+
 bool is_uid(const std::string& text) {
     constexpr std::size_t kMost = 64;
     return !text.empty() && text.size() <= kMost && text.front() != '.' &&
            std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) || c == '.'; });
+}
+
+void sync_file(const std::filesystem::path& file) {
+    const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+    const int failed = fd < 0 ? -1 : ::fsync(fd);
+    const int why = errno;
+    if (fd >= 0) ::close(fd);
+    if (failed) throw DiskError(file, std::strerror(why), "Check the free space of the disk, then fetch again.");
 }
 
 std::string text_of(DcmItem& item, const DcmTagKey& tag) {
@@ -114,15 +159,26 @@ void DicomAssociation::propose(const std::string& abstract_syntax, const std::ve
 
 void DicomAssociation::open() {
     check(initNetwork());
+    if (peer_.tls.wanted) {
+        tls_ = tls_layer(peer_, TlsRole::asks);
+        check(useSecureConnection(tls_.get()));
+    }
+    forget_why_not_trusted();
     const OFCondition opened = negotiateAssociation();
     if (opened == NET_EC_NoAcceptablePresentationContexts)
         throw CheckFailedError("The DICOM archive " + peer_.name() + " does nothing of what is asked of it",
                                "Ask those who run it to allow this computer to search, to fetch and to store.");
+    if (opened.bad() && peer_.tls.wanted && (opened.module() == OFM_dcmtls || !why_not_trusted().empty()))
+        refuse_tls("The DICOM archive " + peer_.name(), one_line(opened.text()), peer_.host);
     check(opened);
 }
 
 void DicomAssociation::close() {
     if (isConnected() && releaseAssociation().bad()) abortAssociation();
+}
+
+bool DicomAssociation::is_accepted(const std::string& abstract_syntax) {
+    return findPresentationContextID(abstract_syntax.c_str(), "") != 0;
 }
 
 T_ASC_PresentationContextID DicomAssociation::accepted(const std::string& abstract_syntax, const std::string& words) {

@@ -5,10 +5,13 @@
 #include <dcmtk/dcmdata/dctk.h>
 #include <dcmtk/dcmnet/scu.h>
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "planning_io/dicom_net/dicom_peer.h"
+
+class DcmTLSTransportLayer;
 
 namespace planlight {
 
@@ -20,10 +23,11 @@ public:
 
     void propose(const std::string& abstract_syntax, const std::vector<std::string>& transfer_syntaxes,
                  bool peer_sends = false);
-    /// Throws DeviceError.
+    /// Throws DeviceError; InputError for files of certificates that are none.
     void open();
     /// In order, with the peer's consent.
     void close();
+    bool is_accepted(const std::string& abstract_syntax);
     /// The context that was accepted for it. Throws CheckFailedError with the words when there is none.
     T_ASC_PresentationContextID accepted(const std::string& abstract_syntax, const std::string& words);
     /// Throws DeviceError for what went wrong on the line.
@@ -31,13 +35,22 @@ public:
 
 protected:
     const DicomPeer peer_;
+
+private:
+    std::unique_ptr<DcmTLSTransportLayer> tls_;
 };
 
 /// Explicit and implicit little endian.
 const std::vector<std::string>& plain_transfer_syntaxes();
 
+/// Those that lose nothing, of packed images.
+const std::vector<std::string>& packed_transfer_syntaxes();
+
 /// Only digits and dots, 64 at most, none empty: may be a file's name.
 bool is_uid(const std::string& text);
+
+/// The disk has all of it afterwards. Throws DiskError.
+void sync_file(const std::filesystem::path& file);
 
 std::string text_of(DcmItem& item, const DcmTagKey& tag);
 

@@ -8,6 +8,15 @@
 
 namespace planlight {
 
+/// How the line to an archive is encrypted (TLS). Files are in PEM, keys without a password.
+struct DicomTls {
+    bool wanted = false;
+    /// The archive's certificate, or that of who signed it; empty: those that this computer's system trusts.
+    std::filesystem::path trusted;
+    std::filesystem::path certificate, key;  ///< ours, for archives that ask who we are; both or none
+    std::string name;                        ///< whom its certificate is made out to; empty: the host
+};
+
 /// A DICOM archive (PACS) and who we are to it.
 struct DicomPeer {
     std::string host;                     ///< name or number
@@ -15,11 +24,16 @@ struct DicomPeer {
     std::string title;                    ///< its application entity title (AE title)
     std::string own_title = "PLANLIGHT";  ///< ours; many archives answer only to titles that they know
     std::chrono::seconds patience{30};    ///< for each answer
+    DicomTls tls;
+    /// Of this computer, for an archive that lets nothing be fetched (C-GET) and sends it instead (C-MOVE), to our
+    /// title as it knows it. Open only meanwhile. 0: never.
+    int own_port = 0;
 
     std::string name() const;  ///< "ORTHANC at pacs.example:4242"
 };
 
-/// Throws InputError where a title is empty, longer than 16 characters or not plain, or host or port are none.
+/// Throws InputError where a title is empty, longer than 16 characters or not plain, host or port are none, or files of
+/// certificates are named without the line being encrypted, or a certificate without its key.
 void check_peer(const DicomPeer& peer);
 
 // What follows throws DeviceError when the peer cannot be reached, refuses us, or is gone in the middle.
@@ -46,12 +60,13 @@ struct FoundSeries {
 /// where the peer does not search.
 std::vector<FoundSeries> find_series(const DicomPeer& peer, const SeriesQuery& query);
 
-/// C-GET of a series into a new folder, a file each, as the peer has them (bits unchanged). Whole or not at all: the
-/// peer is asked first which images there are, and each must have arrived. Gives their number. `progress`: images so
-/// far, and of how many; may be empty.
+/// C-GET of a series into a new folder, a file each, as the peer has them (bits unchanged); C-MOVE to ourselves where
+/// it does not let itself be asked so and `own_port` is given. Whole or not at all: the peer is asked first which
+/// images there are, and each must have arrived. Gives their number. `progress`: images so far, and of how many, from
+/// any thread; may be empty.
 ///
 /// Throws CheckFailedError when some did not come or the peer gives none, InputError when the series holds none or the
-/// folder is there and not empty, DiskError.
+/// folder is there and not empty, DeviceError when our own port is another program's, DiskError.
 std::size_t fetch_series(const DicomPeer& peer, const FoundSeries& series, const std::filesystem::path& folder,
                          const std::function<void(std::size_t, std::size_t)>& progress = {});
 

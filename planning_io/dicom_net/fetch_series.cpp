@@ -1,12 +1,9 @@
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cerrno>
-#include <cstring>
 #include <set>
 
 #include "planning_io/dicom_net/find_series.h"
+#include "planning_io/dicom_net/move_series.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
@@ -15,34 +12,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What series that a plan is made on, or a plan itself, are of.
-const std::set<std::string>& usual_classes() {
-    static const std::set<std::string> classes{UID_CTImageStorage,
-                                               UID_EnhancedCTImageStorage,
-                                               UID_MRImageStorage,
-                                               UID_EnhancedMRImageStorage,
-                                               UID_RTStructureSetStorage,
-                                               UID_SegmentationStorage,
-                                               UID_SurfaceSegmentationStorage,
-                                               UID_SecondaryCaptureImageStorage};
-    return classes;
-}
-
-/// Without loss, each in a context of its own, so that the peer can send each image as it has it.
-const std::vector<std::string>& packed_syntaxes() {
-    static const std::vector<std::string> syntaxes{
-        UID_JPEGProcess14SV1TransferSyntax,     UID_JPEGProcess14TransferSyntax,
-        UID_JPEGLSLosslessTransferSyntax,       UID_RLELosslessTransferSyntax,
-        UID_JPEG2000LosslessOnlyTransferSyntax, UID_DeflatedExplicitVRLittleEndianTransferSyntax};
-    return syntaxes;
-}
-
-void sync(const fs::path& file) {
-    const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-    const int failed = fd < 0 ? -1 : ::fsync(fd);
-    const int why = errno;
-    if (fd >= 0) ::close(fd);
-    if (failed) throw DiskError(file, std::strerror(why), "Check the free space of the disk, then fetch again.");
+/// That it does not do this at all, or not for us (DICOM PS3.7, C).
+bool is_refusal(Uint16 status) {
+    return status == STATUS_GET_Refused_SOPClassNotSupported || status == 0x0124 || status == 0x0211;
 }
 
 /// Takes of what the peer sends the images that were asked for, each into a file of its name.
@@ -51,32 +23,28 @@ public:
     Getter(const DicomPeer& peer, const std::vector<ImageAtPeer>& images, fs::path folder,
            std::function<void(std::size_t, std::size_t)> progress)
         : DicomAssociation(peer), folder_(std::move(folder)), progress_(std::move(progress)) {
-        std::set<std::string> classes;
-        for (const ImageAtPeer& image : images) {
-            wanted_.insert(image.uid);
-            if (is_uid(image.storage_class)) classes.insert(image.storage_class);
-        }
-        constexpr std::size_t kMostClasses = 15;  // 7 contexts each, of 128
-        if (classes.empty() || classes.size() > kMostClasses) classes = usual_classes();
+        for (const ImageAtPeer& image : images) wanted_.insert(image.uid);
         propose(UID_GETStudyRootQueryRetrieveInformationModel, plain_transfer_syntaxes());
-        for (const std::string& storage_class : classes) {
+        for (const std::string& storage_class : storage_classes_of(images)) {
             propose(storage_class, plain_transfer_syntaxes(), true);
-            for (const std::string& syntax : packed_syntaxes()) propose(storage_class, {syntax}, true);
+            for (const std::string& syntax : packed_transfer_syntaxes()) propose(storage_class, {syntax}, true);
         }
         setStorageMode(DCMSCU_STORAGE_BIT_PRESERVING);
         setStorageDir(folder_.c_str());
     }
 
-    void get(const FoundSeries& series) {
-        open();
-        DcmDataset keys;
-        keys.putAndInsertString(DCM_QueryRetrieveLevel, "SERIES");
-        keys.putAndInsertString(DCM_StudyInstanceUID, series.study_uid.c_str());
-        keys.putAndInsertString(DCM_SeriesInstanceUID, series.series_uid.c_str());
+    /// False: it does not let itself be asked so, and nothing came.
+    bool get(const FoundSeries& series) {
+        try {
+            open();
+        } catch (const CheckFailedError&) {  // it does nothing of all that
+            return false;
+        }
+        if (!is_accepted(UID_GETStudyRootQueryRetrieveInformationModel)) return false;
+        DcmDataset keys = keys_of(series);
         OFList<RetrieveResponse*> responses;
         const OFCondition done = sendCGETRequest(
-            accepted(UID_GETStudyRootQueryRetrieveInformationModel, "does not let its images be fetched (C-GET)"),
-            &keys, &responses);
+            findPresentationContextID(UID_GETStudyRootQueryRetrieveInformationModel, ""), &keys, &responses);
         for (RetrieveResponse* response : responses) {
             status_ = response->m_status;
             failed_ = response->m_numberOfFailedSubops;
@@ -86,9 +54,11 @@ public:
             throw DiskError(folder_, disk_,
                             "Check the free space and the permissions of the folder, then fetch again.");
         check(done);
+        if (came_.empty() && is_refusal(status_)) return false;
         check_whole(series);
-        for (const std::string& uid : came_) sync(folder_ / (uid + ".dcm"));
+        for (const std::string& uid : came_) sync_file(folder_ / (uid + ".dcm"));
         close();
+        return true;
     }
     std::size_t came() const { return came_.size(); }
 
@@ -147,8 +117,8 @@ std::size_t fetch_series(const DicomPeer& peer, const FoundSeries& series, const
     std::size_t came = 0;
     write_folder_safely(folder, false, [&](const fs::path& into) {
         Getter getter(peer, images, into, progress);
-        getter.get(series);
-        came = getter.came();
+        const bool got = getter.get(series);
+        came = got ? getter.came() : move_series(peer, series, images, into, progress);
     });
     return came;
 }

@@ -138,4 +138,29 @@ std::vector<ImageAtPeer> images_of(const DicomPeer& peer, const FoundSeries& ser
     return images;
 }
 
+std::set<std::string> storage_classes_of(const std::vector<ImageAtPeer>& images) {
+    // What series that a plan is made on, or a plan itself, are of.
+    static const std::set<std::string> usual{UID_CTImageStorage,
+                                             UID_EnhancedCTImageStorage,
+                                             UID_MRImageStorage,
+                                             UID_EnhancedMRImageStorage,
+                                             UID_RTStructureSetStorage,
+                                             UID_SegmentationStorage,
+                                             UID_SurfaceSegmentationStorage,
+                                             UID_SecondaryCaptureImageStorage};
+    constexpr std::size_t kMost = 15;  // 7 contexts each, of 128
+    std::set<std::string> classes;
+    for (const ImageAtPeer& image : images)
+        if (is_uid(image.storage_class)) classes.insert(image.storage_class);
+    return classes.empty() || classes.size() > kMost ? usual : classes;
+}
+
+DcmDataset keys_of(const FoundSeries& series) {
+    DcmDataset keys;
+    ask_for(keys, DCM_QueryRetrieveLevel, "SERIES");
+    ask_for(keys, DCM_StudyInstanceUID, series.study_uid);
+    ask_for(keys, DCM_SeriesInstanceUID, series.series_uid);
+    return keys;
+}
+
 }  // namespace planlight

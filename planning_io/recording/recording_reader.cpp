@@ -4,7 +4,6 @@
 #include <zlib.h>
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 
 #include "planning_io/types/error.h"
@@ -24,24 +23,21 @@ T number_at(const char* bytes) {
 
 }  // namespace
 
-RecordingReader::RecordingReader(const std::filesystem::path& file) : file_(file) {
+RecordingReader::RecordingReader(const std::filesystem::path& file) : file_(file), in_(file) {
     std::error_code fault;
     if (!std::filesystem::exists(file, fault))
         throw InputError(file, "does not exist", "Name a recording: a file that ends in .plrec.");
     if (!std::filesystem::is_regular_file(file, fault))
         throw InputError(file, "is no file", "Name a recording: a file that ends in .plrec.");
     bytes_ = std::filesystem::file_size(file, fault);
-    in_.open(file, std::ios::binary);
-    std::array<char, kRecordingHeaderBytes> header{};
-    if (!in_) throw InputError(file, "cannot be read", "A recording can be read by its owner only: ask them.");
-    in_.read(header.data(), header.size());
-    if (in_.bad()) unreadable(0);
+    if (!in_.opened()) throw InputError(file, "cannot be read", "A recording can be read by its owner only: ask them.");
+    const std::string_view header = in_.bytes(0, kRecordingHeaderBytes);
+    if (in_.failed()) unreadable(0);
     const std::string wanted = recording_header();
-    const auto got = static_cast<std::size_t>(in_.gcount());
-    if (got < 8 || std::string_view(header.data(), 8) != std::string_view(wanted).substr(0, 8))
+    if (header.substr(0, 8) != std::string_view(wanted).substr(0, 8))
         throw InputError(file, "is no recording of a session", "Name a file that `planlight session` recorded.");
-    if (got < header.size()) throw DamagedFileError(file, "ends within its first bytes", kCopyRemedy);
-    if (std::string_view(header.data(), header.size()) != wanted) {
+    if (header.size() < kRecordingHeaderBytes) throw DamagedFileError(file, "ends within its first bytes", kCopyRemedy);
+    if (header != wanted) {
         const auto crc = static_cast<std::uint32_t>(crc32_z(0, reinterpret_cast<const Bytef*>(header.data()), 12));
         if (number_at<std::uint32_t>(header.data() + 12) != crc)
             throw DamagedFileError(file, "its first bytes are damaged", kCopyRemedy);
@@ -58,35 +54,42 @@ void RecordingReader::unreadable(std::uint64_t at) const {
                     "Look at the disk or the network that it is on, and read it again, or a copy of it.");
 }
 
+/// Of bytes that the file has.
+std::string_view RecordingReader::bytes_at(std::uint64_t at, std::size_t count) {
+    const std::string_view bytes = in_.bytes(at, count);
+    if (bytes.size() < count) unreadable(at);
+    return bytes;
+}
+
+/// Empty where there is no room for one.
+std::string_view RecordingReader::header_at(std::uint64_t at) {
+    if (at > bytes_ || bytes_ - at < kChunkHeaderBytes) return {};
+    return bytes_at(at, kChunkHeaderBytes);
+}
+
 /// `number`: the only one that is taken; empty: any.
 std::optional<RecordingChunk> RecordingReader::whole_chunk_at(std::uint64_t at, std::optional<std::uint64_t> number) {
-    if (at > bytes_ || bytes_ - at < kChunkHeaderBytes) return std::nullopt;
-    std::array<char, kChunkHeaderBytes> header{};
-    in_.clear();
-    in_.seekg(static_cast<std::streamoff>(at));
-    if (!in_.read(header.data(), header.size())) unreadable(at);
-    if (std::string_view(header.data(), 4) != kMarker) return std::nullopt;
+    const std::string_view header = header_at(at);
+    if (header.empty() || header.substr(0, 4) != kMarker) return std::nullopt;
     const std::size_t size = number_at<std::uint32_t>(header.data() + 24);
     if (size > kMostPayloadBytes || size > bytes_ - at - kChunkHeaderBytes) return std::nullopt;
     if (number && number_at<std::uint64_t>(header.data() + 8) != *number) return std::nullopt;
+    const auto crc_told = number_at<std::uint32_t>(header.data() + 28);
     RecordingChunk chunk;
     std::copy_n(header.data() + 4, 4, chunk.type.begin());
     chunk.at = Instant(number_at<std::int64_t>(header.data() + 16));
-    chunk.payload.resize(size);
-    if (size > 0 && !in_.read(chunk.payload.data(), static_cast<std::streamsize>(size))) unreadable(at);
     uLong crc = crc32_z(0, reinterpret_cast<const Bytef*>(header.data()), kChunkHeaderBytes - 4);
-    if (size > 0) crc = crc32_z(crc, reinterpret_cast<const Bytef*>(chunk.payload.data()), size);
-    if (number_at<std::uint32_t>(header.data() + 28) != static_cast<std::uint32_t>(crc)) return std::nullopt;
+    const std::string_view payload = bytes_at(at + kChunkHeaderBytes, size);  // `header` is gone from here on
+    if (size > 0) crc = crc32_z(crc, reinterpret_cast<const Bytef*>(payload.data()), size);
+    if (crc_told != static_cast<std::uint32_t>(crc)) return std::nullopt;
+    chunk.payload = payload;
     return chunk;
 }
 
 /// What the header of a chunk there says of its payload; empty where there is none that could be whole.
 std::optional<std::uint64_t> RecordingReader::payload_bytes_at(std::uint64_t at) {
-    if (at > bytes_ || bytes_ - at < kChunkHeaderBytes) return std::nullopt;
-    std::array<char, kChunkHeaderBytes> header{};
-    in_.clear();
-    in_.seekg(static_cast<std::streamoff>(at));
-    if (!in_.read(header.data(), header.size())) unreadable(at);
+    const std::string_view header = header_at(at);
+    if (header.empty()) return std::nullopt;
     const std::uint64_t size = number_at<std::uint32_t>(header.data() + 24);
     if (size > kMostPayloadBytes || size > bytes_ - at - kChunkHeaderBytes) return std::nullopt;
     return size;
@@ -102,13 +105,11 @@ RecordingEnd RecordingReader::end_from(std::uint64_t at) {
         left -= bytes;
         return true;
     };
-    std::string block;
     for (std::uint64_t from = at; from + kChunkHeaderBytes <= bytes_; from += kBlock) {
-        block.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBlock + kMarker.size() - 1, bytes_ - from)));
-        if (!spend(block.size())) return RecordingEnd::unknown;
-        in_.clear();
-        in_.seekg(static_cast<std::streamoff>(from));
-        if (!in_.read(block.data(), static_cast<std::streamsize>(block.size()))) unreadable(from);
+        const auto count =
+            static_cast<std::size_t>(std::min<std::uint64_t>(kBlock + kMarker.size() - 1, bytes_ - from));
+        if (!spend(count)) return RecordingEnd::unknown;
+        const std::string block(bytes_at(from, count));
         for (std::size_t i = block.find(kMarker); i != std::string::npos; i = block.find(kMarker, i + 1)) {
             const auto size = payload_bytes_at(from + i);
             if (!spend(kChunkHeaderBytes + size.value_or(0))) return RecordingEnd::unknown;
@@ -121,11 +122,9 @@ RecordingEnd RecordingReader::end_from(std::uint64_t at) {
 /// Past a chunk that nobody wants, as far as its header tells; false where it is wanted, or is to be read to be judged:
 /// the last one in the file is.
 bool RecordingReader::pass_over() {
-    if (!wanted_ || at_ > bytes_ || bytes_ - at_ < kChunkHeaderBytes) return false;
-    std::array<char, kChunkHeaderBytes> header{};
-    in_.clear();
-    in_.seekg(static_cast<std::streamoff>(at_));
-    if (!in_.read(header.data(), header.size()) || std::string_view(header.data(), 4) != kMarker) return false;
+    if (!wanted_) return false;
+    const std::string_view header = header_at(at_);
+    if (header.empty() || header.substr(0, 4) != kMarker) return false;
     if (number_at<std::uint64_t>(header.data() + 8) != chunks_) return false;
     ChunkType type{};
     std::copy_n(header.data() + 4, 4, type.begin());
@@ -140,15 +139,15 @@ bool RecordingReader::pass_over() {
 
 std::optional<RecordingChunk> RecordingReader::next() {
     if (end_ != RecordingEnd::open) return std::nullopt;
-    while (pass_over()) {
-    }
-    std::optional<RecordingChunk> chunk = whole_chunk_at(at_, chunks_);
-    if (chunk) {
+    for (;;) {
+        while (pass_over()) {
+        }
+        std::optional<RecordingChunk> chunk = whole_chunk_at(at_, chunks_);
+        if (!chunk) break;
         at_ += kChunkHeaderBytes + chunk->payload.size();
         ++chunks_;
         done_seen_ = chunk->type == chunk_types::kDone;
-        if (!wanted_ || wanted_(chunk->type, chunk->at)) return chunk;
-        return next();  // the last, or DONE
+        if (!wanted_ || wanted_(chunk->type, chunk->at)) return chunk;  // else the last, or DONE
     }
     if (at_ == bytes_)
         end_ = done_seen_ ? RecordingEnd::whole : RecordingEnd::cut;

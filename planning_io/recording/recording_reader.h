@@ -2,12 +2,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "planning_io/recording/file_window.h"
 #include "planning_io/recording/recording_chunk.h"
 
 namespace planlight {
@@ -57,6 +57,8 @@ public:
 private:
     std::optional<RecordingChunk> whole_chunk_at(std::uint64_t at, std::optional<std::uint64_t> number);
     std::optional<std::uint64_t> payload_bytes_at(std::uint64_t at);
+    std::string_view header_at(std::uint64_t at);
+    std::string_view bytes_at(std::uint64_t at, std::size_t count);
     RecordingEnd end_from(std::uint64_t at);
     [[noreturn]] void unreadable(std::uint64_t at) const;
 
@@ -64,7 +66,7 @@ private:
 
     std::filesystem::path file_;
     Wanted wanted_;  ///< empty: all
-    std::ifstream in_;
+    FileWindow in_;
     std::uint64_t bytes_ = 0, at_ = 0, chunks_ = 0;
     std::uint64_t search_budget_ = std::uint64_t{1} << 30;
     bool done_seen_ = false;

@@ -77,6 +77,26 @@ TEST(Anonymous, NamesAreLeftOutOfWhatIsSaidAndNotOfItsWords) {
     EXPECT_EQ(out.dump().find("Erika"), std::string::npos) << out;
 }
 
+/// A version "1.0" or an item "A" is found in figures and words, and must not take them with it.
+TEST(Anonymous, LeavesFiguresTimesAndWordsAsTheyAre) {
+    Case the_case;
+    the_case.code = "10";
+    the_case.names.patient = "Li";
+    the_case.names.plan_version = "1.0";
+    PlanDrawing drawing;
+    drawing.items.resize(1);
+    drawing.items[0].name = "A";
+    NamesLeftOut names(the_case);
+    names.add_items(drawing);
+    const auto out = nlohmann::json::parse(names.out_of(
+        R"({"utc":"2026-10-10T10:10:10Z","rig_hash":"10ab","said":""A" of Li lies 1.0 mm off, 11.04 at 10 s: LOOK At the Light","version":"1.0","items":["A"],"case":"Meier"})"));
+    EXPECT_EQ(out["utc"], "2026-10-10T10:10:10Z");
+    EXPECT_EQ(out["rig_hash"], "10ab");
+    EXPECT_EQ(out["said"], "\"item 1\" of … lies 1.0 mm off, 11.04 at 10 s: LOOK At the Light");
+    EXPECT_EQ(out["version"], "…");
+    EXPECT_EQ(out["items"][0], "item 1");
+}
+
 /// A session in the simulated room, recorded without names and faces.
 TEST(AnonymousRecording, HoldsNoNameAndNoFace) {
     if (!test::example_case().there) GTEST_SKIP() << "the package invesalius-examples is not installed";

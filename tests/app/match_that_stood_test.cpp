@@ -5,6 +5,7 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "planning_io/recording/recording_chunk.h"
 #include "planning_io/types/error.h"
@@ -20,9 +21,10 @@ class Matches : public ::testing::Test {
 protected:
     void event(const nlohmann::ordered_json& json) { chunks_.push_back({chunk_types::kEvent, {}, json.dump()}); }
     void scan() { event({{"what", "asked"}, {"call", "scan"}}); }
-    void offered(const std::string& made) {
+    void offered(const std::string& made, Verdict verdict = Verdict::yes, bool confirmed = false) {
         KeptMatch match;
-        match.registration.verdict = Verdict::yes;
+        match.registration.verdict = verdict;
+        match.confirmed = confirmed;
         match.registration.patient_from_ct = RigidTransform::Identity();
         match.made_utc = made;
         chunks_.push_back({chunk_types::kMatch, {}, text_of(match)});
@@ -86,6 +88,35 @@ TEST_F(Matches, TheLastOneThatStoodIsExported) {
     offered("earlier");
     resume("resumed");
     EXPECT_EQ(stood(), "earlier");
+}
+
+/// Markers and skin agree with a wrong match as well as with a right one, where both were laid by it.
+TEST_F(Matches, ADoubtfulOneOfAnEarlierSessionStandsOnAPersonsWordOnly) {
+    offered("earlier", Verdict::ask);
+    resume("resumed");
+    EXPECT_TRUE(refused("nobody confirmed it")) << stood();
+    event({{"what", "asked"}, {"call", "confirm"}});
+    EXPECT_EQ(stood(), "earlier");
+    offered("confirmed then", Verdict::ask, true);
+    resume("resumed");
+    EXPECT_EQ(stood(), "confirmed then");
+}
+
+/// What cannot be read may have said that another match stood.
+TEST_F(Matches, ADamagedRecordingIsNotExported) {
+    scan();
+    found("yes", "first");
+    scan();
+    found("yes", "second");
+    EXPECT_EQ(stood(), "second");
+    const fs::path file = folder_.path() / "made.plrec";
+    std::string bytes = (std::ostringstream() << std::ifstream(file, std::ios::binary).rdbuf()).str();
+    bytes[bytes.rfind("find_patient")] = 'F';
+    const fs::path damaged = folder_.path() / "damaged.plrec";
+    std::ofstream(damaged, std::ios::binary) << bytes;
+    EXPECT_THROW(match_that_stood(damaged), DamagedFileError);
+    event({{"what", 5}});
+    EXPECT_THROW(stood(), DamagedFileError) << "an event of another kind";
 }
 
 }  // namespace

@@ -63,6 +63,21 @@ TEST(PlanFacts, DepthAndAngleAreThoseOfThePlan) {
     EXPECT_EQ(side_in_words(1.4), "in the middle");
 }
 
+TEST(PlanFacts, AnItemThatTheLightNamesOtherwiseHasThatName) {
+    Plan plan;
+    for (const char* name : {"Hole", "Long name of a hole", "Loch"})
+        plan.boreholes.push_back({name, Vector3d(0, 0, 0), std::nullopt, 7, 6, std::nullopt});
+    PlanDrawing drawing;
+    drawing.items = {
+        {StrokeKind::borehole, "Hole", "Hole", Vector3d(0, 0, 0), 0, {}, true, "Hole", "#1", false},
+        {StrokeKind::borehole, "Long name of a hole", "", Vector3d(0, 0, 0), 0, {}, true, "#2", "#2", true},
+        {StrokeKind::borehole, "Loch", "", Vector3d(0, 0, 0), 0, {}, false, "", "#3", false}};
+    const auto facts = plan_facts(plan, drawing, flat_skin());
+    EXPECT_EQ(facts[0].lit, "");
+    EXPECT_EQ(facts[1].lit, "#2");
+    EXPECT_EQ(facts[2].lit, "") << "nothing of it is lit";
+}
+
 /// 100 mm of air with a ball of 30 mm in the middle, and a plate of 40 x 4 x 40 mm behind it. Voxels of 2 mm.
 Volume ball_and_plate(SkinMask& mask) {
     Volume v;

@@ -63,6 +63,9 @@ protected:
                      [](const OperatorModel& m) { return m.status.kind == StatusKind::refused; });
             EXPECT_FALSE(session.projecting());
         }
+        // The scan was given up for the short one: Register says so, and does not take the match with it.
+        EXPECT_FALSE(session.model().do_register.enabled);
+        EXPECT_NE(session.post(OperatorAction::do_register), "");
         return model;
     }
 };

@@ -44,6 +44,21 @@ TEST(ReportCommand, NeverTakesTheRecordingsPlace) {
     EXPECT_TRUE(fs::exists(folder.path() / "a.html"));
 }
 
+/// The page's figures go beside it: there the case's own file may stand.
+TEST(ReportCommand, ItsFiguresTakeNothingElsesPlace) {
+    const TemporaryFolder folder;
+    write_recording(folder.path() / "a.plrec");
+    const fs::path manifest = folder.path() / "case.json", other = folder.path() / "list.json";
+    std::ofstream(manifest) << R"({"format": "planlight case"})";
+    std::ofstream(other) << "[1, 2";
+    for (const char* page : {"case.html", "list.html"})
+        expect_refused(run_planlight(std::string("report a.plrec --out ") + page, folder.path()), 3, "no report's");
+    EXPECT_EQ(whole(manifest), R"({"format": "planlight case"})");
+    EXPECT_EQ(whole(other), "[1, 2");
+    EXPECT_EQ(run_planlight("report a.plrec --out p.html", folder.path()).exit_code, 0);
+    EXPECT_EQ(run_planlight("report a.plrec --out p.html", folder.path()).exit_code, 0) << "its own are made anew";
+}
+
 TEST(ReportCommand, ItsPdfIsReadableByItsOwnerAlone) {
     const TemporaryFolder folder;
     write_recording(folder.path() / "a.plrec");

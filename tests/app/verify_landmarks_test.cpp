@@ -15,10 +15,11 @@ SkinSurface octahedron() {
 
 TEST(VerifyLandmarks, WordsSayWhereOnTheHeadAPlaceIs) {
     const SkinSurface head = octahedron();
-    EXPECT_EQ(words_of_place(head, {0, -90, 0}), "front") << "LPS: y grows to the back";
-    EXPECT_EQ(words_of_place(head, {60, -60, -20}), "front, left");
-    EXPECT_EQ(words_of_place(head, {-52, -52, 52}), "front, right, high");
-    EXPECT_EQ(words_of_place(head, {0, 63, -63}), "back, low");
+    EXPECT_EQ(words_of_place(head, {0, -90, 0}), "at the front of the head") << "LPS: y grows to the back";
+    EXPECT_EQ(words_of_place(head, {60, -60, -20}), "at the front of the head, on the patient's left");
+    EXPECT_EQ(words_of_place(head, {-52, -52, 52}),
+              "at the front of the head, on the patient's right, towards the crown");
+    EXPECT_EQ(words_of_place(head, {0, 63, -63}), "at the back of the head, towards the neck");
 }
 
 }  // namespace

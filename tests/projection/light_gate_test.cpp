@@ -59,6 +59,42 @@ TEST(LightGate, IsNeverGreenWithoutAFreshMeasurement) {
     EXPECT_EQ(after(gate, now, 10, std::nullopt).trust, LightTrust::look) << "1.2 s old";
 }
 
+/// A ring on a landmark was measured, not the plan that takes its place.
+TEST(LightGate, OtherLightIsGreenWhenItHasBeenMeasuredItself) {
+    LightGate gate;
+    Instant now{};
+    EXPECT_EQ(after(gate, now, 10, seen_at(0.1)).trust, LightTrust::look);
+    gate.verify(now);
+    gate.other_light(now);
+    EXPECT_EQ(after(gate, now, 1, std::nullopt).trust, LightTrust::look) << "nobody has seen it yet";
+    EXPECT_EQ(after(gate, now, 2, seen_at(0.1)).trust, LightTrust::look) << "two measurements are fewer than three";
+    EXPECT_EQ(after(gate, now, 1, seen_at(0.1)).trust, LightTrust::aligned);
+    gate.other_light(now);
+    EXPECT_TRUE(gate.verified()) << "a person has looked";
+    EXPECT_EQ(after(gate, now, 10, std::nullopt).headline, "LOOK: the light is being measured.");
+    EXPECT_EQ(after(gate, now, 30, std::nullopt).headline, "LOOK: the light is not measured.");
+}
+
+TEST(LightGate, ForbidsLightBeforeItIsLit) {
+    LightGate gate;
+    Instant now{};
+    EXPECT_FALSE(gate.forbids());
+    gate.skin_checked(1.5);
+    EXPECT_FALSE(gate.forbids()) << "to be looked at";
+    gate.skin_checked(3);
+    ASSERT_TRUE(gate.forbids());
+    EXPECT_TRUE(gate.forbids()->stop);
+    EXPECT_NE(gate.forbids()->headline.find("3.0 mm"), std::string::npos);
+    gate.restart();
+    EXPECT_TRUE(gate.forbids()) << "Track does not mend it";
+    gate.new_match();
+    EXPECT_FALSE(gate.forbids());
+    after(gate, now, 2, seen_at(3));
+    EXPECT_TRUE(gate.forbids());
+    gate.restart();
+    EXPECT_FALSE(gate.forbids()) << "light is asked for again";
+}
+
 TEST(LightGate, LightThatIsNotSeenIsNotGreen) {
     LightGate gate;
     Instant now{};

@@ -177,6 +177,65 @@ TEST(JudgeSkin, SaysThatThingsLieAtBothEars) {
     EXPECT_LT(judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); })).skin.width, 1.2);
 }
 
+TEST(JudgeSkin, SaysThatACushionLiesBehindTheNeck) {
+    const Judged head = judged(head_with([](const Vector3d& p, double depth) {
+        return p.y() > 10 && depth > -40 && std::abs(p.x()) < 60 && p.z() < -45;
+    }));
+    EXPECT_TRUE(doubts(head.skin, "Behind the neck")) << head.skin.shelf_cm2;
+    EXPECT_LT(judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); })).skin.shelf_cm2, 3);
+}
+
+/// A CT in HU of 3 mm voxels of a head with what lies on it (`on_it`: its HU at a place outside the head, -1000 for
+/// nothing).
+Volume ct_of(const std::function<double(const Vector3d& p, double depth)>& on_it, const Vector3d& half_mm) {
+    Volume ct = mr_of(
+        [&](const Vector3d& p) {
+            const double depth = depth_in_head(p);
+            return 1000 + (depth < 0 ? on_it(p, depth) : depth < 6 ? 40 : depth < 13 ? 900 : 35);
+        },
+        half_mm);
+    ct.modality = "CT";
+    ct.is_hu = true;
+    for (float& value : ct.values) value -= 1000;
+    return ct;
+}
+
+TEST(JudgeSkin, SaysThatACushionLiesOnTheHeadWhereACtEndsWithinIt) {
+    const auto cushion = [](const Vector3d& p, double depth) {
+        return p.y() > 50 && depth > -40 && std::abs(p.x()) < 55 && std::abs(p.z()) < 45 ? 20 : -1000;
+    };
+    const Judged head = judged(ct_of(cushion, {105, 118, 115}));
+    EXPECT_TRUE(doubts(head.skin, "At the back the volume ends")) << head.skin.cut_sides.size() << " ends";
+}
+
+/// Through the brain, with bone round it; and through the scalp, with bone under it.
+TEST(JudgeSkin, OfAHeadThatACtCutsOffNothingIsSaidToLieOnIt) {
+    for (const double back_mm : {60.0, 89.0}) {
+        const Judged head = judged(ct_of([](const Vector3d&, double) { return -1000; }, {105, back_mm, 115}));
+        EXPECT_TRUE(doubts(head.skin, "cuts off the back"));
+        EXPECT_FALSE(doubts(head.skin, "no bone under it")) << back_mm;
+    }
+}
+
+TEST(JudgeSkin, SaysWhereHairOrAClothLiesOnTheHeadInACt) {
+    const auto cloth = [](const Vector3d& p, double depth) { return depth > -6 && p.z() > 40 ? -350 : -1000; };
+    const Judged head = judged(ct_of(cloth, {105, 125, 115}));
+    EXPECT_TRUE(doubts(head.skin, "most at the crown")) << head.skin.light_cm2 << " " << head.skin.light_at;
+    const Judged bare = judged(ct_of([](const Vector3d&, double) { return -1000; }, {105, 125, 115}));
+    EXPECT_EQ(bare.skin.light_cm2, 0);
+    for (const SkinDoubt& d : bare.skin.doubts) ADD_FAILURE() << d.finding;
+}
+
+TEST(JudgeSkin, AFaceIsThereWhenTheChinIsOnTheChestOrTheHeadLooksAside) {
+    for (const Vector3d& about : {Vector3d(-1, 0, 0), Vector3d(1, 0, 0), Vector3d(0, 0, 1)})
+        for (const bool nose : {true, false}) {
+            const Eigen::AngleAxisd turn(-35 * std::numbers::pi / 180, about);
+            const Judged head =
+                judged(mr_of([&](const Vector3d& p) { return layered(depth_in_head(turn * p, nose)); }));
+            EXPECT_EQ(doubts(head.skin, "face is not there"), !nose) << about.transpose() << ": " << head.skin.nose_mm;
+        }
+}
+
 TEST(JudgeSkin, SaysThatSmallThingsStandOutFromTheUpperHead) {
     // Knobs of 14 mm, 8 mm high, some 40 mm apart.
     const Judged head = judged(head_with([](const Vector3d& p, double depth) {

@@ -51,12 +51,11 @@ public:
     }
 
     /// Turned about the skull's middle.
-    StrangeHead turned(double degrees, const Vector3d& about) const {
-        StrangeHead head{ct_, body_, skin_};
+    StrangeHead turned(StrangeHead head, double degrees, const Vector3d& about) const {
         const Eigen::Affine3d turn = Eigen::Translation3d(ball_.centre_in_ct) *
                                      Eigen::AngleAxisd(degrees * std::numbers::pi / 180, about.normalized()) *
                                      Eigen::Translation3d(-ball_.centre_in_ct);
-        head.ct.ct_from_voxel = turn * ct_.ct_from_voxel;
+        head.ct.ct_from_voxel = turn * head.ct.ct_from_voxel;
         for (auto& p : head.skin.vertices_in_ct) p = turn * p;
         return head;
     }
@@ -104,7 +103,15 @@ public:
         all.push_back({name, fate, [of = of_, by] { return of->scaled(by); }, coil});
     }
     void turned(const std::string& name, double degrees, const Vector3d& about) {
-        all.push_back({name, Fate::right, [of = of_, degrees, about] { return of->turned(degrees, about); }});
+        all.push_back(
+            {name, Fate::right, [of = of_, degrees, about] { return of->turned(of->scaled(1), degrees, about); }});
+    }
+    /// The case before, turned.
+    void last_turned(const std::string& name, double degrees, const Vector3d& about) {
+        StrangeCase strange = all.back();
+        strange.name = name;
+        strange.make = [of = of_, make = strange.make, degrees, about] { return of->turned(make(), degrees, about); };
+        all.push_back(std::move(strange));
     }
     void in_contrast(const std::string& name, Fate fate, const MrContrast& contrast) {
         StrangeCase strange{name, fate, [of = of_] { return of->scaled(1); }};
@@ -197,6 +204,8 @@ void add_what_is_missing(Cases& of) {
         if (face) hu = kAir_hu;
         return out <= 0 && !face;
     });
+    of.last_turned("face taken away, chin on the chest by 30 degrees", -30, {1, 0, 0});
+    of.last_turned("face taken away, chin on the chest, then aside by 40 degrees", 40, {0, 0, 1});
     of.made("brain alone", Fate::refused, [r](const Vector3d& p, double, double depth, float& hu) {
         const bool brain = depth > 14 && hu > 0 && hu < 130 && p.z() > -0.5 * r && p.norm() < 1.15 * r;
         if (!brain) hu = kAir_hu;
@@ -234,6 +243,52 @@ void add_rare_contrasts(Cases& of) {
     of.in_contrast("fat is dark", Fate::not_bad, {"fat-suppressed", 0.08F, 0.5F, 0.04F});
     of.in_contrast("bone shines half", Fate::not_bad, {"UTE", 0.8F, 0.7F, 0.4F});
     of.in_contrast("blood alone is bright", Fate::not_bad, {"ToF", 0.35F, 0.22F, 0.03F});
+}
+
+bool in_rod(const Vector3d& p, const Vector3d& from, const Vector3d& to, double radius_mm) {
+    const double along = std::clamp((p - from).dot(to - from) / (to - from).squaredNorm(), 0.0, 1.0);
+    return (p - from - along * (to - from)).norm() < radius_mm;
+}
+
+/// What lies about a head on a CT's table.
+void add_what_lies_on_a_table(Cases& of) {
+    const double r = of.radius_mm();
+    const auto in_ct = [&](const std::string& name, Fate fate, float hu,
+                           std::function<bool(const Vector3d&, double out)> is_there) {
+        of.with(name, fate, std::move(is_there), hu);
+        of.all.back().only_ct = true;
+    };
+    in_ct("strap of 3 mm over the forehead", Fate::not_bad, -100,
+          [r](const Vector3d& p, double out) { return out < 3 && p.y() < 0.3 * r && std::abs(p.z() - 0.5 * r) < 20; });
+    in_ct("oxygen mask", Fate::said, 50, [r](const Vector3d& p, double) {
+        const double d = (p - Vector3d(0, -1.2 * r, -0.8 * r)).norm();
+        return d > 42 && d < 44;
+    });
+    in_ct("tube out of the mouth", Fate::not_bad, 100, [r](const Vector3d& p, double) {
+        return in_rod(p, {0, -0.9 * r, -1.1 * r}, {30, -2.0 * r, -1.4 * r}, 5);
+    });
+    in_ct("cable over cheek and forehead", Fate::not_bad, 500, [r](const Vector3d& p, double out) {
+        return out < 4 && p.y() < 0 && p.x() > 0 && std::abs(p.x() - 0.5 * r + 0.2 * p.z()) < 2.5;
+    });
+    in_ct("towel under the neck", Fate::said, -350, [r](const Vector3d& p, double out) {
+        return p.y() > 0 && out < 35 && std::abs(p.x()) < 80 && p.z() < -0.6 * r;
+    });
+    in_ct("towel round the crown", Fate::said, -350,
+          [r](const Vector3d& p, double out) { return out < 20 && p.z() > 0.6 * r; });
+    in_ct("wedges of foam with a cover at both sides", Fate::not_bad, -120, [r](const Vector3d& p, double out) {
+        return out < 2.5 && std::abs(p.x()) > 0.6 * r && p.y() > -0.6 * r && p.z() < 0.2 * r;
+    });
+    in_ct("pack of ice on one eye", Fate::said, 0,
+          [r](const Vector3d& p, double) { return (p - Vector3d(38, -1.25 * r, -0.3 * r)).norm() < 32; });
+    in_ct("pad of gel under the back of the head", Fate::said, 20, [r](const Vector3d& p, double out) {
+        return p.y() > 0.5 * r && out < 18 && std::abs(p.x()) < 70 && std::abs(p.z()) < 60;
+    });
+    of.made("arms beside the head", Fate::not_bad, [r](const Vector3d& p, double out, double, float& hu) {
+        const double axis = std::hypot(std::abs(p.x()) - 1.2 * r - 32, p.y());
+        const bool arm = out > 0 && axis < 38;
+        if (arm) hu = axis < 12 ? 800.0F : kWet_hu;
+        return out <= 0 || arm;
+    });
 }
 
 void add_what_a_ct_shows(Cases& of) {
@@ -288,6 +343,7 @@ std::vector<StrangeCase> strange_heads_of(const Volume& ct, const SkinMask& body
     add_heads_askew(of);
     add_rare_contrasts(of);
     add_what_a_ct_shows(of);
+    add_what_lies_on_a_table(of);
     return std::move(of.all);
 }
 

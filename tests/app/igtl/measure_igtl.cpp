@@ -1,70 +1,53 @@
-// measure_igtl [ROUNDS] [UPDATES] [SEED]: how much longer the updates of a session take while other systems listen. One
-// session in the simulated paper's room; in turn, so many updates each, nobody listens, one does, and eight, one of
-// which never reads. An update's time is the product's own (track, draw, check) and that of all observers in its
-// thread.
+// measure_igtl [REPLAYS] [EACH] [SEED]: how much longer the updates of a session take while other systems listen. One
+// session of the simulated paper's room is recorded with every frame and then replayed, REPLAYS times, as fast as it
+// can be computed, with the link on. In turn, EACH updates long and in an order drawn anew each time, nobody listens,
+// nobody once more (so that the noise of the machine is seen), one, eight, a slow one, a dead one and hostile ones. An
+// update's time is the product's own (track, draw, check) and that of telling the link, in the session's thread.
 #include <fmt/format.h>
 
 #include <time.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cstdlib>
-#include <memory>
-#include <mutex>
-#include <thread>
+#include <random>
 
-#include "app/evaluation/distribution.h"
 #include "app/igtl/session_link.h"
-#include "tests/app/igtl/tcp_client.h"
+#include "app/recording/replay_session.h"
+#include "tests/app/igtl/other_systems.h"
 #include "tests/app/played_session.h"
+#include "tests/support/test_data.h"
 
 namespace {
 
 using namespace planlight;
 using std::chrono::steady_clock;
+using test::Listening;
 
-constexpr std::array<int, 3> kListeners{0, 1, 8};
+/// Nobody twice, and then each of them.
+constexpr std::array kPhases{Listening::nobody, Listening::nobody, Listening::one,    Listening::eight,
+                             Listening::slow,   Listening::dead,   Listening::hostile};
 
-/// Of processor, by this thread.
 double thread_cpu_ms() {
     timespec time{};
     ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
     return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
 
-/// Systems that listen, all read by one thread, but for one of many that never reads; who was closed comes again.
-class Listeners {
-public:
-    Listeners(int port, int count) : deaf_(count > 1) {
-        for (int i = 0; i < count; ++i) clients_.push_back(std::make_unique<test::TcpClient>(port));
-        thread_ = std::thread([this, port] {
-            while (!ending_) {
-                for (std::size_t i = deaf_ ? 1 : 0; i < clients_.size(); ++i) {
-                    while (!clients_[i]->read_now().empty()) {
-                    }
-                    if (clients_[i]->gone()) clients_[i] = std::make_unique<test::TcpClient>(port);
-                }
-                std::this_thread::sleep_for(std::chrono::milliseconds(5));
-            }
-        });
-    }
-    ~Listeners() {
-        ending_ = true;
-        thread_.join();
-    }
-
-private:
-    bool deaf_;
-    std::vector<std::unique_ptr<test::TcpClient>> clients_;
-    std::atomic<bool> ending_{false};
-    std::thread thread_;
+/// Of one phase in one turn of all: an update's time, and what telling took of processor, ms.
+struct Block {
+    std::vector<double> ms, told_cpu_ms;
 };
+using Turn = std::array<Block, kPhases.size()>;
 
 /// Passes all to the link, and times it.
 class Timed final : public SessionObserver {
 public:
-    Timed(SessionLink& link, int updates_each) : link_(link), each_(updates_each) {}
-    std::array<std::vector<double>, 3> ms, told_cpu_ms;
+    Timed(SessionLink& link, const test::OtherSystems& others, int each, unsigned seed)
+        : link_(link), others_(others), each_(each), random_(seed) {
+        begin_turn();
+    }
+    /// Turns that came to their end.
+    std::vector<Turn> turns;
 
     void room_entered(const RoomFacts& room) noexcept override { link_.room_entered(room); }
     void asked(SessionCall call, const std::vector<PointPair>& landmarks, int which) noexcept override {
@@ -84,65 +67,131 @@ public:
     void gate(GateCall call, Instant at, double off_mm, const LightGate::Ruling* ruling) noexcept override {
         timed([&] { link_.gate(call, at, off_mm, ruling); });
         if (call != GateCall::step) return;
-        const std::size_t phase = static_cast<std::size_t>(count_ / each_) % kListeners.size();
-        if (lit_ && count_ % each_ >= kSettle) {
-            ms[phase].push_back(own_ms_ + told_);
-            told_cpu_ms[phase].push_back(told_cpu_);
+        Block& block = turn_[order_[phase_]];
+        if (lit_ && ++count_ > kSettle) {
+            block.ms.push_back(own_ms_ + told_ms_);
+            block.told_cpu_ms.push_back(told_cpu_ms_);
         }
-        told_ = told_cpu_ = 0;
-        if (++count_ % each_ == 0) {
-            listeners_.reset();
-            const int next = kListeners[static_cast<std::size_t>(count_ / each_) % kListeners.size()];
-            if (next > 0) listeners_ = std::make_unique<Listeners>(link_.port(), next);
+        told_ms_ = told_cpu_ms_ = 0;
+        if (count_ < each_ + kSettle) return;
+        count_ = 0;
+        if (++phase_ == kPhases.size()) {
+            turns.push_back(std::move(turn_));
+            begin_turn();
         }
+        others_.listen(kPhases[order_[phase_]], link_.port());
     }
 
 private:
     static constexpr int kSettle = 5;  ///< updates after the listeners changed, not counted
+    void begin_turn() {
+        turn_ = {};
+        phase_ = 0;
+        for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = i;
+        std::shuffle(order_.begin(), order_.end(), random_);
+    }
     template <class Tell>
     void timed(const Tell& tell) {
         const auto began = steady_clock::now();
         const double cpu_ms = thread_cpu_ms();
         tell();
-        told_cpu_ += thread_cpu_ms() - cpu_ms;
-        told_ += std::chrono::duration<double, std::milli>(steady_clock::now() - began).count();
+        told_cpu_ms_ += thread_cpu_ms() - cpu_ms;
+        told_ms_ += std::chrono::duration<double, std::milli>(steady_clock::now() - began).count();
     }
     SessionLink& link_;
+    const test::OtherSystems& others_;
     const int each_;
+    std::mt19937 random_;
+    Turn turn_;
+    std::array<std::size_t, kPhases.size()> order_{};
+    std::size_t phase_ = 0;
     int count_ = 0;
-    double own_ms_ = 0, told_ = 0, told_cpu_ = 0;
+    double own_ms_ = 0, told_ms_ = 0, told_cpu_ms_ = 0;
     bool lit_ = false;
-    std::unique_ptr<Listeners> listeners_;
 };
 
-double share(std::vector<double> values, double part) {
-    std::sort(values.begin(), values.end());
-    return values.empty() ? 0 : values[static_cast<std::size_t>(part * static_cast<double>(values.size() - 1))];
+double percentile(std::vector<double> values, double part) {
+    if (values.empty()) return 0;
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(part * static_cast<double>(values.size() - 1));
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
+}
+
+/// Of all turns, or of those that are named, with repetitions.
+std::vector<double> pooled(const std::vector<Turn>& turns, const std::vector<std::size_t>& which, std::size_t phase,
+                           std::vector<double> Block::*figure) {
+    std::vector<double> all;
+    for (const std::size_t turn : which) {
+        const auto& some = turns[turn][phase].*figure;
+        all.insert(all.end(), some.begin(), some.end());
+    }
+    return all;
+}
+
+/// What is between 2.5 and 97.5 % of such shares when turns are drawn anew (bootstrap over turns), in percent.
+std::pair<double, double> spread_percent(const std::vector<Turn>& turns, std::size_t phase, double part) {
+    constexpr int kDraws = 1000;
+    std::mt19937 random(1);
+    std::uniform_int_distribution<std::size_t> one(0, turns.size() - 1);
+    std::vector<double> shares;
+    for (int i = 0; i < kDraws; ++i) {
+        std::vector<std::size_t> which(turns.size());
+        for (auto& turn : which) turn = one(random);
+        shares.push_back(100 * (percentile(pooled(turns, which, phase, &Block::ms), part) /
+                                    percentile(pooled(turns, which, 0, &Block::ms), part) -
+                                1));
+    }
+    return {percentile(shares, 0.025), percentile(shares, 0.975)};
+}
+
+void print_table(const std::vector<Turn>& turns) {
+    std::vector<std::size_t> all(turns.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+    const double p50_of_none = percentile(pooled(turns, all, 0, &Block::ms), 0.5);
+    fmt::print(
+        "| who listens | updates | p50 ms | p95 ms | p99 ms | p50 against nobody | p99 against nobody (95 %) | telling "
+        "p50, p99 ms of processor |\n|---|---|---|---|---|---|---|---|\n");
+    for (std::size_t i = 0; i < kPhases.size(); ++i) {
+        const auto ms = pooled(turns, all, i, &Block::ms), told = pooled(turns, all, i, &Block::told_cpu_ms);
+        const double p99 = percentile(ms, 0.99), none = percentile(pooled(turns, all, 0, &Block::ms), 0.99);
+        const auto [low, high] = spread_percent(turns, i, 0.99);
+        fmt::print(
+            "| {}{} | {} | {:.2f} | {:.2f} | {:.2f} | {:+.1f} % | {:+.1f} % ({:+.1f} to {:+.1f}) | {:.3f}, {:.3f} |\n",
+            words_of(kPhases[i]), i == 1 ? ", once more" : "", ms.size(), percentile(ms, 0.5), percentile(ms, 0.95),
+            p99, 100 * (percentile(ms, 0.5) / p50_of_none - 1), 100 * (p99 / none - 1), low, high,
+            percentile(told, 0.5), percentile(told, 0.99));
+        std::fflush(stdout);
+    }
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    const int rounds = argc > 1 ? std::atoi(argv[1]) : 10, each = argc > 2 ? std::atoi(argv[2]) : 50;
+    const int replays = argc > 1 ? std::atoi(argv[1]) : 20, each = argc > 2 ? std::atoi(argv[2]) : 60;
+    const unsigned seed = argc > 3 ? static_cast<unsigned>(std::atoi(argv[3])) : 1;
+    const test::OtherSystems others;
     if (!test::example_case().there) return 77;
+    const test::TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "session.plrec";
+    test::PlayedSession how;
+    how.seed = seed;
+    how.updates = 120;
+    const test::PlayedResult played = test::record_session(how, test::example_case(), RecordMode::all, file);
+    fmt::print(stderr, "recorded: {} updates, \"{}\"\n", played.updates, played.headline);
     SessionLinkSettings settings;
     settings.server.port = 0;
+    settings.server.patience = std::chrono::milliseconds(500);  // so that who takes nothing is closed in each block
     SessionLink link(test::example_case().prepared, settings);
-    Timed timed(link, each);
-    test::PlayedSession how;
-    how.seed = argc > 3 ? static_cast<unsigned>(std::atoi(argv[3])) : 1;
-    how.updates = 3 * rounds * each;
-    const test::PlayedResult played = test::play_session(how, test::example_case(), &timed);
-    fmt::print("seed {}: {} updates, banner \"{}\"; clients taken {}, dropped {}, turned away {}\n", how.seed,
-               played.updates, played.headline, link.counts().taken, link.counts().dropped, link.counts().turned_away);
-    for (std::size_t i = 0; i < kListeners.size(); ++i)
-        fmt::print(
-            "{} listen{}: {} updates, p50 {:.2f} ms, p99 {:.2f} ms; telling them costs the session {:.3f} ms (p50), "
-            "{:.3f} ms (p99) of processor; against "
-            "nobody: p50 {:+.1f} %, p99 {:+.1f} %\n",
-            kListeners[i], kListeners[i] > 1 ? ", one never reads" : "", timed.ms[i].size(), share(timed.ms[i], 0.5),
-            share(timed.ms[i], 0.99), share(timed.told_cpu_ms[i], 0.5), share(timed.told_cpu_ms[i], 0.99),
-            100 * (share(timed.ms[i], 0.5) / share(timed.ms[0], 0.5) - 1),
-            100 * (share(timed.ms[i], 0.99) / share(timed.ms[0], 0.99) - 1));
+    Timed timed(link, others, each, seed);
+    for (int i = 0; i < replays; ++i) {
+        const ReplayResult result = replay_session(file, test::example_case().prepared, {}, &timed);
+        fmt::print(stderr, "replay {} of {}: {} updates, {} turns{}\n", i + 1, replays, result.updates,
+                   timed.turns.size(), result.difference ? ": " + result.difference->what : "");
+    }
+    const MessageServerCounts counts = link.counts();
+    fmt::print("seed {}: clients taken {}, closed by us {}, gone {}, turned away {}; {} turns of {} updates each\n\n",
+               seed, counts.taken, counts.dropped, counts.closed_by_them, counts.turned_away, timed.turns.size(), each);
+    if (timed.turns.empty()) return 1;
+    print_table(timed.turns);
     return 0;
 }

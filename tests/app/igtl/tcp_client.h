@@ -35,6 +35,12 @@ public:
         return bytes;
     }
     bool gone() const { return gone_; }
+    /// Without taking anything: whether the other side has closed the line.
+    void look_whether_gone() {
+        char one = 0;
+        const ssize_t got = ::send(socket_, &one, 1, MSG_DONTWAIT | MSG_NOSIGNAL);
+        gone_ = gone_ || (got < 0 && errno != EAGAIN && errno != EINTR);
+    }
     /// How many bytes of it went out.
     ssize_t write_now(const std::string& bytes) {
         return ::send(socket_, bytes.data(), bytes.size(), MSG_DONTWAIT | MSG_NOSIGNAL);

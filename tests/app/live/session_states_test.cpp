@@ -20,8 +20,7 @@ constexpr SessionHappening kHappenings[] = {SessionHappening::room_made,     Ses
                                             SessionHappening::match_found,   SessionHappening::match_unsure,
                                             SessionHappening::match_refused, SessionHappening::landmarks_seen,
                                             SessionHappening::skin_checked,  SessionHappening::match_offered,
-                                            SessionHappening::match_resumed, SessionHappening::match_resumed_unsure,
-                                            SessionHappening::failed};
+                                            SessionHappening::match_resumed, SessionHappening::failed};
 
 std::string name(SessionState state) {
     return view_of(state).name;

@@ -173,6 +173,7 @@ constexpr const char* kSaying[] = {
     "app/live/resume_steps.cpp",
     "app/live/session_states.cpp",
     "app/live/live_window.cpp",
+    "app/live/shown_replay.cpp",
     "app/live/real_room.cpp",
     "app/live/room_cameras.cpp",
     "app/live/projector_keeper.cpp",
@@ -323,7 +324,8 @@ TEST_P(ShippedWords, SayWholeSentencesAsASessionPutsThemTogether) {
           "well",
           "the scan alone: another pose fits nearly as well (ratio 1.13)",
           "Next best other pose fits inf times worse; 4 independent bases agree.",
-          "It belongs there: front, left, high (see the picture of the head). If it lies elsewhere on the patient, "
+          "It belongs there: at the front of the head, on the patient's left, towards the crown (see the picture of "
+          "the head). If it lies elsewhere on the patient, "
           "press "
           "Stop, and scan again.",
           "The skin was not checked: the markers were not seen: only 3 of 6 markers seen; 4 are needed; check it "

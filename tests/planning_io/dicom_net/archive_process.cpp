@@ -91,7 +91,7 @@ RunningProgram::~RunningProgram() {
     ::waitpid(process_, nullptr, 0);
 }
 
-Orthanc::Orthanc(const fs::path& folder, int port) : storage_(folder / "storage") {
+Orthanc::Orthanc(const fs::path& folder, int port, const std::string& settings) : storage_(folder / "storage") {
     peer_.host = "127.0.0.1";
     peer_.port = port;
     peer_.title = "ARCHIVE";
@@ -101,17 +101,50 @@ Orthanc::Orthanc(const fs::path& folder, int port) : storage_(folder / "storage"
         R"({{"Name": "test", "StorageDirectory": "{0}", "IndexDirectory": "{0}", "HttpServerEnabled": false,
 "DicomServerEnabled": true, "DicomAet": "ARCHIVE", "DicomCheckCalledAet": true, "DicomPort": {1},
 "DicomModalities": {{"planlight": ["PLANLIGHT", "127.0.0.1", 104]}}, "DicomAlwaysAllowEcho": false,
-"DicomAlwaysAllowStore": false, "Plugins": [], "MaximumStorageCacheSize": 0, "ConcurrentJobs": 1}})",
-        storage_.string(), port);
+"DicomAlwaysAllowStore": false, "Plugins": [], "MaximumStorageCacheSize": 0, "ConcurrentJobs": 1{2}}})",
+        storage_.string(), port, settings);
     program_ = std::make_unique<RunningProgram>(std::vector<std::string>{kOrthanc, (folder / "orthanc.json").string()},
                                                 folder / "orthanc.log");
 }
 
-std::unique_ptr<Orthanc> Orthanc::start(const fs::path& folder) {
+std::unique_ptr<Orthanc> Orthanc::start(const fs::path& folder, const std::string& settings, const DicomTls& tls) {
     if (!fs::exists(kOrthanc)) return nullptr;
-    std::unique_ptr<Orthanc> archive(new Orthanc(folder, free_port()));
+    std::unique_ptr<Orthanc> archive(new Orthanc(folder, free_port(), settings));
+    archive->peer_.tls = tls;
     if (!answers_soon(archive->peer())) return nullptr;
     return archive;
+}
+
+std::unique_ptr<Dcmqrscp> Dcmqrscp::start(const fs::path& folder, bool sends_only, int own_port) {
+    const fs::path program = "/usr/bin/dcmqrscp";
+    if (!fs::exists(program)) return nullptr;
+    auto archive = std::make_unique<Dcmqrscp>();
+    archive->storage_ = folder / "kept";
+    fs::create_directories(archive->storage_);
+    DicomPeer& peer = archive->peer_;
+    peer.host = "127.0.0.1";
+    peer.port = free_port();
+    peer.title = "ARCHIVE";
+    peer.patience = std::chrono::seconds(10);
+    std::ofstream(folder / "dcmqrscp.cfg")
+        << "NetworkTCPPort = " << peer.port << "\nMaxPDUSize = 16384\nMaxAssociations = 16\nHostTable BEGIN\n"
+        << (own_port > 0 ? fmt::format("planlight = (PLANLIGHT, 127.0.0.1, {})\n", own_port) : "")
+        << "HostTable END\nVendorTable BEGIN\nVendorTable END\nAETable BEGIN\nARCHIVE " << archive->storage_.string()
+        << " RW (200, 1024mb) ANY\nAETable END\n";
+    std::vector<std::string> words{program.string(), "-c", (folder / "dcmqrscp.cfg").string()};
+    if (sends_only) words.push_back("--disable-get");
+    archive->program_ = std::make_unique<RunningProgram>(words, folder / "dcmqrscp.log");
+    return answers_soon(peer) ? std::move(archive) : nullptr;
+}
+
+Certificate make_certificate(const fs::path& folder, const std::string& name, bool other_computer) {
+    const Certificate made{folder / (name + ".pem"), folder / (name + ".key")};
+    const std::string line = fmt::format(
+        "openssl req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN={} -addext subjectAltName={} -keyout '{}' -out "
+        "'{}' "
+        ">/dev/null 2>&1",
+        name, other_computer ? "DNS:another.example" : "IP:127.0.0.1", made.key.string(), made.certificate.string());
+    return std::system(line.c_str()) == 0 ? made : Certificate{};
 }
 
 CutLine::CutLine(int to_port, std::size_t bytes_from_there, std::size_t bytes_to_there)

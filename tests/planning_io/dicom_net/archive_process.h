@@ -36,17 +36,43 @@ private:
 class Orthanc {
 public:
     /// Empty where the package orthanc is not installed, or it does not answer in half a minute.
-    static std::unique_ptr<Orthanc> start(const std::filesystem::path& folder);
+    /// `settings`: further entries of its configuration (JSON, each with a comma before it). `tls`: how it is asked.
+    static std::unique_ptr<Orthanc> start(const std::filesystem::path& folder, const std::string& settings = {},
+                                          const DicomTls& tls = {});
     const DicomPeer& peer() const { return peer_; }
     /// Where it keeps the objects, a file each.
     std::filesystem::path storage() const { return storage_; }
 
 private:
-    Orthanc(const std::filesystem::path& folder, int port);
+    Orthanc(const std::filesystem::path& folder, int port, const std::string& settings);
     DicomPeer peer_;
     std::filesystem::path storage_;
     std::unique_ptr<RunningProgram> program_;
 };
+
+/// DCMTK's dcmqrscp on a free port of this computer, called ARCHIVE; it lists by its index, and gives what there are
+/// files of. It lets nothing be fetched (C-GET) where `sends_only`, and sends (C-MOVE) to PLANLIGHT at `own_port` of
+/// this computer; 0: it knows nobody.
+class Dcmqrscp {
+public:
+    /// Empty where the package dcmtk is not installed, or it does not answer in half a minute.
+    static std::unique_ptr<Dcmqrscp> start(const std::filesystem::path& folder, bool sends_only, int own_port);
+    const DicomPeer& peer() const { return peer_; }
+    const std::filesystem::path& storage() const { return storage_; }
+
+private:
+    DicomPeer peer_;
+    std::filesystem::path storage_;
+    std::unique_ptr<RunningProgram> program_;
+};
+
+/// A certificate with its key, as files.
+struct Certificate {
+    std::filesystem::path certificate, key;
+};
+/// One that signs itself, made out to `name` for 127.0.0.1 or, with `other_computer`, for another; by the program
+/// openssl. Empty files where that is not installed.
+Certificate make_certificate(const std::filesystem::path& folder, const std::string& name, bool other_computer = false);
 
 /// A line to another port of this computer that is cut after so many bytes from there, or to there.
 class CutLine {

@@ -255,19 +255,11 @@ TEST(NoArchive, OneThatOnlyTakesIsSaidWhenItIsSearched) {
 }
 
 TEST(NoArchive, HalfASeriesIsRefusedAndLeavesNothing) {
-    const fs::path program = "/usr/bin/dcmqrscp";  // lists by its index, and gives what there are files of
-    if (!fs::exists(program)) GTEST_SKIP() << "the package dcmtk is not installed";
     const test::TemporaryFolder folder;
-    const fs::path kept = folder.path() / "kept", got = folder.path() / "got";
-    fs::create_directories(kept);
-    const DicomPeer peer = peer_at(test::free_port());
-    std::ofstream(folder.path() / "dcmqrscp.cfg")
-        << "NetworkTCPPort = " << peer.port << "\nMaxPDUSize = 16384\nMaxAssociations = 16\nHostTable BEGIN\nHostTable "
-        << "END\nVendorTable BEGIN\nVendorTable END\nAETable BEGIN\nARCHIVE " << kept.string()
-        << " RW (200, 1024mb) ANY\nAETable END\n";
-    const test::RunningProgram archive({program.string(), "-c", (folder.path() / "dcmqrscp.cfg").string()},
-                                       folder.path() / "log");
-    ASSERT_TRUE(test::answers_soon(peer)) << read_whole(folder.path() / "log");
+    const auto archive = test::Dcmqrscp::start(folder.path(), false, 0);
+    if (!archive) GTEST_SKIP() << "the package dcmtk is not installed, or dcmqrscp does not start";
+    const fs::path kept = archive->storage(), got = folder.path() / "got";
+    const DicomPeer& peer = archive->peer();
     store_objects(peer, test::write_series(test::synthetic_series(test::Grid{}), folder.path() / "series"));
     const auto found = find_series(peer, {});
     ASSERT_EQ(found.size(), 1u);

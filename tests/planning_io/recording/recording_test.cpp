@@ -201,6 +201,20 @@ TEST(Recording, HostileBytesGiveNoChunkOrAWholeOneAndEndSoon) {
     }
 }
 
+/// A chunk that ends a recording is read to be judged, wanted or not: as many as a hostile file has.
+TEST(Recording, ManyEndsThatNobodyWantsAreReadOneByOne) {
+    const TemporaryFolder folder;
+    const fs::path file = folder.path() / "hostile.plrec";
+    std::string bytes = recording_header();
+    constexpr std::uint64_t kEnds = 300000;
+    for (std::uint64_t i = 0; i < kEnds; ++i) bytes += chunk_bytes({chunk_types::kDone, Instant(0), ""}, i);
+    put_bytes(file, bytes);
+    RecordingReader reader(file);
+    reader.want_only([](const ChunkType& type, Instant) { return type == chunk_types::kEvent; });
+    EXPECT_FALSE(reader.next());
+    EXPECT_EQ(reader.chunks(), kEnds);
+}
+
 // A thousand headers that each promise the rest of the file: read whole one by one that is 50 times the file and more.
 TEST(Recording, ASearchForWholeChunksEndsWithItsBudgetAndSaysThatItIsNotKnown) {
     const TemporaryFolder folder;

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace planlight {
+
+/// The plane between left and right of a head: its normal is (1, yaw, roll) normalised, `aside_mm` to the left of the
+/// skull's middle.
+struct MiddlePlane {
+    Eigen::Vector3d centre_in_ct = Eigen::Vector3d::Zero();
+    double yaw = 0, roll = 0, aside_mm = 0;
+
+    Eigen::Vector3d left_in_ct() const { return Eigen::Vector3d(1, yaw, roll).normalized(); }
+    /// How far to the left of the plane, mm.
+    double left_of(const Eigen::Vector3d& p_in_ct) const { return left_in_ct().dot(p_in_ct - centre_in_ct) - aside_mm; }
+    Eigen::Vector3d mirrored(const Eigen::Vector3d& p_in_ct) const {
+        return p_in_ct - 2 * left_of(p_in_ct) * left_in_ct();
+    }
+};
+
+}  // namespace planlight
