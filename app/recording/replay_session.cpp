@@ -251,6 +251,7 @@ private:
             case GateCall::step: {
                 const auto ruling = gate_.step(last_.frame.at, last_.overlay.lit, last_.light, last_.causes);
                 expect_ruling(session_events::gate(call, last_.frame.at, 0, &ruling), event, recorded);
+                if (watcher_) watcher_->gate(call, last_.frame.at, 0, &ruling);
                 return;
             }
         }
@@ -259,7 +260,6 @@ private:
     void expect_ruling(const std::string& now, const Json& event, const std::string& recorded) {
         if (now != recorded) throw ReplayDiffers{"the gate's decision, " + difference_of(event, Json::parse(now), {})};
         ++result_.rulings;
-        if (watcher_) watcher_->gate(call, last_.frame.at, 0, &ruling);
     }
 
     RecordingCursor& cursor_;
