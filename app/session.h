@@ -149,8 +149,8 @@ public:
     /// (`RenderSettings::others`); the light is measured on it alone. Empty: all are bright.
     void light_item(std::optional<std::size_t> which);
     std::optional<std::size_t> item_of_moment() const { return item_of_moment_; }
-    /// From the next `update` on this item of the plan is neither lit nor looked for. Until it is shown again, lit alone,
-    /// or the next match; landmarks are lit as ever. With all items hidden it is dark, and says so.
+    /// From the next `update` on this item of the plan is neither lit nor looked for. Until it is shown again, lit
+    /// alone, or the next match; landmarks are lit as ever. With all items hidden it is dark, and says so.
     void hide_item(std::size_t which);
     /// It is lit again. Empty: the whole plan is, and none is the item of the moment.
     void show_item(std::optional<std::size_t> which);
@@ -250,7 +250,7 @@ private:
     std::optional<std::size_t> lit_landmark_, item_of_moment_;
     std::set<std::size_t> hidden_;               ///< items of the plan
     std::optional<PlanDrawing> without_hidden_;  ///< the drawing without them; empty where there are none
-    Instant lit_since_ = Instant::max();  ///< light without a break; max: it is dark
+    Instant lit_since_ = Instant::max();         ///< light without a break; max: it is dark
     int updates_ = 0;
     bool confirmed_ = false;    ///< the last match, by the operator
     bool card_wanted_ = false;  ///< nobody has looked at a landmark of this match yet

@@ -11,7 +11,19 @@
 namespace planlight {
 
 /// What a session can be asked for.
-enum class SessionCall { scan, find_patient, confirm, update, check_skin, light_landmark, go_dark, light_item, resume, hide_item, show_item };
+enum class SessionCall {
+    scan,
+    find_patient,
+    confirm,
+    update,
+    check_skin,
+    light_landmark,
+    go_dark,
+    light_item,
+    resume,
+    hide_item,
+    show_item
+};
 
 /// What can be asked of a session's light gate.
 enum class GateCall { step, verify, skin_checked, new_match, restart, other_light, forbids };

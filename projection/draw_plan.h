@@ -69,7 +69,8 @@ struct PlanDrawing {
     std::vector<DrawnItem> items;
     std::vector<Stroke> strokes;
     std::vector<Label> labels;
-    /// Whose plan it is and on which side: `DrawingSettings::card`, of no item (-1); empty where no skin was free for it.
+    /// Whose plan it is and on which side: `DrawingSettings::card`, of no item (-1); empty where no skin was free for
+    /// it.
     std::optional<Label> card;
 };
 

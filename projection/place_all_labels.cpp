@@ -199,11 +199,16 @@ void AllLabels::put_card() {
     wish.gaps_mm = {9, 14, 20, 28, 38, 50};
     wish.leader = false;
     for (const LabelWish& item : wishes_) {
-        wish.anchors.push_back(item.anchors.front());
+        wish.anchors.insert(wish.anchors.end(), item.anchors.begin(), item.anchors.end());
         wish.keep_off_mm = std::max(wish.keep_off_mm, item.keep_off_mm);
         if (item.anchors.size() == 1) wish.others.push_back({item.anchors[0].p_in_ct, item.keep_off_mm});
     }
     drawing_.card = place_label(wish, skin_, settings_, occupied_);
+    if (drawing_.card || !settings_.light) return;
+    constexpr double kSteepest = 1.05;  // radians (60 degrees): rather aslant than not at all
+    DrawingSettings steeper = settings_;
+    steeper.light->steepest = std::max(kSteepest, steeper.light->steepest);
+    drawing_.card = place_label(wish, skin_, steeper, occupied_);
 }
 
 void AllLabels::place() {

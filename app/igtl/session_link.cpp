@@ -139,7 +139,8 @@ void SessionLink::clock_read(Instant now) noexcept {
 
 void SessionLink::asked(SessionCall call, const std::vector<PointPair>&, int) noexcept {
     if (call == SessionCall::update || call == SessionCall::light_item || call == SessionCall::light_landmark ||
-        call == SessionCall::hide_item || call == SessionCall::show_item) return;
+        call == SessionCall::hide_item || call == SessionCall::show_item)
+        return;
     tell([&] {
         if (call == SessionCall::confirm) {
             if (unconfirmed_) values_.patient_from_ct = unconfirmed_, values_.matched_utc_s = utc_now_s();

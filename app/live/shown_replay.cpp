@@ -95,7 +95,10 @@ public:
             delay_ms_ = 1000 * seconds(update.overlay.lit_from + session.found_delay() - update.pose.at);
             const auto plan = std::make_shared<PlanDrawing>(session.lit_drawing());
             change([&](OperatorModel& m) {
-                if (!m.scene.plan || m.scene.plan->items.size() != plan->items.size()) m.scene.plan = plan;
+                if (!m.scene.plan || m.scene.plan->items.size() != plan->items.size() ||
+                    m.scene.plan->strokes.size() != plan->strokes.size())
+                    m.scene.plan = plan;
+                for (std::size_t i = 0; i < m.rows.size(); ++i) m.rows[i].hidden = session.hidden_items().contains(i);
                 for (std::size_t i = 0; update.light && i < std::min(m.rows.size(), update.light->items.size()); ++i)
                     m.rows[i].light_off_mm =
                         update.light->items[i].known() ? std::optional(update.light->items[i].off_mm) : std::nullopt;

@@ -65,7 +65,8 @@ WindowLayout on_end(float w, float h) {
     place.banner = {gap, h - gap - banner, w - 2 * gap, banner};
     place.buttons = {gap, place.banner.y - gap - button, w - 2 * gap, button};
 
-    const float camera_width = std::round(std::min(0.33F * w, 0.186F * h)), camera_height = std::round(0.64F * camera_width);
+    const float camera_width = std::round(std::min(0.33F * w, 0.186F * h)),
+                camera_height = std::round(0.64F * camera_width);
     const float second_y = place.buttons.y - gap - camera_height, first_y = second_y - gap - camera_height;
     place.left_camera = {gap, first_y, camera_width, camera_height};
     place.right_camera = {gap, second_y, camera_width, camera_height};

@@ -23,7 +23,8 @@ Box fit_row(const Box& scene, float scale);
 /// The lowest button in the lower left corner of the 3-D view; the others stand above it.
 Box corner_button(const Box& scene, float scale);
 
-/// For a window of that size, at least 1280 x 720, or 720 x 1280 on end. Buttons are never lower than 72 pixels (20 mm on a 24 inch screen).
+/// For a window of that size, at least 1280 x 720, or 720 x 1280 on end. Buttons are never lower than 72 pixels (20 mm
+/// on a 24 inch screen).
 WindowLayout layout_of(int width, int height);
 
 }  // namespace planlight

@@ -45,10 +45,10 @@ struct PlayedSession {
     int updates = 60;           ///< while the plan is followed, about
     bool dark_in_scan = false;  ///< DARK is pressed in the middle of the first scan
     bool check_skin = false;
-    bool hide_items = false;  ///< the first is hidden, the second lit alone, then the whole plan again
+    bool hide_items = false;        ///< the first is hidden, the second lit alone, then the whole plan again
     std::vector<std::string> card;  ///< lit with the plan until it is verified
-    bool landmarks = false;  ///< clicked landmarks go into the match
-    std::string doubt;       ///< what the cameras say of themselves while the patient is followed, now and then
+    bool landmarks = false;         ///< clicked landmarks go into the match
+    std::string doubt;              ///< what the cameras say of themselves while the patient is followed, now and then
 };
 
 /// How it went.

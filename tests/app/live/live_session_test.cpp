@@ -235,12 +235,31 @@ bool says(const OperatorModel& model, const std::string& part) {
                        [&](const std::string& detail) { return detail.find(part) != std::string::npos; });
 }
 
+// From the first picture of the window to the first light that is verified, by the one key that leads on (Enter, or a
+// pedal): nothing is typed, nothing chosen.
+TEST_F(LiveSessionTest, TheKeyThatLeadsOnComesToVerifiedLightInSixPresses) {
+    int presses = 0;
+    std::string last;
+    for (;;) {
+        const OperatorModel model = wait_for(*session, "what leads on", [&](const OperatorModel& m) {
+            const bool same = m.next == OperatorAction::confirm && m.confirm_words == last;
+            return m.status.kind == StatusKind::aligned || (m.next != OperatorAction::none && !same);
+        });
+        if (model.status.kind == StatusKind::aligned) break;
+        last = model.confirm_words;
+        ASSERT_EQ(session->post(model.next), "") << "what leads on is possible";
+        ASSERT_LE(++presses, 12);
+    }
+    EXPECT_EQ(presses, 6) << "Scan, Register, Track, Show landmarks, Light 1 is right, Light 2 is right";
+}
+
 // CHECK measures the plan beside it as ever: the gate comes to its question, and the words ask to read the card.
 TEST_F(LiveSessionTest, TheCardWithThePatientsNameIsLitUntilALandmarkHasBeen) {
     followed();
     const auto asks = [](const OperatorModel& m) { return says(m, "Read the card on the skin"); };
-    const OperatorModel first = wait_for(
-        *session, "the card", [&](const OperatorModel& m) { return asks(m) && says(m, "two landmarks") && m.confirm; });
+    const OperatorModel first = wait_for(*session, "the question",
+                                         [&](const OperatorModel& m) { return says(m, "two landmarks") && m.confirm; });
+    EXPECT_TRUE(asks(first)) << first.status.details.back();
     for (const PlanRow& row : first.rows) EXPECT_LT(row.light_off_mm.value_or(0), 1);
     const long with_card = bright_pixels();
     for (int yes = 0; yes < 3; ++yes) {

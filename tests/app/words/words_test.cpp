@@ -217,9 +217,9 @@ const std::set<std::string> kNotShown{
     "osteotomy line", "cut plane",                      // in the place of a name
     // In the light of the projector, and names of faults on the terminal.
     "BOARD HERE", "INTO THE LIGHT", "MORE INTO THE PICTURE", "{} CAMERA BLIND", "{} EDGE NEARER",
-    "as a pose that is there", "outside the projector's light", "seen in part only", "too near",
-    "Not found", "Checking the skin", "Looking again",  // names of states, for the guide
-    "Only one",                                         // begins a sentence
+    "as a pose that is there", "outside the projector's light", "seen in part only", "too near", "Not found",
+    "Checking the skin", "Looking again",  // names of states, for the guide
+    "Only one",                            // begins a sentence
     "Show landmarks\"",
     // Said on the terminal, before there is a session.
     "the projector on {} is not the one that was measured on {}: its {} is {}, was {}",
