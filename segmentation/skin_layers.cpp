@@ -199,8 +199,8 @@ double boneless_share(const std::vector<Sample>& samples, HasBone&& has_bone) {
            static_cast<double>(samples.size());
 }
 
-/// Where what lies just under the surface is lighter than skin and fat; deeper where the edge is less sharp, or slices
-/// are thick.
+/// Where all that lies just under the surface is lighter than skin and fat; deeper where the edge is less sharp, or
+/// slices are thick.
 std::vector<Vector3d> light_patches(const std::vector<Sample>& samples, const Volume& volume, const TriangleMesh& skin,
                                     double edge_blur_mm) {
     std::vector<Vector3d> light, others;
@@ -209,7 +209,9 @@ std::vector<Vector3d> light_patches(const std::vector<Sample>& samples, const Vo
         const Vector3d& out = skin.normals_in_ct[s.vertex];
         const double step_mm = 1 / (voxel_from_ct * out).norm();
         const double at_mm = std::max({kLightAt_mm, kLightAt_blurs * step_mm, kLightAt_blurs * edge_blur_mm});
-        if (const double hu = s.at(at_mm); std::isfinite(hu)) (hu < kLight_hu ? light : others).push_back(s.at_in_ct);
+        double most = -INFINITY;  // thin skin over fat is denser further out
+        for (double d = at_mm / 2; d <= at_mm; d += kStep_mm / 2) most = std::max(most, s.at(d));
+        if (std::isfinite(most)) (most < kLight_hu ? light : others).push_back(s.at_in_ct);
     }
     return patches_of(light, others, kLightPatch_mm, kPatchLight);
 }

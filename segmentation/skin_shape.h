@@ -44,9 +44,8 @@ std::vector<CutSide> cut_sides_of(const TriangleMesh& skin, const HeadBall& ball
                                   const std::vector<std::uint8_t>& boneless);
 
 /// How far a nose stands out before the cheeks, mm, at the height where it does most; not a number where the volume
-/// ends above it or no front is in it. A head whose nose does not stand out straight ahead is looked at once more along
-/// its middle plane, and from above and below by up to 40 degrees: it may look aside, or lie with its chin on the
-/// chest.
+/// ends above it or no front is in it. Of a head whose middle plane shows that it
+/// looks aside it is sought along that plane, too.
 double nose_length_mm(const TriangleMesh& skin, const HeadBall& ball, const MiddlePlane& plane);
 
 }  // namespace planlight

@@ -24,8 +24,8 @@ p{margin:.8mm 0}.muted{color:#5b6470;font-size:8pt}
 table{border-collapse:collapse;width:100%}
 td,th{padding:.5mm 2mm .5mm 0;border-bottom:.2mm solid #d5d9df;text-align:left;vertical-align:top}
 th{color:#5b6470;font-weight:500;font-size:8pt}tr{break-inside:avoid}
-td.name{width:26%;overflow-wrap:anywhere}.plan td{padding:.35mm 2mm .35mm 0}.plan th{font-size:7.5pt;line-height:1.15}
-.plan td:last-child{min-width:19mm}.small{font-size:8pt;line-height:1.25}
+td.name{width:24%;overflow-wrap:anywhere}.plan td{padding:.35mm 2mm .35mm 0}.plan th{font-size:7.5pt;line-height:1.15}
+.plan td:last-child,.plan td:nth-child(7){min-width:19mm}.small{font-size:8pt;line-height:1.25}
 .plan td:nth-child(n+2):nth-child(-n+6),.plan td:nth-child(8){white-space:nowrap}
 .two{display:grid;grid-template-columns:1fr 1fr;gap:0 6mm;align-items:start}
 .two table{table-layout:fixed}.two td{overflow-wrap:anywhere}

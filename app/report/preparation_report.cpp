@@ -33,7 +33,7 @@ std::string figures_in_a_row(const std::vector<ReportPicture>& pictures, int col
     return html + "</div>";
 }
 
-/// What is said of several items of the plan is said once: "A, B, C: it has no depth".
+/// What is said of several items of the plan is said once: "A; B; C: it has no depth".
 std::vector<std::string> gathered(const std::vector<std::string>& warnings, const PlanDrawing& drawing) {
     std::vector<std::pair<std::string, std::string>> lines;  // whom it is said of, what
     for (const std::string& warning : warnings) {
@@ -47,7 +47,7 @@ std::vector<std::string> gathered(const std::vector<std::string>& warnings, cons
         if (said == lines.end())
             lines.emplace_back(of, what);
         else
-            said->first += ", " + of;
+            said->first += "; " + of;
     }
     std::vector<std::string> result;
     for (const auto& [of, what] : lines) result.push_back(of + what);

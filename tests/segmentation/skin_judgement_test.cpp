@@ -226,8 +226,8 @@ TEST(JudgeSkin, SaysWhereHairOrAClothLiesOnTheHeadInACt) {
     for (const SkinDoubt& d : bare.skin.doubts) ADD_FAILURE() << d.finding;
 }
 
-TEST(JudgeSkin, AFaceIsThereWhenTheChinIsOnTheChestOrTheHeadLooksAside) {
-    for (const Vector3d& about : {Vector3d(-1, 0, 0), Vector3d(1, 0, 0), Vector3d(0, 0, 1)})
+TEST(JudgeSkin, AFaceIsThereWhenTheHeadLooksAside) {
+    for (const Vector3d& about : {Vector3d(0, 0, -1), Vector3d(0, 0, 1)})
         for (const bool nose : {true, false}) {
             const Eigen::AngleAxisd turn(-35 * std::numbers::pi / 180, about);
             const Judged head =
