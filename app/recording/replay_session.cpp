@@ -218,7 +218,8 @@ private:
 
     void ask_gate(GateCall call, const Json& event, const std::string& recorded) {
         const Instant at(event.value("at_ns", std::int64_t{0}));
-        if (watcher_ && call != GateCall::step) watcher_->gate(call, at, event.value("off_mm", 0.0), nullptr);
+        if (watcher_ && call != GateCall::step && call != GateCall::forbids)
+            watcher_->gate(call, at, event.value("off_mm", 0.0), nullptr);
         switch (call) {
             case GateCall::verify:
                 gate_.verify(at);
@@ -238,11 +239,13 @@ private:
             case GateCall::forbids: {
                 const auto forbidden = gate_.forbids();
                 expect_ruling(session_events::gate(call, at, 0, forbidden ? &*forbidden : nullptr), event, recorded);
+                if (watcher_) watcher_->gate(call, at, 0, forbidden ? &*forbidden : nullptr);
                 return;
             }
             case GateCall::step: {
                 const auto ruling = gate_.step(last_.frame.at, last_.overlay.lit, last_.light, last_.causes);
                 expect_ruling(session_events::gate(call, last_.frame.at, 0, &ruling), event, recorded);
+                if (watcher_) watcher_->gate(call, last_.frame.at, 0, &ruling);
                 return;
             }
         }
@@ -251,7 +254,6 @@ private:
     void expect_ruling(const std::string& now, const Json& event, const std::string& recorded) {
         if (now != recorded) throw ReplayDiffers{"the gate's decision, " + difference_of(event, Json::parse(now), {})};
         ++result_.rulings;
-        if (watcher_) watcher_->gate(call, last_.frame.at, 0, &ruling);
     }
 
     RecordingCursor& cursor_;
