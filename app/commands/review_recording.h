@@ -9,9 +9,9 @@ namespace planlight {
 struct RecordingReviewOptions {
     std::filesystem::path recording;
     std::filesystem::path case_folder;  ///< for `at_s`; empty: where it was when it was recorded
-    std::filesystem::path out;   ///< folder, new, empty or of a former review; empty: beside the recording
-    double at_s = -1;            ///< of a picture; below 0: none
-    std::vector<double> clip_s;  ///< from, to; empty: none
+    std::filesystem::path out;          ///< folder, new, empty or of a former review; empty: beside the recording
+    double at_s = -1;                   ///< of a picture; below 0: none
+    std::vector<double> clip_s;         ///< from, to; empty: none
     bool json = false;
 };
 

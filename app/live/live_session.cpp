@@ -10,9 +10,8 @@ namespace planlight {
 namespace {
 
 // For an observer, in the order of their enumerations.
-constexpr std::array kActions{"none", "scan",    "register",      "track",      "stop",      "dark",
-                              "quit", "confirm", "use landmarks", "check skin", "light item",
-                              "hide item", "show item"};
+constexpr std::array kActions{"none",    "scan",          "register",   "track",      "stop",      "dark",     "quit",
+                              "confirm", "use landmarks", "check skin", "light item", "hide item", "show item"};
 constexpr std::array kStatusKinds{"ready", "scanning", "matching", "aligned", "check", "refused", "dark", "waiting"};
 
 }  // namespace

@@ -41,16 +41,16 @@ public:
     ~LiveSession();
 
     /// Queued; `dark` and `stop` overtake everything that waits. The model says so at once. Returns why it does nothing
-    /// in the state of now, as a sentence; empty: it is taken. `item`: of `light_item`, `hide_item` and `show_item`, empty
-    /// for the whole plan. `darks`: only while DARK was pressed so often.
+    /// in the state of now, as a sentence; empty: it is taken. `item`: of `light_item`, `hide_item` and `show_item`,
+    /// empty for the whole plan. `darks`: only while DARK was pressed so often.
     std::string post(OperatorAction action, AskedBy by = AskedBy::person, std::optional<std::size_t> item = {},
                      std::optional<std::uint64_t> darks = {});
 
     /// Finding the patient with these landmarks (none: without), clicked on the last scan; queued.
     std::string post_find_patient(std::vector<PointPair> landmarks);
 
-    /// `light_item`: this item of the plan alone is bright from now on (empty: all are). `hide_item`, `show_item`: it is
-    /// not lit, or it is again (empty: the whole plan). Queued.
+    /// `light_item`: this item of the plan alone is bright from now on (empty: all are). `hide_item`, `show_item`: it
+    /// is not lit, or it is again (empty: the whole plan). Queued.
     std::string post_item(OperatorAction action, std::optional<std::size_t> which);
 
     /// The projector was away: before the plan is lit again a short scan looks whether all is as it was.

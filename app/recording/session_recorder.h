@@ -107,7 +107,7 @@ private:
     bool scanning_ = false, first_of_scan_ = false;
     bool kept_frame_ = false;  ///< the last one
     std::atomic<bool> room_entered_{false};
-    std::string happening_;    ///< what the light was last; another is an event
+    std::string happening_;  ///< what the light was last; another is an event
     std::string said_;
     std::optional<NamesLeftOut> anonymous_;
     PlanRegion region_;  ///< by the last pose

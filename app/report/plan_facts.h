@@ -18,7 +18,7 @@ enum class Gravity { none, look, stop };
 struct PlanFact {
     std::string kind;  ///< "closed line", "borehole" ...
     std::string name;
-    std::string lit;  ///< the code that the light has in place of the name, "#2"; else empty
+    std::string lit;                  ///< the code that the light has in place of the name, "#2"; else empty
     std::optional<double> length_mm;  ///< of a line along the skin
     std::optional<double> depth_mm;   ///< of a way or a hole
     std::optional<double> diameter_mm;
