@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -147,25 +148,39 @@ std::string words_of(const MomentComparison::Place& place) {
                        std::abs(place.seen.off_mm), place.seen.sigma_mm);
 }
 
+/// x, y, width, height of the part of a picture that the plan is in, with some skin round it; of all of it where there
+/// is none.
+std::array<double, 4> round_the_plan(const std::vector<std::vector<Eigen::Vector2d>>& plan, const GrayImage& picture) {
+    constexpr double kMargin_px = 25;
+    Eigen::AlignedBox2d box;
+    for (const auto& line : plan)
+        for (const Eigen::Vector2d& p : line) box.extend(p);
+    const Eigen::AlignedBox2d all(Eigen::Vector2d(0, 0), Eigen::Vector2d(picture.width, picture.height));
+    if (!box.isEmpty())
+        box = all.intersection(Eigen::AlignedBox2d(box.min().array() - kMargin_px, box.max().array() + kMargin_px));
+    if (box.isEmpty()) box = all;
+    return {box.min().x(), box.min().y(), box.sizes().x(), box.sizes().y()};
+}
+
 std::string overlay(const MomentComparison& moment, std::size_t camera, const std::string& file,
                     const std::string& title) {
     const GrayImage& picture = moment.pictures[camera];
+    const std::array<double, 4> box = round_the_plan(moment.plan[camera], picture);
     std::string svg = fmt::format(
-        "<figure><svg class=\"compared\" viewBox=\"0 0 {0} {1}\" style=\"width:100%\"><image href=\"{2}\" "
-        "width=\"{0}\" "
-        "height=\"{1}\"/>",
-        picture.width, picture.height, xml_escaped(file));
+        "<figure><svg class=\"compared\" viewBox=\"{:.1f} {:.1f} {:.1f} {:.1f}\" style=\"width:100%\"><image "
+        "href=\"{}\" width=\"{}\" height=\"{}\"/>",
+        box[0], box[1], box[2], box[3], xml_escaped(file), picture.width, picture.height);
     // Pixel (0, 0) is the middle of the first one; in the page it begins there.
     for (const auto& line : moment.plan[camera]) {
-        svg += "<polyline fill=\"none\" stroke=\"#29c5ff\" stroke-opacity=\"0.75\" stroke-width=\"0.6\" points=\"";
+        svg += "<polyline fill=\"none\" stroke=\"#29c5ff\" stroke-opacity=\"0.75\" stroke-width=\"0.3\" points=\"";
         for (const Eigen::Vector2d& p : line) svg += fmt::format("{:.2f},{:.2f} ", p.x() + 0.5, p.y() + 0.5);
         svg += "\"/>";
     }
     for (const auto& place : moment.places)
         if (const auto& p = place.pixel[camera])
             svg += fmt::format(
-                "<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"3\" fill=\"{}\" fill-opacity=\"0.35\" stroke=\"{}\" "
-                "stroke-width=\"0.8\"><title>{}</title></circle>",
+                "<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"2.2\" fill=\"{}\" fill-opacity=\"0.35\" stroke=\"{}\" "
+                "stroke-width=\"0.4\"><title>{}</title></circle>",
                 p->x() + 0.5, p->y() + 0.5, colour_of(place.seen), colour_of(place.seen), xml_escaped(words_of(place)));
     return svg + "</svg><figcaption>" + title + "</figcaption></figure>";
 }
@@ -179,11 +194,11 @@ for (const svg of document.querySelectorAll("svg.compared")) svg.addEventListene
   let best = null, least = Infinity;
   for (const place of svg.querySelectorAll("circle")) {
     const d = Math.hypot(place.cx.baseVal.value - at.x, place.cy.baseVal.value - at.y);
-    place.setAttribute("r", 3);
+    place.setAttribute("r", 2.2);
     if (d < least) least = d, best = place;
   }
   if (!best) return;
-  best.setAttribute("r", 6);
+  best.setAttribute("r", 4);
   document.getElementById("picked").textContent = best.querySelector("title").textContent;
 });
 </script>)";

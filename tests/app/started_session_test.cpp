@@ -112,11 +112,20 @@ TEST_F(StartedSession, ThatIsKilledLeavesARecordingToGoOnWithAndNoReport) {
         EXPECT_FALSE(fs::exists(fs::path(now->recording).replace_extension(extension)));
 }
 
-TEST_F(StartedSession, WithoutAReportHasNone) {
-    const auto program = start({"--no-report", "--end-after-s", "1"});
+TEST_F(StartedSession, WithoutAReportHasNoneAndIsReplayedInTheWindow) {
+    const auto program = start({"--no-report", "--end-after-s", "1", "--record", "all"});
     EXPECT_EQ(program->wait(kLongest), 0) << program->said();
     EXPECT_FALSE(fs::exists(fs::path(recording()).replace_extension(".html")));
     EXPECT_EQ(program->said().find("The report of this session"), std::string::npos) << program->said();
+    const fs::path shots = folder_.path() / "shots";
+    StartedProgram replay(
+        *display_,
+        {"replay", recording().string(), "--show", "--close", "--speed", "10", "--screenshots", shots.string()},
+        folder_.path());
+    EXPECT_EQ(replay.wait(kLongest), 0) << replay.said();
+    EXPECT_NE(replay.said().find("Alike to the last digit: 1 scan, 1 match"), std::string::npos) << replay.said();
+    ASSERT_TRUE(fs::exists(shots));
+    EXPECT_FALSE(fs::is_empty(shots));
 }
 
 }  // namespace

@@ -1,0 +1,89 @@
+// Plan and light at a moment of a recorded session, measured anew from its pictures alone.
+#include "app/report/moment_comparison.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+
+#include "app/report/recording_review.h"
+#include "app/windows/camera_picture.h"
+#include "planning_io/files/image_file.h"
+#include "planning_io/files/safe_write.h"
+#include "planning_io/recording/recording_reader.h"
+#include "planning_io/types/error.h"
+#include "tests/app/played_session.h"
+#include "tests/support/test_data.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+/// A session of the simulated room with every frame, and what its own check said of the plan's light.
+class MomentOfSession : public ::testing::Test {
+protected:
+    void SetUp() override {
+        if (!test::example_case().there) GTEST_SKIP() << "the package invesalius-examples is not installed";
+        test::PlayedSession how;
+        how.seed = 5;
+        how.updates = 40;
+        test::record_session(how, test::example_case(), RecordMode::all, file_);
+        read();
+    }
+    /// The last update whose check looked at the whole plan, and the first frame of all.
+    void read() {
+        RecordingReader reader(file_);
+        std::optional<Instant> origin;
+        while (const auto chunk = reader.next()) {
+            if (chunk->type == chunk_types::kRoom) origin = chunk->at;
+            if (chunk->type == chunk_types::kFrame && first_frame_s_ < 0) first_frame_s_ = seconds(chunk->at - *origin);
+            if (chunk->type != chunk_types::kEvent) continue;
+            const Json event = Json::parse(chunk->payload);
+            if (!event.contains("check") || event["check"]["seen"].get<int>() < 20) continue;
+            check_ = event["check"];
+            lit_at_s_ = seconds(Instant(event["at_ns"].get<std::int64_t>()) - *origin);
+        }
+    }
+    const Case& the_case() const { return test::example_case().prepared; }
+    test::TemporaryFolder folder_;
+    const fs::path file_ = folder_.path() / "session.plrec";
+    double first_frame_s_ = -1, lit_at_s_ = -1;
+    Json check_;
+};
+
+TEST_F(MomentOfSession, IsMeasuredAnewAsTheSessionItselfMeasuredIt) {
+    ASSERT_GT(lit_at_s_, 0) << "the plan was never lit";
+    const MomentComparison moment = compare_moment(file_, lit_at_s_, the_case());
+    ASSERT_EQ(moment.why_not, "");
+    // The session asks who sees which place anew in eight parts, and this one frame at once: not the same places.
+    EXPECT_NEAR(moment.light.median_mm, check_["median_mm"].get<double>(), 0.06);
+    EXPECT_NEAR(moment.light.off_mm, check_["off_mm"].get<double>(), 0.2);
+    EXPECT_GT(moment.light.seen, 20);
+    ASSERT_EQ(moment.places.size(), moment.light.segments.size());
+    for (const auto& place : moment.places) {
+        EXPECT_FALSE(place.item.empty());
+        EXPECT_TRUE(place.pixel[0] || place.pixel[1]);
+    }
+    EXPECT_GT(moment.scene.width, 0);
+    const std::string csv = comparison_csv(moment);
+    EXPECT_EQ(static_cast<std::size_t>(std::count(csv.begin(), csv.end(), '\n')), moment.places.size() + 1);
+    const std::string page = comparison_section(moment, "left.png", "right.png", "head.png");
+    for (const char* words : {"mm beside the plan", "left.png", "right.png", "head.png", "<polyline"})
+        EXPECT_NE(page.find(words), std::string::npos) << words;
+    if (const char* folder = std::getenv("PLANLIGHT_PICTURES")) {  // to be looked at
+        write_png(rgb_of(brightened(moment.pictures[0])), fs::path(folder) / "left.png");
+        write_png(rgb_of(brightened(moment.pictures[1])), fs::path(folder) / "right.png");
+        write_png(moment.scene, fs::path(folder) / "head.png");
+        write_safely(fs::path(folder) / "index.html", review_page(time_line_of(file_), {}, page));
+    }
+    const MomentComparison dark = compare_moment(file_, first_frame_s_, the_case());
+    EXPECT_EQ(dark.why_not, "No patient had been found by then.");
+    Case another = the_case();
+    another.volume_hash = "0123456789abcdef";
+    EXPECT_THROW(compare_moment(file_, lit_at_s_, another), InputError);
+}
+
+}  // namespace
+}  // namespace planlight
