@@ -7,6 +7,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/language_option.h"
 #include "app/console.h"
+#include "app/live/live_window.h"
 #include "app/live/shown_replay.h"
 #include "app/recording/recording_head.h"
 #include "app/recording/replay_session.h"
@@ -95,6 +96,9 @@ int run_replay(const ReplayOptions& options) {
     if (folder.empty()) folder = head_of_recording(options.recording).case_folder;
     const Case the_case = read_case(folder);
     ReplayResult result;
+    if (options.show && !display_is_there())
+        throw DeviceError("Display", "no window can be opened here",
+                          "Start the program in a desktop session, or replay without --show.");
     if (options.show) {
         ShownReplaySettings window = options.window;
         window.words = words_of_window(options.language, read_site_settings());

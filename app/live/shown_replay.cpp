@@ -9,13 +9,11 @@
 
 #include "app/case_model.h"
 #include "app/live/live_view.h"
-#include "app/live/live_window.h"
 #include "app/live/scene_of_session.h"
 #include "app/live/session_states.h"
 #include "app/session_observer.h"
 #include "app/windows/operator_window.h"
 #include "planning_io/files/image_file.h"
-#include "planning_io/types/error.h"
 #include "planning_io/types/steady_clock.h"
 
 namespace planlight {
@@ -226,9 +224,6 @@ std::string words_of_end(const ReplayResult& result) {
 
 std::optional<ReplayResult> show_replay(const std::filesystem::path& recording, const Case& the_case,
                                         const ShownReplaySettings& settings) {
-    if (!display_is_there())
-        throw DeviceError("Display", "no window can be opened here",
-                          "Start the program in a desktop session, or replay without --show.");
     WindowSettings window_settings;
     window_settings.words = settings.words;
     OperatorWindow window(window_settings);

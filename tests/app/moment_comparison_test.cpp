@@ -6,12 +6,16 @@
 #include <cstdlib>
 #include <nlohmann/json.hpp>
 
+#include "app/recording/recording_head.h"
 #include "app/report/recording_review.h"
+#include "app/session.h"
 #include "app/windows/camera_picture.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/files/safe_write.h"
+#include "planning_io/plan/plan_file.h"
 #include "planning_io/recording/recording_reader.h"
 #include "planning_io/types/error.h"
+#include "registration/simulation/simulated_rig.h"
 #include "tests/app/played_session.h"
 #include "tests/support/test_data.h"
 
@@ -26,10 +30,22 @@ class MomentOfSession : public ::testing::Test {
 protected:
     void SetUp() override {
         if (!test::example_case().there) GTEST_SKIP() << "the package invesalius-examples is not installed";
-        test::PlayedSession how;
-        how.seed = 5;
-        how.updates = 40;
-        test::record_session(how, test::example_case(), RecordMode::all, file_);
+        simulation::RoomSettings papers;
+        papers.preset = simulation::Preset::paper;
+        papers.seed = 5;
+        simulation::SimulatedRig room(test::example_case().volume, points_of(the_case().plan), papers);
+        SessionRecorder recorder(std::make_unique<RecordingFile>(file_),
+                                 recording_head(the_case(), folder_.path(), RecordMode::all, {}));
+        recorder.room_entered({"A room", true, {}, room.calibration(), {}, room.clock().now()});
+        const CaseDrawing drawing(the_case());
+        SessionSettings settings;
+        settings.observer = &recorder;
+        Session session(the_case(), drawing, room.calibration(), room.projector(), room.cameras(), room.clock(),
+                        settings);
+        session.scan();
+        ASSERT_EQ(session.find_patient().verdict, Verdict::yes);
+        for (int i = 0; i < 8; ++i) session.update();
+        ASSERT_EQ(recorder.finish(), "");
         read();
     }
     /// The last update whose check looked at the whole plan, and the first frame of all.

@@ -156,7 +156,7 @@ TEST(Recording, AChunkTakenOutOrExchangedIsNoticed) {
 TEST(Recording, ADiskThatDoesNotGiveItsBytesIsNoCut) {
     const TemporaryFolder folder;
     const fs::path file = folder.path() / "session.plrec";
-    write_recording(file, 300);
+    write_recording(file, 3000);  // more than is read at once
     RecordingReader reader(file);
     // What was there when it was opened is gone, as it is behind a bad block or a network that broke.
     fs::resize_file(file, fs::file_size(file) / 2);
