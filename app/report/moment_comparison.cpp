@@ -113,7 +113,7 @@ std::vector<std::vector<Eigen::Vector2d>> seen_by(const CameraModel& camera, con
 
 /// Each place as a short line along the stroke, where its light was seen.
 std::shared_ptr<const std::vector<LightLine>> light_as_seen(const LightCheck& light) {
-    constexpr double kHalf_mm = 1.5, kAbove_mm = 0.3;
+    constexpr double kHalf_mm = 1.5, kAbove_mm = 1.2;
     auto lines = std::make_shared<std::vector<LightLine>>();
     for (const SeenSegment& s : light.segments) {
         if (!s.seen) continue;

@@ -42,7 +42,7 @@ constexpr std::array kPhaseWords{"before the scan", "scanning", "finding the pat
 struct Told {
     std::atomic<bool> began{false}, match_written{false}, match_handed_over{false}, done{false};
     std::atomic<std::uint64_t> written{0}, updates{0};
-    std::atomic<double> share{0};  ///< of the session that is over
+    std::atomic<int> frames{0};  ///< that the session has taken, of its scan too
     std::atomic<Phase> phase{Phase::starting};
 };
 
@@ -81,6 +81,7 @@ public:
         if (call == SessionCall::scan) told_.phase = Phase::scanning;
         if (call == SessionCall::update) told_.phase = Phase::following;
     }
+    void frame_taken(const StereoFrame&) noexcept override { ++told_.frames; }
     void scanned(const Session&) noexcept override { told_.phase = Phase::scanned; }
     void matched(const Session&) noexcept override {
         told_.phase = Phase::matched;
@@ -102,8 +103,7 @@ int record(const fs::path& devices, const fs::path& case_folder, const fs::path&
     SessionObservers both;
     both.add(&telling);  // before the recorder has it: else a match may be in the file that nobody told of
     both.add(&recorder);
-    const ReplayResult result = replay_session(
-        devices, the_case, [&](double share) { told.share = share; }, both.all());
+    const ReplayResult result = replay_session(devices, the_case, {}, both.all());
     recorder.finish();
     told.done = true;
     return result.difference ? 1 : 0;
@@ -145,21 +145,23 @@ public:
         lasts_s_ = std::chrono::duration<double>(steady_clock::now() - began).count();
         RecordingReader reader(folder_ / "whole.plrec");
         events_ = events_of(folder_ / "whole.plrec", reader);
+        frames_ = told->frames;
         ::munmap(told, sizeof(Told));
     }
     double lasts_s() const { return lasts_s_; }
 
-    /// When that share of the session is over, and so much later.
+    /// When that share of the session's frames is taken, and so much later.
     void kill_one(RecordMode mode, double share, std::chrono::microseconds later, Sums& sums) {
         const std::string name = "killed";
         const auto [child, told] = start(name, mode);
         // Until its first chunk is there it is no recording yet, only a file's name.
         while (told->written == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-        while (told->share < share && !told->done) std::this_thread::sleep_for(std::chrono::microseconds(200));
+        const int frames = static_cast<int>(share * (frames_ + 1));
+        while (told->frames < frames && !told->done) std::this_thread::sleep_for(std::chrono::microseconds(200));
         std::this_thread::sleep_for(later);
         ::kill(child, SIGKILL);
         ::waitpid(child, nullptr, 0);
-        sums.tenths[std::min<std::size_t>(9, static_cast<std::size_t>(10 * told->share))]++;
+        sums.tenths[static_cast<std::size_t>(std::min(9, 10 * told->frames / frames_))]++;
         ++sums.phases[told->done ? "ended before it was killed"
                                  : kPhaseWords[static_cast<std::size_t>(told->phase.load())]];
         const fs::path file = folder_ / (name + ".plrec");
@@ -227,6 +229,7 @@ private:
     const fs::path program_, folder_, devices_, case_folder_;
     std::vector<std::string> events_;  ///< of the session that nobody killed
     double lasts_s_ = 0;
+    int frames_ = 1;  ///< of it
 };
 
 void print(const Sums& sums, int count) {
@@ -235,7 +238,7 @@ void print(const Sums& sums, int count) {
         "the session ({} chunks; {} with the beginning of a chunk behind them, which is left out; {} had ended by "
         "themselves); {} offer a match\n",
         sums.opened, count, sums.ended, count, sums.chunks, sums.torn, sums.whole, sums.offered);
-    fmt::print("killed in the tenths of the session: {}\n", fmt::join(sums.tenths, ", "));
+    fmt::print("killed in the tenths of the session's frames: {}\n", fmt::join(sums.tenths, ", "));
     for (const auto& [phase, times] : sums.phases) fmt::print("killed while {}: {}\n", phase, times);
     for (const auto& [why, times] : sums.why_none) fmt::print("no match offered, {}: {}\n", why, times);
     for (const std::string& fault : sums.faults) fmt::print("FAULT: {}\n", fault);
@@ -260,7 +263,7 @@ int main(int argc, char** argv) {
     fmt::print("A session lasts {:.1f} s.\n", kills.lasts_s());
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> share(0, 1);
-    std::uniform_int_distribution<int> later_us(0, 30000);  // into a step: how far it is is told between two of them
+    std::uniform_int_distribution<int> later_us(0, 30000);  // a frame takes about so long
     Sums sums;
     for (int i = 0; i < count; ++i) {
         kills.kill_one(i % 2 == 0 ? RecordMode::events : RecordMode::all, share(random),
