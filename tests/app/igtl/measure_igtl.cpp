@@ -12,7 +12,10 @@
 #include <random>
 
 #include "app/igtl/session_link.h"
+#include "app/recording/recording_head.h"
 #include "app/recording/replay_session.h"
+#include "planning_io/plan/plan_file.h"
+#include "registration/simulation/simulated_rig.h"
 #include "tests/app/igtl/other_systems.h"
 #include "tests/app/played_session.h"
 #include "tests/support/test_data.h"
@@ -60,16 +63,17 @@ public:
     void refused(SessionCall call, const std::exception& why) noexcept override { link_.refused(call, why); }
     void updated(const Session& session, const Session::Update& update) noexcept override {
         timed([&] { link_.updated(session, update); });
-        own_ms_ = 1e3 * update.times.total_s();
-        lit_ = update.overlay.lit;
+        const LightGate::Ruling ruling = gate_.step(update.frame.at, update.overlay.lit, update.light, update.causes);
+        timed([&] { link_.gate(GateCall::step, update.frame.at, 0, &ruling); });
+        end_of_update(1e3 * update.times.total_s(), update.overlay.lit);
     }
-    /// The end of an update.
-    void gate(GateCall call, Instant at, double off_mm, const LightGate::Ruling* ruling) noexcept override {
-        timed([&] { link_.gate(call, at, off_mm, ruling); });
-        if (call != GateCall::step) return;
+
+private:
+    static constexpr int kSettle = 5;  ///< updates after the listeners changed, not counted
+    void end_of_update(double own_ms, bool lit) {
         Block& block = turn_[order_[phase_]];
-        if (lit_ && ++count_ > kSettle) {
-            block.ms.push_back(own_ms_ + told_ms_);
+        if (lit && ++count_ > kSettle) {
+            block.ms.push_back(own_ms + told_ms_);
             block.told_cpu_ms.push_back(told_cpu_ms_);
         }
         told_ms_ = told_cpu_ms_ = 0;
@@ -82,8 +86,6 @@ public:
         others_.listen(kPhases[order_[phase_]], link_.port());
     }
 
-private:
-    static constexpr int kSettle = 5;  ///< updates after the listeners changed, not counted
     void begin_turn() {
         turn_ = {};
         phase_ = 0;
@@ -106,8 +108,8 @@ private:
     std::array<std::size_t, kPhases.size()> order_{};
     std::size_t phase_ = 0;
     int count_ = 0;
-    double own_ms_ = 0, told_ms_ = 0, told_cpu_ms_ = 0;
-    bool lit_ = false;
+    double told_ms_ = 0, told_cpu_ms_ = 0;
+    LightGate gate_;  // the recorded session has none: nobody stops its light
 };
 
 double percentile(std::vector<double> values, double part) {
@@ -164,6 +166,27 @@ void print_table(const std::vector<Turn>& turns) {
     }
 }
 
+/// A session without a window and without a gate, so that it waits for nothing.
+void record(const std::filesystem::path& file, unsigned seed) {
+    constexpr int kUpdates = 80;
+    const Case& the_case = test::example_case().prepared;
+    simulation::RoomSettings papers;
+    papers.preset = simulation::Preset::paper;
+    papers.seed = seed;
+    simulation::SimulatedRig room(test::example_case().volume, points_of(the_case.plan), papers);
+    SessionRecorder recorder(std::make_unique<RecordingFile>(file),
+                             recording_head(the_case, file.parent_path(), RecordMode::all, {}));
+    recorder.room_entered({"A room", true, {}, room.calibration(), {}, room.clock().now()});
+    const CaseDrawing drawing(the_case);
+    SessionSettings settings;
+    settings.observer = &recorder;
+    Session session(the_case, drawing, room.calibration(), room.projector(), room.cameras(), room.clock(), settings);
+    session.scan();
+    session.find_patient();
+    session.confirm();
+    for (int i = 0; i < kUpdates; ++i) session.update();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -173,11 +196,7 @@ int main(int argc, char** argv) {
     if (!test::example_case().there) return 77;
     const test::TemporaryFolder folder;
     const std::filesystem::path file = folder.path() / "session.plrec";
-    test::PlayedSession how;
-    how.seed = seed;
-    how.updates = 120;
-    const test::PlayedResult played = test::record_session(how, test::example_case(), RecordMode::all, file);
-    fmt::print(stderr, "recorded: {} updates, \"{}\"\n", played.updates, played.headline);
+    record(file, seed);
     SessionLinkSettings settings;
     settings.server.port = 0;
     settings.server.patience = std::chrono::milliseconds(500);  // so that who takes nothing is closed in each block
