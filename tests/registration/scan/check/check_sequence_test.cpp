@@ -141,6 +141,17 @@ TEST(CheckSequence, ThePictureIsNamed) {
         << said(check);
 }
 
+/// Light that comes later than is waited for: the first picture is dark still, each of the others is the one before it.
+TEST(CheckSequence, LightThatIsLateFromTheBeginningIsCalledLateAndNotUnsteady) {
+    std::vector<GrayImage> frames = with_noise(head().frames, 1.5, 3);
+    const GrayImage black = frames[1];
+    std::rotate(frames.rbegin(), frames.rbegin() + 1, frames.rend());
+    frames.front() = black;
+    const SequenceCheck check = check_sequence(frames, head().stripes);
+    ASSERT_FALSE(check.problems.empty());
+    EXPECT_EQ(check.problems.front().cause, SequenceProblem::Cause::timing) << said(check);
+}
+
 TEST(CheckSequence, SwappedFineBitsAreNoticed) {
     const auto sequence = stripe_sequence(head().stripes);
     std::size_t finest = 0;
