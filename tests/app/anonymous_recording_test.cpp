@@ -89,7 +89,7 @@ TEST(Anonymous, LeavesFiguresTimesAndWordsAsTheyAre) {
     NamesLeftOut names(the_case);
     names.add_items(drawing);
     const auto out = nlohmann::json::parse(names.out_of(
-        R"({"utc":"2026-10-10T10:10:10Z","rig_hash":"10ab","said":""A" of Li lies 1.0 mm off, 11.04 at 10 s: LOOK At the Light","version":"1.0","items":["A"],"case":"Meier"})"));
+        R"({"utc":"2026-10-10T10:10:10Z","rig_hash":"10ab","said":"\"A\" of Li lies 1.0 mm off, 11.04 at 10 s: LOOK At the Light","version":"1.0","items":["A"],"case":"Meier"})"));
     EXPECT_EQ(out["utc"], "2026-10-10T10:10:10Z");
     EXPECT_EQ(out["rig_hash"], "10ab");
     EXPECT_EQ(out["said"], "\"item 1\" of … lies 1.0 mm off, 11.04 at 10 s: LOOK At the Light");
