@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "planning_io/types/error.h"
 #include "segmentation/boneless_ends.h"
@@ -152,12 +153,15 @@ void judge_edges(const SkinMask& mask, SkinJudgement& r) {
 }
 
 void judge_things(SkinJudgement& r) {
-    if (std::isnan(r.one_sided_cm2) || std::isnan(r.bumps_cm2) || std::isnan(r.width))
+    std::string unasked;
+    for (const auto& [figure, what] :
+         {std::pair{r.one_sided_cm2, "at one side"}, {r.bumps_cm2, "small things"}, {r.width, "at both sides"}})
+        if (std::isnan(figure)) unasked += (unasked.empty() ? "" : ", ") + std::string(what);
+    if (!unasked.empty())
         add(r.doubts,
-            fmt::format("Whether something lies on the skin ({}{}{}) could not be asked: too little of the head is in "
+            fmt::format("Whether something lies on the skin ({}) could not be asked: too little of the head is in "
                         "the volume",
-                        std::isnan(r.one_sided_cm2) ? "at one side" : "",
-                        std::isnan(r.bumps_cm2) ? ", small things" : "", std::isnan(r.width) ? ", at both sides" : ""),
+                        unasked),
             kLook);
     if (r.one_sided_cm2 > kOneSided_cm2)
         add(r.doubts,
