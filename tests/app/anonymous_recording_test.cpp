@@ -102,10 +102,10 @@ TEST(AnonymousRecording, HoldsNoNameAndNoFace) {
     if (!test::example_case().there) GTEST_SKIP() << "the package invesalius-examples is not installed";
     const test::TemporaryFolder folder;
     const fs::path file = folder.path() / "anonymous.plrec";
-    Case named = test::example_case().prepared;
+    test::ExampleCase patient = test::example_case();
+    Case& named = patient.prepared;
     named.names.patient = "Xaverl Q.", named.names.title = "Xaverl's head";
-    std::vector<std::string> items;
-    for (const auto& hole : named.plan.boreholes) items.push_back(hole.name);
+    for (auto& hole : named.plan.boreholes) hole.name = "Xaverl's " + hole.name;
     {
         RecordingHead head = recording_head(named, "/home/xaverl/cases", RecordMode::events, {});
         SessionRecorder recorder(std::make_unique<RecordingFile>(file), without_names(head), {}, {},
@@ -113,18 +113,18 @@ TEST(AnonymousRecording, HoldsNoNameAndNoFace) {
         test::PlayedSession how;
         how.seed = 31;
         how.updates = 20;
-        test::play_session(how, test::example_case(), &recorder);
+        test::play_session(how, patient, &recorder);
     }
     RecordingReader reader(file);
     int frames = 0, sharp = 0;
+    bool items_named = false;
     while (const auto chunk = reader.next()) {
         EXPECT_NE(chunk->type, chunk_types::kMatch);
         EXPECT_NE(chunk->type, chunk_types::kPicture) << "the names of the items stand in it as light";
         if (chunk->type == chunk_types::kEvent || chunk->type == chunk_types::kHead ||
             chunk->type == chunk_types::kRoom) {
             EXPECT_EQ(chunk->payload.find("averl"), std::string::npos) << chunk->payload.substr(0, 300);
-            for (const std::string& name : items)
-                EXPECT_EQ(chunk->payload.find('"' + name + '"'), std::string::npos) << name;
+            items_named |= chunk->payload.find("\"item 2\"") != std::string::npos;
         }
         if (chunk->type != chunk_types::kFrame) continue;
         ++frames;
@@ -138,6 +138,7 @@ TEST(AnonymousRecording, HoldsNoNameAndNoFace) {
         EXPECT_LT(share, 0.35) << "the example's plan covers less than a third of the picture";
         sharp += share > 0.01;
     }
+    EXPECT_TRUE(items_named) << "of items without a name there is nothing to be left out";
     EXPECT_GT(frames, 3);
     EXPECT_GT(sharp, 0) << "round the plan the light can be looked at";
 }
