@@ -236,21 +236,40 @@ TEST(SessionLink, AMatchThatNeedsAPersonsLookIsSaidToNobodyBeforeItHasHadIt) {
     EXPECT_TRUE(std::none_of(second_ask, all.end(), tells_of_the_match)) << "of a match that nobody has looked at";
 }
 
-TEST(SessionLink, NamesAreSaidWhereTheSiteSaysSo) {
-    Case the_case;
-    the_case.names.title = "Erika Mustermann, frontal defect";
+/// All that another system hears of this case, and of a gate that names an item.
+std::vector<ReceivedMessage> heard_of(const Case& the_case, bool names) {
     SessionLinkSettings settings;
     settings.server.port = 0;
-    settings.names = true;
+    settings.names = names;
     auto link = std::make_unique<SessionLink>(the_case, settings);
+    LightGate::Ruling ruling;
+    ruling.trust = LightTrust::look;
+    ruling.headline = "LOOK: \"Erika's line\" is not measured.";
+    link->gate(GateCall::step, {}, 0, &ruling);
     test::IgtlReceiver receiver(link->port());
     while (link->counts().clients == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
     std::this_thread::sleep_for(std::chrono::milliseconds(100));
     link.reset();
-    const auto& all = receiver.all();
-    EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const ReceivedMessage& message) {
-        return message.device == "Case" && message.text.find("Erika") != std::string::npos;
-    }));
+    return receiver.all();
+}
+
+bool says(const std::vector<ReceivedMessage>& all, const std::string& device, const std::string& words) {
+    return std::any_of(all.begin(), all.end(), [&](const ReceivedMessage& message) {
+        return message.device == device && message.text.find(words) != std::string::npos;
+    });
+}
+
+TEST(SessionLink, NamesAreSaidWhereTheSiteSaysSoAndElseLeftOut) {
+    Case the_case;
+    the_case.names.title = "Erika Mustermann, frontal defect";
+    the_case.names.patient = "Erika";
+    const auto named = heard_of(the_case, true);
+    EXPECT_TRUE(says(named, "Case", "Erika"));
+    EXPECT_TRUE(says(named, "Gate", "Erika"));
+    const auto unnamed = heard_of(the_case, false);
+    EXPECT_TRUE(says(unnamed, "Gate", "is not measured"));
+    for (const ReceivedMessage& message : unnamed)
+        EXPECT_EQ(message.text.find("Erika"), std::string::npos) << message.device << ": " << message.text;
 }
 
 TEST(SessionLink, ASessionThatSaysNothingMoreIsCalledStale) {
