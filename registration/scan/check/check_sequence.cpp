@@ -22,8 +22,9 @@ void check_ends(const Samples& s, SequenceCheck& check) {
     constexpr double kMost = 0.05, kNearlyAll = 0.9;
     if (const double share = share_of(s.not_white, s.changing); check.checked && share > kMost)
         check.problems.push_back({s.white, "white is not the brightest", share,
-                                  // No lamp does that everywhere: its light had not arrived yet.
-                                  share > kNearlyAll ? SequenceProblem::Cause::timing : SequenceProblem::Cause::light});
+                                  // White as dark as black everywhere: its light had not arrived yet.
+                                  share_of(s.dark_white, s.changing) > kNearlyAll ? SequenceProblem::Cause::timing
+                                                                                  : SequenceProblem::Cause::light});
     if (check.checked && share_of(s.not_black, s.changing) > kMost)
         check.problems.push_back(
             {s.black, "black is not the darkest", share_of(s.not_black, s.changing), SequenceProblem::Cause::light});

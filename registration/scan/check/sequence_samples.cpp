@@ -135,6 +135,7 @@ std::vector<std::size_t> choose_lit(Samples& s) {
                   white = s.here[s.white][i], black = s.here[s.black][i];
         const bool is_white = high[i] - white <= allowed, is_black = black - low[i] <= allowed;
         s.not_white += !is_white;
+        s.dark_white += !is_white && white - low[i] <= allowed;
         s.not_black += !is_black;
         if (is_white && is_black && white - black >= kLit_grey && white < kBright_grey) lit.push_back(i);
     }

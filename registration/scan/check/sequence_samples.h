@@ -44,9 +44,10 @@ struct Samples {
            dark_noise_grey = 0;    ///< one sigma, as measured where there is light and where not
     int least_change = kLit_grey;  ///< more is light
     std::size_t changing = 0, not_white = 0,
-                not_black = 0;  ///< pixels in which any light changes; white (black) is not the end
-    std::size_t lit = 0;        ///< pixels kept: white and black are the ends, and apart
-    std::vector<Bytes> here;    ///< per frame
+                not_black = 0;   ///< pixels in which any light changes; white (black) is not the end
+    std::size_t dark_white = 0;  ///< of not_white: nearly as dark as the darkest frame
+    std::size_t lit = 0;         ///< pixels kept: white and black are the ends, and apart
+    std::vector<Bytes> here;     ///< per frame
     /// The same kFlat_px to the left, right, above and below; empty for the frames of fringes.
     std::vector<std::array<Bytes, 4>> around;
     std::vector<std::int16_t> contrast, contrast_right, contrast_below;  ///< white - black

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <utility>
 
@@ -150,6 +151,20 @@ TEST(CheckSequence, LightThatIsLateFromTheBeginningIsCalledLateAndNotUnsteady) {
     const SequenceCheck check = check_sequence(frames, head().stripes);
     ASSERT_FALSE(check.problems.empty());
     EXPECT_EQ(check.problems.front().cause, SequenceProblem::Cause::timing) << said(check);
+}
+
+TEST(CheckSequence, AnExposureThatFollowsThePictureIsNotCalledLate) {
+    std::vector<GrayImage> frames = head().frames;
+    for (GrayImage& frame : frames) {  // the camera makes half-lit pictures as bright as white
+        const double mean =
+            std::accumulate(frame.pixels.begin(), frame.pixels.end(), 0.0) / static_cast<double>(frame.pixels.size());
+        const double gain = std::clamp(20 / std::max(mean, 1.0), 1.0, 2.0);
+        for (std::uint8_t& grey : frame.pixels)
+            grey = static_cast<std::uint8_t>(std::min(255.0, std::lround(0.6 * gain * grey) * 1.0));
+    }
+    const SequenceCheck check = check_sequence(frames, head().stripes);
+    ASSERT_FALSE(check.problems.empty());
+    EXPECT_EQ(check.problems.front().cause, SequenceProblem::Cause::light) << said(check);
 }
 
 TEST(CheckSequence, SwappedFineBitsAreNoticed) {
