@@ -17,10 +17,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kStep_mm = 0.25;
-constexpr int kSide = 32;                           // samples on each side of the vertex: 8 mm
-constexpr double kDeeper_mm = 2;                    // as thick as the skin of a scalp over its fat
-constexpr double kOfVoxel = 0.6;                    // but more than half a voxel, which may be a thick slice
-using Profile = std::array<double, 2 * kSide + 1>;  // from the inside out
+constexpr int kSide = 32;                          // samples on each side of the vertex: 8 mm
+constexpr double kDeeper_mm = 2;                   // as thick as the skin of a scalp over its fat
+constexpr double kOfVoxel = 0.6;                   // but more than half a voxel, which may be a thick slice
+using Profile = std::array<float, 2 * kSide + 1>;  // from the inside out
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
@@ -29,7 +29,7 @@ double mean(const Profile& profile, double from_mm, double to_mm) {
     int count = 0;
     for (int s = static_cast<int>(std::lround(from_mm / kStep_mm));
          s <= static_cast<int>(std::lround(to_mm / kStep_mm)); ++s, ++count)
-        sum += profile[static_cast<std::size_t>(s + kSide)];
+        sum += static_cast<double>(profile[static_cast<std::size_t>(s + kSide)]);
     return sum / count;
 }
 
@@ -43,15 +43,21 @@ double half_way(const Profile& profile, double threshold, double reach_mm, int d
     if (!(air < threshold)) return kUnknown;  // a fold: skin again outside
     const auto over_half = [&](int s) {
         const auto at = static_cast<std::size_t>(s + kSide);
-        return profile[at] - air - (profile[at - static_cast<std::size_t>(deeper)] - air) / 2;
+        return static_cast<double>(profile[at]) - air -
+               (static_cast<double>(profile[at - static_cast<std::size_t>(deeper)]) - air) / 2;
     };
     const int reach = static_cast<int>(reach_mm / kStep_mm);
     for (int s = reach; s >= -reach; --s) {
         const double here = over_half(s), outer = over_half(s + 1);
-        if (!(profile[static_cast<std::size_t>(s + kSide - deeper)] > threshold) || !(here >= 0)) continue;
+        if (!(static_cast<double>(profile[static_cast<std::size_t>(s + kSide - deeper)]) > threshold) || !(here >= 0))
+            continue;
         return outer < 0 ? (s + here / (here - outer)) * kStep_mm : kUnknown;
     }
     return kUnknown;
+}
+
+bool is_skin(const TriangleMesh& mesh, std::size_t v) {
+    return mesh.flags.empty() || mesh.flags[v] == kSkin;
 }
 
 /// For each vertex those it shares a triangle with, one after the other; `first[v]` to `first[v + 1]`.
@@ -107,31 +113,60 @@ void smooth(std::vector<double>& moves_mm, const Neighbours& next, int rounds) {
     }
 }
 
+/// Of each vertex that is skin; of others, and beyond the volume, not a number.
+std::vector<Profile> profiles_of(const TriangleMesh& mesh, const Volume& volume) {
+    const Eigen::Affine3d voxel_from_ct = volume.ct_from_voxel.inverse();
+    std::vector<Profile> profiles(mesh.vertices_in_ct.size());
+    tbb::parallel_for(std::size_t{0}, profiles.size(), [&](std::size_t v) {
+        profiles[v].fill(static_cast<float>(kUnknown));
+        if (!is_skin(mesh, v)) return;
+        const Vector3d at = voxel_from_ct * mesh.vertices_in_ct[v],
+                       step = voxel_from_ct.linear() * (kStep_mm * mesh.normals_in_ct[v]);
+        for (int s = -kSide; s <= kSide; ++s)
+            profiles[v][static_cast<std::size_t>(s + kSide)] =
+                static_cast<float>(value_at(volume, at + s * step).value_or(kUnknown));
+    });
+    return profiles;
+}
+
+/// Each profile becomes the mean of its own and its neighbours', where they are known.
+void average_profiles(std::vector<Profile>& profiles, const Neighbours& next, int rounds) {
+    std::vector<Profile> averaged(rounds > 0 ? profiles.size() : 0);
+    for (int round = 0; round < rounds; ++round) {
+        tbb::parallel_for(std::size_t{0}, profiles.size(), [&](std::size_t v) {
+            Profile sum = profiles[v], count{};
+            for (std::size_t s = 0; s < sum.size(); ++s) count[s] = static_cast<float>(!std::isnan(sum[s]));
+            for (std::size_t n = next.first[v]; n < next.first[v + 1]; ++n) {
+                const Profile& other = profiles[static_cast<std::size_t>(next.of[n])];
+                for (std::size_t s = 0; s < sum.size(); ++s)
+                    if (!std::isnan(sum[s]) && !std::isnan(other[s])) sum[s] += other[s], count[s] += 1;
+            }
+            for (std::size_t s = 0; s < sum.size(); ++s) averaged[v][s] = sum[s] / std::max(count[s], 1.0F);
+        });
+        std::swap(profiles, averaged);
+    }
+}
+
 }  // namespace
 
 std::size_t move_to_edges(TriangleMesh& mesh, const Volume& volume, double threshold, const EdgeSettings& settings) {
-    const Eigen::Affine3d voxel_from_ct = volume.ct_from_voxel.inverse();
+    const Neighbours next = neighbours_of(mesh);
+    std::vector<Profile> profiles = profiles_of(mesh, volume);
+    average_profiles(profiles, next, settings.profile_rounds);
     std::vector<double> moves_mm(mesh.vertices_in_ct.size(), kUnknown);
-    const auto is_skin = [&](std::size_t v) { return mesh.flags.empty() || mesh.flags[v] == kSkin; };
     tbb::parallel_for(std::size_t{0}, moves_mm.size(), [&](std::size_t v) {
-        if (!is_skin(v)) return;
-        const Vector3d at = voxel_from_ct * mesh.vertices_in_ct[v],
-                       step = voxel_from_ct.linear() * (kStep_mm * mesh.normals_in_ct[v]);
-        Profile profile;
-        for (int s = -kSide; s <= kSide; ++s)
-            profile[static_cast<std::size_t>(s + kSide)] = value_at(volume, at + s * step).value_or(kUnknown);
+        if (!is_skin(mesh, v)) return;
         // How long a voxel is along the normal.
         const double voxel_mm =
             (volume.ct_from_voxel.linear().transpose() * mesh.normals_in_ct[v]).cwiseAbs().maxCoeff();
         const double deeper_mm = std::min(std::max(kDeeper_mm, kOfVoxel * voxel_mm), 4.0);
-        moves_mm[v] = half_way(profile, threshold, settings.reach_mm, static_cast<int>(deeper_mm / kStep_mm));
+        moves_mm[v] = half_way(profiles[v], threshold, settings.reach_mm, static_cast<int>(deeper_mm / kStep_mm));
     });
     const auto found = std::count_if(moves_mm.begin(), moves_mm.end(), [](double move) { return !std::isnan(move); });
-    const Neighbours next = neighbours_of(mesh);
     forget_lonely(moves_mm, next);
     smooth(moves_mm, next, settings.smoothing_rounds);
     for (std::size_t v = 0; v < moves_mm.size(); ++v)
-        if (is_skin(v) && !std::isnan(moves_mm[v])) mesh.vertices_in_ct[v] += moves_mm[v] * mesh.normals_in_ct[v];
+        if (is_skin(mesh, v) && !std::isnan(moves_mm[v])) mesh.vertices_in_ct[v] += moves_mm[v] * mesh.normals_in_ct[v];
     return static_cast<std::size_t>(found);
 }
 

@@ -164,10 +164,14 @@ double brightness_ratio(const LevelMap& levels) {
 
 }  // namespace
 
-Volume skin_values(const Volume& volume, const SkinMask& mask) {
+Volume leveled_values(const Volume& volume, const SkinMask& mask) {
     Volume leveled = volume;
     if (mask.blank) forget_blank(leveled, *mask.blank);
-    leveled = in_levels(std::move(leveled), mask.levels);
+    return in_levels(std::move(leveled), mask.levels);
+}
+
+Volume skin_values(const Volume& volume, const SkinMask& mask) {
+    Volume leveled = leveled_values(volume, mask);
     for (int n = 0; n < mask.smoothings; ++n) smooth_once(leveled, mask.levels, n);
     return leveled;
 }

@@ -60,6 +60,9 @@ TriangleMesh triangulate_skin(const Volume& volume, const SkinMask& mask, const 
 /// says.
 Volume skin_values(const Volume& volume, const SkinMask& mask);
 
+/// The same without smoothing: an MR's values in levels, with its noise.
+Volume leveled_values(const Volume& volume, const SkinMask& mask);
+
 /// How far noise moves the skin along its normal, mm (1 sigma): the deviation of a voxel within the body (by second
 /// differences, which its structure enlarges) over the median slope of the values across the skin. 0 where there is no
 /// slope.

@@ -23,6 +23,8 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr int kProfileRounds = 2;  // of means along the skin, for each smoothing that the mask needed
+
 /// The crossing of the field, all pieces; vertices in field voxels.
 TriangleMesh contour(SkinField& field) {
     vtkNew<vtkFloatArray> values;
@@ -153,6 +155,17 @@ void mend_normals(TriangleMesh& mesh) {
             mesh.normals_in_ct[v] = by_area[v];
 }
 
+/// Where noise was smoothed away the profiles are taken as the scanner made them, and averaged along the skin: smoothed
+/// across it, a thin edge would lie outside by half a millimetre and more.
+void find_edges(TriangleMesh& mesh, const Volume& given, const Volume& smoothed, const SkinMask& mask) {
+    EdgeSettings settings;
+    settings.profile_rounds = kProfileRounds * mask.smoothings;
+    if (mask.smoothings == 0)
+        move_to_edges(mesh, smoothed, mask.threshold, settings);
+    else
+        move_to_edges(mesh, leveled_values(given, mask), mask.threshold, settings);
+}
+
 }  // namespace
 
 TriangleMesh triangulate_skin(const Volume& given, const SkinMask& mask, const SkinSettings& settings,
@@ -183,7 +196,7 @@ TriangleMesh triangulate_skin(const Volume& given, const SkinMask& mask, const S
     flag_blanked_edges(mesh, given, mask.threshold_said);
     smooth_lids(mesh);
     mend_normals(mesh);
-    if (volume.modality == "MR") move_to_edges(mesh, volume, mask.threshold);
+    if (volume.modality == "MR") find_edges(mesh, given, volume, mask);
     report(0.5);
     TriangleMesh result = decimate_skin(mesh, settings.max_edge_mm, settings.max_decimation_error_mm);
     report(0.9);
