@@ -51,6 +51,14 @@ bool pass_on(int from, int to, std::size_t& left) {
     return ::send(to, bytes.data(), static_cast<std::size_t>(got), MSG_NOSIGNAL) == got && left > 0;
 }
 
+bool listens(int port) {
+    const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
+    const sockaddr_in address = this_computer(port);
+    const bool connected = ::connect(socket, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+    ::close(socket);
+    return connected;
+}
+
 }  // namespace
 
 int free_port() {
@@ -68,6 +76,7 @@ bool answers_soon(const DicomPeer& peer) {
             std::this_thread::sleep_for(100ms);
         }
     }
+    if (listens(peer.port)) throw std::runtime_error("an archive listens, and our C-ECHO has no answer of it");
     return false;
 }
 

@@ -16,7 +16,8 @@ namespace planlight::test {
 /// A port of this computer that nobody listens on.
 int free_port();
 
-/// Whether it answers within half a minute: a program takes a while to start.
+/// Whether it answers within half a minute: a program takes a while to start. Throws where it listens and
+/// still does not answer: that would be ours.
 bool answers_soon(const DicomPeer& peer);
 
 /// A program that runs until the object ends.
