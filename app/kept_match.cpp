@@ -8,6 +8,18 @@ namespace {
 
 constexpr const char* kFormat = "planlight kept match";
 
+LitPart lit_part_of(const JsonValue& json) {
+    constexpr std::int64_t kMostItems = 100000;
+    LitPart lit;
+    const JsonValue hidden = json.at("hidden");
+    for (std::size_t i = 0; i < hidden.size(); ++i)
+        lit.hidden.insert(static_cast<std::size_t>(hidden[i].integer(0, kMostItems)));
+    if (const auto item = json.find("item_of_moment"))
+        lit.item_of_moment = static_cast<std::size_t>(item->integer(0, kMostItems));
+    lit.card = json.at("card").flag();
+    return lit;
+}
+
 }  // namespace
 
 std::string text_of(const KeptMatch& match) {
@@ -16,11 +28,16 @@ std::string text_of(const KeptMatch& match) {
         const Eigen::Vector3d& p = marker.centre_in_patient;
         markers.push_back({p.x(), p.y(), p.z(), marker.sigma_mm});
     }
+    const LitPart& lit = match.lit;
     const Json json{{"format", kFormat},
                     {"version", 1},
                     {"made", match.made_utc},
                     {"plan_hash", match.plan_hash},
                     {"confirmed", match.confirmed},
+                    {"lit",
+                     {{"hidden", lit.hidden},
+                      {"item_of_moment", lit.item_of_moment ? Json(*lit.item_of_moment) : Json()},
+                      {"card", lit.card}}},
                     {"markers", markers},
                     {"registration", Json::parse(text_of(match.registration))}};
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -35,6 +52,7 @@ KeptMatch kept_match_of(const std::string& text, const std::filesystem::path& fi
     match.made_utc = root.at("made").text();
     match.plan_hash = root.at("plan_hash").text();
     match.confirmed = root.at("confirmed").flag();
+    if (const auto lit = root.find("lit")) match.lit = lit_part_of(*lit);
     const JsonValue markers = root.at("markers");
     for (std::size_t i = 0; i < markers.size(); ++i) {
         const JsonValue row = markers[i];

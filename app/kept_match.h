@@ -2,6 +2,8 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,13 @@
 
 namespace planlight {
 
+/// Which part of the plan is lit, as a person wishes it.
+struct LitPart {
+    std::set<std::size_t> hidden;               ///< items of the plan, neither lit nor looked for
+    std::optional<std::size_t> item_of_moment;  ///< alone bright; empty: all are
+    bool card = true;                           ///< nobody has looked at a landmark of this match yet
+};
+
 /// A match with all that it takes to go on with it in another session: T_ini, the rig as its scan found it, and the
 /// markers at that scan.
 struct KeptMatch {
@@ -20,6 +29,7 @@ struct KeptMatch {
     std::string plan_hash;               ///< of the plan that was drawn
     bool confirmed = false;              ///< a person has looked at the match (verdict `ask`)
     std::string made_utc;
+    LitPart lit;  ///< when it was kept
 };
 
 /// The MTCH chunk of a recording, and what stands in it. Throws InputError or DamagedFileError (`file`: for its words).

@@ -100,13 +100,13 @@ double residual_mm(const PointCloud& cloud, const SkinLut& lut, const RigidTrans
 
 std::optional<KeptMatch> Session::kept_match() const {
     if (!registration_ || registration_->verdict == Verdict::no || !registration_->rig) return std::nullopt;
-    return KeptMatch{*registration_, tracker_.markers(), case_.plan_hash, confirmed_, {}};
+    return KeptMatch{*registration_, tracker_.markers(), case_.plan_hash, confirmed_, {}, lit_part()};
 }
 
 ResumeCheck Session::take_up(const KeptMatch& match, const std::function<void(int, int)>& progress) {
     darken();
     registration_.reset(), scanned_.reset(), capture_.reset(), rig_state_.reset();
-    landmarks_.reset(), lit_landmark_.reset(), item_of_moment_.reset();
+    landmarks_.reset(), lit_landmark_.reset();
     confirmed_ = false;
     found_delay_ = {};
     check_belongs(match, case_, calibrated_);
@@ -115,6 +115,7 @@ ResumeCheck Session::take_up(const KeptMatch& match, const std::function<void(in
     rig.made_on = calibrated_.made_on;
     use_rig(rig);
     tracker_.set_reference(match.markers);
+    light_part(match.lit);
     ResumeCheck check;
     const RigidTransform rig_from_patient = compare_room(match, progress, check);
     compare_skin_again(match, rig_from_patient, check);

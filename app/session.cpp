@@ -185,6 +185,7 @@ void Session::match(const std::vector<PointPair>& landmarks) {
     landmarks_.reset();
     lit_landmark_.reset();
     set_hidden({});
+    card_wanted_ = true;
     registration_ = register_with_landmarks(scanned_->clean.kept, case_.lut, landmarks, settings);
     registration_->moved_in_scan_mm = motion_in_scan_mm_;
     take_case_and_rig(case_, rig_state_, *registration_);
@@ -199,7 +200,7 @@ void Session::draw_on_skin_as_found() {
     for (const auto& marker : tracker_.markers())
         drawing.keep_clear_in_ct.push_back(ct_from_patient * marker.centre_in_patient);
     now_.emplace(case_, planned_, registration_->skin, drawing);
-    card_wanted_ = true;
+    set_hidden(hidden_);  // of this drawing
     renderer_ = std::make_unique<DrawingRenderer>(now_->skin, rig_.projector);
 }
 

@@ -136,7 +136,8 @@ public:
 
     /// Goes on with a match of another session, or of this one after its devices were away, if markers, rig and skin
     /// still agree with it: a short scan of columns and rows, then as after `find_patient`. Whatever does not agree
-    /// throws CheckFailedError that says what; then there is no match, and it is dark. Throws DeviceError.
+    /// throws CheckFailedError that says what; then there is no match, and it is dark. What of the plan is lit is as
+    /// the match was kept with. Throws DeviceError.
     ResumeCheck resume(const KeptMatch& match, const std::function<void(int, int)>& progress = {});
     /// The match of now, for `resume`; empty without one that may be used. The caller says when it was made.
     std::optional<KeptMatch> kept_match() const;
@@ -156,8 +157,10 @@ public:
     void show_item(std::optional<std::size_t> which);
     const std::set<std::size_t>& hidden_items() const { return hidden_; }
     /// The card with the patient's name and side (`DrawingSettings::card`) is lit with the plan from the match until a
-    /// landmark has been lit.
+    /// landmark has been lit, also where the match was gone on with meanwhile.
     bool card_wanted() const { return card_wanted_ && lit_drawing().card; }
+    /// For `KeptMatch::lit`.
+    LitPart lit_part() const { return {hidden_, item_of_moment_, card_wanted_}; }
     bool all_hidden() const { return !hidden_.empty() && hidden_.size() == drawing().items.size(); }
     /// What is lit: the plan without its hidden items, or the landmarks.
     const PlanDrawing& lit_drawing() const {
@@ -205,6 +208,7 @@ private:
     void name_lost_pose(Update& update);
     void name_hidden_plan(Update& update) const;
     void set_hidden(std::set<std::size_t> hidden);
+    void light_part(const LitPart& part);
     std::size_t reference_markers(const ScanCapture& capture);
     void take_reference(const ScanCapture& capture);
     void take_rig(const ScanCapture& capture);

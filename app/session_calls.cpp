@@ -114,6 +114,16 @@ void Session::set_hidden(std::set<std::size_t> hidden) {
     std::erase_if(without_hidden_->labels, is_hidden);
 }
 
+/// Items that this plan does not have are passed over.
+void Session::light_part(const LitPart& part) {
+    const std::size_t count = drawing().items.size();
+    item_of_moment_ = part.item_of_moment && *part.item_of_moment < count ? part.item_of_moment : std::nullopt;
+    card_wanted_ = part.card;
+    std::set<std::size_t> hidden = part.hidden;
+    std::erase_if(hidden, [&](std::size_t item) { return item >= count; });
+    set_hidden(std::move(hidden));
+}
+
 Session::Update Session::update() {
     Update update;
     told(SessionCall::update, [&] { update = make_update(); });

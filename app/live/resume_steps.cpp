@@ -37,7 +37,8 @@ ResumeCheck LiveSession::look_whether_it_holds(Session& session, const KeptMatch
 }
 
 void LiveSession::resume(Session& session) {
-    const KeptMatch match = offer_->match;
+    KeptMatch match = offer_->match;
+    match.lit = {};  // what was hidden and looked at then is not known to whoever stands here now
     following_ = projecting_ = false;
     said();
     const ResumeCheck check = look_whether_it_holds(session, match);
@@ -83,6 +84,7 @@ void LiveSession::look_again(Session& session) {
         away_ = std::move(match);
     }
     if (!away_) return;
+    away_->lit = session.lit_part();      // also of presses after a look that was refused
     change_model([&](OperatorModel& m) {  // the session gives up the scan
         scan_there_ = false;
         enter(state_, blank_, m, scan_there_);

@@ -1,14 +1,43 @@
 // A projector that was unplugged in a session: light comes back when all is as it was, and else stays away.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <atomic>
+
 #include "app/live/live_session.h"
 #include "app/live/simulated_room.h"
+#include "app/recording/recording_head.h"
+#include "app/recording/replay_session.h"
+#include "app/recording/session_recorder.h"
+#include "app/session_observers.h"
 #include "tests/app/played_session.h"
+#include "tests/support/test_data.h"
 
 namespace planlight {
 namespace {
 
 using test::wait_for;
+
+/// What was lit of the patient's name and of the plan since the match was gone on with.
+class LitAgain final : public SessionObserver {
+public:
+    void resumed(const Session&, const ResumeCheck&) noexcept override { resumed_ = true; }
+    void updated(const Session& session, const Session::Update& update) noexcept override {
+        if (!resumed_) return;
+        ++updates;
+        cards += update.overlay.counts.card_lit || session.card_wanted();
+        whole_plans += session.hidden_items() != std::set<std::size_t>{0} || session.item_of_moment() != 1U;
+    }
+    std::atomic<int> updates{0}, cards{0}, whole_plans{0};
+
+private:
+    bool resumed_ = false;
+};
+
+bool asks_to_read_the_card(const OperatorModel& m) {
+    return std::ranges::any_of(m.status.details,
+                               [](const std::string& said) { return said.find("the card") != std::string::npos; });
+}
 
 /// The projector is unplugged in the middle of a session, and comes back.
 class ProjectorAway : public ::testing::Test {
@@ -16,19 +45,21 @@ protected:
     void SetUp() override {
         if (!test::example_case().there) GTEST_SKIP() << "the package invesalius-examples is not installed";
     }
-    /// Follows until the light is green (and, with a fault, until it is not any more), then the projector is away;
-    /// gives what is said once Track was pressed again.
-    static OperatorModel come_back(const std::string& fault) {
+    /// Follows until the light is green (and, with a fault, until it is not any more), with the patient's name on the
+    /// skin until it is verified; then one item is hidden and another alone bright, and the projector is away. Gives
+    /// what is said once Track was pressed again.
+    static OperatorModel come_back(const std::string& fault, SessionObserver* observer = nullptr) {
         simulation::RoomSettings room;
         room.preset = simulation::Preset::paper;
         room.seed = 23;
         const Case& the_case = test::example_case().prepared;
-        const CaseDrawing drawing(the_case);
+        CaseDrawing drawing(the_case);
+        drawing.settings.card = kCard;
         LiveSession session(
             [&](const RoomProgress&) {
                 return std::make_unique<SimulatedRoom>(test::example_case().volume, the_case.plan, room, 5, fault);
             },
-            the_case, drawing, {});
+            the_case, drawing, {}, observer);
         wait_for(session, "Scan", [](const OperatorModel& m) { return m.scan.enabled; });
         session.post(OperatorAction::scan);
         wait_for(session, "the scan", [](const OperatorModel& m) { return m.do_register.enabled; });
@@ -36,16 +67,22 @@ protected:
         wait_for(session, "the match", [](const OperatorModel& m) { return m.track.enabled; });
         session.post(OperatorAction::track);
         std::string said;
-        bool green = false;
+        bool green = false, card_asked_for = false;
         wait_for(session, "green light", [&](const OperatorModel& m) {
             if (m.confirm && m.confirm_words != said) {
                 said = m.confirm_words;
                 session.post(OperatorAction::confirm);
             }
+            card_asked_for |= asks_to_read_the_card(m);
             green |= m.status.kind == StatusKind::aligned;
             return green && (fault.empty() || m.status.kind != StatusKind::aligned);
         });
         EXPECT_TRUE(green);
+        EXPECT_TRUE(card_asked_for);
+        EXPECT_EQ(session.post_item(OperatorAction::hide_item, 0), "");
+        EXPECT_EQ(session.post_item(OperatorAction::light_item, 1), "");
+        wait_for(session, "a part of the plan",
+                 [](const OperatorModel& m) { return m.rows[0].hidden && m.item_of_moment == 1U; });
         session.look_before_light();
         session.post(OperatorAction::dark);
         wait_for(session, "DARK", [&](const OperatorModel& m) { return m.track.enabled && !session.projecting(); });
@@ -53,25 +90,52 @@ protected:
         wait_for(session, "light or a refusal",
                  [&](const OperatorModel& m) { return session.projecting() || m.status.kind == StatusKind::refused; });
         const OperatorModel model = session.model();
+        EXPECT_TRUE(model.rows[0].hidden) << "until Show, or the next match";
+        EXPECT_EQ(model.item_of_moment, 1U);
+        EXPECT_FALSE(asks_to_read_the_card(model)) << "it has been read";
         EXPECT_EQ(session.projecting(), model.status.kind != StatusKind::refused);
         if (model.status.kind == StatusKind::refused) {
-            // And so it stays: another press looks again.
+            // And so it stays: another press looks again, and lights no more than was asked for meanwhile.
+            EXPECT_EQ(session.post_item(OperatorAction::show_item, std::nullopt), "");
+            wait_for(session, "the whole plan", [](const OperatorModel& m) { return !m.rows[0].hidden; });
             session.post(OperatorAction::track);
             wait_for(session, "another look",
                      [](const OperatorModel& m) { return m.status.kind != StatusKind::refused; });
             wait_for(session, "the refusal",
                      [](const OperatorModel& m) { return m.status.kind == StatusKind::refused; });
             EXPECT_FALSE(session.projecting());
+            EXPECT_FALSE(session.model().rows[0].hidden);
+            EXPECT_FALSE(session.model().item_of_moment);
         }
         // The scan was given up for the short one: Register says so, and does not take the match with it.
         EXPECT_FALSE(session.model().do_register.enabled);
         EXPECT_NE(session.post(OperatorAction::do_register), "");
         return model;
     }
+    static inline const std::vector<std::string> kCard{"E. M.", "RIGHT"};
 };
 
 TEST_F(ProjectorAway, TheLightComesBackWhenAllIsAsItWas) {
-    EXPECT_NE(come_back({}).status.kind, StatusKind::refused);
+    const test::TemporaryFolder folder;
+    const std::filesystem::path file = folder.path() / "session.plrec";
+    LitAgain lit;
+    {
+        DrawingSettings how;
+        how.card = kCard;
+        SessionRecorder recorder(std::make_unique<RecordingFile>(file),
+                                 recording_head(test::example_case().prepared, {}, RecordMode::all, how));
+        SessionObservers both;
+        both.add(&recorder);
+        both.add(&lit);
+        EXPECT_NE(come_back({}, &both).status.kind, StatusKind::refused);
+    }
+    EXPECT_GE(lit.updates, 1);
+    EXPECT_EQ(lit.cards, 0) << "the name was taken off the skin when the light was verified";
+    EXPECT_EQ(lit.whole_plans, 0) << "what was hidden stays so";
+    const ReplayResult replayed = replay_session(file, test::example_case().prepared);
+    EXPECT_FALSE(replayed.difference) << replayed.difference->what;
+    EXPECT_EQ(replayed.ended, "");
+    EXPECT_EQ(replayed.resumptions, 1);
 }
 
 TEST_F(ProjectorAway, AProjectorThatWasMovedMeanwhileStaysDark) {
