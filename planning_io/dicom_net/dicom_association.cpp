@@ -1,13 +1,9 @@
 #include "planning_io/dicom_net/dicom_association.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
 
 #include "planning_io/dicom_net/dicom_tls.h"
 #include "planning_io/types/error.h"
@@ -114,14 +110,6 @@ bool is_uid(const std::string& text) {
     constexpr std::size_t kMost = 64;
     return !text.empty() && text.size() <= kMost && text.front() != '.' &&
            std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) || c == '.'; });
-}
-
-void sync_file(const std::filesystem::path& file) {
-    const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-    const int failed = fd < 0 ? -1 : ::fsync(fd);
-    const int why = errno;
-    if (fd >= 0) ::close(fd);
-    if (failed) throw DiskError(file, std::strerror(why), "Check the free space of the disk, then fetch again.");
 }
 
 std::string text_of(DcmItem& item, const DcmTagKey& tag) {

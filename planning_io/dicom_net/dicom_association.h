@@ -56,9 +56,6 @@ const std::vector<std::string>& packed_transfer_syntaxes();
 /// Only digits and dots, 64 at most, none empty: may be a file's name.
 bool is_uid(const std::string& text);
 
-/// The disk has all of it afterwards. Throws DiskError.
-void sync_file(const std::filesystem::path& file);
-
 std::string text_of(DcmItem& item, const DcmTagKey& tag);
 
 }  // namespace planlight
