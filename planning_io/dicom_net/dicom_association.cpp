@@ -1,13 +1,9 @@
 #include "planning_io/dicom_net/dicom_association.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cerrno>
-#include <cstring>
 
 #include "planning_io/dicom_net/dicom_tls.h"
 #include "planning_io/types/error.h"
@@ -51,23 +47,20 @@ void check_tls(const DicomTls& tls) {
 
 /// What an encrypted line was refused for, by us or by the archive.
 [[noreturn]] void refuse_tls(const std::string& who, const std::string& why, const std::string& host) {
-    if (const std::string not_trusted = why_not_trusted(); !not_trusted.empty())
-        throw DeviceError(who, "shows a certificate that is not taken: " + not_trusted,
-                          fmt::format("Give its certificate, or that of who signed it, with --tls-trusted; where it is "
-                                      "made out to another name than {}, give that with --tls-name.",
-                                      host));
+    if (const TlsFault fault = tls_fault(); fault.of_certificate()) refuse_certificate(fault, who, host);
     throw DeviceError(who, "does not agree on an encrypted line: " + why,
                       "Check that this port of it speaks TLS. It may want to see a certificate of ours that it knows "
                       "(--tls-certificate, --tls-key).");
 }
 
-[[noreturn]] void refuse(const DicomPeer& peer, const OFCondition& condition) {
+/// `talked`: the association had been agreed on.
+[[noreturn]] void refuse(const DicomPeer& peer, const OFCondition& condition, bool talked) {
     const std::string who = "The DICOM archive " + peer.name(), why = one_line(condition.text());
     if (condition.module() == OFM_dcmnet) switch (condition.code()) {
             case DULC_ASSOCIATIONREJECTED:
-                throw DeviceError(
+                throw AssociationRefused(DeviceError(
                     who, "refuses to talk with " + peer.own_title + ": " + why,
-                    "Check both AE titles, and that the archive knows this computer by its title and address.");
+                    "Check both AE titles, and that the archive knows this computer by its title and address."));
             case DULC_UNKNOWNHOST:
             case DULC_TCPINITERROR:
             case DULC_REQUESTASSOCIATIONFAILED:
@@ -76,9 +69,10 @@ void check_tls(const DicomTls& tls) {
                 break;
         }
     throw DeviceError(who, "was gone in the middle, or gave no answer: " + why,
-                      std::string("Look whether it runs, and do it again; what was there before is unchanged. ") +
-                          (peer.tls.wanted ? "It may want to see a certificate of ours that it knows."
-                                           : "It may want the line to be encrypted (--tls)."));
+                      std::string("Look whether it runs, and do it again; what was there before is unchanged.") +
+                          (talked            ? ""
+                           : peer.tls.wanted ? " It may want to see a certificate of ours that it knows."
+                                             : " It may want the line to be encrypted (--tls)."));
 }
 
 }  // namespace
@@ -118,14 +112,6 @@ bool is_uid(const std::string& text) {
            std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c) || c == '.'; });
 }
 
-void sync_file(const std::filesystem::path& file) {
-    const int fd = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-    const int failed = fd < 0 ? -1 : ::fsync(fd);
-    const int why = errno;
-    if (fd >= 0) ::close(fd);
-    if (failed) throw DiskError(file, std::strerror(why), "Check the free space of the disk, then fetch again.");
-}
-
 std::string text_of(DcmItem& item, const DcmTagKey& tag) {
     OFString text;
     item.findAndGetOFStringArray(tag, text);
@@ -163,14 +149,15 @@ void DicomAssociation::open() {
         tls_ = tls_layer(peer_, TlsRole::asks);
         check(useSecureConnection(tls_.get()));
     }
-    forget_why_not_trusted();
+    forget_tls_fault();
     const OFCondition opened = negotiateAssociation();
     if (opened == NET_EC_NoAcceptablePresentationContexts)
         throw CheckFailedError("The DICOM archive " + peer_.name() + " does nothing of what is asked of it",
                                "Ask those who run it to allow this computer to search, to fetch and to store.");
-    if (opened.bad() && peer_.tls.wanted && (opened.module() == OFM_dcmtls || !why_not_trusted().empty()))
+    if (opened.bad() && peer_.tls.wanted && (opened.module() == OFM_dcmtls || tls_fault().of_certificate()))
         refuse_tls("The DICOM archive " + peer_.name(), one_line(opened.text()), peer_.host);
     check(opened);
+    talked_ = true;
 }
 
 void DicomAssociation::close() {
@@ -190,7 +177,7 @@ T_ASC_PresentationContextID DicomAssociation::accepted(const std::string& abstra
 }
 
 void DicomAssociation::check(const OFCondition& condition) const {
-    if (condition.bad()) refuse(peer_, condition);
+    if (condition.bad()) refuse(peer_, condition, talked_);
 }
 
 void ask_whether_it_answers(const DicomPeer& peer) {

@@ -10,10 +10,16 @@
 #include <vector>
 
 #include "planning_io/dicom_net/dicom_peer.h"
+#include "planning_io/types/error.h"
 
 class DcmTLSTransportLayer;
 
 namespace planlight {
+
+/// It did not want to talk with us at all.
+struct AssociationRefused : DeviceError {
+    explicit AssociationRefused(const DeviceError& fault) : DeviceError(fault) {}
+};
 
 /// An association with a peer, from its negotiation to its end.
 class DicomAssociation : public DcmSCU {
@@ -23,7 +29,7 @@ public:
 
     void propose(const std::string& abstract_syntax, const std::vector<std::string>& transfer_syntaxes,
                  bool peer_sends = false);
-    /// Throws DeviceError; InputError for files of certificates that are none.
+    /// Throws DeviceError, AssociationRefused where it was refused; InputError for files of certificates that are none.
     void open();
     /// In order, with the peer's consent.
     void close();
@@ -38,6 +44,7 @@ protected:
 
 private:
     std::unique_ptr<DcmTLSTransportLayer> tls_;
+    bool talked_ = false;
 };
 
 /// Explicit and implicit little endian.
@@ -48,9 +55,6 @@ const std::vector<std::string>& packed_transfer_syntaxes();
 
 /// Only digits and dots, 64 at most, none empty: may be a file's name.
 bool is_uid(const std::string& text);
-
-/// The disk has all of it afterwards. Throws DiskError.
-void sync_file(const std::filesystem::path& file);
 
 std::string text_of(DcmItem& item, const DcmTagKey& tag);
 

@@ -24,6 +24,7 @@ struct DicomPeer {
     std::string title;                    ///< its application entity title (AE title)
     std::string own_title = "PLANLIGHT";  ///< ours; many archives answer only to titles that they know
     std::chrono::seconds patience{30};    ///< for each answer
+    std::size_t most_answers = 50000;     ///< to one question (C-FIND): each is kept in memory
     DicomTls tls;
     /// Of this computer, for an archive that lets nothing be fetched (C-GET) and sends it instead (C-MOVE), to our
     /// title as it knows it. Open only meanwhile. 0: never.

@@ -2,6 +2,7 @@
 
 #include <arpa/inet.h>
 #include <fmt/format.h>
+#include <openssl/err.h>
 #include <openssl/ssl.h>
 #include <openssl/x509v3.h>
 
@@ -14,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-thread_local std::string not_trusted;
+thread_local TlsFault last_fault;
 
 /// OpenSSL asks this for each certificate of the chain.
 int note_fault(int good, X509_STORE_CTX* looked_at) {
@@ -22,9 +23,23 @@ int note_fault(int good, X509_STORE_CTX* looked_at) {
     std::array<char, 200> whose{};
     if (X509* const certificate = X509_STORE_CTX_get_current_cert(looked_at))
         X509_NAME_get_text_by_NID(X509_get_subject_name(certificate), NID_commonName, whose.data(), whose.size());
-    const std::string why = X509_verify_cert_error_string(X509_STORE_CTX_get_error(looked_at));
-    not_trusted = whose[0] == '\0' ? why : fmt::format("{} (it is made out to \"{}\")", why, whose.data());
+    const int fault = X509_STORE_CTX_get_error(looked_at);
+    const std::string why = X509_verify_cert_error_string(fault);
+    last_fault.of = fault == X509_V_ERR_CERT_HAS_EXPIRED || fault == X509_V_ERR_CERT_NOT_YET_VALID
+                        ? TlsFault::Of::its_time
+                        : TlsFault::Of::certificate;
+    last_fault.why = whose[0] == '\0' ? why : fmt::format("{} (it is made out to \"{}\")", why, whose.data());
     return good;
+}
+
+/// OpenSSL tells this how far it has come with who calls; the library forgets why it ended.
+void note_end(const SSL*, int where, int result) {
+    if (where != SSL_CB_ACCEPT_EXIT || result > 0 || last_fault.of != TlsFault::Of::nothing) return;
+    const unsigned long fault = ERR_peek_error();
+    const char* const why = ERR_reason_error_string(fault);
+    last_fault.of = TlsFault::Of::line;
+    last_fault.why = why ? why : "it was cut";
+    if (fault && ERR_GET_REASON(fault) == SSL_R_WRONG_VERSION_NUMBER) last_fault.why = "it does not encrypt it";
 }
 
 void check_file(const fs::path& file) {
@@ -82,15 +97,27 @@ std::unique_ptr<DcmTLSTransportLayer> tls_layer(const DicomPeer& peer, TlsRole r
     layer->setCertificateVerification(DCV_requireCertificate);
     if (role == TlsRole::asks) ask_for_name(peer, context);
     SSL_CTX_set_verify(context, SSL_VERIFY_PEER | SSL_VERIFY_FAIL_IF_NO_PEER_CERT, &note_fault);
+    SSL_CTX_set_info_callback(context, &note_end);
     return layer;
 }
 
-std::string why_not_trusted() {
-    return not_trusted;
+TlsFault tls_fault() {
+    return last_fault;
 }
 
-void forget_why_not_trusted() {
-    not_trusted.clear();
+void forget_tls_fault() {
+    last_fault = {};
+}
+
+void refuse_certificate(const TlsFault& fault, const std::string& who, const std::string& host) {
+    if (fault.of == TlsFault::Of::its_time)
+        throw DeviceError(who, "shows a certificate that does not hold today: " + fault.why,
+                          "Look whether the clock of this computer is right; where it is, those who run the archive "
+                          "must renew its certificate.");
+    throw DeviceError(who, "shows a certificate that is not taken: " + fault.why,
+                      fmt::format("Give its certificate, or that of who signed it, with --tls-trusted; where it is "
+                                  "made out to another name than {}, give that with --tls-name.",
+                                  host));
 }
 
 }  // namespace planlight

@@ -19,9 +19,17 @@ enum class TlsRole { asks, is_asked };
 /// certificate or no key, or do not belong together.
 std::unique_ptr<DcmTLSTransportLayer> tls_layer(const DicomPeer& peer, TlsRole role);
 
-/// Why the certificate of the other side was not taken, and whose it says it is, the last time that this thread looked
-/// at one; empty: it was taken, or none was looked at.
-std::string why_not_trusted();
-void forget_why_not_trusted();
+/// What went wrong the last time that this thread agreed on an encrypted line, or tried to.
+struct TlsFault {
+    enum class Of { nothing, certificate, its_time, line };  ///< its_time: it has run out, or does not hold yet
+    Of of = Of::nothing;
+    bool of_certificate() const { return of == Of::certificate || of == Of::its_time; }
+    std::string why;  ///< of a certificate also whose it says it is
+};
+TlsFault tls_fault();
+void forget_tls_fault();
+
+/// Throws the DeviceError of a certificate that was not taken. `who` shows it; `host`: what it should be made out to.
+[[noreturn]] void refuse_certificate(const TlsFault& fault, const std::string& who, const std::string& host);
 
 }  // namespace planlight

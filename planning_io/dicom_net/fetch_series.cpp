@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "planning_io/dicom_net/find_series.h"
+#include "planning_io/dicom_net/incoming_images.h"
 #include "planning_io/dicom_net/move_series.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
@@ -17,20 +17,18 @@ bool is_refusal(Uint16 status) {
     return status == STATUS_GET_Refused_SOPClassNotSupported || status == 0x0124 || status == 0x0211;
 }
 
-/// Takes of what the peer sends the images that were asked for, each into a file of its name.
+/// Takes of what the peer sends the images that were asked for.
 class Getter final : public DicomAssociation {
 public:
-    Getter(const DicomPeer& peer, const std::vector<ImageAtPeer>& images, fs::path folder,
-           std::function<void(std::size_t, std::size_t)> progress)
-        : DicomAssociation(peer), folder_(std::move(folder)), progress_(std::move(progress)) {
-        for (const ImageAtPeer& image : images) wanted_.insert(image.uid);
+    Getter(const DicomPeer& peer, const std::vector<ImageAtPeer>& images, IncomingImages& incoming)
+        : DicomAssociation(peer), incoming_(incoming) {
         propose(UID_GETStudyRootQueryRetrieveInformationModel, plain_transfer_syntaxes());
         for (const std::string& storage_class : storage_classes_of(images)) {
             propose(storage_class, plain_transfer_syntaxes(), true);
             for (const std::string& syntax : packed_transfer_syntaxes()) propose(storage_class, {syntax}, true);
         }
         setStorageMode(DCMSCU_STORAGE_BIT_PRESERVING);
-        setStorageDir(folder_.c_str());
+        setStorageDir(incoming.folder().c_str());
     }
 
     /// False: it does not let itself be asked so, and nothing came.
@@ -38,6 +36,8 @@ public:
         try {
             open();
         } catch (const CheckFailedError&) {  // it does nothing of all that
+            return false;
+        } catch (const AssociationRefused&) {  // so some say the same: it has just listed the images to us
             return false;
         }
         if (!is_accepted(UID_GETStudyRootQueryRetrieveInformationModel)) return false;
@@ -50,59 +50,42 @@ public:
             failed_ = response->m_numberOfFailedSubops;
             delete response;
         }
-        if (!disk_.empty())
-            throw DiskError(folder_, disk_,
-                            "Check the free space and the permissions of the folder, then fetch again.");
+        if (image_failed_) incoming_.check_disk();
         check(done);
-        if (came_.empty() && is_refusal(status_)) return false;
+        if (incoming_.came() == 0 && is_refusal(status_)) return false;
         check_whole(series);
-        for (const std::string& uid : came_) sync_file(folder_ / (uid + ".dcm"));
         close();
         return true;
     }
-    std::size_t came() const { return came_.size(); }
 
 private:
     OFCondition handleSTORERequestFile(T_ASC_PresentationContextID* context, const OFString&,
                                        T_DIMSE_C_StoreRQ* request) override {
         const std::string uid = request->AffectedSOPInstanceUID;
-        if (!wanted_.contains(uid)) return ignoreSTORERequest(*context, *request);
-        const fs::path file = folder_ / (uid + ".dcm");
-        const OFCondition stored = DicomAssociation::handleSTORERequestFile(context, file.c_str(), request);
-        std::error_code ignored;
-        if (stored.good() && !fs::exists(file, ignored)) disk_ = "the disk did not take an image";
-        if (stored.bad()) note_full_disk();
-        if (stored.bad() || !disk_.empty()) return stored;
-        came_.insert(uid);
-        if (progress_) progress_(came_.size(), wanted_.size());
+        if (!incoming_.lack(uid)) return ignoreSTORERequest(*context, *request);
+        received_ = 0;
+        OFCondition stored = DicomAssociation::handleSTORERequestFile(context, incoming_.file_of(uid).c_str(), request);
+        if (stored.good() && !incoming_.take(uid, received_)) stored = DIMSE_OUTOFRESOURCES;
+        if (stored.bad()) {
+            incoming_.note(stored);
+            image_failed_ = true;
+        }
         return stored;
     }
-
-    /// The library only says that it did not work.
-    void note_full_disk() {
-        const fs::path probe = folder_ / "probe";
-        try {
-            write_safely(probe, std::string(std::size_t{1} << 23, ' '));  // a large image
-            std::error_code ignored;
-            fs::remove(probe, ignored);
-        } catch (const DiskError& fault) {
-            disk_ = "the disk did not take an image";
-        }
-    }
+    void notifyRECEIVEProgress(const unsigned long bytes) override { received_ = bytes; }
 
     void check_whole(const FoundSeries& series) const {
-        if (came_.size() == wanted_.size()) return;  // whatever it counted: every image that it listed is here
+        if (incoming_.are_whole()) return;  // whatever it counted: every image that it listed is here
         throw CheckFailedError(
             fmt::format("The DICOM archive {} sent {} of the {} images of series {} (status {:04X}, {} failed)",
-                        peer_.name(), came_.size(), wanted_.size(), series.series_uid, status_, failed_),
+                        peer_.name(), incoming_.came(), incoming_.asked(), series.series_uid, status_, failed_),
             "Nothing was kept: fetch again, or ask those who run the archive.");
     }
 
-    const fs::path folder_;
-    const std::function<void(std::size_t, std::size_t)> progress_;
-    std::set<std::string> wanted_, came_;
+    IncomingImages& incoming_;
     Uint16 status_ = 0xFFFF, failed_ = 0;
-    std::string disk_;
+    std::size_t received_ = 0;  ///< of the image that is coming
+    bool image_failed_ = false;
 };
 
 /// While images were fetched more of them may have come to the archive, at one end, where no gap shows it.
@@ -131,11 +114,12 @@ std::size_t fetch_series(const DicomPeer& peer, const FoundSeries& series, const
                          "Look with `planlight fetch` what it has.");
     std::size_t came = 0;
     write_folder_safely(folder, false, [&](const fs::path& into) {
-        Getter getter(peer, images, into, progress);
-        const bool got = getter.get(series);
-        came = got ? getter.came() : move_series(peer, series, images, into, progress);
-        check_still_the_same(peer, series, images);
         fs::permissions(into, fs::perms::owner_all);  // it names the patient
+        IncomingImages incoming(images, into, progress);
+        if (!Getter(peer, images, incoming).get(series)) move_series(peer, series, images, incoming);
+        incoming.sync();
+        check_still_the_same(peer, series, images);
+        came = incoming.came();
     });
     return came;
 }

@@ -13,35 +13,50 @@ namespace {
 
 using Answers = std::vector<std::unique_ptr<DcmDataset>>;
 
+/// Takes the answers as they come: an archive may have more of them than this computer has memory.
+class Finder final : public DicomAssociation {
+public:
+    explicit Finder(const DicomPeer& peer) : DicomAssociation(peer) {
+        propose(UID_FINDStudyRootQueryRetrieveInformationModel, plain_transfer_syntaxes());
+        open();
+    }
+    Answers answers_to(DcmDataset& keys) {
+        answers_.clear();
+        const auto context = accepted(UID_FINDStudyRootQueryRetrieveInformationModel, "does not search");
+        check(sendFINDRequest(context, &keys, nullptr));
+        if (answers_.size() > peer_.most_answers)
+            throw CheckFailedError(
+                fmt::format("The DICOM archive {} has more than {} answers to that", peer_.name(), peer_.most_answers),
+                "Look for less: name the study, the patient or the date.");
+        if (last_ != STATUS_Success)
+            throw CheckFailedError(
+                fmt::format("The DICOM archive {} did not search to its end (status {:04X})", peer_.name(), last_),
+                "Look for less: name the study, the patient or the date.");
+        return std::move(answers_);
+    }
+
+private:
+    OFCondition handleFINDResponse(const T_ASC_PresentationContextID context, QRResponse* response,
+                                   OFBool& more) override {
+        const OFCondition handled = DicomAssociation::handleFINDResponse(context, response, more);
+        last_ = response->m_status;
+        if (response->m_dataset) {
+            answers_.emplace_back(response->m_dataset)->convertToUTF8();  // what cannot be is as it came
+            response->m_dataset = nullptr;
+        }
+        if (answers_.size() > peer_.most_answers) more = OFFalse;
+        return handled;
+    }
+
+    Answers answers_;
+    Uint16 last_ = 0;
+};
+
 void ask_for(DcmDataset& keys, const DcmTagKey& tag, const std::string& value = {}) {
     keys.putAndInsertString(tag, value.c_str());
 }
 
-Answers answers_to(DicomAssociation& association, const DicomPeer& peer, DcmDataset& keys) {
-    constexpr std::size_t kMost = 200000;
-    const auto context = association.accepted(UID_FINDStudyRootQueryRetrieveInformationModel, "does not search");
-    OFList<QRResponse*> responses;
-    const OFCondition done = association.sendFINDRequest(context, &keys, &responses);
-    Answers answers;
-    Uint16 last = 0;
-    for (QRResponse* response : responses) {
-        last = response->m_status;
-        if (response->m_dataset && answers.size() < kMost) {
-            answers.emplace_back(response->m_dataset);
-            answers.back()->convertToUTF8();  // what cannot be is as it came
-            response->m_dataset = nullptr;
-        }
-        delete response;
-    }
-    association.check(done);
-    if (last != STATUS_Success)
-        throw CheckFailedError(
-            fmt::format("The DICOM archive {} did not search to its end (status {:04X})", peer.name(), last),
-            "Look for less: name the study, the patient or the date.");
-    return answers;
-}
-
-Answers studies(DicomAssociation& association, const DicomPeer& peer, const SeriesQuery& query) {
+Answers studies(Finder& finder, const SeriesQuery& query) {
     DcmDataset keys;
     ask_for(keys, DCM_QueryRetrieveLevel, "STUDY");
     ask_for(keys, DCM_SpecificCharacterSet, "ISO_IR 192");
@@ -52,13 +67,12 @@ Answers studies(DicomAssociation& association, const DicomPeer& peer, const Seri
     ask_for(keys, DCM_StudyInstanceUID, query.study_uid);
     ask_for(keys, DCM_StudyDescription);
     if (!query.modality.empty()) ask_for(keys, DCM_ModalitiesInStudy, query.modality);
-    return answers_to(association, peer, keys);
+    return finder.answers_to(keys);
 }
 
 /// `study_uid` empty: in any study, which not every archive answers; then what stands above the series is asked for
 /// too.
-Answers series_of(DicomAssociation& association, const DicomPeer& peer, const std::string& study_uid,
-                  const SeriesQuery& query) {
+Answers series_of(Finder& finder, const std::string& study_uid, const SeriesQuery& query) {
     DcmDataset keys;
     ask_for(keys, DCM_QueryRetrieveLevel, "SERIES");
     ask_for(keys, DCM_StudyInstanceUID, study_uid);
@@ -70,7 +84,7 @@ Answers series_of(DicomAssociation& association, const DicomPeer& peer, const st
     if (study_uid.empty())
         for (const DcmTagKey& above : {DCM_PatientID, DCM_PatientName, DCM_StudyDate, DCM_StudyDescription})
             ask_for(keys, above);
-    return answers_to(association, peer, keys);
+    return finder.answers_to(keys);
 }
 
 /// What an answer says, of the study or of the series; what it does not say is left as it was.
@@ -97,22 +111,20 @@ bool names_a_study(const SeriesQuery& query) {
 }  // namespace
 
 std::vector<FoundSeries> find_series(const DicomPeer& peer, const SeriesQuery& query) {
-    DicomAssociation association(peer);
-    association.propose(UID_FINDStudyRootQueryRetrieveInformationModel, plain_transfer_syntaxes());
-    association.open();
+    Finder finder(peer);
     std::vector<FoundSeries> above(1), found;  // of a series looked for by its UID no study is known
     if (names_a_study(query) || query.series_uid.empty()) {
         above.clear();
-        for (const auto& study : studies(association, peer, query)) take(*study, above.emplace_back());
+        for (const auto& study : studies(finder, query)) take(*study, above.emplace_back());
         std::erase_if(above, [](const FoundSeries& study) { return !is_uid(study.study_uid); });
     }
     for (const FoundSeries& study : above)
-        for (const auto& series : series_of(association, peer, study.study_uid, query)) {
+        for (const auto& series : series_of(finder, study.study_uid, query)) {
             FoundSeries one = study;
             take(*series, one);
             if (is_uid(one.study_uid) && is_uid(one.series_uid)) found.push_back(std::move(one));
         }
-    association.close();
+    finder.close();
     std::stable_sort(found.begin(), found.end(), [](const FoundSeries& a, const FoundSeries& b) {
         return std::make_tuple(a.study_date, a.study_uid, a.number.size(), a.number) <
                std::make_tuple(b.study_date, b.study_uid, b.number.size(), b.number);
@@ -121,9 +133,7 @@ std::vector<FoundSeries> find_series(const DicomPeer& peer, const SeriesQuery& q
 }
 
 std::vector<ImageAtPeer> images_of(const DicomPeer& peer, const FoundSeries& series) {
-    DicomAssociation association(peer);
-    association.propose(UID_FINDStudyRootQueryRetrieveInformationModel, plain_transfer_syntaxes());
-    association.open();
+    Finder finder(peer);
     DcmDataset keys;
     ask_for(keys, DCM_QueryRetrieveLevel, "IMAGE");
     ask_for(keys, DCM_StudyInstanceUID, series.study_uid);
@@ -131,7 +141,7 @@ std::vector<ImageAtPeer> images_of(const DicomPeer& peer, const FoundSeries& ser
     ask_for(keys, DCM_SOPInstanceUID);
     ask_for(keys, DCM_SOPClassUID);
     std::vector<ImageAtPeer> images;
-    for (const auto& answer : answers_to(association, peer, keys)) {
+    for (const auto& answer : finder.answers_to(keys)) {
         ImageAtPeer image{text_of(*answer, DCM_SOPInstanceUID), text_of(*answer, DCM_SOPClassUID)};
         if (!is_uid(image.uid))
             throw CheckFailedError(
@@ -140,7 +150,7 @@ std::vector<ImageAtPeer> images_of(const DicomPeer& peer, const FoundSeries& ser
                 "The series cannot be fetched whole: ask those who run the archive.");
         images.push_back(std::move(image));
     }
-    association.close();
+    finder.close();
     return images;
 }
 

@@ -146,14 +146,28 @@ std::unique_ptr<Dcmqrscp> Dcmqrscp::start(const fs::path& folder, bool sends_onl
     return answers_soon(peer) ? std::move(archive) : nullptr;
 }
 
-Certificate make_certificate(const fs::path& folder, const std::string& name, bool other_computer) {
+Certificate make_certificate(const fs::path& folder, const std::string& name, Flaw flaw) {
     const Certificate made{folder / (name + ".pem"), folder / (name + ".key")};
+    const fs::path request = folder / (name + ".csr"), extension = folder / (name + ".ext");
+    std::ofstream(extension) << "subjectAltName="
+                             << (flaw == Flaw::of_another_computer ? "DNS:another.example" : "IP:127.0.0.1") << "\n";
     const std::string line = fmt::format(
-        "openssl req -x509 -newkey rsa:2048 -nodes -days 2 -subj /CN={} -addext subjectAltName={} -keyout '{}' -out "
-        "'{}' "
-        ">/dev/null 2>&1",
-        name, other_computer ? "DNS:another.example" : "IP:127.0.0.1", made.key.string(), made.certificate.string());
+        "(openssl req -newkey rsa:2048 -nodes -subj /CN={} -keyout '{}' -out '{}' && openssl x509 -req -in '{}' "
+        "-signkey '{}' -days {} -extfile '{}' -out '{}') >/dev/null 2>&1",
+        name, made.key.string(), request.string(), request.string(), made.key.string(),
+        flaw == Flaw::has_run_out ? -1 : 2, extension.string(), made.certificate.string());
     return std::system(line.c_str()) == 0 ? made : Certificate{};
+}
+
+FullDisk::FullDisk(std::size_t bytes) {
+    ::signal(SIGXFSZ, SIG_IGN);  // else the process is ended
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit full{bytes, before_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &full);
+}
+
+FullDisk::~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
 }
 
 CutLine::CutLine(int to_port, std::size_t bytes_from_there, std::size_t bytes_to_there)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <sys/resource.h>
 #include <sys/types.h>
 
 #include <atomic>
@@ -16,8 +17,8 @@ namespace planlight::test {
 /// A port of this computer that nobody listens on.
 int free_port();
 
-/// Whether it answers within half a minute: a program takes a while to start. Throws where it listens and
-/// still does not answer: that would be ours.
+/// Whether it answers within half a minute: a program takes a while to start. Throws where it listens and still does
+/// not answer: that would be ours.
 bool answers_soon(const DicomPeer& peer);
 
 /// A program that runs until the object ends.
@@ -71,9 +72,20 @@ private:
 struct Certificate {
     std::filesystem::path certificate, key;
 };
-/// One that signs itself, made out to `name` for 127.0.0.1 or, with `other_computer`, for another; by the program
-/// openssl. Empty files where that is not installed.
-Certificate make_certificate(const std::filesystem::path& folder, const std::string& name, bool other_computer = false);
+enum class Flaw { none, of_another_computer, has_run_out };
+/// One that signs itself, made out to `name` for 127.0.0.1; by the program openssl. Empty files where that is not
+/// installed.
+Certificate make_certificate(const std::filesystem::path& folder, const std::string& name, Flaw flaw = Flaw::none);
+
+/// While it lives, no file that this process writes grows beyond so many bytes: the disk is full.
+class FullDisk {
+public:
+    explicit FullDisk(std::size_t bytes);
+    ~FullDisk();
+
+private:
+    rlimit before_{};
+};
 
 /// A line to another port of this computer that is cut after so many bytes from there, or to there.
 class CutLine {

@@ -82,7 +82,22 @@ TEST_F(Archive, ASeriesThatIsStillBeingSentIsNotTakenForWhole) {
                  CheckFailedError);
     expect_nothing_left();
     EXPECT_EQ(fetch_series(archive_->peer(), found(), got_), files_.size());
-    EXPECT_EQ(fs::status(got_).permissions() & fs::perms::all, fs::perms::owner_all) << "it names the patient";
+}
+
+/// It names the patient.
+TEST_F(Archive, WhatIsFetchedIsNobodyElsesToReadFromItsFirstImageOn) {
+    store();
+    std::size_t looked = 0;
+    const auto expect_ours_alone = [&](const fs::path& folder) {
+        ++looked;
+        EXPECT_EQ(fs::status(folder).permissions() & fs::perms::all, fs::perms::owner_all) << folder;
+    };
+    fetch_series(archive_->peer(), found(), got_, [&](std::size_t, std::size_t) {
+        for (const auto& entry : fs::directory_iterator(folder_.path()))
+            if (entry.path().filename().string().starts_with("got")) expect_ours_alone(entry.path());
+    });
+    EXPECT_EQ(looked, files_.size());
+    expect_ours_alone(got_);
 }
 
 TEST_F(Archive, ASeriesThatIsStoredIsFoundAndFetchedBitForBit) {
@@ -174,6 +189,33 @@ TEST_F(Archive, OneThatIsGoneInTheMiddleLeavesNothing) {
         expect_nothing_left();
     }
     EXPECT_EQ(fetch_series(archive_->peer(), series, got_), 24u);
+}
+
+TEST_F(Archive, ALineThatIsCutInTheMiddleIsNotTakenForOneThatWantsToBeEncrypted) {
+    store();
+    const FoundSeries series = found();
+    const CutLine line(archive_->peer().port, 100000, kEverything);
+    DicomPeer cut = archive_->peer();
+    cut.port = line.port();
+    try {
+        fetch_series(cut, series, got_);
+        FAIL() << "the line was cut";
+    } catch (const DeviceError& fault) {
+        EXPECT_NE(std::string(fault.what()).find("gone in the middle"), std::string::npos) << fault.what();
+        EXPECT_EQ(fault.remedy.find("--tls"), std::string::npos) << fault.remedy;
+    }
+}
+
+/// The last bytes of an image are written when its file is closed: 8192 is where only these are missing.
+TEST_F(Archive, AFullDiskIsNotTheArchivesFault) {
+    store();
+    const FoundSeries series = found();
+    for (const std::size_t bytes : {4096, 8192}) {
+        const test::FullDisk disk(bytes);
+        EXPECT_THROW(fetch_series(archive_->peer(), series, got_), DiskError) << bytes;
+        expect_nothing_left();
+    }
+    EXPECT_EQ(fetch_series(archive_->peer(), series, got_), files_.size());
 }
 
 TEST_F(Archive, WhatWasCutIsStoredWholeTheNextTime) {

@@ -105,13 +105,5 @@ TEST_F(ArchiveThatSends, HalfASeriesLeavesNothing) {
     expect_refused("of the 24 images");
 }
 
-TEST_F(ArchiveThatSends, WhoIsNotTheArchiveIsNotTaken) {
-    begin(true);
-    if (IsSkipped()) return;
-    // The images come from the title that was asked, ARCHIVE: another that is asked is another that may call.
-    peer_.own_title = "SOMEBODY";
-    EXPECT_NE(refused(), "not refused");
-}
-
 }  // namespace
 }  // namespace planlight

@@ -17,7 +17,7 @@ class EncryptedArchive : public ::testing::Test {
 protected:
     void SetUp() override {
         its_ = test::make_certificate(folder_.path(), "archive");
-        elses_ = test::make_certificate(folder_.path(), "elsewhere", true);
+        elses_ = test::make_certificate(folder_.path(), "elsewhere", test::Flaw::of_another_computer);
         ours_ = test::make_certificate(folder_.path(), "ours");
         if (its_.key.empty()) GTEST_SKIP() << "the package openssl is not installed";
     }
