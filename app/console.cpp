@@ -161,7 +161,7 @@ int run_and_explain(const std::function<int()>& command) {
         code = command();
     } catch (const Error& error) {
         const std::string_view what = error.what();
-        say(fmt::format("{}{} {}", what, what.ends_with('?') ? "" : ".", error.remedy));
+        say(fmt::format("{}{} {}", what, what.ends_with('?') || what.ends_with('.') ? "" : ".", error.remedy));
         code = static_cast<int>(error.exit_code);
     } catch (const std::bad_alloc&) {
         code = explain_short_memory();

@@ -39,7 +39,7 @@ void check_device(const CameraModel& d, const std::string& name, const fs::path&
 void check_pair(const CameraModel& a, const CameraModel& b, const std::string& names, const fs::path& file) {
     const double apart_mm = (a.centre_in_rig() - b.centre_in_rig()).norm();
     if (!(apart_mm > 5))
-        throw InputError(file, names + " stand " + Json(apart_mm).dump() + " mm apart, at one place",
+        throw InputError(file, fmt::format("{} stand {:.2g} mm apart, at one place", names, apart_mm),
                          "Give positions in mm, or calibrate the rig again.");
     const Eigen::Vector3d view_a = a.device_from_rig.linear().row(2), view_b = b.device_from_rig.linear().row(2);
     if (!(view_a.dot(view_b) > 0)) throw InputError(file, names + " look away from each other", kCalibrate);

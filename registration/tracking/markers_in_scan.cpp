@@ -55,7 +55,7 @@ ScanMovement movement_in_scan(const ScanCapture& capture, const RigCalibration& 
                               const TrackingSettings& settings) {
     const ScanMovement movement = movement_of_markers(capture, rig, settings);
     if (movement.by == ScanMovement::By::markers) return movement;
-    return movement_in_pictures(capture, mm_per_left_pixel(cloud, rig.left_camera));
+    return movement_in_pictures(capture, mm_per_pixel(cloud, rig.left_camera), mm_per_pixel(cloud, rig.right_camera));
 }
 
 }  // namespace planlight

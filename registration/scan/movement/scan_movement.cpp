@@ -66,15 +66,11 @@ void find_greatest(const std::vector<NamedMoment>& moments, const std::vector<La
     movement.sigma_mm = median(sigmas_mm);
 }
 
-}  // namespace
-
-ScanMovement movement_in_pictures(const ScanCapture& capture, double mm_per_px) {
+ScanMovement seen_by(const std::vector<GrayImage>& frames, const std::vector<UniformLightFrame>& even,
+                     const std::vector<NamedMoment>& named, double mm_per_px) {
     ScanMovement movement;
-    const auto even = uniform_light_frames(capture);
-    if (even.empty() || even.front().name != "white") return movement;
-    const std::vector<NamedMoment> named = moments_of(capture, even);
-    const double gamma = camera_gamma(capture.left, even);
-    const Pictures pictures = pictures_of(capture.left, gamma);
+    const double gamma = camera_gamma(frames, even);
+    const Pictures pictures = pictures_of(frames, gamma);
     std::vector<Moment> moments;
     for (const NamedMoment& moment : named) moments.push_back(moment.moment);
     const Surface surface(pictures, moments.front(), moments);
@@ -88,11 +84,30 @@ ScanMovement movement_in_pictures(const ScanCapture& capture, double mm_per_px) 
     return movement;
 }
 
-double mm_per_left_pixel(const PointCloud& cloud, const CameraModel& left_camera) {
+}  // namespace
+
+ScanMovement movement_in_pictures(const ScanCapture& capture, double left_mm_per_px, double right_mm_per_px) {
+    ScanMovement movement;
+    const auto even = uniform_light_frames(capture);
+    if (even.empty() || even.front().name != "white") return movement;
+    const std::vector<NamedMoment> named = moments_of(capture, even);
+    if (!capture.left.empty()) movement = seen_by(capture.left, even, named, left_mm_per_px);
+    if (capture.right.empty() || right_mm_per_px <= 0) return movement;
+    ScanMovement other = seen_by(capture.right, even, named, right_mm_per_px);
+    if (other.by == ScanMovement::By::nothing) return movement;
+    if (movement.by == ScanMovement::By::nothing) return other;
+    const double sigma_mm = std::max(movement.sigma_mm, other.sigma_mm);
+    if (other.moved_mm > movement.moved_mm) movement = std::move(other);
+    movement.sigma_mm = sigma_mm;
+    return movement;
+}
+
+double mm_per_pixel(const PointCloud& cloud, const CameraModel& camera) {
     std::vector<double> depths;
-    for (const auto& p : cloud.points_in_rig) depths.push_back((left_camera.device_from_rig * p).z());
+    if (camera.focal_x <= 0) return 0;
+    for (const auto& p : cloud.points_in_rig) depths.push_back((camera.device_from_rig * p).z());
     if (depths.empty()) return 0;
-    return median(depths) / left_camera.focal_x;
+    return median(depths) / camera.focal_x;
 }
 
 }  // namespace planlight

@@ -25,15 +25,17 @@ struct ScanMovement {
     double unseen_mm() const { return by == By::pictures ? 4 * sigma_mm : 0; }
 };
 
-/// From the skin itself, without markers: every even picture of the left camera (`uniform_light_frames`), and of a code
-/// without inverses what is lit in each bit, is laid on the first by an affine map (`affine_movement`). `mm_per_px`: of
-/// the skin in the left picture. It sees what moves across the line of sight: of a head's way a third to three
-/// quarters. What is saturated in any frame, and its surroundings, has no say. `sigma_mm` is what the measurement
-/// itself scatters, and `moved_mm` is without two of these sigmas. `by` is `nothing` with under two moments or too
-/// little that could move in the picture.
-ScanMovement movement_in_pictures(const ScanCapture& capture, double mm_per_px);
+/// From the skin itself, without markers: every even picture of a camera (`uniform_light_frames`), and of a code
+/// without inverses what is lit in each bit, is laid on the first by an affine map (`affine_movement`).
+/// `..._mm_per_px`: of the skin in that camera's picture; 0: that camera is not asked. Each camera sees what moves
+/// across its own line of sight: of a head's way a third to three quarters; what moves along one's is seen by the other
+/// (along the line between the two by each, and by the sine of half their angle alone). The camera that sees more
+/// counts. What is saturated in any frame, and its surroundings, has no say. `sigma_mm` is what the measurement itself
+/// scatters in the camera where that is more, and `moved_mm` is without two sigmas. `by` is `nothing` with under two
+/// moments or too little that could move in the pictures.
+ScanMovement movement_in_pictures(const ScanCapture& capture, double left_mm_per_px, double right_mm_per_px = 0);
 
-/// What a left camera pixel is on the scanned points, mm (median); 0 without points.
-double mm_per_left_pixel(const PointCloud& cloud, const CameraModel& left_camera);
+/// What a pixel of that camera is on the scanned points, mm (median); 0 without points or camera.
+double mm_per_pixel(const PointCloud& cloud, const CameraModel& camera);
 
 }  // namespace planlight

@@ -91,6 +91,13 @@ void find_devices(const RigCalibration& before, const std::vector<const Explanat
     }
 }
 
+std::string of_lens(const DeviceFinding& finding) {
+    constexpr double kNone = 5e-4;
+    return std::abs(finding.focal_change) < kNone
+               ? "a shift of its picture"
+               : fmt::format("{:+.2f} % of its focal length", 100 * finding.focal_change);
+}
+
 std::string size_of(const Explanation& best, const RigState& state) {
     std::string text;
     for (std::size_t d = 0; d < kRigDevices; ++d) {
@@ -99,8 +106,7 @@ std::string size_of(const Explanation& best, const RigState& state) {
         if (contains(best.moved, device))
             text += fmt::format("{}{:.2f} mm and {:.3f} degrees", text.empty() ? "" : "; ", f.moved_mm,
                                 f.turned * kDegrees);
-        if (contains(best.lens, device))
-            text += fmt::format("{}{:+.2f} % of its focal length", text.empty() ? "" : "; ", 100 * f.focal_change);
+        if (contains(best.lens, device)) text += (text.empty() ? "" : "; ") + of_lens(f);
     }
     return text;
 }

@@ -61,7 +61,8 @@ int main(int argc, char** argv) {
                 const ScanResult scan = scan_from_capture(capture, room.calibration());
                 const ScanMovement markers = movement_of_markers(capture, room.calibration());
                 const ScanMovement pictures =
-                    movement_in_pictures(capture, mm_per_left_pixel(scan.clean.kept, room.calibration().left_camera));
+                    movement_in_pictures(capture, mm_per_pixel(scan.clean.kept, room.calibration().left_camera),
+                                         mm_per_pixel(scan.clean.kept, room.calibration().right_camera));
                 auto errors = room.scan_errors_mm(scan.clean.kept.points_in_rig, capture.began);
                 for (double& e : errors) e = std::abs(e);
                 std::nth_element(errors.begin(), errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2),

@@ -111,6 +111,29 @@ TEST(ScanMovement, AShiftAcrossThePictureIsMeasured) {
     }
 }
 
+// What comes nearer along the left camera's line of sight stays where it is in its picture, and moves aside in the
+// right camera's.
+TEST(ScanMovement, WhatOneCameraCannotSeeTheOtherDoes) {
+    ScanCapture capture = capture_of([](double) { return Eigen::Vector2d(0, 0); });
+    capture.right = capture_of([](double share) { return Eigen::Vector2d(share, 0); }).left;
+    EXPECT_LT(movement_in_pictures(capture, 0.42).moved_mm, 0.02) << "the left camera alone";
+    for (const bool exchanged : {false, true}) {
+        if (exchanged) std::swap(capture.left, capture.right);
+        const ScanMovement movement = movement_in_pictures(capture, 0.42, 0.42);
+        EXPECT_EQ(movement.by, ScanMovement::By::pictures);
+        EXPECT_NEAR(movement.moved_mm, 0.42 * 12 / 13, 0.07) << exchanged;
+    }
+}
+
+TEST(ScanMovement, ACameraThatSeesNothingLeavesItToTheOther) {
+    ScanCapture capture = capture_of([](double) { return Eigen::Vector2d(0, 0); });
+    capture.right = capture_of([](double share) { return Eigen::Vector2d(share, 0); }).left;
+    for (GrayImage& frame : capture.left) frame = GrayImage(kWidth, kHeight, 3);
+    EXPECT_GT(movement_in_pictures(capture, 0.42, 0.42).moved_mm, 0.3);
+    std::swap(capture.left, capture.right);
+    EXPECT_GT(movement_in_pictures(capture, 0.42, 0.42).moved_mm, 0.3);
+}
+
 TEST(ScanMovement, AMovementBackAndForthIsNotMissed) {
     const ScanMovement movement =
         seen(capture_of([](double share) { return Eigen::Vector2d(std::sin(M_PI * share), 0); }));
