@@ -54,6 +54,8 @@ public:
             take_update(text);
         else if (begins(text, R"({"what":"gate","call":"step")"))
             take_ruling(text);
+        else if (begins(text, R"({"what":"gate","call":"forbids")"))
+            take_forbidden(text, at_s);
         else if (!begins(text, R"({"what":"said")") && !begins(text, R"({"what":"asked","call":"update")"))
             take_seldom(Json::parse(text, nullptr, false), at_s);
     }
@@ -68,6 +70,13 @@ private:
         const auto bound_mm = number_after(text, "\"bound_95_mm\":");
         predicted_mm_ = match_mm_ && bound_mm ? std::hypot(*match_mm_, *bound_mm) : -1;
         measured_ = text.find(R"("check":)") != std::string::npos;
+    }
+
+    /// The gate was asked before anything was drawn, after a check of the skin say: it is of no update.
+    void take_forbidden(const std::string& text, double at_s) {
+        at_s_ = at_s;
+        lit_ = measured_ = false;
+        take_ruling(text);
     }
 
     void take_ruling(const std::string& text) {
@@ -108,9 +117,10 @@ private:
     void tell_of(LightTrust trust, const std::string& text) {
         const Json event = Json::parse(text, nullptr, false);
         const std::string words = event.is_object() ? event.value("headline", "") : "";
-        const char* colour = trust == LightTrust::aligned ? "Green: "
-                             : trust == LightTrust::look  ? "Amber: "
-                                                          : "Dark: ";
+        const char* colour = trust == LightTrust::aligned  ? "Green: "
+                             : trust == LightTrust::look   ? "Amber: "
+                             : words.starts_with("Dark: ") ? ""
+                                                           : "Dark: ";
         line_.events.push_back({at_s_, colour + (words.empty() ? std::string("the light went out.") : words)});
     }
 
