@@ -80,7 +80,11 @@ std::string compared(const RecordingReviewOptions& options, const RecordingTimeL
                      const fs::path& out) {
     const fs::path folder = options.case_folder.empty() ? line.head.case_folder : options.case_folder;
     try {
-        const MomentComparison moment = compare_moment(options.recording, at_s, read_case(folder));
+        MomentComparison moment;
+        if (line.head.anonymous)  // it names no case, and whichever it was would not help
+            moment.why_not = kAnonymousKeepsNoPlan;
+        else
+            moment = compare_moment(options.recording, at_s, read_case(folder));
         const auto name = [&](const char* what, const char* ends) {
             return fmt::format("{}-{:.3f}.{}", what, at_s, ends);
         };

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "app/kept_match.h"
@@ -23,13 +24,41 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
+/// What was lit, by what the session was asked for.
+struct WhatIsLit {
+    LitPart part;
+    int landmark = -1;  ///< that alone is lit; -1: the plan is
+    bool light = false;
+
+    void take_match(const KeptMatch& match) { *this = {match.lit}; }
+
+    /// An event that begins as `asked` does.
+    void take_call(const Json& event) {
+        const std::string call = event.value("call", "");
+        const int which = event.value("which", -1);
+        const auto item = which < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(which));
+        if (call == "light_landmark") landmark = which;
+        if (call == "light_item") {
+            part.item_of_moment = item;
+            if (item) part.hidden.erase(*item);
+        }
+        if (call == "hide_item" && item) {
+            part.hidden.insert(*item);
+            if (part.item_of_moment == item) part.item_of_moment.reset();
+        }
+        if (call == "show_item" && item) part.hidden.erase(*item);
+        if (call == "show_item" && !item) part = {};
+        if (call == "go_dark" || call == "check_skin") light = false;
+    }
+};
+
 /// What the recording has of one frame.
 struct Recorded {
     RecordingHead head;
     std::optional<KeptMatch> match;  ///< the last one before it
     std::optional<StereoFrame> frame;
     std::optional<RigidTransform> rig_from_patient;
-    bool lit = false;
+    WhatIsLit lit;  ///< by the update before it: what was drawn by its own came later
 };
 
 std::optional<RigidTransform> pose_in(const Json& event) {
@@ -46,28 +75,44 @@ std::optional<RigidTransform> pose_in(const Json& event) {
 /// The update of that frame comes some time after it.
 Recorded recorded_at(const fs::path& recording, double at_s) {
     constexpr double kSame_s = 1e-6, kUpdateWithin_s = 10;
+    constexpr std::string_view kAsked = R"({"what":"asked")", kAskedUpdate = R"({"what":"asked","call":"update")";
     Recorded found;
     RecordingReader reader(recording);
     std::optional<Instant> origin;
+    WhatIsLit asked;  // for the next update to light
     const auto since_s = [&](Instant at) { return origin ? seconds(at - *origin) : -1; };
     reader.want_only([&](const ChunkType& type, Instant at) {
         if (type == chunk_types::kHead || type == chunk_types::kRoom) return true;
         if (type == chunk_types::kMatch) return since_s(at) <= at_s;
         if (type == chunk_types::kFrame) return std::abs(since_s(at) - at_s) < kSame_s;
-        return type == chunk_types::kEvent && since_s(at) > at_s - 1 && since_s(at) < at_s + kUpdateWithin_s;
+        return type == chunk_types::kEvent && since_s(at) < at_s + kUpdateWithin_s;
     });
     while (const auto chunk = reader.next()) {
         if (chunk->type == chunk_types::kHead) found.head = head_of(chunk->payload, recording);
         if (chunk->type == chunk_types::kRoom) origin = chunk->at;
-        if (chunk->type == chunk_types::kMatch) found.match = kept_match_of(chunk->payload, recording);
+        if (chunk->type == chunk_types::kMatch) {
+            found.match = kept_match_of(chunk->payload, recording);
+            asked.take_match(*found.match);
+        }
         if (chunk->type == chunk_types::kFrame) found.frame = unpack_frame(chunk->payload, recording);
-        if (chunk->type != chunk_types::kEvent || !chunk->payload.starts_with(R"({"what":"updated")")) continue;
-        const Json event = Json::parse(chunk->payload, nullptr, false);
-        if (!event.is_object() || std::abs(since_s(Instant(event.value("at_ns", std::int64_t{0}))) - at_s) > kSame_s)
-            continue;
-        found.rig_from_patient = pose_in(event);
-        found.lit = event.contains("light") && event["light"].value("lit", false);
-        break;
+        if (chunk->type != chunk_types::kEvent) continue;
+        const std::string& text = chunk->payload;
+        if (text.starts_with(kAsked) && !text.starts_with(kAskedUpdate)) {
+            const Json event = Json::parse(text, nullptr, false);
+            if (event.is_object()) asked.take_call(event);
+            if (!asked.light) found.lit.light = false;
+        }
+        if (!text.starts_with(R"({"what":"updated")")) continue;
+        if (since_s(chunk->at) > at_s - kUpdateWithin_s) {
+            const Json event = Json::parse(text, nullptr, false);
+            if (!event.is_object()) continue;
+            if (std::abs(since_s(Instant(event.value("at_ns", std::int64_t{0}))) - at_s) < kSame_s) {
+                found.rig_from_patient = pose_in(event);
+                return found;
+            }
+        }
+        asked.light = text.find(R"("lit":true)") != std::string::npos;
+        found.lit = asked;
     }
     return found;
 }
@@ -82,11 +127,40 @@ void check_case(const RecordingHead& head, const Case& the_case, const fs::path&
 }
 
 std::string why_not(const Recorded& found) {
-    if (found.head.anonymous) return "An anonymous recording does not keep where the plan lies.";
+    if (found.head.anonymous) return kAnonymousKeepsNoPlan;
     if (!found.frame) return "No frame was kept at that moment.";
     if (!found.match || !found.match->registration.rig) return "No patient had been found by then.";
     if (!found.rig_from_patient) return "Where the head was at that moment is not known: the plan was not followed.";
     return {};
+}
+
+/// In a sentence, why none of the plan, or not all of it, was lit; empty: all of it was.
+std::string why_unlit(const WhatIsLit& lit, const PlanDrawing& drawing) {
+    const std::size_t count = drawing.items.size();
+    if (!lit.light) return "It was dark.";
+    if (lit.landmark >= 0) return fmt::format("Landmark {} alone was lit.", lit.landmark + 1);
+    if (lit.part.item_of_moment && *lit.part.item_of_moment < count)
+        return fmt::format("Only \"{}\" was bright, and that alone is looked for.",
+                           drawing.items[*lit.part.item_of_moment].name);
+    if (lit.part.hidden.empty()) return {};
+    return fmt::format("{} of {} items were hidden, and are not looked for.", lit.part.hidden.size(), count);
+}
+
+void keep_strokes(PlanDrawing& drawing, const std::function<bool(std::size_t)>& keep) {
+    std::erase_if(drawing.strokes,
+                  [&](const Stroke& s) { return s.item >= 0 && !keep(static_cast<std::size_t>(s.item)); });
+    std::erase_if(drawing.labels,
+                  [&](const Label& l) { return l.item >= 0 && !keep(static_cast<std::size_t>(l.item)); });
+}
+
+/// Every place of what was lit.
+LightCheck look_at(const WhatIsLit& lit, PlanDrawing drawing, const SkinSurface& skin, const RigCalibration& rig,
+                   const RigidTransform& rig_from_ct, const StereoFrame& frame) {
+    if (!lit.light || lit.landmark >= 0) return {};
+    if (const auto alone = lit.part.item_of_moment) keep_strokes(drawing, [&](std::size_t i) { return i == *alone; });
+    CheckLightSettings settings;
+    settings.most_segments = std::numeric_limits<int>::max();  // there is time
+    return check_light(drawing, skin, rig, rig_from_ct, frame, settings);
 }
 
 /// The strokes as this camera sees them: what faces it.
@@ -218,8 +292,10 @@ MomentComparison compare_moment(const fs::path& recording, double at_s, const Ca
     DrawingSettings how;
     how.up_in_ct = found.head.up_in_ct;
     const CaseDrawing planned(the_case, how);
-    const CaseDrawing drawing(the_case, planned, match.skin, lit_by(rig, match.patient_from_ct, how));
-    moment.light = check_light(drawing.drawing, drawing.skin, rig, rig_from_ct, *found.frame);
+    CaseDrawing drawing(the_case, planned, match.skin, lit_by(rig, match.patient_from_ct, how));
+    moment.unlit = why_unlit(found.lit, drawing.drawing);
+    keep_strokes(drawing.drawing, [&](std::size_t item) { return !found.lit.part.hidden.contains(item); });
+    moment.light = look_at(found.lit, drawing.drawing, drawing.skin, rig, rig_from_ct, *found.frame);
     moment.pictures = {found.frame->left, found.frame->right};
     const std::array cameras{&rig.left_camera, &rig.right_camera};
     for (std::size_t i = 0; i < cameras.size(); ++i)
@@ -241,16 +317,18 @@ std::string comparison_section(const MomentComparison& moment, const std::string
     if (!moment.why_not.empty()) return "<h2>Plan and light</h2><p>" + xml_escaped(moment.why_not) + "</p>";
     const LightCheck& light = moment.light;
     const std::string sum =
-        light.seen == 0
+        light.expected == 0 ? std::string("There is no light of the plan to look for.")
+        : light.seen == 0
             ? fmt::format(
-                  "None of the plan's light was found in this frame, at {} places where it should be seen: it was "
-                  "dark, a landmark alone was lit, or something was before it.",
+                  "None of the plan's light was found in this frame, at {} places where it should be seen: it had only "
+                  "just been asked for, or something was before it.",
                   light.expected)
             : fmt::format(
                   "Light was found at {} of {} places; half of them lie within {:.2f} mm of the plan, 95 % "
                   "within {:.2f} mm.",
                   light.seen, light.expected, light.median_mm, light.off_mm);
-    return fmt::format("<h2>Plan and light, at {:.3f} s</h2><p>{}</p>", moment.at_s, sum) +
+    return fmt::format("<h2>Plan and light, at {:.3f} s</h2><p>{}</p>", moment.at_s,
+                       xml_escaped(moment.unlit.empty() ? sum : moment.unlit + " " + sum)) +
            overlay(moment, 0, left, "Left camera. Blue: where the plan belongs on the skin as the scan found it.") +
            overlay(moment, 1, right, "Right camera.") +
            "<p>Circles: green within 1 mm, amber within 2 mm, red beyond; grey: no light was found there.</p>" +

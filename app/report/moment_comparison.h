@@ -11,6 +11,8 @@
 
 namespace planlight {
 
+inline constexpr const char* kAnonymousKeepsNoPlan = "An anonymous recording does not keep where the plan lies.";
+
 /// The plan and what was lit at one frame of a recording, measured anew from its pictures.
 struct MomentComparison {
     /// A few millimetres of a stroke of the plan.
@@ -20,10 +22,12 @@ struct MomentComparison {
         std::array<std::optional<Eigen::Vector2d>, 2> pixel;  ///< of the plan there, in the left and the right picture
     };
     std::string why_not;  ///< in words, why nothing can be compared; empty: it is
+    std::string unlit;    ///< in words, why none of the plan, or not all of it, was lit; empty: all of it was
     double at_s = 0;      ///< since the room was entered
     std::array<GrayImage, 2> pictures;
-    std::array<std::vector<std::vector<Eigen::Vector2d>>, 2> plan;  ///< its strokes where they are seen, pixels
-    std::vector<Place> places;                                      ///< that a camera should see
+    std::array<std::vector<std::vector<Eigen::Vector2d>>, 2>
+        plan;                   ///< its strokes where they are seen, pixels; without hidden items
+    std::vector<Place> places;  ///< of what was lit, that a camera should see
     LightCheck light;
     RgbImage scene;  ///< the head as the projector sees it: plan in its colours, the light where it was seen in white
 };
