@@ -154,17 +154,16 @@ OperatorWindow& SessionWindow::window() {
     return *window_;
 }
 
-void SessionWindow::show(const std::string& words, double share) {
+void SessionWindow::show(const std::string& words, double share, const SaidMeanwhile& said) {
     if (!window_) {
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
         return;
     }
     OperatorModel model;
     model.case_title = "Planlight";
-    model.status = {StatusKind::waiting, words, {"The projector is dark."}, share};
-    for (auto* button : {&model.scan, &model.do_register, &model.track, &model.stop})
-        *button = {false, "the case is being read"};
-    model.left.note = model.right.note = "when the room is there";
+    model.status = {StatusKind::waiting, words, {said.detail}, share};
+    for (auto* button : {&model.scan, &model.do_register, &model.track, &model.stop}) *button = {false, said.no_press};
+    model.left.note = model.right.note = said.no_picture;
     if (window_->frame(model) == OperatorAction::quit) closed_ = true;
     window_->rest(kLongestRest_s);
 }
