@@ -215,10 +215,12 @@ constexpr const char* kSaying[] = {
 
 /// What these sources say is shown in the window, but for the texts that stand here with the reason.
 const std::set<std::string> kNotShown{
-    "evidence page", "landmark skin", "landmark scan",  // names of places in the window
-    "light item", "hide item", "show item",             // what a recording calls a press
-    "Leave it as it is.",                               // on the terminal
-    "osteotomy line", "cut plane",                      // in the place of a name
+    "evidence page", "landmark skin", "landmark scan",                 // names of places in the window
+    "light item", "hide item", "show item",                            // what a recording calls a press
+    "Leave it as it is.",                                              // on the terminal
+    "time line",                                                       // name of a place in the window
+    "does not say whose it is", "There is nothing in it to look at.",  // on the terminal, when the window is closed
+    "osteotomy line", "cut plane",                                     // in the place of a name
     // In the light of the projector, and names of faults on the terminal.
     "BOARD HERE", "INTO THE LIGHT", "MORE INTO THE PICTURE", "{} CAMERA BLIND", "{} EDGE NEARER",
     "as a pose that is there", "outside the projector's light", "seen in part only", "too near", "Not found",
