@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 #include <thread>
 
@@ -173,6 +174,7 @@ private:
     std::optional<ResumeOffer> offer_;  ///< of the session's thread
     std::atomic<bool> look_first_{false};
     std::optional<KeptMatch> away_;  ///< this session's own, while it is not known whether it still holds
+    std::set<std::size_t> hidden_before_away_;  ///< items of its plan
     bool ending_ = false, following_ = false;
     std::atomic<bool> projecting_{false};
     std::atomic<Instant::rep> alive_at_{0};

@@ -81,6 +81,7 @@ void LiveSession::look_again(Session& session) {
     if (auto match = session.kept_match()) {
         match->made_utc = today();
         away_ = std::move(match);
+        hidden_before_away_ = session.hidden_items();
     }
     if (!away_) return;
     change_model([&](OperatorModel& m) {  // the session gives up the scan
@@ -88,6 +89,7 @@ void LiveSession::look_again(Session& session) {
         enter(state_, blank_, m, scan_there_);
     });
     look_whether_it_holds(session, *away_);
+    for (const std::size_t item : hidden_before_away_) session.hide_item(item);  // what a person hid stays hidden
     change_model([&](OperatorModel& m) { show_lit_items(session, m); });
     look_first_ = false;
     away_.reset();

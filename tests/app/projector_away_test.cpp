@@ -1,6 +1,8 @@
 // A projector that was unplugged in a session: light comes back when all is as it was, and else stays away.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "app/live/live_session.h"
 #include "app/live/simulated_room.h"
 #include "tests/app/played_session.h"
@@ -17,8 +19,8 @@ protected:
         if (!test::example_case().there) GTEST_SKIP() << "the package invesalius-examples is not installed";
     }
     /// Follows until the light is green (and, with a fault, until it is not any more), then the projector is away;
-    /// gives what is said once Track was pressed again.
-    static OperatorModel come_back(const std::string& fault) {
+    /// gives what is said once Track was pressed again. `hidden`: items that were hidden meanwhile.
+    static OperatorModel come_back(const std::string& fault, std::size_t hidden = 0) {
         simulation::RoomSettings room;
         room.preset = simulation::Preset::paper;
         room.seed = 23;
@@ -46,6 +48,12 @@ protected:
             return green && (fault.empty() || m.status.kind != StatusKind::aligned);
         });
         EXPECT_TRUE(green);
+        for (std::size_t item = 0; item < hidden; ++item)
+            EXPECT_EQ(session.post_item(OperatorAction::hide_item, item), "");
+        wait_for(session, "what is hidden", [&](const OperatorModel& m) {
+            return std::count_if(m.rows.begin(), m.rows.end(), [](const PlanRow& row) { return row.hidden; }) ==
+                   static_cast<std::ptrdiff_t>(hidden);
+        });
         session.look_before_light();
         session.post(OperatorAction::dark);
         wait_for(session, "DARK", [&](const OperatorModel& m) { return m.track.enabled && !session.projecting(); });
@@ -72,6 +80,14 @@ protected:
 
 TEST_F(ProjectorAway, TheLightComesBackWhenAllIsAsItWas) {
     EXPECT_NE(come_back({}).status.kind, StatusKind::refused);
+}
+
+TEST_F(ProjectorAway, WhatWasHiddenIsHiddenStillWhenTheLightComesBack) {
+    const OperatorModel model = come_back({}, 2);
+    EXPECT_NE(model.status.kind, StatusKind::refused);
+    ASSERT_GT(model.rows.size(), 2U);
+    for (std::size_t i = 0; i < model.rows.size(); ++i) EXPECT_EQ(model.rows[i].hidden, i < 2) << i;
+    for (const Stroke& stroke : model.scene.plan->strokes) EXPECT_GT(stroke.item, 1) << "nor in the 3-D view";
 }
 
 TEST_F(ProjectorAway, AProjectorThatWasMovedMeanwhileStaysDark) {
