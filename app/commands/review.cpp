@@ -78,7 +78,8 @@ int run_landmarks(const ReviewOptions& options, const CaseDrawing& drawing, cons
     model.use_landmarks = "Save landmarks";
     if (!model.fit)
         model.status = {StatusKind::ready, "Click landmarks on the skin and on the scan.", {"Nothing is projected."}};
-    const std::vector<PointPair> pairs = click_landmarks(model, already, words_of_window({}, read_site_settings()));
+    const std::vector<PointPair> pairs =
+        click_landmarks(model, already, words_of_window(options.recorded.language, read_site_settings()));
     if (pairs.empty()) {
         fmt::print("No landmarks were clicked; nothing was written.\n");
         return 0;
@@ -92,15 +93,17 @@ int run_landmarks(const ReviewOptions& options, const CaseDrawing& drawing, cons
 
 int run_review(const ReviewOptions& options) {
     if (is_recording(options.case_folder)) {
-        if (!options.registration.empty() || !options.cloud.empty() || !options.picture.empty())
-            throw Error(ExitCode::usage, "a recording is looked at by itself", "Leave out what is for a case.");
         RecordingReviewOptions recorded = options.recorded;
+        if (!options.registration.empty() || !options.cloud.empty() || (!options.picture.empty() && !recorded.show))
+            throw Error(ExitCode::usage, "a recording is looked at by itself", "Leave out what is for a case.");
         recorded.recording = options.case_folder;
         recorded.json = options.json;
-        return run_recording_review(recorded);
+        recorded.picture = options.picture;
+        return recorded.show ? show_recording(recorded) : run_recording_review(recorded);
     }
-    if (!options.recorded.out.empty() || options.recorded.at_s >= 0 || !options.recorded.clip_s.empty())
-        throw Error(ExitCode::usage, "--out, --at and --clip are for a recording (.plrec)",
+    if (!options.recorded.out.empty() || options.recorded.at_s >= 0 || !options.recorded.clip_s.empty() ||
+        options.recorded.show)
+        throw Error(ExitCode::usage, "--out, --at, --clip and --show are for a recording (.plrec)",
                     "Name a recording in the case's place.");
     const Case the_case = read_case(options.case_folder);
     const CaseDrawing drawing(the_case, drawing_settings(read_site_settings()));
@@ -148,7 +151,7 @@ int run_review(const ReviewOptions& options) {
     if (!display_is_there())
         throw DeviceError("Display", "no window can be opened here",
                           "Start the program in a desktop session, or give --picture FILE.png of `planlight review`.");
-    show_model(model, view, words_of_window({}, read_site_settings()));
+    show_model(model, view, words_of_window(options.recorded.language, read_site_settings()));
     return 0;
 }
 
@@ -174,20 +177,29 @@ Run add_review(CLI::App& app) {
         ->check(CLI::IsMember({"before", "after", "error"}))
         ->capture_default_str()
         ->needs(match);
-    sub->add_option("--picture", o.picture, "Write a picture (.png) instead of opening a window; needs no display")
+    sub->add_option("--picture", o.picture,
+                    "Write a picture (.png) instead of opening a window; needs no display (of a recording, with "
+                    "--show: of the window, which is then closed)")
         ->excludes(landmarks)
         ->check(png_file());
     sub->add_option(
         "--out", o.recorded.out,
         "Of a recording: folder for its page (time line, errors, events) and pictures (default: beside it)");
-    sub->add_option("--at", o.recorded.at_s, "Of a recording: picture of the frame nearest to so many seconds")
+    sub->add_flag(
+        "--show", o.recorded.show,
+        "Of a recording: in a window, to be scrubbed and stepped through by its frames and events; nothing is "
+        "written");
+    sub->add_option("--at", o.recorded.at_s,
+                    "Of a recording: picture of the frame nearest to so many seconds (with --show: begin there)")
         ->check(CLI::NonNegativeNumber);
-    sub->add_option("--case", o.recorded.case_folder,
-                    "Of a recording, with --at: its case, to lay the plan over the pictures and to say how far off its "
-                    "light was at each place (default: where it was when it was recorded)");
+    sub->add_option(
+        "--case", o.recorded.case_folder,
+        "Of a recording, with --at or --show: its case, to lay the plan over the pictures and to say how far off its "
+        "light was at each place (default: where it was when it was recorded)");
     sub->add_option("--clip", o.recorded.clip_s, "Of a recording: a PNG for each frame kept from .. to .. seconds")
         ->expected(2)
         ->check(CLI::NonNegativeNumber);
+    language_option(sub, o.recorded.language);
     json_flag(sub, o.json);
     return [options] { return run_review(*options); };
 }

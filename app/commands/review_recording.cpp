@@ -3,14 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
+#include "app/commands/language_option.h"
 #include "app/console.h"
+#include "app/live/live_window.h"
+#include "app/live/shown_review.h"
 #include "app/report/moment_comparison.h"
 #include "app/report/recording_review.h"
+#include "app/site_settings.h"
 #include "app/windows/camera_picture.h"
+#include "app/windows/scene_view.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
@@ -20,24 +24,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The frame nearest to the time asked for.
-double nearest_frame(const RecordingTimeLine& line, double at_s, const fs::path& recording) {
+void check_frames(const RecordingTimeLine& line, const fs::path& recording) {
     if (line.frames_s.empty())
         throw InputError(recording, "kept no frame", "Look at its page without --at and --clip.");
-    return *std::min_element(line.frames_s.begin(), line.frames_s.end(),
-                             [&](double a, double b) { return std::abs(a - at_s) < std::abs(b - at_s); });
 }
 
 /// A PNG a frame, "clip/000000.png" on; a former clip goes as a whole.
-int write_clip(const RecordingReviewOptions& options, const fs::path& folder) {
+int write_clip(const RecordingReviewOptions& options, RecordedMoments& moments, const fs::path& folder) {
+    constexpr double kSame_s = 1e-6;
     int number = 0;
     write_folder_safely(folder, true, [&](const fs::path& into) {
         std::string times = "file,seconds\n";
-        for_each_moment(options.recording, options.clip_s[0], options.clip_s[1], [&](const RecordedMoment& moment) {
+        const std::vector<double>& at_s = moments.line().frames_s;
+        for (std::size_t i = 0; i < at_s.size(); ++i) {
+            if (at_s[i] < options.clip_s[0] - kSame_s || at_s[i] > options.clip_s[1] + kSame_s) continue;
             const std::string name = fmt::format("{:06d}.png", number++);
-            write_png(picture_of(moment), into / name);
-            times += fmt::format("{},{:.6f}\n", name, moment.at_s);
-        });
+            write_png(picture_of(moments.moment(i)), into / name);
+            times += fmt::format("{},{:.6f}\n", name, at_s[i]);
+        }
         if (number == 0)
             throw InputError(options.recording,
                              fmt::format("kept no frame from {:g} to {:g} s", options.clip_s[0], options.clip_s[1]),
@@ -76,27 +80,33 @@ void make_review_folder(const fs::path& folder) {
 
 /// Plan and light of that frame, for the page: its pictures and its table are written beside it. Why not, where the
 /// case is not there: the page has the rest.
-std::string compared(const RecordingReviewOptions& options, const RecordingTimeLine& line, double at_s,
-                     const fs::path& out) {
-    const fs::path folder = options.case_folder.empty() ? line.head.case_folder : options.case_folder;
+std::string compared(const RecordingReviewOptions& options, RecordedMoments& moments, std::size_t frame,
+                     const RecordedMoment& pictures, const fs::path& out) {
+    const fs::path folder = options.case_folder.empty() ? moments.line().head.case_folder : options.case_folder;
     try {
-        MomentComparison moment;
-        if (line.head.anonymous)  // it names no case, and whichever it was would not help
-            moment.why_not = kAnonymousKeepsNoPlan;
-        else
-            moment = compare_moment(options.recording, at_s, read_case(folder));
+        if (moments.line().head.anonymous) {  // it names no case, and whichever it was would not help
+            MomentComparison none;
+            none.why_not = kAnonymousKeepsNoPlan;
+            if (!options.json) warn("plan and light cannot be compared at that moment. " + none.why_not);
+            return comparison_section(none, pictures.frame, {}, {}, {});
+        }
+        const Case the_case = read_case(folder);
+        const MomentComparison moment =
+            MomentComparer(the_case, moments.line(), options.recording).compare(moments, frame, pictures);
         const auto name = [&](const char* what, const char* ends) {
-            return fmt::format("{}-{:.3f}.{}", what, at_s, ends);
+            return fmt::format("{}-{:.3f}.{}", what, moment.at_s, ends);
         };
         if (moment.why_not.empty()) {
-            write_png(rgb_of(brightened(moment.pictures[0])), out / name("left", "png"));
-            write_png(rgb_of(brightened(moment.pictures[1])), out / name("right", "png"));
-            write_png(moment.scene, out / name("head", "png"));
+            write_png(rgb_of(brightened(pictures.frame.left)), out / name("left", "png"));
+            write_png(rgb_of(brightened(pictures.frame.right)), out / name("right", "png"));
+            write_png(render_scene(scene_of(moment, std::make_shared<TriangleMesh>(the_case.skin)), view_of(moment)),
+                      out / name("head", "png"));
             write_safely(out / name("plan-and-light", "csv"), comparison_csv(moment));
         } else if (!options.json) {
             warn("plan and light cannot be compared at that moment. " + moment.why_not);
         }
-        return comparison_section(moment, name("left", "png"), name("right", "png"), name("head", "png"));
+        return comparison_section(moment, pictures.frame, name("left", "png"), name("right", "png"),
+                                  name("head", "png"));
     } catch (const Error& fault) {
         if (!options.case_folder.empty()) throw;
         warn(std::string("plan and light cannot be compared: ") + fault.what() + ". Name the case with --case.");
@@ -115,6 +125,18 @@ bool is_recording(const fs::path& path) {
     return path.extension() == ".plrec" && !fs::is_directory(path, fault);
 }
 
+int show_recording(const RecordingReviewOptions& options) {
+    if (!options.out.empty() || !options.clip_s.empty() || options.json)
+        throw Error(ExitCode::usage, "--out, --clip and --json are for the page of a recording, not for its window",
+                    "Leave them out, or leave out --show.");
+    if (!display_is_there())
+        throw DeviceError("Display", "no window can be opened here",
+                          "Start the program in a desktop session, or look at the page: leave out --show.");
+    show_review(options.recording, {options.case_folder, std::max(0.0, options.at_s), options.picture,
+                                    words_of_window(options.language, read_site_settings())});
+    return 0;
+}
+
 int run_recording_review(const RecordingReviewOptions& options) {
     if (options.clip_s.size() == 2 && options.clip_s[1] < options.clip_s[0])
         throw Error(ExitCode::usage, "the clip ends before it begins", "Give --clip FROM TO, in seconds.");
@@ -126,20 +148,23 @@ int run_recording_review(const RecordingReviewOptions& options) {
     write_safely(out / "review.json", figures);
     if (!options.json) fmt::print("{}\n", (out / "index.html").string());
     std::cout << std::flush;
+    RecordedMoments moments(options.recording, line);
     if (options.at_s >= 0) {
-        const double at_s = nearest_frame(line, options.at_s, options.recording);
-        const std::string name = fmt::format("frame-{:.3f}.png", at_s);
-        for_each_moment(options.recording, at_s, at_s,
-                        [&](const RecordedMoment& moment) { write_png(picture_of(moment), out / name); });
+        check_frames(line, options.recording);
+        const std::size_t frame = frame_near(line, options.at_s);
+        const RecordedMoment pictures = moments.moment(frame);
+        const std::string name = fmt::format("frame-{:.3f}.png", pictures.at_s);
+        write_png(picture_of(pictures), out / name);
         write_safely(out / "index.html",
                      review_page(line,
-                                 {{name, fmt::format("At {:.3f} s: left camera, right camera{}", at_s,
+                                 {{name, fmt::format("At {:.3f} s: left camera, right camera{}", pictures.at_s,
                                                      ", and what the projector was given, if it was kept.")}},
-                                 compared(options, line, at_s, out)));
+                                 compared(options, moments, frame, pictures, out)));
         if (!options.json) fmt::print("{}\n", (out / name).string());
     }
     if (options.clip_s.size() == 2) {
-        const int frames = write_clip(options, out / "clip");
+        check_frames(line, options.recording);
+        const int frames = write_clip(options, moments, out / "clip");
         if (!options.json) fmt::print("{} pictures in {}\n", frames, (out / "clip").string());
     }
     if (options.json) std::cout << figures;

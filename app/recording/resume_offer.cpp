@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "app/recording/match_fate.h"
 #include "app/recording/recording_head.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/recording/recording_reader.h"
@@ -15,38 +16,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kScan = "Begin the session without it: scan and register the patient.";
-
-/// What the events after a match say of it.
-struct Fate {
-    std::string match;  ///< its chunk; empty: none
-    std::string why_none = "nobody was found in that session, or it was recorded without what that takes (--anonymous)";
-    bool confirmed = false;
-    bool untouched = true;
-    std::string stopped;  ///< why its light was stopped, and not asked for again
-
-    void take(const RecordingChunk& chunk) {
-        const std::string& text = chunk.payload;
-        if (chunk.type == chunk_types::kMatch) {
-            untouched = false;
-            match = text;
-            confirmed = false;
-            stopped.clear();
-        } else if (text.starts_with(R"({"what":"asked","call":"scan")")) {
-            untouched = false;
-            match.clear();
-            why_none = "a new scan had begun in that session, and it did not come to a match";
-        } else if (text.starts_with(R"({"what":"asked","call":"find_patient")")) {
-            match.clear();  // by landmarks, say: a match that they refuse stays refused
-            why_none = "the patient was looked for anew in that session, and was not found";
-        } else if (text.starts_with(R"({"what":"asked","call":"confirm")")) {
-            confirmed = true;
-        } else if (text.starts_with(R"({"what":"gate","call":"restart")")) {
-            stopped.clear();
-        } else if (text.starts_with(R"({"what":"gate")") && text.find(R"("stop":true)") != std::string::npos) {
-            stopped = "its light was stopped in that session, because it lay beside the plan or the skin beside it";
-        }
-    }
-};
 
 void check_names(const LastMatch& last, const Case& the_case, const fs::path& recording) {
     const RecordingHead& head = last.head;
@@ -73,30 +42,30 @@ LastMatch last_match_of(const fs::path& recording) {
         return type == chunk_types::kHead || type == chunk_types::kEvent || type == chunk_types::kMatch;
     });
     LastMatch last;
-    Fate fate;
+    FateOfMatches matches(recording);
     bool headed = false;
     while (const auto chunk = reader.next()) {
         if (chunk->type == chunk_types::kHead) {
             last.head = head_of(chunk->payload, recording);
             headed = true;
         } else {
-            fate.take(*chunk);
+            matches.take(*chunk);
         }
     }
     if (!headed)
         throw DamagedFileError(recording, "does not say whose it is",
                                "It ends before its first chunk: there is nothing in it.");
-    last.untouched = fate.untouched;
+    last.untouched = matches.untouched();
     if (may_be_damaged(reader.end())) {
         last.why_none = "it is damaged, and what became of its match cannot be told";
-    } else if (fate.match.empty()) {
-        last.why_none = fate.why_none;
-    } else if (!fate.stopped.empty()) {
-        last.why_none = fate.stopped;
-    } else {
-        last.match = kept_match_of(fate.match, recording);
-        last.match->confirmed |= fate.confirmed;
+        return last;
     }
+    // What did not agree with markers or skin may agree when they are looked at again, before anything is lit.
+    const bool to_be_tried = matches.fate() == MatchFate::stands || matches.fate() == MatchFate::offered ||
+                             matches.fate() == MatchFate::not_resumed;
+    last.why_none = to_be_tried ? matches.stopped() : matches.why();
+    if (last.why_none.empty()) last.match = matches.last();
+    if (last.why_none.empty() && !last.match) last.why_none = matches.why();
     return last;
 }
 
@@ -107,9 +76,6 @@ ResumeOffer resume_offer(const fs::path& recording, const Case& the_case, const 
 ResumeOffer resume_offer(LastMatch last, const fs::path& recording, const Case& the_case, const RigCalibration* rig) {
     check_names(last, the_case, recording);
     if (!last.match) throw InputError(recording, "has no match to go on with: " + last.why_none, kScan);
-    if (last.match->registration.verdict != Verdict::yes && !last.match->confirmed)
-        throw InputError(recording, "has no match to go on with: its match was doubtful, and nobody confirmed it",
-                         kScan);
     const auto& state = last.match->registration.rig;
     if (rig != nullptr && (!state || state->calibrated.hash != hash_of(*rig)))
         throw InputError(recording,

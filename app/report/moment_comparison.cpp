@@ -4,118 +4,22 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <functional>
 #include <limits>
-#include <nlohmann/json.hpp>
+#include <set>
 
-#include "app/kept_match.h"
 #include "app/live/scene_of_session.h"
 #include "app/recording/recording_head.h"
 #include "app/report/html_page.h"
 #include "app/report/operation_report.h"
 #include "app/windows/camera_picture.h"
 #include "app/windows/scene_view.h"
-#include "planning_io/recording/packed_pictures.h"
-#include "planning_io/recording/recording_reader.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::json;
-
-/// What was lit, by what the session was asked for.
-struct WhatIsLit {
-    LitPart part;
-    int landmark = -1;  ///< that alone is lit; -1: the plan is
-    bool light = false;
-
-    void take_match(const KeptMatch& match) { *this = {match.lit}; }
-
-    /// An event that begins as `asked` does.
-    void take_call(const Json& event) {
-        const std::string call = event.value("call", "");
-        const int which = event.value("which", -1);
-        const auto item = which < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(which));
-        if (call == "light_landmark") landmark = which;
-        if (call == "light_item") {
-            part.item_of_moment = item;
-            if (item) part.hidden.erase(*item);
-        }
-        if (call == "hide_item" && item) {
-            part.hidden.insert(*item);
-            if (part.item_of_moment == item) part.item_of_moment.reset();
-        }
-        if (call == "show_item" && item) part.hidden.erase(*item);
-        if (call == "show_item" && !item) part = {};
-        if (call == "go_dark" || call == "check_skin") light = false;
-    }
-};
-
-/// What the recording has of one frame.
-struct Recorded {
-    RecordingHead head;
-    std::optional<KeptMatch> match;  ///< the last one before it
-    std::optional<StereoFrame> frame;
-    std::optional<RigidTransform> rig_from_patient;
-    WhatIsLit lit;  ///< by the update before it: what was drawn by its own came later
-};
-
-std::optional<RigidTransform> pose_in(const Json& event) {
-    const auto pose = event.find("pose");
-    if (pose == event.end() || !pose->is_object()) return std::nullopt;
-    const auto rows = pose->find("rig_from_patient");
-    if (rows == pose->end() || !rows->is_array() || rows->size() != 16) return std::nullopt;
-    RigidTransform transform;
-    for (Eigen::Index i = 0; i < 16; ++i)
-        transform.matrix()(i / 4, i % 4) = rows->at(static_cast<std::size_t>(i)).get<double>();
-    return transform;
-}
-
-/// The update of that frame comes some time after it.
-Recorded recorded_at(const fs::path& recording, double at_s) {
-    constexpr double kSame_s = 1e-6, kUpdateWithin_s = 10;
-    constexpr std::string_view kAsked = R"({"what":"asked")", kAskedUpdate = R"({"what":"asked","call":"update")";
-    Recorded found;
-    RecordingReader reader(recording);
-    std::optional<Instant> origin;
-    WhatIsLit asked;  // for the next update to light
-    const auto since_s = [&](Instant at) { return origin ? seconds(at - *origin) : -1; };
-    reader.want_only([&](const ChunkType& type, Instant at) {
-        if (type == chunk_types::kHead || type == chunk_types::kRoom) return true;
-        if (type == chunk_types::kMatch) return since_s(at) <= at_s;
-        if (type == chunk_types::kFrame) return std::abs(since_s(at) - at_s) < kSame_s;
-        return type == chunk_types::kEvent && since_s(at) < at_s + kUpdateWithin_s;
-    });
-    while (const auto chunk = reader.next()) {
-        if (chunk->type == chunk_types::kHead) found.head = head_of(chunk->payload, recording);
-        if (chunk->type == chunk_types::kRoom) origin = chunk->at;
-        if (chunk->type == chunk_types::kMatch) {
-            found.match = kept_match_of(chunk->payload, recording);
-            asked.take_match(*found.match);
-        }
-        if (chunk->type == chunk_types::kFrame) found.frame = unpack_frame(chunk->payload, recording);
-        if (chunk->type != chunk_types::kEvent) continue;
-        const std::string& text = chunk->payload;
-        if (text.starts_with(kAsked) && !text.starts_with(kAskedUpdate)) {
-            const Json event = Json::parse(text, nullptr, false);
-            if (event.is_object()) asked.take_call(event);
-            if (!asked.light) found.lit.light = false;
-        }
-        if (!text.starts_with(R"({"what":"updated")")) continue;
-        if (since_s(chunk->at) > at_s - kUpdateWithin_s) {
-            const Json event = Json::parse(text, nullptr, false);
-            if (!event.is_object()) continue;
-            if (std::abs(since_s(Instant(event.value("at_ns", std::int64_t{0}))) - at_s) < kSame_s) {
-                found.rig_from_patient = pose_in(event);
-                return found;
-            }
-        }
-        asked.light = text.find(R"("lit":true)") != std::string::npos;
-        found.lit = asked;
-    }
-    return found;
-}
 
 void check_case(const RecordingHead& head, const Case& the_case, const fs::path& recording) {
     const CaseName name = name_of(the_case);
@@ -124,43 +28,6 @@ void check_case(const RecordingHead& head, const Case& the_case, const fs::path&
         return;
     throw InputError(recording, fmt::format("is of the case {}, and this is the case {}", head.case_code, name.code),
                      "Name the case that was used with --case.");
-}
-
-std::string why_not(const Recorded& found) {
-    if (found.head.anonymous) return kAnonymousKeepsNoPlan;
-    if (!found.frame) return "No frame was kept at that moment.";
-    if (!found.match || !found.match->registration.rig) return "No patient had been found by then.";
-    if (!found.rig_from_patient) return "Where the head was at that moment is not known: the plan was not followed.";
-    return {};
-}
-
-/// In a sentence, why none of the plan, or not all of it, was lit; empty: all of it was.
-std::string why_unlit(const WhatIsLit& lit, const PlanDrawing& drawing) {
-    const std::size_t count = drawing.items.size();
-    if (!lit.light) return "It was dark.";
-    if (lit.landmark >= 0) return fmt::format("Landmark {} alone was lit.", lit.landmark + 1);
-    if (lit.part.item_of_moment && *lit.part.item_of_moment < count)
-        return fmt::format("Only \"{}\" was bright, and that alone is looked for.",
-                           drawing.items[*lit.part.item_of_moment].name);
-    if (lit.part.hidden.empty()) return {};
-    return fmt::format("{} of {} items were hidden, and are not looked for.", lit.part.hidden.size(), count);
-}
-
-void keep_strokes(PlanDrawing& drawing, const std::function<bool(std::size_t)>& keep) {
-    std::erase_if(drawing.strokes,
-                  [&](const Stroke& s) { return s.item >= 0 && !keep(static_cast<std::size_t>(s.item)); });
-    std::erase_if(drawing.labels,
-                  [&](const Label& l) { return l.item >= 0 && !keep(static_cast<std::size_t>(l.item)); });
-}
-
-/// Every place of what was lit.
-LightCheck look_at(const WhatIsLit& lit, PlanDrawing drawing, const SkinSurface& skin, const RigCalibration& rig,
-                   const RigidTransform& rig_from_ct, const StereoFrame& frame) {
-    if (!lit.light || lit.landmark >= 0) return {};
-    if (const auto alone = lit.part.item_of_moment) keep_strokes(drawing, [&](std::size_t i) { return i == *alone; });
-    CheckLightSettings settings;
-    settings.most_segments = std::numeric_limits<int>::max();  // there is time
-    return check_light(drawing, skin, rig, rig_from_ct, frame, settings);
 }
 
 /// The strokes as this camera sees them: what faces it.
@@ -185,6 +52,61 @@ std::vector<std::vector<Eigen::Vector2d>> seen_by(const CameraModel& camera, con
     return lines;
 }
 
+/// What was lit at one frame.
+struct WhatIsLit {
+    LitPart part;
+    int landmark = -1;  ///< that alone is lit; -1: the plan is
+    bool light = false;
+};
+
+/// As a session takes what it is asked for.
+WhatIsLit what_is_lit(const LitPart& at_match, const RecordingTimeLine::Lit& since) {
+    WhatIsLit lit{at_match, -1, since.light};
+    LitPart& part = lit.part;
+    for (const auto& [call, which] : since.asked) {
+        const auto item = which < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(which));
+        if (call == "light_landmark") lit.landmark = which;
+        if (call == "light_item") part.item_of_moment = item;
+        if ((call == "light_item" || call == "show_item") && item) part.hidden.erase(*item);
+        if (call == "hide_item" && item) {
+            part.hidden.insert(*item);
+            if (part.item_of_moment == item) part.item_of_moment.reset();
+        }
+        if (call == "show_item" && !item) part = {};
+    }
+    return lit;
+}
+
+/// In a sentence, why none of the plan, or not all of it, was lit; empty: all of it was.
+std::string why_unlit(const WhatIsLit& lit, const PlanDrawing& drawing) {
+    const std::size_t count = drawing.items.size();
+    if (!lit.light) return "It was dark.";
+    if (lit.landmark >= 0) return fmt::format("Landmark {} alone was lit.", lit.landmark + 1);
+    if (lit.part.item_of_moment && *lit.part.item_of_moment < count)
+        return fmt::format("Only \"{}\" was bright, and that alone is looked for.",
+                           drawing.items[*lit.part.item_of_moment].name);
+    if (lit.part.hidden.empty()) return {};
+    return fmt::format("{} of {} items were hidden, and are not looked for.", lit.part.hidden.size(), count);
+}
+
+PlanDrawing only(PlanDrawing drawing, const std::function<bool(std::size_t)>& keep) {
+    const auto gone = [&](const auto& drawn) { return drawn.item >= 0 && !keep(static_cast<std::size_t>(drawn.item)); };
+    std::erase_if(drawing.strokes, gone);
+    std::erase_if(drawing.labels, gone);
+    return drawing;
+}
+
+/// Every place of what was lit.
+LightCheck look_at(const WhatIsLit& lit, const PlanDrawing& shown, const SkinSurface& skin, const RigCalibration& rig,
+                   const RigidTransform& rig_from_ct, const StereoFrame& frame) {
+    if (!lit.light || lit.landmark >= 0) return {};
+    CheckLightSettings settings;
+    settings.most_segments = std::numeric_limits<int>::max();  // there is time
+    const auto alone = lit.part.item_of_moment;
+    return check_light(alone ? only(shown, [&](std::size_t item) { return item == *alone; }) : shown, skin, rig,
+                       rig_from_ct, frame, settings);
+}
+
 /// Each place as a short line along the stroke, where its light was seen.
 std::shared_ptr<const std::vector<LightLine>> light_as_seen(const LightCheck& light) {
     constexpr double kHalf_mm = 1.5, kAbove_mm = 1.2;
@@ -198,47 +120,14 @@ std::shared_ptr<const std::vector<LightLine>> light_as_seen(const LightCheck& li
     return lines;
 }
 
-RgbImage scene_of(const Case& the_case, const CaseDrawing& drawing, const MomentComparison& moment,
-                  const RigCalibration& rig, const RigidTransform& rig_from_ct) {
-    SceneModel scene;
-    scene.skin = std::make_shared<TriangleMesh>(the_case.skin);
-    scene.plan = std::make_shared<PlanDrawing>(drawing.drawing);
-    scene.light = light_as_seen(moment.light);
-    SceneView view = view_of_plan(drawing.drawing);
-    const SceneView light = projector_view(rig, rig_from_ct.inverse());
-    view.azimuth = light.azimuth, view.elevation = light.elevation;
-    return render_scene(scene, view);
-}
-
 const char* colour_of(const SeenSegment& place) {
     if (!place.seen) return "#8a8f98";
     const double off = std::abs(place.off_mm);
     return off > kOperationStop_mm ? "#e0303a" : off > kOperationLook_mm ? "#ffab1a" : "#35c46f";
 }
 
-std::string words_of(const MomentComparison::Place& place) {
-    if (!place.seen.seen) return place.item + ": no light was found here";
-    return fmt::format("{}: {:.2f} mm beside the plan (± {:.2f} mm, one standard deviation)", place.item,
-                       std::abs(place.seen.off_mm), place.seen.sigma_mm);
-}
-
-/// x, y, width, height of the part of a picture that the plan is in, with some skin round it; of all of it where there
-/// is none.
-std::array<double, 4> round_the_plan(const std::vector<std::vector<Eigen::Vector2d>>& plan, const GrayImage& picture) {
-    constexpr double kMargin_px = 25;
-    Eigen::AlignedBox2d box;
-    for (const auto& line : plan)
-        for (const Eigen::Vector2d& p : line) box.extend(p);
-    const Eigen::AlignedBox2d all(Eigen::Vector2d(0, 0), Eigen::Vector2d(picture.width, picture.height));
-    if (!box.isEmpty())
-        box = all.intersection(Eigen::AlignedBox2d(box.min().array() - kMargin_px, box.max().array() + kMargin_px));
-    if (box.isEmpty()) box = all;
-    return {box.min().x(), box.min().y(), box.sizes().x(), box.sizes().y()};
-}
-
-std::string overlay(const MomentComparison& moment, std::size_t camera, const std::string& file,
-                    const std::string& title) {
-    const GrayImage& picture = moment.pictures[camera];
+std::string overlay(const MomentComparison& moment, const GrayImage& picture, std::size_t camera,
+                    const std::string& file, const std::string& title) {
     const std::array<double, 4> box = round_the_plan(moment.plan[camera], picture);
     std::string svg = fmt::format(
         "<figure><svg class=\"compared\" viewBox=\"{:.1f} {:.1f} {:.1f} {:.1f}\" style=\"width:100%\"><image "
@@ -279,58 +168,136 @@ for (const svg of document.querySelectorAll("svg.compared")) svg.addEventListene
 
 }  // namespace
 
-MomentComparison compare_moment(const fs::path& recording, double at_s, const Case& the_case) {
+/// The plan as it was drawn after one match.
+struct MomentComparer::Drawn {
+    std::uint64_t match = 0;  ///< its place in the recording
+    RegistrationResult found;
+    LitPart lit;  ///< when it was kept
+    CaseDrawing drawing;
+    std::set<std::size_t> hidden{};  ///< that `shown` is without
+    std::shared_ptr<const PlanDrawing> shown = std::make_shared<PlanDrawing>(drawing.drawing);
+
+    void hide(const std::set<std::size_t>& items) {
+        if (items == hidden) return;
+        hidden = items;
+        shown = std::make_shared<PlanDrawing>(
+            only(drawing.drawing, [&](std::size_t item) { return !items.contains(item); }));
+    }
+};
+
+MomentComparer::MomentComparer(const Case& the_case, const RecordingTimeLine& line, const fs::path& recording)
+    : case_(the_case), anonymous_(line.head.anonymous) {
+    check_case(line.head, the_case, recording);
+    how_.up_in_ct = line.head.up_in_ct;
+    if (!anonymous_) planned_ = std::make_unique<CaseDrawing>(the_case, how_);
+}
+MomentComparer::~MomentComparer() = default;
+
+/// Null where no patient had been found by then.
+MomentComparer::Drawn* MomentComparer::drawn_at(RecordedMoments& moments, std::size_t frame) {
+    const std::uint64_t place = moments.line().places.at(frame).match;
+    if (drawn_ && drawn_->match == place) return drawn_.get();
+    std::optional<KeptMatch> match = moments.match(frame);
+    if (!match || !match->registration.rig) return nullptr;
+    const RegistrationResult& found = match->registration;
+    drawn_.reset(
+        new Drawn{place, found, match->lit,
+                  CaseDrawing(case_, *planned_, found.skin, lit_by(found.rig->rig, found.patient_from_ct, how_))});
+    return drawn_.get();
+}
+
+MomentComparison MomentComparer::compare(RecordedMoments& moments, std::size_t frame, const RecordedMoment& pictures) {
     MomentComparison moment;
-    moment.at_s = at_s;
-    const Recorded found = recorded_at(recording, at_s);
-    check_case(found.head, the_case, recording);
-    moment.why_not = why_not(found);
-    if (!moment.why_not.empty()) return moment;
-    const RegistrationResult& match = found.match->registration;
-    const RigCalibration& rig = match.rig->rig;
-    const RigidTransform rig_from_ct = *found.rig_from_patient * match.patient_from_ct;  // T_global = T_cur T_ini
-    DrawingSettings how;
-    how.up_in_ct = found.head.up_in_ct;
-    const CaseDrawing planned(the_case, how);
-    CaseDrawing drawing(the_case, planned, match.skin, lit_by(rig, match.patient_from_ct, how));
-    moment.unlit = why_unlit(found.lit, drawing.drawing);
-    keep_strokes(drawing.drawing, [&](std::size_t item) { return !found.lit.part.hidden.contains(item); });
-    moment.light = look_at(found.lit, drawing.drawing, drawing.skin, rig, rig_from_ct, *found.frame);
-    moment.pictures = {found.frame->left, found.frame->right};
+    moment.at_s = pictures.at_s;
+    if (anonymous_) {
+        moment.why_not = kAnonymousKeepsNoPlan;
+        return moment;
+    }
+    Drawn* const drawn = drawn_at(moments, frame);
+    const auto rig_from_patient = moments.rig_from_patient(frame);
+    if (!drawn || !rig_from_patient) {
+        moment.why_not = drawn ? "Where the head was at that moment is not known: the plan was not followed."
+                               : "No patient had been found by then.";
+        return moment;
+    }
+    const RigCalibration& rig = drawn->found.rig->rig;
+    const RigidTransform rig_from_ct = *rig_from_patient * drawn->found.patient_from_ct;  // T_global = T_cur T_ini
+    const RecordingTimeLine& line = moments.line();
+    const WhatIsLit lit = what_is_lit(drawn->lit, line.lit.at(line.places.at(frame).lit));
+    drawn->hide(lit.part.hidden);
+    const PlanDrawing& plan = *drawn->shown;
+    moment.drawn = drawn->shown;
+    moment.unlit = why_unlit(lit, plan);
+    moment.light = look_at(lit, plan, drawn->drawing.skin, rig, rig_from_ct, pictures.frame);
+    moment.light_lines = light_as_seen(moment.light);
+    moment.by_projector = projector_view(rig, rig_from_ct.inverse());
     const std::array cameras{&rig.left_camera, &rig.right_camera};
-    for (std::size_t i = 0; i < cameras.size(); ++i)
-        moment.plan[i] = seen_by(*cameras[i], drawing.drawing, rig_from_ct);
+    for (std::size_t i = 0; i < cameras.size(); ++i) moment.plan[i] = seen_by(*cameras[i], plan, rig_from_ct);
     for (const SeenSegment& segment : moment.light.segments) {
         const auto item = static_cast<std::size_t>(std::max(0, segment.item));
-        MomentComparison::Place place{
-            item < drawing.drawing.items.size() ? drawing.drawing.items[item].name : "", segment, {}};
+        MomentComparison::Place place{item < plan.items.size() ? plan.items[item].name : "", segment, {}};
         for (std::size_t i = 0; i < cameras.size(); ++i)
             place.pixel[i] = project(*cameras[i], rig_from_ct * segment.p_in_ct);
         moment.places.push_back(std::move(place));
     }
-    moment.scene = scene_of(the_case, drawing, moment, rig, rig_from_ct);
     return moment;
 }
 
-std::string comparison_section(const MomentComparison& moment, const std::string& left, const std::string& right,
-                               const std::string& scene) {
-    if (!moment.why_not.empty()) return "<h2>Plan and light</h2><p>" + xml_escaped(moment.why_not) + "</p>";
+std::array<double, 4> round_the_plan(const std::vector<std::vector<Eigen::Vector2d>>& plan, const GrayImage& picture) {
+    constexpr double kMargin_px = 25;
+    Eigen::AlignedBox2d box;
+    for (const auto& line : plan)
+        for (const Eigen::Vector2d& p : line) box.extend(p);
+    const Eigen::AlignedBox2d all(Eigen::Vector2d(0, 0), Eigen::Vector2d(picture.width, picture.height));
+    if (!box.isEmpty())
+        box = all.intersection(Eigen::AlignedBox2d(box.min().array() - kMargin_px, box.max().array() + kMargin_px));
+    if (box.isEmpty()) box = all;
+    return {box.min().x(), box.min().y(), box.sizes().x(), box.sizes().y()};
+}
+
+SceneModel scene_of(const MomentComparison& moment, std::shared_ptr<const TriangleMesh> skin) {
+    SceneModel scene;
+    scene.skin = std::move(skin);
+    scene.plan = moment.drawn;
+    scene.light = moment.light_lines;
+    return scene;
+}
+
+SceneView view_of(const MomentComparison& moment) {
+    if (!moment.drawn) return {};
+    SceneView view = view_of_plan(*moment.drawn);
+    view.azimuth = moment.by_projector.azimuth, view.elevation = moment.by_projector.elevation;
+    return view;
+}
+
+std::string words_of(const MomentComparison::Place& place) {
+    if (!place.seen.seen) return place.item + ": no light was found here";
+    return fmt::format("{}: {:.2f} mm beside the plan (± {:.2f} mm, one standard deviation)", place.item,
+                       std::abs(place.seen.off_mm), place.seen.sigma_mm);
+}
+
+std::string sum_of(const MomentComparison& moment) {
     const LightCheck& light = moment.light;
-    const std::string sum =
-        light.expected == 0 ? std::string("There is no light of the plan to look for.")
-        : light.seen == 0
-            ? fmt::format(
-                  "None of the plan's light was found in this frame, at {} places where it should be seen: it had only "
-                  "just been asked for, or something was before it.",
-                  light.expected)
-            : fmt::format(
-                  "Light was found at {} of {} places; half of them lie within {:.2f} mm of the plan, 95 % "
-                  "within {:.2f} mm.",
-                  light.seen, light.expected, light.median_mm, light.off_mm);
-    return fmt::format("<h2>Plan and light, at {:.3f} s</h2><p>{}</p>", moment.at_s,
-                       xml_escaped(moment.unlit.empty() ? sum : moment.unlit + " " + sum)) +
-           overlay(moment, 0, left, "Left camera. Blue: where the plan belongs on the skin as the scan found it.") +
-           overlay(moment, 1, right, "Right camera.") +
+    const std::string before = moment.unlit.empty() ? "" : moment.unlit + " ";
+    if (light.expected == 0) return before + "There is no light of the plan to look for.";
+    if (light.seen == 0)
+        return before + fmt::format(
+                            "None of the plan's light was found in this frame, at {} places where it should be seen: "
+                            "it had only just been asked for, or something was before it.",
+                            light.expected);
+    return before + fmt::format(
+                        "Light was found at {} of {} places; half of them lie within {:.2f} mm of the plan, 95 % "
+                        "within {:.2f} mm.",
+                        light.seen, light.expected, light.median_mm, light.off_mm);
+}
+
+std::string comparison_section(const MomentComparison& moment, const StereoFrame& pictures, const std::string& left,
+                               const std::string& right, const std::string& scene) {
+    if (!moment.why_not.empty()) return "<h2>Plan and light</h2><p>" + xml_escaped(moment.why_not) + "</p>";
+    return fmt::format("<h2>Plan and light, at {:.3f} s</h2><p>{}</p>", moment.at_s, xml_escaped(sum_of(moment))) +
+           overlay(moment, pictures.left, 0, left,
+                   "Left camera. Blue: where the plan belongs on the skin as the scan found it.") +
+           overlay(moment, pictures.right, 1, right, "Right camera.") +
            "<p>Circles: green within 1 mm, amber within 2 mm, red beyond; grey: no light was found there.</p>" +
            kScript +
            fmt::format(

@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "app/recording/match_fate.h"
 #include "app/recording/recording_head.h"
 #include "app/report/operation_report.h"
 #include "app/without_numbers.h"
@@ -31,14 +32,16 @@ std::optional<double> number(const Json& value) {
 /// Goes through the events in their order.
 class Teller {
 public:
-    explicit Teller(OperationFacts& facts) : facts_(facts) {}
+    Teller(OperationFacts& facts, const fs::path& recording) : facts_(facts), matches_(recording) {}
 
     void take(const RecordingChunk& chunk) {
         at_s_ = facts_.room_entered ? seconds(chunk.at - origin_) : 0;
         if (chunk.type == chunk_types::kRoom)
             enter_room(Json::parse(chunk.payload), chunk.at);
         else if (chunk.type == chunk_types::kEvent)
-            take_event(Json::parse(chunk.payload));
+            take_event(Json::parse(chunk.payload), chunk);
+        else if (chunk.type == chunk_types::kMatch)
+            matches_.take(chunk);
         else if (chunk.type == chunk_types::kFrame)
             ++facts_.kept_frames, frame_ = chunk;
         else if (chunk.type == chunk_types::kPicture)
@@ -96,7 +99,7 @@ private:
         by_program_ = {}, press_at_s_.reset();
     }
 
-    void take_event(const Json& event) {
+    void take_event(const Json& event, const RecordingChunk& chunk) {
         const std::string what = event.value("what", "");
         if (what == "updated") take_update(event);
         if (what == "gate") take_ruling(event);
@@ -110,6 +113,9 @@ private:
         if (what == "refused")
             facts_.refusals.push_back({at_s_, "", event.value("call", "") + ": " + event.value("why", ""), false});
         if (what == "skin_checked") take_skin_check(event);
+        const int stood = matches_.times_stood();
+        matches_.take(chunk);
+        if (matches_.times_stood() > stood) use_match();
     }
 
     void take_skin_check(const Json& event) {
@@ -124,10 +130,7 @@ private:
     void take_call(const Json& event) {
         const std::string call = event.value("call", "");
         if (call == "find_patient") utc_of_match_ = event.value("utc", "");
-        if (call == "confirm") {
-            use_match();
-            say_by("the match was said to fit.", event);
-        }
+        if (call == "confirm") say_by("the match was said to fit.", event);
         if (call == "light_landmark") landmark_ = event.value("which", -1);
         take_hiding(call, event);
         if (call != "update") following_ = false;
@@ -159,7 +162,6 @@ private:
         for (const Json& reason : event.at("reasons")) match.reasons.push_back(reason.get<std::string>());
         facts_.matches.push_back(match);
         take_items(event);
-        if (match.verdict == "yes") use_match();
     }
 
     /// A match of an earlier session that this one went on with.
@@ -170,7 +172,6 @@ private:
                 event.value("markers", 0), number(event.at("skin_off_mm")).value_or(0)),
             event);
         take_items(event);
-        use_match();
     }
 
     void take_items(const Json& event) {
@@ -304,6 +305,7 @@ private:
     }
 
     OperationFacts& facts_;
+    FateOfMatches matches_;
     Instant origin_{}, frame_at_{};
     double at_s_ = 0, update_at_s_ = 0, step_s_ = 0, off_mm_ = -1;
     bool following_ = false, lit_ = false;
@@ -340,7 +342,7 @@ OperationFacts facts_of_operation(const fs::path& recording, const std::function
     if (!chunk || chunk->type != chunk_types::kHead)
         throw DamagedFileError(recording, "does not say whose it is", "There is nothing in it to report.");
     facts.head = head_of(chunk->payload, recording);
-    Teller teller(facts);
+    Teller teller(facts, recording);
     try {
         while ((chunk = reader.next())) {
             teller.take(*chunk);

@@ -38,4 +38,25 @@ unsigned CameraTexture::take(const std::shared_ptr<const GrayImage>& picture, in
     return texture_;
 }
 
+void ColourTexture::release() {
+    if (texture_ != 0) glDeleteTextures(1, &texture_);
+    texture_ = 0;
+    shown_ = nullptr;
+}
+
+unsigned ColourTexture::take(const std::shared_ptr<const RgbImage>& picture) {
+    if (!picture || picture->empty()) return 0;
+    if (texture_ == 0) glGenTextures(1, &texture_);
+    if (picture == shown_) return texture_;
+    shown_ = picture;
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+    glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, picture->width, picture->height, 0, GL_RGB, GL_UNSIGNED_BYTE,
+                 picture->pixels.data());
+    return texture_;
+}
+
 }  // namespace planlight

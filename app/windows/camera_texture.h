@@ -23,6 +23,18 @@ private:
     int pixels_ = 0;
 };
 
+/// A picture in colours as an OpenGL texture, as it is.
+class ColourTexture {
+public:
+    /// 0 when there is no picture.
+    unsigned take(const std::shared_ptr<const RgbImage>& picture);
+    void release();
+
+private:
+    std::shared_ptr<const RgbImage> shown_;
+    unsigned texture_ = 0;
+};
+
 /// As Dear ImGui takes textures.
 ImTextureID texture_id(unsigned texture);
 

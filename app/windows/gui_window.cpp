@@ -127,6 +127,7 @@ struct GuiWindow::Parts {
         glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scan_code, int action, int modifiers) {
             of(w).to_settle = kFramesAfterInput;
             if (action == GLFW_PRESS && of(w).listener.key) of(w).listener.key(key_by_label(key, scan_code), modifiers);
+            if (action == GLFW_REPEAT && of(w).listener.key_held) of(w).listener.key_held(key_by_label(key, scan_code));
         });
         glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int action, int) {
             of(w).to_settle = kFramesAfterInput;

@@ -14,6 +14,7 @@ namespace planlight {
 struct WindowListener {
     std::function<void(int key, int modifiers)> key;        ///< GLFW_KEY_..., pressed, not repeated
     std::function<void(double x, double y)> mouse_pressed;  ///< any button, window pixels from the top left
+    std::function<void(int key)> key_held = {};             ///< again and again, as the system repeats a key
 };
 
 /// A window that Dear ImGui draws over OpenGL 3.3: its context, its fonts, its pictures. All members are called from

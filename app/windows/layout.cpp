@@ -84,4 +84,9 @@ WindowLayout layout_of(int width, int height) {
     return height > width ? on_end(w, h) : lying(w, h);
 }
 
+std::array<int, 4> whole_pixels(const Box& box) {
+    return {static_cast<int>(box.x), static_cast<int>(box.y), static_cast<int>(box.width),
+            static_cast<int>(box.height)};
+}
+
 }  // namespace planlight

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 namespace planlight {
 
 /// A rectangle in window pixels, from the top left.
@@ -8,6 +10,9 @@ struct Box {
     float right() const { return x + width; }
     float bottom() const { return y + height; }
 };
+
+/// x, y, width, height of the box, rounded.
+std::array<int, 4> whole_pixels(const Box& box);
 
 /// Where everything stands in the operator window.
 struct WindowLayout {

@@ -22,11 +22,6 @@ using std::chrono::steady_clock;
 
 constexpr auto kNoticeStands = std::chrono::seconds(4);
 
-std::array<int, 4> whole_pixels(const Box& box) {
-    return {static_cast<int>(box.x), static_cast<int>(box.y), static_cast<int>(box.width),
-            static_cast<int>(box.height)};
-}
-
 bool inside(const Box& box, double x, double y) {
     return x >= box.x && x < box.right() && y >= box.y && y < box.bottom();
 }

@@ -128,6 +128,7 @@ bool RecordingReader::pass_over() {
     if (number_at<std::uint64_t>(header.data() + 8) != chunks_) return false;
     ChunkType type{};
     std::copy_n(header.data() + 4, 4, type.begin());
+    place_ = at_;
     if (type == chunk_types::kDone || wanted_(type, Instant(number_at<std::int64_t>(header.data() + 16)))) return false;
     const std::uint64_t size = number_at<std::uint32_t>(header.data() + 24);
     if (size > kMostPayloadBytes || size + kChunkHeaderBytes >= bytes_ - at_) return false;
@@ -144,6 +145,7 @@ std::optional<RecordingChunk> RecordingReader::next() {
         }
         std::optional<RecordingChunk> chunk = whole_chunk_at(at_, chunks_);
         if (!chunk) break;
+        place_ = at_;
         at_ += kChunkHeaderBytes + chunk->payload.size();
         ++chunks_;
         done_seen_ = chunk->type == chunk_types::kDone;

@@ -46,6 +46,11 @@ public:
     /// DiskError where the disk does not give the bytes that the file has.
     std::optional<RecordingChunk> next();
 
+    /// Where the chunk begins in the file that was given last, or that `Wanted` is asked of.
+    std::uint64_t place() const { return place_; }
+    /// The chunk that begins there, as `place` told; empty where none does that is whole. `next` goes on where it was.
+    std::optional<RecordingChunk> chunk_at(std::uint64_t place) { return whole_chunk_at(place, std::nullopt); }
+
     RecordingEnd end() const { return end_; }
     /// How it ended, in words; empty until then and when it is whole.
     std::string sentence() const;
@@ -67,7 +72,7 @@ private:
     std::filesystem::path file_;
     Wanted wanted_;  ///< empty: all
     FileWindow in_;
-    std::uint64_t bytes_ = 0, at_ = 0, chunks_ = 0;
+    std::uint64_t bytes_ = 0, at_ = 0, place_ = 0, chunks_ = 0;
     std::uint64_t search_budget_ = std::uint64_t{1} << 30;
     bool done_seen_ = false;
     RecordingEnd end_ = RecordingEnd::open;

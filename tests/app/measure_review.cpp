@@ -4,8 +4,11 @@
 
 #include <chrono>
 #include <fstream>
+#include <thread>
 
+#include "app/live/review_desk.h"
 #include "app/recording/resume_offer.h"
+#include "app/report/recorded_moments.h"
 #include "app/report/recording_review.h"
 #include "planning_io/recording/recording_reader.h"
 #include "tests/app/played_session.h"
@@ -67,14 +70,28 @@ int main(int argc, char** argv) {
     const std::string page = review_page(line, {});
     const double page_s = elapsed_s(began);
     began = std::chrono::steady_clock::now();
-    int moments = for_each_moment(file, line.frames_s.back(), line.frames_s.back(), [](const RecordedMoment&) {});
+    RecordedMoments moments(file, line);
+    const bool pictures = !moments.moment(line.frames_s.size() - 1).frame.left.empty();
     const double frame_s = elapsed_s(began);
+    began = std::chrono::steady_clock::now();
+    double first_picture_s = 0, desk_s = 0;
+    {
+        ReviewDesk desk(file, folder.path() / "no-case", line.lasted_s / 2);
+        for (; desk_s == 0; std::this_thread::sleep_for(std::chrono::milliseconds(1))) {
+            const auto model = desk.model();
+            if (first_picture_s == 0 && model->cameras[0].picture) first_picture_s = elapsed_s(began);
+            if (model->settled) desk_s = elapsed_s(began);
+        }
+    }
     began = std::chrono::steady_clock::now();
     const bool match = last_match_of(file).match.has_value();
     fmt::print(
         "{:.1f} min, {:.2f} GB, {} chunks, {} frames: time line {:.2f} s, with its page ({:.0f} kB) {:.2f} s; the last "
-        "frame ({}) {:.2f} s; the last match ({}) {:.2f} s\n",
+        "frame ({}) {:.3f} s; its window has a first picture after {:.2f} s, and the middle of the hour after {:.2f} "
+        "s; the "
+        "last match ({}) {:.2f} s\n",
         line.lasted_s / 60, static_cast<double>(fs::file_size(file)) / 1e9, number, line.frames_s.size(), read_s,
-        static_cast<double>(page.size()) / 1e3, page_s, moments, frame_s, match ? "found" : "none", elapsed_s(began));
+        static_cast<double>(page.size()) / 1e3, page_s, pictures ? "read" : "empty", frame_s, first_picture_s, desk_s,
+        match ? "found" : "none", elapsed_s(began));
     return 0;
 }

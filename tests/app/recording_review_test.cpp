@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <thread>
 
+#include "app/live/review_desk.h"
 #include "app/recording/recording_head.h"
+#include "app/report/recorded_moments.h"
 #include "app/report/recording_review.h"
 #include "planning_io/recording/packed_pictures.h"
 #include "planning_io/recording/recording_chunk.h"
@@ -144,20 +147,119 @@ TEST_F(RecordingReview, LightThatStopsAfterACheckOfTheSkinIsOnTheTimeLine) {
 TEST_F(RecordingReview, AFrameByItsTimeHasThePictureThatCameAfterIt) {
     make();
     finish(true);
-    int seen = 0;
-    EXPECT_EQ(for_each_moment(file_, 14.5, 17.5,
-                              [&](const RecordedMoment& moment) {
-                                  ++seen;
-                                  EXPECT_EQ(moment.frame.left.at(3, 3), 14 + seen);
-                                  ASSERT_FALSE(moment.light.empty());
-                                  EXPECT_EQ(moment.light.at(0, 0), (Rgb{0, 255, 0}));
-                                  const RgbImage all = picture_of(moment);
-                                  EXPECT_EQ(all.height, 24);
-                                  EXPECT_EQ(all.width, 32 + 8 + 32 + 8 + 32);
-                              }),
-              3);
-    EXPECT_EQ(for_each_moment(file_, 40, 50, [](const RecordedMoment&) {}), 0);
-    EXPECT_EQ(for_each_moment(file_, 0, 5, [](const RecordedMoment& m) { EXPECT_TRUE(m.light.empty()); }), 5);
+    const RecordingTimeLine line = time_line_of(file_);
+    ASSERT_EQ(line.places.size(), line.frames_s.size());
+    RecordedMoments moments(file_, line);
+    for (const std::size_t second : {17, 15, 16}) {  // in any order
+        const RecordedMoment moment = moments.moment(frame_near(line, static_cast<double>(second) + 0.2));
+        EXPECT_NEAR(moment.at_s, static_cast<double>(second) + 0.05, 1e-9);
+        EXPECT_EQ(moment.frame.left.at(3, 3), second);
+        ASSERT_FALSE(moment.light.empty());
+        EXPECT_EQ(moment.light.at(0, 0), (Rgb{0, 255, 0}));
+        const RgbImage all = picture_of(moment);
+        EXPECT_EQ(all.height, 24);
+        EXPECT_EQ(all.width, 32 + 8 + 32 + 8 + 32);
+    }
+    EXPECT_TRUE(moments.moment(0).light.empty()) << "it was dark";
+    EXPECT_FALSE(moments.rig_from_patient(12)) << "the pose of these updates has no place";
+    EXPECT_FALSE(moments.match(12));
+}
+
+// `--record events` keeps the frames before an event once it has happened.
+TEST_F(RecordingReview, FramesThatWereWrittenLaterStandInTheirOrderWithTheirUpdates) {
+    make();
+    RigidTransform pose = RigidTransform::Identity();
+    pose.translation().x() = 7;
+    std::vector<double> rows;
+    for (Eigen::Index i = 0; i < 16; ++i) rows.push_back(pose.matrix()(i / 4, i % 4));
+    const auto frame = [&](int ms) {
+        put(chunk_types::kFrame, milliseconds(ms),
+            pack_frame({GrayImage(32, 24, 77), GrayImage(32, 24, 9), kBegan + milliseconds(ms), milliseconds(5), 1}));
+    };
+    event(milliseconds(30100), {{"what", "updated"},
+                                {"at_ns", (kBegan + milliseconds(30100)).count()},
+                                {"pose", {{"rig_from_patient", rows}}}});
+    frame(30200);
+    frame(30100);
+    finish(true);
+    const RecordingTimeLine line = time_line_of(file_);
+    ASSERT_EQ(line.frames_s.size(), 32u);
+    EXPECT_TRUE(std::is_sorted(line.frames_s.begin(), line.frames_s.end()));
+    RecordedMoments moments(file_, line);
+    EXPECT_EQ(moments.moment(30).frame.left.at(0, 0), 77);
+    ASSERT_TRUE(moments.rig_from_patient(30));
+    EXPECT_EQ(moments.rig_from_patient(30)->translation().x(), 7);
+    EXPECT_FALSE(moments.rig_from_patient(31));
+}
+
+TEST_F(RecordingReview, IsSteppedThroughByFramesAndByEvents) {
+    make();
+    finish(true);
+    const RecordingTimeLine line = time_line_of(file_);
+    EXPECT_EQ(frame_near(line, -5), 0u);
+    EXPECT_EQ(frame_near(line, 1e6), 29u);
+    EXPECT_EQ(frame_near(line, 3.54), 3u);
+    EXPECT_EQ(frame_near(line, 3.56), 4u);
+    // Every event is met once, forwards and backwards, and there is none beyond the ends.
+    std::vector<double> on, back;
+    for (auto at_s = next_event_s(line, -1); at_s; at_s = next_event_s(line, *at_s)) on.push_back(*at_s);
+    for (auto at_s = event_before_s(line, 1e6); at_s; at_s = event_before_s(line, *at_s)) back.push_back(*at_s);
+    std::reverse(back.begin(), back.end());
+    EXPECT_EQ(on, back);
+    ASSERT_EQ(on.size(), 4u) << "the match, dark, amber, green";
+    EXPECT_NEAR(on[2], 10.05, 1e-6);
+    EXPECT_EQ(line.events[*event_at(line, on[2])].what, "Amber: words");
+    EXPECT_FALSE(event_at(line, -1));
+    EXPECT_EQ(stretch_at(line, on[2])->trust, LightTrust::look);
+    EXPECT_EQ(stretch_at(line, on[2] - 0.01)->trust, LightTrust::dark);
+    EXPECT_EQ(stretch_at(line, 31), nullptr) << "nothing was followed";
+}
+
+/// What the desk shows once all that there is of a moment is there.
+std::shared_ptr<const ReviewModel> settled(ReviewDesk& desk) {
+    for (const auto until = std::chrono::steady_clock::now() + std::chrono::minutes(2);;) {
+        auto model = desk.model();
+        if (model->settled) return model;
+        if (std::chrono::steady_clock::now() > until) throw std::runtime_error("the desk never settled");
+        std::this_thread::sleep_for(milliseconds(2));
+    }
+}
+
+TEST_F(RecordingReview, ADeskGoesWhereThePersonWantsAndShowsThePicturesOfThatMoment) {
+    using Kind = ReviewWish::Kind;
+    make();
+    finish(true);
+    ReviewDesk desk(file_, folder_.path() / "no-case", 12);
+    const auto first = settled(desk);
+    EXPECT_NE(first->note.find("Plan and light are not compared"), std::string::npos) << first->note;
+    EXPECT_EQ(desk.model(), first) << "nothing is new";
+    const auto grey_after = [&](const ReviewWish& wish) {
+        desk.take(wish);
+        const auto shown = settled(desk);
+        EXPECT_NEAR(*shown->frame_s, shown->cameras[0].picture->at(0, 0) + 0.05, 1e-6) << "frames and times agree";
+        return static_cast<int>(shown->cameras[0].picture->at(0, 0));
+    };
+    EXPECT_EQ(grey_after({Kind::none}), 12);
+    EXPECT_EQ(grey_after({Kind::frame_after}), 13);
+    EXPECT_TRUE(settled(desk)->light);
+    EXPECT_EQ(grey_after({Kind::frame_before}), 12);
+    EXPECT_EQ(grey_after({Kind::event_before}), 10) << "amber";
+    EXPECT_EQ(grey_after({Kind::event_after}), 20) << "green";
+    EXPECT_EQ(grey_after({Kind::event_after}), 20) << "there is no other";
+    EXPECT_EQ(grey_after({Kind::to_time, 3.4}), 3);
+    EXPECT_FALSE(settled(desk)->light) << "it was dark";
+    EXPECT_EQ(settled(desk)->now_s, 3.4) << "the moment itself, not that of its frame";
+    EXPECT_EQ(grey_after({Kind::end}), 29);
+    EXPECT_EQ(grey_after({Kind::frame_after}), 29);
+    EXPECT_EQ(grey_after({Kind::begin}), 0);
+    EXPECT_EQ(grey_after({Kind::frame_before}), 0);
+    for (int i = 0; i < 200; ++i) desk.take({Kind::to_time, static_cast<double>(i % 29)});
+    EXPECT_EQ(grey_after({Kind::to_time, 7.1}), 7) << "what was scrubbed over does not come after it";
+}
+
+TEST_F(RecordingReview, ADeskSaysWhenARecordingCannotBeRead) {
+    ReviewDesk none(folder_.path() / "none.plrec");
+    EXPECT_THROW(settled(none), InputError);
 }
 
 TEST_F(RecordingReview, ARecordingThatWasCutIsShownUpToThere) {

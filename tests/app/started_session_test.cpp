@@ -112,7 +112,7 @@ TEST_F(StartedSession, ThatIsKilledLeavesARecordingToGoOnWithAndNoReport) {
         EXPECT_FALSE(fs::exists(fs::path(now->recording).replace_extension(extension)));
 }
 
-TEST_F(StartedSession, WithoutAReportHasNoneAndIsReplayedInTheWindow) {
+TEST_F(StartedSession, WithoutAReportHasNoneAndIsReplayedAndReviewedInAWindow) {
     const auto program = start({"--no-report", "--end-after-s", "1", "--record", "all"});
     EXPECT_EQ(program->wait(kLongest), 0) << program->said();
     EXPECT_FALSE(fs::exists(fs::path(recording()).replace_extension(".html")));
@@ -126,6 +126,12 @@ TEST_F(StartedSession, WithoutAReportHasNoneAndIsReplayedInTheWindow) {
     EXPECT_NE(replay.said().find("Alike to the last digit: 1 scan, 1 match"), std::string::npos) << replay.said();
     ASSERT_TRUE(fs::exists(shots));
     EXPECT_FALSE(fs::is_empty(shots));
+    const fs::path window = folder_.path() / "review.png";
+    StartedProgram review(*display_,
+                          {"review", recording().string(), "--show", "--at", "1e6", "--picture", window.string()},
+                          folder_.path());
+    EXPECT_EQ(review.wait(kLongest), 0) << review.said();
+    EXPECT_TRUE(there(window)) << review.said();
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <functional>
 
 #include "planning_io/types/error.h"
@@ -80,9 +82,10 @@ TEST(MessageServer, AClientThatNeverReadsIsClosedAndNothingIsKeptForIt) {
     EXPECT_GT(got, static_cast<std::size_t>(rounds) * 20000 / 2);  // the good one had nearly all meanwhile
 }
 
-TEST(MessageServer, AClientThatReadsAByteNowAndThenIsClosed) {
+// The system opens no room for a byte: nothing goes out to it, and that ends its patience whatever rate is asked for.
+TEST(MessageServer, AClientThatReadsAByteNowAndThenIsClosedThoughNoRateIsAskedFor) {
     MessageServerSettings settings = quick();
-    settings.least_bytes_per_s = 1e7;
+    settings.least_bytes_per_s = 1;
     MessageServer server(settings);
     server.set_first({message(std::string(4'000'000, 's'))});
     TcpClient slow(server.port(), 4096);
@@ -90,6 +93,50 @@ TEST(MessageServer, AClientThatReadsAByteNowAndThenIsClosed) {
         slow.read_now(1);
         return server.counts().dropped == 1;
     }));
+}
+
+/// Reads a steady megabyte a second, and says how long it got nothing at the longest.
+class SteadyReader {
+public:
+    explicit SteadyReader(TcpClient& client) : client_(client) {}
+    void read() {
+        const auto now = std::chrono::steady_clock::now();
+        const auto due = static_cast<std::size_t>(1e6 * std::chrono::duration<double>(now - began_).count());
+        const std::size_t took = due > got ? client_.read_now(due - got).size() : 0;
+        got += took;
+        if (took == 0) return;
+        longest_pause = std::max(longest_pause, now - last_);
+        last_ = now;
+    }
+    std::size_t got = 0;
+    std::chrono::steady_clock::duration longest_pause{};
+
+private:
+    TcpClient& client_;
+    const std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+    std::chrono::steady_clock::time_point last_ = began_;
+};
+
+// It takes something all the time, so that no patience ends: too little all in all.
+TEST(MessageServer, AClientThatReadsSteadilyAndTooSlowlyIsClosedByItsRateAlone) {
+    constexpr std::size_t kBytes = 3'000'000;  // three seconds of its reading, and a half is allowed with the patience
+    for (const double least_bytes_per_s : {1e8, 1e5}) {
+        MessageServerSettings settings = quick();
+        settings.patience = milliseconds(500);
+        settings.least_bytes_per_s = least_bytes_per_s;
+        MessageServer server(settings);
+        server.set_first({message(std::string(kBytes, 's'))});
+        TcpClient client(server.port(), 1 << 15);
+        SteadyReader reader(client);
+        EXPECT_TRUE(turned_until(server, [&] {
+            reader.read();
+            return reader.got == kBytes || server.counts().dropped == 1;
+        }));
+        const bool too_slow = least_bytes_per_s > 1e6;
+        EXPECT_EQ(server.counts().dropped, too_slow ? 1U : 0U) << least_bytes_per_s << " bytes a second asked for";
+        EXPECT_EQ(reader.got == kBytes, !too_slow);
+        EXPECT_LT(reader.longest_pause, settings.patience) << "the patience has not ended: this proves nothing";
+    }
 }
 
 TEST(MessageServer, ALargeFirstMessageReachesAClientThatReads) {

@@ -10,6 +10,7 @@
 #include "app/windows/layout.h"
 #include "app/windows/operator_keys.h"
 #include "app/windows/panels.h"
+#include "app/windows/review_panels.h"
 #include "app/words/words.h"
 #include "tests/app/windows/fake_model.h"
 
@@ -138,6 +139,38 @@ TEST_P(WordsInPlace, TheLightsWordsHaveRoomBesideItsFigures) {
         draw_banner(drawn_.pen, drawn_.place.banner, model);
         expect_whole(headline);
     }
+}
+
+TEST_P(WordsInPlace, TheWindowOfAReviewHasRoomForItsWords) {
+    const ReviewLayout place = review_layout(static_cast<float>(std::get<1>(GetParam()).first),
+                                             static_cast<float>(std::get<1>(GetParam()).second));
+    ReviewModel model;
+    draw_time_line(drawn_.pen, place.time_line, model);
+    expect_whole("while it is read");
+    auto line = std::make_shared<TimeLine>();
+    line->lasted_s = 3723;
+    line->stretches = {{0, 3723, LightTrust::look, 1.3, 2.4}};
+    line->events = {{10, "Amber: LOOK: the light lies up to 1.3 mm beside the plan."}, {20, "Pressed: dark."}};
+    model.line = line;
+    model.now_s = 15;
+    model.places = {{{}, {0, 0, 0}, 0.31, "B1: 0.31 mm beside the plan (± 0.12 mm, one standard deviation)"}};
+    model.sum = "Light was found at 60 of 66 places; half of them lie within 0.10 mm of the plan, 95 % within 0.31 mm.";
+    for (const std::optional<std::size_t> picked : {std::optional<std::size_t>(), std::optional<std::size_t>(0)}) {
+        model.picked = picked;
+        draw_review_words(drawn_.pen, place.words, model);
+        draw_time_line(drawn_.pen, place.time_line, model);
+        draw_review_light(drawn_.pen, place.head, model, nullptr);
+        for (const std::size_t camera : {0U, 1U})
+            draw_review_camera(drawn_.pen, camera == 0 ? place.left : place.right, model, camera, false, nullptr, {});
+        expect_whole("a review");
+    }
+    for (const auto& [label, key] :
+         {std::pair{"Beginning", "Home"}, std::pair{"Event before", "↑"}, std::pair{"Frame before", "←"},
+          std::pair{"Frame after", "→"}, std::pair{"Event after", "↓"}, std::pair{"End", "End"},
+          std::pair{"Whole picture", "Z"}, std::pair{"Projector", "V"}})
+        for (const bool enabled : {true, false})
+            button(drawn_.pen, place.buttons[0], label, {enabled, "it is being read"}, {false, false, key});
+    expect_whole("the buttons of a review");
 }
 
 TEST_P(WordsInPlace, HeaderAndTableHaveRoom) {
