@@ -15,6 +15,7 @@
 #include <system_error>
 #include <utility>
 
+#include "app/end_signals.h"
 #include "planning_io/files/memory_need.h"
 #include "planning_io/types/error.h"
 
@@ -183,12 +184,16 @@ volatile std::sig_atomic_t end_signal = 0;
 
 void note_end_signals() {
     struct sigaction action {};
-    action.sa_handler = [](int) { end_signal = 1; };
+    action.sa_handler = [](int) { end_signal = end_signal + 1; };
     for (const int signal : {SIGINT, SIGTERM, SIGHUP}) ::sigaction(signal, &action, nullptr);
 }
 
 bool asked_to_end() {
     return end_signal != 0;
+}
+
+int times_asked_to_end() {
+    return end_signal;
 }
 
 }  // namespace planlight

@@ -84,6 +84,12 @@ std::string compared(const RecordingReviewOptions& options, RecordedMoments& mom
                      const RecordedMoment& pictures, const fs::path& out) {
     const fs::path folder = options.case_folder.empty() ? moments.line().head.case_folder : options.case_folder;
     try {
+        if (moments.line().head.anonymous) {  // it names no case, and whichever it was would not help
+            MomentComparison none;
+            none.why_not = kAnonymousKeepsNoPlan;
+            if (!options.json) warn("plan and light cannot be compared at that moment. " + none.why_not);
+            return comparison_section(none, pictures.frame, {}, {}, {});
+        }
         const Case the_case = read_case(folder);
         const MomentComparison moment =
             MomentComparer(the_case, moments.line(), options.recording).compare(moments, frame, pictures);

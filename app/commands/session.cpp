@@ -6,6 +6,7 @@
 #include "app/commands/language_option.h"
 #include "app/commands/surgeon_option.h"
 #include "app/console.h"
+#include "app/end_signals.h"
 #include "app/igtl/session_link.h"
 #include "app/live/live_window.h"
 #include "app/live/real_room.h"
@@ -81,23 +82,29 @@ std::optional<ResumeOffer> resume_of(const SessionOptions& options, const Case& 
 class Recorded {
 public:
     Recorded() = default;
-    Recorded(std::unique_ptr<SessionRecorder> recorder, Path file, bool report)
-        : recorder_(std::move(recorder)), file_(std::move(file)), report_(report) {}
-    ~Recorded() { end({}); }
+    Recorded(std::unique_ptr<SessionRecorder> recorder, Path file, bool report, bool anonymous)
+        : recorder_(std::move(recorder)), file_(std::move(file)), report_(report), anonymous_(anonymous) {}
+    ~Recorded() { end({}, {}); }
     Recorded(const Recorded&) = delete;
     Recorded& operator=(const Recorded&) = delete;
     SessionRecorder* get() const { return recorder_.get(); }  ///< null: nothing is recorded
 
-    /// While the window says so.
+    /// While the window says so; who closes it once more does not wait for the report.
     void end(SessionWindow& window) {
-        end([&](const std::function<ReportBeside()>& write) {
-            return window.while_made("The report of this session is being written.", 0.5, write);
-        });
+        window.stay();
+        end(
+            [&](const std::function<ReportBeside()>& write) {
+                return window.while_made(
+                    "The report of this session is being written.", 0.5, write,
+                    {"Close the window to end without it.", "the session is over", "the session is over"});
+            },
+            [&] { return window.closed(); });
     }
 
 private:
     using Meanwhile = std::function<ReportBeside(const std::function<ReportBeside()>&)>;
-    void end(const Meanwhile& meanwhile) noexcept {
+    using Closed = std::function<bool()>;
+    void end(const Meanwhile& meanwhile, const Closed& closed) noexcept {
         if (!recorder_) return;
         const std::unique_ptr<SessionRecorder> recorder = std::move(recorder_);
         try {
@@ -105,16 +112,21 @@ private:
         } catch (const std::exception& fault) {
             warn(std::string("The recording could not be ended: ") + fault.what());
         }
-        if (report_ && recorder->room_was_entered()) report(meanwhile);
+        if (report_ && recorder->room_was_entered()) report(meanwhile, closed);
     }
-    void report(const Meanwhile& meanwhile) noexcept {
+    /// A signal ends it as closing the window does; the one that ended the session does not.
+    void report(const Meanwhile& meanwhile, const Closed& closed) noexcept {
         try {
-            const auto write = [&] { return write_report_beside(file_); };
+            const auto go_on = [&closed, before = times_asked_to_end()] {
+                if ((closed && closed()) || times_asked_to_end() != before)
+                    throw std::runtime_error("it was ended before it was done");
+            };
+            const auto write = [&] { return write_report_beside(file_, go_on); };
             const ReportBeside report = meanwhile ? meanwhile(write) : write();
-            fmt::print(
-                stderr,
-                "{}\nThe report of this session: {} and {}. It shows the patient's face, as the recording does.\n",
-                report.verdict, report.page.string(), report.pdf.string());
+            fmt::print(stderr, "{}\nThe report of this session: {} and {}. {}, as the recording does.\n",
+                       report.verdict, report.page.string(), report.pdf.string(),
+                       anonymous_ ? "It names nobody, and shows what lies round the plan alone"
+                                  : "It shows the patient's face");
         } catch (const std::exception& fault) {
             warn(fmt::format(
                 "The report of this session could not be written: {}. The recording is there; write it with "
@@ -125,7 +137,7 @@ private:
 
     std::unique_ptr<SessionRecorder> recorder_;
     Path file_;
-    bool report_ = false;
+    bool report_ = false, anonymous_ = false;
 };
 
 /// The recording of this session, said where and how much; none with `--record none`.
@@ -149,7 +161,7 @@ Recorded recorder_of(const SessionOptions& options, const Case& the_case, const 
             file.string(), options.keep.empty() ? "see --keep" : options.keep.string());
         return {std::make_unique<SessionRecorder>(std::move(sink), without_names(head), RecordingWriterSettings{},
                                                   FrameChoiceSettings{}, NamesLeftOut(the_case)),
-                file, !options.no_report};
+                file, !options.no_report, true};
     }
     std::error_code ignored;
     fmt::print(
@@ -158,7 +170,7 @@ Recorded recorder_of(const SessionOptions& options, const Case& the_case, const 
         mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
                                    : "every frame, about 23 GB an hour in the paper's room",
         static_cast<double>(std::filesystem::space(file.parent_path(), ignored).available) / 1e9, operator_name());
-    return {std::make_unique<SessionRecorder>(std::move(sink), head), file, !options.no_report};
+    return {std::make_unique<SessionRecorder>(std::move(sink), head), file, !options.no_report, false};
 }
 
 /// Other systems are told by OpenIGTLink; null where nobody is.

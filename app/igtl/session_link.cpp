@@ -114,14 +114,17 @@ void SessionLink::tell(const Change& change) noexcept {
 void SessionLink::say(LightTrust trust, const std::string& words) {
     if (trust != values_.trust) values_.said_utc_s = utc_now_s();
     values_.trust = trust;
+    dark_stays_ = false;
     if (words == raw_words_) return;
     raw_words_ = words;
     values_.words = shortened(left_out_ ? left_out_->text_without(words) : words);
     values_.said_utc_s = utc_now_s();
 }
 
-void SessionLink::dark(const std::string& why) {
+/// `stays`: the light has been stopped, or refused, for this reason, and DARK says no more.
+void SessionLink::dark(const std::string& why, bool stays) {
     say(LightTrust::dark, why);
+    dark_stays_ = stays;
     values_.off_mm = values_.sigma_mm = std::nullopt;
 }
 
@@ -149,8 +152,8 @@ void SessionLink::asked(SessionCall call, const std::vector<PointPair>&, int) no
         }
         values_.rig_from_patient.reset();
         if (call == SessionCall::go_dark) {
-            if (values_.trust != LightTrust::dark) dark("The light was put out.");
-            return;  // else why it is dark has been said: the gate has stopped it, say
+            if (!dark_stays_) dark("The light was put out.");
+            return;
         }
         if (call == SessionCall::check_skin) return dark("A short scan looks whether the skin is where it was.");
         // A new scan is a new patient frame: the match of before means nothing in it.
@@ -191,8 +194,12 @@ void SessionLink::resumed(const Session& session, const ResumeCheck&) noexcept {
     tell([&] { match_is(session, offered_confirmed_); });
 }
 
-void SessionLink::updated(const Session&, const Session::Update& update) noexcept {
+void SessionLink::updated(const Session& session, const Session::Update& update) noexcept {
     tell([&] {
+        const std::size_t hidden = session.hidden_items().size();
+        hidden_words_ = hidden == 0 ? ""
+                                    : fmt::format(" {} of {} items {} hidden.", hidden, session.drawing().items.size(),
+                                                  hidden == 1 ? "is" : "are");
         values_.rig_from_patient = update.pose.rig_from_patient;
         values_.predicted_error_mm = update.pose.predicted_error_mm;
         values_.bound_95_mm = update.pose.bound_95_mm;
@@ -206,27 +213,29 @@ void SessionLink::updated(const Session&, const Session::Update& update) noexcep
 void SessionLink::device_failed(const Error& fault) noexcept {
     tell([&] {
         values_.rig_from_patient.reset();
-        dark(std::string("Dark: ") + fault.what() + ".");
+        dark(std::string("Dark: ") + fault.what() + ".", true);
     });
 }
 
 void SessionLink::refused(SessionCall, const std::exception& why) noexcept {
     tell([&] {
         values_.rig_from_patient.reset();
-        dark(std::string("Dark: ") + why.what() + ".");
+        dark(std::string("Dark: ") + why.what() + ".", true);
     });
 }
 
 void SessionLink::gate(GateCall, Instant, double, const LightGate::Ruling* ruling) noexcept {
     if (!ruling) return;
     tell([&] {
-        values_.off_mm = ruling->off_mm;
-        values_.sigma_mm = ruling->sigma_mm;
         if (ruling->trust == LightTrust::dark && ruling->headline.empty()) {  // for a reason that was said before
-            dark(raw_words_);
+            dark(raw_words_, dark_stays_);
             return;
         }
-        say(ruling->trust, fmt::format("{} {}", ruling->headline, fmt::join(ruling->details, " ")));
+        const std::string part = ruling->trust == LightTrust::dark ? "" : hidden_words_;
+        say(ruling->trust, fmt::format("{}{} {}", ruling->headline, part, fmt::join(ruling->details, " ")));
+        dark_stays_ = ruling->stop;
+        values_.off_mm = ruling->off_mm;
+        values_.sigma_mm = ruling->sigma_mm;
     });
 }
 

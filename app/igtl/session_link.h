@@ -49,7 +49,7 @@ public:
 private:
     template <class Change>
     void tell(const Change& change) noexcept;
-    void dark(const std::string& why);
+    void dark(const std::string& why, bool stays = false);
     void say(LightTrust trust, const std::string& words);
     void match_is(const Session& session, bool confirmed);
     void run(LinkedValues told);
@@ -61,6 +61,8 @@ private:
     bool offered_confirmed_ = false;
     Instant room_now_{};
     std::string raw_words_;
+    std::string hidden_words_;  ///< how much of the plan is hidden; empty: nothing
+    bool dark_stays_ = false;   ///< why it is dark: that it is put out then says nothing new
     LinkedValues values_;
     NewestValue<LinkedValues> mailbox_;
     MessageServer server_;

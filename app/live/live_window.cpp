@@ -14,6 +14,7 @@
 #include "app/live/light_keeper.h"
 #include "app/live/live_session.h"
 #include "app/live/projector_keeper.h"
+#include "app/live/projector_watch.h"
 #include "app/live/window_meter.h"
 #include "app/windows/operator_window.h"
 #include "planning_io/files/image_file.h"
@@ -106,28 +107,15 @@ private:
     int kind_ = -1, frames_ = 0, number_ = 0;
 };
 
-/// What the window knows of its projector.
-struct ProjectorSeen {
-    unsigned starts = 0;
-    bool lost = false;
-};
-
-/// A projector that is lost is said in place of the status, and the session made dark once; match and markers are kept.
-void tell_of_projector(const ProjectorKeeper& projector, LiveSession& session, ProjectorSeen& seen,
+/// A projector that is lost makes the session dark once; match and markers are kept.
+void tell_of_projector(const ProjectorKeeper& projector, LiveSession& session, ProjectorWatch& watch,
                        OperatorModel& model) {
-    const ProjectorProblem problem = projector.problem();
-    // It may have been away and back between two looks: then it was started again.
-    const unsigned starts = projector.starts();
-    const bool started_again = std::exchange(seen.starts, starts) != starts;
-    if ((!problem.empty() || started_again) && !seen.lost) {
+    if (watch.look(projector.problem(), projector.starts())) {
         session.post(OperatorAction::dark, AskedBy::lost_projector);
         session.look_before_light();
+        model = session.model();
     }
-    seen.lost = !problem.empty();
-    if (!seen.lost) return;
-    model.status = {StatusKind::dark,
-                    "No projector: " + problem.what + ".",
-                    {problem.remedy, "It is looked for every second. Scan and match are kept."}};
+    watch.put_into(model);
 }
 
 /// What a look at the session counts as.
@@ -154,17 +142,16 @@ OperatorWindow& SessionWindow::window() {
     return *window_;
 }
 
-void SessionWindow::show(const std::string& words, double share) {
+void SessionWindow::show(const std::string& words, double share, const SaidMeanwhile& said) {
     if (!window_) {
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
         return;
     }
     OperatorModel model;
     model.case_title = "Planlight";
-    model.status = {StatusKind::waiting, words, {"The projector is dark."}, share};
-    for (auto* button : {&model.scan, &model.do_register, &model.track, &model.stop})
-        *button = {false, "the case is being read"};
-    model.left.note = model.right.note = "when the room is there";
+    model.status = {StatusKind::waiting, words, {said.detail}, share};
+    for (auto* button : {&model.scan, &model.do_register, &model.track, &model.stop}) *button = {false, said.no_press};
+    model.left.note = model.right.note = said.no_picture;
     if (window_->frame(model) == OperatorAction::quit) closed_ = true;
     window_->rest(kLongestRest_s);
 }
@@ -178,13 +165,13 @@ namespace {
 /// The windows' loop, until the operator window is closed; `projector` is null where there is none.
 int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* projector, const LiveOptions& options,
                 Autoplay autoplay, WindowMeter& meter) {
-    ProjectorSeen seen{projector ? projector->starts() : 0, false};
+    ProjectorWatch watch(projector ? projector->starts() : 0);
     Screenshots screenshots(options.screenshots);
     std::optional<std::chrono::steady_clock::time_point> projecting_since;
     note_end_signals();
     while (!asked_to_end()) {
         OperatorModel model = session.model();
-        if (projector) tell_of_projector(*projector, session, seen, model);
+        if (projector) tell_of_projector(*projector, session, watch, model);
         if (const std::string trouble = options.trouble ? options.trouble() : ""; !trouble.empty())
             model.status.details.push_back(trouble);
         const auto frame_began = std::chrono::steady_clock::now();
@@ -195,6 +182,7 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
             projector->session_lives(session.alive_at());
         }
         if (action == OperatorAction::quit) return 0;
+        if (action != OperatorAction::none) watch.pressed();
         // Landmarks that stand in the window count for every match of their scan: a match that they refuse stays
         // refused.
         if (action == OperatorAction::do_register || action == OperatorAction::use_landmarks)

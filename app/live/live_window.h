@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -38,6 +39,13 @@ struct LiveOptions {
 /// True when a window could be opened.
 bool display_is_there();
 
+/// What the window says beside that something is being made.
+struct SaidMeanwhile {
+    const char* detail = "The projector is dark.";
+    const char* no_press = "the case is being read";    ///< why no button does anything
+    const char* no_picture = "when the room is there";  ///< of the cameras
+};
+
 /// The operator window of a session, from before there is one: it says what is being made, and how far that is.
 class SessionWindow {
 public:
@@ -48,24 +56,26 @@ public:
 
     /// What `make` makes in a thread of its own, while the window says so. Throws what it throws.
     template <class Make>
-    auto while_made(const std::string& words, double share, Make make) {
+    auto while_made(const std::string& words, double share, Make make, const SaidMeanwhile& said = {}) {
         auto made = std::async(std::launch::async, std::move(make));
-        while (made.wait_for(std::chrono::seconds(0)) != std::future_status::ready) show(words, share);
+        while (made.wait_for(std::chrono::seconds(0)) != std::future_status::ready) show(words, share, said);
         return made.get();
     }
 
     /// Throws DeviceError without a display.
     OperatorWindow& window();
-    bool closed() const { return closed_; }  ///< by the person, meanwhile
+    bool closed() const { return closed_; }  ///< by the person, while something was made; from any thread
+    /// After a session that was ended by closing it: it is there until it is closed once more.
+    void stay() { closed_ = false; }
 
 private:
-    void show(const std::string& words, double share);
+    void show(const std::string& words, double share, const SaidMeanwhile& said = {});
 
     std::string monitor_;
     std::shared_ptr<const Words> words_;
     ThemeKind theme_;
     std::unique_ptr<OperatorWindow> window_;
-    bool closed_ = false;
+    std::atomic<bool> closed_{false};
 };
 
 /// Makes the room of a session; a real one lights the projector that it is given, a simulated one has its own.

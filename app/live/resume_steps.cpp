@@ -81,7 +81,7 @@ void LiveSession::look_again(Session& session) {
     if (!look_first_) return;
     if (auto match = session.kept_match()) {
         match->made_utc = today();
-        away_ = std::move(match);
+        away_ = kept_match_of(text_of(*match), {});  // as its recording has it, so that a replay goes on with the same
     }
     if (!away_) return;
     away_->lit = session.lit_part();      // also of presses after a look that was refused

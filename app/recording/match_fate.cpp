@@ -12,9 +12,10 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Hours of updates and rulings say nothing of a match, and are not parsed.
+/// Hours of updates and rulings, as the recorder writes them, say nothing of a match, and are not parsed.
 bool may_tell(std::string_view text) {
     const auto begins = [&](std::string_view with) { return text.starts_with(with); };
+    if (!begins(R"({"what":")")) return true;
     if (begins(R"({"what":"asked")")) return !begins(R"({"what":"asked","call":"update")");
     if (begins(R"({"what":"gate","call":"step")") || begins(R"({"what":"gate","call":"forbids")"))
         return text.find(R"("stop":true)") != std::string_view::npos;

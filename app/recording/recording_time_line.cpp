@@ -54,7 +54,11 @@ public:
         if (frames_.empty() || since_room_s(at) - frames_.back().first > kWithin_s) return;
         if (frames_.back().second.light == 0) frames_.back().second.light = place;
     }
-    void take_match(std::uint64_t place) { match_ = place; }
+    void take_match(std::uint64_t place) {
+        match_ = place;
+        asked_ = {};
+        note_lit();
+    }
 
     void take(const RecordingChunk& chunk, std::uint64_t place) {
         const double at_s = since_room_s(chunk.at);
@@ -64,6 +68,8 @@ public:
             take_update(text, place);
         else if (begins(text, R"({"what":"gate","call":"step")"))
             take_ruling(text);
+        else if (begins(text, R"({"what":"gate","call":"forbids")"))
+            take_forbidden(text, at_s);
         else if (!begins(text, R"({"what":"said")") && !begins(text, R"({"what":"asked","call":"update")"))
             take_seldom(Json::parse(text, nullptr, false), at_s);
     }
@@ -77,15 +83,18 @@ public:
                          [](const auto& a, const auto& b) { return a.at_s < b.at_s; });
         for (auto& [at_s, places] : frames_) {
             if (!line_.frames_s.empty() && line_.frames_s.back() == at_s) continue;
-            const auto update = std::lower_bound(updates_.begin(), updates_.end(),
-                                                 std::pair{at_s - kSame_s, std::uint64_t{0}}, earlier);
-            if (update != updates_.end() && update->first < at_s + kSame_s) places.updated = update->second;
+            const auto update = std::lower_bound(updates_.begin(), updates_.end(), Update{at_s - kSame_s, {}}, earlier);
+            if (update != updates_.end() && update->first < at_s + kSame_s)
+                places.updated = update->second.first, places.lit = update->second.second;
             line_.frames_s.push_back(at_s);
             line_.places.push_back(places);
         }
     }
 
 private:
+    /// When it was, where it stands, and under which light its frame was taken.
+    using Update = std::pair<double, std::pair<std::uint64_t, std::size_t>>;
+
     void take_update(const std::string& text, std::uint64_t place) {
         const auto at_ns = number_after(text, "\"at_ns\":");
         if (!at_ns || !origin_) return;
@@ -95,7 +104,30 @@ private:
         const auto bound_mm = number_after(text, "\"bound_95_mm\":");
         predicted_mm_ = match_mm_ && bound_mm ? std::hypot(*match_mm_, *bound_mm) : -1;
         measured_ = text.find(R"("check":)") != std::string::npos;
-        updates_.emplace_back(at_s_, place);
+        updates_.push_back({at_s_, {place, line_.lit.size() - 1}});  // its own picture came later
+        asked_.light = lit_;
+        note_lit();
+    }
+
+    void note_lit() {
+        if (line_.lit.back() != asked_) line_.lit.push_back(asked_);
+    }
+
+    /// What is lit by a person's wish counts from the next update on; darkness at once.
+    void take_call(const std::string& call, const Json& event) {
+        if (call == "light_landmark" || call == "light_item" || call == "hide_item" || call == "show_item")
+            return asked_.asked.push_back({call, event.value("which", -1)});
+        if (call == "confirm") return;
+        RecordingTimeLine::Lit dark = line_.lit.back();
+        dark.light = asked_.light = false;
+        if (line_.lit.back() != dark) line_.lit.push_back(std::move(dark));
+    }
+
+    /// The gate was asked before anything was drawn, after a check of the skin say: it is of no update.
+    void take_forbidden(const std::string& text, double at_s) {
+        at_s_ = at_s;
+        lit_ = measured_ = false;
+        take_ruling(text);
     }
 
     void take_ruling(const std::string& text) {
@@ -136,9 +168,10 @@ private:
     void tell_of(LightTrust trust, const std::string& text) {
         const Json event = Json::parse(text, nullptr, false);
         const std::string words = event.is_object() ? event.value("headline", "") : "";
-        const char* colour = trust == LightTrust::aligned ? "Green: "
-                             : trust == LightTrust::look  ? "Amber: "
-                                                          : "Dark: ";
+        const char* colour = trust == LightTrust::aligned  ? "Green: "
+                             : trust == LightTrust::look   ? "Amber: "
+                             : words.starts_with("Dark: ") ? ""
+                                                           : "Dark: ";
         line_.events.push_back({at_s_, colour + (words.empty() ? std::string("the light went out.") : words)});
     }
 
@@ -156,6 +189,7 @@ private:
             say((what == "matched" ? "Match: " + event.value("verdict", "") : "Went on with an earlier match") +
                 within);
         }
+        if (what == "asked") take_call(call, event);
         if (what == "scanned") say(fmt::format("Scanned: {} points.", event.value("points", 0)));
         if (what == "refused") say("Refused, " + call + ": " + event.value("why", "") + ".");
         if (what == "pressed") say("Pressed: " + event.value("action", "") + ".");
@@ -173,7 +207,8 @@ private:
     std::string reason_;       ///< of the last ruling, without its numbers
     std::uint64_t match_ = 0;  ///< where the last one stands
     std::vector<std::pair<double, RecordingTimeLine::Places>> frames_;
-    std::vector<std::pair<double, std::uint64_t>> updates_;  ///< when, and where they stand
+    std::vector<Update> updates_;
+    RecordingTimeLine::Lit asked_;  ///< for the next update to light
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/recording/session_recorder.h"
@@ -19,7 +20,16 @@ struct RecordingTimeLine : TimeLine {
         std::uint64_t light = 0;    ///< what the projector was given after it
         std::uint64_t updated = 0;  ///< what the session made of it
         std::uint64_t match = 0;    ///< the last one before it
+        std::size_t lit = 0;        ///< of `lit`: under which light it was taken
     };
+    /// Whether there was light, and what a person has asked of it since the last match, in order: a call and its item
+    /// or landmark, -1 for the plan.
+    struct Lit {
+        bool light = false;
+        std::vector<std::pair<std::string, int>> asked;
+        bool operator==(const Lit&) const = default;
+    };
+    std::vector<Lit> lit{{}};
     std::vector<Places> places;  ///< one of each of `frames_s`
     std::string ended;           ///< how it ends, in words; empty: it is whole
     bool damaged = false;

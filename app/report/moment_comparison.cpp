@@ -4,6 +4,9 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <functional>
+#include <limits>
+#include <set>
 
 #include "app/live/scene_of_session.h"
 #include "app/recording/recording_head.h"
@@ -47,6 +50,61 @@ std::vector<std::vector<Eigen::Vector2d>> seen_by(const CameraModel& camera, con
     }
     lines.pop_back();
     return lines;
+}
+
+/// What was lit at one frame.
+struct WhatIsLit {
+    LitPart part;
+    int landmark = -1;  ///< that alone is lit; -1: the plan is
+    bool light = false;
+};
+
+/// As a session takes what it is asked for.
+WhatIsLit what_is_lit(const LitPart& at_match, const RecordingTimeLine::Lit& since) {
+    WhatIsLit lit{at_match, -1, since.light};
+    LitPart& part = lit.part;
+    for (const auto& [call, which] : since.asked) {
+        const auto item = which < 0 ? std::nullopt : std::optional(static_cast<std::size_t>(which));
+        if (call == "light_landmark") lit.landmark = which;
+        if (call == "light_item") part.item_of_moment = item;
+        if ((call == "light_item" || call == "show_item") && item) part.hidden.erase(*item);
+        if (call == "hide_item" && item) {
+            part.hidden.insert(*item);
+            if (part.item_of_moment == item) part.item_of_moment.reset();
+        }
+        if (call == "show_item" && !item) part = {};
+    }
+    return lit;
+}
+
+/// In a sentence, why none of the plan, or not all of it, was lit; empty: all of it was.
+std::string why_unlit(const WhatIsLit& lit, const PlanDrawing& drawing) {
+    const std::size_t count = drawing.items.size();
+    if (!lit.light) return "It was dark.";
+    if (lit.landmark >= 0) return fmt::format("Landmark {} alone was lit.", lit.landmark + 1);
+    if (lit.part.item_of_moment && *lit.part.item_of_moment < count)
+        return fmt::format("Only \"{}\" was bright, and that alone is looked for.",
+                           drawing.items[*lit.part.item_of_moment].name);
+    if (lit.part.hidden.empty()) return {};
+    return fmt::format("{} of {} items were hidden, and are not looked for.", lit.part.hidden.size(), count);
+}
+
+PlanDrawing only(PlanDrawing drawing, const std::function<bool(std::size_t)>& keep) {
+    const auto gone = [&](const auto& drawn) { return drawn.item >= 0 && !keep(static_cast<std::size_t>(drawn.item)); };
+    std::erase_if(drawing.strokes, gone);
+    std::erase_if(drawing.labels, gone);
+    return drawing;
+}
+
+/// Every place of what was lit.
+LightCheck look_at(const WhatIsLit& lit, const PlanDrawing& shown, const SkinSurface& skin, const RigCalibration& rig,
+                   const RigidTransform& rig_from_ct, const StereoFrame& frame) {
+    if (!lit.light || lit.landmark >= 0) return {};
+    CheckLightSettings settings;
+    settings.most_segments = std::numeric_limits<int>::max();  // there is time
+    const auto alone = lit.part.item_of_moment;
+    return check_light(alone ? only(shown, [&](std::size_t item) { return item == *alone; }) : shown, skin, rig,
+                       rig_from_ct, frame, settings);
 }
 
 /// Each place as a short line along the stroke, where its light was seen.
@@ -114,8 +172,17 @@ for (const svg of document.querySelectorAll("svg.compared")) svg.addEventListene
 struct MomentComparer::Drawn {
     std::uint64_t match = 0;  ///< its place in the recording
     RegistrationResult found;
+    LitPart lit;  ///< when it was kept
     CaseDrawing drawing;
+    std::set<std::size_t> hidden{};  ///< that `shown` is without
     std::shared_ptr<const PlanDrawing> shown = std::make_shared<PlanDrawing>(drawing.drawing);
+
+    void hide(const std::set<std::size_t>& items) {
+        if (items == hidden) return;
+        hidden = items;
+        shown = std::make_shared<PlanDrawing>(
+            only(drawing.drawing, [&](std::size_t item) { return !items.contains(item); }));
+    }
 };
 
 MomentComparer::MomentComparer(const Case& the_case, const RecordingTimeLine& line, const fs::path& recording)
@@ -127,14 +194,15 @@ MomentComparer::MomentComparer(const Case& the_case, const RecordingTimeLine& li
 MomentComparer::~MomentComparer() = default;
 
 /// Null where no patient had been found by then.
-const MomentComparer::Drawn* MomentComparer::drawn_at(RecordedMoments& moments, std::size_t frame) {
+MomentComparer::Drawn* MomentComparer::drawn_at(RecordedMoments& moments, std::size_t frame) {
     const std::uint64_t place = moments.line().places.at(frame).match;
     if (drawn_ && drawn_->match == place) return drawn_.get();
     std::optional<KeptMatch> match = moments.match(frame);
     if (!match || !match->registration.rig) return nullptr;
     const RegistrationResult& found = match->registration;
-    drawn_.reset(new Drawn{
-        place, found, CaseDrawing(case_, *planned_, found.skin, lit_by(found.rig->rig, found.patient_from_ct, how_))});
+    drawn_.reset(
+        new Drawn{place, found, match->lit,
+                  CaseDrawing(case_, *planned_, found.skin, lit_by(found.rig->rig, found.patient_from_ct, how_))});
     return drawn_.get();
 }
 
@@ -142,10 +210,10 @@ MomentComparison MomentComparer::compare(RecordedMoments& moments, std::size_t f
     MomentComparison moment;
     moment.at_s = pictures.at_s;
     if (anonymous_) {
-        moment.why_not = "An anonymous recording does not keep where the plan lies.";
+        moment.why_not = kAnonymousKeepsNoPlan;
         return moment;
     }
-    const Drawn* const drawn = drawn_at(moments, frame);
+    Drawn* const drawn = drawn_at(moments, frame);
     const auto rig_from_patient = moments.rig_from_patient(frame);
     if (!drawn || !rig_from_patient) {
         moment.why_not = drawn ? "Where the head was at that moment is not known: the plan was not followed."
@@ -154,9 +222,13 @@ MomentComparison MomentComparer::compare(RecordedMoments& moments, std::size_t f
     }
     const RigCalibration& rig = drawn->found.rig->rig;
     const RigidTransform rig_from_ct = *rig_from_patient * drawn->found.patient_from_ct;  // T_global = T_cur T_ini
+    const RecordingTimeLine& line = moments.line();
+    const WhatIsLit lit = what_is_lit(drawn->lit, line.lit.at(line.places.at(frame).lit));
+    drawn->hide(lit.part.hidden);
     const PlanDrawing& plan = *drawn->shown;
     moment.drawn = drawn->shown;
-    moment.light = check_light(plan, drawn->drawing.skin, rig, rig_from_ct, pictures.frame);
+    moment.unlit = why_unlit(lit, plan);
+    moment.light = look_at(lit, plan, drawn->drawing.skin, rig, rig_from_ct, pictures.frame);
     moment.light_lines = light_as_seen(moment.light);
     moment.by_projector = projector_view(rig, rig_from_ct.inverse());
     const std::array cameras{&rig.left_camera, &rig.right_camera};
@@ -206,21 +278,23 @@ std::string words_of(const MomentComparison::Place& place) {
 
 std::string sum_of(const MomentComparison& moment) {
     const LightCheck& light = moment.light;
-    return light.seen == 0
-               ? fmt::format(
-                     "None of the plan's light was found in this frame, at {} places where it should be seen: it was "
-                     "dark, a landmark alone was lit, or something was before it.",
-                     light.expected)
-               : fmt::format(
-                     "Light was found at {} of {} places; half of them lie within {:.2f} mm of the plan, 95 % "
-                     "within {:.2f} mm.",
-                     light.seen, light.expected, light.median_mm, light.off_mm);
+    const std::string before = moment.unlit.empty() ? "" : moment.unlit + " ";
+    if (light.expected == 0) return before + "There is no light of the plan to look for.";
+    if (light.seen == 0)
+        return before + fmt::format(
+                            "None of the plan's light was found in this frame, at {} places where it should be seen: "
+                            "it had only just been asked for, or something was before it.",
+                            light.expected);
+    return before + fmt::format(
+                        "Light was found at {} of {} places; half of them lie within {:.2f} mm of the plan, 95 % "
+                        "within {:.2f} mm.",
+                        light.seen, light.expected, light.median_mm, light.off_mm);
 }
 
 std::string comparison_section(const MomentComparison& moment, const StereoFrame& pictures, const std::string& left,
                                const std::string& right, const std::string& scene) {
     if (!moment.why_not.empty()) return "<h2>Plan and light</h2><p>" + xml_escaped(moment.why_not) + "</p>";
-    return fmt::format("<h2>Plan and light, at {:.3f} s</h2><p>{}</p>", moment.at_s, sum_of(moment)) +
+    return fmt::format("<h2>Plan and light, at {:.3f} s</h2><p>{}</p>", moment.at_s, xml_escaped(sum_of(moment))) +
            overlay(moment, pictures.left, 0, left,
                    "Left camera. Blue: where the plan belongs on the skin as the scan found it.") +
            overlay(moment, pictures.right, 1, right, "Right camera.") +

@@ -15,6 +15,8 @@
 
 namespace planlight {
 
+inline constexpr const char* kAnonymousKeepsNoPlan = "An anonymous recording does not keep where the plan lies.";
+
 /// A line in a camera's picture, pixels.
 using LineInPicture = std::vector<Eigen::Vector2d>;
 
@@ -26,12 +28,13 @@ struct MomentComparison {
         SeenSegment seen;
         std::array<std::optional<Eigen::Vector2d>, 2> pixel;  ///< of the plan there, in the left and the right picture
     };
-    std::string why_not;                             ///< in words, why nothing can be compared; empty: it is
-    double at_s = 0;                                 ///< since the room was entered
-    std::array<std::vector<LineInPicture>, 2> plan;  ///< its strokes where they are seen
-    std::vector<Place> places;                       ///< that a camera should see
+    std::string why_not;  ///< in words, why nothing can be compared; empty: it is
+    std::string unlit;    ///< in words, why none of the plan, or not all of it, was lit; empty: all of it was
+    double at_s = 0;      ///< since the room was entered
+    std::array<std::vector<LineInPicture>, 2> plan;  ///< its strokes where they are seen; none of what was hidden
+    std::vector<Place> places;                       ///< of what was lit, that a camera should see
     LightCheck light;
-    std::shared_ptr<const PlanDrawing> drawn;                   ///< the same as long as the match is
+    std::shared_ptr<const PlanDrawing> drawn;  ///< without what was hidden; the same as long as match and hiding are
     std::shared_ptr<const std::vector<LightLine>> light_lines;  ///< the light where it was seen, ct
     SceneView by_projector;                                     ///< the head as the light fell on it
 };
@@ -48,7 +51,7 @@ public:
 
 private:
     struct Drawn;
-    const Drawn* drawn_at(RecordedMoments& moments, std::size_t frame);
+    Drawn* drawn_at(RecordedMoments& moments, std::size_t frame);
 
     const Case& case_;
     bool anonymous_ = false;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <utility>
 
 #include "app/recording/match_fate.h"
@@ -131,10 +132,27 @@ private:
         if (call == "find_patient") utc_of_match_ = event.value("utc", "");
         if (call == "confirm") say_by("the match was said to fit.", event);
         if (call == "light_landmark") landmark_ = event.value("which", -1);
+        take_hiding(call, event);
         if (call != "update") following_ = false;
     }
 
+    /// What a person hid is not lit: who reads that the plan was on the skin must know.
+    void take_hiding(const std::string& call, const Json& event) {
+        const int which = event.value("which", -1);
+        if (call == "show_item" && which < 0) {
+            hidden_.clear();
+            return say("The whole plan was shown again.", event);
+        }
+        if (which < 0 || static_cast<std::size_t>(which) >= now_.size()) return;
+        const auto item = static_cast<std::size_t>(which);
+        const std::string name = "\"" + facts_.items[now_[item]].name + "\"";
+        if (call == "hide_item" && hidden_.insert(item).second) say(name + " was hidden: it was not lit.", event);
+        if ((call == "show_item" || call == "light_item") && hidden_.erase(item) > 0)
+            say(name + " was shown again.", event);
+    }
+
     void take_match(const Json& event) {
+        hidden_.clear();
         OperationMatch match{at_s_,
                              utc_of_match_,
                              event.value("verdict", ""),
@@ -294,6 +312,7 @@ private:
     bool plan_lit_ = false;  ///< not a landmark
     int landmark_ = -1;
     std::string dark_, utc_of_match_;
+    std::set<std::size_t> hidden_;  ///< items of the last match, by their place in the plan
     std::vector<std::size_t> now_;  ///< items of the last match, by their place in `facts_`
     std::vector<std::optional<double>> predicted_;
     std::vector<bool> reached_;                        ///< by the light, as the last CHECK told of each of them
@@ -316,7 +335,7 @@ private:
 
 }  // namespace
 
-OperationFacts facts_of_operation(const fs::path& recording) {
+OperationFacts facts_of_operation(const fs::path& recording, const std::function<void()>& go_on) {
     OperationFacts facts;
     RecordingReader reader(recording);
     auto chunk = reader.next();
@@ -325,12 +344,15 @@ OperationFacts facts_of_operation(const fs::path& recording) {
     facts.head = head_of(chunk->payload, recording);
     Teller teller(facts, recording);
     try {
-        while ((chunk = reader.next())) teller.take(*chunk);
+        while ((chunk = reader.next())) {
+            teller.take(*chunk);
+            if (go_on) go_on();
+        }
     } catch (const nlohmann::json::exception&) {
         throw DamagedFileError(recording, "holds an event that cannot be understood", "Copy the file again.");
     }
     teller.unpack_moment(recording);
-    facts.recording_hash = content_hash_of(recording);
+    facts.recording_hash = content_hash_of(recording, go_on);
     facts.file = recording.filename().string();
     facts.chunks = reader.chunks(), facts.bytes = reader.bytes();
     facts.ended = reader.sentence();

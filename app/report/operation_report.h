@@ -2,6 +2,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -79,8 +80,9 @@ struct OperationFacts {
     bool damaged = false;
 };
 
-/// Reads the recording from its beginning to its end. Throws InputError, DamagedFileError.
-OperationFacts facts_of_operation(const std::filesystem::path& recording);
+/// Reads the recording from its beginning to its end. Throws InputError, DamagedFileError, and what `go_on` throws,
+/// which is called again and again meanwhile and may be empty.
+OperationFacts facts_of_operation(const std::filesystem::path& recording, const std::function<void()>& go_on = {});
 
 /// Above these the light is not trusted, and goes out, as the light gate has them.
 inline constexpr double kOperationLook_mm = 1, kOperationStop_mm = 2;

@@ -6,8 +6,8 @@
 
 namespace planlight {
 
-ReportBeside write_report_beside(const std::filesystem::path& recording) {
-    const OperationFacts facts = facts_of_operation(recording);
+ReportBeside write_report_beside(const std::filesystem::path& recording, const std::function<void()>& go_on) {
+    const OperationFacts facts = facts_of_operation(recording, go_on);
     ReportBeside report{recording, recording, verdict_of(facts).sentence};
     report.page.replace_extension(".html");
     report.pdf.replace_extension(".pdf");

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 namespace planlight {
@@ -13,7 +14,8 @@ struct ReportBeside {
 
 /// Page, figures and PDF under the recording's name (.html, .json, .pdf), readable by their owner only. Throws
 /// InputError, DamagedFileError (no recording that can be reported), DiskError, DeviceError (no font for the PDF; the
-/// page is there then).
-ReportBeside write_report_beside(const std::filesystem::path& recording);
+/// page is there then). `go_on` (may be empty) is called again and again before anything is written: what it throws
+/// ends it.
+ReportBeside write_report_beside(const std::filesystem::path& recording, const std::function<void()>& go_on = {});
 
 }  // namespace planlight

@@ -40,8 +40,9 @@ OperatorAction MiddleView::draw(const Pen& pen, const Box& place, const Operator
         places_ = evidence_.places();
         if (pressed.hidden) return hide_or_show(*pressed.hidden, model);
         if (!pressed.item) return OperatorAction::none;
-        item_wanted_ = model.item_of_moment == pressed.item ? std::nullopt : pressed.item;
-        return OperatorAction::light_item;
+        const bool whole_plan = model.item_of_moment == pressed.item;  // so it says on the button then
+        item_wanted_ = whole_plan ? std::nullopt : pressed.item;
+        return whole_plan ? OperatorAction::show_item : OperatorAction::light_item;
     }
     if (landmarks_open_) return draw_landmarks(pen, place, model);
     draw_scene(pen, place, model);

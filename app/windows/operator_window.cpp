@@ -249,8 +249,11 @@ OperatorWindow::~OperatorWindow() = default;
 OperatorAction OperatorWindow::frame(const OperatorModel& model) {
     Parts& parts = *parts_;
     parts.gui.take_input(0);
-    if (parts.take_close(model))
-        return std::exchange(parts.dark_pressed, false) ? OperatorAction::dark : OperatorAction::quit;
+    if (parts.take_close(model)) {
+        if (std::exchange(parts.dark_pressed, false)) return OperatorAction::dark;  // and closed by the next frame
+        parts.gui.keep_open();                                                      // it has been said
+        return OperatorAction::quit;
+    }
     parts.forget_question(model);
     OperatorAction wanted = OperatorAction::none;
     if (parts.must_draw(model)) {

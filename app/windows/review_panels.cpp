@@ -151,9 +151,14 @@ ReviewLayout review_layout(float w, float h) {
     place.scale = on_end ? std::min(w / 1080, h / 1920) : std::min(w / 1920, h / 1080);
     const float s = place.scale, gap = 16 * s, inside = w - 2 * gap;
     place.title = {gap, gap, inside, 60 * s};
-    place.buttons = {gap, h - gap - std::max(72.0F, 84 * s), inside, std::max(72.0F, 84 * s)};
+    const std::size_t rows = on_end ? 2 : 1, across = place.buttons.size() / rows;
+    const float high = std::max(72.0F, 84 * s), between = 12 * s;
+    const float wide = (inside - static_cast<float>(across - 1) * between) / static_cast<float>(across);
+    for (std::size_t i = 0; i < place.buttons.size(); ++i)
+        place.buttons[i] = {gap + static_cast<float>(i % across) * (wide + between),
+                            h - gap - high - static_cast<float>(rows - 1 - i / across) * (high + between), wide, high};
     const float time = (on_end ? 300 : 230) * s;
-    place.time_line = {gap, place.buttons.y - gap - time, inside, time};
+    place.time_line = {gap, place.buttons[0].y - gap - time, inside, time};
     const float words = (on_end ? 260 : 150) * s;
     place.words = {gap, place.time_line.y - gap - words, inside, words};
     const float top = place.title.bottom() + gap, height = place.words.y - gap - top;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "app/windows/pen.h"
@@ -10,7 +11,8 @@ namespace planlight {
 /// Where everything stands in the window of a review.
 struct ReviewLayout {
     float scale = 1;
-    Box title, left, right, head, words, time_line, buttons;
+    Box title, left, right, head, words, time_line;
+    std::array<Box, 8> buttons;  ///< in a row, or in two where the window stands on end
 };
 ReviewLayout review_layout(float width, float height);
 

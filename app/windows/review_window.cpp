@@ -127,21 +127,17 @@ struct ReviewWindow::Parts {
         if (const auto picked = place_near(model, head->sight(*press))) wish = {Kind::pick, 0, *picked};
     }
 
-    void draw_steps(const Pen& pen, const Box& row, const ReviewModel& model, ReviewWish& wish) {
-        constexpr auto kButtons = static_cast<float>(std::size(kSteps) + 2);
-        const float gap = 12 * pen.scale, width = (row.width - (kButtons - 1) * gap) / kButtons;
-        Box box{row.x, row.y, width, row.height};
-        const ButtonState read{model.line != nullptr, "it is being read"};
-        for (const StepButton& step : kSteps) {
-            places[step.words] = box;
-            if (button(pen, box, step.words, read, {false, false, step.shown_key})) wish.kind = step.kind;
-            box.x += width + gap;
-        }
-        places["Whole picture"] = box;
-        if (button(pen, box, "Whole picture", {true, {}}, {whole, false, "Z"})) whole = !whole;
-        box.x += width + gap;
-        places["Projector"] = box;
-        if (button(pen, box, "Projector", {true, {}}, {light_wanted, false, "V"})) light_wanted = !light_wanted;
+    void draw_buttons(const Pen& pen, const ReviewLayout& place, const ReviewModel& model, ReviewWish& wish) {
+        const ButtonState read{model.line != nullptr, "it is being read"}, free{true, {}};
+        auto box = place.buttons.begin();
+        const auto is_pressed = [&](const char* words, const ButtonState& state, const char* key, bool chosen = false) {
+            places[words] = *box;
+            return button(pen, *box++, words, state, {chosen, false, key});
+        };
+        for (const StepButton& step : kSteps)
+            if (is_pressed(step.words, read, step.shown_key)) wish.kind = step.kind;
+        if (is_pressed("Whole picture", free, "Z", whole)) whole = !whole;
+        if (is_pressed("Projector", free, "V", light_wanted)) light_wanted = !light_wanted;
     }
 
     void take_time_line(const Pen& pen, const Box& box, const ReviewModel& model, ReviewWish& wish) {
@@ -171,7 +167,7 @@ struct ReviewWindow::Parts {
         draw_review_words(pen, place.words, model);
         take_time_line(pen, place.time_line, model, wish);
         draw_time_line(pen, place.time_line, model);
-        draw_steps(pen, place.buttons, model, wish);
+        draw_buttons(pen, place, model, wish);
         return wish;
     }
 };

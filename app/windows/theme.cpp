@@ -54,7 +54,8 @@ const Theme& bright_theme() {
         const auto look = [](ImU32 fill, ImU32 shape, ImU32 text) {
             return BannerLook{fill, shape, shape, text, text};
         };
-        const BannerLook at_rest = look(rgb(236, 240, 246), rgb(84, 96, 120), rgb(22, 28, 40));
+        // Grey enough that eyes without green do not take it for the green of ALIGNED.
+        const BannerLook at_rest = look(rgb(166, 170, 180), rgb(28, 33, 44), rgb(12, 16, 24));
         const BannerLook busy = look(rgb(222, 216, 255), rgb(60, 40, 190), rgb(24, 14, 84));
         const BannerLook check = look(rgb(255, 218, 128), rgb(146, 82, 0), rgb(62, 36, 0));
         t.banner = {at_rest,

@@ -41,13 +41,15 @@ std::string content_hash(std::string_view content) {
     return fmt::format("{:016x}{:016x}", digest.high64, digest.low64);
 }
 
-std::string content_hash_of(const std::filesystem::path& file) {
+std::string content_hash_of(const std::filesystem::path& file, const std::function<void()>& go_on) {
     ContentHash hash;
     std::ifstream in(file, std::ios::binary);
     if (!in) throw InputError(file, "cannot be opened", "Check the permissions of the file.");
     std::vector<char> block(std::size_t{1} << 18);
-    while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0)
+    while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0) {
         hash.add_bytes(block.data(), static_cast<std::size_t>(in.gcount()));
+        if (go_on) go_on();
+    }
     if (!in.eof()) throw InputError(file, "cannot be read", "Check the permissions of the file and the disk it is on.");
     return hash.hex();
 }

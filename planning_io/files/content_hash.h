@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -32,7 +33,8 @@ private:
 /// XXH3-128 of one piece, as 32 hex digits.
 std::string content_hash(std::string_view content);
 
-/// The same of a file, read piece by piece. Throws InputError when it cannot be read.
-std::string content_hash_of(const std::filesystem::path& file);
+/// The same of a file, read piece by piece. Throws InputError when it cannot be read, and what `go_on` throws, which is
+/// called between two pieces and may be empty.
+std::string content_hash_of(const std::filesystem::path& file, const std::function<void()>& go_on = {});
 
 }  // namespace planlight

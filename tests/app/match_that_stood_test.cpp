@@ -115,7 +115,7 @@ TEST_F(Matches, ADamagedRecordingIsNotExported) {
     const fs::path damaged = folder_.path() / "damaged.plrec";
     std::ofstream(damaged, std::ios::binary) << bytes;
     EXPECT_THROW(match_that_stood(damaged), DamagedFileError);
-    event({{"what", "asked"}, {"call", 5}});
+    event({{"what", 5}});
     EXPECT_THROW(stood(), DamagedFileError) << "an event of another kind";
 }
 

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <thread>
 
 #include "app/live/review_desk.h"
@@ -22,6 +24,7 @@
 #include "planning_io/recording/recording_reader.h"
 #include "planning_io/types/error.h"
 #include "registration/simulation/simulated_rig.h"
+#include "tests/app/plan_all_over.h"
 #include "tests/app/played_session.h"
 #include "tests/support/test_data.h"
 
@@ -36,23 +39,37 @@ class MomentOfSession : public ::testing::Test {
 protected:
     void SetUp() override {
         if (!test::example_case().there) GTEST_SKIP() << "the package invesalius-examples is not installed";
+    }
+    /// The whole plan alone.
+    void record_whole() {
+        record(file_, the_case(), [&](Session& session) { whole_at_s_ = follow(session, 8); });
+        read();
+    }
+    void record(const fs::path& file, const Case& the_case, const std::function<void(Session&)>& play) {
         simulation::RoomSettings papers;
         papers.preset = simulation::Preset::paper;
         papers.seed = 5;
-        simulation::SimulatedRig room(test::example_case().volume, points_of(the_case().plan), papers);
-        SessionRecorder recorder(std::make_unique<RecordingFile>(file_),
-                                 recording_head(the_case(), folder_.path(), RecordMode::all, {}));
-        recorder.room_entered({"A room", true, {}, room.calibration(), {}, room.clock().now()});
-        const CaseDrawing drawing(the_case());
+        simulation::SimulatedRig room(test::example_case().volume, points_of(test::example_case().prepared.plan),
+                                      papers);
+        SessionRecorder recorder(std::make_unique<RecordingFile>(file),
+                                 recording_head(the_case, folder_.path(), RecordMode::all, {}));
+        entered_at_ = room.clock().now();
+        recorder.room_entered({"A room", true, {}, room.calibration(), {}, entered_at_});
+        const CaseDrawing drawing(the_case);
         SessionSettings settings;
         settings.observer = &recorder;
-        Session session(the_case(), drawing, room.calibration(), room.projector(), room.cameras(), room.clock(),
+        Session session(the_case, drawing, room.calibration(), room.projector(), room.cameras(), room.clock(),
                         settings);
         session.scan();
         ASSERT_EQ(session.find_patient().verdict, Verdict::yes);
-        for (int i = 0; i < 8; ++i) session.update();
+        play(session);
         ASSERT_EQ(recorder.finish(), "");
-        read();
+    }
+    /// When the last frame was taken, seconds since the room was entered.
+    double follow(Session& session, int updates) const {
+        Instant at{};
+        for (int i = 0; i < updates; ++i) at = session.update().frame.at;
+        return seconds(at - entered_at_);
     }
     /// The last update whose check looked at the whole plan, and the first frame of all.
     void read() {
@@ -72,10 +89,13 @@ protected:
     test::TemporaryFolder folder_;
     const fs::path file_ = folder_.path() / "session.plrec";
     double first_frame_s_ = -1, lit_at_s_ = -1;
+    double whole_at_s_ = -1;
+    Instant entered_at_{};
     Json check_;
 };
 
 TEST_F(MomentOfSession, IsMeasuredAnewAsTheSessionItselfMeasuredIt) {
+    record_whole();
     ASSERT_GT(lit_at_s_, 0) << "the plan was never lit";
     const RecordingTimeLine line = time_line_of(file_);
     RecordedMoments moments(file_, line);
@@ -121,6 +141,7 @@ TEST_F(MomentOfSession, IsMeasuredAnewAsTheSessionItselfMeasuredIt) {
 
 // What a reviewer sees: the place of the plan that was picked is followed from frame to frame.
 TEST_F(MomentOfSession, IsShownWithThePlaceThatWasPicked) {
+    record_whole();
     ASSERT_GT(lit_at_s_, 0) << "the plan was never lit";
     write_case(the_case(), folder_.path() / "case");
     ReviewDesk desk(file_, folder_.path() / "case", lit_at_s_);
@@ -158,6 +179,67 @@ TEST_F(MomentOfSession, IsShownWithThePlaceThatWasPicked) {
     EXPECT_EQ(dark->note, "No patient had been found by then.");
     EXPECT_FALSE(dark->picked) << "nothing is claimed of a moment without a plan";
     EXPECT_TRUE(dark->places.empty());
+}
+
+// What was hidden is not missing, and what was dark is called dark.
+TEST_F(MomentOfSession, IsComparedWithWhatWasLitThen) {
+    double whole_s = 0, hidden_s = 0, alone_s = 0, landmark_s = 0, dark_s = 0;
+    record(file_, the_case(), [&](Session& session) {
+        whole_s = follow(session, 6);
+        session.hide_item(0);
+        hidden_s = follow(session, 6);
+        session.light_item(1);
+        alone_s = follow(session, 6);
+        session.light_landmark(0);
+        landmark_s = follow(session, 6);
+        session.go_dark();
+        dark_s = follow(session, 1);
+    });
+    const RecordingTimeLine line = time_line_of(file_);
+    RecordedMoments moments(file_, line);
+    MomentComparer comparer(the_case(), line, file_);
+    const auto at = [&](double at_s) {
+        const std::size_t frame = frame_near(line, at_s);
+        return comparer.compare(moments, frame, moments.moment(frame));
+    };
+    const auto items = [](const MomentComparison& moment) {
+        std::set<int> lit;
+        for (const auto& place : moment.places) lit.insert(place.seen.item);
+        return lit;
+    };
+    const MomentComparison whole = at(whole_s), hidden = at(hidden_s), alone = at(alone_s);
+    EXPECT_EQ(whole.unlit, "");
+    ASSERT_TRUE(items(whole).contains(0));
+    EXPECT_FALSE(items(hidden).contains(0));
+    EXPECT_GE(items(hidden).size(), 2U);
+    EXPECT_GT(hidden.light.seen, hidden.light.expected / 2);
+    EXPECT_NE(hidden.unlit.find("1 of "), std::string::npos) << hidden.unlit;
+    EXPECT_LT(hidden.plan[0].size(), whole.plan[0].size()) << "nor does the page draw it";
+    EXPECT_EQ(items(alone), (std::set<int>{1}));
+    EXPECT_GT(alone.light.seen, 0);
+    const MomentComparison landmark = at(landmark_s), dark = at(dark_s);
+    EXPECT_EQ(landmark.unlit, "Landmark 1 alone was lit.");
+    EXPECT_EQ(dark.unlit, "It was dark.");
+    for (const MomentComparison& none : {landmark, dark}) {
+        EXPECT_TRUE(none.places.empty());
+        EXPECT_TRUE(sum_of(none).starts_with(none.unlit)) << sum_of(none);
+    }
+}
+
+// Of a plan with many stretches the session looks at some in each frame, in turns; a page has time for all of them.
+TEST_F(MomentOfSession, HasEveryPlaceOfALargePlan) {
+    Case large = the_case();
+    large.plan = test::plan_all_over(SkinSurface(large.skin), {0, -1, 0.3});
+    large.plan_hash = "0123456789abcdef";
+    double at_s = 0;
+    record(file_, large, [&](Session& session) { at_s = follow(session, 4); });
+    const RecordingTimeLine line = time_line_of(file_);
+    RecordedMoments moments(file_, line);
+    const std::size_t frame = frame_near(line, at_s);
+    const MomentComparison moment = MomentComparer(large, line, file_).compare(moments, frame, moments.moment(frame));
+    EXPECT_EQ(moment.unlit, "");
+    EXPECT_GT(moment.places.size(), CheckLightSettings{}.most_segments);
+    EXPECT_GT(moment.light.seen, moment.light.expected / 2);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "app/recording/frame_choice.h"
 #include "app/recording/recorded_inputs.h"
 #include "app/recording/recording_head.h"
+#include "app/report/report_beside.h"
 #include "planning_io/recording/packed_pictures.h"
 #include "planning_io/types/error.h"
 #include "tests/support/test_data.h"
@@ -138,6 +139,41 @@ TEST_F(Operation, WhatTheLightNeverReachedIsNotShownNotForAMomentEither) {
     EXPECT_TRUE(f.items[1].shown.empty());
     const auto reasons = verdict_of(f).reasons;
     EXPECT_NE(std::find(reasons.begin(), reasons.end(), "Not shown: Hole."), reasons.end());
+}
+
+TEST_F(Operation, TellsWhatAPersonHidAndShowedAgain) {
+    const auto ask = [&](const char* call, int which) {
+        event({{"what", "asked"}, {"call", call}, {"which", which}, {"utc", "2026-03-14T09:33:00Z"}});
+    };
+    match();
+    ask("hide_item", 1);
+    ask("light_item", 0);
+    ask("light_item", 1);  // alone bright, so lit again
+    ask("hide_item", 0);
+    ask("show_item", 0);
+    ask("hide_item", 0);
+    ask("show_item", -1);
+    std::vector<std::string> said;
+    for (const OperationEvent& one : facts().said) said.push_back(one.what);
+    EXPECT_EQ(said,
+              (std::vector<std::string>{"\"Hole\" was hidden: it was not lit.", "\"Hole\" was shown again.",
+                                        "\"Line\" was hidden: it was not lit.", "\"Line\" was shown again.",
+                                        "\"Line\" was hidden: it was not lit.", "The whole plan was shown again."}));
+}
+
+TEST_F(Operation, AReportThatNobodyWaitsForEndsAtOnceAndLeavesNothing) {
+    match();
+    for (int i = 0; i < 50; ++i) lit(0.2, 0.3, "aligned");
+    facts();
+    int asked = 0;
+    const auto go_on = [&] {
+        if (++asked == 20) throw std::runtime_error("the window was closed");
+    };
+    EXPECT_THROW(write_report_beside(file(), go_on), std::runtime_error);
+    EXPECT_EQ(asked, 20);
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 1) << "the recording alone";
+    write_report_beside(file());
+    EXPECT_TRUE(fs::exists(fs::path(file()).replace_extension(".html")));
 }
 
 TEST_F(Operation, WhatNoCameraLookedAtIsNeitherShownNorNotShown) {

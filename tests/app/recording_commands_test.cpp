@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "app/recording/recording_head.h"
+#include "planning_io/recording/packed_pictures.h"
 #include "planning_io/recording/recording_chunk.h"
 #include "tests/app/run_command.h"
 #include "tests/support/test_data.h"
@@ -81,6 +82,25 @@ TEST(ReviewCommand, WritesOnlyIntoANewFolderOrOneOfItsOwn) {
     for (int time = 0; time < 2; ++time)
         EXPECT_EQ(run_planlight("review a.plrec --out empty", folder.path()).exit_code, 0) << "once more into its own";
     expect_refused(run_planlight("review a.plrec --out a.plrec", folder.path()), 3, "is a file");
+}
+
+TEST(ReviewCommand, OfAMomentOfAnAnonymousRecordingSaysThatNoCaseWouldHelp) {
+    const TemporaryFolder folder;
+    RecordingHead head;
+    head.case_code = "1a2b";
+    head.anonymous = true;
+    const StereoFrame frame{GrayImage(64, 48, 90), GrayImage(64, 48, 90), std::chrono::seconds(1), {}, 1};
+    std::ofstream(folder.path() / "a.plrec", std::ios::binary)
+        << recording_header() << chunk_bytes({chunk_types::kHead, Instant(0), text_of(head)}, 0)
+        << chunk_bytes({chunk_types::kRoom, Instant(0), "{}"}, 1)
+        << chunk_bytes({chunk_types::kFrame, frame.at, pack_frame(frame)}, 2)
+        << chunk_bytes({chunk_types::kDone, frame.at, "{}"}, 3);
+    const CommandRun run = run_planlight("review a.plrec --at 1", folder.path());
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_NE(run.err.find("An anonymous recording does not keep where the plan lies."), std::string::npos) << run.err;
+    EXPECT_EQ(run.err.find("--case"), std::string::npos) << run.err;
+    EXPECT_NE(whole(folder.path() / "a-review" / "index.html").find("does not keep where the plan lies"),
+              std::string::npos);
 }
 
 TEST(ForgetCommand, NamesAllThatShowsTheFace) {

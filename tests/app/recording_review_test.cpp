@@ -124,6 +124,26 @@ TEST_F(RecordingReview, AnotherReasonOfTheSameColourIsAnEventAndAnotherNumberIsN
     EXPECT_EQ(last, (std::vector<std::string>{"Amber: the light is 0.7 mm off", "Amber: a hand is in the light"}));
 }
 
+// As `follow` does it: the gate is asked before anything is drawn, and there is no update any more.
+TEST_F(RecordingReview, LightThatStopsAfterACheckOfTheSkinIsOnTheTimeLine) {
+    make();
+    event(milliseconds(31000), {{"what", "skin_checked"}, {"known", true}, {"off_mm", 3.0}});
+    event(milliseconds(31200), {{"what", "gate"},
+                                {"call", "forbids"},
+                                {"at_ns", (kBegan + milliseconds(29950)).count()},
+                                {"trust", "dark"},
+                                {"headline", "Dark: the skin lies 3.0 mm off where the markers put it."},
+                                {"stop", true},
+                                {"off_mm", 0.2}});
+    finish(true);
+    const RecordingTimeLine line = time_line_of(file_);
+    EXPECT_EQ(line.stretches.back().trust, LightTrust::dark);
+    EXPECT_NEAR(line.stretches.back().from_s, 31.2, 1e-6);
+    EXPECT_EQ(line.stretches.back().off_mm, -1) << "nothing was measured then";
+    EXPECT_EQ(line.events.back().what, "Dark: the skin lies 3.0 mm off where the markers put it.");
+    EXPECT_NEAR(line.events.back().at_s, 31.2, 1e-6);
+}
+
 TEST_F(RecordingReview, AFrameByItsTimeHasThePictureThatCameAfterIt) {
     make();
     finish(true);

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "app/session_observers.h"
+#include "planning_io/types/error.h"
 #include "registration/simulation/simulated_rig.h"
 #include "tests/app/igtl/igtl_receiver.h"
 #include "tests/app/played_session.h"
@@ -169,6 +171,7 @@ public:
         while (link_->counts().clients == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     Session& session() { return *session_; }
+    SessionLink& link() { return *link_; }
     void match_and_follow() {
         ASSERT_EQ(session_->find_patient().verdict, Verdict::ask);
         let_it_be_sent();
@@ -186,14 +189,15 @@ public:
         return receiver_->all();
     }
 
+    /// The newest word wins: each of these is one that is taken.
+    static void let_it_be_sent() { std::this_thread::sleep_for(std::chrono::milliseconds(400)); }
+
 private:
     static simulation::RoomSettings papers_room() {
         simulation::RoomSettings settings;
         settings.preset = simulation::Preset::paper;
         return settings;
     }
-    /// The newest word wins: each of these is one that is taken.
-    static void let_it_be_sent() { std::this_thread::sleep_for(std::chrono::milliseconds(400)); }
     void follow() {
         for (int i = 0; i < 3; ++i) session_->update();
         let_it_be_sent();
@@ -257,6 +261,66 @@ bool says(const std::vector<ReceivedMessage>& all, const std::string& device, co
     return std::any_of(all.begin(), all.end(), [&](const ReceivedMessage& message) {
         return message.device == device && message.text.find(words) != std::string::npos;
     });
+}
+
+TEST(SessionLink, ThatAPartOfThePlanIsHiddenIsSaidWithTheGatesWord) {
+    if (!test::example_case().there) GTEST_SKIP() << "the package invesalius-examples is not installed";
+    DoubtingSession doubting;
+    doubting.session().scan();
+    doubting.match_and_follow();
+    doubting.session().hide_item(0);
+    doubting.confirm_and_follow();
+    LightGate::Ruling ruling;
+    ruling.trust = LightTrust::aligned;
+    ruling.headline = "The plan is on the skin.";
+    ruling.details = {"Measured by the cameras."};
+    doubting.link().gate(GateCall::step, {}, 0, &ruling);
+    DoubtingSession::let_it_be_sent();
+    const std::string part = "1 of " + std::to_string(doubting.session().drawing().items.size()) + " items is hidden.";
+    EXPECT_TRUE(says(doubting.heard(), "Gate", "The plan is on the skin. " + part + " Measured"));
+}
+
+TEST(SessionLink, DarkThatWasPressedIsTheReasonUnlessTheLightWasStopped) {
+    Case the_case;
+    SessionLinkSettings settings;
+    settings.server.port = 0;
+    const auto last_word = [&](const std::function<void(SessionLink&)>& before) {
+        auto link = std::make_unique<SessionLink>(the_case, settings);
+        before(*link);
+        link->asked(SessionCall::go_dark, {}, -1);
+        test::IgtlReceiver receiver(link->port());
+        while (link->counts().clients == 0) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+        link.reset();
+        std::string said;
+        for (const ReceivedMessage& message : receiver.all())
+            if (message.device == "Gate" && message.word != "ended") said = message.text;
+        return said;
+    };
+    const auto look = [](SessionLink& link) {
+        LightGate::Ruling ruling;
+        ruling.trust = LightTrust::look;
+        ruling.headline = "LOOK: the light is being measured.";
+        link.gate(GateCall::step, {}, 0, &ruling);
+    };
+    EXPECT_EQ(last_word(look), "The light was put out.");
+    EXPECT_EQ(last_word([](SessionLink& link) { link.room_entered({}); }), "The light was put out.");
+    EXPECT_EQ(last_word([](SessionLink& link) {
+                  link.device_failed(DeviceError("Left camera", "no frame came in 250 ms", "Look at its cable."));
+              }),
+              "Dark: Left camera: no frame came in 250 ms.");
+    EXPECT_EQ(last_word([&](SessionLink& link) {
+                  LightGate::Ruling stop;
+                  stop.headline = "Dark: the light lay 3.1 mm beside the plan.";
+                  stop.stop = true;
+                  link.gate(GateCall::step, {}, 0, &stop);
+              }),
+              "Dark: the light lay 3.1 mm beside the plan. ");
+    EXPECT_EQ(last_word([&](SessionLink& link) {
+                  link.refused(SessionCall::update, CheckFailedError("x", "Do it again."));
+                  look(link);
+              }),
+              "The light was put out.");
 }
 
 TEST(SessionLink, NamesAreSaidWhereTheSiteSaysSoAndElseLeftOut) {

@@ -57,8 +57,10 @@ ReviewModel fake_review() {
                                                  Eigen::Vector2d(240, 190), Eigen::Vector2d(160, 190)};
     for (std::size_t i = 0; i < corners.size(); ++i) {
         // On the head one place is in the middle of its view, and the others are off it.
-        const Eigen::Vector3d p = fake.scene.plan->strokes.at(0).points_in_ct.at(0) + Eigen::Vector3d(0, 0, 500.0 * i);
-        model.places.push_back({{corners[i], corners[i]}, p, 0.5 + 0.7 * i, fmt::format("Corner {}", i + 1)});
+        const Eigen::Vector3d p =
+            fake.scene.plan->strokes.at(0).points_in_ct.at(0) + Eigen::Vector3d(0, 0, 500 * static_cast<double>(i));
+        model.places.push_back(
+            {{corners[i], corners[i]}, p, 0.5 + 0.7 * static_cast<double>(i), fmt::format("Corner {}", i + 1)});
     }
     model.sum = "Light was found at 4 of 4 places; half of them lie within 0.80 mm of the plan, 95 % within 2.60 mm.";
     return model;

@@ -118,7 +118,8 @@ TEST_P(Themes, AButtonIsSeenFromTheGroundAndTheOneThatLeadsOnFromTheOthers) {
 // Words and shapes differ too; but who only sees the colour from afar must not take one for ALIGNED.
 TEST_P(Themes, AlignedLooksLikeNoOtherStateToAnyEye) {
     const auto of = [&](StatusKind kind) { return theme_.banner[static_cast<std::size_t>(kind)]; };
-    for (const StatusKind other : {StatusKind::check, StatusKind::refused, StatusKind::dark, StatusKind::scanning})
+    for (const StatusKind other : {StatusKind::ready, StatusKind::scanning, StatusKind::matching, StatusKind::check,
+                                   StatusKind::refused, StatusKind::dark, StatusKind::waiting})
         for (const Eye& eye : eyes()) {
             const double fill = difference(eye, of(StatusKind::aligned).fill, of(other).fill),
                          shape = difference(eye, of(StatusKind::aligned).shape, of(other).shape);

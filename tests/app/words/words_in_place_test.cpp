@@ -164,14 +164,12 @@ TEST_P(WordsInPlace, TheWindowOfAReviewHasRoomForItsWords) {
             draw_review_camera(drawn_.pen, camera == 0 ? place.left : place.right, model, camera, false, nullptr, {});
         expect_whole("a review");
     }
-    const float gap = 12 * place.scale, width = (place.buttons.width - 7 * gap) / 8;
     for (const auto& [label, key] :
          {std::pair{"Beginning", "Home"}, std::pair{"Event before", "↑"}, std::pair{"Frame before", "←"},
           std::pair{"Frame after", "→"}, std::pair{"Event after", "↓"}, std::pair{"End", "End"},
           std::pair{"Whole picture", "Z"}, std::pair{"Projector", "V"}})
         for (const bool enabled : {true, false})
-            button(drawn_.pen, {0, 0, width, place.buttons.height}, label, {enabled, "it is being read"},
-                   {false, false, key});
+            button(drawn_.pen, place.buttons[0], label, {enabled, "it is being read"}, {false, false, key});
     expect_whole("the buttons of a review");
 }
 

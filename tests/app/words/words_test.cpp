@@ -175,6 +175,8 @@ constexpr const char* kSaying[] = {
     "app/live/resume_steps.cpp",
     "app/live/session_states.cpp",
     "app/live/live_window.cpp",
+    "app/live/projector_watch.cpp",
+    "app/live/replay_view.cpp",
     "app/live/review_desk.cpp",
     "app/live/shown_replay.cpp",
     "app/live/real_room.cpp",
@@ -215,10 +217,12 @@ constexpr const char* kSaying[] = {
 
 /// What these sources say is shown in the window, but for the texts that stand here with the reason.
 const std::set<std::string> kNotShown{
-    "evidence page", "landmark skin", "landmark scan",  // names of places in the window
-    "light item", "hide item", "show item",             // what a recording calls a press
-    "Leave it as it is.",                               // on the terminal
-    "osteotomy line", "cut plane",                      // in the place of a name
+    "evidence page", "landmark skin", "landmark scan",                 // names of places in the window
+    "light item", "hide item", "show item",                            // what a recording calls a press
+    "Leave it as it is.",                                              // on the terminal
+    "time line",                                                       // name of a place in the window
+    "does not say whose it is", "There is nothing in it to look at.",  // on the terminal, when the window is closed
+    "osteotomy line", "cut plane",                                     // in the place of a name
     // In the light of the projector, and names of faults on the terminal.
     "BOARD HERE", "INTO THE LIGHT", "MORE INTO THE PICTURE", "{} CAMERA BLIND", "{} EDGE NEARER",
     "as a pose that is there", "outside the projector's light", "seen in part only", "too near", "Not found",
@@ -316,8 +320,11 @@ TEST_P(ShippedWords, SayWholeSentencesAsASessionPutsThemTogether) {
           "Borehole 1: left: no light was found here",
           "Borehole 1: left: 0.31 mm beside the plan (± 0.12 mm, one standard deviation)",
           "Light was found at 60 of 66 places; half of them lie within 0.10 mm of the plan, 95 % within 0.31 mm.",
-          "None of the plan's light was found in this frame, at 66 places where it should be seen: it was dark, a "
-          "landmark alone was lit, or something was before it.",
+          "1 of 4 items were hidden, and are not looked for. None of the plan's light was found in this frame, at 66 "
+          "places where it should be seen: it had only just been asked for, or something was before it.",
+          "It was dark. There is no light of the plan to look for.",
+          "Landmark 1 alone was lit.",
+          "Only \"Borehole 1\" was bright, and that alone is looked for.",
           "The recording ends without a closing word, 812 chunks long: the session was stopped from outside, or the "
           "disk was full.",
           "Green: The plan is on the skin.",

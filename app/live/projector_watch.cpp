@@ -1,0 +1,18 @@
+#include "app/live/projector_watch.h"
+
+namespace planlight {
+
+void ProjectorWatch::put_into(OperatorModel& model) const {
+    if (!problem_.empty()) {
+        model.status = {StatusKind::dark,
+                        "No projector: " + problem_.what + ".",
+                        {problem_.remedy, "It is looked for every second. Scan and match are kept."},
+                        {}};
+    } else if (was_away_) {
+        std::vector<std::string> why{"The projector was away and was started again."};
+        if (model.track.enabled) why.emplace_back("Track looks first whether all is as it was.");
+        model.status.details.insert(model.status.details.begin(), why.begin(), why.end());
+    }
+}
+
+}  // namespace planlight
