@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "app/live/simulated_room.h"
+#include "planning_io/plan/plan_file.h"
 #include "tests/app/played_session.h"
 #include "tests/app/room_with.h"
 
@@ -38,14 +39,36 @@ private:
     std::atomic<bool>&held_, &waits_;
 };
 
-/// Counts the updates since a landmark was lit.
+/// Counts the updates since a landmark was lit, and how often the gate forbade light before there was any.
 class CountsUpdates final : public SessionObserver {
 public:
     void asked(SessionCall call, const std::vector<PointPair>&, int) noexcept override {
         if (call == SessionCall::light_landmark) since = 0;
     }
     void updated(const Session&, const Session::Update&) noexcept override { ++since; }
-    std::atomic<int> since{0};
+    void gate(GateCall call, Instant, double, const LightGate::Ruling*) noexcept override {
+        if (call == GateCall::forbids) ++forbidden;
+    }
+    std::atomic<int> since{0}, forbidden{0};
+};
+
+/// The simulated room with stickers that all slip along the skin by 2.5 mm when they are told to: as far as they can so
+/// that they still agree with each other, and farther than light may lie beside the plan.
+class SlippingRoom final : public Room {
+public:
+    explicit SlippingRoom(const simulation::RoomSettings& settings)
+        : rig_(test::example_case().volume, points_of(test::example_case().prepared.plan), settings) {}
+    std::string name() const override { return "a room whose markers slip"; }
+    const RigCalibration& rig() const override { return rig_.calibration(); }
+    Projector& projector() override { return rig_.projector(); }
+    StereoCamera& cameras() override { return rig_.cameras(); }
+    const Clock& clock() const override { return rig_.clock(); }
+    bool simulated() const override { return true; }
+    void computing() override { rig_.wait(10ms); }
+    void slip() { rig_.slip_marker(-1, {1.0, -1.0, 2.05}); }
+
+private:
+    simulation::SimulatedRig rig_;
 };
 
 /// A session in the simulated room, from its first moment.
@@ -57,14 +80,15 @@ protected:
         session = std::make_unique<LiveSession>(
             [this](const RoomProgress& progress) {
                 progress("The room of a test.", 0.25);
-                return std::make_unique<test::RoomWith<HeldCameras>>(
-                    std::make_unique<SimulatedRoom>(test::example_case().volume, test::example_case().prepared.plan,
-                                                    room, 5),
-                    std::ref(held), std::ref(waits));
+                return std::make_unique<test::RoomWith<HeldCameras>>(made_room(), std::ref(held), std::ref(waits));
             },
             test::example_case().prepared, drawing(), std::filesystem::path{}, &counts);
     }
     void TearDown() override { held = false; }  // its thread is waited for
+    virtual std::unique_ptr<Room> made_room() {
+        return std::make_unique<SimulatedRoom>(test::example_case().volume, test::example_case().prepared.plan, room,
+                                               5);
+    }
     static const CaseDrawing& drawing() {
         static const CaseDrawing made = [] {
             CaseDrawing drawn(test::example_case().prepared);
@@ -316,6 +340,52 @@ TEST_F(LiveSessionTest, AHiddenItemIsNeitherLitNorMissedAndAllHiddenIsDarkAndSay
     });
     EXPECT_EQ(again.status.headline, "The plan is on the skin.");
     for (const PlanRow& row : again.rows) EXPECT_FALSE(row.hidden);
+}
+
+class LiveSessionWithSlippedMarkers : public LiveSessionTest {
+protected:
+    std::unique_ptr<Room> made_room() override {
+        auto made = std::make_unique<SlippingRoom>(room);
+        entered = made.get();
+        return made;
+    }
+    OperatorModel refused() {
+        return wait_for(*session, "the refusal",
+                        [](const OperatorModel& m) { return m.status.kind == StatusKind::refused && m.track.enabled; });
+    }
+    SlippingRoom* entered = nullptr;  ///< once the session is ready
+};
+
+// All markers slipped together: they agree with each other, and the light with them; only the skin tells. From then on
+// there is no light by that match, however often Track is pressed.
+TEST_F(LiveSessionWithSlippedMarkers, SkinThatLiesAsideForbidsLightUntilTheNextMatch) {
+    followed();
+    hold();
+    entered->slip();
+    held = false;
+    wait_for(*session, "the button", [](const OperatorModel& m) { return m.check_skin; });
+    ASSERT_EQ(session->post(OperatorAction::check_skin), "");
+    const OperatorModel first = refused();
+    EXPECT_TRUE(says(first, "skin")) << first.status.headline;
+    EXPECT_EQ(first.next, OperatorAction::scan) << "Enter and the pedal lead to a new scan";
+    EXPECT_EQ(bright_pixels(), -1);
+    const int updates = counts.since;
+    for (int press = 1; press <= 3; ++press) {
+        const int before = counts.forbidden;
+        EXPECT_EQ(session->post(OperatorAction::track), "") << "there for who knows better";
+        wait_for(*session, "the gate", [&](const OperatorModel&) {
+            EXPECT_EQ(bright_pixels(), -1);
+            return counts.forbidden > before;
+        });
+        const OperatorModel again = refused();
+        EXPECT_EQ(again.status.headline, first.status.headline);
+        EXPECT_EQ(again.next, OperatorAction::scan);
+        EXPECT_FALSE(again.light_on);
+        EXPECT_EQ(bright_pixels(), -1);
+    }
+    EXPECT_EQ(counts.since, updates) << "nothing was even drawn";
+    followed();  // scan, match, Track: there is light
+    EXPECT_GT(bright_pixels(), 0);
 }
 
 }  // namespace
