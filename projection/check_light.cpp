@@ -31,6 +31,7 @@ SeenSegment joined(const StrokeSegment& segment, const std::array<CameraLook, 2>
         if (!looks[c].light) continue;
         result.seen = true;
         result.by_camera_mm[c] = looks[c].light->off_mm;
+        result.brighter = std::max(result.brighter, looks[c].light->brighter);
         const double w = 1 / (std::pow(looks[c].light->sigma_mm, 2) + std::pow(settings.place_sigma_mm, 2));
         weight += w;
         sum += w * looks[c].light->off_mm;
@@ -97,14 +98,16 @@ bool tells_whole(const std::vector<SeenSegment>& segments) {
 }
 
 void sum_up(LightCheck& check) {
-    std::vector<double> sizes, sigmas, backgrounds;
+    std::vector<double> sizes, sigmas, backgrounds, brighter;
     for (const SeenSegment& s : check.segments) {
         if (s.background > 0) backgrounds.push_back(s.background);
         if (!s.tick || s.seen) ++check.expected;
         if (!s.seen) continue;
         sizes.push_back(std::abs(s.off_mm));
         sigmas.push_back(s.sigma_mm);
+        brighter.push_back(s.brighter);
     }
+    check.brighter = quantile(std::move(brighter), 0.9);
     check.seen = static_cast<int>(sizes.size());
     check.off_mm = quantile(sizes, 0.95);
     check.most_mm = quantile(sizes, 2.0 / 3);

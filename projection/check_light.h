@@ -38,6 +38,7 @@ struct SeenSegment {
     double off_mm = 0;      ///< of the light along `sideways_in_ct`
     double sigma_mm = 0;    ///< one standard deviation of that
     double background = 0;  ///< grey of the skin beside the stroke, mean of the cameras that looked
+    double brighter = 0;    ///< the light than that skin, as a share of it; by the camera that sees more of it
     std::array<std::optional<double>, 2> by_camera_mm;  ///< as the left and the right camera see it
 };
 
@@ -63,6 +64,9 @@ struct LightCheck {
     double most_mm = 0;  ///< a third of the sides lie beyond this: light as a whole, not what falls on a hand before it
     double sigma_mm = 0;    ///< of a single segment, median
     double background = 0;  ///< grey of the skin beside the strokes, median; 0 when no camera looked
+    /// The brightest tenth of the segments than the skin beside them, as a share of that: 1 is twice as bright as the
+    /// skin, 0 that nothing was seen. Dim items do not count against it.
+    double brighter = 0;
     /// True where the segments that were seen tell the light's place in two directions along the skin. Straight lines
     /// side by side do not: along itself such light could lie anywhere.
     bool told_whole = false;

@@ -73,6 +73,7 @@ std::optional<Label> draw_label(const SkinSurface& skin, const TextFrame& frame,
     Label label;
     label.item = item;
     label.words = block.words;
+    label.text_height_mm = text_height_mm;
     label.leader.kind = StrokeKind::label;
     label.leader.item = item;
     label.leader.colour = label.colour;

@@ -37,8 +37,9 @@ struct Stroke {
 
 /// A label on the skin, lit whole or not at all.
 struct Label {
-    int item = -1;      ///< index into PlanDrawing::items
-    std::string words;  ///< as it can be read, lines parted by a line feed
+    int item = -1;              ///< index into PlanDrawing::items
+    std::string words;          ///< as it can be read, lines parted by a line feed
+    double text_height_mm = 0;  ///< of its capitals, along the skin
     Rgb colour{235, 235, 235};
     /// Of one sign of the text: closed lines, filled together (a hole runs the other way round); on the skin.
     using Outlines = std::vector<std::vector<Eigen::Vector3d>>;
@@ -86,7 +87,8 @@ struct LightView {
 struct DrawingSettings {
     double line_width_mm = 0.8;
     double max_segment_mm = 0.5;
-    double text_height_mm = 5;                      ///< of capitals and digits, along the skin
+    double text_height_mm = 5;   ///< of capitals and digits, along the skin: at least
+    double largest_text_mm = 7;  ///< where there is room; no more than the least: all are of one height
     double tick_every_mm = 10, tick_length_mm = 2;  ///< along osteotomy lines; 0 = none
     Eigen::Vector3d up_in_ct{0, 0, 1};              ///< which way text stands up; zero: +z, as nobody said
     std::optional<LightView> light;                 ///< where it is not known, labels may lie where no light comes

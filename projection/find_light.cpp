@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "planning_io/types/statistics.h"
 
@@ -120,7 +121,7 @@ std::optional<FoundLight> top_of(const std::vector<double>& response, double sig
         left.push_back(std::abs(response[k] - *top / ridge[at] * ridge[k]));
     const double noise = std::max(1.4826 * median(std::move(left)), 0.02);
     if (*top < settings.least_peak_grey || *top < settings.least_peak_sigmas * noise) return std::nullopt;
-    return FoundLight{off_mm, sigma_mm * noise / *top, *top};
+    return FoundLight{off_mm, sigma_mm * noise / *top, *top, *top / ridge[at]};
 }
 
 }  // namespace
@@ -134,7 +135,11 @@ CameraLook find_light(const StrokeSegment& segment, const CameraModel& camera, c
     if (profile.empty()) return {};
     const double background = level(profile);
     const double sigma_mm = std::hypot(middle.width_mm / std::sqrt(12.0), 0.6 / px_per_mm, 0.2);
-    return {true, background, top_of(matched(profile, sigma_mm), sigma_mm, settings)};
+    CameraLook look{true, background, top_of(matched(profile, sigma_mm), sigma_mm, settings)};
+    if (look.light)  // the ridge's light, gathered on the stroke's width
+        look.light->brighter *=
+            sigma_mm * std::sqrt(2 * std::numbers::pi) / middle.width_mm / std::max(background, 1.0);
+    return look;
 }
 
 }  // namespace planlight

@@ -11,6 +11,8 @@ namespace planlight {
 struct FoundLight {
     double off_mm = 0, sigma_mm = 0;  ///< along the places' `sideways_in_ct`
     double peak_grey = 0;
+    /// Than the skin beside it, as a share of that: of a stroke of its width, whatever the camera's blur makes of it.
+    double brighter = 0;
 };
 
 /// Whether a camera can be asked about a segment, and what it saw.

@@ -83,9 +83,10 @@ std::string ascii(const std::u32string& token) {
     return text;
 }
 
-/// "A", "B", ... "AA": none that looks like a digit or is a Roman one.
+/// "A", "C", ... "AA": none that is read as a digit where pixels are coarse (B as 8, D and Q as 0, G as 6, J and L as
+/// 1, S as 5, Z as 2) or that stands for a Roman one alone.
 std::vector<std::u32string> letter_codes() {
-    constexpr std::u32string_view kClear = U"ABCDEFGHJKLMNPQRSTUWYZ";
+    constexpr std::u32string_view kClear = U"ACEFHKMNPRTUWY";
     std::vector<std::u32string> codes;
     for (const char32_t a : kClear) codes.emplace_back(1, a);
     for (const char32_t a : kClear)

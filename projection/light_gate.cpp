@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace planlight {
 
@@ -13,6 +14,7 @@ void LightGate::verify(Instant at) {
 
 void LightGate::forget() {
     good_ = bad_ = 0;
+    brighter_ = 0;
     last_.reset();
     items_.clear();
     told_whole_at_ = Instant::min();
@@ -48,6 +50,9 @@ void LightGate::take(Instant at, const LightCheck& check) {
     last_ = check;
     measured_at_ = at;
     if (check.told_whole) told_whole_at_ = at;
+    constexpr double kSlow = 0.1;
+    if (check.seen >= settings_.least_seen)
+        brighter_ = brighter_ > 0 ? (1 - kSlow) * brighter_ + kSlow * check.brighter : check.brighter;
     items_.resize(check.items.size());
     for (std::size_t i = 0; i < items_.size(); ++i) {
         const ItemLight& item = check.items[i];
@@ -74,11 +79,21 @@ LightGate::Ruling LightGate::step(Instant at, bool lit, const std::optional<Ligh
     if (!lit) forget();
     Ruling ruling = rule(at, causes);
     if (!lit && !stopped_) ruling = {};
+    if (lit && !stopped_ && faint(at))
+        ruling.details.push_back(fmt::format(
+            "The lines are only about {:.0f} % brighter than the skin beside them: turn the room's lamps down, or away "
+            "from the patient.",
+            std::max(10.0, std::round(10 * brighter_) * 10)));
     for (const LightCause& cause : causes) {
         ruling.details.push_back(cause.sentence());
         ruling.details.push_back(cause.remedy());
     }
     return ruling;
+}
+
+/// What lamps outshine a camera may still measure; an eye takes it for nothing.
+bool LightGate::faint(Instant at) const {
+    return last_ && within_fresh(measured_at_, at) && brighter_ > 0 && brighter_ < settings_.least_brighter;
 }
 
 /// The light as measured, from the gravest down; false when nothing is wrong with it.

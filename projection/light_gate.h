@@ -11,13 +11,14 @@
 namespace planlight {
 
 struct LightGateSettings {
-    double warn_mm = 1;                              ///< 95 % of the light lies within this of the plan, else amber
-    double stop_mm = 2;                              ///< and two thirds of it within this, else dark
-    double least_seen_share = 0.5;                   ///< of the stretches that the cameras should see
-    double least_seen_of_item = 0.3;                 ///< of the stretches of each item
-    int least_seen = 5;                              ///< stretches: fewer are no measurement
-    int green_after = 3;                             ///< good measurements in a row
-    int dark_after = 2;                              ///< bad ones in a row
+    double warn_mm = 1;               ///< 95 % of the light lies within this of the plan, else amber
+    double stop_mm = 2;               ///< and two thirds of it within this, else dark
+    double least_seen_share = 0.5;    ///< of the stretches that the cameras should see
+    double least_seen_of_item = 0.3;  ///< of the stretches of each item
+    int least_seen = 5;               ///< stretches: fewer are no measurement
+    int green_after = 3;              ///< good measurements in a row
+    int dark_after = 2;               ///< bad ones in a row
+    double least_brighter = 0.3;  ///< the lines than the skin beside them, as a share of it; fainter ones are warned of
     Instant fresh = std::chrono::seconds(1);         ///< an older measurement is none
     Instant verified_for = std::chrono::minutes(5);  ///< of light that was interrupted; then a person looks again
 };
@@ -75,6 +76,7 @@ private:
         double off_mm = 0;
     };
     void take(Instant at, const LightCheck& check);
+    bool faint(Instant at) const;
     Ruling rule(Instant at, const std::vector<LightCause>& causes) const;
     bool rule_on_measurement(Instant at, Ruling& ruling) const;
     void forget();
@@ -83,6 +85,7 @@ private:
     LightGateSettings settings_;
     bool verified_ = false, stopped_ = false, lit_ = false;
     int good_ = 0, bad_ = 0;
+    double brighter_ = 0;     ///< the lines than the skin beside them, mean of the last checks; 0: not known
     double skin_off_mm_ = 0;  ///< by the last check of the skin; 0: none
     std::optional<LightCheck> last_;
     std::vector<Item> items_;

@@ -22,6 +22,11 @@ LabelWish in_form(LabelWish wish, Form form) {
     return wish;
 }
 
+LabelWish in_height(LabelWish wish, double height_mm) {
+    wish.text_height_mm = height_mm;
+    return wish;
+}
+
 double length_mm(const Stroke& stroke) {
     double length = 0;
     for (std::size_t i = 0; i + 1 < stroke.points_in_ct.size(); ++i)
@@ -58,6 +63,12 @@ public:
     void place();
 
 private:
+    /// A label that has its place, and what was wished for there.
+    struct Put {
+        Label label;
+        LabelWish wish;
+    };
+
     void occupy_plan();
     void face_the_light();
     void tell_of_others();
@@ -65,8 +76,19 @@ private:
     void put_whole_first();
     int told() const;
     void put_codes_first();
+    double lines_mm2() const;
     void keep_to_share();
+    std::vector<double> larger_heights_mm() const;
+    /// In larger letters a line may be too long: then it would be shortened, or parted.
+    bool says_the_same(const LabelWish& wish, double height_mm) const {
+        const double now_mm = wish.text_height_mm > 0 ? wish.text_height_mm : settings_.text_height_mm;
+        return lay_out(wish.text, height_mm).words == lay_out(wish.text, now_mm).words;
+    }
+    void enlarge();
+    /// In larger letters than the least; empty where there is no room for them.
+    std::optional<Label> place_large(const LabelWish& wish, const OccupiedSkin& occupied) const;
     void put_of_moment();
+    LabelWish card_wish() const;
     void put_card();
 
     std::vector<LabelWish> wishes_;
@@ -74,7 +96,7 @@ private:
     const DrawingSettings& settings_;
     PlanDrawing& drawing_;
     OccupiedSkin plan_, occupied_;
-    std::map<int, Label> put_;
+    std::map<int, Put> put_;
 };
 
 void AllLabels::occupy_plan() {
@@ -108,10 +130,10 @@ void AllLabels::tell_of_others() {
 bool AllLabels::put(const LabelWish& wish) {
     auto label = place_label(wish, skin_, settings_, occupied_);
     if (!label) return false;
-    if (const auto former = put_.find(wish.item); former != put_.end()) vacate(former->second, occupied_);
+    if (const auto former = put_.find(wish.item); former != put_.end()) vacate(former->second.label, occupied_);
     label->by_code = !wish.code.empty() && wish.text.name == wish.code;
     occupy(*label, occupied_);
-    put_.insert_or_assign(wish.item, std::move(*label));
+    put_.insert_or_assign(wish.item, Put{std::move(*label), wish});
     return true;
 }
 
@@ -130,8 +152,8 @@ int AllLabels::told() const {
     for (const LabelWish& wish : wishes_) {
         const auto label = put_.find(wish.item);
         if (label == put_.end()) continue;
-        const bool code = wish.text.name != wish.code && label->second.by_code;
-        told += code ? 4 : label->second.words.size() > wish.text.name.size() + 2 ? 6 : 5;
+        const bool code = wish.text.name != wish.code && label->second.label.by_code;
+        told += code ? 4 : label->second.label.words.size() > wish.text.name.size() + 2 ? 6 : 5;
     }
     return told;
 }
@@ -149,34 +171,78 @@ void AllLabels::put_codes_first() {
         }
 }
 
+double AllLabels::lines_mm2() const {
+    double area = 0;
+    for (const Stroke& stroke : drawing_.strokes) area += length_mm(stroke) * stroke.width_mm;
+    return area;
+}
+
 /// Shorter labels until no more of the light is text than may be; the last of the plan first.
 void AllLabels::keep_to_share() {
-    double lines_mm2 = 0, text_mm2 = 0;
-    for (const Stroke& stroke : drawing_.strokes) lines_mm2 += length_mm(stroke) * stroke.width_mm;
-    for (const auto& [item, label] : put_) text_mm2 += area_mm2(label);
-    const auto too_much = [&] { return text_mm2 > settings_.most_text * (text_mm2 + lines_mm2); };
+    const double lines = lines_mm2();
+    double text_mm2 = 0;
+    for (const auto& [item, put] : put_) text_mm2 += area_mm2(put.label);
+    const auto too_much = [&] { return text_mm2 > settings_.most_text * (text_mm2 + lines); };
     for (const Form form : kShorter)
         for (auto wish = wishes_.rbegin(); wish != wishes_.rend() && too_much(); ++wish) {
             const auto label = put_.find(wish->item);
             LabelWish shorter = in_form(*wish, form);
             if (label == put_.end() || wish->text.name.empty()) continue;
-            const double before_mm2 = area_mm2(label->second);
+            const double before_mm2 = area_mm2(label->second.label);
             shorter.but_of = wish->item;
-            if (put(shorter)) text_mm2 += area_mm2(put_.at(wish->item)) - before_mm2;
+            if (put(shorter)) text_mm2 += area_mm2(put_.at(wish->item).label) - before_mm2;
         }
     for (auto wish = wishes_.rbegin(); wish != wishes_.rend() && too_much(); ++wish) {
         const auto label = put_.find(wish->item);
         if (label == put_.end()) continue;
-        text_mm2 -= area_mm2(label->second);
+        text_mm2 -= area_mm2(label->second.label);
         put_.erase(label);
     }
+}
+
+/// None where the light is not known: what is larger is sooner beyond its reach, and then nothing of it is lit.
+std::vector<double> AllLabels::larger_heights_mm() const {
+    const double least_mm = settings_.text_height_mm, most_mm = settings_.largest_text_mm;
+    if (!(most_mm > least_mm) || !settings_.light) return {};
+    return {(least_mm + most_mm) / 2, most_mm};
+}
+
+/// The same words in larger letters where there is room beside all else: a step for every label before the next step.
+/// What stands at its item without a leader stays there.
+void AllLabels::enlarge() {
+    const double lines = lines_mm2();
+    double text_mm2 = 0;
+    for (const auto& [item, put] : put_) text_mm2 += area_mm2(put.label);
+    for (const double height_mm : larger_heights_mm())
+        for (const LabelWish& wish : wishes_) {
+            const auto now = put_.find(wish.item);
+            if (now == put_.end() || !says_the_same(now->second.wish, height_mm)) continue;
+            LabelWish larger = in_height(now->second.wish, height_mm);
+            larger.but_of = wish.item;
+            if (now->second.label.leader.points_in_ct.empty()) larger.gaps_mm = {0};
+            const double before_mm2 = area_mm2(now->second.label), by = height_mm / now->second.label.text_height_mm;
+            const double after_mm2 = text_mm2 + (by * by - 1) * before_mm2;
+            if (after_mm2 > settings_.most_text * (after_mm2 + lines)) continue;
+            if (put(larger)) text_mm2 += area_mm2(put_.at(wish.item).label) - before_mm2;
+        }
+}
+
+std::optional<Label> AllLabels::place_large(const LabelWish& wish, const OccupiedSkin& occupied) const {
+    auto heights_mm = larger_heights_mm();
+    for (auto height_mm = heights_mm.rbegin(); height_mm != heights_mm.rend(); ++height_mm)
+        if (says_the_same(wish, *height_mm))
+            if (auto label = place_label(in_height(wish, *height_mm), skin_, settings_, occupied)) return label;
+    return std::nullopt;
 }
 
 void AllLabels::put_of_moment() {
     for (LabelWish wish : wishes_) {
         wish.but_of = OccupiedSkin::kAllLabels;
         wish.others.clear();  // they are dim
-        auto label = place_label(wish, skin_, settings_, plan_);
+        LabelWish near = wish;
+        near.gaps_mm = {0};
+        auto label = place_large(near, plan_);
+        if (!label) label = place_label(wish, skin_, settings_, plan_);
         if (!label) label = place_label(in_form(wish, Form::name), skin_, settings_, plan_);
         if (!label) continue;
         label->of_moment = true;
@@ -186,11 +252,11 @@ void AllLabels::put_of_moment() {
 }
 
 /// Far enough from every item that it is not taken for one's name.
-void AllLabels::put_card() {
-    if (settings_.card.empty() || wishes_.empty()) return;
+LabelWish AllLabels::card_wish() const {
     LabelWish wish;
     wish.text.name = settings_.card.front();
     wish.text.figures.assign(settings_.card.begin() + 1, settings_.card.end());
+    wish.text_height_mm = settings_.text_height_mm;
     // Half a name can be another's: rather smaller letters.
     constexpr double kLeast_mm = 4.2;
     if (shortened(wish.text.name, settings_.text_height_mm) != wish.text.name)
@@ -203,12 +269,24 @@ void AllLabels::put_card() {
         wish.keep_off_mm = std::max(wish.keep_off_mm, item.keep_off_mm);
         if (item.anchors.size() == 1) wish.others.push_back({item.anchors[0].p_in_ct, item.keep_off_mm});
     }
-    drawing_.card = place_label(wish, skin_, settings_, occupied_);
-    if (drawing_.card || !settings_.light) return;
-    constexpr double kSteepest = 1.05;  // radians (60 degrees): rather aslant than not at all
-    DrawingSettings steeper = settings_;
-    steeper.light->steepest = std::max(kSteepest, steeper.light->steepest);
-    drawing_.card = place_label(wish, skin_, steeper, occupied_);
+    return wish;
+}
+
+void AllLabels::put_card() {
+    if (settings_.card.empty() || wishes_.empty()) return;
+    const LabelWish wish = card_wish();
+    drawing_.card = place_large(wish, occupied_);
+    if (!drawing_.card) drawing_.card = place_label(wish, skin_, settings_, occupied_);
+    if (!drawing_.card && settings_.light) {
+        constexpr double kSteepest = 1.05;  // radians (60 degrees): rather aslant than not at all
+        DrawingSettings steeper = settings_;
+        steeper.light->steepest = std::max(kSteepest, steeper.light->steepest);
+        drawing_.card = place_label(wish, skin_, steeper, occupied_);
+    }
+    if (!drawing_.card) return;
+    Label taken = *drawing_.card;  // labels that are made larger keep off it as off each other
+    taken.item = OccupiedSkin::kCard;
+    occupy(taken, occupied_);
 }
 
 void AllLabels::place() {
@@ -219,20 +297,21 @@ void AllLabels::place() {
         put_codes_first();
         if (told() <= first) put_ = whole_first;
         occupied_ = plan_;
-        for (const auto& [item, label] : put_) occupy(label, occupied_);
+        for (const auto& [item, put] : put_) occupy(put.label, occupied_);
     }
     keep_to_share();
     occupied_ = plan_;
-    for (const auto& [item, label] : put_) occupy(label, occupied_);
-    for (const LabelWish& wish : wishes_) {
-        const auto label = put_.find(wish.item);
-        DrawnItem& item = drawing_.items[static_cast<std::size_t>(wish.item)];
-        item.labelled = label != put_.end();
-        if (label == put_.end()) continue;
-        if (label->second.by_code) item.lit_by_code = true, item.lit_name = item.code;
-        drawing_.labels.push_back(label->second);
-    }
+    for (const auto& [item, put] : put_) occupy(put.label, occupied_);
     put_card();
+    enlarge();
+    for (const LabelWish& wish : wishes_) {
+        const auto put = put_.find(wish.item);
+        DrawnItem& item = drawing_.items[static_cast<std::size_t>(wish.item)];
+        item.labelled = put != put_.end();
+        if (put == put_.end()) continue;
+        if (put->second.label.by_code) item.lit_by_code = true, item.lit_name = item.code;
+        drawing_.labels.push_back(put->second.label);
+    }
     put_of_moment();
 }
 

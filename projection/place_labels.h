@@ -18,8 +18,9 @@ public:
     static constexpr int kPlan = -1;       ///< lines, ticks, markers
     static constexpr int kNobody = -2;     ///< as `but_of`: nothing is overlooked
     static constexpr int kAllLabels = -3;  ///< as `but_of`: only the plan counts
+    static constexpr int kCard = -4;       ///< the card with the patient's name
 
-    /// `owner`: `kPlan`, or the item whose label it is.
+    /// `owner`: `kPlan`, `kCard`, or the item whose label it is.
     void add(const Eigen::Vector3d& p_in_ct, int owner = kPlan);
     void take_away(const Eigen::Vector3d& p_in_ct, int owner);
     /// `distance_mm` up to the cell size. What belongs to `but_of` is overlooked.

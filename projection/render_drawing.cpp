@@ -29,8 +29,7 @@ struct LitPoint {
 };
 
 Rgb dimmed(Rgb colour, double brightness) {
-    for (auto& channel : colour)
-        channel = static_cast<std::uint8_t>(std::lround(std::clamp(channel * brightness, 0.0, 255.0)));
+    for (auto& channel : colour) channel = number_for_light(channel, brightness);
     return colour;
 }
 

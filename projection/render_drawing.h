@@ -12,15 +12,15 @@ namespace planlight {
 /// How lines become pixels of the projector.
 struct RenderSettings {
     double steepest = 1.31;  ///< radians (75 degrees) between skin normal and light: beyond it nothing is drawn
-    double brightness = 1;
-    double halo_mm = 1.2;                               ///< darkness kept round the markers' stickers
+    double brightness = 1;   ///< share of the light of the drawing's colours, 0 to 1
+    double halo_mm = 1.2;    ///< darkness kept round the markers' stickers
     std::vector<Eigen::Vector3d> keep_dark_in_patient;  ///< marker centres that no light may touch
     double keep_dark_radius_mm = 9;
     double whole_ring = 0.85;  ///< circles of which less of the rim can be lit are drawn broken
     int only_item = -1;        ///< draw one item alone (for measuring); -1 draws all
     /// The item that is worked on: bright, with its whole label; no other label is drawn then. -1: none.
     int item_of_moment = -1;
-    double others = 0.25;         ///< brightness of the other items then; 0 hides them
+    double others = 0.25;         ///< share of their light that the other items keep then; 0 hides them
     bool card = false;            ///< `PlanDrawing::card` is lit as well, while no item is that of the moment
     double steepest_text = 1.13;  ///< radians (65 degrees): a label of which a part is steeper is left out whole
 };

@@ -4,6 +4,25 @@
 #include <cmath>
 
 namespace planlight {
+namespace {
+
+/// What a number is multiplied by for a share of its light, of many shares: a power costs too much for every pixel.
+float number_share(float light_share) {
+    constexpr int kSteps = 4096;
+    static const std::vector<float> kTable = [] {
+        std::vector<float> table;
+        for (int i = 0; i <= kSteps; ++i)
+            table.push_back(static_cast<float>(std::pow(static_cast<double>(i) / kSteps, 1 / kPanelGamma)));
+        return table;
+    }();
+    return kTable[static_cast<std::size_t>(std::lround(std::clamp(light_share, 0.0f, 1.0f) * kSteps))];
+}
+
+}  // namespace
+
+std::uint8_t number_for_light(std::uint8_t full, double share) {
+    return static_cast<std::uint8_t>(std::lround(full * std::pow(std::clamp(share, 0.0, 1.0), 1 / kPanelGamma)));
+}
 
 StrokeRaster::StrokeRaster(int width, int height)
     : width_(width),
@@ -97,7 +116,7 @@ void StrokeRaster::add(std::span<const Eigen::Vector2d> outline, std::span<const
 std::size_t StrokeRaster::flush(Rgb colour, RgbImage& picture) {
     const std::size_t count = touched_.size();
     for (const std::size_t i : touched_) {
-        const float share = std::min(1.0f, coverage_[i]);
+        const float share = number_share(coverage_[i]);
         for (std::size_t c = 0; c < 3; ++c) {
             const auto value = static_cast<std::uint8_t>(std::lround(share * static_cast<float>(colour[c])));
             picture.pixels[i][c] = std::max(picture.pixels[i][c], value);

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -9,8 +10,15 @@
 
 namespace planlight {
 
+/// A projector's light grows with this power of a picture's numbers (sRGB, and nearly every projector; what yours does
+/// `planlight projector` measures). Half a number would be a fifth of the light.
+inline constexpr double kPanelGamma = 2.2;
+
+/// The number of a picture that gives `share` (0 to 1) of the light of the number `full`.
+std::uint8_t number_for_light(std::uint8_t full, double share);
+
 /// Fills small shapes with exact pixel coverage. Shapes of one stroke add up (shared edges leave no seam),
-/// and are then laid on the picture as one.
+/// and are then laid on the picture as one. A pixel that is half covered gives half the light.
 ///
 /// Pixel (0,0) is the centre of the top-left pixel: a pixel covers half a pixel to each side of its centre.
 class StrokeRaster {

@@ -14,7 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The true skin points that one stroke lights, with the brightness of their pixels as weight.
+/// The true skin points that one stroke lights, with the light of their pixels as weight.
 struct Light {
     std::vector<Vector3d> points_in_ct, normals_in_ct;
     std::vector<double> weights, incidences_deg;
@@ -43,17 +43,18 @@ Light light_of(const Stroke& stroke, const simulation::SimulatedRig& rig, const 
     Light light;
     light.whole =
         renderer.render_into(image, alone, picture.rig_from_ct, picture.rig_from_patient, render).partly_lit.empty();
+    const simulation::PanelSettings panel;  // of every simulated room but those that try others
     const Vector3d eye_in_ct =
         rig.true_rig_from_ct(picture.lit_at).inverse() * rig.true_rig().projector.centre_in_rig();
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x) {
             const auto value = image.at(x, y)[1];
-            if (value < 8) continue;
+            if (value == 0) continue;
             const auto lit = rig.true_light({x, y}, picture.lit_at);
             if (!lit) continue;
             light.points_in_ct.push_back(lit->p_in_ct);
             light.normals_in_ct.push_back(lit->normal_in_ct);
-            light.weights.push_back(value / 255.0);
+            light.weights.push_back(std::pow(value / 255.0, panel.gamma));
             const double cosine = (eye_in_ct - lit->p_in_ct).normalized().dot(lit->normal_in_ct);
             light.incidences_deg.push_back(std::acos(std::clamp(cosine, -1.0, 1.0)) * 180 / std::numbers::pi);
         }

@@ -45,6 +45,7 @@ void LabelsRead::append(const LabelsRead& more) {
     for (const auto& [kind, some] : more.contrast)
         contrast[kind].insert(contrast[kind].end(), some.begin(), some.end());
     check_expected += more.check_expected, check_seen += more.check_seen;
+    check_brighter.insert(check_brighter.end(), more.check_brighter.begin(), more.check_brighter.end());
     share_of_text = more.share_of_text;
 }
 
@@ -213,6 +214,7 @@ LabelsRead LabelledHead::read(simulation::Preset preset, unsigned seed, bool eye
     add_contrast(drawing, parts_->skin, rig, frame, rig_from_ct, lit, result);
     const LightCheck check = check_light(drawing, parts_->skin, rig.calibration(), rig_from_ct, frame);
     result.check_expected = check.expected, result.check_seen = check.seen;
+    result.check_brighter = {check.brighter};
     // As it is read from where it is seen best, as a person would look; empty where neither camera sees it whole.
     const auto read_one = [&](const Label& label, const std::string& word) -> std::optional<std::string> {
         const auto sees = [&](simulation::SimulatedRig::Camera camera) {

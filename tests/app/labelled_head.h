@@ -26,6 +26,7 @@ struct LabelsRead {
     /// share of that.
     std::map<StrokeKind, std::vector<double>> contrast;
     int check_expected = 0, check_seen = 0;  ///< stretches that CHECK should see in both pictures, and sees
+    std::vector<double> check_brighter;      ///< `LightCheck::brighter`, one a picture
     void append(const LabelsRead& more);
 };
 

@@ -30,8 +30,9 @@ void print(double lux, const LabelsRead& read) {
         if (kNames.contains(kind) && values.size() >= 5)
             fmt::print(" {} {:.2f} (5 % below {:.2f}, {} places);", kNames.at(kind), quantile(values, 0.5),
                        quantile(values, 0.05), values.size());
-    fmt::print(" CHECK sees {} of {} stretches; {} of {} labels read right, {} as another number\n", read.check_seen,
-               read.check_expected, read.right, read.lit, read.other_number.size());
+    fmt::print(" CHECK sees {} of {} stretches and says {:.2f}; {} of {} labels read right, {} as another number\n",
+               read.check_seen, read.check_expected, quantile(read.check_brighter, 0.5), read.right, read.lit,
+               read.other_number.size());
     std::fflush(stdout);
 }
 

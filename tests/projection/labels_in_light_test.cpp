@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <map>
 #include <set>
 
 #include "projection/place_all_labels.h"
@@ -36,7 +37,9 @@ Plan plan_of_three() {
 /// How bright the picture is in all.
 double light_of(const RgbImage& picture) {
     double sum = 0;
-    for (const Rgb& p : picture.pixels) sum += p[0] + p[1] + p[2];
+    for (const Rgb& p : picture.pixels)
+        for (const std::uint8_t number : p)
+            if (number > 0) sum += test::light_of_number(number);
     return sum;
 }
 
@@ -246,6 +249,46 @@ TEST(LabelsInLight, FortyItemsHaveNamesOrCodesThatOverlapNothingAndNoMoreTextTha
     moment.item_of_moment = 20;
     picture = renderer().render(drawing, RigidTransform::Identity(), RigidTransform::Identity(), moment);
     test::keep_picture(picture, "forty_items_one_of_moment.png");
+}
+
+/// What each item's label says and how high its letters are.
+std::map<int, std::pair<std::string, double>> said(const PlanDrawing& drawing) {
+    std::map<int, std::pair<std::string, double>> said;
+    for (const Label& label : drawing.labels)
+        if (!label.of_moment) said[label.item] = {label.words, label.text_height_mm};
+    return said;
+}
+
+TEST(LabelsInLight, LettersAreLargerWhereThereIsRoomAndThatCostsNoOtherWords) {
+    for (const auto& [holes, diameter_mm] : {std::pair(1, 20.), std::pair(6, 8.), std::pair(40, 4.)}) {
+        Plan plan;
+        for (int i = 0; i < holes; ++i)
+            plan.boreholes.push_back({"Bohrung " + std::to_string(i + 1),
+                                      on_ball(-0.75 + 0.2 * (i % 8), -0.5 + 0.25 * (i / 8)),
+                                      {},
+                                      diameter_mm,
+                                      6,
+                                      {}});
+        DrawingSettings settings;
+        settings.light = LightView{projector(), RigidTransform::Identity()};
+        const auto lit = said(draw_plan(plan, ball(), settings));
+        settings.largest_text_mm = settings.text_height_mm;
+        const auto of_one_height = said(draw_plan(plan, ball(), settings));
+        ASSERT_EQ(lit.size(), of_one_height.size()) << holes;
+        double smallest_mm = 1e9, largest_mm = 0;
+        for (const auto& [item, label] : lit) {
+            EXPECT_EQ(label.first, of_one_height.at(item).first);
+            EXPECT_EQ(of_one_height.at(item).second, 5);
+            smallest_mm = std::min(smallest_mm, label.second), largest_mm = std::max(largest_mm, label.second);
+        }
+        EXPECT_GT(largest_mm, 5) << holes;
+        if (holes == 1) {
+            EXPECT_GE(smallest_mm, 6) << "all the ball is free";
+        }
+        if (holes == 40) {
+            EXPECT_EQ(smallest_mm, 5) << "else this plan is not crowded enough to tell";
+        }
+    }
 }
 
 TEST(LabelsInLight, ANameThatCannotBeDrawnHasItsCodeAndTheFiguresStay) {

@@ -161,6 +161,24 @@ TEST(LightGate, EveryItemThatIsLitMustBeMeasured) {
     EXPECT_EQ(after(gate, now, 10, check).trust, LightTrust::aligned) << "what is not lit need not be measured";
 }
 
+TEST(LightGate, LinesThatLampsOutshineAreWarnedOf) {
+    const auto warned = [](double brighter, bool seen) {
+        LightGate gate;
+        Instant now{};
+        gate.verify(now);
+        LightCheck check = seen_at(0.1);
+        check.brighter = brighter;
+        const auto ruling = after(gate, now, 10, seen ? std::optional(check) : std::nullopt);
+        EXPECT_EQ(ruling.trust, seen ? LightTrust::aligned : LightTrust::look);
+        return std::any_of(ruling.details.begin(), ruling.details.end(),
+                           [](const std::string& detail) { return detail.find("lamps") != std::string::npos; });
+    };
+    EXPECT_TRUE(warned(0.2, true));
+    EXPECT_FALSE(warned(0.5, true));
+    EXPECT_FALSE(warned(0, true)) << "not known";
+    EXPECT_FALSE(warned(0.2, false)) << "not measured";
+}
+
 TEST(LightGate, OneDirectionIsNoPlace) {
     LightGate gate;
     Instant now{};

@@ -116,6 +116,10 @@ CameraModel projector_looking_at(const Vector3d& target_in_rig, const Vector3d& 
     return p;
 }
 
+double light_of_number(std::uint8_t number) {
+    return std::pow(number / 255.0, 2.2);
+}
+
 void keep_picture(const RgbImage& picture, const char* name) {
     const char* folder = std::getenv("PLANLIGHT_PICTURES");
     if (folder == nullptr) return;

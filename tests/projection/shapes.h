@@ -26,6 +26,9 @@ TriangleMesh sheet_mesh(double side_mm, double edge_mm);
 CameraModel projector_looking_at(const Eigen::Vector3d& target_in_rig, const Eigen::Vector3d& from_direction,
                                  double distance_mm, const Eigen::Vector3d& up);
 
+/// The light of a picture's number in a projector of gamma 2.2, 1 = full.
+double light_of_number(std::uint8_t number);
+
 /// Writes a picture for a person to look at, when the environment names a folder in PLANLIGHT_PICTURES.
 void keep_picture(const RgbImage& picture, const char* name);
 
