@@ -55,6 +55,13 @@ std::vector<hb_script_t> scripts_of(const std::u32string& text) {
     return scripts;
 }
 
+/// A point or comma within a number: the smallest sign of all, and where it is not seen 7.5 is read as 75.
+bool parts_a_number(const std::u32string& text, std::size_t at) {
+    const auto digit = [&](std::size_t i) { return i < text.size() && text[i] >= U'0' && text[i] <= U'9'; };
+    return at > 0 && at < text.size() && (text[at] == U'.' || text[at] == U',') && digit(at - 1) && digit(at + 1);
+}
+constexpr double kLargerPoint = 1.6;
+
 /// From left to right as they are read (Unicode annex 9, rule L2).
 void put_in_order(std::vector<Run>& runs) {
     FriBidiLevel highest = 0;
@@ -153,11 +160,14 @@ void Lettering::Parts::shape(const std::u32string& text, const Run& run, TextOut
         if (infos[i].codepoint == 0)  // the font has the letters and yet no shape for them
             out.lacks.push_back(text[std::min<std::size_t>(infos[i].cluster, text.size() - 1)]);
         const Vector2d origin(out.width + scale * places[i].x_offset / 64, scale * places[i].y_offset / 64);
+        const double larger = parts_a_number(text, infos[i].cluster) ? kLargerPoint : 1;
+        const double advance = scale * places[i].x_advance / 64;
+        const Vector2d aside((1 - larger) * advance / 4, 0);  // in the middle of half as much more room
         Sign sign = face.glyph(infos[i].codepoint, capital_units);
         for (auto& outline : sign.outlines)
-            for (Vector2d& p : outline) p = origin + scale * p;
+            for (Vector2d& p : outline) p = origin + aside + larger * scale * p;
         if (!sign.outlines.empty()) out.signs.push_back(std::move(sign));
-        out.width += scale * places[i].x_advance / 64;
+        out.width += advance * (1 + larger) / 2;
     }
     hb_buffer_destroy(buffer);
 }

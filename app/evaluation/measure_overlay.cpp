@@ -19,7 +19,14 @@ struct Light {
     std::vector<Vector3d> points_in_ct, normals_in_ct;
     std::vector<double> weights, incidences_deg;
     bool whole = true;
+    bool all_lit = false;  ///< every point of the stroke
 
+    /// Lit whole, and nowhere more steeply than the drawing promises its shapes.
+    bool as_promised() const {
+        constexpr double kSteepest_deg = 65;
+        return all_lit && std::all_of(incidences_deg.begin(), incidences_deg.end(),
+                                      [](double deg) { return deg <= kSteepest_deg; });
+    }
     bool empty() const { return points_in_ct.empty(); }
     Vector3d mean() const {
         Vector3d sum = Vector3d::Zero();
@@ -41,8 +48,10 @@ Light light_of(const Stroke& stroke, const simulation::SimulatedRig& rig, const 
     render.brightness = 1;
     RgbImage image;
     Light light;
-    light.whole =
-        renderer.render_into(image, alone, picture.rig_from_ct, picture.rig_from_patient, render).partly_lit.empty();
+    const RenderCounts counts =
+        renderer.render_into(image, alone, picture.rig_from_ct, picture.rig_from_patient, render);
+    light.whole = counts.partly_lit.empty();
+    light.all_lit = counts.lit == counts.points;
     const simulation::PanelSettings panel;  // of every simulated room but those that try others
     const Vector3d eye_in_ct =
         rig.true_rig_from_ct(picture.lit_at).inverse() * rig.true_rig().projector.centre_in_rig();
@@ -217,12 +226,15 @@ void measure_right_angles(const std::vector<Vector3d>& arms, std::vector<double>
 }
 
 void measure_ticks(const std::vector<Light>& ticks, const WantedLine& wanted, double every_mm, OverlayErrors& errors) {
-    std::vector<double> arcs;
-    for (const auto& tick : ticks) arcs.push_back(wanted.foot_of(tick.mean(), tick.normals_in_ct.front()).arc_mm);
+    std::vector<std::pair<double, bool>> arcs;  // where along the line, and whether lit as promised
+    for (const auto& tick : ticks)
+        arcs.emplace_back(wanted.foot_of(tick.mean(), tick.normals_in_ct.front()).arc_mm, tick.as_promised());
     std::sort(arcs.begin(), arcs.end());
     for (std::size_t i = 0; i + 1 < arcs.size(); ++i) {
-        const double gap = arcs[i + 1] - arcs[i];
-        if (gap < 1.5 * every_mm && gap > 0.5 * every_mm) errors.tick_mm.push_back(std::abs(gap - every_mm));
+        const double gap = arcs[i + 1].first - arcs[i].first;
+        if (gap >= 1.5 * every_mm || gap <= 0.5 * every_mm) continue;
+        errors.tick_mm.push_back(std::abs(gap - every_mm));
+        if (arcs[i].second && arcs[i + 1].second) errors.promised_tick_mm.push_back(errors.tick_mm.back());
     }
 }
 
@@ -239,6 +251,8 @@ void OverlayErrors::append(const OverlayErrors& more) {
     tick_mm.insert(tick_mm.end(), more.tick_mm.begin(), more.tick_mm.end());
     angle_deg.insert(angle_deg.end(), more.angle_deg.begin(), more.angle_deg.end());
     long_angle_deg.insert(long_angle_deg.end(), more.long_angle_deg.begin(), more.long_angle_deg.end());
+    promised_tick_mm.insert(promised_tick_mm.end(), more.promised_tick_mm.begin(), more.promised_tick_mm.end());
+    promised_angle_deg.insert(promised_angle_deg.end(), more.promised_angle_deg.begin(), more.promised_angle_deg.end());
     places.insert(places.end(), more.places.begin(), more.places.end());
     unseen_strokes += more.unseen_strokes;
 }
@@ -252,6 +266,7 @@ OverlayErrors measure_overlay(const simulation::SimulatedRig& rig, const Plan& p
         const DrawnItem& item = drawing.items[index];
         std::vector<Light> ticks;
         std::vector<Vector3d> arms, long_arms;
+        bool promised = true;  // of the long arms
         int crosses = 0;
         std::optional<WantedLine> line;
         if (const auto osteotomy = named(plan.osteotomy_lines, item.name);
@@ -283,8 +298,11 @@ OverlayErrors measure_overlay(const simulation::SimulatedRig& rig, const Plan& p
                     measure_ring(light, stroke.kind, item.name,
                                  wanted_place(hole->position_in_ct, hole->axis_in_ct, rig), hole->diameter_mm, shapes,
                                  errors);
-                else if (shapes)
-                    (length_mm(stroke) >= kLongCross_mm ? long_arms : arms).push_back(direction_of(light));
+                else if (shapes && length_mm(stroke) >= kLongCross_mm) {
+                    long_arms.push_back(direction_of(light));
+                    promised = promised && light.as_promised();
+                } else if (shapes)
+                    arms.push_back(direction_of(light));
             } else if (stroke.kind == StrokeKind::trajectory && stroke.closed) {
                 const auto trajectory = named(plan.trajectories, item.name);
                 crosses = 0;
@@ -296,12 +314,14 @@ OverlayErrors measure_overlay(const simulation::SimulatedRig& rig, const Plan& p
             } else if (stroke.kind == StrokeKind::trajectory && shapes && crosses < 2) {
                 ++crosses;  // the two bars of its cross come before the shadow of its way
                 long_arms.push_back(direction_of(light));
+                promised = promised && light.as_promised();
             }
         }
         if (line) measure_ticks(ticks, *line, kTickEvery_mm, errors);
         measure_right_angles(arms, errors.angle_deg);
         measure_right_angles(long_arms, errors.angle_deg);
         measure_right_angles(long_arms, errors.long_angle_deg);
+        if (promised) measure_right_angles(long_arms, errors.promised_angle_deg);
     }
     return errors;
 }

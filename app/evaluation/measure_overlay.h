@@ -17,6 +17,9 @@ struct OverlayErrors {
     std::vector<double> tick_mm;           ///< of the 10 mm between neighbouring ticks, along the line
     std::vector<double> angle_deg;         ///< of the right angle of the crosses of holes and ways in
     std::vector<double> long_angle_deg;    ///< of those crosses that are 8 mm and more: long enough to be measured
+    /// Of those: between ticks, and of crosses, that are lit whole and by light that meets the skin at 65 degrees or
+    /// less.
+    std::vector<double> promised_tick_mm, promised_angle_deg;
     /// The same by place, for whoever sorts them by how steeply the light falls.
     struct Place {
         StrokeKind kind = StrokeKind::osteotomy_line;

@@ -72,6 +72,7 @@ struct Measured {
     std::vector<double> target_mm, bound_mm;  ///< of the registration at the points of the plan, and as it was stated
     int unscanned = 0;
     std::vector<double> tick_mm, right_angle_deg, known_tick_mm, known_right_angle_deg;  ///< after, and known
+    std::vector<double> promised_tick_mm, promised_angle_deg, known_promised_tick_mm, known_promised_angle_deg;
 };
 
 /// The mesh of the CT's skin with every vertex on the true skin, on the side that is looked at.
@@ -128,11 +129,14 @@ Measured measure(const Room& of, const Volume& volume, const Case& the_case, con
         for (const auto& warning : item.warnings) measured.unscanned += warning.find("no skin") != std::string::npos;
     const OverlayErrors after = light_on(skin_now, drawn, projector, picture, true);
     measured.after = after.places, measured.tick_mm = after.tick_mm, measured.right_angle_deg = after.long_angle_deg;
+    measured.promised_tick_mm = after.promised_tick_mm, measured.promised_angle_deg = after.promised_angle_deg;
     const SkinSurface true_skin = true_skin_of(rig, skin.mesh(), of.towards);
     const OverlayErrors known = light_on(true_skin, draw_plan(plan, skin, true_skin, drawing), rig.true_rig().projector,
                                          {truth, RigidTransform::Identity(), capture.began}, true);
     measured.known = known.places, measured.known_tick_mm = known.tick_mm;
     measured.known_right_angle_deg = known.long_angle_deg;
+    measured.known_promised_tick_mm = known.promised_tick_mm;
+    measured.known_promised_angle_deg = known.promised_angle_deg;
     return measured;
 }
 
@@ -217,6 +221,7 @@ void measure_rooms(Preset preset, bool still, int rooms, unsigned first_seed, co
     Figures before, after, known;
     std::map<std::string, int> verdicts;
     std::vector<double> target_mm, bound_mm, tick_mm, angle_deg, known_tick_mm, known_angle_deg;
+    std::vector<double> promised_tick_mm, promised_angle_deg, known_promised_tick_mm, known_promised_angle_deg;
     const auto append = [](std::vector<double>& to, const std::vector<double>& more) {
         to.insert(to.end(), more.begin(), more.end());
     };
@@ -229,6 +234,9 @@ void measure_rooms(Preset preset, bool still, int rooms, unsigned first_seed, co
         add_diameters_against(m.known, m.before, before), add_diameters_against(m.known, m.after, after);
         append(tick_mm, m.tick_mm), append(angle_deg, m.right_angle_deg);
         append(known_tick_mm, m.known_tick_mm), append(known_angle_deg, m.known_right_angle_deg);
+        append(promised_tick_mm, m.promised_tick_mm), append(promised_angle_deg, m.promised_angle_deg);
+        append(known_promised_tick_mm, m.known_promised_tick_mm);
+        append(known_promised_angle_deg, m.known_promised_angle_deg);
         for (std::size_t k = 0; k < m.target_mm.size(); ++k) {
             target_mm.push_back(m.target_mm[k]), bound_mm.push_back(m.bound_mm[k]);
             within += m.target_mm[k] <= m.bound_mm[k];
@@ -254,6 +262,10 @@ void measure_rooms(Preset preset, bool still, int rooms, unsigned first_seed, co
         "mm "
         "and more, after {}, known {} degrees\n",
         said(tick_mm), said(known_tick_mm), said(angle_deg), said(known_angle_deg));
+    fmt::print(
+        "  of these lit whole and at 65 degrees or less: between ticks, after {}, known {} mm; right angles, after {}, "
+        "known {} degrees\n",
+        said(promised_tick_mm), said(known_promised_tick_mm), said(promised_angle_deg), said(known_promised_angle_deg));
     const Distribution off = distribution_of(target_mm), stated = distribution_of(bound_mm);
     fmt::print(
         "  registration at the plan's points: median {:.2f}, 95 % {:.2f}, worst {:.2f} mm; stated bound: median "

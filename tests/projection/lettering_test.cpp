@@ -35,6 +35,37 @@ TEST(Lettering, CapitalsAreOneHighAndStandOnTheBaseline) {
     }
 }
 
+/// From left to right, and how high: of one sign.
+struct Extent {
+    double left = 1e9, right = -1e9, low = 1e9, high = -1e9;
+};
+Extent extent(const Sign& sign) {
+    Extent e;
+    for (const auto& outline : sign.outlines)
+        for (const auto& p : outline) {
+            e.left = std::min(e.left, p.x()), e.right = std::max(e.right, p.x());
+            e.low = std::min(e.low, p.y()), e.high = std::max(e.high, p.y());
+        }
+    return e;
+}
+
+// 7.5 must not be read as 75.
+TEST(Lettering, APointWithinANumberIsLargerAndTouchesNoDigit) {
+    const auto point = [](const char* text) { return lettering().outline(text).signs.at(1); };
+    for (const char* number : {"7.5", "1.4", "4.1"}) {
+        const TextOutline text = lettering().outline(number);
+        const Extent before = extent(text.signs.at(0)), at = extent(text.signs.at(1)), after = extent(text.signs.at(2));
+        const Extent usual = extent(point("n.n"));
+        EXPECT_NEAR((at.high - at.low) / (usual.high - usual.low), 1.6, 0.01) << number;
+        EXPECT_GT(at.left - before.right, 0.08) << number;
+        EXPECT_GT(after.left - at.right, 0.08) << number;
+    }
+    EXPECT_NEAR(extent(point("7,5")).right - extent(point("7,5")).left,
+                1.6 * (extent(point("n,n")).right - extent(point("n,n")).left), 0.01);
+    const double end_of_name = extent(point("7.")).high, usual = extent(point("n.n")).high;
+    EXPECT_NEAR(end_of_name, usual, 1e-9) << "a point that ends a name changes no number";
+}
+
 TEST(Lettering, LettersOfManyLanguagesHaveOutlines) {
     for (const char* name : {"Schädelöffnung", "Groß", "Разрез", "Τομή", "额部截骨线", "頭蓋骨", "절골술", "شق", "Łódź",
                              "Đường cắt", "İğne", "חתך"}) {
