@@ -13,8 +13,9 @@ struct DeformableSettings {
     int steps = 3;               ///< each from where the one before led
     double offset_prior_mm = 1;  ///< how far the whole skin may lie outside or inside of the CT's, one sigma
     /// How uneven that may be over the directions the skin faces, one sigma, as a share of it: another threshold moves
-    /// skin by the width of its edge, and a CT is blurred more along its slices than in them.
-    double uneven_share = 0.7;
+    /// skin by the width of its edge, and a CT is blurred more along its slices than in them. More (0.7) leaves the
+    /// pose of a face seen from the front next to free along the line of sight.
+    double uneven_share = 0.2;
     double caution = 3;         ///< on the variance: no skin is quite a Gaussian field of one length
     double pulled_share = 0.8;  ///< of the movement seen: how far skin may be pulled along unseen, one sigma
     double offset_share = 0.3;  ///< the same, of the offset
