@@ -7,8 +7,8 @@ namespace planlight {
 
 /// How far the skin may be moved to its edge.
 struct EdgeSettings {
-    double reach_mm = 3;       ///< an edge further than this from the vertex is another one
-    int profile_rounds = 0;    ///< of means of the profiles over neighbours: takes noise away along the skin, not across
+    double reach_mm = 3;     ///< an edge further than this from the vertex is another one
+    int profile_rounds = 0;  ///< of means of the profiles over neighbours: takes noise away along the skin, not across
     int smoothing_rounds = 8;  ///< of the moves, over neighbours: the noise of a profile is not the skin's
 };
 
@@ -18,8 +18,8 @@ struct EdgeSettings {
 /// times as bright as the other; one threshold for all lies outside the edge there and inside it here. Lids and cut
 /// planes stay. Values that are not finite are never used.
 ///
-/// `values` are `leveled_values`, `threshold` what made the mesh. Returns how many vertices had an edge; the others move
-/// with their neighbours.
+/// `values` are `leveled_values`, `threshold` what made the mesh. Returns how many vertices had an edge; the others
+/// move with their neighbours.
 std::size_t move_to_edges(TriangleMesh& mesh, const Volume& values, double threshold,
                           const EdgeSettings& settings = {});
 

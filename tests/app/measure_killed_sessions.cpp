@@ -21,8 +21,8 @@
 #include <thread>
 
 #include "app/recording/recording_head.h"
-#include "app/recording/replay_session.h"
 #include "app/recording/recording_time_line.h"
+#include "app/recording/replay_session.h"
 #include "app/recording/resume_offer.h"
 #include "app/session_observers.h"
 #include "planning_io/case/case_folder.h"

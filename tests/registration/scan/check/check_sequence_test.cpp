@@ -160,7 +160,7 @@ TEST(CheckSequence, AnExposureThatFollowsThePictureIsNotCalledLate) {
             std::accumulate(frame.pixels.begin(), frame.pixels.end(), 0.0) / static_cast<double>(frame.pixels.size());
         const double gain = std::clamp(20 / std::max(mean, 1.0), 1.0, 2.0);
         for (std::uint8_t& grey : frame.pixels)
-            grey = static_cast<std::uint8_t>(std::min(255.0, std::lround(0.6 * gain * grey) * 1.0));
+            grey = static_cast<std::uint8_t>(std::min(255.0, std::round(0.6 * gain * grey)));
     }
     const SequenceCheck check = check_sequence(frames, head().stripes);
     ASSERT_FALSE(check.problems.empty());
