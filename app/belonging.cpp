@@ -72,6 +72,7 @@ void take_case_and_rig(const Case& the_case, const std::optional<RigState>& rig,
     if (!rig || match.verdict == Verdict::no) return;
     if (rig->verdict == RigState::Verdict::not_trusted) {
         match.verdict = Verdict::no;
+        if (!rig->remedy.empty()) match.reasons.insert(match.reasons.begin(), rig->remedy);
         match.reasons.insert(match.reasons.begin(), "The rig cannot be trusted: " + rig->sentence);
         return;
     }

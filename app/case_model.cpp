@@ -28,6 +28,7 @@ std::vector<PlanRow> rows_of(const Plan& plan, const PlanDrawing& drawing) {
     for (std::size_t i = 0; i < drawing.items.size(); ++i) {
         const DrawnItem& item = drawing.items[i];
         PlanRow row;
+        if (!item.clearances.empty()) row.risk = item.clearances.front();
         row.depth_mm = depth_of(plan, item.kind, of_kind[item.kind]++);
         for (const auto& stroke : drawing.strokes)
             if (stroke.item == static_cast<int>(i) && stroke.kind == item.kind) {

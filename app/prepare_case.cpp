@@ -87,6 +87,16 @@ void judge(const Volume& volume, const SkinSettings& skin, const PreparationWatc
         add_warnings({doubt.finding + ". " + doubt.remedy}, watcher, the_case);
 }
 
+/// Items that come too near to what must not be hurt, and what of that the light has no room for.
+void warn_of_risk(const PlanDrawing& drawing, const PreparationWatcher& watcher, Case& the_case) {
+    for (const DrawnItem& item : drawing.items) {
+        add_warnings(risk_warnings(item.name, item.clearances), watcher, the_case);
+        if (!item.unlit_warning.empty())
+            add_warnings({fmt::format("{}: \"{}\" has no room in the light beside it", item.name, item.unlit_warning)},
+                         watcher, the_case);
+    }
+}
+
 /// Items that have no skin for their name, or for nothing at all.
 void warn_of_labels(const PlanDrawing& drawing, const PreparationWatcher& watcher, Case& the_case) {
     const auto bare =
@@ -111,12 +121,15 @@ void finish(Preparation& done, const Volume& volume, const LutSettings& lut, con
     Case& the_case = done.prepared;
     {
         const SkinSurface surface(the_case.skin);
-        const PlanVerdict of_plan = check_plan(the_case.plan, surface, box_of(volume));
+        PlanCheckSettings checks;
+        if (done.on_given_surface) checks.above_skin_mm = checks.too_far_mm;  // on bone much lies above it
+        const PlanVerdict of_plan = check_plan(the_case.plan, surface, box_of(volume), checks);
         add_warnings(of_plan.warnings, watcher, the_case);
         refuse_misfit(of_plan, done.judgement);
         done.drawing = draw_plan(the_case.plan, surface);
         add_warnings(check_names(the_case.plan, DrawingSettings{}.text_height_mm), watcher, the_case);
     }
+    warn_of_risk(done.drawing, watcher, the_case);
     warn_of_labels(done.drawing, watcher, the_case);
     done.lut_s =
         timed("table", watcher, [&](const auto& share) { the_case.lut = build_skin_lut(the_case.skin, lut, share); });

@@ -15,9 +15,10 @@
 namespace planlight {
 namespace {
 
-/// The drawing without the strokes of other items, for a check of that one alone.
-PlanDrawing only(PlanDrawing drawing, std::size_t item) {
-    std::erase_if(drawing.strokes, [&](const Stroke& stroke) { return stroke.item != static_cast<int>(item); });
+/// What of the drawing is lit while one item is looked at: the labels of all others are dark.
+PlanDrawing lit_with(PlanDrawing drawing, std::size_t item, bool others_lit) {
+    if (!others_lit)
+        std::erase_if(drawing.strokes, [&](const Stroke& stroke) { return stroke.item != static_cast<int>(item); });
     std::erase_if(drawing.labels, [&](const Label& label) { return label.item != static_cast<int>(item); });
     return drawing;
 }
@@ -42,7 +43,7 @@ CaseDrawing::CaseDrawing(const Case& the_case, const CaseDrawing& planned, const
                          const DrawingSettings& how)
     : skin(skin_as_scanned(planned.skin.mesh(), found)),
       settings(how),
-      drawing(draw_plan(the_case.plan, planned.skin, skin, settings)) {
+      drawing(draw_plan(the_case.plan, planned.skin, skin, settings, clearances_in(planned.drawing))) {
     warn_of_unscanned(found, drawing);
 }
 
@@ -217,8 +218,9 @@ void Session::start_overlay() {
     if (confirmed_) overlay_->set_operator_confirmed(true);
     overlay_->set_found_delay(found_delay_);
     const auto looked_at = lit_landmark_ ? lit_landmark_ : item_of_moment_;
-    checker_.emplace(looked_at ? only(lit_drawing(), *looked_at) : lit_drawing(), skin_of_light(), rig_,
-                     settings_.check_light);
+    const bool others_lit = !lit_landmark_ && settings_.overlay.render.others > 0;
+    checker_.emplace(looked_at ? lit_with(lit_drawing(), *looked_at, others_lit) : lit_drawing(), skin_of_light(), rig_,
+                     settings_.check_light, looked_at);
     watch_.emplace(rig_, settings_.light_cause);
     jumps_.emplace(rig_);
     shown_.clear();

@@ -181,10 +181,15 @@ void LightChecker::Parts::look_around(const RigidTransform& rig_from_ct) {
 }
 
 LightChecker::LightChecker(const PlanDrawing& drawing, const SkinSurface& skin, const RigCalibration& rig,
-                           const CheckLightSettings& settings)
+                           const CheckLightSettings& settings, std::optional<std::size_t> only_item)
     : parts_(new Parts{skin, rig, settings, {}, {}, segments_of(drawing, settings), {}, 0, 0, {}}) {
-    parts_->sights.resize(parts_->segments.size());
     parts_->apart = places_of_items(drawing);
+    if (only_item) {
+        std::erase_if(parts_->segments, [&](const StrokeSegment& s) { return s.item != static_cast<int>(*only_item); });
+        for (std::size_t i = 0; i < parts_->apart.size(); ++i)
+            if (i != *only_item) parts_->apart[i].reset();
+    }
+    parts_->sights.resize(parts_->segments.size());
     for (const StrokeSegment& segment : parts_->segments) parts_->apart[static_cast<std::size_t>(segment.item)].reset();
     for (const DrawnItem& item : drawing.items) parts_->items.emplace_back().name = item.name;
 }

@@ -81,11 +81,14 @@ struct LightCheck {
 /// parties share cannot be seen: skin that slid over the bone, markers that moved on the head all together, an error
 /// common to CT and scan.
 ///
+/// With `only_item`, an index into `PlanDrawing::items`, that one alone is asked, though the light of all others is in
+/// the drawing (dim, say): what lies near their strokes is left out as ever.
+///
 /// Keeps references to skin and rig; which segment is seen by whom is kept from frame to frame.
 class LightChecker {
 public:
     LightChecker(const PlanDrawing& drawing, const SkinSurface& skin, const RigCalibration& rig,
-                 const CheckLightSettings& settings = {});
+                 const CheckLightSettings& settings = {}, std::optional<std::size_t> only_item = {});
     ~LightChecker();
     LightChecker(LightChecker&&) noexcept;
 

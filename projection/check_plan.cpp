@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "planning_io/types/error.h"
@@ -68,7 +69,19 @@ public:
         check_own(item);
     }
 
+    void look_at(const RiskStructure& structure) {
+        const auto& points = structure.surface.vertices_in_ct;
+        if (!structure.name.empty()) ++structures_[structure.name];
+        if (points.empty()) return stop(structure.name, "the risk structure has no surface");
+        check_cut_off(structure.name, points);
+        check_side(structure.name, points);
+        check_in_body(structure.name, points);
+    }
+
     PlanVerdict verdict() {
+        for (const auto& [name, count] : structures_)
+            if (count > 1)
+                verdict_.warnings.push_back(fmt::format("{}: {} risk structures have this name", name, count));
         for (const auto& [name, count] : names_)
             if (count > 1) verdict_.warnings.push_back(fmt::format("{}: {} items have this name", name, count));
         if (items_ == 0) verdict_.warnings.push_back("the plan is empty");
@@ -106,6 +119,47 @@ private:
         if (out_mm > settings_.outside_volume_mm)
             stop(name, "its point ({:.0f}, {:.0f}, {:.0f}) lies {:.0f} mm outside the volume", worst.x(), worst.y(),
                  worst.z(), out_mm);
+    }
+
+    /// How far a point lies outside the box of voxel centres, mm; 0 within.
+    double outside_mm(const Vector3d& p) const {
+        const Vector3d v = volume_->ct_from_voxel.inverse() * p,
+                       spacing = volume_->ct_from_voxel.linear().colwise().norm().transpose();
+        double out_mm = 0;
+        for (int axis = 0; axis < 3; ++axis)
+            out_mm =
+                std::max(out_mm, std::max(-v[axis], v[axis] - (volume_->size[static_cast<std::size_t>(axis)] - 1)) *
+                                     spacing[axis]);
+        return out_mm;
+    }
+
+    void check_cut_off(const std::string& name, const std::vector<Vector3d>& points) {
+        if (!volume_) return;
+        const auto out = static_cast<double>(std::count_if(points.begin(), points.end(), [&](const Vector3d& p) {
+            return outside_mm(p) > settings_.outside_volume_mm;
+        }));
+        const double share = out / static_cast<double>(points.size());
+        if (share > settings_.structure_cut)
+            stop(name, "{:.0f} % of the risk structure lies outside the volume", 100 * share);
+        else if (share > 0)
+            verdict_.warnings.push_back(name + ": a part of the risk structure lies outside the volume");
+    }
+
+    /// Of some of its points: each asks the whole skin.
+    void check_in_body(const std::string& name, const std::vector<Vector3d>& points) {
+        constexpr std::size_t kSome = 400;
+        const std::size_t step = 1 + points.size() / kSome;
+        double outside = 0, all = 0, least_mm = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < points.size(); i += step, ++all) {
+            const bool in = in_the_body(skin_, points[i]);
+            least_mm = std::min(least_mm, in ? 0 : to_skin_mm(points[i]));
+            outside += !in && to_skin_mm(points[i]) > 1;
+        }
+        if (least_mm > settings_.above_skin_mm)
+            stop(name, "the risk structure lies wholly outside the body, {:.1f} mm from the skin at least", least_mm);
+        else if (outside > settings_.structure_outside * all)
+            verdict_.warnings.push_back(
+                fmt::format("{}: {:.0f} % of the risk structure lies outside the body", name, 100 * outside / all));
     }
 
     void check_near_skin(const std::string& name, const std::vector<Vector3d>& points) {
@@ -191,7 +245,7 @@ private:
     DrawingSettings drawing_;
     PlanVerdict verdict_;
     int items_ = 0, far_items_ = 0;
-    std::map<std::string, int> names_;
+    std::map<std::string, int> names_, structures_;
     std::vector<Vector3d> points_;
     std::optional<MidPlane> mid_plane_;
     bool looked_for_mid_plane_ = false;
@@ -206,6 +260,7 @@ PlanVerdict check_plan(const Plan& plan, const SkinSurface& skin, const std::opt
     for (const auto& b : plan.boreholes) checker.look_at(b);
     for (const auto& t : plan.trajectories) checker.look_at(t);
     for (const auto& c : plan.cut_planes) checker.look_at(c);
+    for (const auto& structure : plan.risk_structures) checker.look_at(structure);
     return checker.verdict();
 }
 

@@ -21,6 +21,9 @@ struct PlanCheckSettings {
     double side_margin_mm = 5;     ///< nearer to the mid-plane than this, an item may be called left or right
     double max_share_far =
         0.5;  ///< of the items farther than `near_skin_mm` from the skin; from here on the plan is stopped
+    double above_skin_mm = 2;        ///< a risk structure that lies wholly outside, by more than this, is stopped
+    double structure_outside = 0.1;  ///< a larger share of one outside of the body is warned of
+    double structure_cut = 0.05;     ///< a larger share outside of the volume is stopped, a smaller one warned of
     double turned_fit_mm =
         1;  ///< a turned or mirrored copy of the plan with 90 % of its points this near to the skin ...
     double turned_gain = 3;  ///< ... and this many times nearer than half of the plan's own: stopped
@@ -44,9 +47,9 @@ struct PlanVerdict {
     double share_far = 0;               ///< of the items, farther than `near_skin_mm`
 };
 
-/// Judges a plan by its patient's skin: entries near the skin, targets inside, nothing swapped, zero, NaN or outside
-/// the volume, sides as their names say, and no turned or mirrored copy of the plan that fits the skin far better than
-/// the plan does.
+/// Judges a plan by its patient's skin: entries near the skin, targets and risk structures inside, nothing swapped,
+/// zero, NaN or outside the volume, sides as their names say, and no turned or mirrored copy of the plan that fits the
+/// skin far better than the plan does.
 PlanVerdict check_plan(const Plan& plan, const SkinSurface& skin, const std::optional<VolumeBox>& volume = std::nullopt,
                        const PlanCheckSettings& settings = {});
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "projection/check_items.h"
 #include "projection/label_names.h"
@@ -55,8 +56,9 @@ Point on_skin_along(const SkinSurface& skin, const Vector3d& p, const Vector3d& 
 
 class Drawer {
 public:
-    Drawer(const SkinSurface& ct_skin, const SkinSurface& skin_now, const DrawingSettings& settings)
-        : ct_skin_(ct_skin), skin_(skin_now), settings_(settings) {}
+    Drawer(const SkinSurface& ct_skin, const SkinSurface& skin_now, const DrawingSettings& settings,
+           std::vector<Clearances> clearances)
+        : ct_skin_(ct_skin), skin_(skin_now), settings_(settings), clearances_(std::move(clearances)) {}
 
     void draw(const OsteotomyLine& line);
     void draw(const Borehole& hole);
@@ -79,13 +81,16 @@ private:
     void add_ticks(int item_index, Rgb colour, const SkinLine& line);
     void wish(int item_index, std::vector<std::string> figures, std::vector<Point> anchors, double keep_off_mm,
               std::optional<Vector3d> away_from = {});
+    std::optional<RiskText> risk_of(const DrawnItem& named) const;
     void wish_along(int item_index, const std::string& figure, const SkinLine& line);
     double planned_length_mm(const CutPlane& plane, const SkinLine& drawn) const;
 
     const SkinSurface& ct_skin_;  ///< on which was planned
     const SkinSurface& skin_;     ///< as it is now: what is drawn on
     const DrawingSettings& settings_;
-    std::vector<LitName> names_;  ///< in the order of the items
+    std::vector<Clearances> clearances_;  ///< in the order of the items, as all of these
+    std::vector<LitName> names_;
+    std::map<std::string, std::string> structures_;  ///< the plan's name of a risk structure, and the light's
     std::vector<LabelWish> wishes_;
 };
 
@@ -94,7 +99,9 @@ int Drawer::begin(StrokeKind kind, const std::string& name, const Vector3d& anch
     const LitName& lit = names_[drawing.items.size()];
     if (!lit.warning.empty()) warnings.push_back(lit.warning);
     drawing.items.push_back(
-        {kind, name, name, anchor, distance_mm, std::move(warnings), true, lit.name, lit.code, lit.by_code});
+        {kind, name, name, anchor, distance_mm, std::move(warnings), true, lit.name, lit.code, lit.by_code, {}, {}});
+    if (const std::size_t i = drawing.items.size() - 1; i < clearances_.size())
+        drawing.items.back().clearances = clearances_[i];
     return static_cast<int>(drawing.items.size()) - 1;
 }
 
@@ -141,8 +148,29 @@ void Drawer::wish(int item_index, std::vector<std::string> figures, std::vector<
     const bool none = names_[static_cast<std::size_t>(item_index)].none;
     named.labelled = !none;
     if (none || (named.lit_name.empty() && figures.empty())) return;
-    wishes_.push_back(
-        {item_index, {named.lit_name, std::move(figures)}, named.code, std::move(anchors), keep_off_mm, away_from, {}});
+    wishes_.push_back({item_index,
+                       {named.lit_name, std::move(figures), risk_of(named)},
+                       named.code,
+                       std::move(anchors),
+                       keep_off_mm,
+                       away_from,
+                       {}});
+}
+
+/// What the label says of the nearest risk structure: of ways in and holes always, of what is cut where it warns.
+std::optional<RiskText> Drawer::risk_of(const DrawnItem& named) const {
+    if (named.clearances.empty()) return std::nullopt;
+    const Clearance& worst = named.clearances.front();
+    const bool cut = named.kind == StrokeKind::osteotomy_line || named.kind == StrokeKind::cut_plane;
+    if (cut && !warns(worst)) return std::nullopt;
+    RiskText risk{worst.through ? "through" : fmt::format("{:.1f} mm to", said_mm(worst)),
+                  structures_.at(worst.structure),
+                  {},
+                  warns(worst),
+                  worst.mm};
+    if (const auto others = warnings_in(named.clearances); others > 1)
+        risk.more = fmt::format("and {} more", others - 1);
+    return risk;
 }
 
 void Drawer::wish_along(int item_index, const std::string& figure, const SkinLine& line) {
@@ -298,6 +326,8 @@ double Drawer::planned_length_mm(const CutPlane& plane, const SkinLine& drawn) c
 /// What the light calls each item; warned of where it is not the plan's name.
 void Drawer::name_items(const Plan& plan) {
     names_ = lit_names(names_of(plan), settings_.text_height_mm);
+    const auto lit = lit_structures(plan, settings_.text_height_mm);
+    for (std::size_t i = 0; i < lit.size(); ++i) structures_[plan.risk_structures[i].name] = lit[i].name;
 }
 
 }  // namespace
@@ -307,8 +337,8 @@ PlanDrawing draw_plan(const Plan& plan, const SkinSurface& skin, const DrawingSe
 }
 
 PlanDrawing draw_plan(const Plan& plan, const SkinSurface& ct_skin, const SkinSurface& skin_now,
-                      const DrawingSettings& settings) {
-    Drawer drawer(ct_skin, skin_now, settings);
+                      const DrawingSettings& settings, std::optional<std::vector<Clearances>> known) {
+    Drawer drawer(ct_skin, skin_now, settings, known ? std::move(*known) : clearances_of(plan, &ct_skin));
     drawer.name_items(plan);
     for (const auto& line : plan.osteotomy_lines) drawer.draw(line);
     for (const auto& hole : plan.boreholes) drawer.draw(hole);
@@ -316,6 +346,12 @@ PlanDrawing draw_plan(const Plan& plan, const SkinSurface& ct_skin, const SkinSu
     for (const auto& plane : plan.cut_planes) drawer.draw(plane);
     if (settings.labels) drawer.draw_labels();
     return std::move(drawer.drawing);
+}
+
+std::vector<Clearances> clearances_in(const PlanDrawing& drawing) {
+    std::vector<Clearances> all;
+    for (const DrawnItem& item : drawing.items) all.push_back(item.clearances);
+    return all;
 }
 
 }  // namespace planlight

@@ -9,6 +9,7 @@
 #include "planning_io/types/image.h"
 #include "planning_io/types/plan.h"
 #include "planning_io/types/rigid_transform.h"
+#include "projection/clearance.h"
 #include "projection/skin_surface.h"
 
 namespace planlight {
@@ -40,6 +41,7 @@ struct Label {
     int item = -1;              ///< index into PlanDrawing::items
     std::string words;          ///< as it can be read, lines parted by a line feed
     double text_height_mm = 0;  ///< of its capitals, along the skin
+    double gap_mm = 0;          ///< between what is drawn at the item and it
     Rgb colour{235, 235, 235};
     /// Of one sign of the text: closed lines, filled together (a hole runs the other way round); on the skin.
     using Outlines = std::vector<std::vector<Eigen::Vector3d>>;
@@ -55,7 +57,7 @@ struct Label {
 struct DrawnItem {
     StrokeKind kind;
     std::string name;
-    std::string label;                  ///< the text beside it, e.g. "B1  ⌀7  6 mm deep"
+    std::string label;                  ///< the text beside it but for risk structures, e.g. "B1  ⌀7  6 mm deep"
     Eigen::Vector3d anchor_in_ct;       ///< its place on the skin
     double distance_to_skin_mm = 0;     ///< of the plan's point(s) to the skin, largest
     std::vector<std::string> warnings;  ///< in words, with the item's name
@@ -63,6 +65,8 @@ struct DrawnItem {
     std::string lit_name;               ///< the name as the light has it: whole, shortened, or the code
     std::string code;                   ///< "#3" or "#C": for where the name cannot be lit or has no room; may be empty
     bool lit_by_code = false;           ///< the light has the code in place of the name
+    Clearances clearances = {};         ///< to the plan's risk structures; what is worst first
+    std::string unlit_warning = {};     ///< "through Facial nerve", where that has no room in its label
 };
 
 /// The plan in the skin's own metric: what is light on the skin, independent of projector and pose.
@@ -114,8 +118,13 @@ PlanDrawing draw_plan(const Plan& plan, const SkinSurface& skin, const DrawingSe
 /// The same on the skin as it is now (`skin_as_scanned` of `ct_skin`). What is fixed to the bone stays where it was
 /// planned and is drawn where it meets the skin now: holes and trajectories along their axes, cut planes in their
 /// planes. What is planned on the skin is carried with it: points of lines, holes without an axis. Distances and
-/// warnings are those of the CT.
+/// warnings are those of the CT. `known`: what `clearances_of` gives for this plan on the CT's skin, in place of
+/// measuring it again.
 PlanDrawing draw_plan(const Plan& plan, const SkinSurface& ct_skin, const SkinSurface& skin_now,
-                      const DrawingSettings& settings = {});
+                      const DrawingSettings& settings = {},
+                      std::optional<std::vector<Clearances>> known = std::nullopt);
+
+/// Those of a drawing's items, in their order.
+std::vector<Clearances> clearances_in(const PlanDrawing& drawing);
 
 }  // namespace planlight

@@ -84,9 +84,9 @@ std::string ascii(const std::u32string& token) {
 }
 
 /// "A", "C", ... "AA": none that is read as a digit where pixels are coarse (B as 8, D and Q as 0, G as 6, J and L as
-/// 1, S as 5, Z as 2) or that stands for a Roman one alone.
+/// 1, S as 5, T as 7, Z as 2) or that stands for a Roman one alone.
 std::vector<std::u32string> letter_codes() {
-    constexpr std::u32string_view kClear = U"ACEFHKMNPRTUWY";
+    constexpr std::u32string_view kClear = U"ACEFHKMNPRUWY";
     std::vector<std::u32string> codes;
     for (const char32_t a : kClear) codes.emplace_back(1, a);
     for (const char32_t a : kClear)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <map>
+#include <set>
 
 #include "projection/label_codes.h"
 #include "projection/lay_out_label.h"
@@ -88,6 +89,34 @@ std::vector<LitName> lit_names(const std::vector<std::string>& names, double tex
     return lit;
 }
 
+std::vector<LitName> lit_structures(const Plan& plan, double text_height_mm, const Lettering& letters) {
+    std::vector<LitName> lit;
+    std::map<std::string, std::size_t> first;  // of the plan's names: structures of one name are one to a reader
+    std::map<std::string, std::set<std::string>> look;  // names of the plan that look so in the light
+    for (const RiskStructure& structure : plan.risk_structures) {
+        first.try_emplace(structure.name, lit.size());
+        LitName name;
+        if (letters.outline(structure.name).lacks.empty())
+            name.name = shortened(structure.name, text_height_mm, letters);
+        look[seen_of(name.name)].insert(structure.name);
+        lit.push_back(std::move(name));
+    }
+    for (std::size_t i = 0; i < lit.size(); ++i) {
+        if (!lit[i].name.empty() && look[seen_of(lit[i].name)].size() == 1) {
+            lit[i].name = plan.risk_structures[i].name;  // shortened where it is laid out
+            continue;
+        }
+        const std::string instead = fmt::format("structure {}", first[plan.risk_structures[i].name] + 1);
+        lit[i].warning = fmt::format(
+            "{}: {}; the light calls this risk structure \"{}\". Give it another name.", plan.risk_structures[i].name,
+            lit[i].name.empty() ? "no font of this computer has all signs of its name"
+                                : "the name of another structure looks the same when it is shortened",
+            instead);
+        lit[i].name = instead;
+    }
+    return lit;
+}
+
 std::vector<std::string> names_of(const Plan& plan) {
     std::vector<std::string> names;
     for (const auto& line : plan.osteotomy_lines) names.push_back(line.name.empty() ? "Osteotomy" : line.name);
@@ -117,6 +146,8 @@ std::vector<std::string> check_names(const Plan& plan, double text_height_mm) {
             "Western European letters. Install fonts-dejavu-core and fonts-wqy-microhei.");
     if (const auto fault = fault_of_own_font(); !fault.empty()) warnings.push_back(fault);
     for (const LitName& name : lit_names(names_of(plan), text_height_mm))
+        if (!name.warning.empty()) warnings.push_back(name.warning);
+    for (const LitName& name : lit_structures(plan, text_height_mm))
         if (!name.warning.empty()) warnings.push_back(name.warning);
     return warnings;
 }

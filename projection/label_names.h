@@ -23,6 +23,10 @@ struct LitName {
 std::vector<LitName> lit_names(const std::vector<std::string>& names, double text_height_mm,
                                const Lettering& letters = lettering());
 
+/// The names of a plan's risk structures as light: a name that no font has, or that shortened is another's, is
+/// "structure 2" by its place in the plan, and warned of.
+std::vector<LitName> lit_structures(const Plan& plan, double text_height_mm, const Lettering& letters = lettering());
+
 /// The names of all items in the order of `PlanDrawing::items`; a line or plane without one is called by its kind.
 std::vector<std::string> names_of(const Plan& plan);
 

@@ -60,6 +60,17 @@ std::string cut_in_the_middle(const std::string& name, double height_mm, const L
     return signs.empty() ? std::string() : signs.front() + "…";
 }
 
+void add_risk(const RiskText& risk, double height_mm, const Lettering& letters, std::vector<std::string>& lines) {
+    if (const std::string whole = risk.figure + " " + risk.structure; !risk.apart && fits(whole, height_mm, letters)) {
+        lines.push_back(whole);
+    } else {
+        lines.push_back(risk.figure);
+        const auto name = in_two_lines(shortened(risk.structure, height_mm, letters), height_mm, letters);
+        lines.insert(lines.end(), name.begin(), name.end());
+    }
+    if (!risk.more.empty()) lines.push_back(risk.more);
+}
+
 /// Lines below each other, so far apart that the ink of none touches another's; (0,0) in the middle of all.
 TextBlock stacked(const std::vector<std::string>& texts, double height_mm, const Lettering& letters) {
     TextBlock block;
@@ -94,6 +105,7 @@ TextBlock lay_out(const LabelText& text, double text_height_mm, const Lettering&
     if (!text.name.empty())
         lines = in_two_lines(shortened(text.name, text_height_mm, letters), text_height_mm, letters);
     lines.insert(lines.end(), text.figures.begin(), text.figures.end());
+    if (text.risk) add_risk(*text.risk, text_height_mm, letters, lines);
     for (const std::string& line : lines)
         if (!letters.outline(line).lacks.empty()) return {};
     return stacked(lines, text_height_mm, letters);

@@ -52,7 +52,8 @@ std::string LightCause::sentence() const {
             return fmt::format("The markers have moved on the patient: the skin lies {:.1f} mm off where they put it.",
                                size);
         case LightFault::no_picture:
-            return "No light of the plan is seen: the projector shows no picture, or something is before its lens.";
+            return "No light of the plan is seen: the projector shows no picture, something is before its lens, or the "
+                   "room's lamps outshine it.";
         case LightFault::other_picture:
             return "The projector shows something else: another window lies before the plan, or another picture.";
         case LightFault::partly_covered:
@@ -80,7 +81,7 @@ std::string LightCause::remedy() const {
         case LightFault::markers_moved:
             return "Press \"Check skin\", fix the markers, and scan again.";
         case LightFault::no_picture:
-            return "Look whether the projector is on and its lens free.";
+            return "Look whether the projector is on and its lens free, and turn the room's lamps down.";
         case LightFault::other_picture:
             return "Close whatever lies on the projector's monitor.";
         case LightFault::partly_covered:

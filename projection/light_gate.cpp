@@ -15,6 +15,7 @@ void LightGate::verify(Instant at) {
 void LightGate::forget() {
     good_ = bad_ = 0;
     brighter_ = 0;
+    faint_ = false;
     last_.reset();
     items_.clear();
     told_whole_at_ = Instant::min();
@@ -51,8 +52,11 @@ void LightGate::take(Instant at, const LightCheck& check) {
     measured_at_ = at;
     if (check.told_whole) told_whole_at_ = at;
     constexpr double kSlow = 0.1;
-    if (check.seen >= settings_.least_seen)
+    if (check.seen >= settings_.least_seen) {
         brighter_ = brighter_ > 0 ? (1 - kSlow) * brighter_ + kSlow * check.brighter : check.brighter;
+        constexpr double kBack = 1.2;  // what is warned of once is so until it is clearly no more
+        faint_ = brighter_ > 0 && brighter_ < settings_.least_brighter * (faint_ ? kBack : 1);
+    }
     items_.resize(check.items.size());
     for (std::size_t i = 0; i < items_.size(); ++i) {
         const ItemLight& item = check.items[i];
@@ -81,9 +85,9 @@ LightGate::Ruling LightGate::step(Instant at, bool lit, const std::optional<Ligh
     if (!lit && !stopped_) ruling = {};
     if (lit && !stopped_ && faint(at))
         ruling.details.push_back(fmt::format(
-            "The lines are only about {:.0f} % brighter than the skin beside them: turn the room's lamps down, or away "
+            "The lines are less than {:.0f} % brighter than the skin beside them: turn the room's lamps down, or away "
             "from the patient.",
-            std::max(10.0, std::round(10 * brighter_) * 10)));
+            10 * std::floor(10 * brighter_ + 1)));
     for (const LightCause& cause : causes) {
         ruling.details.push_back(cause.sentence());
         ruling.details.push_back(cause.remedy());
@@ -93,7 +97,7 @@ LightGate::Ruling LightGate::step(Instant at, bool lit, const std::optional<Ligh
 
 /// What lamps outshine a camera may still measure; an eye takes it for nothing.
 bool LightGate::faint(Instant at) const {
-    return last_ && within_fresh(measured_at_, at) && brighter_ > 0 && brighter_ < settings_.least_brighter;
+    return last_ && within_fresh(measured_at_, at) && faint_;
 }
 
 /// The light as measured, from the gravest down; false when nothing is wrong with it.
@@ -111,7 +115,9 @@ bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
     ruling.found_wrong = true;
     if (last_->seen < settings_.least_seen || last_->seen_share() < settings_.least_seen_share) {
         ruling.headline = "LOOK: the cameras do not see the light.";
-        ruling.details = {fmt::format("They see {} of {} stretches.", last_->seen, last_->expected)};
+        ruling.details = {
+            fmt::format("They see {} of {} stretches: something is before them, or the room's lamps outshine them.",
+                        last_->seen, last_->expected)};
         return true;
     }
     if (last_->off_mm > settings_.warn_mm) {

@@ -86,6 +86,7 @@ private:
     bool verified_ = false, stopped_ = false, lit_ = false;
     int good_ = 0, bad_ = 0;
     double brighter_ = 0;     ///< the lines than the skin beside them, mean of the last checks; 0: not known
+    bool faint_ = false;      ///< by that
     double skin_off_mm_ = 0;  ///< by the last check of the skin; 0: none
     std::optional<LightCheck> last_;
     std::vector<Item> items_;

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <map>
 
 namespace planlight {
@@ -11,15 +10,31 @@ namespace {
 using Eigen::Vector3d;
 using Point = SkinSurface::Point;
 
-/// What a label says: all, the name alone, or the item's code where there is no room for its name.
-enum class Form { whole, name, code };
-constexpr std::array kShorter{Form::name, Form::code};
+/// What a label says: all; all but the distance to a risk structure, or, where that is a warning, the warning without
+/// the other figures; the name alone; or the item's code where there is no room for its name.
+enum class Form { whole, spare, brief, name, code };
+
+bool warns(const LabelWish& wish) {
+    return wish.text.risk && wish.text.risk->warns;
+}
 
 LabelWish in_form(LabelWish wish, Form form) {
-    if (form == Form::whole || wish.text.name.empty()) return wish;
-    wish.text.figures.clear();
-    if (form == Form::code && !wish.code.empty()) wish.text.name = wish.code;
+    if (form == Form::whole) return wish;
+    const bool warning = (form == Form::spare || form == Form::brief) && warns(wish);
+    if (!warning) wish.text.risk.reset();
+    if (form == Form::brief && warning)
+        wish.text.risk->structure = "risk", wish.text.risk->more.clear(), wish.text.risk->apart = true;
+    if (wish.text.name.empty() ? warning : warning || form == Form::name || form == Form::code)
+        wish.text.figures.clear();
+    if (form == Form::code && !wish.text.name.empty() && !wish.code.empty()) wish.text.name = wish.code;
     return wish;
+}
+
+/// What is tried in turn.
+std::vector<Form> forms_of(const LabelWish& wish) {
+    if (warns(wish)) return {Form::whole, Form::spare, Form::brief, Form::name, Form::code};
+    if (wish.text.risk) return {Form::whole, Form::spare, Form::name, Form::code};
+    return {Form::whole, Form::name, Form::code};
 }
 
 LabelWish in_height(LabelWish wish, double height_mm) {
@@ -56,9 +71,12 @@ public:
         occupy_plan();
         face_the_light();
         tell_of_others();
-        // Points can be labelled in fewer places than lines: they choose first.
-        std::stable_sort(wishes_.begin(), wishes_.end(),
-                         [](const auto& a, const auto& b) { return a.anchors.size() < b.anchors.size(); });
+        // What warns chooses first, the worst before all; points can be labelled in fewer places than lines, and choose
+        // before them.
+        std::stable_sort(wishes_.begin(), wishes_.end(), [](const auto& a, const auto& b) {
+            if (warns(a) || warns(b)) return warns(a) && (!warns(b) || a.text.risk->mm < b.text.risk->mm);
+            return a.anchors.size() < b.anchors.size();
+        });
     }
     void place();
 
@@ -72,11 +90,13 @@ private:
     void occupy_plan();
     void face_the_light();
     void tell_of_others();
+    static constexpr int kAllTold = 12;  // of one label
     bool put(const LabelWish& wish);
     void put_whole_first();
     int told() const;
     void put_codes_first();
     double lines_mm2() const;
+    static double counted_mm2(const Put& put);
     void keep_to_share();
     std::vector<double> larger_heights_mm() const;
     /// In larger letters a line may be too long: then it would be shortened, or parted.
@@ -142,33 +162,58 @@ void AllLabels::put_whole_first() {
     occupied_ = plan_;
     put_.clear();
     for (const LabelWish& wish : wishes_)
-        for (const Form form : {Form::whole, Form::name, Form::code})
+        for (const Form form : forms_of(wish))
             if (put(in_form(wish, form))) break;
 }
 
-/// How much the labels tell: an item without any costs most.
+/// How much the labels tell: a warning that is not there costs more than the others' names.
 int AllLabels::told() const {
     int told = 0;
     for (const LabelWish& wish : wishes_) {
-        const auto label = put_.find(wish.item);
-        if (label == put_.end()) continue;
-        const bool code = wish.text.name != wish.code && label->second.label.by_code;
-        told += code ? 4 : label->second.label.words.size() > wish.text.name.size() + 2 ? 6 : 5;
+        const auto now = put_.find(wish.item);
+        if (now == put_.end()) continue;
+        const LabelText& text = now->second.wish.text;
+        const bool code = wish.text.name != wish.code && now->second.label.by_code,
+                   name = now->second.label.words.size() <= wish.text.name.size() + 2,
+                   spare = wish.text.risk && (!text.risk || text.figures.size() < wish.text.figures.size());
+        told += code ? 8 : name ? 10 : spare ? 11 : kAllTold;
+        if (warns(wish) && !text.risk) told -= 2 * kAllTold;
     }
     return told;
 }
 
-/// A crowded plan: a code for as many as can have one, then names, then figures where room is left.
+/// A crowded plan: warnings, and a code for as many as can have one; then names and figures where room is
+/// left.
 void AllLabels::put_codes_first() {
     occupied_ = plan_;
     put_.clear();
-    for (const LabelWish& wish : wishes_) put(in_form(wish, Form::code));
-    for (const Form form : {Form::name, Form::whole})
-        for (const LabelWish& wish : wishes_) {
-            LabelWish longer = in_form(wish, form);
-            longer.but_of = wish.item;  // its own shorter one makes room
-            put(longer);
-        }
+    const auto lengthen = [&](const LabelWish& wish, Form form) {
+        LabelWish longer = in_form(wish, form);
+        longer.but_of = wish.item;  // its own shorter one makes room
+        put(longer);
+    };
+    for (const LabelWish& wish : wishes_)
+        if (!warns(wish) || !(put(in_form(wish, Form::spare)) || put(in_form(wish, Form::brief))))
+            put(in_form(wish, Form::code));
+    for (const LabelWish& wish : wishes_)
+        if (const auto now = put_.find(wish.item); now == put_.end() || !now->second.wish.text.risk)
+            lengthen(wish, Form::name);
+    for (const LabelWish& wish : wishes_)
+        if (wish.text.risk && !warns(wish)) lengthen(wish, Form::spare);
+    for (const LabelWish& wish : wishes_) lengthen(wish, Form::whole);
+}
+
+/// What a label's text counts for its share of the light: what it says of risk structures does not.
+double AllLabels::counted_mm2(const Put& put) {
+    const double all_mm2 = area_mm2(put.label);
+    if (!put.wish.text.risk) return all_mm2;
+    const RiskText& risk = *put.wish.text.risk;
+    const auto signs = [](const std::string& text) {
+        return static_cast<double>(std::count_if(text.begin(), text.end(),
+                                                 [](char c) { return c != ' ' && c != '\n' && (c & 0xC0) != 0x80; }));
+    };
+    const double of_risk = signs(risk.figure) + signs(risk.structure) + signs(risk.more), all = signs(put.label.words);
+    return all > of_risk ? all_mm2 * (1 - of_risk / all) : 0;
 }
 
 double AllLabels::lines_mm2() const {
@@ -177,25 +222,26 @@ double AllLabels::lines_mm2() const {
     return area;
 }
 
-/// Shorter labels until no more of the light is text than may be; the last of the plan first.
+/// Shorter labels until no more of the light is text than may be; the last of the plan first. A warning stays.
 void AllLabels::keep_to_share() {
     const double lines = lines_mm2();
     double text_mm2 = 0;
-    for (const auto& [item, put] : put_) text_mm2 += area_mm2(put.label);
+    for (const auto& [item, put] : put_) text_mm2 += counted_mm2(put);
     const auto too_much = [&] { return text_mm2 > settings_.most_text * (text_mm2 + lines); };
-    for (const Form form : kShorter)
+    for (const Form form : {Form::name, Form::code})
         for (auto wish = wishes_.rbegin(); wish != wishes_.rend() && too_much(); ++wish) {
             const auto label = put_.find(wish->item);
-            LabelWish shorter = in_form(*wish, form);
+            LabelWish shorter = in_form(*wish, warns(*wish) ? Form::spare : form);
             if (label == put_.end() || wish->text.name.empty()) continue;
-            const double before_mm2 = area_mm2(label->second.label);
+            if (warns(*wish) && label->second.wish.text.figures.empty()) continue;  // it says no more than that now
+            const double before_mm2 = counted_mm2(label->second);
             shorter.but_of = wish->item;
-            if (put(shorter)) text_mm2 += area_mm2(put_.at(wish->item).label) - before_mm2;
+            if (put(shorter)) text_mm2 += counted_mm2(put_.at(wish->item)) - before_mm2;
         }
     for (auto wish = wishes_.rbegin(); wish != wishes_.rend() && too_much(); ++wish) {
         const auto label = put_.find(wish->item);
-        if (label == put_.end()) continue;
-        text_mm2 -= area_mm2(label->second.label);
+        if (label == put_.end() || warns(*wish)) continue;
+        text_mm2 -= counted_mm2(label->second);
         put_.erase(label);
     }
 }
@@ -208,22 +254,22 @@ std::vector<double> AllLabels::larger_heights_mm() const {
 }
 
 /// The same words in larger letters where there is room beside all else: a step for every label before the next step.
-/// What stands at its item without a leader stays there.
+/// None goes farther from its item for it.
 void AllLabels::enlarge() {
     const double lines = lines_mm2();
     double text_mm2 = 0;
-    for (const auto& [item, put] : put_) text_mm2 += area_mm2(put.label);
+    for (const auto& [item, put] : put_) text_mm2 += counted_mm2(put);
     for (const double height_mm : larger_heights_mm())
         for (const LabelWish& wish : wishes_) {
             const auto now = put_.find(wish.item);
             if (now == put_.end() || !says_the_same(now->second.wish, height_mm)) continue;
             LabelWish larger = in_height(now->second.wish, height_mm);
             larger.but_of = wish.item;
-            if (now->second.label.leader.points_in_ct.empty()) larger.gaps_mm = {0};
-            const double before_mm2 = area_mm2(now->second.label), by = height_mm / now->second.label.text_height_mm;
+            std::erase_if(larger.gaps_mm, [&](double gap_mm) { return gap_mm > now->second.label.gap_mm; });
+            const double before_mm2 = counted_mm2(now->second), by = height_mm / now->second.label.text_height_mm;
             const double after_mm2 = text_mm2 + (by * by - 1) * before_mm2;
             if (after_mm2 > settings_.most_text * (after_mm2 + lines)) continue;
-            if (put(larger)) text_mm2 += area_mm2(put_.at(wish.item).label) - before_mm2;
+            if (put(larger)) text_mm2 += counted_mm2(put_.at(wish.item)) - before_mm2;
         }
 }
 
@@ -243,7 +289,9 @@ void AllLabels::put_of_moment() {
         near.gaps_mm = {0};
         auto label = place_large(near, plan_);
         if (!label) label = place_label(wish, skin_, settings_, plan_);
-        if (!label) label = place_label(in_form(wish, Form::name), skin_, settings_, plan_);
+        for (const Form form : {Form::spare, Form::brief, Form::name})
+            if (!label && (form != Form::brief || warns(wish)))
+                label = place_label(in_form(wish, form), skin_, settings_, plan_);
         if (!label) continue;
         label->of_moment = true;
         label->by_code = !wish.code.empty() && wish.text.name == wish.code;
@@ -290,9 +338,8 @@ void AllLabels::put_card() {
 }
 
 void AllLabels::place() {
-    constexpr int kAll = 6;
     put_whole_first();
-    if (const int first = told(); first < kAll * static_cast<int>(wishes_.size())) {
+    if (const int first = told(); first < kAllTold * static_cast<int>(wishes_.size())) {
         const auto whole_first = put_;
         put_codes_first();
         if (told() <= first) put_ = whole_first;
@@ -308,6 +355,8 @@ void AllLabels::place() {
         const auto put = put_.find(wish.item);
         DrawnItem& item = drawing_.items[static_cast<std::size_t>(wish.item)];
         item.labelled = put != put_.end();
+        if (warns(wish) && (put == put_.end() || !put->second.wish.text.risk))
+            item.unlit_warning = wish.text.risk->figure + " " + wish.text.risk->structure;
         if (put == put_.end()) continue;
         if (put->second.label.by_code) item.lit_by_code = true, item.lit_name = item.code;
         drawing_.labels.push_back(put->second.label);

@@ -23,7 +23,7 @@ constexpr double kOffItem_mm = 0.8;          // between what is drawn at the anc
 
 struct Candidate {
     TextFrame frame;
-    double cost = 1e300;
+    double cost = 1e300, gap_mm = 0;
     std::vector<Point> leader;
 };
 
@@ -145,7 +145,7 @@ void Search::try_round(std::size_t anchor, double gap_mm) {
             if (!found) continue;
             way = std::move(*found);
         }
-        best_ = Candidate{frame, cost, std::move(way)};
+        best_ = Candidate{frame, cost, gap_mm, std::move(way)};
     }
 }
 
@@ -234,6 +234,7 @@ std::optional<Label> place_label(const LabelWish& wish, const SkinSurface& skin,
     if (!found) return std::nullopt;
     auto label = draw_label(skin, found->frame, block, wish.item, height_mm);
     if (!label) return std::nullopt;
+    label->gap_mm = found->gap_mm;
     constexpr std::size_t kLongEnoughToBeSeen = 5;  // points, half a millimetre apart
     if (found->leader.size() >= kLongEnoughToBeSeen)
         for (const Point& p : found->leader) {

@@ -1,9 +1,5 @@
 #include "projection/skin_surface.h"
 
-#include <CGAL/AABB_traits.h>
-#include <CGAL/AABB_tree.h>
-#include <CGAL/AABB_triangle_primitive.h>
-#include <CGAL/Simple_cartesian.h>
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
@@ -12,22 +8,15 @@
 
 #include "planning_io/types/error.h"
 #include "projection/surface_walk.h"
+#include "projection/triangle_tree.h"
 
 namespace planlight {
 namespace {
 
 using Eigen::Vector3d;
-using Kernel = CGAL::Simple_cartesian<double>;
-using Triangles = std::vector<Kernel::Triangle_3>;
-using Primitive = CGAL::AABB_triangle_primitive<Kernel, Triangles::const_iterator>;
-using Tree = CGAL::AABB_tree<CGAL::AABB_traits<Kernel, Primitive>>;
+using triangle_tree::Kernel, triangle_tree::Tree, triangle_tree::Triangles;
+using triangle_tree::to_cgal, triangle_tree::to_eigen;
 
-Kernel::Point_3 to_cgal(const Vector3d& p) {
-    return {p.x(), p.y(), p.z()};
-}
-Vector3d to_eigen(const Kernel::Point_3& p) {
-    return {p.x(), p.y(), p.z()};
-}
 Kernel::Ray_3 to_cgal(const Ray& ray) {
     return {to_cgal(ray.origin), Kernel::Vector_3(ray.direction.x(), ray.direction.y(), ray.direction.z())};
 }

@@ -35,6 +35,19 @@ void series_option(CLI::App* command, std::string& series_uid) {
     command->add_option("--series", series_uid, "UID or number of the DICOM series, where the folder holds several");
 }
 
+void risk_options(CLI::App* command, std::vector<Path>& files, std::string& frame) {
+    command
+        ->add_option(
+            "--risk", files,
+            "Risk structure to measure the distance to: a closed surface (.stl, .ply, .obj, .vtp, .vtk) or the "
+            "solids of an RTSTRUCT (.dcm); once for each file")
+        ->allow_extra_args(false);
+    command
+        ->add_option("--risk-frame", frame,
+                     "Coordinate system of risk structures that do not say their own (default: that of --frame)")
+        ->check(CLI::IsMember({"LPS", "RAS"}));
+}
+
 void plan_frame_options(CLI::App* command, std::string& frame, std::string& accept_frame) {
     command->add_option("--frame", frame, "Coordinate system of plan files that do not say their own")
         ->check(CLI::IsMember({"LPS", "RAS"}));

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 // What the commands' options share. Heavy (CLI11): for the commands' .cpp files only.
 namespace planlight {
@@ -24,6 +25,9 @@ CLI::Option* preset_option(CLI::App* command, std::string& preset);
 
 /// --series, of a folder that holds several.
 void series_option(CLI::App* command, std::string& series_uid);
+
+/// --risk, once for each file of risk structures, and --risk-frame.
+void risk_options(CLI::App* command, std::vector<Path>& files, std::string& frame);
 
 /// --frame and --accept-frame, of plan files that do not say their coordinate system.
 void plan_frame_options(CLI::App* command, std::string& frame, std::string& accept_frame);

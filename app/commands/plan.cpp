@@ -8,6 +8,7 @@
 #include "app/commands/plan_options.h"
 #include "app/console.h"
 #include "app/prepare_case.h"
+#include "app/report/clearance_json.h"
 #include "app/site_settings.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/plan/plan_file.h"
@@ -16,15 +17,16 @@
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
 #include "projection/check_plan.h"
+#include "projection/label_names.h"
 #include "projection/mid_plane.h"
 
 namespace planlight {
 namespace {
 
 struct PlanOptions {
-    std::vector<Path> files;
+    std::vector<Path> files, risk;
     Path case_folder, volume, out;
-    std::string series_uid, frame, accept_frame;
+    std::string series_uid, frame, accept_frame, risk_frame;
     bool json = false;
 };
 
@@ -33,6 +35,7 @@ struct Patient {
     std::string code, volume_hash, frame_of_reference_uid;
     std::optional<SkinSurface> skin;
     std::optional<VolumeBox> box;
+    std::vector<RiskStructure> risk_structures;  ///< of the case
     bool known = false;
 };
 
@@ -45,6 +48,7 @@ Patient read_patient(const PlanOptions& options) {
         patient.volume_hash = prepared.volume_hash;
         patient.frame_of_reference_uid = prepared.frame_of_reference_uid;
         patient.skin.emplace(std::move(prepared.skin));
+        patient.risk_structures = std::move(prepared.plan.risk_structures);
     }
     if (!options.volume.empty()) {
         const Volume volume = read_volume(options.volume, options.series_uid);
@@ -81,8 +85,11 @@ public:
         : site(std::move(units)), skin_(patient.skin ? &*patient.skin : nullptr) {
         if (skin_) mid_plane_ = find_mid_plane(*skin_);
     }
-    void add(const char* kind, const std::string& name, const std::string& what, const Eigen::Vector3d& at) {
+    /// `clearances`: to the plan's risk structures, of the item.
+    void add(const char* kind, const std::string& name, const std::string& what, const Eigen::Vector3d& at,
+             const Clearances& clearances) {
         nlohmann::json item{{"kind", kind}, {"name", name}, {"what", what}, {"at_in_ct", {at.x(), at.y(), at.z()}}};
+        item["risk"] = clearances_json(clearances);
         std::string where;
         if (skin_) {
             const double far = (skin_->nearest(at).p_in_ct - at).norm();
@@ -95,6 +102,7 @@ public:
             where +=
                 fmt::format(", {} {} of the middle", length_text(std::abs(left), site), left > 0 ? "left" : "right");
         }
+        if (!clearances.empty()) where += ", " + clearance_in_words(clearances.front());
         items.push_back(std::move(item));
         lines += fmt::format("  {:<14} {:<24} {}{}\n", kind, name, what, where);
     }
@@ -107,7 +115,9 @@ private:
     std::optional<MidPlane> mid_plane_;
 };
 
-void list_plan(Listing& list, const Plan& plan) {
+/// `clearances`: of all items, in the order in which they are listed.
+void list_plan(Listing& list, const Plan& plan, const std::vector<Clearances>& clearances) {
+    std::size_t n = 0;
     for (const auto& o : plan.osteotomy_lines) {
         double way = 0;
         for (std::size_t i = 1; i < o.points_in_ct.size(); ++i)
@@ -116,21 +126,43 @@ void list_plan(Listing& list, const Plan& plan) {
         list.add("osteotomy line", o.name,
                  fmt::format("{}, {} points, {} from point to point", o.closed ? "closed" : "open",
                              o.points_in_ct.size(), length_text(way, list.site)),
-                 o.points_in_ct.front());
+                 o.points_in_ct.front(), clearances[n++]);
     }
     for (const auto& b : plan.boreholes)
         list.add("borehole", b.name,
                  fmt::format("diameter {}, depth {}", length_text(b.diameter_mm, list.site),
                              length_text(b.depth_mm, list.site)),
-                 b.position_in_ct);
+                 b.position_in_ct, clearances[n++]);
     for (const auto& t : plan.trajectories)
         list.add("trajectory", t.name,
                  fmt::format("{}{}", length_text(t.length_mm(), list.site),
                              t.diameter_mm > 0 ? ", diameter " + length_text(t.diameter_mm, list.site) : ""),
-                 t.entry_in_ct);
+                 t.entry_in_ct, clearances[n++]);
     for (const auto& c : plan.cut_planes)
         list.add("cut plane", c.name, length_text(c.width_mm, list.site) + " x " + length_text(c.height_mm, list.site),
-                 c.origin_in_ct);
+                 c.origin_in_ct, clearances[n++]);
+}
+
+/// Tells of all that comes too near, and what cannot be measured or written.
+std::vector<Clearances> measure_risk(const Plan& plan, const Patient& patient, const PlanOptions& options,
+                                     std::vector<std::string>& warnings) {
+    const auto tell = [&](const std::string& sentence) {
+        warn(sentence);
+        warnings.push_back(sentence);
+    };
+    std::vector<Clearances> clearances = clearances_of(plan, patient.skin ? &*patient.skin : nullptr);
+    const std::vector<std::string> names = names_of(plan);
+    for (std::size_t i = 0; i < clearances.size(); ++i)
+        for (const auto& sentence : risk_warnings(names[i], clearances[i])) tell(sentence);
+    if (plan.risk_structures.empty()) return clearances;
+    if (!patient.skin)
+        for (const auto& hole : plan.boreholes)
+            if (!hole.axis_in_ct)
+                tell(hole.name +
+                     ": it has no axis, so that without --case its way to the risk structures is not known");
+    if (!options.out.empty())
+        tell("the risk structures are not written: give them to `planlight prepare --risk` beside the plan");
+    return clearances;
 }
 
 void write(const PlanImport& read, const Patient& patient, const PlanOptions& options) {
@@ -155,6 +187,8 @@ int run_plan(const PlanOptions& options) {
                                         patient.known ? std::optional(patient.frame_of_reference_uid) : std::nullopt);
     PlanImport read;
     for (const auto& file : options.files) append(read, import_plan(file, settings));
+    add_risk_structures(read, options.risk, options.risk_frame, settings);
+    if (options.risk.empty()) read.plan.risk_structures = patient.risk_structures;
     for (const auto& note : read.notes) warn(note);
     PlanVerdict verdict;
     if (patient.skin) {
@@ -164,11 +198,13 @@ int run_plan(const PlanOptions& options) {
     } else if (patient.box) {
         check_in_box(read.plan, *patient.box);
     }
+    const std::vector<Clearances> clearances = measure_risk(read.plan, patient, options, verdict.warnings);
     if (!options.out.empty()) write(read, patient, options);
     Listing list(patient, options.json ? SiteSettings{} : read_site_settings());
-    list_plan(list, read.plan);
+    list_plan(list, read.plan, clearances);
     if (options.json) {
         nlohmann::json result{{"items", list.items},
+                              {"risk_structures", risk_structures_json(read.plan)},
                               {"notes", read.notes},
                               {"warnings", verdict.warnings},
                               {"frame_of_reference_uid", read.frame_of_reference_uid},
@@ -196,6 +232,7 @@ Run add_plan(CLI::App& app) {
                     "3D Slicer markups (.mrk.json, .fcsv), RTSTRUCT (.dcm), trajectories (.csv, .tsv), lines (.vtp, "
                     ".vtk, .ply, .obj)")
         ->required();
+    risk_options(sub, o.risk, o.risk_frame);
     sub->add_option("--case", o.case_folder, "Check against this case's skin");
     sub->add_option("--volume", o.volume, "Check against this volume's box and frame of reference");
     series_option(sub, o.series_uid);

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "planning_io/plan/plan_import.h"
+#include "planning_io/surface/risk_structure_file.h"
 
 namespace planlight {
 
@@ -15,6 +18,17 @@ inline PlanImportSettings plan_settings(const std::string& frame, const std::str
     if (!frame.empty()) settings.space = space_named(frame);
     settings.frame_of_reference_uid = accepted_uid.empty() ? uid_of_ct : std::optional(accepted_uid);
     return settings;
+}
+
+/// Risk structures into the plan: their frame is `risk_frame`, or that of the plan's `said` where it is empty.
+inline void add_risk_structures(PlanImport& plan, const std::vector<std::filesystem::path>& files,
+                                const std::string& risk_frame, PlanImportSettings said) {
+    RiskLimits limits;
+    if (!risk_frame.empty())
+        said.space = space_named(risk_frame);
+    else if (said.space)
+        limits.space_option = "--frame";
+    append_risk_structures(plan, files, said, limits);
 }
 
 }  // namespace planlight

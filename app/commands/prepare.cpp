@@ -23,8 +23,10 @@ namespace {
 
 struct PrepareOptions {
     Path volume, plan, out;
+    std::vector<Path> risk;  ///< files of risk structures
     std::string series_uid;
     std::string frame, accept_frame;  ///< of a plan that does not say its coordinate system; a DICOM frame of reference
+    std::string risk_frame;           ///< of risk structures that do not say theirs
     Path surface;                     ///< to project on, instead of the skin
     std::string surface_frame, segment;
     double threshold = 0;  ///< HU; 0 = found from the histogram
@@ -48,7 +50,9 @@ Inputs read_inputs(const PrepareOptions& options) {
     in.volume =
         read_volume(options.volume, options.series_uid, options.resample ? SliceGaps::resampled : SliceGaps::refused);
     const std::string& frame_uid = in.volume.frame_of_reference_uid;
-    in.plan = import_plan(options.plan, plan_settings(options.frame, options.accept_frame, frame_uid));
+    const PlanImportSettings said = plan_settings(options.frame, options.accept_frame, frame_uid);
+    in.plan = import_plan(options.plan, said);
+    add_risk_structures(in.plan, options.risk, options.risk_frame, said);
     if (!options.surface.empty()) {
         in.surface = read_surface(
             options.surface, {plan_settings(options.surface_frame, options.accept_frame, frame_uid), options.segment});
@@ -151,6 +155,7 @@ Run add_prepare(CLI::App& app) {
         ->required();
     sub->add_option("--plan", o.plan, "Plan file, or a folder of them: .mrk.json, .fcsv, RTSTRUCT, tables, lines")
         ->required();
+    risk_options(sub, o.risk, o.risk_frame);
     plan_frame_options(sub, o.frame, o.accept_frame);
     sub->add_option("--surface", o.surface,
                     "Surface to project on instead of the skin: bone, or any other (.stl, .ply, .obj, .vtp, .vtk, "

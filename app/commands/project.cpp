@@ -9,6 +9,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/surgeon_option.h"
 #include "app/console.h"
+#include "app/report/clearance_json.h"
 #include "app/session.h"
 #include "app/site_settings.h"
 #include "planning_io/case/poses_file.h"
@@ -113,8 +114,12 @@ int run_project(const ProjectOptions& options) {
                          {"code", item.code},
                          {"lit_by_code", item.lit_by_code},
                          {"distance_to_skin_mm", item.distance_to_skin_mm},
+                         {"risk", clearances_json(item.clearances)},
                          {"warnings", item.warnings}});
         for (const auto& warning : item.warnings) warn(warning);
+        for (const auto& warning : risk_warnings(item.name, item.clearances)) warn(warning);
+        if (!item.unlit_warning.empty())
+            warn(fmt::format("{}: \"{}\" has no room in the light beside it", item.name, item.unlit_warning));
     }
     if (!registration.skin.known())
         warn(

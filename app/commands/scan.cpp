@@ -171,9 +171,9 @@ int run_scan(const ScanOptions& options) {
     const ScanCapture& capture = captures.front();
     const ScanResult scan = scan_from_exposures(captures, rig);
     judge_fit(scan, rig);
-    warn_of(scan, rig);
     const ScanMovement movement = movement_in_scan(capture, scan.rig.rig.whole() ? scan.rig.rig : rig, scan.clean.kept);
-    judge_movement(movement, options);
+    judge_movement(movement, options);  // before the devices, which the light on moving skin accuses wrongly
+    warn_of(scan, rig);
     const std::vector<std::string> names = comments_of(named_rig_state(scan, rig, capture));
     write_cloud(scan.clean.kept, options.out, {}, names);
     if (!options.raw_out.empty()) write_cloud(scan.raw.cloud, options.raw_out, {}, names);

@@ -120,9 +120,9 @@ void ReviewDesk::go_to(double at_s) {
 void ReviewDesk::take(const ReviewWish& wish) {
     using Kind = ReviewWish::Kind;
     const std::lock_guard lock(mutex_);
-    if (wish.kind == Kind::pick && wish.picked < next_.places.size()) {
-        next_.picked = wish.picked;
-        picked_in_ct_ = next_.places[wish.picked].p_in_ct;
+    if (wish.kind == Kind::pick) {  // on what was drawn, which may have been another moment
+        picked_in_ct_ = wish.picked_in_ct;
+        next_.picked = place_at(next_.places, *picked_in_ct_);
         current_.reset();
     }
     if (!next_.line) return;
@@ -183,7 +183,7 @@ void ReviewDesk::show_pictures(Beside& own, std::size_t frame) {
         next_.cameras[0].picture = shared(own.pictures.frame.left);
         next_.cameras[1].picture = shared(own.pictures.frame.right);
         next_.light = own.pictures.light.empty() ? nullptr : std::make_shared<const RgbImage>(own.pictures.light);
-        for (auto& camera : next_.cameras) camera.plan.clear();
+        for (auto& camera : next_.cameras) camera.plan.clear(), camera.round_plan = {};
         next_.places.clear();
         next_.picked.reset();
         next_.sum.clear();

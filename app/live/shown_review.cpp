@@ -3,6 +3,7 @@
 #include "app/live/review_desk.h"
 #include "app/windows/review_window.h"
 #include "planning_io/files/image_file.h"
+#include "planning_io/files/safe_write.h"
 
 namespace planlight {
 
@@ -20,7 +21,8 @@ void show_review(const std::filesystem::path& recording, const ShownReviewSettin
         if (wish.kind == ReviewWish::Kind::quit) return;
         desk.take(wish);
         settled = model->settled ? settled + 1 : 0;
-        if (!settings.picture.empty() && settled == kDrawn) return write_png(window.screenshot(), settings.picture);
+        if (!settings.picture.empty() && settled == kDrawn)  // the patient's face is on it
+            return write_safely(settings.picture, png_bytes(window.screenshot()), ReadableBy::owner);
         window.rest(kRest_s);
     }
 }

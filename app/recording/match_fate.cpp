@@ -77,7 +77,8 @@ void FateOfMatches::take_event(const std::string& text) {
     }
     if (what == "matched") take_verdict(event.value("verdict", ""));
     if (what == "resumed") take_resumption();
-    if (what == "refused" && call == "resume")
+    // A doubtful one waits for a person's word all the same.
+    if (what == "refused" && call == "resume" && fate_ != MatchFate::unconfirmed)
         set(MatchFate::not_resumed,
             "the match of an earlier session was offered and did not fit: " + event.value("why", ""));
     if (what == "asked" && call == "confirm" && fate_ == MatchFate::unconfirmed) {
@@ -116,7 +117,7 @@ void FateOfMatches::take_resumption() {
 
 void FateOfMatches::stand() {
     set(MatchFate::stands, kNobody);
-    if (!last_.empty()) stood_ = last_;
+    stood_ = last_;  // empty until its MTCH comes, or for good: an earlier one is not the one that stands
     stood_confirmed_ = confirmed_;
     stood_of_this_scan_ = true;
     scanned_since_ = false;

@@ -66,6 +66,10 @@ LastMatch last_match_of(const fs::path& recording) {
     last.why_none = to_be_tried ? matches.stopped() : matches.why();
     if (last.why_none.empty()) last.match = matches.last();
     if (last.why_none.empty() && !last.match) last.why_none = matches.why();
+    if (last.match && last.match->registration.verdict != Verdict::yes && !last.match->confirmed) {
+        last.match.reset();
+        last.why_none = "its match was doubtful, and nobody confirmed it";
+    }
     return last;
 }
 

@@ -65,6 +65,7 @@ Json json_of(const LightCheck& check) {
             {"most_mm", check.most_mm},
             {"sigma_mm", check.sigma_mm},
             {"background", check.background},
+            {"brighter", check.brighter},
             {"told_whole", check.told_whole}};
 }
 

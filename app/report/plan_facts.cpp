@@ -103,6 +103,20 @@ Gravity gravity_of(double mm, const DrawingSettings& settings) {
     return mm > kLook_mm ? Gravity::look : Gravity::none;
 }
 
+Gravity gravity_of(const Clearances& clearances) {
+    if (clearances.empty() || !warns(clearances.front())) return Gravity::none;
+    return clearances.front().through ? Gravity::stop : Gravity::look;
+}
+
+std::string risk_in_words(const Clearances& clearances) {
+    if (clearances.empty()) return "–";
+    std::string words = clearance_in_words(clearances.front());
+    for (std::size_t i = 1; i < clearances.size() && warns(clearances[i]); ++i)
+        words += "; " + clearance_in_words(clearances[i]);
+    if (clearances.front().through) return words;
+    return warns(clearances.front()) ? words + ": near" : words;
+}
+
 std::string distance_in_words(double mm, const DrawingSettings& settings) {
     if (!std::isfinite(mm)) return "not known";
     if (mm <= kOnSkin_mm) return "on the skin";
@@ -145,6 +159,7 @@ std::vector<PlanFact> plan_facts(const Plan& plan, const PlanDrawing& drawing, c
             if (const double mm = length_along_skin_mm(drawing, number, kind); has_length && mm > 0)
                 fact.length_mm = mm;
             tell_of_skin(fact, drawing.items[number], lut);
+            fact.clearances = drawing.items[number].clearances;
             if (mid_plane) fact.left_of_middle_mm = mid_plane->left_mm(middle_of(drawing, number, kind));
             facts.push_back(std::move(fact));
         }

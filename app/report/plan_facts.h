@@ -26,6 +26,7 @@ struct PlanFact {
     std::optional<Eigen::Vector3d> inwards_in_ct;  ///< unit, of a way or a hole with an axis
     std::optional<double> over_bone_mm;            ///< soft tissue between skin and bone there
     std::optional<double> left_of_middle_mm;       ///< of its place on the skin, from the head's own mid-plane
+    Clearances clearances;                         ///< to the plan's risk structures; what is worst first
     double to_skin_mm = 0;
     Gravity gravity = Gravity::none;
     std::string distance;  ///< in words that match its gravity
@@ -37,6 +38,12 @@ std::vector<PlanFact> plan_facts(const Plan& plan, const PlanDrawing& drawing, c
 
 /// "38 mm right"; "in the middle" within 2 mm of it.
 std::string side_in_words(double left_of_middle_mm);
+
+/// What stands in the table of the distances to risk structures: the worst, and all that warn; "–" of none.
+std::string risk_in_words(const Clearances& clearances);
+
+/// How the worst of them is to be taken: "stop" through a structure, "look" under 2 mm.
+Gravity gravity_of(const Clearances& clearances);
 
 /// A distance to the skin in words, and how grave it is: "on the skin" up to 0.5 mm, "look" from 2 mm, "stop" where it
 /// is not drawn (three times `max_distance_to_skin_mm`).

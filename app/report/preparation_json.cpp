@@ -1,5 +1,7 @@
 #include "app/report/preparation_json.h"
 
+#include "app/report/clearance_json.h"
+
 #include <nlohmann/json.hpp>
 
 #include <numbers>
@@ -36,6 +38,7 @@ Json items_json(const PlanDrawing& drawing, const std::vector<PlanFact>& facts) 
                          {"soft_tissue_mm", or_null(fact.over_bone_mm)},
                          {"distance_to_skin_mm", item.distance_to_skin_mm},
                          {"distance_in_words", fact.distance},
+                         {"risk", clearances_json(item.clearances)},
                          {"warnings", item.warnings}});
     }
     return items;
@@ -74,6 +77,7 @@ std::string preparation_json(const Preparation& done, const PlanDrawing& drawing
                    {"skin", {{"vertices", c.skin.vertices_in_ct.size()}, {"triangles", c.skin.triangles.size()}}},
                    {"lut", {{"size", c.lut.size}, {"voxel_mm", c.lut.voxel_mm}, {"skin_voxels", c.lut.skin.size()}}},
                    {"plan_items", c.plan.size()},
+                   {"risk_structures", risk_structures_json(c.plan)},
                    {"items", items_json(drawing, facts)},
                    {"seconds", {{"skin", done.segment_s}, {"surface", done.triangulate_s}, {"lut", done.lut_s}}},
                    {"warnings", c.warnings}};

@@ -86,6 +86,12 @@ std::string contents_of(const Plan& plan) {
     return words.empty() ? "nothing" : words;
 }
 
+std::string risk_structures_of(const Plan& plan) {
+    std::string names;
+    for (const auto& structure : plan.risk_structures) names += (names.empty() ? "" : ", ") + structure.name;
+    return names;
+}
+
 /// "2025-02-01 09:30 UTC" of an ISO 8601 time.
 std::string time_in_words(const std::string& iso) {
     if (iso.size() < 16 || iso[10] != 'T') return iso;
@@ -117,7 +123,8 @@ std::string identity_html(const Preparation& done) {
                              row("Title", c.names.title) +
                              row("Plan", c.names.plan.empty() ? "not named" : c.names.plan) +
                              row("Version of the plan", c.names.plan_version) + row("It holds", contents_of(c.plan)) +
-                             row("Case", c.code) + row("Prepared", time_in_words(c.created)) +
+                             row("Risk structures", risk_structures_of(c.plan)) + row("Case", c.code) +
+                             row("Prepared", time_in_words(c.created)) +
                              (done.on_given_surface ? "" : row("Body", fmt::format("{:.0f} ml", done.body_ml))) +
                              row("Cut off by the volume", cut_sides_of(done.judgement));
     const std::string right =
@@ -140,7 +147,8 @@ std::string slices_html(const PreparationPictures& pictures) {
     if (!pictures.plan_slices.empty()) html += "<h2>Through the plan</h2>" + figures_in_a_row(pictures.plan_slices, 3);
     return html +
            "<p class=\"muted\">Green: the skin as found. Amber: lids over openings. Grey line: ends of the scan. Pink: "
-           "the plan within 3 mm of the slice. The green line must follow the skin wherever there is skin.</p>";
+           "the plan within 3 mm of the slice. Blue: risk structures. The green line must follow the skin wherever "
+           "there is skin.</p>";
 }
 
 /// Large things in front of the head were skin more often than they were a table.
@@ -195,33 +203,48 @@ std::string number(const std::optional<double>& value, int digits, const char* u
     return value ? fmt::format("{:.{}f}{}", *value, digits, unit) : std::string("–");
 }
 
-std::string fact_html(const PlanFact& fact) {
+const char* class_of(Gravity gravity) {
+    return gravity == Gravity::stop ? "stop" : gravity == Gravity::look ? "look" : "";
+}
+
+/// `with_risk`: the plan holds risk structures.
+std::string fact_html(const PlanFact& fact, bool with_risk) {
     constexpr double kDegrees = 57.29577951308232;
-    const std::optional<double> tilt = fact.tilt ? std::optional(kDegrees * *fact.tilt) : std::nullopt;
-    const char* gravity = fact.gravity == Gravity::stop ? "stop" : fact.gravity == Gravity::look ? "look" : "";
+    const std::string tilt = fact.tilt ? fmt::format("{:.0f}°", kDegrees * *fact.tilt) : "–";
     return fmt::format(
         "<tr><td "
         "class=\"name\">{}{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
-        "class=\"{}\">{}</td></tr>",
+        "class=\"{}\">{}</td>{}</tr>",
         fact.lit.empty() ? "" : fmt::format("<b>{}</b>&ensp;", xml_escaped(fact.lit)),
         xml_escaped(fact.name.empty() ? "without a name" : fact.name), fact.kind,
         fact.left_of_middle_mm ? side_in_words(*fact.left_of_middle_mm) : "–",
-        number(fact.depth_mm ? fact.depth_mm : fact.length_mm, 1, " mm"), number(fact.diameter_mm, 1, " mm"),
-        number(tilt, 0, "°"), fact.inwards_in_ct ? direction_in_words(*fact.inwards_in_ct) : "–",
-        number(fact.over_bone_mm, 1, " mm"), gravity, xml_escaped(fact.distance));
+        number(fact.depth_mm ? fact.depth_mm : fact.length_mm, 1, " mm"), number(fact.diameter_mm, 1, " mm"), tilt,
+        fact.inwards_in_ct ? direction_in_words(*fact.inwards_in_ct) : "–", number(fact.over_bone_mm, 1, " mm"),
+        class_of(fact.gravity), xml_escaped(fact.distance),
+        with_risk ? fmt::format("<td class=\"{}\">{}</td>", class_of(gravity_of(fact.clearances)),
+                                xml_escaped(risk_in_words(fact.clearances)))
+                  : "");
 }
 
 std::string plan_html(const std::vector<PlanFact>& facts) {
     if (facts.empty()) return "<h2>The plan</h2><p>It holds nothing.</p>";
+    const bool with_risk =
+        std::any_of(facts.begin(), facts.end(), [](const PlanFact& fact) { return !fact.clearances.empty(); });
     std::string html =
         "<h2>The plan</h2><table class=\"plan\"><thead><tr><th>Name</th><th>Kind</th><th>Side of its "
         "middle</th><th>Depth or "
         "length</th><th>Diameter</th><th>Tilt "
         "from the skin's perpendicular</th><th>Direction inwards</th><th>Soft tissue over bone</th><th>Its points "
-        "lie</th></tr></thead>";
+        "lie</th>" +
+        std::string(with_risk ? "<th>Nearest risk structure</th>" : "") + "</tr></thead>";
     bool by_code = false;
-    for (const auto& fact : facts) html += fact_html(fact), by_code = by_code || !fact.lit.empty();
+    for (const auto& fact : facts) html += fact_html(fact, with_risk), by_code = by_code || !fact.lit.empty();
     return html + "</table>" +
+           (with_risk
+                ? "<p class=\"muted\">Distances to risk structures are those of the plan, from the instrument's, the "
+                  "drill's or the cut's own surface, rounded down. They do not hold how far off the light, the hand "
+                  "or the drawing of the structure may be.</p>"
+                : "") +
            (by_code ? "<p class=\"muted\">In bold: the code that the light has in place of the name.</p>" : "");
 }
 

@@ -7,6 +7,7 @@
 #include "app/windows/camera_picture.h"
 #include "planning_io/recording/packed_pictures.h"
 #include "planning_io/types/error.h"
+#include "planning_io/types/rigid_transform.h"
 
 namespace planlight {
 namespace {
@@ -19,8 +20,12 @@ std::optional<RigidTransform> pose_in(const Json& event) {
     const auto rows = pose->find("rig_from_patient");
     if (rows == pose->end() || !rows->is_array() || rows->size() != 16) return std::nullopt;
     RigidTransform transform;
-    for (Eigen::Index i = 0; i < 16; ++i)
-        transform.matrix()(i / 4, i % 4) = rows->at(static_cast<std::size_t>(i)).get<double>();
+    for (Eigen::Index i = 0; i < 16; ++i) {
+        const Json& number = rows->at(static_cast<std::size_t>(i));
+        if (!number.is_number()) return std::nullopt;
+        transform.matrix()(i / 4, i % 4) = number.get<double>();
+    }
+    if (!is_rigid(transform.matrix())) return std::nullopt;
     return transform;
 }
 

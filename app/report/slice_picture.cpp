@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 namespace {
 
 const cv::Scalar kSkinLine(54, 214, 138), kSealLine(255, 176, 60), kEndLine(120, 130, 140), kPlanLine(255, 92, 160),
-    kLetter(235, 240, 246);
+    kRiskLine(80, 190, 255), kLetter(235, 240, 246);
 
 /// How the picture lies in ct: unit vectors of its right and down, and the letters at its sides.
 struct Frame {
@@ -119,7 +119,8 @@ void draw_line(cv::Mat& canvas, const Vector2d& a, const Vector2d& b, const cv::
     cv::line(canvas, fixed(a), fixed(b), colour, thickness, cv::LINE_AA, kShift);
 }
 
-void draw_skin(const TriangleMesh& skin, const Sheet& sheet, cv::Mat& canvas) {
+/// Where the slice cuts the surface; a skin's seals and ends have colours of their own.
+void draw_surface(const TriangleMesh& skin, const Sheet& sheet, cv::Mat& canvas, const cv::Scalar& usual) {
     std::vector<double> above(skin.vertices_in_ct.size());
     std::transform(skin.vertices_in_ct.begin(), skin.vertices_in_ct.end(), above.begin(),
                    [&](const auto& p) { return sheet.above_mm(p); });
@@ -135,7 +136,7 @@ void draw_skin(const TriangleMesh& skin, const Sheet& sheet, cv::Mat& canvas) {
             if (!skin.flags.empty()) flag = std::max(flag, std::max(skin.flags[i], skin.flags[j]));
         }
         if (found == 2)
-            draw_line(canvas, ends[0], ends[1], flag == kSkin ? kSkinLine : flag == kSeal ? kSealLine : kEndLine, 2);
+            draw_line(canvas, ends[0], ends[1], flag == kSkin ? usual : flag == kSeal ? kSealLine : kEndLine, 2);
     }
 }
 
@@ -182,7 +183,8 @@ RgbImage slice_picture(const Volume& volume, const TriangleMesh& skin, const Pla
     RgbImage picture(settings.width, settings.height, {10, 14, 26});
     paint_values(volume, sheet, picture);
     cv::Mat canvas(picture.height, picture.width, CV_8UC3, picture.pixels.data());
-    draw_skin(skin, sheet, canvas);
+    draw_surface(skin, sheet, canvas, kSkinLine);
+    for (const auto& structure : plan.risk_structures) draw_surface(structure.surface, sheet, canvas, kRiskLine);
     draw_plan_near(plan, sheet, canvas);
     constexpr int kEdge = 22;
     write_letter(canvas, sheet.frame.left_letter, kEdge, settings.height / 2);

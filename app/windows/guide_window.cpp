@@ -34,7 +34,7 @@ GuideAction draw_buttons(const Pen& pen, const Box& box, const GuideModel& model
 struct GuideWindow::Parts {
     GuideAction pressed = GuideAction::none;
     GuiWindow gui;
-    CameraTexture left, right;
+    CameraTexture left{gui}, right{gui};
 
     explicit Parts(const WindowSettings& settings)
         : gui(settings, {[this](int key, int) {
@@ -44,11 +44,6 @@ struct GuideWindow::Parts {
                          {}}) {}
     Parts(const Parts&) = delete;
     Parts& operator=(const Parts&) = delete;
-    ~Parts() {
-        gui.make_current();
-        left.release();
-        right.release();
-    }
 
     GuideAction draw(const Pen& pen, const GuideModel& model, float w, float h) {
         const float s = pen.scale, gap = 16 * s, title = 64 * s, banner = std::max(152.0F, 196 * s);

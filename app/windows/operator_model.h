@@ -139,7 +139,8 @@ struct PlanRow {
     Rgb colour{255, 255, 255};
     std::string name;  ///< "Borehole 1, ⌀7.0 mm"
     std::optional<double> depth_mm, predicted_error_mm, light_off_mm;
-    bool hidden = false;  ///< by a person: not lit, not in the 3-D view
+    std::optional<Clearance> risk = {};  ///< to the nearest risk structure, or the one that it goes through
+    bool hidden = false;                 ///< by a person: not lit, not in the 3-D view
 
     bool operator==(const PlanRow&) const = default;
 };

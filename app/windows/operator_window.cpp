@@ -48,7 +48,7 @@ struct OperatorWindow::Parts {
     WindowLayout place;
     GuiWindow gui;
     std::unique_ptr<MiddleView> middle;
-    CameraTexture left, right;
+    CameraTexture left{gui}, right{gui};
     float rows_scrolled = 0;
     int rows_shown = 1;
     std::optional<std::size_t> marked_row;  ///< in the last frame
@@ -66,12 +66,6 @@ struct OperatorWindow::Parts {
     }
     Parts(const Parts&) = delete;
     Parts& operator=(const Parts&) = delete;
-    ~Parts() {
-        gui.make_current();
-        left.release();
-        right.release();
-        middle.reset();
-    }
 
     /// DARK is taken from the events themselves, so that a press shorter than a frame is not lost.
     WindowListener listener() {

@@ -47,8 +47,8 @@ struct ReviewModel {
 struct ReviewWish {
     enum class Kind { none, frame_before, frame_after, event_before, event_after, begin, end, to_time, pick, quit };
     Kind kind = Kind::none;
-    double at_s = 0;         ///< of `to_time`
-    std::size_t picked = 0;  ///< of `pick`
+    double at_s = 0;                        ///< of `to_time`
+    Eigen::Vector3d picked_in_ct{0, 0, 0};  ///< of `pick`
 };
 
 /// The place whose light is meant by a press on a picture: the nearest, 20 pixels of it away at most. `camera`: 0 left,

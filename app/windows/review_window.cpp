@@ -52,14 +52,18 @@ std::optional<std::size_t> place_near(const ReviewModel& model, const Ray& sight
     return nearest;
 }
 
+ReviewWish pick_of(const ReviewModel& model, std::size_t place) {
+    return {Kind::pick, 0, model.places[place].p_in_ct};
+}
+
 }  // namespace
 
 struct ReviewWindow::Parts {
     std::deque<Kind> pressed;  // by keys
     bool whole = false, light_wanted = false, looked = false;
     GuiWindow gui;
-    CameraTexture left, right;
-    ColourTexture light;
+    CameraTexture left{gui}, right{gui};
+    ColourTexture light{gui};
     std::unique_ptr<ScenePane> head;
     std::shared_ptr<const ReviewModel> drawn;
     std::map<std::string, Box> places;
@@ -71,13 +75,6 @@ struct ReviewWindow::Parts {
     }
     Parts(const Parts&) = delete;
     Parts& operator=(const Parts&) = delete;
-    ~Parts() {
-        gui.make_current();
-        left.release();
-        right.release();
-        light.release();
-        head.reset();
-    }
 
     void take_key(int key) {
         if (key == GLFW_KEY_Z) whole = !whole;
@@ -111,7 +108,7 @@ struct ReviewWindow::Parts {
             const unsigned texture = (i == 0 ? left : right).take(picture, picture ? picture->width : 0);
             const auto pixel = draw_review_camera(pen, box, model, i, whole, texture_id(texture), press);
             if (!pixel) continue;
-            if (const auto picked = planlight::place_near(model, i, *pixel)) wish = {Kind::pick, 0, *picked};
+            if (const auto picked = planlight::place_near(model, i, *pixel)) wish = pick_of(model, *picked);
         }
     }
 
@@ -124,7 +121,7 @@ struct ReviewWindow::Parts {
         const auto press = head->take_mouse("head", box);
         head->draw(pen, box, *model.scene);
         if (!press) return;
-        if (const auto picked = place_near(model, head->sight(*press))) wish = {Kind::pick, 0, *picked};
+        if (const auto picked = place_near(model, head->sight(*press))) wish = pick_of(model, *picked);
     }
 
     void draw_buttons(const Pen& pen, const ReviewLayout& place, const ReviewModel& model, ReviewWish& wish) {
@@ -144,7 +141,7 @@ struct ReviewWindow::Parts {
         press_in("time line", box);
         const ImGuiIO& io = ImGui::GetIO();
         if (model.line && ImGui::IsItemActive() && io.MouseDown[0])
-            wish = {Kind::to_time, time_at(box, pen, model, io.MousePos.x), 0};
+            wish = {Kind::to_time, time_at(box, pen, model, io.MousePos.x)};
         if (ImGui::IsItemHovered() && io.MouseWheel != 0)
             wish.kind = io.MouseWheel > 0 ? Kind::frame_before : Kind::frame_after;
     }

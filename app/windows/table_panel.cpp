@@ -1,3 +1,5 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -8,15 +10,18 @@
 namespace planlight {
 namespace {
 
+constexpr float kDepthWidth = 0.75F, kRiskWidth = 0.85F;  // of the other columns
+
 struct Columns {
-    float name_x, name_width, depth_x, predicted_x, light_x, width;
+    float name_x, name_width, depth_x, risk_x, predicted_x, light_x, width;
+    bool risk;  ///< the plan holds risk structures
 };
 
-Columns columns_of(const Pen& pen, const Box& box) {
-    const float pad = 18 * pen.scale, width = std::round(0.20F * box.width), name_x = box.x + pad;
+Columns columns_of(const Pen& pen, const Box& box, bool risk) {
+    const float pad = 18 * pen.scale, width = std::round((risk ? 0.18F : 0.20F) * box.width), name_x = box.x + pad;
     const float light_x = box.right() - pad - width, predicted_x = light_x - width,
-                depth_x = predicted_x - 0.75F * width;
-    return {name_x, depth_x - name_x - 4 * pen.scale, depth_x, predicted_x, light_x, width};
+                risk_x = predicted_x - (risk ? kRiskWidth * width : 0), depth_x = risk_x - kDepthWidth * width;
+    return {name_x, depth_x - name_x - 4 * pen.scale, depth_x, risk_x, predicted_x, light_x, width, risk};
 }
 
 void draw_heading(const Pen& pen, const Columns& c, float top) {
@@ -26,8 +31,12 @@ void draw_heading(const Pen& pen, const Columns& c, float top) {
                  Pen::Side::right);
     };
     pen.line(pen.fonts.small, pen.say("Plan item"), c.name_x, top + height, c.name_width, pen.theme->quiet);
-    right("depth", c.depth_x, 0.75F * c.width, 0);
-    right("mm", c.depth_x, 0.75F * c.width, 1);
+    right("depth", c.depth_x, kDepthWidth * c.width, 0);
+    right("mm", c.depth_x, kDepthWidth * c.width, 1);
+    if (c.risk) {
+        right("to risk", c.risk_x, kRiskWidth * c.width, 0);
+        right("mm", c.risk_x, kRiskWidth * c.width, 1);
+    }
     right("predicted", c.predicted_x, c.width, 0);
     right("95 % mm", c.predicted_x, c.width, 1);
     right("light seen", c.light_x, c.width, 0);
@@ -51,6 +60,23 @@ void draw_error(const Pen& pen, const OperatorModel& model, const std::optional<
         pen.triangle(mark, radius, pen.theme->amber);
 }
 
+/// The distance to the nearest risk structure, as the light has it; 0 with the sign of a stop where it goes through.
+void draw_risk(const Pen& pen, const Clearance& risk, float x, float width, float y) {
+    const std::string text = risk.through ? pen.say("through") : fmt::format("{:.1f}", said_mm(risk));
+    const float radius = 8 * pen.scale;
+    const ImVec2 mark(x + width - text_width(pen.fonts.body, text) - 2.2F * radius, y);
+    const bool warning = warns(risk);
+    pen.line(pen.fonts.body, text, x, y, width,
+             risk.through ? pen.theme->red
+             : warning    ? pen.theme->amber
+                          : pen.theme->text,
+             Pen::Side::right);
+    if (risk.through)
+        pen.polygon(mark, radius * 1.1F, 8, 0.3927F, pen.theme->red);
+    else if (warning)
+        pen.triangle(mark, radius, pen.theme->amber);
+}
+
 /// `dim`: another item is that of the moment.
 void draw_row(const Pen& pen, const OperatorModel& model, const PlanRow& row, const Columns& c, float y, bool dim) {
     const float size = 7 * pen.scale, swatch = 22 * pen.scale;
@@ -61,8 +87,9 @@ void draw_row(const Pen& pen, const OperatorModel& model, const PlanRow& row, co
         pen.swatch({c.name_x, y - size, 2 * size, 2 * size}, row.colour);
     pen.line(pen.fonts.body, shortened_in_the_middle(pen.fonts.body, row.name, c.name_width - swatch),
              c.name_x + swatch, y, c.name_width - swatch, dim || row.hidden ? pen.theme->quiet : pen.theme->text);
-    pen.line(pen.fonts.body, number_text(row.depth_mm, ""), c.depth_x, y, 0.75F * c.width, pen.theme->text,
+    pen.line(pen.fonts.body, number_text(row.depth_mm, ""), c.depth_x, y, kDepthWidth * c.width, pen.theme->text,
              Pen::Side::right);
+    if (row.risk) draw_risk(pen, *row.risk, c.risk_x, kRiskWidth * c.width, y);
     draw_error(pen, model, row.predicted_error_mm, c.predicted_x, c.width, y);
     if (row.hidden)
         pen.line(pen.fonts.small, pen.say("hidden"), c.light_x, y, c.width, pen.theme->quiet, Pen::Side::right);
@@ -91,7 +118,9 @@ int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int f
                std::optional<std::size_t> marked) {
     pen.panel(box, pen.theme->panel, hovered ? pen.theme->quiet : pen.theme->edge);
     const float pad = 14 * pen.scale, line = line_height(pen.fonts.small);
-    const Columns columns = columns_of(pen, box);
+    const Columns columns = columns_of(
+        pen, box,
+        std::any_of(model.rows.begin(), model.rows.end(), [](const PlanRow& row) { return row.risk.has_value(); }));
     draw_heading(pen, columns, box.y + pad / 2);
     const float rule = box.y + pad / 2 + 2 * line + 4 * pen.scale;
     pen.list->AddLine({box.x + pad, rule}, {box.right() - pad, rule}, pen.theme->edge, 1);

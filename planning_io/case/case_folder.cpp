@@ -29,6 +29,7 @@ constexpr const char* kPlanFile = "plan.mrk.json";
 constexpr const char* kChecksums = "checksums.xxh128";  // as `xxh128sum` writes and checks it
 constexpr std::array<const char*, 7> kOurFiles = {kManifest,  kSkinMesh,     kLutFile,     kPlanFile,
                                                   kChecksums, "report.html", "report.json"};
+constexpr const char* kRiskStructure = "risk-";  // and its number, from 1, and ".ply"
 constexpr const char* kPrepare = "Prepare the case again, or copy its folder again.";
 
 Json names_json(const CaseNames& names) {
@@ -45,6 +46,17 @@ CaseNames names_of(const JsonValue& json) {
     return {text("title"), text("patient"), text("plan"), text("plan_version"), text("series"), text("series_date")};
 }
 
+std::string risk_file(std::size_t number) {
+    return fmt::format("{}{}.ply", kRiskStructure, number + 1);
+}
+
+Json risk_structures_json(const Plan& plan) {
+    Json all = Json::array();
+    for (std::size_t i = 0; i < plan.risk_structures.size(); ++i)
+        all.push_back({{"name", plan.risk_structures[i].name}, {"file", risk_file(i)}});
+    return all;
+}
+
 Json manifest_of(const Case& prepared) {
     return Json{{"format", kFormat},
                 {"version", kVersion},
@@ -56,6 +68,7 @@ Json manifest_of(const Case& prepared) {
                 {"plan_hash", prepared.plan_hash},
                 {"frame_of_reference_uid", prepared.frame_of_reference_uid},
                 {"mesh_hash", hash_of(prepared.skin)},
+                {"risk_structures", risk_structures_json(prepared.plan)},
                 {"skin_threshold", prepared.skin_threshold},
                 {"skin_edge_sigma_mm", prepared.skin_edge_sigma_mm},
                 {"warnings", prepared.warnings}};
@@ -114,6 +127,31 @@ void check_same_patient(const Case& prepared, const std::string& mesh_hash, cons
         throw InputError(folder.path(kLutFile), "is the LUT of another case", kPrepare);
 }
 
+/// None in cases of older versions. Each must be the file that was prepared.
+std::vector<RiskStructure> read_risk_structures(const JsonValue& manifest, const CheckedFolder& folder) {
+    std::vector<RiskStructure> structures;
+    const auto all = manifest.find("risk_structures");
+    for (std::size_t i = 0; all && i < all->size(); ++i) {
+        const std::string name = (*all)[i].at("file").text();
+        if (name != risk_file(i)) (*all)[i].at("file").refuse("is not " + risk_file(i), kPrepare);
+        if (!fs::exists(folder.path(name.c_str())))
+            throw DamagedFileError(folder.path(name.c_str()), "is missing", kPrepare);
+        folder.verify(name.c_str());
+        structures.push_back({(*all)[i].at("name").text(), read_mesh(folder.path(name.c_str()))});
+    }
+    return structures;
+}
+
+/// Whether the case's own files can bear this name.
+bool is_ours(const std::string& name) {
+    if (std::find(kOurFiles.begin(), kOurFiles.end(), name) != kOurFiles.end()) return true;
+    constexpr std::string_view kBefore = kRiskStructure, kAfter = ".ply";
+    if (!name.starts_with(kBefore) || !name.ends_with(kAfter) || name.size() <= kBefore.size() + kAfter.size())
+        return false;
+    const auto number = std::string_view(name).substr(kBefore.size(), name.size() - kBefore.size() - kAfter.size());
+    return std::all_of(number.begin(), number.end(), [](char c) { return c >= '0' && c <= '9'; });
+}
+
 /// Whether a folder holds a case, whole or damaged, by its manifest.
 bool holds_case(const fs::path& folder) {
     std::error_code ignored;
@@ -132,7 +170,7 @@ void check_nothing_is_lost(const fs::path& folder) {
     std::string others;
     for (const auto& entry : fs::directory_iterator(folder)) {
         const std::string name = entry.path().filename().string();
-        if (std::find(kOurFiles.begin(), kOurFiles.end(), name) != kOurFiles.end() && entry.is_regular_file()) continue;
+        if (is_ours(name) && entry.is_regular_file()) continue;
         others += (others.empty() ? "" : ", ") + name;
     }
     if (!others.empty())
@@ -198,6 +236,8 @@ void write_case(const Case& prepared, const fs::path& folder, bool replace,
         write_mesh(prepared.skin, into / kSkinMesh);
         write_skin_lut(prepared.lut, into / kLutFile);
         write_plan(prepared.plan, into / kPlanFile);
+        for (std::size_t i = 0; i < prepared.plan.risk_structures.size(); ++i)
+            write_mesh(prepared.plan.risk_structures[i].surface, into / risk_file(i));
         if (add) add(into);
         write_safely(into / kChecksums, checksums_in(into));
     });
@@ -230,6 +270,7 @@ Case read_case(const fs::path& folder) {
     for (const char* name : {kSkinMesh, kLutFile, kPlanFile}) files.verify(name);
     files.verify_others({kManifest, kSkinMesh, kLutFile, kPlanFile});
     prepared.plan = read_plan(files.path(kPlanFile));
+    prepared.plan.risk_structures = read_risk_structures(manifest, files);
     return prepared;
 }
 

@@ -19,7 +19,7 @@ constexpr const char* kRegistrationsFolder = "registrations";
 constexpr const char* kRecordingsFolder = "recordings";
 
 /// All that the operating room needs of one patient: case.json (manifest with checksums), skin.ply, skin.lut,
-/// plan.mrk.json.
+/// plan.mrk.json, risk-1.ply ... of the plan's risk structures.
 struct Case {
     std::string code;     ///< `code_of` its volume and plan; never a patient's name
     CaseNames names;      ///< for people

@@ -58,9 +58,11 @@ void check_tls(const DicomTls& tls) {
     const std::string who = "The DICOM archive " + peer.name(), why = one_line(condition.text());
     if (condition.module() == OFM_dcmnet) switch (condition.code()) {
             case DULC_ASSOCIATIONREJECTED:
-                throw AssociationRefused(DeviceError(
-                    who, "refuses to talk with " + peer.own_title + ": " + why,
-                    "Check both AE titles, and that the archive knows this computer by its title and address."));
+                throw AssociationRefused(
+                    DeviceError(
+                        who, "refuses to talk with " + peer.own_title + ": " + why,
+                        "Check both AE titles, and that the archive knows this computer by its title and address."),
+                    why);
             case DULC_UNKNOWNHOST:
             case DULC_TCPINITERROR:
             case DULC_REQUESTASSOCIATIONFAILED:

@@ -18,7 +18,9 @@ namespace planlight {
 
 /// It did not want to talk with us at all.
 struct AssociationRefused : DeviceError {
-    explicit AssociationRefused(const DeviceError& fault) : DeviceError(fault) {}
+    AssociationRefused(const DeviceError& fault, std::string its_reason)
+        : DeviceError(fault), reason(std::move(its_reason)) {}
+    std::string reason;  ///< as the peer gave it
 };
 
 /// An association with a peer, from its negotiation to its end.

@@ -31,13 +31,14 @@ public:
         setStorageDir(incoming.folder().c_str());
     }
 
-    /// False: it does not let itself be asked so, and nothing came.
-    bool get(const FoundSeries& series) {
+    /// False: it does not let itself be asked so, and nothing came; `refusal` is what it said of that, if anything.
+    bool get(const FoundSeries& series, std::string& refusal) {
         try {
             open();
         } catch (const CheckFailedError&) {  // it does nothing of all that
             return false;
-        } catch (const AssociationRefused&) {  // so some say the same: it has just listed the images to us
+        } catch (const AssociationRefused& fault) {  // so some say the same: it has just listed the images to us
+            refusal = fault.reason;
             return false;
         }
         if (!is_accepted(UID_GETStudyRootQueryRetrieveInformationModel)) return false;
@@ -116,7 +117,8 @@ std::size_t fetch_series(const DicomPeer& peer, const FoundSeries& series, const
     write_folder_safely(folder, false, [&](const fs::path& into) {
         fs::permissions(into, fs::perms::owner_all);  // it names the patient
         IncomingImages incoming(images, into, progress);
-        if (!Getter(peer, images, incoming).get(series)) move_series(peer, series, images, incoming);
+        std::string refusal;
+        if (!Getter(peer, images, incoming).get(series, refusal)) move_series(peer, series, images, incoming, refusal);
         incoming.sync();
         check_still_the_same(peer, series, images);
         came = incoming.came();

@@ -103,10 +103,11 @@ private:
 }  // namespace
 
 void move_series(const DicomPeer& peer, const FoundSeries& series, const std::vector<ImageAtPeer>& images,
-                 IncomingImages& incoming) {
+                 IncomingImages& incoming, const std::string& refusal) {
     if (peer.own_port == 0)
         throw CheckFailedError(
-            "The DICOM archive " + peer.name() + " does not let its images be fetched (C-GET)",
+            "The DICOM archive " + peer.name() + " does not let its images be fetched (C-GET)" +
+                (refusal.empty() ? "" : ", or not now: " + refusal),
             "Ask those who run it to allow this computer to do so; or, where it sends them (C-MOVE), to enter this "
             "computer, and give --own-port.");
     if (peer.tls.wanted && peer.tls.certificate.empty())

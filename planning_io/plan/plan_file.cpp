@@ -6,6 +6,7 @@
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_import.h"
 #include "planning_io/plan/plan_markup.h"
+#include "planning_io/surface/mesh_file.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -65,7 +66,10 @@ void write_plan(const Plan& plan, const fs::path& file) {
 }
 
 std::string hash_of(const Plan& plan) {
-    return content_hash(text_of(plan));
+    std::string text = text_of(plan);
+    for (const auto& structure : plan.risk_structures)
+        text += structure.name + '\n' + hash_of(structure.surface) + '\n';
+    return content_hash(text);
 }
 
 std::vector<Eigen::Vector3d> points_of(const Plan& plan) {

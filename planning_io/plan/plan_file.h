@@ -21,7 +21,7 @@ std::string plan_name_of(const std::filesystem::path& file);
 /// Writes the plan as one .mrk.json that 3D Slicer opens (LPS, mm) and `read_plan` reads back value for value.
 void write_plan(const Plan& plan, const std::filesystem::path& file);
 
-/// XXH3-128 of what `write_plan` writes, hex: two plans of the same hash show the same.
+/// XXH3-128 of what `write_plan` writes and of the risk structures, hex: two plans of the same hash show the same.
 std::string hash_of(const Plan& plan);
 
 /// Every point of the plan, ct, mm.

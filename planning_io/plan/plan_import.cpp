@@ -148,6 +148,7 @@ void append(PlanImport& to, PlanImport more) {
     move(to.plan.boreholes, more.plan.boreholes);
     move(to.plan.osteotomy_lines, more.plan.osteotomy_lines);
     move(to.plan.cut_planes, more.plan.cut_planes);
+    move(to.plan.risk_structures, more.plan.risk_structures);
     move(to.notes, more.notes);
 }
 

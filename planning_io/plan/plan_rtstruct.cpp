@@ -36,8 +36,9 @@ public:
         if (roi_.contours.empty()) return "has no contours";
         if (said_.text("kind")) return {};
         const std::size_t heights = count_heights();
-        return heights >= kSolidHeights ? fmt::format("has contours at {} heights: a solid, not a line", heights)
-                                        : std::string();
+        return heights >= kSolidHeights
+                   ? fmt::format("has contours at {} heights: a solid, not a line (--risk takes it)", heights)
+                   : std::string();
     }
 
     void append_to(Plan& plan) const {

@@ -114,8 +114,10 @@ void refuse_contour_stack(const Shape& shape, const fs::path& file) {
         for (const auto i : line.points) closed.back().push_back(shape.points[static_cast<std::size_t>(i)]);
     }
     if (const std::size_t heights = heights_of_contours(closed); heights >= kSolidHeights)
-        throw InputError(file, fmt::format("has contours at {} heights: a solid, not a line to cut along", heights),
-                         "Export the cuts alone, as curves.");
+        throw InputError(
+            file, fmt::format("has contours at {} heights: a solid, not a line to cut along", heights),
+            "Export the cuts alone, as curves; the closed surface of a structure that must not be hurt is given to "
+            "`planlight prepare --risk`.");
 }
 
 /// Lines of two points end to end are one line: most programs write curves so.
@@ -150,7 +152,8 @@ PlanImport read_shape_plan(const fs::path& file, const PlanImportSettings& setti
         throw InputError(
             file,
             fmt::format("is a closed surface of {} triangles, without an edge to cut along", shape.triangles.size()),
-            "Draw the cut as a curve; to project on this surface, give it to `planlight prepare --surface`.");
+            "Draw the cut as a curve; a nerve or a vessel that must not be hurt is given to `planlight prepare "
+            "--risk`, a surface to project on to `planlight prepare --surface`.");
     if (shape.lines.empty()) throw InputError(file, "holds no lines", "Export the plan's curves as lines.");
     for (std::size_t i = 0; i < shape.lines.size(); ++i)
         ShapePlan(shape, space, file).add(read.plan, shape.lines[i], numbered(i, shape.lines.size()));

@@ -21,6 +21,7 @@ using Eigen::Vector3d;
 using Loop = std::vector<Vector3d>;
 
 constexpr double kPixel_mm = 1;
+constexpr double kFinePixel_mm = 0.25, kMostFineVoxels = 4e6;
 constexpr double kMostAcross_mm = 1000;
 constexpr double kOneHeight_mm = 0.1;
 constexpr int kMostEmpty = 20;
@@ -56,10 +57,10 @@ Eigen::Matrix3d axes_of(const std::vector<Loop>& loops) {
 }
 
 /// Turns the pixels of one slice over wherever a straight way to the left crosses the loop (even-odd rule).
-void draw(MaskStack& mask, const Loop& loop, int slice, const Vector3d& low) {
+void draw(MaskStack& mask, const Loop& loop, int slice, const Vector3d& low, double pixel_mm) {
     const auto columns = static_cast<std::size_t>(mask.size[0]), rows = static_cast<std::size_t>(mask.size[1]);
     for (std::size_t j = 0; j < rows; ++j) {
-        const double y = low.y() + kPixel_mm * static_cast<double>(j);
+        const double y = low.y() + pixel_mm * static_cast<double>(j);
         std::vector<double> crossings;
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const Vector3d &a = loop[i], &b = loop[(i + 1) % loop.size()];
@@ -68,13 +69,16 @@ void draw(MaskStack& mask, const Loop& loop, int slice, const Vector3d& low) {
         }
         std::sort(crossings.begin(), crossings.end());
         for (std::size_t c = 0; c + 1 < crossings.size(); c += 2)
-            for (auto i = static_cast<std::size_t>(std::max(0.0, std::ceil((crossings[c] - low.x()) / kPixel_mm)));
-                 i < columns && low.x() + kPixel_mm * static_cast<double>(i) < crossings[c + 1]; ++i)
+            for (auto i = static_cast<std::size_t>(std::max(0.0, std::ceil((crossings[c] - low.x()) / pixel_mm)));
+                 i < columns && low.x() + pixel_mm * static_cast<double>(i) < crossings[c + 1]; ++i)
                 mask.inside[(static_cast<std::size_t>(slice) * rows + j) * columns + i] ^= 1;
     }
 }
 
-MaskStack mask_of(std::vector<Loop> loops, const std::string& name, const fs::path& file) {
+/// How finely the contours are drawn: to `kPixel_mm` and a voxel a slice, or as finely as the memory allows.
+enum class Grain { usual, fine };
+
+MaskStack mask_of(std::vector<Loop> loops, const std::string& name, const fs::path& file, Grain grain) {
     const auto refuse = [&](const std::string& problem) {
         throw InputError(file, "ROI \"" + name + "\" " + problem, kExportAgain);
     };
@@ -104,11 +108,18 @@ MaskStack mask_of(std::vector<Loop> loops, const std::string& name, const fs::pa
     step = whole / std::round(whole / step);  // the smallest gap is rounded; over all of them that would add up
     const double slices = std::round(whole / step) + 1;
     if (!(slices < kMostEmpty * static_cast<double>(loops.size()))) refuse("has contours that are not evenly spaced");
-    const Vector3d first(low.x(), low.y(), sorted.front());
+    double pixel_mm = kPixel_mm;
+    int layers = 1;  // of voxels, in a slice
+    if (grain == Grain::fine) {
+        const double box_mm3 = (high.x() - low.x()) * (high.y() - low.y()) * slices * step;
+        pixel_mm = std::clamp(std::cbrt(box_mm3 / kMostFineVoxels), kFinePixel_mm, kPixel_mm);
+        layers = std::max(1, static_cast<int>(std::lround(step / pixel_mm)));
+    }
+    const Vector3d first(low.x(), low.y(), sorted.front() - step / 2 + step / layers / 2);
     MaskStack mask;
-    mask.size = {static_cast<int>((high.x() - low.x()) / kPixel_mm) + 2,
-                 static_cast<int>((high.y() - low.y()) / kPixel_mm) + 2, static_cast<int>(slices)};
-    mask.ct_from_voxel.linear() = axes * Vector3d(kPixel_mm, kPixel_mm, step).asDiagonal();
+    mask.size = {static_cast<int>((high.x() - low.x()) / pixel_mm) + 2,
+                 static_cast<int>((high.y() - low.y()) / pixel_mm) + 2, layers * static_cast<int>(slices)};
+    mask.ct_from_voxel.linear() = axes * Vector3d(pixel_mm, pixel_mm, step / layers).asDiagonal();
     mask.ct_from_voxel.translation() = axes * first;
     mask.inside.assign(static_cast<std::size_t>(mask.size[0]) * static_cast<std::size_t>(mask.size[1]) *
                            static_cast<std::size_t>(mask.size[2]),
@@ -116,7 +127,8 @@ MaskStack mask_of(std::vector<Loop> loops, const std::string& name, const fs::pa
     for (std::size_t i = 0; i < loops.size(); ++i) {
         const double slice = (heights[i] - sorted.front()) / step;
         if (std::abs(slice - std::round(slice)) > 0.1) refuse("has contours that are not evenly spaced");
-        draw(mask, loops[i], static_cast<int>(std::lround(slice)), first);
+        for (int layer = 0; layer < layers; ++layer)
+            draw(mask, loops[i], layers * static_cast<int>(std::lround(slice)) + layer, first, pixel_mm);
     }
     return mask;
 }
@@ -141,7 +153,28 @@ TriangleMesh read_roi_surface(const fs::path& file, const std::string& roi, cons
                          roi.empty() ? fmt::format("holds {} solids: {}", names.size(), fmt::join(names, ", "))
                                      : fmt::format("holds no solid \"{}\"; there is: {}", roi, fmt::join(names, ", ")),
                          "Choose one by its name (--segment NAME).");
-    return surface_of_mask(mask_of(loops_of(*chosen, file), chosen->name, file));
+    return surface_of_mask(mask_of(loops_of(*chosen, file), chosen->name, file, Grain::usual));
+}
+
+std::vector<RiskStructure> read_roi_solids(const fs::path& file, const PlanImportSettings& settings,
+                                           std::vector<std::string>& notes) {
+    const RtStruct set = read_rt_struct(file);
+    check_frame_of_reference(set.frame_of_reference_uid, settings, file, notes);
+    std::vector<RiskStructure> solids;
+    for (const RtRoi& roi : set.rois) {
+        auto loops = loops_of(roi, file);
+        if (heights_of_contours(loops) < kSolidHeights) {
+            notes.push_back(
+                fmt::format("{}: ROI \"{}\" is no solid (closed contours at {} heights or more); it is left "
+                            "out of the risk structures",
+                            file.filename().string(), roi.name, kSolidHeights));
+            continue;
+        }
+        solids.push_back({roi.name, surface_of_mask(mask_of(std::move(loops), roi.name, file, Grain::fine))});
+    }
+    if (solids.empty())
+        throw InputError(file, "holds no solid: no ROI has closed contours at three heights", kExportAgain);
+    return solids;
 }
 
 }  // namespace planlight

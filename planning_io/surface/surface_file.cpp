@@ -209,6 +209,19 @@ double value_at(const Volume& volume, const Eigen::Affine3d& voxel_from_ct, cons
 
 }  // namespace
 
+SurfaceFile surface_of(const Shape& welded, Space space, std::size_t degenerate, const fs::path& file) {
+    SurfaceFile surface;
+    surface.degenerate = degenerate;
+    surface.mesh = used_part(welded, space, surface.degenerate);
+    judge_surface(surface, file);
+    return surface;
+}
+
+void judge_surface(SurfaceFile& surface, const fs::path& file) {
+    Turner(surface, file).turn();
+    set_normals(surface.mesh);
+}
+
 SurfaceFile read_surface(const fs::path& file, const SurfaceSettings& settings) {
     SurfaceFile surface;
     if (!fs::exists(file)) throw InputError(file, "does not exist", "Check the name of the file.");
@@ -229,8 +242,7 @@ SurfaceFile read_surface(const fs::path& file, const SurfaceSettings& settings) 
         surface.mesh = used_part(read.shape, space, surface.degenerate);
     }
     check_size(surface.mesh, file);
-    Turner(surface, file).turn();
-    set_normals(surface.mesh);
+    judge_surface(surface, file);
     describe(surface, file);
     return surface;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "planning_io/plan/plan_import.h"
+#include "planning_io/surface/shape_file.h"
 #include "planning_io/types/triangle_mesh.h"
 #include "planning_io/types/volume.h"
 
@@ -34,6 +35,13 @@ struct SurfaceFile {
 /// or larger than 600 mm; more than 0.1 % of the edges with three triangles or more, or sides that cannot be turned
 /// alike. A closed piece is turned so that its volume is positive, an open one so that it faces away from its middle.
 SurfaceFile read_surface(const std::filesystem::path& file, const SurfaceSettings& settings = {});
+
+/// A file's triangles as a surface in ct: `read_surface` without its bounds of size, of points that are welded already.
+/// `degenerate`: triangles that were left out before.
+SurfaceFile surface_of(const Shape& welded, Space space, std::size_t degenerate, const std::filesystem::path& file);
+
+/// Looks at the edges of `surface.mesh`, turns it outwards and gives it normals. Throws InputError as `read_surface`.
+void judge_surface(SurfaceFile& surface, const std::filesystem::path& file);
 
 /// Checks that the surface belongs to the volume: at least 95 % of its vertices lie inside the box of the volume, and a
 /// CT has an edge there: at 75 % of the vertices at least it is brighter 1.5 mm under the surface than 1.5 mm over it.

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "planning_io/types/triangle_mesh.h"
+
 namespace planlight {
 
 using Colour = std::array<float, 3>;  ///< RGB in [0,1]
@@ -47,12 +49,20 @@ struct CutPlane {
     std::optional<Colour> colour;
 };
 
+/// What an instrument must not hurt: a nerve, a vessel, the dura, the root of a tooth. It is not drawn; the items are
+/// measured against it.
+struct RiskStructure {
+    std::string name;
+    TriangleMesh surface;  ///< closed
+};
+
 /// All that is to be shown on the patient, in ct (LPS, mm).
 struct Plan {
     std::vector<Trajectory> trajectories;
     std::vector<Borehole> boreholes;
     std::vector<OsteotomyLine> osteotomy_lines;
     std::vector<CutPlane> cut_planes;
+    std::vector<RiskStructure> risk_structures;  ///< no items: `size` does not count them
 
     std::size_t size() const {
         return trajectories.size() + boreholes.size() + osteotomy_lines.size() + cut_planes.size();

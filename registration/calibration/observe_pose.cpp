@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "planning_io/types/statistics.h"
+#include "registration/scan/check/camera_gamma.h"
 #include "registration/scan/check/check_sequence.h"
 #include "registration/scan/decode/gray_code.h"
 
@@ -156,7 +157,12 @@ std::string wrong_in_sequence(std::span<const GrayImage> frames, const StripeSet
     const auto patterns = stripes.phase_steps == 0 ? gray_code_patterns(stripes) : stripe_sequence(stripes);
     const SequenceCheck check = check_sequence(frames, stripes, patterns, true);
     if (check.problems.empty()) return {};
-    return fmt::format("{} ({:.0f} % of the lit pixels)", check.problems[0].what, 100 * check.problems[0].share);
+    ScanCapture capture;
+    capture.stripes = stripes;
+    if (stripes.phase_steps == 0) capture.partial = patterns;
+    const double gamma = camera_gamma({frames.begin(), frames.end()}, uniform_light_frames(capture));
+    return fmt::format("{} ({:.0f} % of the lit pixels){}", check.problems[0].what, 100 * check.problems[0].share,
+                       said_of_gamma(gamma));
 }
 
 }  // namespace

@@ -75,7 +75,9 @@ void judge_mirror_and_scale(const RegistrationSettings& settings, const Registra
                     100 * std::abs(1 / result.scale - 1), result.scale < 1 ? "larger" : "smaller");
     const bool far = scale_off > std::max(settings.far_too_much_scale, 2 * result.scale_sigma);
     judgement.no_if(far, another);
-    judgement.ask_if(!far && scale_off > std::max(settings.max_scale_error, 1.5 * result.scale_sigma), another);
+    judgement.ask_if(!far && (scale_off > std::max(settings.max_scale_error, 1.5 * result.scale_sigma) ||
+                              scale_off > std::max(settings.clear_scale_error, 4 * result.scale_sigma)),
+                     another);
 }
 
 }  // namespace

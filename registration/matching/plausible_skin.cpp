@@ -18,7 +18,7 @@ using Eigen::VectorXd;
 /// jaw, a drape's edge) does not pull the pose. Scaled by the median, so that skin which moved by much is not left
 /// out.
 VectorXd own_parts(const VectorXd& residual_mm) {
-    constexpr double kLeastScale_mm = 0.3, kMedians = 1.5, kLeastWeight = 0.02, kBeyond = 20;
+    constexpr double kLeastScale_mm = 0.15, kMedians = 1.5, kLeastWeight = 0.02, kBeyond = 20;
     std::vector<double> sizes(residual_mm.data(), residual_mm.data() + residual_mm.size());
     for (double& size : sizes) size = std::abs(size);
     const auto middle = median(sizes);

@@ -34,7 +34,7 @@ std::string unfit(const PointCloud& cloud, const RegistrationSettings& settings,
     const Eigen::Vector3d extents = extents_mm(cloud);
     if (extents[1] < settings.min_extent_mm)
         return fmt::format("the scan covers only {:.0f} mm x {:.0f} mm; at least {:.0f} mm both ways are needed",
-                           extents[0], extents[1], settings.min_extent_mm);
+                           std::floor(extents[0]), std::floor(extents[1]), settings.min_extent_mm);
     return {};
 }
 

@@ -58,6 +58,7 @@ struct RegistrationSettings {
     AmongClothLimits among_cloth;
     double far_too_much_scale = 0.06;  ///< of the scan against the CT, and 2 of its sigmas; above: no
     double max_scale_error = 0.015;    ///< of the scan against the CT, and 1.5 of its sigmas; above: ask
+    double clear_scale_error = 0.008;  ///< the same, and 4 of its sigmas
 };
 
 /// Finds the patient without help: initial match, ICP, verdict with evidence. `patient` equals `rig` at the scan

@@ -34,6 +34,7 @@ const std::map<std::string, std::vector<std::string>> kServes{
     {"planning_io/dicom_net/move_series.cpp", {"fetch"}},
     {"planning_io/plan/", {"prepare", "plan", "demo", "simulate"}},
     {"planning_io/surface/dicom_seg.cpp", {"prepare"}},
+    {"planning_io/surface/risk_structure_file.cpp", {"prepare", "plan"}},
     {"planning_io/surface/roi_surface.cpp", {"prepare"}},
     {"planning_io/surface/surface_file.cpp", {"prepare"}},
     {"planning_io/surface/mesh_file.cpp", {"register"}},

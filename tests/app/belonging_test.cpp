@@ -53,6 +53,7 @@ TEST(RigOfAMatch, DecidesWhetherItMayBeUsed) {
     const RegistrationResult refused = match_with(a_state(V::not_trusted));
     EXPECT_EQ(refused.verdict, Verdict::no);
     EXPECT_NE(refused.reasons.front().find("the projector moved"), std::string::npos);
+    EXPECT_EQ(refused.reasons.at(1), a_state(V::not_trusted).remedy) << "what is to be done about it";
     EXPECT_EQ(match_with(std::nullopt).verdict, Verdict::yes) << "the cloud of another scanner";
 }
 

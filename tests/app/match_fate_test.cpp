@@ -157,6 +157,8 @@ TEST_F(FateOfAMatch, OneOfAnEarlierSessionThatDidNotFitMayBeTriedAgainAndIsNotEx
 
 TEST_F(FateOfAMatch, ADoubtfulOneOfAnEarlierSessionIsNotReportedEither) {
     keep("earlier", Verdict::ask);
+    resume(false, 0);
+    EXPECT_EQ(told(), (Told{MatchFate::unconfirmed, "-", "-", -1})) << "that it did not fit makes it no surer";
     resume(true, 0.4);
     EXPECT_EQ(told(), (Told{MatchFate::unconfirmed, "-", "-", -1}));
     ask("confirm");
@@ -191,6 +193,21 @@ TEST_F(FateOfAMatch, OfAnAnonymousRecordingIsReportedThoughItWasNotKept) {
     find(Verdict::yes, "first", 0.3);
     chunks_.pop_back();
     EXPECT_EQ(told(), (Told{MatchFate::stands, "-", "-", 0.3}));
+}
+
+// A full disk refuses the large piece first, and a session may be killed between the two.
+TEST_F(FateOfAMatch, WhoseOwnPieceIsLostIsNotExportedAsTheOneBefore) {
+    ask("scan");
+    find(Verdict::yes, "first", 0.3);
+    ask("scan");
+    find(Verdict::yes, "second", 0.2);
+    chunks_.pop_back();
+    EXPECT_EQ(told(), (Told{MatchFate::stands, "-", "-", 0.2}));
+    ask("scan");
+    find(Verdict::ask, "third", 0.8);
+    chunks_.pop_back();
+    ask("confirm");
+    EXPECT_EQ(told(), (Told{MatchFate::stands, "-", "-", 0.8}));
 }
 
 }  // namespace

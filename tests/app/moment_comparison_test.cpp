@@ -167,7 +167,7 @@ TEST_F(MomentOfSession, IsShownWithThePlaceThatWasPicked) {
     EXPECT_EQ(place_near(*shown, 0, *seen->pixel[0] + Eigen::Vector2d(0.2, 0.1)), number);
     EXPECT_FALSE(place_near(*shown, 0, Eigen::Vector2d(-200, -200)));
     EXPECT_NE(seen->words.find("mm beside the plan"), std::string::npos) << seen->words;
-    desk.take({ReviewWish::Kind::pick, 0, number});
+    desk.take({ReviewWish::Kind::pick, 0, seen->p_in_ct});
     EXPECT_EQ(desk.model()->picked, number);
     desk.take({ReviewWish::Kind::frame_before});
     const auto before = settled();

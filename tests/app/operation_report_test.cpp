@@ -7,8 +7,6 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "app/recording/frame_choice.h"
-#include "app/recording/recorded_inputs.h"
 #include "app/recording/recording_head.h"
 #include "app/report/report_beside.h"
 #include "planning_io/recording/packed_pictures.h"
@@ -380,55 +378,6 @@ TEST_F(Operation, OfARecordingThatWasCutIsToldUpToThereAndSaysSo) {
 TEST_F(Operation, EventsThatCannotBeUnderstoodAreRefused) {
     event({{"what", "updated"}, {"at_ns", "soon"}});
     EXPECT_THROW(facts(), DamagedFileError);
-}
-
-TEST(FrameChoice, KeepsWithinItsBudgetWhateverHappens) {
-    for (const double bytes : {250e3, 1.4e6})       // of a frame in the paper's room, in a modern one
-        for (const int event_every : {0, 25, 1}) {  // frames
-            FrameChoice choice;
-            double kept = 0;
-            for (int i = 0; i < 3600 * 25; ++i) {
-                if (choice.keep(i * std::chrono::milliseconds(40), bytes)) kept += bytes;
-                if (event_every > 0 && i % event_every == 0)
-                    kept += bytes * static_cast<double>(choice.event(12, bytes));
-            }
-            EXPECT_LE(kept, 0.69e9) << bytes << " bytes a frame, an event every " << event_every;
-            EXPECT_GE(kept, 0.3e9) << bytes << " bytes a frame, an event every " << event_every;
-        }
-}
-
-TEST(FrameChoice, KeepsTheFramesRoundAnEvent) {
-    FrameChoice choice;
-    int kept = 0;
-    for (int i = 0; i < 25; ++i) kept += choice.keep(i * std::chrono::milliseconds(40), 250e3);
-    EXPECT_EQ(kept, 1) << "nothing has happened";
-    EXPECT_EQ(choice.event(12, 250e3), 12u);
-    kept = 0;
-    for (int i = 25; i < 50; ++i) kept += choice.keep(i * std::chrono::milliseconds(40), 250e3);
-    EXPECT_EQ(kept, 12);
-}
-
-TEST(RecordedInputs, ComeBackAsTheyWere) {
-    using Kind = RecordedInput::Kind;
-    const std::vector<RecordedInput> inputs{{Kind::clock, Instant(-5), {}, 0, {}, {}},
-                                            {Kind::shown, Instant(7), Instant(9), 0, "hash", {}},
-                                            {Kind::dark, {}, {}, 0, {}, {}},
-                                            {Kind::frame, Instant(1), Instant(2), 77, "other", {}},
-                                            {Kind::failed, {}, {}, 0, "Left camera: is gone", "Plug it in."},
-                                            {Kind::stopped, {}, {}, 0, "DARK", "Scan again."}};
-    const std::string bytes = packed(inputs);
-    const auto again = unpacked_inputs(bytes, "x");
-    ASSERT_EQ(again.size(), inputs.size());
-    EXPECT_EQ(packed(again), bytes);
-    EXPECT_EQ(again[3].number, 77u);
-    EXPECT_EQ(again[4].remedy, "Plug it in.");
-    int refused = 0;
-    for (std::size_t at = 0; at < bytes.size(); ++at) try {
-            static_cast<void>(unpacked_inputs(std::string_view(bytes).substr(0, at), "x"));
-        } catch (const DamagedFileError&) {
-            ++refused;
-        }
-    EXPECT_EQ(refused, static_cast<int>(bytes.size() - inputs.size())) << "only between two entries is a cut an end";
 }
 
 }  // namespace

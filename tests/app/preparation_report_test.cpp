@@ -63,6 +63,18 @@ TEST(PlanFacts, DepthAndAngleAreThoseOfThePlan) {
     EXPECT_EQ(side_in_words(1.4), "in the middle");
 }
 
+TEST(PlanFacts, OnlyWhatGoesThroughAStructureStopsAndAllThatWarnsIsNamed) {
+    EXPECT_EQ(gravity_of(Clearances{}), Gravity::none);
+    EXPECT_EQ(risk_in_words({}), "–");
+    const Clearance nerve{"Facial nerve", 4.19, false}, near{"Sinus", 0.04, false}, dura{"Dura", 0, true};
+    EXPECT_EQ(gravity_of(Clearances{nerve}), Gravity::none);
+    EXPECT_EQ(risk_in_words({nerve}), "4.1 mm to Facial nerve");
+    EXPECT_EQ(gravity_of(Clearances{near, nerve}), Gravity::look) << "a tenth is not through";
+    EXPECT_EQ(risk_in_words({near, nerve}), "0.0 mm to Sinus: near");
+    EXPECT_EQ(gravity_of(Clearances{dura, near, nerve}), Gravity::stop);
+    EXPECT_EQ(risk_in_words({dura, near, nerve}), "through Dura; 0.0 mm to Sinus");
+}
+
 TEST(PlanFacts, AnItemThatTheLightNamesOtherwiseHasThatName) {
     Plan plan;
     for (const char* name : {"Hole", "Long name of a hole", "Loch"})

@@ -204,5 +204,44 @@ TEST_F(CommandsTest, AnAnonymousCaseHoldsNoNameIdOrPathOfTheSeries) {
     }
 }
 
+/// A closed cube of that edge round a point, as OBJ.
+std::string cube(const Eigen::Vector3d& centre, double edge_mm, const std::string& header) {
+    std::string text = header;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Eigen::Vector3d p =
+            centre + edge_mm * Eigen::Vector3d((corner & 1) - 0.5, (corner >> 1 & 1) - 0.5, (corner >> 2) - 0.5);
+        text += "v " + std::to_string(p.x()) + " " + std::to_string(p.y()) + " " + std::to_string(p.z()) + "\n";
+    }
+    return text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+}
+
+// The trajectory of the example plan runs from (139.68, -190.04, 120.85) to (132.49, -134.29, 99.87).
+TEST_F(CommandsTest, WhatComesNearARiskStructureIsSaidEverywhere) {
+    const Eigen::Vector3d target(132.49, -134.29, 99.87);
+    std::ofstream(root() / "Facial nerve.obj") << cube(target, 6, "# SPACE=LPS\n");
+    std::ofstream(root() / "Orbit.obj") << cube(target + Eigen::Vector3d(0, 13, 0), 6, "");
+    const std::string risk = " --risk 'Facial nerve.obj' --risk-frame LPS --risk Orbit.obj ";
+    const auto run =
+        run_planlight("prepare " + patient() + " --plan " + plan() + risk + "--voxel-mm 4 --json --out risky", root());
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_NE(run.err.find("it goes through Facial nerve"), std::string::npos) << run.err;
+    const json result = json::parse(run.out);
+    ASSERT_EQ(result["risk_structures"].size(), 2U);
+    EXPECT_EQ(result["risk_structures"][1]["name"], "Orbit");
+    const json way = result["items"][5]["risk"];
+    EXPECT_EQ(way[0]["structure"], "Facial nerve");
+    EXPECT_TRUE(way[0]["through"].get<bool>());
+    EXPECT_FALSE(way[1]["through"].get<bool>());
+    EXPECT_GT(way[1]["distance_mm"].get<double>(), 5);
+    const std::string page = read_text(root() / "risky" / "report.html");
+    EXPECT_NE(page.find("<td class=\"stop\">through Facial nerve</td>"), std::string::npos);
+    const auto list = run_planlight("plan " + plan() + " --case risky --json", root());
+    EXPECT_EQ(json::parse(list.out)["items"][5]["risk"], way) << "those of the case";
+    EXPECT_NE(result["case"], json::parse(prepared().out)["case"]);
+    expect_one_clear_sentence(run_planlight("plan " + plan() + " --risk Orbit.obj", root()), 3,
+                              "does not say its coordinate system");
+    expect_one_clear_sentence(run_planlight("plan 'Facial nerve.obj'", root()), 3, "closed surface");
+}
+
 }  // namespace
 }  // namespace planlight::test

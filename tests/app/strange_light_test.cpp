@@ -149,6 +149,41 @@ TEST_F(StrangeLight, OneSmallCircle) {
     expect_honest("one hole of 2 mm", plan);
 }
 
+// One item is looked at, and what it is lit by is covered: the dim ring beside it is not its light.
+TEST_F(StrangeLight, ADimNeighbourIsNotTakenForTheItemOfTheMoment) {
+    const CaseDrawing before(*case_);
+    const SkinSurface& skin = before.skin;
+    const auto at = skin.nearest(middle());
+    const Vector3d beside = at.normal_in_ct.cross(Vector3d(0.2, 0.1, 1)).normalized();
+    Plan plan;
+    for (int i = 0; i < 2; ++i) {
+        Borehole hole;
+        hole.name = fmt::format("Hole {}", i + 1);
+        hole.position_in_ct = skin.nearest(at.p_in_ct + 9.0 * i * beside).p_in_ct;
+        hole.diameter_mm = 7;
+        plan.boreholes.push_back(hole);
+    }
+    Case the_case = *case_;
+    the_case.plan = plan;
+    const CaseDrawing drawing(the_case);
+    simulation::SimulatedRig rig(*volume_, points_of(plan), room_);
+    const RigidTransform rig_from_ct = rig.true_rig_from_ct(rig.clock().now());
+    const DrawingRenderer renderer(drawing.skin, rig.calibration().projector);
+    const auto check = [&](int lit_item, double brightness) {
+        RenderSettings render;
+        render.only_item = lit_item;
+        render.brightness = brightness;
+        const RgbImage picture = renderer.render(drawing.drawing, rig_from_ct, RigidTransform::Identity(), render);
+        const Instant lit = rig.projector().show(picture, rig.clock().now() + 10s);
+        LightChecker checker(drawing.drawing, drawing.skin, rig.calibration(), {}, 0);
+        return checker.look(rig_from_ct, rig.cameras().grab(lit, 1s));
+    };
+    const LightCheck own = check(0, 1), other = check(1, 0.25);
+    for (const SeenSegment& segment : other.segments) EXPECT_EQ(segment.item, 0);
+    EXPECT_GE(own.seen_share(), 0.8);
+    EXPECT_LE(other.seen_share(), 0.2) << other.seen << " of " << other.expected;
+}
+
 TEST_F(StrangeLight, APlanFullOfText) {
     Plan plan;
     for (int i = 0; i < 16; ++i) {

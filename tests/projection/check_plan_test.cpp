@@ -97,6 +97,38 @@ TEST(CheckPlan, WhatLiesOutsideTheVolumeIsStopped) {
         said(check_plan(good_plan(), ball(), box).stops, "O1: its point (53, 16, 57) lies 8 mm outside the volume"));
 }
 
+TEST(CheckPlan, ARiskStructureOutsideTheBodyOrTheVolumeIsStopped) {
+    Plan plan = good_plan();
+    const auto with = [&](const Vector3d& centre, const std::optional<VolumeBox>& box = std::nullopt) {
+        plan.risk_structures = {{"Nerve", test::ball_mesh(5, 3)}};
+        for (auto& p : plan.risk_structures[0].surface.vertices_in_ct) p += centre;
+        return check_plan(plan, ball(), box);
+    };
+    EXPECT_TRUE(with({40, 0, 0}).stops.empty());
+    EXPECT_TRUE(with({40, 0, 0}).warnings.empty());
+    EXPECT_TRUE(with({79, 0, 0}).stops.empty());
+    EXPECT_TRUE(said(with({79, 0, 0}).warnings, "of the risk structure lies outside the body"));
+    EXPECT_TRUE(with({86.5, 0, 0}).stops.empty()) << "1.5 mm above the skin: a nerve in the skin, drawn roughly";
+    EXPECT_TRUE(said(with({95, 0, 0}).stops, "Nerve: the risk structure lies wholly outside the body, 10."));
+    VolumeBox box;
+    box.ct_from_voxel.translation() = Vector3d(-90, -90, -90);
+    box.size = {181, 181, 181};
+    EXPECT_TRUE(with({40, 0, 0}, box).stops.empty());
+    box.ct_from_voxel.translation().z() = -58;  // good_plan lies above it
+    EXPECT_TRUE(said(with({0, 0, -58}, box).stops, "of the risk structure lies outside the volume"));
+    EXPECT_TRUE(said(with({0, 0, -55.2}, box).warnings, "Nerve: a part of the risk structure lies outside"));
+}
+
+TEST(CheckPlan, ARiskStructureOnTheOtherSideThanItsNameSaysIsStopped) {
+    const SkinSurface head(test::analytic_head_mesh(4));
+    Plan plan;
+    plan.boreholes.push_back({"B", head.nearest({0, -120, 40}).p_in_ct, {}, 7, 6, {}});
+    plan.risk_structures = {{"Facial nerve left", test::ball_mesh(5, 3)}};
+    for (auto& p : plan.risk_structures[0].surface.vertices_in_ct) p.x() -= 40;  // LPS: to the right
+    EXPECT_TRUE(said(check_plan(plan, head).stops, "Facial nerve left: it is named left and lies"))
+        << "a mirrored file is noticed by its name";
+}
+
 TEST(CheckPlan, OnlyWordsThatMeanASideClaimOne) {
     for (const char* name :
          {"left", "Left burr hole", "B1 LINKS", "trajectory-links", "L frontal", "T3_L", "incision gauche"})

@@ -251,12 +251,12 @@ TEST(LabelsInLight, FortyItemsHaveNamesOrCodesThatOverlapNothingAndNoMoreTextTha
     test::keep_picture(picture, "forty_items_one_of_moment.png");
 }
 
-/// What each item's label says and how high its letters are.
-std::map<int, std::pair<std::string, double>> said(const PlanDrawing& drawing) {
-    std::map<int, std::pair<std::string, double>> said;
+/// Each item's label.
+std::map<int, Label> label_of_each(const PlanDrawing& drawing) {
+    std::map<int, Label> labels;
     for (const Label& label : drawing.labels)
-        if (!label.of_moment) said[label.item] = {label.words, label.text_height_mm};
-    return said;
+        if (!label.of_moment) labels[label.item] = label;
+    return labels;
 }
 
 TEST(LabelsInLight, LettersAreLargerWhereThereIsRoomAndThatCostsNoOtherWords) {
@@ -271,15 +271,17 @@ TEST(LabelsInLight, LettersAreLargerWhereThereIsRoomAndThatCostsNoOtherWords) {
                                       {}});
         DrawingSettings settings;
         settings.light = LightView{projector(), RigidTransform::Identity()};
-        const auto lit = said(draw_plan(plan, ball(), settings));
+        const auto lit = label_of_each(draw_plan(plan, ball(), settings));
         settings.largest_text_mm = settings.text_height_mm;
-        const auto of_one_height = said(draw_plan(plan, ball(), settings));
+        const auto of_one_height = label_of_each(draw_plan(plan, ball(), settings));
         ASSERT_EQ(lit.size(), of_one_height.size()) << holes;
         double smallest_mm = 1e9, largest_mm = 0;
         for (const auto& [item, label] : lit) {
-            EXPECT_EQ(label.first, of_one_height.at(item).first);
-            EXPECT_EQ(of_one_height.at(item).second, 5);
-            smallest_mm = std::min(smallest_mm, label.second), largest_mm = std::max(largest_mm, label.second);
+            EXPECT_EQ(label.words, of_one_height.at(item).words);
+            EXPECT_EQ(of_one_height.at(item).text_height_mm, 5);
+            EXPECT_LE(label.gap_mm, of_one_height.at(item).gap_mm) << label.words;
+            smallest_mm = std::min(smallest_mm, label.text_height_mm);
+            largest_mm = std::max(largest_mm, label.text_height_mm);
         }
         EXPECT_GT(largest_mm, 5) << holes;
         if (holes == 1) {

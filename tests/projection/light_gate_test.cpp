@@ -179,6 +179,30 @@ TEST(LightGate, LinesThatLampsOutshineAreWarnedOf) {
     EXPECT_FALSE(warned(0.2, false)) << "not measured";
 }
 
+TEST(LightGate, LampsAreNamedWhereTheyOutshineNearlyAllAndTheWarningDoesNotFlicker) {
+    const auto says = [](const LightGate::Ruling& ruling, const char* words) {
+        return std::any_of(ruling.details.begin(), ruling.details.end(),
+                           [&](const std::string& detail) { return detail.find(words) != std::string::npos; });
+    };
+    LightGate gate;
+    Instant now{};
+    gate.verify(now);
+    EXPECT_TRUE(says(after(gate, now, 10, seen_at(0.1, 2, 40)), "lamps"));
+    LightCheck check = seen_at(0.1);
+    check.brighter = 0.02;
+    EXPECT_TRUE(says(after(gate, now, 10, check), "less than 10 %"));
+    check.brighter = 0.27;
+    EXPECT_TRUE(says(after(gate, now, 100, check), "less than 30 %"));
+    for (const double brighter : {0.31, 0.29, 0.33, 0.31}) {
+        check.brighter = brighter;
+        EXPECT_TRUE(says(after(gate, now, 100, check), "lamps")) << brighter;
+    }
+    check.brighter = 0.4;
+    EXPECT_FALSE(says(after(gate, now, 100, check), "lamps"));
+    check.brighter = 0.33;
+    EXPECT_FALSE(says(after(gate, now, 100, check), "lamps"));
+}
+
 TEST(LightGate, OneDirectionIsNoPlace) {
     LightGate gate;
     Instant now{};

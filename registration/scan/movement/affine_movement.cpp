@@ -3,7 +3,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "planning_io/types/statistics.h"
 #include "registration/scan/check/picture_noise.h"
 
 namespace planlight::affine_movement {
@@ -52,24 +54,26 @@ void spread(std::vector<std::uint8_t>& values, int width, int height, int reach)
 
 }  // namespace
 
-float Pictures::even_at(const Moment& moment, int x, int y) const {
-    const auto mean = [&](std::size_t k) {
-        const GrayImage& frame = frames[k];
-        float sum = 0;
-        for (int dy = -1; dy <= 1; ++dy) {
-            const std::uint8_t* p = &frame.pixels[frame.index(x, y + dy)];
-            sum += light[p[-1]] + light[p[0]] + light[p[1]];
-        }
-        return sum / 9;
-    };
-    if (moment.lit_only) return mean(moment.frames.front()) + mean(black);
+float Pictures::mean_at(std::size_t frame, int x, int y) const {
+    const GrayImage& picture = frames[frame];
     float sum = 0;
-    for (const std::size_t k : moment.frames) sum += mean(k);
+    for (int dy = -1; dy <= 1; ++dy) {
+        const std::uint8_t* p = &picture.pixels[picture.index(x, y + dy)];
+        sum += light[p[-1]] + light[p[0]] + light[p[1]];
+    }
+    return sum / 9;
+}
+
+float Pictures::even_at(const Moment& moment, int x, int y) const {
+    if (moment.lit_only) return mean_at(moment.frames.front(), x, y) + mean_at(black, x, y);
+    float sum = 0;
+    for (std::size_t k = 0; k < moment.frames.size(); ++k)
+        sum += (moment.weights.empty() ? 1 : moment.weights[k]) * mean_at(moment.frames[k], x, y);
     return sum * 2 / static_cast<float>(moment.frames.size());
 }
 
 Surface::Surface(const Pictures& pictures, const Moment& first, const std::vector<Moment>& moments)
-    : pictures_(pictures) {
+    : pictures_(pictures), first_(first) {
     const GrayImage& white = pictures.frames[pictures.white];
     std::vector<std::uint8_t> spoilt = brightest(pictures, moments);
     for (std::uint8_t& value : spoilt) value = value >= kSaturated;
@@ -92,6 +96,7 @@ Surface::Surface(const Pictures& pictures, const Moment& first, const std::vecto
         p.patch = static_cast<int>((p.y - low.y()) / side.y()) * kPatchesAcross +
                   static_cast<int>((p.x - low.x()) / side.x());
     patches_ = kPatchesAcross * kPatchesAcross;
+    across_ = across_pixels();
 }
 
 void Surface::choose(const std::vector<std::uint8_t>& spoilt, const Moment& first) {
@@ -118,15 +123,97 @@ void Surface::choose(const std::vector<std::uint8_t>& spoilt, const Moment& firs
         const float dx = 0.5F * (pictures_.even_at(first, x + 1, y) - pictures_.even_at(first, x - 1, y)),
                     dy = 0.5F * (pictures_.even_at(first, x, y + 1) - pictures_.even_at(first, x, y - 1));
         if (std::hypot(dx, dy) > kSteepest) continue;
-        pixels_.push_back({x, y, 0, pictures_.even_at(first, x, y), dx, dy, light_at(white.index(x, y))});
+        pixels_.push_back({x, y, 0, pictures_.even_at(first, x, y), dx, dy, light_at(white.index(x, y)),
+                           pictures_.mean_at(pictures_.black, x, y)});
     }
+    // A camera's own black is no light of a room, nor is its noise; of little light a tenth is nothing.
+    constexpr double kLeastRoom_grey = 6;
+    std::vector<double> room;
+    for (const Pixel& p : pixels_) room.push_back(static_cast<double>(p.room));
+    const double least = quantile(room, 0.05), most = quantile(std::move(room), 0.95);
+    for (Pixel& p : pixels_)
+        p.room = most - least < kLeastRoom_grey ? 0 : std::max(0.0F, p.room - static_cast<float>(least));
+}
+
+Surface::AcrossPixels Surface::across_pixels() const {
+    constexpr std::size_t kMost = 10000;
+    constexpr int kSide_px = kReach_px - 1;  // the means of 3 x 3 pixels there are lit as well
+    AcrossPixels across;
+    const std::size_t every = 1 + pixels_.size() / kMost;
+    for (std::size_t i = 0; i < pixels_.size(); i += every)
+        for (const auto& [dx, dy] : {std::pair(kSide_px, 0), std::pair(0, kSide_px)}) {
+            const Pixel& p = pixels_[i];
+            across.pairs.push_back({p.x - dx, p.y - dy, p.x + dx, p.y + dy});
+        }
+    const auto n = static_cast<Eigen::Index>(across.pairs.size());
+    across.first.resize(n);
+    across.slopes.resize(n, kAffine);
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const AcrossPixels::Pair& at = across.pairs[static_cast<std::size_t>(i)];
+        const auto even = [&](int x, int y) { return pictures_.even_at(first_, x, y); };
+        const auto slopes = [&](int x, int y) {
+            return by_map(x, y, 0.5 * (even(x + 1, y) - even(x - 1, y)), 0.5 * (even(x, y + 1) - even(x, y - 1)));
+        };
+        across.first[i] = even(at.x1, at.y1) - even(at.x0, at.y0);
+        across.slopes.row(i) = (slopes(at.x1, at.y1) - slopes(at.x0, at.y0)).transpose();
+    }
+    return across;
+}
+
+Moment Surface::steadied(Moment moment) const {
+    if (moment.lit_only || moment.frames.size() < 2 || pixels_.empty()) return moment;
+    constexpr double kUsual = 0.1;  // lamps change by this much, one standard deviation
+    const auto frames = static_cast<Eigen::Index>(moment.frames.size()), n = across_.first.size();
+    const float scale = 2 / static_cast<float>(frames);
+    // By how much each frame but the last counts more, which the last counts less.
+    Eigen::MatrixXd rows(n, frames - 1 + kAffine);
+    Eigen::VectorXd left = across_.first;
+    for (Eigen::Index i = 0; i < n; ++i) {
+        const AcrossPixels::Pair& at = across_.pairs[static_cast<std::size_t>(i)];
+        const auto difference = [&](Eigen::Index k) {
+            const std::size_t frame = moment.frames[static_cast<std::size_t>(k)];
+            return scale * (pictures_.mean_at(frame, at.x1, at.y1) - pictures_.mean_at(frame, at.x0, at.y0));
+        };
+        const float last = difference(frames - 1);
+        left[i] -= last;
+        for (Eigen::Index k = 0; k + 1 < frames; ++k) {
+            rows(i, k) = difference(k);
+            left[i] -= rows(i, k);
+            rows(i, k) -= last;
+        }
+    }
+    rows.rightCols<kAffine>() = across_.slopes;
+    Eigen::VectorXd found = Eigen::VectorXd::Zero(rows.cols()), prior = found;
+    prior.head(frames - 1).setConstant(1 / (kUsual * kUsual));  // of a movement there is none
+    for (int round = 0; round < 3; ++round) {                   // edges that have moved, glints: less and less weight
+        const Eigen::VectorXd now = left - rows * found;
+        std::vector<double> sizes(now.data(), now.data() + now.size());
+        for (double& size : sizes) size = std::abs(size);
+        const double sigma = std::max(0.1, 1.4826 * median(std::move(sizes)));
+        const Eigen::VectorXd trust = now.unaryExpr(
+            [&](double r) { return std::min(1.0, 2 * sigma / std::max(1e-9, std::abs(r))) / (sigma * sigma); });
+        Eigen::MatrixXd normal = rows.transpose() * trust.asDiagonal() * rows;
+        normal.diagonal() += prior;
+        found += normal.ldlt().solve(rows.transpose() * trust.asDiagonal() * now - prior.cwiseProduct(found));
+    }
+    // Less than this leaves no more of a stripe than a camera's noise.
+    constexpr double kLeast = 0.004;
+    const Eigen::VectorXd more = found.head(frames - 1);
+    if (std::max(more.cwiseAbs().maxCoeff(), std::abs(more.sum())) < kLeast) return moment;
+    for (const double by : more) moment.weights.push_back(static_cast<float>(1 + by));
+    moment.weights.push_back(static_cast<float>(1 - more.sum()));
+    return moment;
 }
 
 Surface::Row Surface::by_numbers(const Pixel& p) const {
-    const double u = (p.x - centre_.x()) / scale_, v = (p.y - centre_.y()) / scale_;
     Row J;
-    J << p.dx, p.dx * u, p.dx * v, p.dy, p.dy * u, p.dy * v, -p.light;
+    J << by_map(p.x, p.y, p.dx, p.dy), -p.light, -p.room;
     return J;
+}
+
+Affine Surface::by_map(int x, int y, double dx, double dy) const {
+    const double u = (x - centre_.x()) / scale_, v = (y - centre_.y()) / scale_;
+    return Affine{{dx, dx * u, dx * v, dy, dy * u, dy * v}};
 }
 
 /// Without doubt, and so far around that no edge of a stripe is near.
@@ -138,8 +225,13 @@ bool Surface::is_lit(const Pixel& p, const Moment& moment) const {
         const float dark = pictures_.light[black.pixels[i]];
         return pictures_.light[frame.pixels[i]] - dark > 0.75F * (pictures_.light[white.pixels[i]] - dark);
     };
-    return lit(p.x, p.y) && lit(p.x - kReach_px, p.y) && lit(p.x + kReach_px, p.y) && lit(p.x, p.y - kReach_px) &&
-           lit(p.x, p.y + kReach_px);
+    const auto lit_at = [&](int x, int y) {
+        return x >= 0 && y >= 0 && x < frame.width && y < frame.height && lit(x, y);
+    };
+    for (const int px : {kReach_px, moment.clear_px})
+        if (!lit_at(p.x - px, p.y) || !lit_at(p.x + px, p.y) || !lit_at(p.x, p.y - px) || !lit_at(p.x, p.y + px))
+            return false;
+    return lit(p.x, p.y);
 }
 
 Laid Surface::lay(const Moment& later) const {
@@ -156,6 +248,9 @@ Laid Surface::lay(const Moment& later) const {
         A.selfadjointView<Eigen::Lower>().rankUpdate(rows.back());
     }
     if (rows.size() < kLeastPixels) return laid;
+    // A room's light changes by a tenth (one sigma), and a grey value scatters by two: of little of it little is told.
+    constexpr double kRoom = 4 / (0.1 * 0.1);
+    A(kNumbers - 1, kNumbers - 1) += kRoom;
     const Numbers weights = A.diagonal().cwiseMax(1e-12).cwiseSqrt().cwiseInverse();
     const Normal scaled = weights.asDiagonal() * Normal(A.selfadjointView<Eigen::Lower>()) * weights.asDiagonal();
     const Eigen::LDLT<Normal> normal(scaled);
@@ -171,6 +266,7 @@ Laid Surface::lay(const Moment& later) const {
         }
         Numbers sum = Numbers::Zero();
         for (const Numbers& score : scores) sum += score;
+        sum[kNumbers - 1] -= kRoom * numbers[kNumbers - 1];
         const Numbers step = weights.asDiagonal() * normal.solve(weights.asDiagonal() * sum);
         numbers += step;
     }

@@ -28,12 +28,15 @@ struct NamedMoment {
 std::vector<NamedMoment> moments_of(const ScanCapture& capture, const std::vector<UniformLightFrame>& even) {
     std::vector<NamedMoment> moments;
     for (const UniformLightFrame& moment : even) moments.push_back({moment.name, moment.when, {moment.frames, false}});
+    // Light spreads under the skin: where fringes show the end of the sequence, bits are looked at far from their
+    // edges.
+    const int clear_px = even.size() > 1 ? 9 : 4;
     const auto patterns = capture.partial.empty() ? stripe_sequence(capture.stripes) : capture.partial;
     for (std::size_t i = 0; i < patterns.size(); ++i) {
         if (patterns[i].kind != Kind::gray_bit) continue;
         if (i + 1 < patterns.size() && patterns[i + 1].kind == Kind::gray_bit_inverse) continue;
         moments.push_back(
-            {patterns[i].name, static_cast<double>(i) / static_cast<double>(patterns.size()), {{i}, true}});
+            {patterns[i].name, static_cast<double>(i) / static_cast<double>(patterns.size()), {{i}, true, clear_px}});
     }
     std::stable_sort(moments.begin(), moments.end(), [](const auto& a, const auto& b) { return a.when < b.when; });
     return moments;
@@ -76,7 +79,8 @@ ScanMovement seen_by(const std::vector<GrayImage>& frames, const std::vector<Uni
     const Surface surface(pictures, moments.front(), moments);
     if (!surface.enough() || moments.size() < 2) return movement;
     std::vector<Laid> laid(moments.size());
-    tbb::parallel_for(std::size_t{0}, moments.size(), [&](std::size_t i) { laid[i] = surface.lay(moments[i]); });
+    tbb::parallel_for(std::size_t{0}, moments.size(),
+                      [&](std::size_t i) { laid[i] = surface.lay(surface.steadied(moments[i])); });
     movement.moments =
         static_cast<int>(std::count_if(laid.begin(), laid.end(), [](const Laid& l) { return l.determined; }));
     movement.camera_gamma = gamma;

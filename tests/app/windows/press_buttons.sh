@@ -1,33 +1,11 @@
 #!/bin/bash
 # press_buttons.sh PROGRAM FOLDER: presses every control of the operator window with a real mouse and keyboard (xdotool)
 # on a virtual screen and compares what the window said. Exit code 77: the tools are not installed.
-program=$1 folder=$2
-for needed in xvfb-run xdotool; do command -v $needed >/dev/null || { echo "skipped: $needed is not installed"; exit 77; }; done
-if [ "$3" != inside ]; then
-  rm -rf "$folder"; mkdir -p "$folder"
-  LIBGL_ALWAYS_SOFTWARE=1 exec xvfb-run -a -s "-screen 0 1920x1080x24" "$0" "$program" "$folder" inside
-fi
-failed=0
-timeout 150 "$program" "$folder" >"$folder/said" 2>"$folder/errors" & pid=$!
-trap 'kill $pid 2>/dev/null' EXIT
-for i in $(seq 100); do [ -e "$folder/views" ] && break; kill -0 $pid 2>/dev/null || break; sleep 0.2; done
-[ -e "$folder/views" ] || { echo "FAIL the window did not open"; cat "$folder/errors"; exit 1; }
-window=$(xdotool search --name "Planlight buttons" | tail -1)
-xdotool windowfocus "$window"; sleep 0.3
+. "$(dirname "$0")/pressing.sh"
+open_window 150 views "Planlight buttons"
 
-wait_for() {  # wait_for WORD WHAT: a line WORD was said since the last look
-  for i in $(seq 20); do
-    if tail -n +$((seen + 1)) "$folder/said" | grep -qx -- "$1"; then seen=$(wc -l <"$folder/said"); echo "ok   $2"; return; fi
-    sleep 0.2
-  done
-  echo "FAIL $2: \"$1\" was not said"; failed=1; seen=$(wc -l <"$folder/said")
-}
-silent() { sleep 1; if [ "$(wc -l <"$folder/said")" != "$seen" ]; then echo "FAIL $1: $(tail -1 "$folder/said")"; failed=1; else echo "ok   $1"; fi; seen=$(wc -l <"$folder/said"); }
-click() { xdotool mousemove "$1" "$2"; sleep 0.4; xdotool mousedown 1; sleep 0.4; xdotool mouseup 1; }
 place() { cat "$folder"/{actions,views,view-buttons,landmarks,page,question,whole} 2>/dev/null | awk -v n="$1" '$1 == n { print $2, $3 }'; }
-large_enough() { awk '$4 < 72 || $5 < 72 { print "FAIL " $1 " is " $4 "x" $5 " pixels, less than 72"; bad = 1 } END { exit bad }' "$@" || failed=1; }
 
-seen=0
 wait_for "drawn 0 and 1 times" "what has not changed is not drawn, what has changed is drawn once"
 large_enough "$folder/actions" "$folder/views"
 for view in before error after; do click $(place $view); wait_for "view $view" "the view $view"; done

@@ -3,6 +3,7 @@
 // FOLDER.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -55,10 +56,12 @@ ReviewModel fake_review() {
     model.by_projector = view_of_plan(*fake.scene.plan);
     const std::array<Eigen::Vector2d, 4> corners{Eigen::Vector2d(160, 110), Eigen::Vector2d(240, 110),
                                                  Eigen::Vector2d(240, 190), Eigen::Vector2d(160, 190)};
+    Eigen::Vector3d low = fake.scene.skin->vertices_in_ct.at(0), high = low;
+    for (const auto& p : fake.scene.skin->vertices_in_ct) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    const Eigen::Vector3d middle = (low + high) / 2;  // which a view looks at
     for (std::size_t i = 0; i < corners.size(); ++i) {
         // On the head one place is in the middle of its view, and the others are off it.
-        const Eigen::Vector3d p =
-            fake.scene.plan->strokes.at(0).points_in_ct.at(0) + Eigen::Vector3d(0, 0, 500 * static_cast<double>(i));
+        const Eigen::Vector3d p = middle + Eigen::Vector3d(0, 0, 500 * static_cast<double>(i));
         model.places.push_back(
             {{corners[i], corners[i]}, p, 0.5 + 0.7 * static_cast<double>(i), fmt::format("Corner {}", i + 1)});
     }
@@ -101,8 +104,10 @@ int main(int, char** argv) {
             now.now_s = wish.at_s;
             model = std::make_shared<const ReviewModel>(now);
         } else if (wish.kind == ReviewWish::Kind::pick) {
-            said = fmt::format("pick {}", wish.picked + 1);
-            now.picked = wish.picked;
+            const auto pressed = std::find_if(now.places.begin(), now.places.end(),
+                                              [&](const auto& place) { return place.p_in_ct == wish.picked_in_ct; });
+            now.picked = static_cast<std::size_t>(pressed - now.places.begin());
+            said = fmt::format("pick {}", *now.picked + 1);
             model = std::make_shared<const ReviewModel>(now);
         } else if (wish.kind != ReviewWish::Kind::none) {
             said = name_of(wish.kind);

@@ -1,40 +1,20 @@
 #!/bin/bash
 # press_review.sh PROGRAM FOLDER: presses every control of the window of a review with a real mouse and keyboard
 # (xdotool) on a virtual screen and compares what it wanted. Exit code 77: the tools are not installed.
-program=$1 folder=$2
-for needed in xvfb-run xdotool; do command -v $needed >/dev/null || { echo "skipped: $needed is not installed"; exit 77; }; done
-if [ "$3" != inside ]; then
-  rm -rf "$folder"; mkdir -p "$folder"
-  LIBGL_ALWAYS_SOFTWARE=1 exec xvfb-run -a -s "-screen 0 1920x1080x24" "$0" "$program" "$folder" inside
-fi
-failed=0
-timeout 90 "$program" "$folder" >"$folder/said" 2>"$folder/errors" & pid=$!
-trap 'kill $pid 2>/dev/null' EXIT
-for i in $(seq 100); do [ -e "$folder/places" ] && break; kill -0 $pid 2>/dev/null || break; sleep 0.2; done
-[ -e "$folder/places" ] || { echo "FAIL the window did not open"; cat "$folder/errors"; exit 1; }
-window=$(xdotool search --name "Planlight press review" | tail -1)
-xdotool windowfocus "$window"; sleep 0.3
+. "$(dirname "$0")/pressing.sh"
+open_window 120 places "Planlight press review"
 
-wait_for() {  # wait_for WORDS WHAT: a line WORDS was said since the last look
-  for i in $(seq 30); do
-    if tail -n +$((seen + 1)) "$folder/said" | grep -qx -- "$1"; then seen=$(wc -l <"$folder/said"); echo "ok   $2"; return; fi
-    sleep 0.1
-  done
-  echo "FAIL $2: \"$1\" was not said, but: $(tail -n +$((seen + 1)) "$folder/said" | tr '\n' ',')"; failed=1; seen=$(wc -l <"$folder/said")
-}
-silent() { sleep 0.5; if [ "$(wc -l <"$folder/said")" != "$seen" ]; then echo "FAIL $1: $(tail -1 "$folder/said")"; failed=1; else echo "ok   $1"; fi; seen=$(wc -l <"$folder/said"); }
-click() { xdotool mousemove "$1" "$2"; sleep 0.2; xdotool mousedown 1; sleep 0.2; xdotool mouseup 1; }
 place() { awk -v n="$1" -v u="$2" -v v="$3" '$1 == n { printf "%d %d\n", $2 + u * $4, $3 + v * $5 }' "$folder/places"; }  # at a share of its width and height
 
-seen=0
-awk '$1 !~ /^(left|right|head|time-line)$/ && ($4 < 72 || $5 < 72) { print "FAIL " $1 " is " $4 "x" $5 " pixels, less than 72"; bad = 1 } END { exit bad }' "$folder/places" || failed=1
+grep -vE '^(left|right|head|time-line) ' "$folder/places" >"$folder/buttons"
+large_enough "$folder/buttons"
 silent "nothing is wanted of itself"
 for pair in Left:"frame before" Right:"frame after" Up:"event before" Down:"event after" Prior:"event before" Next:"event after" Home:begin End:end; do
   xdotool key "${pair%%:*}"; wait_for "${pair#*:}" "the key ${pair%%:*}"
 done
 xdotool key Right Right Right; sleep 1
-[ "$(tail -n +$((seen + 1)) "$folder/said" | grep -c "frame after")" = 3 ] && echo "ok   three presses at once are three" || { echo "FAIL three presses at once"; failed=1; }
-seen=$(wc -l <"$folder/said")
+[ "$(since | grep -c "frame after")" = 3 ] && echo "ok   three presses at once are three" || { echo "FAIL three presses at once"; failed=1; }
+looked
 for pair in Beginning:begin Event-before:"event before" Frame-before:"frame before" Frame-after:"frame after" Event-after:"event after" End:end; do
   click $(place "${pair%%:*}" 0.5 0.5); wait_for "${pair#*:}" "the button ${pair%%:*}"
 done
@@ -51,8 +31,10 @@ click $(middle left 0.34 -0.32); wait_for "pick 2" "a press on the plan in the l
 click $(middle right -0.32 0.34); wait_for "pick 4" "and in the right one"
 xdotool key z; sleep 0.5; click $(middle left 0.34 -0.32); silent "in the whole picture the plan is not there"
 click $(place Whole-picture 0.5 0.5); sleep 0.5; click $(middle left 0.34 -0.32); wait_for "pick 2" "and round the plan it is again"
+click $(place head 0.5 0.5); wait_for "pick [0-9]*" "a press on the plan on the head picks a place"
 click $(place head 0.5 0.9); silent "beside the plan nothing is picked on the head"
-xdotool key v; sleep 0.4; xdotool key v; silent "the projector's picture and back"
+xdotool key v; sleep 0.5; click $(place head 0.5 0.5); silent "in the projector's picture nothing is picked"
+xdotool key v; sleep 0.5; click $(place head 0.5 0.5); wait_for "pick [0-9]*" "and on the head again"
 xdotool key x; silent "another key says nothing"
 xdotool key q; wait_for quit "to close"
 exit $failed

@@ -188,6 +188,10 @@ TEST_P(WordsInPlace, HeaderAndTableHaveRoom) {
     model.evidence.clear();
     draw_table(drawn_.pen, drawn_.place.table, model, 0, false);
     expect_whole("table");
+    model.rows.at(0).risk = Clearance{"Dura", 0, true};
+    model.rows.at(1).risk = Clearance{"Facial nerve", 1.27, false};
+    draw_table(drawn_.pen, drawn_.place.table, model, 0, false);
+    expect_whole("table with risk structures");
     CameraPicture camera{"Right camera", {}, 0, "no picture yet", {}};
     draw_camera(drawn_.pen, drawn_.place.left_camera, camera, false, nullptr);
     expect_whole("camera");

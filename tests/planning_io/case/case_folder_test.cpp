@@ -3,6 +3,7 @@
 #include <filesystem>
 
 #include "planning_io/case/case_folder.h"
+#include "planning_io/files/content_hash.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/surface/mesh_file.h"
@@ -120,6 +121,63 @@ TEST_F(CaseFolderTest, TwoPlansOfOnePatientHaveTwoCodesAndTitles) {
     EXPECT_EQ(back.names.series, "Head thin");
     EXPECT_EQ(back.names.series_date, "2025-02-01");
     EXPECT_EQ(back.plan_hash, one.plan_hash);
+}
+
+RiskStructure a_nerve(const std::string& name) {
+    return {name,
+            {{{0, 0, 0.1}, {10, 0, 0}, {0, 10, 0}, {0, 0, 1.0 / 3}},
+             {{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}},
+             {},
+             {},
+             {}}};
+}
+
+TEST_F(CaseFolderTest, RiskStructuresComeBackAsTheyWereAndCountForThePlansCode) {
+    const Case without = a_case();
+    Case with = a_case();
+    with.plan.risk_structures = {a_nerve("Facial nerve"), a_nerve("Dura")};
+    with.plan.risk_structures[1].surface.vertices_in_ct[0].x() = 0.25;
+    with.plan_hash = hash_of(with.plan);
+    EXPECT_NE(with.plan_hash, without.plan_hash) << "what is lit beside the items differs";
+    write_case(with, in("case"));
+    const Case back = read_case(in("case"));
+    ASSERT_EQ(back.plan.risk_structures.size(), 2U);
+    EXPECT_EQ(back.plan.risk_structures[0].name, "Facial nerve");
+    EXPECT_EQ(hash_of(back.plan.risk_structures[1].surface), hash_of(with.plan.risk_structures[1].surface));
+    EXPECT_EQ(hash_of(back.plan), with.plan_hash);
+    EXPECT_NO_THROW(write_case(without, in("case"), true)) << "they are the case's own files";
+    EXPECT_FALSE(fs::exists(in("case") / "risk-1.ply"));
+    EXPECT_TRUE(read_case(in("case")).plan.risk_structures.empty());
+    write_safely(in("case") / "risk-notes.ply", "mine");
+    EXPECT_SAYS(refusal([&] { write_case(without, in("case"), true); }), "risk-notes.ply");
+}
+
+TEST_F(CaseFolderTest, ARiskStructureThatWasChangedOrTakenAwayIsNoticed) {
+    Case with = a_case();
+    with.plan.risk_structures = {a_nerve("Facial nerve")};
+    write_case(with, in("case"));
+    const fs::path file = in("case") / "risk-1.ply";
+    const std::string whole = read_whole(file);
+    std::string flipped = whole;
+    flipped[flipped.size() - 20] = static_cast<char>(flipped[flipped.size() - 20] ^ 1);
+    write_safely(file, flipped);
+    EXPECT_SAYS(refusal([&] { read_case(in("case")); }), "risk-1.ply: is not the file that was prepared");
+    fs::remove(file);
+    EXPECT_SAYS(refusal([&] { read_case(in("case")); }), "risk-1.ply: is missing");
+}
+
+TEST_F(CaseFolderTest, ACaseOfBeforeRiskStructuresIsRead) {
+    write_case(a_case(), in("case"));
+    std::string manifest = read_whole(in("case") / "case.json");
+    const auto from = manifest.find("\"risk_structures\""), to = manifest.find(']', from);
+    ASSERT_NE(from, std::string::npos);
+    manifest.erase(from, manifest.find('"', to) - from);
+    write_safely(in("case") / "case.json", manifest);
+    std::string sums = read_whole(in("case") / "checksums.xxh128");
+    const auto line = sums.find("  case.json");
+    sums.replace(line - 32, 32, content_hash(manifest));
+    write_safely(in("case") / "checksums.xxh128", sums);
+    EXPECT_TRUE(read_case(in("case")).plan.risk_structures.empty());
 }
 
 TEST_F(CaseFolderTest, ANameThatCannotBeReadIsRefusedWithItsLimit) {

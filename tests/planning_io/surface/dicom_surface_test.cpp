@@ -7,7 +7,7 @@
 #include <fstream>
 #include <random>
 
-#include "tests/planning_io/dicom_bytes.h"
+#include "tests/planning_io/rt_struct_bytes.h"
 #include "tests/planning_io/surface/surface_file_fixture.h"
 
 namespace planlight {
@@ -15,9 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
+using test::closed_contour;
 using test::corner;
 using test::DicomBytes;
 using test::of_ct;
+using test::rt_struct_of;
 using DicomSurfaceTest = test::SurfaceFileTest;
 
 /// A SEG of an oblique stack: a ball of radius 30 mm round (5, -10, 20), voxels 1.5 x 1.2 x 2 mm, slices from the last
@@ -132,28 +134,12 @@ std::string ball_rt_struct() {
     std::vector<DicomBytes> contours;
     for (double z = -57.5; z < 60; z += 2.5) {
         const double r = std::sqrt(60 * 60 - z * z);
-        std::string data;
-        for (int i = 0; i < 120; ++i) {
-            if (i > 0) data += '\\';
-            data += fmt::format("{:.3f}\\{:.3f}\\{:.3f}", 10 + r * std::cos(2 * M_PI * i / 120),
-                                20 + r * std::sin(2 * M_PI * i / 120), z - 30);
-        }
-        contours.push_back(DicomBytes()
-                               .add(0x30060042, "CS", "CLOSED_PLANAR")
-                               .add(0x30060046, "IS", "120")
-                               .add(0x30060050, "DS", data));
+        std::vector<Vector3d> circle;
+        for (int i = 0; i < 120; ++i)
+            circle.emplace_back(10 + r * std::cos(2 * M_PI * i / 120), 20 + r * std::sin(2 * M_PI * i / 120), z - 30);
+        contours.push_back(closed_contour(circle));
     }
-    return DicomBytes()
-        .add(0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.481.3")
-        .add(0x00080060, "CS", "RTSTRUCT")
-        .add(0x00200052, "UI", "1.2.3")
-        .add_sequence(
-            0x30060020,
-            {DicomBytes().add(0x30060022, "IS", "1").add(0x30060024, "UI", "1.2.3").add(0x30060026, "LO", "Ball"),
-             DicomBytes().add(0x30060022, "IS", "2").add(0x30060024, "UI", "1.2.3").add(0x30060026, "LO", "Line")})
-        .add_sequence(0x30060039, {DicomBytes().add_sequence(0x30060040, contours).add(0x30060084, "IS", "1"),
-                                   DicomBytes().add_sequence(0x30060040, {contours[10]}).add(0x30060084, "IS", "2")})
-        .file("1.2.840.10008.5.1.4.1.1.481.3");
+    return rt_struct_of("Ball", contours);
 }
 
 TEST_F(DicomSurfaceTest, ContoursOfABallAreItsSurface) {

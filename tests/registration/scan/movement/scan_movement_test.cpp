@@ -144,6 +144,40 @@ TEST(ScanMovement, ALampThatFadesIsNoMovement) {
     EXPECT_LT(seen(capture_of([](double) { return Eigen::Vector2d(0, 0); }, 0.9)).moved_mm, 0.03);
 }
 
+/// The projector and a lamp from the side as bright as they happen to be, each frame anew by 5 % (one standard
+/// deviation) of its own.
+ScanCapture flickering(const std::function<Eigen::Vector2d(double)>& at, double projector, double lamp) {
+    ScanCapture capture = capture_of(at);
+    std::mt19937 random(11);
+    std::normal_distribution<double> noise(0, 1.5), by(0, 0.05);
+    for (std::size_t k = 0; k < capture.partial.size(); ++k) {
+        const StripePattern& pattern = capture.partial[k];
+        const Eigen::Vector2d d = at(static_cast<double>(k) / static_cast<double>(capture.partial.size() - 1));
+        const double projected = projector * (1 + by(random)), from_aside = lamp * (1 + by(random));
+        for (int y = 0; y < kHeight; ++y)
+            for (int x = 0; x < kWidth; ++x) {
+                const bool even = (x >> (kBits - pattern.index)) % 2 == 0;
+                const bool lit = k >= 2 ? even == (pattern.kind == StripePattern::Kind::gray_bit) : k == 0;
+                const double u = x - d.x(), v = y - d.y();
+                const bool head = std::hypot(u - kWidth / 2.0, v - kHeight / 2.0) < 100;
+                const double light = head ? skin(u, v) * ((lit ? projected : 0) + from_aside * (0.5 + u / kWidth)) : 3;
+                capture.left[k].at(x, y) =
+                    static_cast<std::uint8_t>(std::clamp(std::lround(light + noise(random)), 0L, 255L));
+            }
+    }
+    return capture;
+}
+
+TEST(ScanMovement, LampsThatFlickerFromPictureToPictureAreNoMovement) {
+    const auto still = [](double) { return Eigen::Vector2d(0, 0); };
+    const auto moving = [](double share) { return Eigen::Vector2d(share, 0); };
+    for (const auto& [projector, lamp] : {std::pair(1.0, 0.1), std::pair(0.6, 0.5)}) {
+        EXPECT_LT(seen(flickering(still, projector, lamp)).moved_mm, 0.03) << projector << ", " << lamp;
+        EXPECT_NEAR(seen(flickering(moving, projector, lamp)).moved_mm, 0.42 * 12 / 13, 0.08)
+            << projector << ", " << lamp;
+    }
+}
+
 TEST(ScanMovement, IsNotKnownWithoutLight) {
     ScanCapture dark = capture_of([](double) { return Eigen::Vector2d(0, 0); });
     for (GrayImage& frame : dark.left) frame = GrayImage(kWidth, kHeight, 3);

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "projection/clearance.h"
+
+namespace planlight {
+
+/// [{"structure", "distance_mm" (0: through), "through"}], what is worst first; [] without risk structures.
+nlohmann::json clearances_json(const Clearances& clearances);
+
+/// [{"name", "triangles"}] of the plan's risk structures.
+nlohmann::json risk_structures_json(const Plan& plan);
+
+}  // namespace planlight

@@ -1,0 +1,307 @@
+// The languages that come with the program: whole, and true to what the sources say.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <regex>
+#include <set>
+
+#include "app/live/session_states.h"
+#include "app/words/words.h"
+#include "planning_io/types/error.h"
+#include "tests/app/source_refusals.h"
+#include "tests/app/words/source_texts.h"
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = PLANLIGHT_SOURCE_FOLDER;
+
+std::map<std::string, std::string> entries_of(const std::string& code) {
+    std::map<std::string, std::string> entries;
+    for (const auto& [english, own] : read_language(shipped_words(code), code).words) {
+        EXPECT_FALSE(entries.contains(english)) << "twice in " << code << ": " << english;
+        entries[english] = own;
+    }
+    return entries;
+}
+
+class ShippedWords : public testing::TestWithParam<const char*> {
+protected:
+    const std::shared_ptr<const Words> words_ = words_of(GetParam());
+    void expect_known(const std::string& text, const std::string& where) const {
+        const auto said = test::as_said(text);
+        EXPECT_TRUE(std::any_of(said.begin(), said.end(), [&](const std::string& one) { return words_->knows(one); }))
+            << where << ": " << text;
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Languages, ShippedWords, testing::Values("de", "ru"));
+
+TEST_P(ShippedWords, HaveEveryEntryOfTheSourceAndNoOther) {
+    const auto english = entries_of("en"), own = entries_of(GetParam());
+    for (const auto& [text, same] : english) {
+        EXPECT_EQ(text, same) << "English is the source";
+        EXPECT_TRUE(own.contains(text)) << text;
+    }
+    for (const auto& [text, translated] : own) {
+        EXPECT_TRUE(english.contains(text)) << text;
+        EXPECT_FALSE(translated.empty()) << text;
+    }
+}
+
+// A word that stands for two states would be read as the wrong one.
+TEST_P(ShippedWords, NoTwoWordsOfTheBannerAreTheSame) {
+    std::set<std::string> said;
+    for (const char* word : {"READY", "SCANNING", "MATCHING", "ALIGNED", "CHECK", "REFUSED", "DARK", "WAIT"})
+        EXPECT_TRUE(said.insert(words_->say(word)).second) << words_->say(word);
+    std::set<std::string> sides;
+    for (const char* side : {"LEFT", "RIGHT", "BOTH SIDES", "MIDDLE"}) sides.insert(words_->say(side));
+    EXPECT_EQ(sides.size(), 4U);
+}
+
+TEST_P(ShippedWords, SayEveryStateAndEveryReasonOfTheTable) {
+    for (const SessionState state : kSessionStates) {
+        const SessionView& view = view_of(state);
+        for (const char* text :
+             {view.headline, view.what_next, view.no_scan, view.no_register, view.no_track, view.no_stop})
+            if (text != nullptr) expect_known(text, view.name);
+        for (int press = 0; press <= static_cast<int>(OperatorAction::show_item); ++press)
+            expect_known(why_not(state, static_cast<OperatorAction>(press)), view.name);
+        for (const Status& status : {dark_status(state)}) {
+            expect_known(status.headline, view.name);
+            for (const std::string& detail : status.details) expect_known(detail, view.name);
+        }
+    }
+}
+
+/// Sources whose sentences come into the window.
+constexpr const char* kSaying[] = {
+    "app/windows/banner_panel.cpp",
+    "app/windows/camera_panel.cpp",
+    "app/windows/evidence_page.cpp",
+    "app/windows/guide_panels.cpp",
+    "app/windows/guide_window.cpp",
+    "app/windows/header_panel.cpp",
+    "app/windows/landmark_panel.cpp",
+    "app/windows/middle_view.cpp",
+    "app/windows/operator_window.cpp",
+    "app/windows/review_panels.cpp",
+    "app/windows/review_window.cpp",
+    "app/windows/scene_overlay.cpp",
+    "app/windows/table_panel.cpp",
+    "app/live/guide_screen.cpp",
+    "app/live/guided_calibration.cpp",
+    "app/live/live_session.cpp",
+    "app/live/live_session_run.cpp",
+    "app/live/live_session_steps.cpp",
+    "app/live/resume_steps.cpp",
+    "app/live/session_states.cpp",
+    "app/live/live_window.cpp",
+    "app/live/projector_watch.cpp",
+    "app/live/replay_view.cpp",
+    "app/live/review_desk.cpp",
+    "app/live/shown_replay.cpp",
+    "app/live/real_room.cpp",
+    "app/live/room_cameras.cpp",
+    "app/live/projector_keeper.cpp",
+    "app/recording/recording_time_line.cpp",
+    "app/case_model.cpp",
+    "app/check_skin.cpp",
+    "app/resume_match.cpp",
+    "app/session.cpp",
+    "app/update_latency.cpp",
+    "app/verify_landmarks.cpp",
+    "projection/check_items.cpp",
+    "projection/light_gate.cpp",
+    "projection/light_cause_words.cpp",
+    "projection/overlay_loop.cpp",
+    "projection/skin_now.cpp",
+    "projection/projector_process.cpp",
+    "registration/calibration/pose_guide.cpp",
+    "registration/calibration/pose_wanted.cpp",
+    "registration/matching/judge_match.cpp",
+    "registration/matching/match_evidence.cpp",
+    "registration/matching/point_pairs.cpp",
+    "registration/matching/register_patient.cpp",
+    "registration/matching/register_with_landmarks.cpp",
+    "registration/tracking/fit_pose.cpp",
+    "registration/tracking/match_constellation.cpp",
+    "registration/tracking/track_patient.cpp",
+    "registration/scan/capture_scan.cpp",
+    "registration/scan/scan_from_capture.cpp",
+    "registration/scan/check/check_sequence.cpp",
+    "registration/scan/decode/merge_exposures.cpp",
+    "registration/scan/triangulate/find_rig_state.cpp",
+    "registration/devices/paired_cameras.cpp",
+    "registration/devices/genicam_camera.cpp",
+    "registration/devices/gstreamer_camera.cpp",
+};
+
+/// What these sources say is shown in the window, but for the texts that stand here with the reason.
+const std::set<std::string> kNotShown{
+    "evidence page", "landmark skin", "landmark scan",                 // names of places in the window
+    "light item", "hide item", "show item",                            // what a recording calls a press
+    "Leave it as it is.",                                              // on the terminal
+    "time line",                                                       // name of a place in the window
+    "does not say whose it is", "There is nothing in it to look at.",  // on the terminal, when the window is closed
+    "osteotomy line", "cut plane",                                     // in the place of a name
+    // In the light of the projector, and names of faults on the terminal.
+    "BOARD HERE", "INTO THE LIGHT", "MORE INTO THE PICTURE", "{} CAMERA BLIND", "{} EDGE NEARER",
+    "as a pose that is there", "outside the projector's light", "seen in part only", "too near", "Not found",
+    "Checking the skin", "Looking again",  // names of states, for the guide
+    "Only one",                            // begins a sentence
+    "Show landmarks\"",
+    // Said on the terminal, before there is a session.
+    "the projector on {} is not the one that was measured on {}: its {} is {}, was {}",
+    "Connect that projector, set its resolution, or measure this one with `planlight projector`.",
+    // A pipeline.
+    " ! videoconvert ! video/x-raw,format=GRAY8 ! appsink name=planlight sync=false max-buffers=2 drop=true",
+    // What a camera of a room file does not take: the names of its standard, in a place of a name.
+    "a gain of {}", "a question for its exposure", "a question for its region", "an exposure of {} ms",
+    "continuous acquisition", "the exposure that it had, {:.2f} ms", "the gain that it had, {:.1f}",
+    "the pixel format ", "the region {} {} {} {}", "the trigger ", "{} frames a second"};
+
+/// A fault of the program's own, not for a person at the trolley: "capture_scan: stripes of ...".
+bool of_a_function(const std::string& text) {
+    static const std::regex kFunction("^[a-z]+(_[a-z]+)+: .*");
+    return std::regex_match(text, kFunction);
+}
+
+/// The text is a part of an entry: its words between placeholders stand there in their order.
+bool is_part_of_an_entry(const std::string& text, const std::map<std::string, std::string>& entries) {
+    static const std::regex kPlace("\\{[^{}]*\\}");
+    std::vector<std::string> pieces(std::sregex_token_iterator(text.begin(), text.end(), kPlace, -1), {});
+    for (std::string& piece : pieces) {
+        while (!piece.empty() && (piece.back() == ' ' || piece.back() == '.' || piece.back() == ':')) piece.pop_back();
+        while (!piece.empty() && piece.front() == ' ') piece.erase(0, 1);
+    }
+    return std::any_of(entries.begin(), entries.end(), [&](const auto& entry) {
+        std::size_t at = 0;
+        for (const std::string& piece : pieces) {
+            std::string capital = piece, small = piece;
+            if (!piece.empty()) capital[0] = static_cast<char>(std::toupper(piece[0]));
+            if (!piece.empty()) small[0] = static_cast<char>(std::tolower(piece[0]));
+            at = std::min(entry.first.find(capital, at), entry.first.find(small, at));
+            if (at == std::string::npos) return false;
+            at += piece.size();
+        }
+        return true;
+    });
+}
+
+// An item of the plan may be called as a button is.
+TEST_P(ShippedWords, LeaveANameAsItIsThatIsAWordOfTheWindow) {
+    static const std::regex kName("\\{name[0-9]*\\}"), kNumber("\\{[^{}]*\\}");
+    ASSERT_NE(words_->say("Track"), "Track");
+    int names = 0;
+    for (const auto& [english, same] : entries_of("en")) {
+        if (english.find("{name") == std::string::npos || english.find("{words") != std::string::npos) continue;
+        const std::string text = std::regex_replace(std::regex_replace(english, kName, "Track"), kNumber, "7");
+        EXPECT_NE(words_->say(text).find("Track"), std::string::npos) << text << " -> " << words_->say(text);
+        EXPECT_NE(words_->say(text + ".").find("Track"), std::string::npos) << text;
+        ++names;
+    }
+    EXPECT_GT(names, 50);
+}
+
+TEST_P(ShippedWords, SayWhatTheSourcesOfTheWindowSay) {
+    const auto entries = entries_of("en");
+    for (const char* file : kSaying)
+        for (const std::string& text : test::literals_in(kRoot / file))
+            if (test::is_sentence(text) && !kNotShown.contains(text) && !of_a_function(text) &&
+                !is_part_of_an_entry(text, entries))
+                expect_known(text, file);
+}
+
+// Every refusal of what a session does, with its remedy.
+TEST_P(ShippedWords, SayEveryRefusalOfASession) {
+    const auto entries = entries_of("en");
+    std::size_t refusals = 0;
+    for (const test::SourceRefusal& refusal : test::refusals_in_sources(kRoot)) {
+        const bool said =
+            std::any_of(std::begin(kSaying), std::end(kSaying), [&](const char* file) { return refusal.file == file; });
+        if (!said || refusal.problem == "…") continue;
+        ++refusals;
+        for (std::string text : {refusal.problem, refusal.remedy}) {
+            text = std::regex_replace(text, std::regex("…"), "{}");
+            if (kNotShown.contains(text) || text == "{}") continue;
+            if (!is_part_of_an_entry(text, entries)) expect_known(text, refusal.file);
+        }
+    }
+    EXPECT_GT(refusals, 25U);
+}
+
+// As they are put together when they are said, with figures, names and reasons.
+TEST_P(ShippedWords, SayWholeSentencesAsASessionPutsThemTogether) {
+    for (const char* text :
+         {"Track is not possible now: register first.",
+          "2026-03-14T09:30:00Z \u00b7 2402 frames were kept",
+          "An anonymous recording does not keep where the plan lies.",
+          "No patient had been found by then.",
+          "Where the head was at that moment is not known: the plan was not followed.",
+          "Borehole 1: left: no light was found here",
+          "Borehole 1: left: 0.31 mm beside the plan (± 0.12 mm, one standard deviation)",
+          "Light was found at 60 of 66 places; half of them lie within 0.10 mm of the plan, 95 % within 0.31 mm.",
+          "1 of 4 items were hidden, and are not looked for. None of the plan's light was found in this frame, at 66 "
+          "places where it should be seen: it had only just been asked for, or something was before it.",
+          "It was dark. There is no light of the plan to look for.",
+          "Landmark 1 alone was lit.",
+          "Only \"Borehole 1\" was bright, and that alone is looked for.",
+          "The recording ends without a closing word, 812 chunks long: the session was stopped from outside, or the "
+          "disk was full.",
+          "Green: The plan is on the skin.",
+          "Amber: LOOK: the light comes late.",
+          "Dark: the light went out.",
+          "Match: yes, the worst item within 0.4 mm (95 %).",
+          "The light cannot be verified: Only one of the two places to look at can be lit and seen by both cameras. "
+          "Uncover more of the head or turn it, and scan again.",
+          "Check skin is not possible now: the light does not follow the patient.",
+          "Dark: the patient is not tracked: only 3 of 6 markers seen; 4 are needed.",
+          "Dark: the last pose is 82 ms old (at most 75 ms).",
+          "Dark: Left camera (serial 4711): no frame came in 250 ms.",
+          "Left camera: its pictures come 40 ms late.",
+          "No projector: monitor HDMI-2 is no longer connected.",
+          "No projector: projector process: it was ended from outside, or crashed.",
+          "LOOK: the light comes late.",
+          "The light comes 25 to 40 ms later than the projector promises.",
+          "LOOK: \"Borehole 1: left\" lies 1.3 mm beside its place.",
+          "only 3 markers were found by both cameras; 5 are needed.",
+          "the markers were lost during the scan: only 3 of 6 markers seen; 4 are needed.",
+          "the patient moved 0.25 mm during the scan, and in the 2 before it as well.",
+          "the rig cannot be trusted: the projector moved, or the left camera moved since the calibration of "
+          "2026-03-01 (by "
+          "0.31 mm and 0.012 degrees; 0.20 mm and 0.010 degrees); one scan cannot tell which; light may be off by up "
+          "to "
+          "1.20 mm without a sign of it.",
+          "the left camera moved or its lens was changed (focus, zoom or shift) since the calibration (by +0.31 % of "
+          "its "
+          "focal length)",
+          "the projector and the left camera moved since the calibration of today (by 0.31 mm and 0.012 degrees)",
+          "the left camera's frames do not show the sequence: white is not the brightest (12 % of the lit pixels).",
+          "the last match is not used: the markers are not as they were: the markers seen do not determine a pose.",
+          "the last match is not used: the rig has moved since: the projector moved since the calibration (by 3.1 mm "
+          "and "
+          "0.012 degrees).",
+          "The skin lies 0.4 mm inside of that of the CT, and has moved by 0.2 mm (rms).",
+          "the patient could turn about the left-right axis by 1.9 mm unnoticed: scan forehead and chin, or an ear as "
+          "well",
+          "the scan alone: another pose fits nearly as well (ratio 1.13)",
+          "Next best other pose fits inf times worse; 4 independent bases agree.",
+          "It belongs there: at the front of the head, on the patient's left, towards the crown (see the picture of "
+          "the head). If it lies elsewhere on the patient, "
+          "press "
+          "Stop, and scan again.",
+          "The skin was not checked: the markers were not seen: only 3 of 6 markers seen; 4 are needed; check it "
+          "again.",
+          "Right frontal, version 3 · series of 2012-09-14",
+          "Room 2 · 93e8e8b7 of 2026-03-14 · 1 cutting line, 4 boreholes, 1 trajectory",
+          "Warning: Borehole 1: 12 % of it lies where the scan saw no skin; the skin there is taken to lie 0.4 mm "
+          "inside that "
+          "of the CT, as most of the rest does, give or take 0.8 mm (95 %)"})
+        EXPECT_TRUE(words_->knows(text)) << text << "\n  -> " << words_->say(text);
+}
+
+}  // namespace
+}  // namespace planlight
