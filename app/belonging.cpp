@@ -95,9 +95,16 @@ void take_case_and_rig(const Case& the_case, const std::optional<RigState>& rig,
             rig->sentence, hidden_mm));
 }
 
+double light_by_scale_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct) {
+    if (!found.covariance.known()) return 0;
+    const double surely = std::max(0.0, std::abs(found.scale - 1) - 2 * found.scale_sigma);
+    return surely * (p_in_ct - found.covariance.centre_in_ct).norm();
+}
+
 double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct) {
     const double hidden_mm = found.rig ? hidden_light_mm(*found.rig, found.patient_from_ct * p_in_ct) : 0;
-    return std::hypot(predicted_error(found.covariance, p_in_ct).bound_95_mm, hidden_mm);
+    return std::hypot(predicted_error(found.covariance, p_in_ct).bound_95_mm, hidden_mm,
+                      light_by_scale_mm(found, p_in_ct));
 }
 
 void check_case(const RegistrationResult& match, const Case& the_case, const fs::path& file,

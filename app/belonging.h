@@ -24,8 +24,12 @@ RigState named_rig_state(const ScanResult& scan, const RigCalibration& calibrate
 /// empty: the cloud of another scanner, of which nothing is known.
 void take_case_and_rig(const Case& the_case, const std::optional<RigState>& rig, RegistrationResult& match);
 
-/// How far off light may be at one point, 95 %, mm: by the registration, and by what the scan could not tell of the
-/// rig.
+/// How far off light may be at one point because the scan is larger or smaller than the CT by more than two of the
+/// sigmas of that, mm: a rigid match lays it on its middle.
+double light_by_scale_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct);
+
+/// How far off light may be at one point, 95 %, mm: by the registration, by what the scan could not tell of the rig,
+/// and by the scan's own size.
 double predicted_light_mm(const RegistrationResult& found, const Eigen::Vector3d& p_in_ct);
 
 /// Warnings for what is not known are added to `unknown`.

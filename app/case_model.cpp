@@ -143,7 +143,8 @@ std::shared_ptr<const std::vector<float>> predicted_on_skin_mm(const TriangleMes
     const double hidden_mm =
         found.rig ? found.rig->hidden_light_mm : 0;  // over the scanned skin: at each vertex it would take a second
     for (const auto& p : skin.vertices_in_ct)
-        errors->push_back(static_cast<float>(std::hypot(predicted_error(found.covariance, p).bound_95_mm, hidden_mm)));
+        errors->push_back(static_cast<float>(
+            std::hypot(predicted_error(found.covariance, p).bound_95_mm, hidden_mm, light_by_scale_mm(found, p))));
     return errors;
 }
 

@@ -102,8 +102,19 @@ nlohmann::json json_of(const ScanMovement& movement) {
             {"turned_deg", movement.turned * 180 / std::numbers::pi},
             {"from", movement.from},
             {"to", movement.to},
+            {"light_change",
+             movement.by == ScanMovement::By::pictures ? nlohmann::json(movement.light_change) : nlohmann::json()},
             {"moments", movement.moments},
             {"markers", movement.markers}};
+}
+
+/// Lamps that are not equally bright in all pictures are taken out as far as they are even; what is left can look like
+/// a movement.
+std::string said_of_light(const ScanMovement& movement) {
+    constexpr double kSteady = 0.03;
+    if (movement.by != ScanMovement::By::pictures || movement.light_change < kSteady) return {};
+    return fmt::format("; the light changed by {:.0f} % meanwhile, which can look like a movement",
+                       100 * movement.light_change);
 }
 
 void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
@@ -122,14 +133,18 @@ void judge_movement(const ScanMovement& movement, const ScanOptions& options) {
     }
     const bool by_markers = movement.by == ScanMovement::By::markers;
     const std::string problem = fmt::format(
-        "the patient moved {}{:.2f} mm during the scan (between {} and {}, by {}); {:.2f} mm is the limit{}",
+        "the patient moved {}{:.2f} mm during the scan (between {} and {}, by {}); {:.2f} mm is the limit{}{}",
         by_markers ? "" : "about ", movement.way_mm(), movement.from, movement.to,
         by_markers ? "the markers"
                    : fmt::format("the skin in the pictures: {:.2f} mm across the line of sight, twice that in all",
                                  movement.moved_mm),
-        options.max_movement_mm, said_of_gamma(movement.camera_gamma));
+        options.max_movement_mm, said_of_gamma(movement.camera_gamma), said_of_light(movement));
     if (!options.accept_movement)
-        throw CheckFailedError(problem, "Scan again, or take the cloud as it is with --accept-movement.");
+        throw CheckFailedError(problem, said_of_light(movement).empty()
+                                            ? "Scan again, or take the cloud as it is with --accept-movement."
+                                            : "Let nobody switch or shade a lamp, take an exposure of whole cycles of "
+                                              "the lamps' flicker, and scan again; or take the cloud as it is with "
+                                              "--accept-movement.");
     warn(problem);
 }
 

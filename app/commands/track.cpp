@@ -15,6 +15,7 @@
 #include "planning_io/case/registration_file.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/types/error.h"
+#include "registration/tracking/exchanged_cameras.h"
 #include "registration/tracking/track_patient.h"
 
 namespace planlight {
@@ -68,6 +69,51 @@ Reference reference_of(const TrackOptions& options, const RigCalibration& rig, c
     return reference;
 }
 
+StereoFrame with_exchanged_pictures(StereoFrame frame) {
+    std::swap(frame.left, frame.right);
+    return frame;
+}
+
+/// Throws CheckFailedError with what can be told of the cause.
+void judge_reference(const PatientTracker& tracker, const StereoFrame& frame, const RigCalibration& rig) {
+    constexpr std::size_t kFew = 3, kSurelyPasted = 4;
+    const std::size_t markers = tracker.markers().size(), left = tracker.seen_left().size(),
+                      right = tracker.seen_right().size();
+    if (markers >= kFew && 2 * markers >= std::min(left, right)) return;
+    if (frame.left.width == frame.right.width && frame.left.height == frame.right.height) {
+        PatientTracker other(rig);
+        if (const std::size_t exchanged = other.set_reference(with_exchanged_pictures(frame)).size();
+            exchanged > std::max(markers, kFew))
+            throw CheckFailedError(
+                fmt::format("the left camera's picture seems to be the right one's: {} markers meet when the two are "
+                            "exchanged, {} as they are",
+                            exchanged, markers),
+                "Exchange the folders of left and right, in the frames and in the capture.");
+    }
+    const std::string met = fmt::format(
+        "{} of {} discs in the left and {} in the right reference picture meet in space", markers, left, right);
+    if (std::min(left, right) >= kSurelyPasted) {
+        constexpr const char* kRemedy =
+            "Give the rig.json that these cameras were calibrated with; if a camera was moved since, calibrate again.";
+        if (markers < kFew) throw CheckFailedError("only " + met + ": the rig is not that of these pictures", kRemedy);
+        return warn(fmt::format("Only {}: the rig may not be that of these pictures. {}", met, kRemedy));
+    }
+    throw CheckFailedError(fmt::format("only {} markers were found by both cameras in the reference picture", markers),
+                           "Paste at least five markers where both cameras see them.");
+}
+
+/// Throws CheckFailedError with what can be told of the cause: no frame has a pose.
+[[noreturn]] void refuse_lost(const PatientTracker& tracker, const StereoFrame& frame) {
+    if (cameras_seem_exchanged(tracker, frame))
+        throw CheckFailedError("in the frames left and right camera are exchanged against the reference picture",
+                               "Exchange the folders of left and right in the frames.");
+    throw CheckFailedError(
+        fmt::format("in no frame were the {} markers of the reference picture found where they stand together",
+                    tracker.markers().size()),
+        "Give the frames of this patient, with the markers as they were pasted at the scan, and the rig.json of their "
+        "cameras.");
+}
+
 int run_track(const TrackOptions& options) {
     const RigCalibration rig = read_rig(options.rig);
     const auto frames = read_frames(options.frames);
@@ -76,19 +122,17 @@ int run_track(const TrackOptions& options) {
     const Reference reference = reference_of(options, rig, frames);
     PatientTracker tracker(reference.origin.rig);
     const auto markers = tracker.set_reference(reference.frame).size();
-    if (markers < 3)
-        throw CheckFailedError(
-            fmt::format("only {} markers were found by both cameras in the reference picture", markers),
-            "Paste at least five markers where both cameras see them.");
+    judge_reference(tracker, reference.frame, reference.origin.rig);
     std::vector<TrackedPose> poses;
     ProgressBar bar;
     for (const auto& frame : frames) {
         poses.push_back(tracker.update(frame));
         bar.show("track", static_cast<double>(poses.size()) / static_cast<double>(frames.size()));
     }
-    write_poses(poses, options.out, reference.origin);
     const auto found =
         std::count_if(poses.begin(), poses.end(), [](const auto& p) { return p.rig_from_patient.has_value(); });
+    if (found == 0) refuse_lost(tracker, frames.front());
+    write_poses(poses, options.out, reference.origin);
     double worst_px = 0;
     for (const auto& pose : poses) worst_px = std::max(worst_px, pose.residual_px);
     if (options.json) {

@@ -260,6 +260,7 @@ Volume parse_dicom_series(const fs::path& path, const std::string& wanted, Slice
     volume.source = fmt::format("DICOM series {}", series.uid);
     volume.series_description = series.description;
     volume.series_date = series.files.front().date;
+    volume.fat_shift_in_ct = slices[slices.size() / 2].fat_shift_in_ct;
     if (!found.unreadable.empty())
         volume.notes.push_back(fmt::format(
             "left aside: {} that {} damaged and {} not say of which series: if a slice at the end of this one is among "

@@ -28,6 +28,8 @@ struct DicomSlice {
     double slope = 1, intercept = 0;  ///< of the rescaling
     bool has_rescale = false;
     std::string defaced;  ///< how it says that the face was taken away
+    /// Of an MR: `Volume::fat_shift_in_ct`; zero when it does not say, or fat was suppressed.
+    Eigen::Vector3d fat_shift_in_ct = Eigen::Vector3d::Zero();
 };
 
 /// Why a series makes no volume, and what to do.

@@ -20,6 +20,9 @@ struct Volume {
     std::string source;  ///< what it was read from, for reports: format, file name; never a patient's name
     std::string series_description,
         series_date;  ///< as the scanner has them, the date in ISO 8601; empty when not said
+    /// Of an MR: how far fat is drawn aside of all else along the readout, mm (chemical shift); its sign is not told.
+    /// Zero when not said.
+    Eigen::Vector3d fat_shift_in_ct = Eigen::Vector3d::Zero();
     std::vector<std::string>
         notes;  ///< what was noticed and did not stop the reading, in words; never a name, id or path
 

@@ -69,6 +69,24 @@ TEST(RigOfAMatch, AsksWhereAPlanPointMayBeOffAndSaysItInTheBound) {
     EXPECT_LT(predicted_light_mm(match_with(state), {0, 0, 700}), 0.5);
 }
 
+/// A board whose squares are 0.7 % too large makes everything so, the light as well: at 100 mm from the middle of the
+/// scan by 0.7 mm. What is within two sigmas may be nothing.
+TEST(RigOfAMatch, AScanOfAnotherSizeIsInTheBound) {
+    RegistrationResult match = match_with(a_state(RigState::Verdict::as_calibrated));
+    match.covariance.of_turn_and_shift.setIdentity();
+    match.covariance.of_turn_and_shift *= 1e-8;
+    match.covariance.centre_in_ct = {10, 0, 0};
+    const Eigen::Vector3d far(110, 0, 0);
+    match.scale_sigma = 0.001;
+    match.scale = 1.0015;
+    EXPECT_LT(predicted_light_mm(match, far), 0.05);
+    for (const double scale : {0.991, 1.009}) {
+        match.scale = scale;
+        EXPECT_NEAR(predicted_light_mm(match, far), 0.7, 0.05);
+        EXPECT_LT(predicted_light_mm(match, match.covariance.centre_in_ct), 0.05);
+    }
+}
+
 TEST(RigOfAMatch, LightIsDrawnWithTheRigThatWasFoundOrNotAtAll) {
     RigState state = a_state(RigState::Verdict::corrected);
     state.rig.projector.centre_x += 5;

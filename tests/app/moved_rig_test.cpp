@@ -155,6 +155,24 @@ TEST_F(MovedRig, FilesOfOthersAreRefusedWithBothNames) {
                               "is a match of case");
 }
 
+TEST_F(MovedRig, FramesOfExchangedCamerasOrOfAnotherRigAreNamed) {
+    prepared();
+    simulated();
+    ASSERT_EQ(run("simulate " + patient() + " --plan " + plan() + " --preset paper --seed 5 --frames 1 --out room2")
+                  .exit_code,
+              0);
+    fs::copy(root() / "room" / "frames", root() / "exchanged", fs::copy_options::recursive);
+    fs::rename(root() / "exchanged" / "left", root() / "exchanged" / "was-left");
+    fs::rename(root() / "exchanged" / "right", root() / "exchanged" / "left");
+    fs::rename(root() / "exchanged" / "was-left", root() / "exchanged" / "right");
+    const auto track = [](const std::string& arguments) { return run("track " + arguments + " --out never.json"); };
+    expect_one_clear_sentence(track("exchanged --rig room/rig.json --capture room/capture"), 6,
+                              "in the frames left and right camera are exchanged");
+    expect_one_clear_sentence(track("exchanged --rig room/rig.json"), 6, "seems to be the right one's");
+    expect_one_clear_sentence(track("room/frames --rig room2/rig.json"), 6, "the rig is not that of these pictures");
+    EXPECT_FALSE(fs::exists(root() / "never.json"));
+}
+
 TEST_F(MovedRig, AnEditedMatchAndLightThatFallsNowhereAreRefused) {
     prepared();
     simulated();

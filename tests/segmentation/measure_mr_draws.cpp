@@ -1,6 +1,7 @@
 // Heads made from the CT of the example patient (or another in HU) with the contrast and the faults of an MR: right,
-// warned, refused, wrong. measure_mr_draws FIRST_SEED COUNT [LEAST_VOXEL_MM [PICTURES]] [--ct VOLUME]. Right: at most
-// 1 % of the true skin lies further than 2 mm from ours; wrong: more, and taken without a warning.
+// warned, refused, wrong. measure_mr_draws FIRST_SEED COUNT [LEAST_VOXEL_MM [PICTURES]] [--ct VOLUME] [--fat-shift MM]
+// [--noise SHARE]. Right: at most 1 % of the true skin lies further than 2 mm from ours; wrong: more, and taken without
+// a warning.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -17,19 +18,28 @@ int main(int argc, char** argv) {
     using namespace planlight::test;
     std::vector<std::string> words(argv + 1, argv + argc);
     std::string of = example_patient() ? example_patient()->string() : "";
-    for (std::size_t w = 0; w + 1 < words.size(); ++w)
+    MrLook look;
+    for (std::size_t w = 0; w + 1 < words.size();) {
         if (words[w] == "--ct")
-            of = words[w + 1],
-            words.erase(words.begin() + static_cast<long>(w), words.begin() + static_cast<long>(w) + 2);
+            of = words[w + 1];
+        else if (words[w] == "--fat-shift")
+            look.fat_shift_mm = std::stod(words[w + 1]);
+        else if (words[w] == "--noise")
+            look.noise = std::stod(words[w + 1]);
+        else {
+            ++w;
+            continue;
+        }
+        words.erase(words.begin() + static_cast<long>(w), words.begin() + static_cast<long>(w) + 2);
+    }
     if (words.size() < 2 || of.empty()) {
         fmt::print(stderr,
-                   "measure_mr_draws FIRST_SEED COUNT [LEAST_VOXEL_MM [PICTURES]] [--ct VOLUME]; without --ct it "
-                   "needs Debian's invesalius-examples\n");
+                   "measure_mr_draws FIRST_SEED COUNT [LEAST_VOXEL_MM [PICTURES]] [--ct VOLUME] [--fat-shift MM] "
+                   "[--noise SHARE]; without --ct it needs Debian's invesalius-examples\n");
         return 2;
     }
     const auto first = static_cast<std::uint32_t>(std::stoi(words[0])),
                count = static_cast<std::uint32_t>(std::stoi(words[1]));
-    MrLook look;
     if (words.size() > 2) look.least_mm = std::stod(words[2]);
     const Volume ct = read_volume(of);
     const SkinMask body = segment_skin(ct);
@@ -45,8 +55,8 @@ int main(int argc, char** argv) {
                               : !(score.off_percent <= 1) ? "warned"
                                                           : "right";
         (score.refused ? refused : score.taken_wrongly() ? wrong : !(score.off_percent <= 1) ? warned : right) += 1;
-        fmt::print("{}\t{}\t{:.2f} % off\tp95 {:.2f} mm\t{}\t{}\n", seed, verdict, score.off_percent, score.p95_mm,
-                   draw.said, score.why);
+        fmt::print("{}\t{}\t{:.2f} % off\tp95 {:.2f} mm\trms {:.2f}\tsigma {:.2f}\t{}\t{}\n", seed, verdict,
+                   score.off_percent, score.p95_mm, score.rms_mm, score.sigma_mm, draw.said, score.why);
         std::fflush(stdout);
     }
     fmt::print("{} draws: {} right, {} warned, {} refused, {} wrong\n", count, right, warned, refused, wrong);

@@ -107,8 +107,10 @@ MrDraw mr_like(const Volume& ct, const SkinMask& body, std::uint32_t seed, const
     for (int a = 0; a < 3; ++a)
         mr.size[static_cast<std::size_t>(a)] =
             std::max(16, static_cast<int>((head.sizes()[a] + 2 * margin_mm) / spacing[a]));
-    const double noise = uniform(0.01, 0.15) * static_cast<double>(contrast.soft), drawn_ratio = uniform(1, 3),
-                 ratio = look.coil > 0 ? look.coil : drawn_ratio, fat_shift_mm = uniform(0, 1.5),
+    const double drawn_noise = uniform(0.01, 0.15),
+                 noise = look.noise.value_or(drawn_noise) * static_cast<double>(contrast.soft),
+                 drawn_ratio = uniform(1, 3), ratio = look.coil > 0 ? look.coil : drawn_ratio,
+                 drawn_shift_mm = uniform(0, 1.5), fat_shift_mm = look.fat_shift_mm.value_or(drawn_shift_mm),
                  ghost = uniform(0, 0.06), wrap = uniform(0, 0.06);
     const Vector3d coil = Vector3d(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)).normalized(),
                    middle = turn * head.center();

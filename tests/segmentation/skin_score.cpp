@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
 #include "planning_io/types/error.h"
@@ -50,6 +51,10 @@ SkinScore score_of(const Volume& volume, const TriangleMesh& truth) {
         const std::vector<double> mm = distances_mm(score.skin, truth);
         if (mm.empty()) return score;
         score.p95_mm = mm[mm.size() * 95 / 100];
+        score.sigma_mm = judged.sigma_mm;
+        const auto near = std::upper_bound(mm.begin(), mm.end(), kOff_mm);
+        score.rms_mm =
+            std::sqrt(std::inner_product(mm.begin(), near, mm.begin(), 0.0) / static_cast<double>(near - mm.begin()));
         score.off_percent = 100.0 * static_cast<double>(mm.end() - std::upper_bound(mm.begin(), mm.end(), kOff_mm)) /
                             static_cast<double>(mm.size());
     } catch (const Error& error) {

@@ -83,6 +83,8 @@ ScanMovement seen_by(const std::vector<GrayImage>& frames, const std::vector<Uni
                       [&](std::size_t i) { laid[i] = surface.lay(surface.steadied(moments[i])); });
     movement.moments =
         static_cast<int>(std::count_if(laid.begin(), laid.end(), [](const Laid& l) { return l.determined; }));
+    for (const Laid& l : laid)
+        if (l.determined) movement.light_change = std::max(movement.light_change, l.light_change);
     movement.camera_gamma = gamma;
     find_greatest(named, laid, surface, mm_per_px, movement);
     return movement;

@@ -138,6 +138,46 @@ TEST(DicomThirdParty, BadFilesAreRefusedInWordsAndNeverCrashUs) {
     EXPECT_GT(refused, 10);
 }
 
+/// Fat answers 3.4 ppm lower than water: at 127.7 MHz 434 Hz.
+struct Readout {
+    std::string phase_along = "ROW", options, bandwidth_hz = "200";
+    std::uint16_t readings = 32;  ///< half as many as pixels: what was measured is twice as large as a pixel
+};
+
+Vector3d fat_shift_with(const Readout& readout) {
+    const test::TemporaryFolder folder;
+    test::SeriesLook look;
+    look.modality = "MR";
+    const test::Grid grid = test::turned_grid(Eigen::AngleAxisd(0.3, Vector3d::UnitZ()).toRotationMatrix());
+    auto objects = test::synthetic_series(grid, look);
+    for (auto& object : objects) {
+        object.text(0x00180022, "CS", readout.options);
+        object.decimals(0x00180084, {127.7});
+        object.text(0x00180095, "DS", readout.bandwidth_hz);
+        object.text(0x00181312, "CS", readout.phase_along);
+        const char low = static_cast<char>(readout.readings & 0xFF), high = static_cast<char>(readout.readings >> 8);
+        object.elements[0x00181310] = {"US", {low, high, 0, 0, 0, 0, low, high}, {}, {}};
+    }
+    test::write_series(objects, folder.path());
+    return read_volume(folder.path()).fat_shift_in_ct;
+}
+
+TEST(MrDicom, SaysHowFarFatLiesAsideAlongTheReadout) {
+    const Vector3d along_rows(std::cos(0.3), std::sin(0.3), 0), along_columns(-std::sin(0.3), std::cos(0.3), 0);
+    constexpr double kShift_mm = 3.4 * 127.7 / 200 * 6;
+    EXPECT_LT((fat_shift_with({}) - kShift_mm * along_columns).norm(), 1e-3)
+        << "phase along rows: columns are read out";
+    EXPECT_LT((fat_shift_with({.phase_along = "COL"}) - kShift_mm * along_rows).norm(), 1e-3);
+    EXPECT_LT((fat_shift_with({.readings = 0}) - kShift_mm / 2 * along_columns).norm(), 1e-3) << "of a pixel as drawn";
+}
+
+TEST(MrDicom, SaysNothingOfFatWhereItIsSuppressedOrNotTold) {
+    EXPECT_EQ(fat_shift_with({.options = "PFP\\FS"}), Vector3d::Zero());
+    EXPECT_EQ(fat_shift_with({.bandwidth_hz = ""}), Vector3d::Zero());
+    EXPECT_EQ(fat_shift_with({.bandwidth_hz = "0"}), Vector3d::Zero());
+    EXPECT_EQ(fat_shift_with({.phase_along = "OTHER"}), Vector3d::Zero());
+}
+
 /// Frames are looked up one by one: the work must grow with their number, not with its square, or the child's limit is
 /// met.
 TEST(EnhancedDicom, SixHundredFramesAreWithinTheChildsLimits) {

@@ -86,6 +86,7 @@ TEST(ScanMovement, APatientAtRestMovesByTheNoiseOnly) {
     EXPECT_EQ(movement.by, ScanMovement::By::pictures);
     EXPECT_EQ(movement.moments, 1 + kBits);
     EXPECT_LT(movement.moved_mm, 0.02);
+    EXPECT_LT(movement.light_change, 0.01);
 }
 
 // Where a stripe's edge halves the light, such a camera shows more than half: stripes are left in the sum of a bit and
@@ -141,7 +142,9 @@ TEST(ScanMovement, AMovementBackAndForthIsNotMissed) {
 }
 
 TEST(ScanMovement, ALampThatFadesIsNoMovement) {
-    EXPECT_LT(seen(capture_of([](double) { return Eigen::Vector2d(0, 0); }, 0.9)).moved_mm, 0.03);
+    const ScanMovement movement = seen(capture_of([](double) { return Eigen::Vector2d(0, 0); }, 0.9));
+    EXPECT_LT(movement.moved_mm, 0.03);
+    EXPECT_NEAR(movement.light_change, 0.1, 0.02) << "and is told";
 }
 
 /// The projector and a lamp from the side as bright as they happen to be, each frame anew by 5 % (one standard
@@ -172,7 +175,9 @@ TEST(ScanMovement, LampsThatFlickerFromPictureToPictureAreNoMovement) {
     const auto still = [](double) { return Eigen::Vector2d(0, 0); };
     const auto moving = [](double share) { return Eigen::Vector2d(share, 0); };
     for (const auto& [projector, lamp] : {std::pair(1.0, 0.1), std::pair(0.6, 0.5)}) {
-        EXPECT_LT(seen(flickering(still, projector, lamp)).moved_mm, 0.03) << projector << ", " << lamp;
+        const ScanMovement movement = seen(flickering(still, projector, lamp));
+        EXPECT_LT(movement.moved_mm, 0.03) << projector << ", " << lamp;
+        EXPECT_GT(movement.light_change, 0.05) << projector << ", " << lamp;
         EXPECT_NEAR(seen(flickering(moving, projector, lamp)).moved_mm, 0.42 * 12 / 13, 0.08)
             << projector << ", " << lamp;
     }
