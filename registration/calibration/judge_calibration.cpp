@@ -44,6 +44,15 @@ double rms_of(const BundleResult& bundle, DeviceName name) {
     return bundle.rms_px[static_cast<std::size_t>(name)];
 }
 
+/// What is off is left out of the residuals: the larger of the two tells.
+std::string misfit_together(const BundleResult& cameras, const CalibrationSettings& s) {
+    const double left = rms_of(cameras, DeviceName::left_camera), right = rms_of(cameras, DeviceName::right_camera);
+    if (std::max(left, right) > s.max_rms_px) return fmt::format("they are off by {:.2f} and {:.2f} px", left, right);
+    const double out =
+        std::max(share_left_out(cameras, DeviceName::left_camera), share_left_out(cameras, DeviceName::right_camera));
+    return fmt::format("{:.0f} % of the corners do not fit", 100 * out);
+}
+
 /// One camera adjusted by itself, as the left one of a rig.
 BundleResult camera_alone(const std::vector<PoseObservation>& poses, const BoardSpec& board, DeviceName camera,
                           const CalibrationSettings& settings) {
@@ -173,11 +182,9 @@ std::optional<Refusal> judge_cameras(const std::vector<PoseObservation>& poses, 
                 "one camera's pictures are mirrored: the cameras fit each other only when one is turned round",
                 "Switch off the flip in that camera's settings and capture again."};
         return Refusal{
-            fmt::format("each camera fits its own pictures, but together they are off by {:.2f} and {:.2f} px{}: a "
-                        "camera was moved between poses, or "
+            fmt::format("each camera fits its own pictures, but together {}{}: a camera was moved between poses, or "
                         "left and right pictures are of different poses",
-                        rms_of(cameras, DeviceName::left_camera), rms_of(cameras, DeviceName::right_camera),
-                        worst_poses(poses, cameras, DeviceName::right_camera)),
+                        misfit_together(cameras, s), worst_poses(poses, cameras, DeviceName::right_camera)),
             "Fix the cameras to the rig, then capture all poses again."};
     }
     if (auto refusal = judge_pair(poses, board, cameras, s)) return refusal;

@@ -88,6 +88,14 @@ std::optional<Refusal> judge_picture(const PoseObservation& pose, DeviceName cam
     return std::nullopt;
 }
 
+/// More often so than as it is.
+bool mostly_mirrored(const std::vector<PoseObservation>& poses, DeviceName camera) {
+    std::ptrdiff_t more = 0;
+    for (const PoseObservation& pose : poses)
+        more += view_of(pose, camera).found_mirrored - (view_of(pose, camera).corners.size() > 0);
+    return more > 0;
+}
+
 }  // namespace
 
 std::optional<Refusal> judge_pose_pictures(const PoseObservation& pose, const BoardSpec& board,
@@ -101,12 +109,14 @@ std::optional<Refusal> judge_pictures(const std::vector<PoseObservation>& poses,
                                       const CalibrationSettings& s) {
     for (const DeviceName camera : kCameras) {
         if (camera == DeviceName::right_camera && !has(poses, camera)) continue;
-        std::size_t found = 0, mirrored = 0;
-        for (const PoseObservation& pose : poses) {
-            found += view_of(pose, camera).corners.size() > 0;
-            mirrored += view_of(pose, camera).found_mirrored;
-        }
-        if (mirrored > found)
+        const auto found = static_cast<std::size_t>(std::count_if(
+            poses.begin(), poses.end(), [&](const auto& pose) { return view_of(pose, camera).corners.size() > 0; }));
+        if (mostly_mirrored(poses, DeviceName::left_camera) && mostly_mirrored(poses, DeviceName::right_camera))
+            return Refusal{
+                "both cameras see the board mirrored: it was printed mirrored, or both pictures are flipped",
+                "Hold a page with writing before the cameras: where it can be read, print the board anew "
+                "without mirroring; else switch off the flip in the settings of both cameras. Capture again."};
+        if (mostly_mirrored(poses, camera))
             return Refusal{fmt::format("the {}'s pictures are mirrored", text_of(camera)),
                            "Switch off the flip in the camera's settings and capture again."};
         if (found < s.least_poses)

@@ -114,6 +114,15 @@ TEST(CalibrateRigRefuses, AMirroredCameraByItsMarkers) {
     expect_refused(calibrated(room, poses), "left camera's pictures are mirrored");
 }
 
+/// Both cameras flipped alike are rarer than a page that was printed for a window or a transfer.
+TEST(CalibrateRigRefuses, ABoardThatWasPrintedMirrored) {
+    const test::IdealRoom room = test::ideal_room();
+    auto poses = room.observe();
+    for (auto& pose : poses)
+        for (auto* seen : {&pose.left, &pose.right}) seen->corners = {}, seen->found_mirrored = true;
+    expect_refused(calibrated(room, poses), "both cameras see the board mirrored: it was printed mirrored");
+}
+
 TEST(CalibrateRigRefuses, AMirroredProjector) {
     const test::IdealRoom room = test::ideal_room();
     auto poses = room.observe();
