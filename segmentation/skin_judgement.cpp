@@ -30,6 +30,11 @@ constexpr double kGap_cm2 = 15, kLight_cm2 = 15;
 constexpr double kBonelessEnd_cm2 = 8;  // an ear that the volume cuts off has 4
 constexpr double kOneSided_cm2 = 15, kBumps_cm2 = 10, kShelf_cm2 = 15, kWidth = 1.35, kThickest_mm = 15;
 
+// Draws with fat moved by 1, 2 and 3 mm (`measure_mr_draws --fat-shift`): it moves the skin by 0.45 of it (rms), and
+// from 1.5 mm on more than 1 % of the skin by over 2 mm.
+constexpr double kSkinOfFatShift = 0.45, kFatShift_mm = 1.5;
+constexpr double kNoisy_mm = 0.35;
+
 const char* const kGiveHead =
     "Give the CT or MR series of the whole head as the scanner made it; for a phantom or a dry skull use `planlight "
     "prepare --phantom`.";
@@ -206,6 +211,38 @@ void judge_steps(const Volume& volume, SkinJudgement& r) {
         "Use a series of thinner slices if there is one.");
 }
 
+/// Which way of the patient a line runs, nearest.
+std::string way_in_words(const Eigen::Vector3d& along_in_ct) {
+    Eigen::Index axis = 0;
+    along_in_ct.cwiseAbs().maxCoeff(&axis);
+    constexpr const char* kWays[] = {"left and right", "front and back", "head and feet"};
+    return kWays[axis];
+}
+
+void judge_fat_shift(const Volume& volume, SkinJudgement& r) {
+    r.fat_shift_mm = volume.fat_shift_in_ct.norm();
+    if (!(r.fat_shift_mm > 0)) return;
+    r.fat_shift_along = way_in_words(volume.fat_shift_in_ct);
+    r.sigma_mm = std::hypot(r.sigma_mm, kSkinOfFatShift * r.fat_shift_mm);
+    if (r.fat_shift_mm < kFatShift_mm) return;
+    add(r.doubts,
+        fmt::format("By its bandwidth the scanner drew fat {:.1f} mm aside, along {} (chemical shift): where fat lies "
+                    "close under the skin, the surface may be off by as much",
+                    r.fat_shift_mm, r.fat_shift_along),
+        "Use a series of higher bandwidth or with fat suppression if there is one, and look at the skin in the "
+        "report.");
+}
+
+void judge_noise(SkinJudgement& r) {
+    if (!(r.sigma_mm > kNoisy_mm) || r.edge_blur_mm > kBlurred_mm) return;
+    add(r.doubts,
+        fmt::format(
+            "The volume is noisy: where the edge of the skin lies is uncertain by {:.1f} mm, more where skin is "
+            "thin, as in and behind the ears",
+            r.sigma_mm),
+        "Use a series with less noise if there is one, and look at the skin in the report.");
+}
+
 void judge_cuts(SkinJudgement& r) {
     std::string sides;
     int count = 0;
@@ -258,6 +295,8 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     judge_face(result);
     judge_edges(mask, result);
     judge_things(result);
+    judge_noise(result);
+    judge_fat_shift(volume, result);
     judge_steps(volume, result);
     judge_cuts(result);
     return result;

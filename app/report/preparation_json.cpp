@@ -90,7 +90,8 @@ std::string preparation_json(const Preparation& done, const PlanDrawing& drawing
                        {"removed_ml", done.removed_ml},
                        {"removed", removed_json(removed)},
                        {"brightness_ratio", done.brightness_ratio},
-                       {"edge_sigma_mm", c.skin_edge_sigma_mm}});
+                       {"edge_sigma_mm", c.skin_edge_sigma_mm},
+                       {"fat_shift_mm", done.judgement.fat_shift_mm}});
     return result.dump(2) + "\n";
 }
 

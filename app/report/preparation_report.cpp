@@ -137,7 +137,11 @@ std::string identity_html(const Preparation& done) {
         (done.brightness_ratio > 1 ? row("Evened out", fmt::format("{:.1f} : 1 across the head", done.brightness_ratio))
                                    : "") +
         (c.skin_edge_sigma_mm > 0
-             ? row("Noise moves the skin", fmt::format("{:.2f} mm (1 sigma)", c.skin_edge_sigma_mm))
+             ? row("The skin's edge", fmt::format("uncertain by {:.2f} mm (1 sigma)", c.skin_edge_sigma_mm))
+             : "") +
+        (done.judgement.fat_shift_mm > 0
+             ? row("Fat is drawn aside", fmt::format("{:.1f} mm along {} (chemical shift)", done.judgement.fat_shift_mm,
+                                                     done.judgement.fat_shift_along))
              : "");
     return fmt::format("<div class=\"two\"><table>{}</table><table>{}</table></div>", left, right);
 }

@@ -89,7 +89,8 @@ bool fat_is_suppressed(vtkDICOMMetaData* meta, int frame) {
 /// `Volume::fat_shift_in_ct`: fat answers 3.4 ppm lower than water; the pixel's bandwidth says how many Hz a pixel as
 /// it was measured is (DICOM PS3.3 C.8.3.1, of Enhanced MR C.8.13.5).
 Eigen::Vector3d fat_shift_of(vtkDICOMMetaData* meta, int frame, const DicomSlice& slice) {
-    constexpr double kFat_ppm = 3.4, kProton_MHz_per_T = 42.577, kMost_mm = 20;
+    constexpr double kFat_ppm = 3.4, kProton_MHz_per_T = 42.577, kMost_mm = 20,
+                     kLeast_Hz = 40;  // less is a bandwidth of all pixels in kHz, as some scanners wrote it
     const std::string phase_along = text_at(meta, vtkDICOMTag(0x0018, 0x1312), frame);
     const bool along_columns = phase_along == "ROW", along_rows = phase_along == "COL" || phase_along == "COLUMN";
     if (along_columns == along_rows || fat_is_suppressed(meta, frame)) return Eigen::Vector3d::Zero();
@@ -104,7 +105,7 @@ Eigen::Vector3d fat_shift_of(vtkDICOMMetaData* meta, int frame, const DicomSlice
                  pixel_mm = (along_columns ? slice.row_spacing_mm : slice.column_spacing_mm) *
                             (readings > 0 ? pixels / readings : 1.0),
                  shift_mm = kFat_ppm * frequency_MHz * pixel_mm /
-                            first_number_at(meta, frame, {vtkDICOMTag(0x0018, 0x0095)}, 1, 1e5);
+                            first_number_at(meta, frame, {vtkDICOMTag(0x0018, 0x0095)}, kLeast_Hz, 1e5);
     if (!(shift_mm > 0 && shift_mm < kMost_mm)) return Eigen::Vector3d::Zero();
     return shift_mm * (along_columns ? slice.column_direction : slice.row_direction);
 }

@@ -158,7 +158,7 @@ TEST_F(MovedRig, FilesOfOthersAreRefusedWithBothNames) {
 TEST_F(MovedRig, FramesOfExchangedCamerasOrOfAnotherRigAreNamed) {
     prepared();
     simulated();
-    ASSERT_EQ(run("simulate " + patient() + " --plan " + plan() + " --preset paper --seed 5 --frames 1 --out room2")
+    ASSERT_EQ(run("simulate " + patient() + " --plan " + plan() + " --preset paper --seed 6 --frames 1 --out room6")
                   .exit_code,
               0);
     fs::copy(root() / "room" / "frames", root() / "exchanged", fs::copy_options::recursive);
@@ -169,7 +169,7 @@ TEST_F(MovedRig, FramesOfExchangedCamerasOrOfAnotherRigAreNamed) {
     expect_one_clear_sentence(track("exchanged --rig room/rig.json --capture room/capture"), 6,
                               "in the frames left and right camera are exchanged");
     expect_one_clear_sentence(track("exchanged --rig room/rig.json"), 6, "seems to be the right one's");
-    expect_one_clear_sentence(track("room/frames --rig room2/rig.json"), 6, "the rig is not that of these pictures");
+    expect_one_clear_sentence(track("room/frames --rig room6/rig.json"), 6, "the rig is not that of these pictures");
     EXPECT_FALSE(fs::exists(root() / "never.json"));
 }
 

@@ -23,11 +23,11 @@ struct MrContrast {
 
 /// What is not drawn.
 struct MrLook {
-    double least_mm = 0.8;               ///< of a voxel
-    double coil = 0;                     ///< brightest to darkest place; 0: drawn up to 3
-    std::optional<MrContrast> contrast;  ///< else T1, T2, FLAIR or PD by the seed
-    std::optional<double> fat_shift_mm;  ///< else up to 1.5
-    std::optional<double> noise;         ///< of the soft tissue; else 0.01 to 0.15
+    double least_mm = 0.8;                    ///< of a voxel
+    double coil = 0;                          ///< brightest to darkest place; 0: drawn up to 3
+    std::optional<MrContrast> contrast;       ///< else T1, T2, FLAIR or PD by the seed
+    std::optional<double> fat_shift_mm = {};  ///< else up to 1.5
+    std::optional<double> noise = {};         ///< of the soft tissue; else 0.01 to 0.15
 };
 
 /// Dark bone, bright fat (T1), bright water (T2), dark water (FLAIR) or all alike (PD), 0.8 to 2 mm (thick slices with

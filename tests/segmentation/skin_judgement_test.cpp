@@ -57,12 +57,36 @@ Judged judged(const Volume& volume) {
     return result;
 }
 
+bool doubts(const SkinJudgement& skin, const std::string& word) {
+    return std::any_of(skin.doubts.begin(), skin.doubts.end(),
+                       [&](const SkinDoubt& d) { return d.finding.find(word) != std::string::npos; });
+}
+
 TEST(JudgeSkin, AHeadWithScalpBoneBrainAndNoseHasNoDoubts) {
     const Judged head = judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); }));
     EXPECT_FALSE(head.refused);
     for (const SkinDoubt& d : head.skin.doubts) ADD_FAILURE() << d.finding;
     EXPECT_GT(head.skin.layered_share, 0.8);
     EXPECT_NEAR(head.skin.ball_radius_mm, 75, 5);
+}
+
+TEST(JudgeSkin, SaysHowFarTheHeaderSaysThatFatLiesAside) {
+    Volume head = mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); });
+    const double sigma_mm = judged(head).skin.sigma_mm;
+    head.fat_shift_in_ct = {0.1, -1, 0.2};
+    const SkinJudgement little = judged(head).skin;
+    EXPECT_FALSE(doubts(little, "chemical shift"));
+    EXPECT_GT(little.sigma_mm, sigma_mm + 0.2) << "it is in the stated uncertainty";
+    head.fat_shift_in_ct *= 2;
+    EXPECT_TRUE(doubts(judged(head).skin, "2.0 mm aside, along front and back (chemical shift)"));
+}
+
+/// An eighth of the step from air to skin: the edge by more than a third of a millimetre, at voxels of 3 mm.
+TEST(JudgeSkin, SaysThatAVolumeIsNoisy) {
+    const SkinJudgement skin =
+        judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); }, {105, 125, 115}, 110)).skin;
+    EXPECT_TRUE(doubts(skin, "The volume is noisy")) << skin.sigma_mm;
+    EXPECT_TRUE(skin.refusals.empty());
 }
 
 TEST(JudgeSkin, RefusesABrainWithoutScalp) {
@@ -106,11 +130,6 @@ TEST(JudgeSkin, SaysWhichSidesAreCutOffWithTheirArea) {
     };
     EXPECT_NEAR(cm2["left side"], ellipse_cm2(92, 85, 61.5 / 75) * 0.85, 30);  // part of it is above the crown's cut
     EXPECT_NEAR(cm2["crown"], ellipse_cm2(75, 92, 60.5 / 85) * 0.9, 25);
-}
-
-bool doubts(const SkinJudgement& skin, const std::string& word) {
-    return std::any_of(skin.doubts.begin(), skin.doubts.end(),
-                       [&](const SkinDoubt& d) { return d.finding.find(word) != std::string::npos; });
 }
 
 TEST(JudgeSkin, SaysThatACushionThatShinesLiesOnTheHead) {

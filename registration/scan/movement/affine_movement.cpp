@@ -280,8 +280,13 @@ Laid Surface::lay(const Moment& later) const {
     if (patches < 2 * kNumbers) return laid;  // too few to tell how they scatter
     laid.map = numbers.head<kAffine>();
     laid.covariance = scatter.topLeftCorner<kAffine, kAffine>() * (static_cast<double>(patches) / (patches - kNumbers));
-    // The room shines twice on a sum of two pictures.
-    laid.light_change = std::max(std::abs(numbers[kAffine]), std::abs(numbers[kNumbers - 1]) / 2);
+    // Where projector and room light alike, which of them changed is not told: only both together.
+    double changed = 0, light = 0;
+    for (const Row& row : rows) {
+        changed -= row.tail<2>().dot(numbers.tail<2>());
+        light -= row[kAffine];
+    }
+    laid.light_change = std::abs(changed) / std::max(light, 1.0);
     for (const float weight : later.weights)
         laid.light_change = std::max(laid.light_change, std::abs(static_cast<double>(weight) - 1));
     laid.determined = true;

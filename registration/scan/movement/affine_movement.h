@@ -42,8 +42,8 @@ struct Laid {
     /// By the scatter of what is left over between patches of the picture, so that what goes together in a patch (a
     /// stripe that is left, a glint, clipped light) is not taken for many measurements.
     Eigen::Matrix<double, kAffine, kAffine> covariance = Eigen::Matrix<double, kAffine, kAffine>::Zero();
-    /// How much brighter the projector's or the room's light was than at the first moment, or one of the moment's
-    /// frames than another: the largest, as a share of that light.
+    /// How much brighter or darker all light was than at the first moment, as a share of the projector's; or one of the
+    /// moment's frames than their mean, where that is more.
     double light_change = 0;
     bool determined = false;
 };

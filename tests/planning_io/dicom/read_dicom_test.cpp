@@ -140,7 +140,7 @@ TEST(DicomThirdParty, BadFilesAreRefusedInWordsAndNeverCrashUs) {
 
 /// Fat answers 3.4 ppm lower than water: at 127.7 MHz 434 Hz.
 struct Readout {
-    std::string phase_along = "ROW", options, bandwidth_hz = "200";
+    std::string phase_along = "ROW", options = {}, bandwidth_hz = "200";
     std::uint16_t readings = 32;  ///< half as many as pixels: what was measured is twice as large as a pixel
 };
 
@@ -175,6 +175,7 @@ TEST(MrDicom, SaysNothingOfFatWhereItIsSuppressedOrNotTold) {
     EXPECT_EQ(fat_shift_with({.options = "PFP\\FS"}), Vector3d::Zero());
     EXPECT_EQ(fat_shift_with({.bandwidth_hz = ""}), Vector3d::Zero());
     EXPECT_EQ(fat_shift_with({.bandwidth_hz = "0"}), Vector3d::Zero());
+    EXPECT_EQ(fat_shift_with({.bandwidth_hz = "31.25"}), Vector3d::Zero()) << "kHz of the whole picture";
     EXPECT_EQ(fat_shift_with({.phase_along = "OTHER"}), Vector3d::Zero());
 }
 
