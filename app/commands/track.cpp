@@ -14,7 +14,9 @@
 #include "planning_io/case/poses_file.h"
 #include "planning_io/case/registration_file.h"
 #include "planning_io/case/rig_file.h"
+#include "planning_io/files/header_text.h"
 #include "planning_io/types/error.h"
+#include "registration/tracking/camera_lag.h"
 #include "registration/tracking/exchanged_cameras.h"
 #include "registration/tracking/track_patient.h"
 
@@ -114,6 +116,29 @@ void judge_reference(const PatientTracker& tracker, const StereoFrame& frame, co
         "cameras.");
 }
 
+/// Throws CheckFailedError where one camera's pictures are older than the other's in all frames; takes the poses out of
+/// frames in which one picture is of another moment, and says so.
+void judge_moments(const CameraLag& cameras, std::vector<TrackedPose>& poses) {
+    constexpr double kLeast_s = 0.003, kSigmas = 5;
+    if (const CameraLag::Lag lag = cameras.lag(); lag.known) {
+        const double s = std::abs(lag.right_later_s);
+        if (s > kLeast_s && s > kSigmas * lag.sigma_s)
+            throw CheckFailedError(
+                fmt::format("the {} camera's pictures are {:.0f} ms older than the other's: while the head moves, its "
+                            "markers do not meet in space",
+                            lag.right_later_s < 0 ? "right" : "left", 1e3 * s),
+                "Expose both cameras together, and pair their pictures by the times of exposure.");
+    }
+    const std::vector<std::size_t> odd = cameras.odd_frames();
+    if (odd.empty()) return;
+    for (const std::size_t frame : odd) {
+        poses[frame].rig_from_patient.reset();
+        poses[frame].reason = "left and right picture are not of the same moment";
+    }
+    warn(fmt::format("{} without a pose: left and right picture are not of the same moment (the first: number {})",
+                     counted(static_cast<long long>(odd.size()), "frame"), odd.front()));
+}
+
 int run_track(const TrackOptions& options) {
     const RigCalibration rig = read_rig(options.rig);
     const auto frames = read_frames(options.frames);
@@ -124,11 +149,14 @@ int run_track(const TrackOptions& options) {
     const auto markers = tracker.set_reference(reference.frame).size();
     judge_reference(tracker, reference.frame, reference.origin.rig);
     std::vector<TrackedPose> poses;
+    CameraLag cameras(reference.origin.rig);
     ProgressBar bar;
     for (const auto& frame : frames) {
         poses.push_back(tracker.update(frame));
+        cameras.add(tracker, frame.at);
         bar.show("track", static_cast<double>(poses.size()) / static_cast<double>(frames.size()));
     }
+    judge_moments(cameras, poses);
     const auto found =
         std::count_if(poses.begin(), poses.end(), [](const auto& p) { return p.rig_from_patient.has_value(); });
     if (found == 0) refuse_lost(tracker, frames.front());
