@@ -5,7 +5,10 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <map>
+#include <numeric>
 
 #include "projection/check_items.h"
 #include "projection/skin_surface.h"
@@ -158,10 +161,30 @@ private:
     double nearest_mm_;
 };
 
+/// Of each triangle a number that those have in common which hang together by corners.
+std::vector<std::size_t> pieces_of(const TriangleMesh& surface) {
+    std::vector<std::size_t> leader(surface.vertices_in_ct.size());
+    std::iota(leader.begin(), leader.end(), std::size_t{0});
+    const auto leader_of = [&](std::int32_t vertex) {
+        auto v = static_cast<std::size_t>(vertex);
+        while (leader[v] != v) v = leader[v] = leader[leader[v]];
+        return v;
+    };
+    for (const auto& t : surface.triangles) {
+        leader[leader_of(t[1])] = leader_of(t[0]);
+        leader[leader_of(t[2])] = leader_of(t[0]);
+    }
+    std::vector<std::size_t> pieces;
+    pieces.reserve(surface.triangles.size());
+    for (const auto& t : surface.triangles) pieces.push_back(leader_of(t[0]));
+    return pieces;
+}
+
 /// A risk structure that distances are measured to.
 class RiskSurface {
 public:
-    explicit RiskSurface(const RiskStructure& structure) : name_(structure.name) {
+    explicit RiskSurface(const RiskStructure& structure)
+        : name_(structure.name), piece_of_(pieces_of(structure.surface)) {
         const auto p = [&](std::int32_t i) {
             return to_cgal(structure.surface.vertices_in_ct[static_cast<std::size_t>(i)]);
         };
@@ -188,20 +211,26 @@ public:
     bool empty() const { return triangles_.empty(); }
 
 private:
-    /// By three skew rays, so that one that grazes an edge is outvoted.
+    /// Within any of the structure's pieces, whatever others lie across it or round it: pieces overlap where models
+    /// were merged, and a cavity is no way through. By three skew rays, so that one that grazes an edge is outvoted.
     bool inside(const Vector3d& p) const {
-        int votes = 0;
+        std::map<std::size_t, int> votes;
         for (const Vector3d& way :
-             {Vector3d(0.832, 0.413, 0.371), Vector3d(-0.297, 0.871, 0.391), Vector3d(0.179, -0.354, 0.918)})
-            votes += tree_.number_of_intersected_primitives(
-                         Kernel::Ray_3(to_cgal(p), Kernel::Vector_3(way.x(), way.y(), way.z()))) %
-                         2 ==
-                     1;
-        return votes >= 2;
+             {Vector3d(0.832, 0.413, 0.371), Vector3d(-0.297, 0.871, 0.391), Vector3d(0.179, -0.354, 0.918)}) {
+            std::vector<Primitive::Id> met;
+            tree_.all_intersected_primitives(Kernel::Ray_3(to_cgal(p), Kernel::Vector_3(way.x(), way.y(), way.z())),
+                                             std::back_inserter(met));
+            std::map<std::size_t, int> crossings;
+            for (const auto& triangle : met)
+                ++crossings[piece_of_[static_cast<std::size_t>(triangle - triangles_.cbegin())]];
+            for (const auto& [piece, times] : crossings) votes[piece] += times % 2;
+        }
+        return std::any_of(votes.begin(), votes.end(), [](const auto& vote) { return vote.second >= 2; });
     }
 
     std::string name_;
     Triangles triangles_;
+    std::vector<std::size_t> piece_of_;  ///< of each triangle: those that hang together by corners are one
     Tree tree_;
 };
 

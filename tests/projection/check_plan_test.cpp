@@ -131,12 +131,19 @@ TEST(CheckPlan, ARiskStructureOnTheOtherSideThanItsNameSaysIsStopped) {
 
 TEST(CheckPlan, OnlyWordsThatMeanASideClaimOne) {
     for (const char* name :
-         {"left", "Left burr hole", "B1 LINKS", "trajectory-links", "L frontal", "T3_L", "incision gauche"})
+         {"left", "Left burr hole", "B1 LINKS", "trajectory-links", "L frontal", "T3_L", "incision gauche",
+          "Трепанация ЛЕВАЯ", "Скуловая дуга слева", "Левого уха", "Лівий отвір", "Bohrloch li.", "TrepLeft2",
+          "VÄNSTER sida", "左側頭", "왼쪽 구멍", "ثقب أيسر", "Craniotomie–gauche"})
         EXPECT_EQ(side_named(name), Side::left) << name;
-    for (const char* name : {"right", "rechts", "R temporal", "Entry R", "dexter-2"})
+    for (const char* name :
+         {"right", "rechts", "R temporal", "Entry R", "dexter-2", "Правая трепанация", "Трепанация правая",
+          "Bohrloch re.", "Trepan-rt", "Burr hole (rt)", "Foramen dext.", "NearRight", "Otwór prawy", "HÖGER",
+          "Foro destro", "右耳", "오른쪽", "الأذن اليمنى", "Sağ taraf: delik sağ"})
         EXPECT_EQ(side_named(name), Side::right) << name;
-    for (const char* name : {"", "L", "R", "L1", "R2D2", "Rand", "cleft", "leftover", "brightness", "left right",
-                             "L to R", "Schnitt", "V L 3"})
+    for (const char* name :
+         {"",         "L",          "R",           "L1",        "R2D2",    "Rand",        "cleft",
+          "leftover", "brightness", "left right",  "L to R",    "Schnitt", "V L 3",       "RT plan 1",
+          "Re-entry", "Li 2",       "Левкоплакия", "Правило 3", "左右",    "Electrode SN"})
         EXPECT_EQ(side_named(name), std::nullopt) << name;
 }
 

@@ -136,6 +136,25 @@ TEST(Clearance, WhatLiesWhollyWithinTheOtherGoesThrough) {
     EXPECT_EQ(of(way({-3, 0, 0}, {3, 1, 0}, 2), ball_at({0, 0, 0})).mm, 0);
 }
 
+RiskStructure joined(const RiskStructure& a, const RiskStructure& b) {
+    RiskStructure both = a;
+    const auto first = static_cast<std::int32_t>(a.surface.vertices_in_ct.size());
+    for (const auto& p : b.surface.vertices_in_ct) both.surface.vertices_in_ct.push_back(p);
+    for (const auto& t : b.surface.triangles)
+        both.surface.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    return both;
+}
+
+/// Two balls that overlap, as of a merged model, the same one twice, and one within another.
+TEST(Clearance, WhatLiesWithinAnyPieceGoesThroughWhateverOtherPieceLiesThere) {
+    const RiskStructure here = ball_at({0, 0, 0});
+    for (const auto& both : {joined(here, ball_at({12, 0, 0})), joined(here, ball_at({1e-5, 0, 0})),
+                             joined(here, box({-20, -20, -20}, {20, 20, 20}))}) {
+        EXPECT_TRUE(of(way({6, 0, 1}, {6, 0, -1}, 0), both).through);
+        EXPECT_FALSE(of(way({0, 30, 1}, {0, 30, -1}, 0), both).through);
+    }
+}
+
 TEST(Clearance, AHoleHasAFlatBottom) {
     const RiskStructure dura = box({-50, -50, -20}, {50, 50, -8});
     const Clearance c = of(hole({0, 0, 0}, {0, 0, -1}, 14, 6), dura);
