@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "app/commands/commands.h"
+#include "app/commands/overwritten_input.h"
 #include "app/commands/usage_problem.h"
 #include "app/console.h"
 #include "app/site_settings.h"
@@ -37,6 +38,10 @@ void console_options(CLI::App* command, ConsoleSettings& console) {
 int run_command(const CLI::App& command, const Run& run, const ConsoleSettings& console, const std::string& line) {
     const auto* json = command.get_option_no_throw("--json");
     set_up_console(console, json && json->count() > 0);
+    if (const std::string problem = overwritten_input(command); !problem.empty()) {
+        fmt::print(stderr, "planlight: {}\n", problem);
+        return static_cast<int>(ExitCode::usage);
+    }
     log_line(fmt::format("planlight {} ({})", PLANLIGHT_VERSION, line));
     if (const SiteSettings site = read_site_settings(); !site.read_from.empty())
         log_line("settings of this site: " + site.read_from.string());

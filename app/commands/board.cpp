@@ -5,6 +5,7 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/json_text.h"
 #include "planning_io/files/safe_write.h"
 #include "registration/calibration/draw_board.h"
 
@@ -30,7 +31,7 @@ int run_board(const BoardOptions& options) {
                                    {"width_mm", board.width_mm()}, {"height_mm", board.height_mm()},
                                    {"png", png.string()},          {"pdf", pdf.string()}};
     if (options.json)
-        std::cout << result.dump(2) << '\n';
+        std::cout << json_text(result) << '\n';
     else
         fmt::print(
             "{} and {}: {}, {:.1f} x {:.1f} mm. Print at 100 %, glue it on a flat plate, measure its width, and give "

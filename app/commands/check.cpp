@@ -12,6 +12,7 @@
 #include "app/commands/device_check.h"
 #include "app/commands/rig_words.h"
 #include "app/console.h"
+#include "app/json_text.h"
 #include "app/live/real_room.h"
 #include "app/live/room_cameras.h"
 #include "planning_io/case/rig_file.h"
@@ -127,7 +128,7 @@ int run_check(CheckOptions options) {
                         {"projector_turned_deg", if_placed(check.turned * 180 / std::numbers::pi)}};
     log["checks"].push_back(entry);
     const auto trends = drift_trends(earlier_checks(log, rig.made_on, file));
-    write_safely(file, log.dump(2) + "\n");
+    write_safely(file, json_text(log) + "\n");
     Json result = entry;
     result["reason"] = check.reason;
     result["rig"] = rig_state_json(scan.rig);
@@ -139,7 +140,7 @@ int run_check(CheckOptions options) {
                          trend.px_per_day, trend.days_to_limit));
     }
     if (options.json)
-        std::cout << result.dump(2) << '\n';
+        std::cout << json_text(result) << '\n';
     else
         fmt::print("{}: {} points, epipolar error {:.2f} px, {}; check {} in {}.\n", text_of(check.verdict),
                    check.points, check.epipolar_px, said_of_projector(check), log["checks"].size(), file.string());

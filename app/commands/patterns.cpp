@@ -8,6 +8,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/console.h"
+#include "app/json_text.h"
 #include "planning_io/files/image_file.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
@@ -84,10 +85,10 @@ int run_patterns(const PatternsOptions& options) {
             bar.show("patterns", static_cast<double>(i + 1) / static_cast<double>(sequence.size()));
         }
         write_capture_settings(settings, into / "capture.json");
-        write_safely(into / "patterns.json", result.dump(2) + "\n");
+        write_safely(into / "patterns.json", json_text(result) + "\n");
     });
     if (options.json)
-        std::cout << result.dump(2) << '\n';
+        std::cout << json_text(result) << '\n';
     else
         fmt::print(
             "{} patterns of {} x {} pixels in {}, in the order of patterns.json; capture.json is for beside the "

@@ -7,6 +7,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/plan_options.h"
 #include "app/console.h"
+#include "app/json_text.h"
 #include "app/prepare_case.h"
 #include "app/report/clearance_json.h"
 #include "app/site_settings.h"
@@ -213,7 +214,7 @@ int run_plan(const PlanOptions& options) {
                                                                 : "nothing"}};
         if (patient.skin) result["median_to_skin_mm"] = verdict.median_to_skin_mm;
         if (!options.out.empty()) result["written"] = options.out.string();
-        std::cout << result.dump(2) << '\n';
+        std::cout << json_text(result) << '\n';
         return 0;
     }
     fmt::print("{} plan item{}{}:\n{}", read.plan.size(), read.plan.size() == 1 ? "" : "s",

@@ -10,6 +10,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/rig_words.h"
+#include "app/json_text.h"
 #include "app/report/registration_certificate.h"
 #include "app/site_settings.h"
 #include "planning_io/case/case_folder.h"
@@ -141,7 +142,7 @@ int run_register(const RegisterOptions& options) {
             {"rig", result.rig ? nlohmann::json(rig_state_json(*result.rig)) : nlohmann::json()},
             {"items", items},
             {"seconds", {{"initial", result.initial_match_s}, {"fine", result.refine_s}}}};
-        std::cout << out.dump(2) << '\n';
+        std::cout << json_text(out) << '\n';
     } else {
         fmt::print("{}\n", title_of(the_case));
         if (options.cloud.empty())

@@ -7,6 +7,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/language_option.h"
 #include "app/console.h"
+#include "app/json_text.h"
 #include "app/live/live_window.h"
 #include "app/live/shown_replay.h"
 #include "app/recording/recording_head.h"
@@ -57,7 +58,7 @@ void print_json(const ReplayResult& r) {
                               {"at_ns", r.difference->at.count()},
                               {"update", r.difference->update},
                               {"what", r.difference->what}};
-    std::cout << json.dump(2) << '\n';
+    std::cout << json_text(json) << '\n';
 }
 
 const char* heading_of(const ReplayResult& r) {

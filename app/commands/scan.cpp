@@ -11,6 +11,7 @@
 #include "app/commands/device_check.h"
 #include "app/commands/rig_words.h"
 #include "app/console.h"
+#include "app/json_text.h"
 #include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/surface/mesh_file.h"
@@ -228,7 +229,7 @@ int run_scan(const ScanOptions& options) {
               {"decode", scan.decode_s},
               {"triangulate", scan.triangulate_s},
               {"outliers", scan.outliers_s}}}};
-        std::cout << result.dump(2) << '\n';
+        std::cout << json_text(result) << '\n';
     } else {
         fmt::print(
             "{} points by {} in {} (raw {}; off the rays {}, jumps {}, grazing {}, small pieces {}, lonely {}){}.\n",

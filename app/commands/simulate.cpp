@@ -10,6 +10,7 @@
 #include "app/commands/plan_options.h"
 #include "app/commands/simulate_options.h"
 #include "app/console.h"
+#include "app/json_text.h"
 #include "planning_io/case/frames_folder.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/files/safe_write.h"
@@ -90,14 +91,14 @@ int run_simulate(const SimulateOptions& options) {
     truth["scan_rig_from_ct"] = rows(rig.true_rig_from_ct(capture.began));
     for (const auto& frame : frames)
         truth["frames"].push_back({{"number", frame.number}, {"rig_from_ct", rows(rig.true_rig_from_ct(frame.at))}});
-    write_safely(options.out / "truth.json", truth.dump(2) + "\n");
+    write_safely(options.out / "truth.json", json_text(truth) + "\n");
     const nlohmann::json result = {{"folder", options.out.string()},
                                    {"preset", options.preset},
                                    {"seed", options.seed},
                                    {"patterns", capture.left.size()},
                                    {"frames", frames.size()}};
     if (options.json)
-        std::cout << result.dump(2) << '\n';
+        std::cout << json_text(result) << '\n';
     else
         fmt::print("{}: rig.json, capture ({} pictures a camera), frames ({}), truth.json.\n", options.out.string(),
                    capture.left.size(), frames.size());

@@ -6,6 +6,7 @@
 #include "app/commands/capture_conversion.h"
 #include "app/commands/simulate_options.h"
 #include "app/console.h"
+#include "app/json_text.h"
 #include "planning_io/files/safe_write.h"
 #include "registration/calibration/draw_board.h"
 #include "registration/simulation/board_room.h"
@@ -53,7 +54,7 @@ int run_simulate_board(const SimulateOptions& options) {
                                    {"board", text_of(board)},
                                    {"poses", room.poses()}};
     if (options.json)
-        std::cout << result.dump(2) << '\n';
+        std::cout << json_text(result) << '\n';
     else
         fmt::print("{}: captures of {} poses of a {}, truth.json.\n", options.out.string(), room.poses(),
                    text_of(board));

@@ -10,6 +10,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/device_check.h"
 #include "app/console.h"
+#include "app/json_text.h"
 #include "planning_io/case/frames_folder.h"
 #include "planning_io/case/poses_file.h"
 #include "planning_io/case/registration_file.h"
@@ -166,7 +167,7 @@ int run_track(const TrackOptions& options) {
     if (options.json) {
         const nlohmann::json result = {
             {"frames", frames.size()}, {"poses", found}, {"markers", markers}, {"worst_residual_px", worst_px}};
-        std::cout << result.dump(2) << '\n';
+        std::cout << json_text(result) << '\n';
     } else {
         fmt::print("{} of {} frames have a pose ({} markers, worst residual {:.3f} px).\n", found, frames.size(),
                    markers, worst_px);

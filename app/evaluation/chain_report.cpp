@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/evaluation/log_histogram.h"
+#include "app/json_text.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
@@ -213,7 +214,7 @@ std::string write_report_json(const std::filesystem::path& file, const Preparati
     for (const auto* preset : {"paper", "modern"})
         if (const auto s = summarise(rooms, preset); s.rooms > 0) j["presets"][preset] = summary_json(s);
     for (const auto& room : rooms) j["rooms"].push_back(room_json(room));
-    const std::string text = j.dump(2) + "\n";
+    const std::string text = json_text(j) + "\n";
     write_safely(file, text);
     return text;
 }
@@ -307,7 +308,7 @@ std::vector<PresetSummary> merge_reports(const std::vector<std::filesystem::path
     }
     if (summaries.empty())
         throw InputError(reports.front(), "and the others hold no rooms", "Give reports of `planlight demo`.");
-    write_safely(file, joined.dump(2) + "\n");
+    write_safely(file, json_text(joined) + "\n");
     return summaries;
 }
 

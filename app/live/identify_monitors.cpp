@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/console.h"
+#include "app/json_text.h"
 #include "planning_io/types/steady_clock.h"
 #include "projection/monitor_card.h"
 
@@ -32,7 +33,7 @@ int identify_monitors(const ProjectorOptions& options) {
                        m.primary ? ", primary" : "", m.model.empty() ? "" : ", " + m.model,
                        m.serial.empty() ? "" : ", serial " + m.serial);
     }
-    if (options.json) std::cout << list.dump(2) << '\n';
+    if (options.json) std::cout << json_text(list) << '\n';
     std::cout.flush();
     std::fflush(stdout);
     if (options.seconds <= 0) return 0;

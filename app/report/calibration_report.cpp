@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "app/json_text.h"
 #include "app/report/html_page.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/files/safe_write.h"
@@ -232,7 +233,7 @@ std::string calibration_json(const CalibrationReport& report) {
                                      {"left_out", r.left_out}});
     json["warnings"] = c.warnings;
     json["changes"] = report.changes;
-    return json.dump(2) + "\n";
+    return json_text(json) + "\n";
 }
 
 void write_calibration_html(const CalibrationReport& report, const std::filesystem::path& file) {

@@ -1,5 +1,6 @@
 #include "app/report/preparation_json.h"
 
+#include "app/json_text.h"
 #include "app/report/clearance_json.h"
 
 #include <nlohmann/json.hpp>
@@ -92,7 +93,7 @@ std::string preparation_json(const Preparation& done, const PlanDrawing& drawing
                        {"brightness_ratio", done.brightness_ratio},
                        {"edge_sigma_mm", c.skin_edge_sigma_mm},
                        {"fat_shift_mm", done.judgement.fat_shift_mm}});
-    return result.dump(2) + "\n";
+    return json_text(result) + "\n";
 }
 
 }  // namespace planlight

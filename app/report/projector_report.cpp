@@ -1,4 +1,5 @@
 #include "app/report/projector_report.h"
+#include "app/json_text.h"
 
 #include <fmt/format.h>
 
@@ -156,7 +157,7 @@ std::string projector_json(const ProjectorReport& report) {
     add(json, "latency", report.latency);
     add(json, "response", report.response);
     add(json, "cycle", report.cycle);
-    return json.dump(2) + "\n";
+    return json_text(json) + "\n";
 }
 
 }  // namespace planlight

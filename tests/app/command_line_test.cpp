@@ -45,6 +45,25 @@ TEST_F(CommandLineTest, AMistypedOptionIsToldTheNearestOne) {
     expect_refused(run("patterns --out p --phase_steps 8"), 2, "Is --phase-steps meant?");
 }
 
+TEST_F(CommandLineTest, WhatIsReadIsNeverWrittenOver) {
+    fs::create_directories(folder_ / "frames" / "left");
+    fs::create_directories(folder_ / "case");
+    for (const char* name : {"rig.json", "cloud.ply", "frames/frames.json", "frames/left/000000.png", "case/case.json"})
+        std::ofstream(folder_ / name) << "kept";
+    fs::create_symlink("rig.json", folder_ / "link.json");
+    for (const std::string line :
+         {"scan capture --rig rig.json --out rig.json", "scan capture --rig rig.json --out ./case/../rig.json",
+          "scan capture --rig link.json --out rig.json", "register case --cloud cloud.ply --out cloud.ply",
+          "register case --cloud cloud.ply --out case/case.json",
+          "track frames --rig rig.json --out frames/frames.json",
+          "track frames --rig rig.json --out frames/left/000000.png"})
+        expect_refused(run(line), 2, "would be written over");
+    expect_refused(run("register case --cloud cloud.ply --out r.json --certificate r.json"), 2, "name the same file");
+    expect_refused(run("scan capture --rig rig.json --out s.ply --surface s.ply"), 2, "name the same file");
+    for (const char* name : {"rig.json", "cloud.ply", "frames/frames.json", "case/case.json"})
+        EXPECT_EQ(whole(folder_ / name), "kept") << name;
+}
+
 TEST_F(CommandLineTest, AMistypedCommandIsToldTheNearestOne) {
     expect_refused(run("regsiter case"), 2, "Is register meant?");
     expect_refused(run("Demo"), 2, "Is demo meant?");

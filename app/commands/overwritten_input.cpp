@@ -1,0 +1,84 @@
+#include "app/commands/overwritten_input.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <vector>
+
+namespace planlight {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Named {
+    std::string option;  ///< as a person writes it
+    fs::path path;
+};
+
+/// `--surface` is written by `scan` and read by `prepare`.
+bool is_written(const CLI::App& command, const std::string& option) {
+    static constexpr std::array kWritten{"--out",     "--raw", "--certificate", "--slicer",
+                                         "--picture", "--pdf", "--dicom"};
+    return std::find(kWritten.begin(), kWritten.end(), option) != kWritten.end() ||
+           (option == "--surface" && command.get_name() == "scan");
+}
+
+/// One file or folder, whatever it is called.
+bool same(const fs::path& a, const fs::path& b) {
+    std::error_code error;
+    if (fs::exists(a, error) && fs::exists(b, error) && fs::equivalent(a, b, error)) return true;
+    const fs::path whole_a = fs::weakly_canonical(a, error), whole_b = fs::weakly_canonical(b, error);
+    return !error && whole_a == whole_b;
+}
+
+/// What the folders that Planlight writes are made of.
+bool is_own_file_of(const fs::path& file, const fs::path& folder) {
+    static constexpr std::array kOwn{"case.json",   "checksums.xxh128", "plan.mrk.json", "skin.lut",    "skin.ply",
+                                     "report.html", "report.json",      "capture.json",  "frames.json", "light.json"};
+    std::error_code error;
+    const std::string name = file.filename().string();
+    if (!fs::is_directory(folder, error) || !fs::exists(file, error)) return false;
+    if (same(file.parent_path().empty() ? "." : file.parent_path(), folder))
+        return std::find(kOwn.begin(), kOwn.end(), name) != kOwn.end();
+    for (const char* pictures : {"left", "right"})
+        if (same(file.parent_path(), folder / pictures)) return true;
+    return false;
+}
+
+}  // namespace
+
+std::string overwritten_input(const CLI::App& command) {
+    std::vector<Named> written, read;
+    for (const CLI::Option* option : command.get_options()) {
+        if (option->get_expected_max() == 0) continue;
+        const bool named = !option->get_lnames().empty();
+        const std::string name = named ? "--" + option->get_lnames().front() : option->get_name();
+        if (name == "--log-file") continue;
+        for (const std::string& text : option->results())
+            if (!text.empty()) (named && is_written(command, name) ? written : read).push_back({name, text});
+    }
+    for (std::size_t i = 0; i < written.size(); ++i) {
+        const auto& [option, path] = written[i];
+        for (const Named& other : read) {
+            std::error_code error;
+            if (!fs::exists(other.path, error)) continue;
+            if (same(path, other.path))
+                return fmt::format("{} names {}, which {} reads: it would be written over. Give it another name.",
+                                   option, path.string(), other.option);
+            if (is_own_file_of(path, other.path))
+                return fmt::format(
+                    "{} names {}, a file that {} ({}) is made of: it would be written over. Give it another name.",
+                    option, path.string(), other.path.string(), other.option);
+        }
+        for (std::size_t k = 0; k < i; ++k)
+            if (same(path, written[k].path))
+                return fmt::format("{} and {} name the same file, {}. Give each its own name.", written[k].option,
+                                   option, path.string());
+    }
+    return {};
+}
+
+}  // namespace planlight
