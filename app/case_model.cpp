@@ -28,7 +28,9 @@ std::vector<PlanRow> rows_of(const Plan& plan, const PlanDrawing& drawing) {
     for (std::size_t i = 0; i < drawing.items.size(); ++i) {
         const DrawnItem& item = drawing.items[i];
         PlanRow row;
-        if (!item.clearances.empty()) row.risk = item.clearances.front();
+        const std::size_t told = std::max<std::size_t>(1, warnings_in(item.clearances));
+        row.risk.assign(item.clearances.begin(),
+                        item.clearances.begin() + static_cast<long>(std::min(told, item.clearances.size())));
         row.depth_mm = depth_of(plan, item.kind, of_kind[item.kind]++);
         for (const auto& stroke : drawing.strokes)
             if (stroke.item == static_cast<int>(i) && stroke.kind == item.kind) {
@@ -87,8 +89,23 @@ std::vector<std::string> card_of(const Case& the_case, const SkinSurface& skin, 
 void name_rows(const PlanDrawing& drawing, std::vector<PlanRow>& rows) {
     for (std::size_t i = 0; i < std::min(rows.size(), drawing.items.size()); ++i) {
         const DrawnItem& item = drawing.items[i];
-        rows[i].name = (item.lit_by_code ? item.code + "  " : "") + (item.label.empty() ? item.name : item.label);
+        const std::string label = item.label.empty() ? item.name : item.label;
+        const std::string code = item.lit_by_code ? item.code + "  " : "";
+        rows[i].name = code + label;
+        // The depth is the last of the figures beside the name.
+        const std::size_t last = label.rfind("  ");
+        const bool figures = label.size() > item.name.size() && last != std::string::npos && last >= item.name.size();
+        rows[i].short_name = code + (figures && rows[i].depth_mm ? label.substr(0, last) : label);
     }
+}
+
+std::vector<std::string> unlit_warnings(const PlanDrawing& drawing) {
+    std::vector<std::string> sentences;
+    for (const DrawnItem& item : drawing.items)
+        if (!item.unlit_warning.empty())
+            sentences.push_back(
+                fmt::format("{}: \"{}\" has no room in the light beside it", item.name, item.unlit_warning));
+    return sentences;
 }
 
 OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing) {
@@ -113,6 +130,8 @@ OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing) {
     model.steps[0] = StepState::done;
     model.scene.skin = std::make_shared<TriangleMesh>(the_case.skin);
     model.scene.plan = std::make_shared<PlanDrawing>(drawing.drawing);
+    if (!plan.risk_structures.empty())
+        model.scene.risk_structures = std::make_shared<std::vector<RiskStructure>>(plan.risk_structures);
     model.rows = rows_of(plan, drawing.drawing);
     if (drawing.settings.up_in_ct.norm() > 0) model.surgeon_view = surgeon_view(drawing.settings.up_in_ct);
     for (const auto& warning : the_case.warnings) model.evidence.push_back("Warning: " + warning);

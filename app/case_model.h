@@ -21,6 +21,9 @@ std::vector<std::string> card_of(const Case& the_case, const SkinSurface& skin, 
 /// place of the name (`DrawnItem::lit_by_code`) by that first.
 void name_rows(const PlanDrawing& drawing, std::vector<PlanRow>& rows);
 
+/// What the light should say of risk structures and has no room for, a sentence each.
+std::vector<std::string> unlit_warnings(const PlanDrawing& drawing);
+
 /// What the operator window shows of a case before anything is scanned: title, skin, plan, table of its items.
 OperatorModel model_of_case(const Case& the_case, const CaseDrawing& drawing);
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <ctime>
 
+#include "app/case_model.h"
 #include "planning_io/files/memory_need.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/surface/mesh_file.h"
@@ -89,12 +90,9 @@ void judge(const Volume& volume, const SkinSettings& skin, const PreparationWatc
 
 /// Items that come too near to what must not be hurt, and what of that the light has no room for.
 void warn_of_risk(const PlanDrawing& drawing, const PreparationWatcher& watcher, Case& the_case) {
-    for (const DrawnItem& item : drawing.items) {
+    for (const DrawnItem& item : drawing.items)
         add_warnings(risk_warnings(item.name, item.clearances), watcher, the_case);
-        if (!item.unlit_warning.empty())
-            add_warnings({fmt::format("{}: \"{}\" has no room in the light beside it", item.name, item.unlit_warning)},
-                         watcher, the_case);
-    }
+    add_warnings(unlit_warnings(drawing), watcher, the_case);
 }
 
 /// Items that have no skin for their name, or for nothing at all.

@@ -26,6 +26,7 @@ constexpr Rgb kCutPlaneMagenta{255, 60, 255};
 constexpr double kPlaneGap_mm = 2.4;  // about each tick
 constexpr double kSymbolRadius_mm =
     3;  // of a trajectory's ring when the instrument's diameter is not given, or is smaller
+constexpr double kToldRisk_mm = 10;  // what is farther away makes labels longer and warns nobody
 
 Rgb chosen(const std::optional<Colour>& own, Rgb usual) {
     if (!own) return usual;
@@ -157,12 +158,13 @@ void Drawer::wish(int item_index, std::vector<std::string> figures, std::vector<
                        {}});
 }
 
-/// What the label says of the nearest risk structure: of ways in and holes always, of what is cut where it warns.
+/// What the label says of the nearest risk structure: of ways in and holes where it is near, of what is cut where it
+/// warns.
 std::optional<RiskText> Drawer::risk_of(const DrawnItem& named) const {
     if (named.clearances.empty()) return std::nullopt;
     const Clearance& worst = named.clearances.front();
     const bool cut = named.kind == StrokeKind::osteotomy_line || named.kind == StrokeKind::cut_plane;
-    if (cut && !warns(worst)) return std::nullopt;
+    if (!warns(worst) && (cut || said_mm(worst) > kToldRisk_mm)) return std::nullopt;
     RiskText risk{worst.through ? "through" : fmt::format("{:.1f} mm to", said_mm(worst)),
                   structures_.at(worst.structure),
                   {},

@@ -4,38 +4,13 @@
 #include <algorithm>
 #include <map>
 
+#include "projection/label_forms.h"
+
 namespace planlight {
 namespace {
 
 using Eigen::Vector3d;
 using Point = SkinSurface::Point;
-
-/// What a label says: all; all but the distance to a risk structure, or, where that is a warning, the warning without
-/// the other figures; the name alone; or the item's code where there is no room for its name.
-enum class Form { whole, spare, brief, name, code };
-
-bool warns(const LabelWish& wish) {
-    return wish.text.risk && wish.text.risk->warns;
-}
-
-LabelWish in_form(LabelWish wish, Form form) {
-    if (form == Form::whole) return wish;
-    const bool warning = (form == Form::spare || form == Form::brief) && warns(wish);
-    if (!warning) wish.text.risk.reset();
-    if (form == Form::brief && warning)
-        wish.text.risk->structure = "risk", wish.text.risk->more.clear(), wish.text.risk->apart = true;
-    if (wish.text.name.empty() ? warning : warning || form == Form::name || form == Form::code)
-        wish.text.figures.clear();
-    if (form == Form::code && !wish.text.name.empty() && !wish.code.empty()) wish.text.name = wish.code;
-    return wish;
-}
-
-/// What is tried in turn.
-std::vector<Form> forms_of(const LabelWish& wish) {
-    if (warns(wish)) return {Form::whole, Form::spare, Form::brief, Form::name, Form::code};
-    if (wish.text.risk) return {Form::whole, Form::spare, Form::name, Form::code};
-    return {Form::whole, Form::name, Form::code};
-}
 
 LabelWish in_height(LabelWish wish, double height_mm) {
     wish.text_height_mm = height_mm;
@@ -162,7 +137,7 @@ void AllLabels::put_whole_first() {
     occupied_ = plan_;
     put_.clear();
     for (const LabelWish& wish : wishes_)
-        for (const Form form : forms_of(wish))
+        for (const LabelForm form : forms_of(wish))
             if (put(in_form(wish, form))) break;
 }
 
@@ -187,20 +162,20 @@ int AllLabels::told() const {
 void AllLabels::put_codes_first() {
     occupied_ = plan_;
     put_.clear();
-    const auto lengthen = [&](const LabelWish& wish, Form form) {
+    const auto lengthen = [&](const LabelWish& wish, LabelForm form) {
         LabelWish longer = in_form(wish, form);
         longer.but_of = wish.item;  // its own shorter one makes room
         put(longer);
     };
     for (const LabelWish& wish : wishes_)
-        if (!warns(wish) || !(put(in_form(wish, Form::spare)) || put(in_form(wish, Form::brief))))
-            put(in_form(wish, Form::code));
+        if (!warns(wish) || !(put(in_form(wish, LabelForm::spare)) || put(in_form(wish, LabelForm::brief))))
+            put(in_form(wish, LabelForm::code));
     for (const LabelWish& wish : wishes_)
         if (const auto now = put_.find(wish.item); now == put_.end() || !now->second.wish.text.risk)
-            lengthen(wish, Form::name);
+            lengthen(wish, LabelForm::name);
     for (const LabelWish& wish : wishes_)
-        if (wish.text.risk && !warns(wish)) lengthen(wish, Form::spare);
-    for (const LabelWish& wish : wishes_) lengthen(wish, Form::whole);
+        if (wish.text.risk && !warns(wish)) lengthen(wish, LabelForm::spare);
+    for (const LabelWish& wish : wishes_) lengthen(wish, LabelForm::whole);
 }
 
 /// What a label's text counts for its share of the light: what it says of risk structures does not.
@@ -228,10 +203,10 @@ void AllLabels::keep_to_share() {
     double text_mm2 = 0;
     for (const auto& [item, put] : put_) text_mm2 += counted_mm2(put);
     const auto too_much = [&] { return text_mm2 > settings_.most_text * (text_mm2 + lines); };
-    for (const Form form : {Form::name, Form::code})
+    for (const LabelForm form : {LabelForm::name, LabelForm::code})
         for (auto wish = wishes_.rbegin(); wish != wishes_.rend() && too_much(); ++wish) {
             const auto label = put_.find(wish->item);
-            LabelWish shorter = in_form(*wish, warns(*wish) ? Form::spare : form);
+            LabelWish shorter = in_form(*wish, warns(*wish) ? LabelForm::spare : form);
             if (label == put_.end() || wish->text.name.empty()) continue;
             if (warns(*wish) && label->second.wish.text.figures.empty()) continue;  // it says no more than that now
             const double before_mm2 = counted_mm2(label->second);
@@ -289,8 +264,8 @@ void AllLabels::put_of_moment() {
         near.gaps_mm = {0};
         auto label = place_large(near, plan_);
         if (!label) label = place_label(wish, skin_, settings_, plan_);
-        for (const Form form : {Form::spare, Form::brief, Form::name})
-            if (!label && (form != Form::brief || warns(wish)))
+        for (const LabelForm form : {LabelForm::spare, LabelForm::brief, LabelForm::name})
+            if (!label && (form != LabelForm::brief || warns(wish)))
                 label = place_label(in_form(wish, form), skin_, settings_, plan_);
         if (!label) continue;
         label->of_moment = true;

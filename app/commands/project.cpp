@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/belonging.h"
+#include "app/case_model.h"
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/commands/surgeon_option.h"
@@ -118,9 +119,8 @@ int run_project(const ProjectOptions& options) {
                          {"warnings", item.warnings}});
         for (const auto& warning : item.warnings) warn(warning);
         for (const auto& warning : risk_warnings(item.name, item.clearances)) warn(warning);
-        if (!item.unlit_warning.empty())
-            warn(fmt::format("{}: \"{}\" has no room in the light beside it", item.name, item.unlit_warning));
     }
+    for (const auto& warning : unlit_warnings(drawing.drawing)) warn(warning);
     if (!registration.skin.known())
         warn(
             "the registration does not say where the scan found the skin: drawn on the CT's own. Where the light falls "

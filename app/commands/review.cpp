@@ -12,6 +12,7 @@
 #include "app/console.h"
 #include "app/live/clickable_scan.h"
 #include "app/live/live_window.h"
+#include "app/report/clearance_json.h"
 #include "app/site_settings.h"
 #include "app/windows/scene_view.h"
 #include "planning_io/case/case_folder.h"
@@ -127,12 +128,14 @@ int run_review(const ReviewOptions& options) {
         items.push_back({{"name", item.name},
                          {"label", item.label},
                          {"distance_to_skin_mm", item.distance_to_skin_mm},
+                         {"risk", clearances_json(item.clearances)},
                          {"warnings", item.warnings}});
     if (options.json)
         std::cout << nlohmann::json{{"case", the_case.code},
                                     {"title", title_of(the_case)},
                                     {"created", the_case.created},
                                     {"items", items},
+                                    {"risk_structures", risk_structures_json(the_case.plan)},
                                     {"warnings", the_case.warnings},
                                     {"match", found ? nlohmann::json(evidence_of(*found)) : nlohmann::json()}}
                          .dump(2)

@@ -67,6 +67,8 @@ void LiveSession::find_patient(Session& session, const std::vector<PointPair>& l
         name_rows(session.drawing(), shown.rows);  // the match decides which labels have room
         for (const DrawnItem& item : session.drawing().items)
             shown.evidence.insert(shown.evidence.end(), item.warnings.begin(), item.warnings.end());
+        const auto unlit = unlit_warnings(session.drawing());  // first: nothing on the skin says so
+        shown.evidence.insert(shown.evidence.begin(), unlit.begin(), unlit.end());
     }
     shown.evidence.push_back(keep(found, session.scanned()->clean.kept, landmarks));
     shown.evidence.insert(shown.evidence.end(), blank_.evidence.begin(), blank_.evidence.end());

@@ -120,6 +120,8 @@ NamesLeftOut::NamesLeftOut(const Case& the_case) {
     for (const std::string* name : {&the_case.names.title, &the_case.names.patient, &the_case.names.plan,
                                     &the_case.names.plan_version, &the_case.names.series})
         add(*name, "…");
+    const auto& structures = the_case.plan.risk_structures;
+    for (std::size_t i = 0; i < structures.size(); ++i) add(structures[i].name, fmt::format("structure {}", i + 1));
 }
 
 void NamesLeftOut::add_items(const PlanDrawing& drawing) {

@@ -31,7 +31,7 @@ GrayImage blurred_outside(const GrayImage& picture, const PlanRegion::InPicture&
 /// Names that are to stand nowhere, with what stands in their place.
 class NamesLeftOut {
 public:
-    /// Those of the case: titles, patient, plan, series.
+    /// Those of the case: titles, patient, plan, series; risk structures are "structure 1", "structure 2".
     explicit NamesLeftOut(const Case& the_case);
     /// Of the plan's items: "item 1", "item 2".
     void add_items(const PlanDrawing& drawing);

@@ -5,6 +5,7 @@
 
 #include "app/case_model.h"
 #include "app/console.h"
+#include "app/report/clearance_json.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/files/content_hash.h"
 
@@ -102,6 +103,14 @@ Json json_of(const OverlayStep& overlay) {
               overlay.counts.outside}}};
 }
 
+/// Of every item in their order; nothing in recordings of plans without risk structures, as they always were.
+void add_risks(const Session& session, Json& event) {
+    if (session.plan().risk_structures.empty()) return;
+    event["risk"] = Json::array();
+    for (const DrawnItem& item : session.drawing().items)
+        event["risk"].push_back(Json(clearances_json(item.clearances)));
+}
+
 Json item_names(const Session& session) {
     Json names = Json::array();
     for (const DrawnItem& item : session.drawing().items) names.push_back(item.name);
@@ -191,6 +200,7 @@ std::string matched(const Session& session) {
     if (found.verdict != Verdict::no) {
         for (const double mm : predicted_errors_mm(session.plan(), found)) json["predicted_mm"].push_back(mm);
         for (const DrawnItem& item : session.drawing().items) json["items"].push_back(item.name);
+        add_risks(session, json);
     }
     return text_of(json);
 }
@@ -223,20 +233,22 @@ std::string skin_checked(const SkinCheck& check) {
 
 std::string resumed(const Session& session, const ResumeCheck& check) {
     const RegistrationResult& found = *session.registration();
-    return text_of({{"what", "resumed"},
-                    {"verdict", kVerdicts[static_cast<std::size_t>(found.verdict)]},
-                    {"patient_from_ct", json_of(found.patient_from_ct)},
-                    {"markers", check.markers},
-                    {"marker_off_mm", check.marker_off_mm},
-                    {"moved_meanwhile_mm", check.moved_meanwhile_mm},
-                    {"light_moved_mm", check.light_moved_mm},
-                    {"points", check.points},
-                    {"cloud", hash_of(*check.cloud)},
-                    {"residual_mm", check.residual_mm},
-                    {"skin_off_mm", check.skin_off_mm},
-                    {"bound_mm", check.bound_mm},
-                    {"items", item_names(session)},
-                    {"predicted_mm", predicted_errors_mm(session.plan(), found)}});
+    Json json = {{"what", "resumed"},
+                 {"verdict", kVerdicts[static_cast<std::size_t>(found.verdict)]},
+                 {"patient_from_ct", json_of(found.patient_from_ct)},
+                 {"markers", check.markers},
+                 {"marker_off_mm", check.marker_off_mm},
+                 {"moved_meanwhile_mm", check.moved_meanwhile_mm},
+                 {"light_moved_mm", check.light_moved_mm},
+                 {"points", check.points},
+                 {"cloud", hash_of(*check.cloud)},
+                 {"residual_mm", check.residual_mm},
+                 {"skin_off_mm", check.skin_off_mm},
+                 {"bound_mm", check.bound_mm},
+                 {"items", item_names(session)},
+                 {"predicted_mm", predicted_errors_mm(session.plan(), found)}};
+    add_risks(session, json);
+    return text_of(json);
 }
 
 std::string refused(SessionCall call, const std::exception& why) {

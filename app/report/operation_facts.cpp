@@ -8,6 +8,7 @@
 
 #include "app/recording/match_fate.h"
 #include "app/recording/recording_head.h"
+#include "app/report/clearance_json.h"
 #include "app/report/operation_report.h"
 #include "app/without_numbers.h"
 #include "planning_io/files/content_hash.h"
@@ -183,6 +184,8 @@ private:
             const std::string name = event["items"][i].get<std::string>();
             now_.push_back(item_of(name, met[name]++));
             predicted_.push_back(i < event.at("predicted_mm").size() ? number(event["predicted_mm"][i]) : std::nullopt);
+            if (event.contains("risk") && i < event["risk"].size())
+                facts_.items[now_.back()].risk = clearances_from(event["risk"][i]);
         }
         reached_.assign(now_.size(), false);
         forget_showing();
@@ -192,7 +195,7 @@ private:
     std::size_t item_of(const std::string& name, int n) {
         for (std::size_t i = 0; i < facts_.items.size(); ++i)
             if (facts_.items[i].name == name && n-- == 0) return i;
-        facts_.items.push_back({name, {}, 0, {}, {}, false});
+        facts_.items.push_back({name, {}, 0, {}, {}, false, {}});
         return facts_.items.size() - 1;
     }
 

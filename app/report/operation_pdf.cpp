@@ -6,6 +6,7 @@
 
 #include "app/evaluation/distribution.h"
 #include "app/report/pdf_page.h"
+#include "app/report/plan_facts.h"
 #include "app/windows/camera_picture.h"
 
 namespace planlight {
@@ -30,8 +31,14 @@ void add_facts(PdfPages& pdf, const OperationFacts& facts) {
 
 void add_items(PdfPages& pdf, const OperationFacts& facts) {
     pdf.heading("What was shown, and how far off it was (mm)");
+    const bool with_risk = any_risk(facts);
     std::vector<std::vector<std::string>> rows{
         {"Plan item", "shown (room clock)", "for", "predicted, 95 %", "measured: median", "95 %", "worst", "times"}};
+    std::vector<double> shares{0.24, 0.18, 0.1, 0.12, 0.12, 0.08, 0.08, 0.08};
+    if (with_risk) {
+        rows[0].insert(rows[0].begin() + 1, "next risk structure, as planned");
+        shares = {0.17, 0.18, 0.17, 0.09, 0.1, 0.09, 0.07, 0.07, 0.06};
+    }
     for (const OperationItem& item : facts.items) {
         const Distribution d = distribution_of(item.measured_mm);
         const auto mm = [&](double value) {
@@ -40,9 +47,10 @@ void add_items(PdfPages& pdf, const OperationFacts& facts) {
         rows.push_back({item.name, shown_text(item, facts), duration_text(item.shown_s),
                         item.predicted_mm ? fmt::format("{:.2f}", *item.predicted_mm) : "not known", mm(d.median),
                         mm(d.p95), mm(d.worst), std::to_string(d.count)});
+        if (with_risk) rows.back().insert(rows.back().begin() + 1, risk_in_words(item.risk));
     }
     if (facts.items.empty()) rows.push_back({"No match was found: nothing could be shown."});
-    pdf.table(rows, {0.24, 0.18, 0.1, 0.12, 0.12, 0.08, 0.08, 0.08});
+    pdf.table(rows, shares);
     pdf.paragraph(kWhatIsMeasured);
 }
 

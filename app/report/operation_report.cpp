@@ -7,6 +7,7 @@
 #include "app/evaluation/distribution.h"
 #include "app/report/html_page.h"
 #include "app/report/paper_page.h"
+#include "app/report/plan_facts.h"
 #include "app/report/svg_chart.h"
 #include "app/windows/camera_picture.h"
 #include "planning_io/files/safe_write.h"
@@ -59,29 +60,32 @@ std::string marked(double value_mm) {
 }
 
 std::string items_html(const OperationFacts& facts) {
-    std::string html =
-        "<h2>What was shown, and how far off it was</h2><table class=\"plan\"><tr><th>Plan item</th><th>shown (room "
-        "clock)</th><th>for</th><th>predicted, 95 %</th><th>measured: median</th><th>95 %</th><th>worst</th>"
-        "<th>times</th></tr>";
+    const bool with_risk = any_risk(facts);
+    std::string html = fmt::format(
+        "<h2>What was shown, and how far off it was</h2><table class=\"plan{}\"><tr><th>Plan item</th>{}<th>shown "
+        "(room clock)</th><th>for</th><th>predicted, 95 %</th><th>measured: median</th><th>95 %</th><th>worst</th>"
+        "<th>times</th></tr>",
+        with_risk ? " tight" : "", with_risk ? "<th>next risk structure, as planned</th>" : "");
     constexpr std::size_t kMost = 12;  // of which the page has room: where there are more, the worst
     const bool all = facts.items.size() <= kMost;
     const std::vector<const OperationItem*> worst = worst_first(facts.items);
+    const auto figure = [](const std::string& text) { return "<td class=\"figure\">" + text + "</td>"; };
     for (std::size_t i = 0; i < std::min(facts.items.size(), kMost); ++i) {
         const OperationItem& item = all ? facts.items[i] : *worst[i];
         const Distribution d = distribution_of(item.measured_mm);
-        const std::string measured = d.count > 0 ? fmt::format("<td>{}</td><td>{}</td><td>{}</td>", marked(d.median),
-                                                               marked(d.p95), marked(d.worst))
-                                                 : std::string("<td colspan=\"3\">not seen by the cameras</td>");
-        html += fmt::format("<tr><td class=\"name\">{}</td><td>{}</td><td>{}</td><td>{}</td>{}<td>{}</td></tr>",
-                            xml_escaped(short_name(item.name)), shown_text(item, facts), duration_text(item.shown_s),
-                            mm(item.predicted_mm), measured, d.count);
+        html += fmt::format("<tr><td class=\"name\">{}</td>", xml_escaped(short_name(item.name))) +
+                (with_risk ? fmt::format("<td class=\"risk\">{}</td>", risk_html(item.risk)) : "") +
+                figure(shown_text(item, facts)) + figure(duration_text(item.shown_s)) + figure(mm(item.predicted_mm)) +
+                (d.count > 0 ? figure(marked(d.median)) + figure(marked(d.p95)) + figure(marked(d.worst))
+                             : std::string("<td colspan=\"3\">not seen by the cameras</td>")) +
+                fmt::format("<td>{}</td></tr>", d.count);
     }
     if (facts.items.size() > kMost)
         html += fmt::format(
-            "<tr><td colspan=\"8\">and {} items more, none of them farther off, in the figures beside this "
+            "<tr><td colspan=\"9\">and {} items more, none of them farther off, in the figures beside this "
             "page</td></tr>",
             facts.items.size() - kMost);
-    if (facts.items.empty()) html += "<tr><td colspan=\"8\">No match was found: nothing could be shown.</td></tr>";
+    if (facts.items.empty()) html += "<tr><td colspan=\"9\">No match was found: nothing could be shown.</td></tr>";
     return html + "</table><p class=\"muted\">" + kWhatIsMeasured + "</p>";
 }
 

@@ -10,6 +10,7 @@
 
 #include "app/recording/session_recorder.h"
 #include "planning_io/recording/recording_reader.h"
+#include "projection/clearance.h"
 
 namespace planlight {
 
@@ -22,6 +23,7 @@ struct OperationItem {
         predicted_mm;                 ///< within this in 95 % of cases, by the last match that was used; or not known
     std::vector<double> measured_mm;  ///< by CHECK, each time that its light was seen
     bool looked_at = false;           ///< CHECK told at least once whether the light reached it
+    Clearances risk = {};             ///< to the plan's risk structures, as planned; what is worst first
 };
 
 struct OperationMatch {
@@ -94,6 +96,9 @@ std::string clock_text(double s);
 
 /// When an item was shown, first to last, or why nothing is known of it.
 std::string shown_text(const OperationItem& item, const OperationFacts& facts);
+
+/// The plan held risk structures.
+bool any_risk(const OperationFacts& facts);
 
 /// A figure beyond what the gate lets pass is marked by a sign, not by its colour alone: empty, "⚠", "✗".
 std::string sign_of(double value_mm);

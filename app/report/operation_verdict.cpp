@@ -8,6 +8,7 @@
 
 #include "app/evaluation/distribution.h"
 #include "app/recording/recording_head.h"
+#include "app/report/clearance_json.h"
 #include "app/report/operation_report.h"
 
 namespace planlight {
@@ -64,6 +65,11 @@ std::string shown_text(const OperationItem& item, const OperationFacts& facts) {
     if (item.shown.empty()) return item.looked_at || facts.lit_s <= 0 ? "not shown" : "not known";
     const std::string text = clock_text(item.shown.front().first) + "–" + clock_text(item.shown.back().second);
     return item.shown.size() == 1 ? text : fmt::format("{}, {} times", text, item.shown.size());
+}
+
+bool any_risk(const OperationFacts& facts) {
+    return std::any_of(facts.items.begin(), facts.items.end(),
+                       [](const OperationItem& item) { return !item.risk.empty(); });
 }
 
 std::string sign_of(double value_mm) {
@@ -197,6 +203,7 @@ std::string operation_json(const OperationFacts& facts) {
                                  {"shown_s", item.shown_s},
                                  {"shown", item.looked_at || facts.lit_s <= 0 ? shown : Json()},
                                  {"predicted_mm", item.predicted_mm ? Json(*item.predicted_mm) : Json()},
+                                 {"risk", clearances_json(item.risk)},
                                  {"measured_mm", json_of(distribution_of(item.measured_mm))}});
     }
     json["matches"] = Json::array();

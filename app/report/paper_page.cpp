@@ -25,8 +25,8 @@ table{border-collapse:collapse;width:100%}
 td,th{padding:.5mm 2mm .5mm 0;border-bottom:.2mm solid #d5d9df;text-align:left;vertical-align:top}
 th{color:#5b6470;font-weight:500;font-size:8pt}tr{break-inside:avoid}
 td.name{width:24%;overflow-wrap:anywhere}.plan td{padding:.35mm 2mm .35mm 0}.plan th{font-size:7.5pt;line-height:1.15}
-.plan td:last-child,.plan td:nth-child(7){min-width:19mm}.small{font-size:8pt;line-height:1.25}
-.plan td:nth-child(n+2):nth-child(-n+6),.plan td:nth-child(8){white-space:nowrap}
+.plan td.words{min-width:19mm}.small{font-size:8pt;line-height:1.25}.plan td.figure,.figure{white-space:nowrap}
+.tight td,.tight th{padding-right:1.5mm}.tight td{font-size:9pt}.tight td.name{width:20%}.tight td.risk{min-width:31mm}
 .two{display:grid;grid-template-columns:1fr 1fr;gap:0 6mm;align-items:start}
 .two table{table-layout:fixed}.two td{overflow-wrap:anywhere}
 .two td:first-child{color:#5b6470;width:34%}

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "planning_io/files/xml_text.h"
 #include "projection/check_items.h"
 
 namespace planlight {
@@ -103,6 +104,10 @@ Gravity gravity_of(double mm, const DrawingSettings& settings) {
     return mm > kLook_mm ? Gravity::look : Gravity::none;
 }
 
+const char* class_of(Gravity gravity) {
+    return gravity == Gravity::stop ? "stop" : gravity == Gravity::look ? "look" : "";
+}
+
 Gravity gravity_of(const Clearances& clearances) {
     if (clearances.empty() || !warns(clearances.front())) return Gravity::none;
     return clearances.front().through ? Gravity::stop : Gravity::look;
@@ -115,6 +120,14 @@ std::string risk_in_words(const Clearances& clearances) {
         words += "; " + clearance_in_words(clearances[i]);
     if (clearances.front().through) return words;
     return warns(clearances.front()) ? words + ": near" : words;
+}
+
+std::string risk_html(const Clearances& clearances) {
+    std::string html = xml_escaped(risk_in_words(clearances));
+    static const std::string kUnit = " mm to ";
+    for (std::size_t at = html.find(kUnit); at != std::string::npos; at = html.find(kUnit, at))
+        html.replace(at, kUnit.size(), "&nbsp;mm to ");
+    return fmt::format("<span class=\"{}\">{}</span>", class_of(gravity_of(clearances)), html);
 }
 
 std::string distance_in_words(double mm, const DrawingSettings& settings) {

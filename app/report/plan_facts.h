@@ -14,6 +14,9 @@ namespace planlight {
 /// How much a distance to the skin matters.
 enum class Gravity { none, look, stop };
 
+/// Of the page's style: "stop", "look", "".
+const char* class_of(Gravity gravity);
+
 /// What the one who signs must know of a plan item. Lengths in mm, angles in radians; empty where the item has none.
 struct PlanFact {
     std::string kind;  ///< "closed line", "borehole" ...
@@ -41,6 +44,9 @@ std::string side_in_words(double left_of_middle_mm);
 
 /// What stands in the table of the distances to risk structures: the worst, and all that warn; "–" of none.
 std::string risk_in_words(const Clearances& clearances);
+
+/// The same for a page: a figure and its unit stay on one line; markup.
+std::string risk_html(const Clearances& clearances);
 
 /// How the worst of them is to be taken: "stop" through a structure, "look" under 2 mm.
 Gravity gravity_of(const Clearances& clearances);

@@ -61,6 +61,8 @@ std::vector<ReportPicture> views_of(const Case& the_case, const PlanDrawing& dra
     scene.on_paper = true;
     scene.skin = {std::shared_ptr<void>(), &the_case.skin};  // theirs: they outlive the scene
     scene.plan = {std::shared_ptr<void>(), &drawing};
+    if (!the_case.plan.risk_structures.empty())
+        scene.risk_structures = {std::shared_ptr<void>(), &the_case.plan.risk_structures};
     constexpr double kQuarter = std::numbers::pi / 2;
     struct Side {
         const char* name;

@@ -8,6 +8,7 @@
 #include "app/report/paper_page.h"
 #include "app/report/plan_facts.h"
 #include "app/report/preparation_json.h"
+#include "app/windows/distance_colours.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/files/header_text.h"
 #include "planning_io/files/safe_write.h"
@@ -189,12 +190,25 @@ std::string second_row(const PreparationPictures& pictures, const RemovedPieces&
            "</div>";
 }
 
+/// Which colour in the views is which structure.
+std::string legend_of_risks(const Plan& plan) {
+    if (plan.risk_structures.empty()) return {};
+    std::string html = "<p class=\"muted\">Seen through the skin:";
+    for (std::size_t i = 0; i < plan.risk_structures.size(); ++i) {
+        const Rgb c = risk_colour(i);
+        html += fmt::format("{} <span style=\"color:#{:02x}{:02x}{:02x}\">&#9632;</span>&nbsp;{}", i > 0 ? "," : "",
+                            c[0], c[1], c[2], xml_escaped(plan.risk_structures[i].name));
+    }
+    return html + ".</p>";
+}
+
 std::string views_html(const Preparation& done, const PreparationPictures& pictures, const RemovedPieces& removed) {
     std::string html = "<h2>The skin with the plan, and what was thrown away</h2>";
     if (pictures.views.size() >= 4)
         html += figures_in_a_row({pictures.views.begin(), pictures.views.begin() + 4}, 4);
     else
         html += fmt::format("<p class=\"look\">{}</p>", xml_escaped(pictures.no_views));
+    if (pictures.views.size() >= 4) html += legend_of_risks(done.prepared.plan);
     if (!cut_sides_of(done.judgement).empty())
         html += "<p class=\"muted\">Grey on the skin: where the scan ends within the head; that is no skin.</p>";
     if (done.on_given_surface)
@@ -207,40 +221,34 @@ std::string number(const std::optional<double>& value, int digits, const char* u
     return value ? fmt::format("{:.{}f}{}", *value, digits, unit) : std::string("–");
 }
 
-const char* class_of(Gravity gravity) {
-    return gravity == Gravity::stop ? "stop" : gravity == Gravity::look ? "look" : "";
-}
-
-/// `with_risk`: the plan holds risk structures.
+/// `with_risk`: the plan holds risk structures, and the kind stands below the name, so that all columns have room.
 std::string fact_html(const PlanFact& fact, bool with_risk) {
     constexpr double kDegrees = 57.29577951308232;
-    const std::string tilt = fact.tilt ? fmt::format("{:.0f}°", kDegrees * *fact.tilt) : "–";
-    return fmt::format(
-        "<tr><td "
-        "class=\"name\">{}{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td "
-        "class=\"{}\">{}</td>{}</tr>",
-        fact.lit.empty() ? "" : fmt::format("<b>{}</b>&ensp;", xml_escaped(fact.lit)),
-        xml_escaped(fact.name.empty() ? "without a name" : fact.name), fact.kind,
-        fact.left_of_middle_mm ? side_in_words(*fact.left_of_middle_mm) : "–",
-        number(fact.depth_mm ? fact.depth_mm : fact.length_mm, 1, " mm"), number(fact.diameter_mm, 1, " mm"), tilt,
-        fact.inwards_in_ct ? direction_in_words(*fact.inwards_in_ct) : "–", number(fact.over_bone_mm, 1, " mm"),
-        class_of(fact.gravity), xml_escaped(fact.distance),
-        with_risk ? fmt::format("<td class=\"{}\">{}</td>", class_of(gravity_of(fact.clearances)),
-                                xml_escaped(risk_in_words(fact.clearances)))
-                  : "");
+    const auto figure = [](const std::string& text) { return "<td class=\"figure\">" + text + "</td>"; };
+    const std::string name = (fact.lit.empty() ? "" : fmt::format("<b>{}</b>&ensp;", xml_escaped(fact.lit))) +
+                             xml_escaped(fact.name.empty() ? "without a name" : fact.name) +
+                             (with_risk ? fmt::format("<br><span class=\"muted\">{}</span>", fact.kind) : "");
+    return fmt::format("<tr><td class=\"name\">{}</td>", name) + (with_risk ? "" : figure(fact.kind)) +
+           figure(fact.left_of_middle_mm ? side_in_words(*fact.left_of_middle_mm) : "–") +
+           figure(number(fact.depth_mm ? fact.depth_mm : fact.length_mm, 1, " mm")) +
+           figure(number(fact.diameter_mm, 1, " mm")) +
+           figure(fact.tilt ? fmt::format("{:.0f}°", kDegrees * *fact.tilt) : "–") +
+           fmt::format("<td class=\"words\">{}</td>",
+                       fact.inwards_in_ct ? direction_in_words(*fact.inwards_in_ct) : "–") +
+           figure(number(fact.over_bone_mm, 1, " mm")) +
+           fmt::format("<td class=\"words {}\">{}</td>", class_of(fact.gravity), xml_escaped(fact.distance)) +
+           (with_risk ? fmt::format("<td class=\"risk\">{}</td>", risk_html(fact.clearances)) : "") + "</tr>";
 }
 
 std::string plan_html(const std::vector<PlanFact>& facts) {
     if (facts.empty()) return "<h2>The plan</h2><p>It holds nothing.</p>";
     const bool with_risk =
         std::any_of(facts.begin(), facts.end(), [](const PlanFact& fact) { return !fact.clearances.empty(); });
-    std::string html =
-        "<h2>The plan</h2><table class=\"plan\"><thead><tr><th>Name</th><th>Kind</th><th>Side of its "
-        "middle</th><th>Depth or "
-        "length</th><th>Diameter</th><th>Tilt "
-        "from the skin's perpendicular</th><th>Direction inwards</th><th>Soft tissue over bone</th><th>Its points "
-        "lie</th>" +
-        std::string(with_risk ? "<th>Nearest risk structure</th>" : "") + "</tr></thead>";
+    std::string html = fmt::format(
+        "<h2>The plan</h2><table class=\"plan{}\"><thead><tr><th>Name</th>{}<th>Side of its middle</th><th>Depth or "
+        "length</th><th>Diameter</th><th>Tilt from the skin's perpen&shy;dicular</th><th>Direction inwards</th>"
+        "<th>Soft tissue over bone</th><th>Its points lie</th>{}</tr></thead>",
+        with_risk ? " tight" : "", with_risk ? "" : "<th>Kind</th>", with_risk ? "<th>Next risk structure</th>" : "");
     bool by_code = false;
     for (const auto& fact : facts) html += fact_html(fact, with_risk), by_code = by_code || !fact.lit.empty();
     return html + "</table>" +

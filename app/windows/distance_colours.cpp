@@ -23,4 +23,10 @@ Rgb error_colour(double error_mm, double warn_mm, double stop_mm) {
     return error_mm <= warn_mm ? Rgb{56, 190, 122} : error_mm <= stop_mm ? Rgb{250, 194, 60} : Rgb{235, 70, 70};
 }
 
+Rgb risk_colour(std::size_t n) {
+    constexpr std::array<Rgb, 6> kColours{
+        {{70, 90, 255}, {175, 60, 235}, {150, 85, 30}, {110, 125, 145}, {0, 95, 130}, {205, 30, 130}}};
+    return kColours[n % kColours.size()];
+}
+
 }  // namespace planlight

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 #include "planning_io/types/image.h"
 
 namespace planlight {
@@ -10,5 +12,8 @@ Rgb distance_colour(double distance_mm, double largest_mm);
 
 /// Green up to `warn_mm`, amber up to `stop_mm`, red above; grey when it is not finite.
 Rgb error_colour(double error_mm, double warn_mm, double stop_mm);
+
+/// Of the n-th risk structure: none is a colour of the plan, of a distance, or of skin. They begin again after six.
+Rgb risk_colour(std::size_t n);
 
 }  // namespace planlight

@@ -21,18 +21,18 @@ std::string words_of(const Pen& pen, const PlanRow& row) {
                                                         : "How far off it may be is not known yet."));
     if (row.light_off_mm)
         words += " " + pen.say("Its light was seen " + number_text(row.light_off_mm, "mm") + " beside its place.");
-    if (row.risk)
-        words += " " + pen.say(row.risk->through ? "It is planned through " + row.risk->structure + "."
-                                                 : fmt::format("It is planned {:.1f} mm from {}.", said_mm(*row.risk),
-                                                               row.risk->structure));
+    for (const Clearance& risk : row.risk)
+        words += " " + pen.say(risk.through
+                                   ? "It is planned through " + risk.structure + "."
+                                   : fmt::format("It is planned {:.1f} mm from {}.", said_mm(risk), risk.structure));
     return words;
 }
 
 ImU32 colour_for(const Pen& pen, const PlanRow& row, const OperatorModel& model) {
     const double worst = std::max(std::abs(row.predicted_error_mm.value_or(0)), std::abs(row.light_off_mm.value_or(0)));
-    return worst > model.stop_above_mm || (row.risk && row.risk->through)  ? pen.theme->red
-           : worst > model.warn_above_mm || (row.risk && warns(*row.risk)) ? pen.theme->amber
-                                                                           : pen.theme->text;
+    return worst > model.stop_above_mm || through_risk(row) ? pen.theme->red
+           : worst > model.warn_above_mm || near_risk(row)  ? pen.theme->amber
+                                                            : pen.theme->text;
 }
 
 }  // namespace

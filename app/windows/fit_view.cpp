@@ -5,9 +5,10 @@ namespace planlight {
 bool SceneModel::operator==(const SceneModel& o) const {
     return skin == o.skin && on_paper == o.on_paper && of_scan == o.of_scan && cloud == o.cloud &&
            cloud_distance_mm == o.cloud_distance_mm && ct_from_rig.matrix() == o.ct_from_rig.matrix() &&
-           markers == o.markers && plan == o.plan && light == o.light && skin_offset_mm == o.skin_offset_mm &&
-           largest_distance_mm == o.largest_distance_mm && skin_error_mm == o.skin_error_mm &&
-           bright_item == o.bright_item && warn_above_mm == o.warn_above_mm && stop_above_mm == o.stop_above_mm;
+           markers == o.markers && plan == o.plan && light == o.light && risk_structures == o.risk_structures &&
+           skin_offset_mm == o.skin_offset_mm && largest_distance_mm == o.largest_distance_mm &&
+           skin_error_mm == o.skin_error_mm && bright_item == o.bright_item && warn_above_mm == o.warn_above_mm &&
+           stop_above_mm == o.stop_above_mm;
 }
 
 bool FitViews::operator==(const FitViews& o) const {

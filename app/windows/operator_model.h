@@ -43,6 +43,8 @@ struct SceneModel {
     std::shared_ptr<const std::vector<SceneMarker>> markers;
     std::shared_ptr<const PlanDrawing> plan;
     std::shared_ptr<const std::vector<LightLine>> light;  ///< drawn white, above the plan
+    /// Seen through the skin, each in a colour of its own; named in the legend.
+    std::shared_ptr<const std::vector<RiskStructure>> risk_structures;
     double skin_offset_mm = 0;         ///< the distances are counted from this far outside of the CT's skin
     double largest_distance_mm = 1.5;  ///< the red end of the colour scale
     /// Per vertex of the skin, how far off it may be (95 %), mm; null: the skin has its own colour.
@@ -137,10 +139,11 @@ struct CameraPicture {
 /// A plan item in the table. Values in mm; empty is shown as a dash.
 struct PlanRow {
     Rgb colour{255, 255, 255};
-    std::string name;  ///< "Borehole 1, ⌀7.0 mm"
+    std::string name;  ///< "B1  ⌀7  6 mm deep"
     std::optional<double> depth_mm, predicted_error_mm, light_off_mm;
-    std::optional<Clearance> risk = {};  ///< to the nearest risk structure, or the one that it goes through
-    bool hidden = false;                 ///< by a person: not lit, not in the 3-D view
+    Clearances risk = {};         ///< to risk structures, what is worst first: all that warn, or else the nearest
+    bool hidden = false;          ///< by a person: not lit, not in the 3-D view
+    std::string short_name = {};  ///< "B1  ⌀7": in the table, where the depth has a column; empty: the name
 
     bool operator==(const PlanRow&) const = default;
 };

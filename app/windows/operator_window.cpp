@@ -50,7 +50,6 @@ struct OperatorWindow::Parts {
     std::unique_ptr<MiddleView> middle;
     CameraTexture left{gui}, right{gui};
     float rows_scrolled = 0;
-    int rows_shown = 1;
     std::optional<std::size_t> marked_row;  ///< in the last frame
     std::map<OperatorAction, Box> controls;
     std::map<std::string, Box> places;
@@ -120,26 +119,21 @@ struct OperatorWindow::Parts {
         return wanted;
     }
 
-    void bring_into_sight(int row) {
-        rows_scrolled =
-            std::clamp(rows_scrolled, static_cast<float>(std::max(0, row - rows_shown + 1)), static_cast<float>(row));
-    }
-
     /// A press on the table opens the page with all of it.
     void draw_plan_table(const Pen& pen, const OperatorModel& model) {
         const ImVec2 mouse = ImGui::GetIO().MousePos;
-        const int spare = static_cast<int>(model.rows.size()) - rows_shown;
         if (inside(place.table, mouse.x, mouse.y)) rows_scrolled -= ImGui::GetIO().MouseWheel;
-        rows_scrolled = std::clamp(rows_scrolled, 0.0F, static_cast<float>(std::max(0, spare)));
+        rows_scrolled = std::max(rows_scrolled, 0.0F);
         places["evidence"] = place.table;
         ImGui::SetCursorScreenPos({place.table.x, place.table.y});
         if (ImGui::InvisibleButton("evidence", {place.table.width, place.table.height}))
             middle->press(KeyMeaning::evidence, model);
         const std::optional<std::size_t> marked = middle->marked_row();
-        if (marked && marked != marked_row) bring_into_sight(static_cast<int>(*marked));
+        const int from = static_cast<int>(rows_scrolled),
+                  first = draw_table(pen, place.table, model, {from, marked, marked && marked != marked_row},
+                                     ImGui::IsItemHovered());
+        if (first != from) rows_scrolled = static_cast<float>(first);
         marked_row = marked;
-        rows_shown =
-            draw_table(pen, place.table, model, static_cast<int>(rows_scrolled), ImGui::IsItemHovered(), marked);
     }
 
     void draw_cameras(const Pen& pen, const OperatorModel& model) {

@@ -16,10 +16,27 @@ void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model, con
 /// says its age. `texture` is null when there is no picture.
 void draw_camera(const Pen& pen, const Box& box, const CameraPicture& camera, bool refused, ImTextureID texture);
 
-/// The plan items from row `first_row` on, then as much of the evidence as there is room for; the `marked` row stands
-/// out. Returns how many rows there was room for.
-int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int first_row, bool hovered,
-               std::optional<std::size_t> marked = {});
+/// The worst of a row's risk structures is one that it goes through; it warns.
+inline bool through_risk(const PlanRow& row) {
+    return !row.risk.empty() && row.risk.front().through;
+}
+inline bool near_risk(const PlanRow& row) {
+    return !row.risk.empty() && warns(row.risk.front());
+}
+
+/// Which rows of the table are seen, and which of them stands out.
+struct TableView {
+    int first_row = 0;                  ///< no later than what fills the table
+    std::optional<std::size_t> marked;  ///< stands out
+    bool seek = false;                  ///< it has just been marked: it is to be seen
+};
+
+/// The plan items, below an item how near it comes to a risk structure, then as much of the evidence as there is room
+/// for. Returns the first row that is drawn.
+int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, const TableView& view, bool hovered);
+
+/// So much room do the other columns leave for a name, pixels.
+float table_name_width(const Pen& pen, const Box& box, const OperatorModel& model);
 
 struct ButtonLook {
     bool chosen = false;    ///< it shows what is on, and looks held

@@ -1,6 +1,7 @@
 #include "app/windows/scene.h"
 
 #include <vtkActor.h>
+#include <vtkBoundingBox.h>
 #include <vtkCamera.h>
 #include <vtkLightKit.h>
 #include <vtkMatrix4x4.h>
@@ -66,9 +67,11 @@ bool replace(T& old, const T& now) {
 struct Scene::Parts {
     vtkRenderWindow& window;
     vtkNew<vtkRenderer> renderer;
+    /// Over the skin what lies within, over both what is looked at on the skin: its colours stay as they are.
+    vtkNew<vtkRenderer> within, upon;
     vtkNew<vtkLightKit> lights;
-    Thing skin{*renderer, 0, true}, cloud{*renderer, 0.9, false}, markers{*renderer, 3.5, false},
-        plan{*renderer, 4.0, false}, light{*renderer, 4.6, false};
+    Thing skin{*renderer, 0, true}, risks{*within, 0, true}, cloud{*upon, 0.9, false}, markers{*upon, 3.5, false},
+        plan{*upon, 4.0, false}, light{*upon, 4.6, false};
     SceneOverlay overlay;
     SceneModel shown;
     SceneView shown_view;
@@ -77,8 +80,16 @@ struct Scene::Parts {
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
     double reach_mm = 120;  ///< half the picture's smaller side at zoom 1
 
-    Parts(vtkRenderWindow& w, const FontFiles& fonts) : window(w), overlay(*renderer, fonts) {
-        window.AddRenderer(renderer);
+    Parts(vtkRenderWindow& w, const FontFiles& fonts) : window(w), overlay(*upon, fonts) {
+        window.SetNumberOfLayers(3);
+        for (vtkRenderer* layer : {renderer.Get(), within.Get(), upon.Get()}) window.AddRenderer(layer);
+        within->SetLayer(1);
+        upon->SetLayer(2);
+        for (vtkRenderer* layer : {within.Get(), upon.Get()}) {
+            layer->PreserveDepthBufferOn();
+            layer->AutomaticLightCreationOff();
+        }
+        upon->SetActiveCamera(renderer->GetActiveCamera());
         renderer->SetBackgroundAlpha(1);
         renderer->AutomaticLightCreationOff();
         lights->SetKeyLightIntensity(0.85);
@@ -86,7 +97,9 @@ struct Scene::Parts {
         lights->SetKeyToFillRatio(3.5);
         lights->SetKeyToHeadRatio(3.5);
         lights->SetKeyToBackRatio(5);
-        lights->AddLightsToRenderer(renderer);
+        for (vtkRenderer* layer : {renderer.Get(), within.Get(), upon.Get()}) lights->AddLightsToRenderer(layer);
+        risks.actor->GetProperty()->SetOpacity(0.55);
+        risks.actor->GetProperty()->BackfaceCullingOn();
         vtkProperty* const property = skin.actor->GetProperty();
         property->SetAmbient(0.05);
         property->SetDiffuse(0.95);
@@ -119,6 +132,12 @@ struct Scene::Parts {
         if (new_skin || other_colours) skin.show(shown.skin ? skin_shape(shown) : nullptr);
         if (!replace(shown.markers, scene.markers) && !new_skin) return other_colours;
         markers.show(shown.markers ? marker_shape(*shown.markers, middle) : nullptr);
+        return true;
+    }
+
+    bool take_risks(const SceneModel& scene) {
+        if (!replace(shown.risk_structures, scene.risk_structures)) return false;
+        risks.show(shown.risk_structures ? risk_shape(*shown.risk_structures) : nullptr);
         return true;
     }
 
@@ -163,7 +182,27 @@ struct Scene::Parts {
         camera->SetViewUp(axes.up_in_ct.data());
         cloud.lift(eye, distance_mm(), shown.ct_from_rig);
         for (Thing* thing : {&markers, &plan, &light}) thing->lift(eye, distance_mm());
-        renderer->ResetCameraClippingRange();
+        place_planes(*camera);
+    }
+
+    /// All layers have one depth buffer. What lies within is drawn with depths before those of the skin, so that the
+    /// skin does not hide it; it writes none, so that the skin hides what lies behind it on the head.
+    void place_planes(vtkCamera& camera) {
+        constexpr double kBefore = 0.2;  // of the way to the nearest: the skin's depths are above 0.8
+        vtkBoundingBox all;
+        for (vtkRenderer* layer : {renderer.Get(), upon.Get()})
+            if (const vtkBoundingBox bounds(layer->ComputeVisiblePropBounds()); bounds.IsValid()) all.AddBox(bounds);
+        if (all.IsValid()) {
+            double bounds[6];
+            all.GetBounds(bounds);
+            renderer->ResetCameraClippingRange(bounds);
+        }
+        const double* const range = camera.GetClippingRange();
+        camera.SetClippingRange(kBefore * range[0], range[1]);
+        vtkCamera* const inner = within->GetActiveCamera();
+        inner->DeepCopy(&camera);
+        within->ResetCameraClippingRange();
+        inner->SetClippingRange(inner->GetClippingRange()[0], 100 * inner->GetClippingRange()[1]);
     }
 };
 
@@ -174,7 +213,8 @@ bool Scene::update(const SceneModel& scene, const SceneView& view, int width, in
                    const Words* words, const LetterInsets& insets) {
     Parts& parts = *parts_;
     const bool changed = static_cast<int>(parts.take_skin_and_markers(scene)) |
-                         static_cast<int>(parts.take_cloud(scene)) | static_cast<int>(parts.take_lines(scene));
+                         static_cast<int>(parts.take_cloud(scene)) | static_cast<int>(parts.take_lines(scene)) |
+                         static_cast<int>(parts.take_risks(scene));
     if (!changed && insets == parts.insets && view == parts.shown_view && width == parts.width &&
         height == parts.height)
         return false;

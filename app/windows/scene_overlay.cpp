@@ -18,6 +18,7 @@
 #include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "app/windows/distance_colours.h"
 #include "app/windows/orientation.h"
@@ -103,6 +104,28 @@ double signs_of(const std::string& text) {
                                              [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
+/// Known by its beginning and its end.
+std::string shortened_name(const std::string& name, std::size_t most) {
+    std::vector<std::string> signs;
+    for (const char c : name) {
+        if ((static_cast<unsigned char>(c) & 0xC0U) != 0x80U) signs.emplace_back();
+        if (!signs.empty()) signs.back() += c;
+    }
+    if (signs.size() <= most) return name;
+    std::string text;
+    const std::size_t first = most / 2, last = signs.size() - (most - 1 - first);
+    for (std::size_t i = 0; i < first; ++i) text += signs[i];
+    text += "…";
+    for (std::size_t i = last; i < signs.size(); ++i) text += signs[i];
+    return text;
+}
+
+/// The main font has Latin, Greek and Cyrillic letters; another name would be a row of boxes.
+bool has_letters(const std::string& name) {
+    return std::all_of(name.begin(), name.end(),
+                       [](char c) { return static_cast<unsigned char>(c) < 0xD6 || c == '\xE2'; });
+}
+
 }  // namespace
 
 struct SceneOverlay::Parts {
@@ -111,6 +134,15 @@ struct SceneOverlay::Parts {
     Text title;
     const Words* words = nullptr;
     std::array<Text, 4> values;
+    static constexpr std::size_t kMostStructures = 6;
+    Text risk_title;
+    std::array<Text, kMostStructures> risk_names;
+
+    std::vector<Text*> of_risks() {
+        std::vector<Text*> all{&risk_title};
+        for (Text& name : risk_names) all.push_back(&name);
+        return all;
+    }
 
     std::string say(const std::string& english) const { return words ? words->say(english) : english; }
 
@@ -167,6 +199,39 @@ struct SceneOverlay::Parts {
                 fmt::format("{}{:.1f}", i == 3 ? "≥ " : "", scene.largest_distance_mm * i / 3),
                 x + 24 * scale + bar * i / 3, y + 18 * scale, letters_px(scale));
     }
+
+    /// What is seen through the skin, above the legend of the distances: a colour and a name a line.
+    void legend_of_risks(const SceneModel& scene, int width, double scale) {
+        const bool small = scene.on_paper && width < 600;  // the page names them beside its pictures
+        const std::size_t count = scene.risk_structures && !small ? scene.risk_structures->size() : 0,
+                          lines = std::min(count, kMostStructures);
+        risk_title.actor->SetVisibility(count > 0);
+        for (std::size_t i = 0; i < kMostStructures; ++i) risk_names[i].actor->SetVisibility(i < lines);
+        if (count == 0) return;
+        constexpr std::size_t kMostSigns = 26;
+        const int px = letters_px(scale);
+        const double line = 1.45 * px, colour = 0.8 * px, letter = 0.56 * px;
+        const std::string caption = say("Seen through the skin: risk structures");
+        double longest = signs_of(caption);
+        std::vector<std::string> names;
+        for (std::size_t i = 0; i < lines; ++i) {
+            const std::string& name = (*scene.risk_structures)[i].name;
+            names.push_back(
+                i + 1 == kMostStructures && count > kMostStructures
+                    ? say(fmt::format("and {} more", count - i))
+                    : (has_letters(name) ? shortened_name(name, kMostSigns) : say(fmt::format("structure {}", i + 1))));
+            longest = std::max(longest, signs_of(names.back()) + 2);
+        }
+        const double x = width - 16 * scale - std::min(letter * longest, width - 32 * scale);
+        double y = (title.actor->GetVisibility() ? 124 : 32) * scale + line * static_cast<double>(lines);
+        risk_title.place(caption, x, y, px);
+        for (std::size_t i = 0; i < lines; ++i) {
+            y -= line;
+            if (!(i + 1 == kMostStructures && count > kMostStructures))
+                boxes.add(x, y - colour / 2, colour, colour, risk_colour(i), 255);
+            risk_names[i].place(names[i], x + 1.8 * colour, y, px);
+        }
+    }
 };
 
 SceneOverlay::SceneOverlay(vtkRenderer& renderer, const FontFiles& fonts) : parts_(std::make_unique<Parts>()) {
@@ -174,6 +239,9 @@ SceneOverlay::SceneOverlay(vtkRenderer& renderer, const FontFiles& fonts) : part
     for (Text& letter : parts_->letters) letter.set_up(renderer, fonts.bold);
     parts_->title.set_up(renderer, fonts.regular);
     for (Text& value : parts_->values) value.set_up(renderer, fonts.regular);
+    parts_->risk_title.set_up(renderer, fonts.regular);
+    for (Text& name : parts_->risk_names) name.set_up(renderer, fonts.regular);
+    for (Text* text : parts_->of_risks()) text->actor->GetTextProperty()->SetJustificationToLeft();
 }
 
 SceneOverlay::~SceneOverlay() = default;
@@ -185,6 +253,7 @@ void SceneOverlay::update(const SceneModel& scene, const SceneView& view, int wi
     if (scene.on_paper) scale *= 1.6;  // the picture is shown at half its size and less
     for (Text& value : parts_->values) value.set_ink(scene.on_paper);
     parts_->title.set_ink(scene.on_paper);
+    for (Text* text : parts_->of_risks()) text->set_ink(scene.on_paper);
     parts_->boxes.clear();
     for (Text& letter : parts_->letters) {
         letter.actor->SetVisibility(!scene.of_scan);
@@ -192,6 +261,7 @@ void SceneOverlay::update(const SceneModel& scene, const SceneView& view, int wi
     }
     parts_->letters_at_edges(view, width, height, scale, insets);
     parts_->legend(scene, width, scale);
+    parts_->legend_of_risks(scene, width, scale);
     parts_->boxes.done();
 }
 

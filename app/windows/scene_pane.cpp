@@ -64,6 +64,13 @@ void ScenePane::draw(const Pen& pen, const Box& box, const SceneModel& model, co
         target_->GetState()->Reset();
         target_->GetState()->ResetFramebufferBindings();
         target_->Render();
+        // What is translucent in it left a hole in its opacity, through which the window would be seen.
+        target_->GetDisplayFramebuffer()->Bind(GL_FRAMEBUFFER);
+        glDisable(GL_SCISSOR_TEST);
+        glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_TRUE);
+        glClearColor(0, 0, 0, 1);
+        glClear(GL_COLOR_BUFFER_BIT);
+        glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
         glBindFramebuffer(GL_FRAMEBUFFER, 0);
         rendered_view_ = view_;
         rendered_ = model;

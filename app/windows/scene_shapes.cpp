@@ -10,6 +10,7 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolyDataNormals.h>
+#include <vtkQuadricClustering.h>
 #include <vtkTubeFilter.h>
 #include <vtkUnsignedCharArray.h>
 
@@ -26,6 +27,7 @@ constexpr Rgb kSkinColour{232, 190, 165}, kLidColour{150, 140, 135}, kScanColour
 constexpr double kPlanRadiusMm = 0.9, kTextRadiusMm = 0.3, kLightRadiusMm = 0.3;
 constexpr double kAboveSkinMm = 0.4;
 constexpr std::size_t kMostPoints = 60000;
+constexpr std::size_t kMostTriangles = 60000;  ///< of a risk structure
 
 /// Coloured polygons or lines as they are collected.
 struct Shape {
@@ -95,6 +97,20 @@ void add_disc(Shape& shape, const Eigen::Vector3d& centre, const Eigen::Vector3d
     }
 }
 
+vtkSmartPointer<vtkPolyData> surface_of(const TriangleMesh& mesh) {
+    vtkNew<vtkPoints> points;
+    for (const Eigen::Vector3d& p : mesh.vertices_in_ct) points->InsertNextPoint(p.data());
+    vtkNew<vtkCellArray> cells;
+    for (const auto& t : mesh.triangles) {
+        const vtkIdType ids[3] = {t[0], t[1], t[2]};
+        cells->InsertNextCell(3, ids);
+    }
+    auto data = vtkSmartPointer<vtkPolyData>::New();
+    data->SetPoints(points);
+    data->SetPolys(cells);
+    return data;
+}
+
 /// The skin's own colour, or that of its predicted error; lids have none.
 void add_vertex_colours(const SceneModel& scene, vtkPolyData& data) {
     const TriangleMesh& skin = *scene.skin;
@@ -119,16 +135,7 @@ void add_vertex_colours(const SceneModel& scene, vtkPolyData& data) {
 
 vtkSmartPointer<vtkPolyData> skin_shape(const SceneModel& scene) {
     const TriangleMesh& skin = *scene.skin;
-    vtkNew<vtkPoints> points;
-    for (const Eigen::Vector3d& p : skin.vertices_in_ct) points->InsertNextPoint(p.data());
-    vtkNew<vtkCellArray> cells;
-    for (const auto& t : skin.triangles) {
-        const vtkIdType ids[3] = {t[0], t[1], t[2]};
-        cells->InsertNextCell(3, ids);
-    }
-    vtkNew<vtkPolyData> data;
-    data->SetPoints(points);
-    data->SetPolys(cells);
+    vtkSmartPointer<vtkPolyData> data = surface_of(skin);
     add_vertex_colours(scene, *data);
     if (skin.normals_in_ct.size() == skin.vertices_in_ct.size()) {
         vtkNew<vtkFloatArray> normals;
@@ -191,6 +198,37 @@ vtkSmartPointer<vtkPolyData> plan_shape(const PlanDrawing& plan, int bright_item
     vtkNew<vtkAppendPolyData> all;
     all->AddInputData(tubes(lines, kPlanRadiusMm));
     all->AddInputData(tubes(text, kTextRadiusMm));
+    all->Update();
+    return all->GetOutput();
+}
+
+vtkSmartPointer<vtkPolyData> risk_shape(const std::vector<RiskStructure>& structures) {
+    constexpr int kParts = 96;  // along each axis, of one that is too large to be turned quickly
+    vtkNew<vtkAppendPolyData> all;
+    for (std::size_t i = 0; i < structures.size(); ++i) {
+        vtkSmartPointer<vtkPolyData> surface = surface_of(structures[i].surface);
+        if (structures[i].surface.triangles.size() > kMostTriangles) {
+            vtkNew<vtkQuadricClustering> coarser;
+            coarser->SetInputData(surface);
+            coarser->SetNumberOfDivisions(kParts, kParts, kParts);
+            coarser->Update();
+            surface = coarser->GetOutput();
+        }
+        vtkNew<vtkPolyDataNormals> normals;
+        normals->SetInputData(surface);
+        normals->SplittingOff();
+        normals->ConsistencyOn();
+        normals->AutoOrientNormalsOn();  // a file may have its triangles the other way round
+        normals->Update();
+        vtkNew<vtkPolyData> shape;
+        shape->ShallowCopy(normals->GetOutput());
+        vtkNew<vtkUnsignedCharArray> colours;
+        colours->SetNumberOfComponents(3);
+        const Rgb colour = risk_colour(i);
+        for (vtkIdType k = 0; k < shape->GetNumberOfPoints(); ++k) colours->InsertNextTypedTuple(colour.data());
+        shape->GetPointData()->SetScalars(colours);
+        all->AddInputData(shape);
+    }
     all->Update();
     return all->GetOutput();
 }

@@ -19,6 +19,9 @@ vtkSmartPointer<vtkPolyData> cloud_shape(const PointCloud& cloud, const std::vec
 /// none).
 vtkSmartPointer<vtkPolyData> plan_shape(const PlanDrawing& plan, int bright_item = -1);
 
+/// The surfaces with normals, each in its `risk_colour`; large ones coarser.
+vtkSmartPointer<vtkPolyData> risk_shape(const std::vector<RiskStructure>& structures);
+
 /// The light as white tubes, thinner than the plan's.
 vtkSmartPointer<vtkPolyData> light_shape(const std::vector<LightLine>& light);
 

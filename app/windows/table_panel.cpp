@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #include "app/windows/number_text.h"
 #include "app/windows/operator_keys.h"
@@ -10,71 +14,101 @@
 namespace planlight {
 namespace {
 
-constexpr float kDepthWidth = 0.75F, kRiskWidth = 0.85F;  // of the other columns
+/// Two lines of a heading.
+using Heading = std::array<const char*, 2>;
+constexpr Heading kDepth{"depth", "mm"}, kPredicted{"predicted", "95 % mm"}, kLight{"light seen", "off by mm"};
 
+/// Figures, right-aligned.
+struct Column {
+    float x = 0, width = 0;
+};
+/// As wide as what stands in them, and apart from each other; the names have the rest.
 struct Columns {
-    float name_x, name_width, depth_x, risk_x, predicted_x, light_x, width;
-    bool risk;  ///< the plan holds risk structures
+    float name_x, name_width;
+    Column depth, predicted, light;
 };
 
-Columns columns_of(const Pen& pen, const Box& box, bool risk) {
-    const float pad = 18 * pen.scale, width = std::round((risk ? 0.18F : 0.20F) * box.width), name_x = box.x + pad;
-    const float light_x = box.right() - pad - width, predicted_x = light_x - width,
-                risk_x = predicted_x - (risk ? kRiskWidth * width : 0), depth_x = risk_x - kDepthWidth * width;
-    return {name_x, depth_x - name_x - 4 * pen.scale, depth_x, risk_x, predicted_x, light_x, width, risk};
+float mark_radius(const Pen& pen) {
+    return 8 * pen.scale;
+}
+
+/// Of a figure with the shape of a warning beside it.
+float figure_width(const Pen& pen, const std::string& text) {
+    return text_width(pen.fonts.body, text) + 3.3F * mark_radius(pen);
+}
+
+float heading_width(const Pen& pen, const Heading& heading) {
+    return std::max(text_width(pen.fonts.small, pen.say(heading[0])), text_width(pen.fonts.small, pen.say(heading[1])));
+}
+
+Columns columns_of(const Pen& pen, const Box& box, const OperatorModel& model) {
+    const float pad = 18 * pen.scale, gap = 20 * pen.scale;
+    Columns c{box.x + pad, 0, {}, {}, {}};
+    const float usual = figure_width(pen, "88.8");  // so that they do not jump while they change
+    c.depth.width = std::max(heading_width(pen, kDepth), text_width(pen.fonts.body, "88.8"));
+    c.predicted.width = std::max(heading_width(pen, kPredicted), usual);
+    c.light.width = std::max(heading_width(pen, kLight), usual);
+    for (const PlanRow& row : model.rows) {
+        c.depth.width = std::max(c.depth.width, text_width(pen.fonts.body, number_text(row.depth_mm, "")));
+        c.predicted.width = std::max(c.predicted.width, figure_width(pen, number_text(row.predicted_error_mm, "")));
+        c.light.width = std::max(c.light.width, row.hidden ? text_width(pen.fonts.small, pen.say("hidden"))
+                                                           : figure_width(pen, number_text(row.light_off_mm, "")));
+    }
+    float right = box.right() - pad;
+    for (Column* column : {&c.light, &c.predicted, &c.depth}) {
+        column->width = std::ceil(column->width);
+        column->x = std::floor(right - column->width);
+        right = column->x - gap;
+    }
+    c.name_width = right - c.name_x;
+    return c;
 }
 
 void draw_heading(const Pen& pen, const Columns& c, float top) {
     const float height = line_height(pen.fonts.small);
-    const auto right = [&](const char* text, float x, float width, float row) {
-        pen.line(pen.fonts.small, pen.say(text), x, top + height * (row + 0.5F), width, pen.theme->quiet,
-                 Pen::Side::right);
-    };
     pen.line(pen.fonts.small, pen.say("Plan item"), c.name_x, top + height, c.name_width, pen.theme->quiet);
-    right("depth", c.depth_x, kDepthWidth * c.width, 0);
-    right("mm", c.depth_x, kDepthWidth * c.width, 1);
-    if (c.risk) {
-        right("to risk", c.risk_x, kRiskWidth * c.width, 0);
-        right("mm", c.risk_x, kRiskWidth * c.width, 1);
-    }
-    right("predicted", c.predicted_x, c.width, 0);
-    right("95 % mm", c.predicted_x, c.width, 1);
-    right("light seen", c.light_x, c.width, 0);
-    right("off by mm", c.light_x, c.width, 1);
+    for (const auto& [heading, column] : {std::pair{kDepth, c.depth}, {kPredicted, c.predicted}, {kLight, c.light}})
+        for (const std::size_t row : {0U, 1U})
+            pen.line(pen.fonts.small, pen.say(heading[row]), column.x, top + height * (static_cast<float>(row) + 0.5F),
+                     column.width, pen.theme->quiet, Pen::Side::right);
 }
 
 /// An error value; beyond its limits it has a shape beside it, not only a colour.
-void draw_error(const Pen& pen, const OperatorModel& model, const std::optional<double>& value, float x, float width,
+void draw_error(const Pen& pen, const OperatorModel& model, const std::optional<double>& value, const Column& column,
                 float y) {
     const std::string text = number_text(value, "");
     const bool known = value && std::isfinite(*value);
     const bool stop = known && std::abs(*value) > model.stop_above_mm,
                warn = known && std::abs(*value) > model.warn_above_mm;
     const ImU32 colour = !known ? pen.theme->quiet : stop ? pen.theme->red : warn ? pen.theme->amber : pen.theme->green;
-    pen.line(pen.fonts.body, text, x, y, width, colour, Pen::Side::right);
-    const float radius = 8 * pen.scale;
-    const ImVec2 mark(x + width - text_width(pen.fonts.body, text) - 2.2F * radius, y);
+    pen.line(pen.fonts.body, text, column.x, y, column.width, colour, Pen::Side::right);
+    const float radius = mark_radius(pen);
+    const ImVec2 mark(column.x + column.width - text_width(pen.fonts.body, text) - 2.2F * radius, y);
     if (stop)
         pen.polygon(mark, radius * 1.1F, 8, 0.3927F, pen.theme->red);
     else if (warn)
         pen.triangle(mark, radius, pen.theme->amber);
 }
 
-/// The distance to the nearest risk structure, as the light has it; 0 with the sign of a stop where it goes through.
-void draw_risk(const Pen& pen, const Clearance& risk, float x, float width, float y) {
-    const std::string text = risk.through ? pen.say("through") : fmt::format("{:.1f}", said_mm(risk));
-    const float radius = 8 * pen.scale;
-    const ImVec2 mark(x + width - text_width(pen.fonts.body, text) - 2.2F * radius, y);
-    const bool warning = warns(risk);
-    pen.line(pen.fonts.body, text, x, y, width,
-             risk.through ? pen.theme->red
-             : warning    ? pen.theme->amber
-                          : pen.theme->text,
-             Pen::Side::right);
-    if (risk.through)
-        pen.polygon(mark, radius * 1.1F, 8, 0.3927F, pen.theme->red);
-    else if (warning)
-        pen.triangle(mark, radius, pen.theme->amber);
+/// "4.1 mm to Facial nerve", and how many others warn.
+std::string risk_words(const PlanRow& row) {
+    return clearance_in_words(row.risk.front()) +
+           (row.risk.size() > 1 ? fmt::format(" and {} more", row.risk.size() - 1) : "");
+}
+
+/// Below the item's name: how near it comes to a risk structure. What warns has a shape before it.
+void draw_risk(const Pen& pen, const PlanRow& row, float x, float width, float y) {
+    const float radius = 0.85F * mark_radius(pen), indent = near_risk(row) ? 3 * radius : 0;
+    const bool through = through_risk(row);
+    if (through)
+        pen.polygon({x + radius, y}, radius * 1.1F, 8, 0.3927F, pen.theme->red);
+    else if (near_risk(row))
+        pen.triangle({x + radius, y}, radius, pen.theme->amber);
+    pen.line(pen.fonts.small, shortened_in_the_middle(pen.fonts.small, pen.say(risk_words(row)), width - indent),
+             x + indent, y, width - indent,
+             through          ? pen.theme->red
+             : near_risk(row) ? pen.theme->amber
+                              : pen.theme->quiet);
 }
 
 /// `dim`: another item is that of the moment.
@@ -85,16 +119,52 @@ void draw_row(const Pen& pen, const OperatorModel& model, const PlanRow& row, co
                           0, 2 * pen.scale);
     else
         pen.swatch({c.name_x, y - size, 2 * size, 2 * size}, row.colour);
-    pen.line(pen.fonts.body, shortened_in_the_middle(pen.fonts.body, row.name, c.name_width - swatch),
-             c.name_x + swatch, y, c.name_width - swatch, dim || row.hidden ? pen.theme->quiet : pen.theme->text);
-    pen.line(pen.fonts.body, number_text(row.depth_mm, ""), c.depth_x, y, kDepthWidth * c.width, pen.theme->text,
+    const std::string& name = row.short_name.empty() ? row.name : row.short_name;
+    pen.line(pen.fonts.body, shortened_in_the_middle(pen.fonts.body, name, c.name_width - swatch), c.name_x + swatch, y,
+             c.name_width - swatch, dim || row.hidden ? pen.theme->quiet : pen.theme->text);
+    pen.line(pen.fonts.body, number_text(row.depth_mm, ""), c.depth.x, y, c.depth.width, pen.theme->text,
              Pen::Side::right);
-    if (row.risk) draw_risk(pen, *row.risk, c.risk_x, kRiskWidth * c.width, y);
-    draw_error(pen, model, row.predicted_error_mm, c.predicted_x, c.width, y);
+    draw_error(pen, model, row.predicted_error_mm, c.predicted, y);
     if (row.hidden)
-        pen.line(pen.fonts.small, pen.say("hidden"), c.light_x, y, c.width, pen.theme->quiet, Pen::Side::right);
+        pen.line(pen.fonts.small, pen.say("hidden"), c.light.x, y, c.light.width, pen.theme->quiet, Pen::Side::right);
     else
-        draw_error(pen, model, row.light_off_mm, c.light_x, c.width, y);
+        draw_error(pen, model, row.light_off_mm, c.light, y);
+}
+
+/// How high every row is: of two lines where something is said of a risk structure. That which does not warn is said
+/// only where `all` have room.
+std::vector<float> row_heights(const Pen& pen, const OperatorModel& model, bool all) {
+    std::vector<float> heights;
+    for (const PlanRow& row : model.rows)
+        heights.push_back(std::round(line_height(pen.fonts.body) + 4 * pen.scale) +
+                          (near_risk(row) || (all && !row.risk.empty()) ? line_height(pen.fonts.small) : 0));
+    return heights;
+}
+
+float sum_of(const std::vector<float>& heights) {
+    return std::accumulate(heights.begin(), heights.end(), 0.0F);
+}
+
+/// How many rows there is room for, at least one.
+int fitting(const std::vector<float>& heights, int first, float room) {
+    int rows = 0;
+    for (std::size_t i = static_cast<std::size_t>(first); i < heights.size() && heights[i] <= room; ++i, ++rows)
+        room -= heights[i];
+    return std::max(1, rows);
+}
+
+/// The wanted one, but that no room is left below the last, and that the row that is sought is seen.
+int first_row_of(const std::vector<float>& heights, const TableView& view, float room) {
+    const int count = static_cast<int>(heights.size());
+    const auto reaches_end = [&](int first) { return first + fitting(heights, first, room) >= count; };
+    int first = std::clamp(view.first_row, 0, std::max(0, count - 1));
+    if (view.seek && view.marked && static_cast<int>(*view.marked) < count) {
+        const int sought = static_cast<int>(*view.marked);
+        first = std::min(first, sought);
+        while (first < sought && first + fitting(heights, first, room) <= sought) ++first;
+    }
+    while (first > 0 && reaches_end(first - 1)) --first;
+    return first;
 }
 
 float evidence_height(const Pen& pen, const OperatorModel& model, float width) {
@@ -114,37 +184,46 @@ void draw_evidence(const Pen& pen, const OperatorModel& model, Box box) {
 
 }  // namespace
 
-int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int first_row, bool hovered,
-               std::optional<std::size_t> marked) {
+float table_name_width(const Pen& pen, const Box& box, const OperatorModel& model) {
+    return columns_of(pen, box, model).name_width - 22 * pen.scale;
+}
+
+int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, const TableView& view, bool hovered) {
     pen.panel(box, pen.theme->panel, hovered ? pen.theme->quiet : pen.theme->edge);
     const float pad = 14 * pen.scale, line = line_height(pen.fonts.small);
-    const Columns columns = columns_of(
-        pen, box,
-        std::any_of(model.rows.begin(), model.rows.end(), [](const PlanRow& row) { return row.risk.has_value(); }));
+    const Columns columns = columns_of(pen, box, model);
     draw_heading(pen, columns, box.y + pad / 2);
     const float rule = box.y + pad / 2 + 2 * line + 4 * pen.scale;
     pen.list->AddLine({box.x + pad, rule}, {box.right() - pad, rule}, pen.theme->edge, 1);
 
-    const float row_height = std::round(line_height(pen.fonts.body) + 4 * pen.scale);
     const float text_width_px = box.width - 36 * pen.scale;
     const int count = static_cast<int>(model.rows.size());
     const float both = box.bottom() - pad - line - rule - pad, wanted = evidence_height(pen, model, text_width_px);
-    const float left_over = std::max(both - static_cast<float>(count) * row_height, std::min(3 * line, 0.4F * both));
-    const float evidence = std::min(wanted, std::floor(left_over / line) * line);
-    const float room = both - evidence;
-    int rows = std::max(1, static_cast<int>(room / row_height));
-    if (rows < count) rows = std::max(1, static_cast<int>((room - line) / row_height));
-    const int shown = std::min(rows, count - first_row);
+    const float some =
+        std::min({wanted, 3 * line, 0.4F * both});  // of the evidence, where all rows have room beside it
+    const bool all_risks = sum_of(row_heights(pen, model, true)) <= both - some;
+    const std::vector<float> heights = row_heights(pen, model, all_risks);
+    const float all = sum_of(heights), least = all <= both - some ? some : 0;
+    const float evidence = std::min(wanted, std::floor(std::max(both - all, least) / line) * line);
+    const float room = both - evidence, room_for_rows = all > room ? room - line : room;
+    const int first_row = first_row_of(heights, view, room_for_rows),
+              shown = std::min(fitting(heights, first_row, room_for_rows), count - first_row);
     float y = rule + 4 * pen.scale;
-    for (int i = 0; i < shown; ++i, y += row_height) {
-        if (marked && static_cast<int>(*marked) == first_row + i)
-            pen.list->AddRect({box.x + pad / 2, y}, {box.right() - pad / 2, y + row_height}, pen.theme->blue,
-                              4 * pen.scale, 0, 2 * pen.scale);
-        draw_row(pen, model, model.rows[static_cast<std::size_t>(first_row + i)], columns,
-                 std::round(y + row_height / 2),
-                 model.item_of_moment && static_cast<int>(*model.item_of_moment) != first_row + i);
+    for (int i = first_row; i < first_row + shown; ++i) {
+        const PlanRow& row = model.rows[static_cast<std::size_t>(i)];
+        const float height = heights[static_cast<std::size_t>(i)];
+        const bool told = !row.risk.empty() && (all_risks || near_risk(row));
+        if (view.marked && static_cast<int>(*view.marked) == i)
+            pen.list->AddRect({box.x + pad / 2, y}, {box.right() - pad / 2, y + height}, pen.theme->blue, 4 * pen.scale,
+                              0, 2 * pen.scale);
+        draw_row(pen, model, row, columns, std::round(y + (told ? height - line : height) / 2),
+                 model.item_of_moment && static_cast<int>(*model.item_of_moment) != i);
+        if (told)
+            draw_risk(pen, row, columns.name_x + 22 * pen.scale, text_width_px - 22 * pen.scale,
+                      std::round(y + height - line / 2 - 2 * pen.scale));
+        y += height;
     }
-    if (rows < count)
+    if (shown < count)
         pen.line(pen.fonts.small,
                  pen.say("rows " + std::to_string(first_row + 1) + "–" + std::to_string(first_row + shown) + " of " +
                          std::to_string(count)),
@@ -152,11 +231,12 @@ int draw_table(const Pen& pen, const Box& box, const OperatorModel& model, int f
 
     const float foot = box.bottom() - pad - line;
     draw_evidence(pen, model, {columns.name_x, foot - evidence, text_width_px, evidence});
-    if (model.rows.empty() && model.evidence.empty()) return rows;
-    const std::string all = evidence < wanted || rows < count ? "Press here for all of it" : "Press here for the page";
-    pen.line(pen.fonts.small, pen.say(all) + " (" + key_text(KeyMeaning::evidence) + ")", columns.name_x,
-             foot + line / 2, text_width_px, evidence < wanted || rows < count ? pen.theme->amber : pen.theme->quiet);
-    return rows;
+    if (model.rows.empty() && model.evidence.empty()) return first_row;
+    const std::string words =
+        evidence < wanted || shown < count ? "Press here for all of it" : "Press here for the page";
+    pen.line(pen.fonts.small, pen.say(words) + " (" + key_text(KeyMeaning::evidence) + ")", columns.name_x,
+             foot + line / 2, text_width_px, evidence < wanted || shown < count ? pen.theme->amber : pen.theme->quiet);
+    return first_row;
 }
 
 }  // namespace planlight

@@ -64,6 +64,7 @@ TEST(Anonymous, NamesAreLeftOutOfWhatIsSaidAndNotOfItsWords) {
     the_case.code = "1234-abcd";
     the_case.names.patient = "Erika \"M.\"";
     the_case.names.title = "aligned";  // a title may be any word
+    the_case.plan.risk_structures = {{"Erika's nerve", {}}};
     PlanDrawing drawing;
     drawing.items.resize(2);
     drawing.items[0].name = "Erika's hole";
@@ -71,7 +72,8 @@ TEST(Anonymous, NamesAreLeftOutOfWhatIsSaidAndNotOfItsWords) {
     NamesLeftOut names(the_case);
     names.add_items(drawing);
     const auto out = nlohmann::json::parse(names.out_of(
-        R"({"what":"gate","trust":"aligned","headline":"\"Erika's hole\" of Erika \"M.\" is not measured","items":["Erika's hole","Erika"]})"));
+        R"({"what":"gate","trust":"aligned","headline":"\"Erika's hole\" of Erika \"M.\" is not measured","items":["Erika's hole","Erika"],"risk":[[{"structure":"Erika's nerve"}]]})"));
+    EXPECT_EQ(out["risk"][0][0]["structure"], "structure 1");
     EXPECT_EQ(out["trust"], "aligned");
     EXPECT_EQ(out["items"], nlohmann::json({"item 1", "item 2"}));
     EXPECT_EQ(out.dump().find("Erika"), std::string::npos) << out;

@@ -92,6 +92,33 @@ protected:
     test::TemporaryFolder folder_;
 };
 
+TEST_F(Operation, SaysHowNearWhatWasShownCameToRiskStructuresAsPlanned) {
+    event({{"what", "asked"}, {"call", "find_patient"}, {"utc", "2026-03-14T09:31:00Z"}});
+    event({{"what", "matched"},
+           {"verdict", "yes"},
+           {"reasons", json::array()},
+           {"residual_rms_mm", 0.3},
+           {"points", 20000},
+           {"items", {"Line", "Hole"}},
+           {"predicted_mm", {0.5, nullptr}},
+           {"risk",
+            {json::array(),
+             {{{"structure", "Dura"}, {"distance_mm", 0.0}, {"through", true}},
+              {{"structure", "Nerve"}, {"distance_mm", 7.25}, {"through", false}}}}}});
+    for (int i = 0; i <= 20; ++i) lit(0.1, 0.4, "aligned");
+    const OperationFacts f = facts();
+    ASSERT_EQ(f.items.size(), 2u);
+    EXPECT_TRUE(f.items[0].risk.empty());
+    EXPECT_EQ(f.items[1].risk, (Clearances{{"Dura", 0, true}, {"Nerve", 7.25, false}}));
+    const json figures = json::parse(operation_json(f));
+    EXPECT_EQ(figures["items"][1]["risk"][1]["distance_mm"], 7.25);
+    write_operation_report(f, operation_json(f), folder_.path() / "report.html");
+    std::ifstream in(folder_.path() / "report.html");
+    const std::string page{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_NE(page.find("next risk structure, as planned"), std::string::npos);
+    EXPECT_NE(page.find("<span class=\"stop\">through Dura</span>"), std::string::npos);
+}
+
 TEST_F(Operation, TellsWhatWasShownWhenAndHowFarOff) {
     match();
     event({{"what", "gate"}, {"call", "verify"}, {"utc", "x"}});

@@ -234,9 +234,12 @@ TEST_F(CommandsTest, WhatComesNearARiskStructureIsSaidEverywhere) {
     EXPECT_FALSE(way[1]["through"].get<bool>());
     EXPECT_GT(way[1]["distance_mm"].get<double>(), 5);
     const std::string page = read_text(root() / "risky" / "report.html");
-    EXPECT_NE(page.find("<td class=\"stop\">through Facial nerve</td>"), std::string::npos);
+    EXPECT_NE(page.find("<span class=\"stop\">through Facial nerve</span>"), std::string::npos);
     const auto list = run_planlight("plan " + plan() + " --case risky --json", root());
     EXPECT_EQ(json::parse(list.out)["items"][5]["risk"], way) << "those of the case";
+    const json review = json::parse(run_planlight("review risky --json", root()).out);
+    EXPECT_EQ(review["items"][5]["risk"], way);
+    EXPECT_EQ(review["risk_structures"], result["risk_structures"]);
     EXPECT_NE(result["case"], json::parse(prepared().out)["case"]);
     expect_one_clear_sentence(run_planlight("plan " + plan() + " --risk Orbit.obj", root()), 3,
                               "does not say its coordinate system");

@@ -44,6 +44,14 @@ TEST(RiskLabel, TheNearestStructureIsAWholeLineOfTheLabel) {
     EXPECT_EQ(words_of(draw_plan(plan_with(-2, "VII"), ball())), "B1\n7 mm wide\n6 mm deep\nthrough VII");
 }
 
+TEST(RiskLabel, WhatIsMoreThanTenMillimetresAwayIsNotSaid) {
+    const PlanDrawing near = draw_plan(plan_with(9.95, "Nerve"), ball()),
+                      far = draw_plan(plan_with(10.15, "Nerve"), ball());
+    EXPECT_EQ(words_of(near), "B1\n7 mm wide\n6 mm deep\n9.9 mm to\nNerve");
+    EXPECT_EQ(words_of(far), "B1\n7 mm wide\n6 mm deep");
+    EXPECT_EQ(far.items[0].clearances.size(), 1U) << "window and pages say it";
+}
+
 TEST(RiskLabel, ALongNameStandsBelowItsFigureWhichIsNeverCut) {
     EXPECT_EQ(words_of(draw_plan(plan_with(4.15, "Facial nerve"), ball())),
               "B1\n7 mm wide\n6 mm deep\n4.1 mm to\nFacial nerve");

@@ -8,7 +8,7 @@
 
 /// draw_windows scene FILE [azimuth elevation], or draw_windows window FILE [width height status [view of the match: 0
 /// to 2 [old, refused, evidence, answer, views, alone,
-/// hidden, hidden-page, landmark or plain [language [dark or bright]]]]]
+/// hidden, hidden-page, landmark, risk or plain [language [dark or bright]]]]]
 int main(int argc, char** argv) {
     using namespace planlight;
     OperatorModel model = test::fake_model();
@@ -52,6 +52,22 @@ int main(int argc, char** argv) {
         model.scene.plan = std::make_shared<PlanDrawing>(shown);
         model.status.details.push_back("2 of 4 items are hidden: they are not lit.");
         model.status.headline = "What is shown of the plan is on the skin.";
+    }
+    if (special == "risk") {
+        model.rows[0].name = "Osteotomy  164 mm";
+        for (int i = 1; i <= 4; ++i) {
+            PlanRow& row = model.rows[static_cast<std::size_t>(i)];
+            row.short_name = "B" + std::to_string(i) + "  ⌀7", row.name = row.short_name + "  6 mm deep";
+        }
+        model.rows[0].risk = {{"Sinus sagittalis superior", 0, true}, {"Dura", 1.3, false}};
+        model.rows[1].risk = {{"Facial nerve", 1.24, false}};
+        model.rows[2].risk = model.rows[3].risk = model.rows[4].risk = {{"Facial nerve", 14.2, false}};
+        model.rows[5].name = "Trajectory to the upper left fossa, 60.0 mm";
+        model.rows[5].risk = {{"Facial nerve", 0, true}};
+        model.rows[5].predicted_error_mm = 2.4;
+        model.scene.risk_structures = std::make_shared<std::vector<RiskStructure>>(
+            std::vector<RiskStructure>{test::risk_structure("Facial nerve", {-30, -50, 30}, 0.15),
+                                       test::risk_structure("Sinus sagittalis superior", {20, -40, 50}, 0.2)});
     }
     if (special == "landmark") {
         const Eigen::Vector3d ear(90, 5, -15);

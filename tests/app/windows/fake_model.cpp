@@ -139,6 +139,13 @@ OperatorModel fake_model() {
     return model;
 }
 
+RiskStructure risk_structure(const std::string& name, const Eigen::Vector3d& middle_in_ct, double size) {
+    RiskStructure made{name, analytic_head_mesh(4)};
+    for (auto& p : made.surface.vertices_in_ct) p = middle_in_ct + size * p;
+    made.surface.normals_in_ct.clear();
+    return made;
+}
+
 OperatorModel fake_model_with(StatusKind kind) {
     OperatorModel model = fake_model();
     model.status = {kind, "", {}};

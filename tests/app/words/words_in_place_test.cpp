@@ -186,15 +186,52 @@ TEST_P(WordsInPlace, HeaderAndTableHaveRoom) {
         }
     for (PlanRow& row : model.rows) row.name = "B";
     model.evidence.clear();
-    draw_table(drawn_.pen, drawn_.place.table, model, 0, false);
+    draw_table(drawn_.pen, drawn_.place.table, model, {}, false);
     expect_whole("table");
-    model.rows.at(0).risk = Clearance{"Dura", 0, true};
-    model.rows.at(1).risk = Clearance{"Facial nerve", 1.27, false};
-    draw_table(drawn_.pen, drawn_.place.table, model, 0, false);
+    model.rows.at(0).risk = {{"Dura", 0, true}, {"Facial nerve", 1.2, false}};
+    model.rows.at(1).risk = {{"Facial nerve", 1.27, false}};
+    draw_table(drawn_.pen, drawn_.place.table, model, {}, false);
     expect_whole("table with risk structures");
     CameraPicture camera{"Right camera", {}, 0, "no picture yet", {}};
     draw_camera(drawn_.pen, drawn_.place.left_camera, camera, false, nullptr);
     expect_whole("camera");
+}
+
+// Whatever stands in the other columns: the name matters most.
+TEST_P(WordsInPlace, AnItemsNameIsReadInTheTable) {
+    OperatorModel model = test::fake_model();
+    for (PlanRow& row : model.rows) {
+        row.depth_mm = 188.8;
+        row.predicted_error_mm = row.light_off_mm = 12.8;
+        row.risk = {{"Facial nerve", 1.27, false}, {"Dura", 1.3, false}};
+    }
+    model.rows.back().hidden = true;
+    EXPECT_GE(table_name_width(drawn_.pen, drawn_.place.table, model),
+              text_width(drawn_.pen.fonts.body, "Osteotomy  164 mm"));
+}
+
+// Rows are of one line and of two: the one that is sought is among those that are drawn, and the last is reached.
+TEST_P(WordsInPlace, ARowThatIsSoughtIsSeenAndTheTableEndsWithTheLast) {
+    OperatorModel model = test::fake_model();
+    const PlanRow plain = model.rows.at(1);
+    for (std::size_t i = 0; i < 40; ++i) {
+        model.rows.push_back(plain);
+        if (i % 3 == 0) model.rows.back().risk = {{"Facial nerve", 0, true}};
+    }
+    const Box& box = drawn_.place.table;
+    const int count = static_cast<int>(model.rows.size()),
+              last = draw_table(drawn_.pen, box, model, {count, {}, false}, false);
+    EXPECT_EQ(draw_table(drawn_.pen, box, model, {0, {}, false}, false), 0);
+    EXPECT_GT(last, 0);
+    EXPECT_LT(last, count - 1) << "no empty room below the last row";
+    int first = 0;
+    for (std::size_t row = 0; row < model.rows.size(); ++row) {
+        first = draw_table(drawn_.pen, box, model, {first, row, true}, false);
+        EXPECT_LE(first, static_cast<int>(row));
+        EXPECT_LE(first, last);
+    }
+    EXPECT_EQ(first, last);
+    EXPECT_EQ(draw_table(drawn_.pen, box, model, {last, 3, true}, false), 3);
 }
 
 }  // namespace
