@@ -9,7 +9,7 @@
 #include "app/console.h"
 #include "app/export/export_study.h"
 #include "app/export/match_that_stood.h"
-#include "app/report/operation_report.h"
+#include "app/report/operation_comparison.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/case/registration_file.h"
 #include "planning_io/surface/mesh_file.h"
@@ -54,6 +54,7 @@ ExportedOperation operation_of(const ExportOptions& options, const Case& the_cas
         operation.match = std::move(stood.match.registration);
         operation.made = stood.match.made_utc;
         operation.facts = facts_of_operation(options.recording);
+        compare_moment(*operation.facts, options.recording, the_case);
         file = options.recording;
     } else {
         operation.match = read_registration(file);

@@ -7,6 +7,7 @@
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
 #include "app/console.h"
+#include "app/report/operation_comparison.h"
 #include "app/report/operation_pdf.h"
 #include "app/report/operation_report.h"
 #include "planning_io/files/safe_write.h"
@@ -17,6 +18,7 @@ namespace {
 
 struct ReportOptions {
     Path recording, out, pdf;
+    Path case_folder;  ///< empty: where it was when it was recorded
     bool json = false;
 };
 
@@ -57,7 +59,11 @@ int run_report(const ReportOptions& options) {
     check_can_write(out);
     check_can_write(Path(out).replace_extension(".json"));
     if (!options.pdf.empty()) check_can_write(options.pdf);
-    const OperationFacts facts = facts_of_operation(options.recording);
+    OperationFacts facts = facts_of_operation(options.recording);
+    if (options.case_folder.empty())
+        compare_moment(facts, options.recording);
+    else
+        compare_moment(facts, options.recording, read_case(options.case_folder));
     const std::string json = operation_json(facts);
     write_operation_report(facts, json, out);
     if (!options.pdf.empty()) write_safely(options.pdf, operation_pdf(facts), ReadableBy::owner);
@@ -82,6 +88,9 @@ Run add_report(CLI::App& app) {
     sub->add_option("recording", o.recording, "Recording of a session")->required();
     sub->add_option("--out", o.out,
                     "Page to write (default: beside the recording); its figures stand beside it as .json");
+    sub->add_option(
+        "--case", o.case_folder,
+        "Case folder, to measure plan and light of one moment (default: where it was when it was recorded)");
     sub->add_option("--pdf", o.pdf, "Write it as PDF as well");
     json_flag(sub, o.json);
     return [options] { return run_report(*options); };

@@ -57,6 +57,10 @@ Path recordings_folder(const SessionOptions& options) {
     return options.recordings.empty() ? options.case_folder / kRecordingsFolder : options.recordings;
 }
 
+Path matches_folder(const SessionOptions& options) {
+    return options.keep.empty() ? options.case_folder / kRegistrationsFolder : options.keep;
+}
+
 constexpr const char* kLookedAt = "The last session is being looked at.";
 
 /// What the session may go on with. What was asked for and cannot be is refused; what would merely be offered is said.
@@ -153,23 +157,25 @@ Recorded recorder_of(const SessionOptions& options, const Case& the_case, const 
     const Path file = new_recording_name(recordings_folder(options));
     auto sink = std::make_unique<RecordingFile>(file);
     const RecordingHead head = recording_head(the_case, options.case_folder, mode, drawing);
+    std::error_code ignored;
+    const double free_gb = static_cast<double>(std::filesystem::space(file.parent_path(), ignored).available) / 1e9;
     if (options.anonymous) {
         fmt::print(
             stderr,
-            "Recorded in {}, without names, and blurred but for the plan's surroundings; no later session can go "
-            "on with its match. Matches with the scan of the face are still kept ({}).\n",
-            file.string(), options.keep.empty() ? "see --keep" : options.keep.string());
+            "Recorded in {}: what happens and some of the frames, without names, and blurred but for the plan's "
+            "surroundings, at most 1 GB an hour; {:.0f} GB are free. Only {} can read it; no later session can go on "
+            "with its match. Matches with the scan of the face are still kept in {}.\n",
+            file.string(), free_gb, operator_name(), matches_folder(options).string());
         return {std::make_unique<SessionRecorder>(std::move(sink), without_names(head), RecordingWriterSettings{},
                                                   FrameChoiceSettings{}, NamesLeftOut(the_case)),
                 file, !options.no_report, true};
     }
-    std::error_code ignored;
-    fmt::print(
-        stderr, "Recorded in {}: {}; {:.0f} GB are free. It shows the patient's face, and only {} can read it.\n",
-        file.string(),
-        mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
-                                   : "every frame, about 23 GB an hour in the paper's room",
-        static_cast<double>(std::filesystem::space(file.parent_path(), ignored).available) / 1e9, operator_name());
+    fmt::print(stderr,
+               "Recorded in {}: {}; {:.0f} GB are free. It shows the patient's face, and only {} can read it.\n",
+               file.string(),
+               mode == RecordMode::events ? "what happens and some of the frames, at most 1 GB an hour"
+                                          : "every frame, about 23 GB an hour in the paper's room",
+               free_gb, operator_name());
     return {std::make_unique<SessionRecorder>(std::move(sink), head), file, !options.no_report, false};
 }
 
@@ -220,7 +226,7 @@ LiveOptions live_options(const SessionOptions& options, const SiteSettings& site
     live.json = options.json;
     live.end_after_s = options.end_after_s;
     live.screenshots = options.screenshots;
-    live.keep_matches_in = options.keep.empty() ? options.case_folder / kRegistrationsFolder : options.keep;
+    live.keep_matches_in = matches_folder(options);
     if (recorder) live.trouble = [recorder] { return recorder->trouble(); };
     return live;
 }

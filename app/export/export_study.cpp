@@ -66,6 +66,11 @@ std::vector<KeyPicture> key_pictures(const Case& the_case, const CaseDrawing& dr
     pictures.push_back({"Left camera" + at, rgb_of(brightened(moment.left))});
     pictures.push_back({"Right camera" + at, rgb_of(brightened(moment.right))});
     if (!moment.light.empty()) pictures.push_back({"What the projector was given" + at, moment.light});
+    if (!moment.compared[0].empty()) {
+        const std::string what = ", round the plan: how far off the light is (green within 1 mm, amber 2 mm)";
+        pictures.push_back({"Left camera" + at + what, moment.compared[0]});
+        pictures.push_back({"Right camera" + at + what, moment.compared[1]});
+    }
     return pictures;
 }
 

@@ -15,6 +15,7 @@ using Kind = RecordedInput::Kind;
 
 namespace {
 
+constexpr double kFramesPack = 0.35, kLightPacks = 0.02;    // about, until the first is packed
 constexpr Instant kPictureEvery = std::chrono::seconds(2);  // where every frame is kept: it can be made again
 
 std::size_t bytes_of(const StereoFrame& frame) {
@@ -25,7 +26,12 @@ std::size_t bytes_of(const StereoFrame& frame) {
 
 /// How well pictures of this room pack, as the writer's thread last found it.
 struct SessionRecorder::PackedSize {
-    std::atomic<double> share{0.35};
+    explicit PackedSize(double guess) : share(guess) {}
+    std::atomic<double> share;
+    std::string found(std::string packed, std::size_t raw) {
+        if (raw > 0) share = static_cast<double>(packed.size()) / static_cast<double>(raw);
+        return packed;
+    }
 };
 
 SessionRecorder::SessionRecorder(std::unique_ptr<RecordingSink> sink, const RecordingHead& head,
@@ -34,7 +40,8 @@ SessionRecorder::SessionRecorder(std::unique_ptr<RecordingSink> sink, const Reco
     : mode_(head.mode),
       choice_(choice),
       most_before_(choice.before),
-      packed_(std::make_shared<PackedSize>()),
+      packed_(std::make_shared<PackedSize>(kFramesPack)),
+      lit_(std::make_shared<PackedSize>(kLightPacks)),
       anonymous_(std::move(anonymous)),
       writer_(std::move(sink), writing) {
     writer_.add({chunk_types::kHead, Instant{}, text_of(head)});
@@ -82,8 +89,14 @@ void SessionRecorder::input(RecordedInput input) {
 /// What the devices answered stands before what came of it.
 void SessionRecorder::flush() {
     if (inputs_.empty()) return;
-    writer_.add({chunk_types::kInputs, now_, packed(inputs_)});
+    add(chunk_types::kInputs, packed(inputs_));
     inputs_.clear();
+}
+
+/// What is no picture is always kept, at the cost of the frames.
+void SessionRecorder::add(const ChunkType& type, std::string text) {
+    choice_.written(static_cast<double>(text.size() + kChunkHeaderBytes));
+    writer_.add({type, now_, std::move(text)});
 }
 
 /// A recording that fails (no memory) must not take the session with it.
@@ -94,7 +107,7 @@ void SessionRecorder::event(const MakeText& make_text) noexcept {
         const std::lock_guard lock(mutex_);
         if (anonymous_) text = anonymous_->out_of(text);
         flush();
-        writer_.add({chunk_types::kEvent, now_, std::move(text)});
+        add(chunk_types::kEvent, std::move(text));
     } catch (const std::exception&) {
     }
 }
@@ -106,7 +119,7 @@ void SessionRecorder::room_entered(const RoomFacts& room) noexcept {
         room_entered_ = true;
         std::string text = session_events::room(room);
         if (anonymous_) text = anonymous_->out_of(text);
-        writer_.add({chunk_types::kRoom, now_, std::move(text)});
+        add(chunk_types::kRoom, std::move(text));
     } catch (const std::exception&) {
     }
 }
@@ -176,10 +189,8 @@ StereoFrame SessionRecorder::blurred(const Frame& frame) {
 
 void SessionRecorder::write(const Frame& frame) {
     const auto pack = [frame, packed = packed_, anonymous = anonymous_.has_value()] {
-        std::string bytes = anonymous ? pack_frame(blurred(frame)) : pack_frame(*frame.pictures);
-        if (const std::size_t raw = bytes_of(*frame.pictures); raw > 0)
-            packed->share = static_cast<double>(bytes.size()) / static_cast<double>(raw);
-        return bytes;
+        return packed->found(anonymous ? pack_frame(blurred(frame)) : pack_frame(*frame.pictures),
+                             bytes_of(*frame.pictures));
     };
     kept_frame_ = writer_.add_picture(chunk_types::kFrame, frame.pictures->at,
                                       bytes_of(*frame.pictures) + kChunkHeaderBytes, pack);
@@ -189,7 +200,7 @@ void SessionRecorder::write(const Frame& frame) {
 void SessionRecorder::choose(const Frame& frame) {
     const double bytes = packed_->share * static_cast<double>(bytes_of(*frame.pictures));
     if (scanning_) {
-        if (first_of_scan_) write(frame);
+        if (first_of_scan_) choice_.written(bytes), write(frame);
         first_of_scan_ = false;
         return;
     }
@@ -230,7 +241,10 @@ void SessionRecorder::picture_shown(const RgbImage& picture, Instant valid_until
 void SessionRecorder::keep_picture(const RgbImage& picture) {
     pictured_ = now_;
     const auto kept = std::make_shared<const RgbImage>(picture);
-    writer_.add_picture(chunk_types::kPicture, now_, 3 * picture.pixels.size(), [kept] { return pack_picture(*kept); });
+    const std::size_t raw = 3 * picture.pixels.size();
+    choice_.written(lit_->share * static_cast<double>(raw));
+    writer_.add_picture(chunk_types::kPicture, now_, raw,
+                        [kept, raw, lit = lit_] { return lit->found(pack_picture(*kept), raw); });
 }
 
 void SessionRecorder::went_dark() noexcept {
@@ -298,7 +312,7 @@ void SessionRecorder::keep(const KeptMatch& match) {
     std::string text = text_of(match);
     const std::lock_guard lock(mutex_);
     flush();
-    writer_.add({chunk_types::kMatch, now_, std::move(text)});
+    add(chunk_types::kMatch, std::move(text));
 }
 
 void SessionRecorder::match_offered(const KeptMatch& match) noexcept {

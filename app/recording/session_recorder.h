@@ -85,6 +85,7 @@ private:
     struct PackedSize;
     void input(RecordedInput input);
     void flush();
+    void add(const ChunkType& type, std::string text);
     void keep(const KeptMatch& match);
     template <class MakeText>
     void event(const MakeText& make_text) noexcept;
@@ -102,8 +103,8 @@ private:
     Instant now_{}, pictured_{};
     FrameChoice choice_;
     std::size_t most_before_;
-    std::deque<Frame> before_;            ///< the last frames that were not kept
-    std::shared_ptr<PackedSize> packed_;  ///< of the last frame that was packed
+    std::deque<Frame> before_;                  ///< the last frames that were not kept
+    std::shared_ptr<PackedSize> packed_, lit_;  ///< of the last frame, and of the last light, that were packed
     bool scanning_ = false, first_of_scan_ = false;
     bool kept_frame_ = false;  ///< the last one
     std::atomic<bool> room_entered_{false};

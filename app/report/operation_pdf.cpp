@@ -52,6 +52,7 @@ void add_items(PdfPages& pdf, const OperationFacts& facts) {
     if (facts.items.empty()) rows.push_back({"No match was found: nothing could be shown."});
     pdf.table(rows, shares);
     pdf.paragraph(kWhatIsMeasured);
+    if (const std::string f2554 = in_terms_of_f2554(facts); !f2554.empty()) pdf.paragraph(f2554);
 }
 
 void add_matches(PdfPages& pdf, const OperationFacts& facts) {
@@ -122,10 +123,14 @@ std::string operation_pdf(const OperationFacts& facts) {
     add_course(pdf, facts);
     if (facts.moment) {
         pdf.heading("At " + clock_text(facts.moment->at_s) + " (room clock)", 180);
-        std::vector<std::pair<std::string, RgbImage>> row{{"Left camera", rgb_of(brightened(facts.moment->left))},
-                                                          {"Right camera", rgb_of(brightened(facts.moment->right))}};
-        if (!facts.moment->light.empty()) row.emplace_back("What the projector was given", facts.moment->light);
+        const OperationMoment& m = *facts.moment;
+        const bool compared = !m.compared[0].empty();
+        std::vector<std::pair<std::string, RgbImage>> row{
+            {"Left camera", compared ? m.compared[0] : rgb_of(brightened(m.left))},
+            {"Right camera", compared ? m.compared[1] : rgb_of(brightened(m.right))}};
+        if (!m.light.empty()) row.emplace_back("What the projector was given", m.light);
         pdf.pictures(row);
+        if (!m.compared_words.empty()) pdf.paragraph((compared ? kWhatCirclesSay : "") + m.compared_words);
     }
     if (!facts.dark.empty()) {
         pdf.heading("Dark by itself");

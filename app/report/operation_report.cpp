@@ -86,7 +86,7 @@ std::string items_html(const OperationFacts& facts) {
             "page</td></tr>",
             facts.items.size() - kMost);
     if (facts.items.empty()) html += "<tr><td colspan=\"9\">No match was found: nothing could be shown.</td></tr>";
-    return html + "</table><p class=\"muted\">" + kWhatIsMeasured + "</p>";
+    return html + "</table><p class=\"muted\">" + kWhatIsMeasured + " " + in_terms_of_f2554(facts) + "</p>";
 }
 
 std::string time_html(const OperationFacts& facts) {
@@ -199,10 +199,13 @@ std::string moment_html(const OperationFacts& facts) {
         "<h2>At {} (room clock), {}</h2><div class=\"row\" "
         "style=\"grid-template-columns:repeat({},1fr)\">",
         clock_text(m.at_s), m.trust == "aligned" ? "aligned" : "to be looked at", m.light.empty() ? 2 : 3);
-    html += picture_html("Left camera", rgb_of(brightened(m.left)));
-    html += picture_html("Right camera", rgb_of(brightened(m.right)));
+    const bool compared = !m.compared[0].empty();
+    html += picture_html("Left camera", compared ? m.compared[0] : rgb_of(brightened(m.left)));
+    html += picture_html("Right camera", compared ? m.compared[1] : rgb_of(brightened(m.right)));
     if (!m.light.empty()) html += picture_html("What the projector was given", m.light);
-    return html + "</div>";
+    html += "</div>";
+    if (m.compared_words.empty()) return html;
+    return html + "<p class=\"muted\">" + (compared ? kWhatCirclesSay : "") + xml_escaped(m.compared_words) + "</p>";
 }
 
 std::string facts_html(const OperationFacts& facts) {

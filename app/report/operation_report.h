@@ -47,6 +47,8 @@ struct OperationMoment {
     std::string trust;  ///< "dark", "look", "aligned"
     GrayImage left, right;
     RgbImage light;
+    std::array<RgbImage, 2> compared{};  ///< both pictures with how far off the light is (`compare_moment`); or empty
+    std::string compared_words{};        ///< what was found, or why nothing was compared; empty: nobody tried
 };
 
 /// What a recording tells of an operation.
@@ -104,10 +106,23 @@ bool any_risk(const OperationFacts& facts);
 std::string sign_of(double value_mm);
 
 /// What measured and predicted mean, and what neither can see: stands under the table of the items.
+inline constexpr const char* kWhatCirclesSay =
+    "Blue: the plan, where it belongs on the skin. Circles: its light, green within 1 mm, amber within 2 mm, red "
+    "beyond; "
+    "grey: none was found there. ";
 inline constexpr const char* kWhatIsMeasured =
     "Predicted: within this in 95 of 100 cases, by the last match. Measured: where both cameras saw the light, against "
     "where it belongs on the skin as the scan found it, mm. What cameras, CT and markers share is not seen by either: "
     "skin that slid over the bone, markers that moved all together.";
+
+/// How far off the light of all items was, each time that it was seen, in the terms of ASTM F2554.
+struct Deviations {
+    std::size_t count = 0;
+    double mean_mm = 0, deviation_mm = 0, rms_mm = 0, worst_mm = 0;
+};
+Deviations deviations_of(const OperationFacts& facts);
+/// As a sentence that also says what of that practice was not done; empty where nothing was measured.
+std::string in_terms_of_f2554(const OperationFacts& facts);
 
 /// The verdict of a page, first of all that stands on it.
 struct OperationVerdict {

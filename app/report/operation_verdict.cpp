@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -158,6 +159,33 @@ OperationVerdict verdict_of(const OperationFacts& facts) {
     return verdict;
 }
 
+Deviations deviations_of(const OperationFacts& facts) {
+    Deviations of;
+    double sum = 0, squares = 0;
+    for (const OperationItem& item : facts.items)
+        for (const double mm : item.measured_mm) {
+            ++of.count;
+            sum += mm, squares += mm * mm;
+            of.worst_mm = std::max(of.worst_mm, mm);
+        }
+    if (of.count == 0) return of;
+    const auto n = static_cast<double>(of.count);
+    of.mean_mm = sum / n;
+    of.rms_mm = std::sqrt(squares / n);
+    if (of.count > 1) of.deviation_mm = std::sqrt(std::max(0.0, squares - n * of.mean_mm * of.mean_mm) / (n - 1));
+    return of;
+}
+
+std::string in_terms_of_f2554(const OperationFacts& facts) {
+    const Deviations of = deviations_of(facts);
+    if (of.count == 0) return {};
+    return fmt::format(
+        "In the terms of ASTM F2554: positional deviation of {} measurements, mean {:.2f} mm, standard deviation "
+        "{:.2f} mm, RMS {:.2f} mm, maximum {:.2f} mm. These are distances: no bias by direction; and no test by that "
+        "practice, with its pointer and its reference points.",
+        of.count, of.mean_mm, of.deviation_mm, of.rms_mm, of.worst_mm);
+}
+
 std::string operation_json(const OperationFacts& facts) {
     const OperationVerdict verdict = verdict_of(facts);
     const RecordingHead& head = facts.head;
@@ -195,6 +223,12 @@ std::string operation_json(const OperationFacts& facts) {
                  {"stops", facts.stops},
                  {"skin_off_mm", facts.skin_off_mm ? Json(*facts.skin_off_mm) : Json()},
                  {"light_off_mm", json_of(distribution_of(facts.light_off_mm))}};
+    if (const Deviations of = deviations_of(facts); of.count > 0)
+        json["f2554"] = {{"count", of.count},
+                         {"mean_mm", of.mean_mm},
+                         {"standard_deviation_mm", of.deviation_mm},
+                         {"rms_mm", of.rms_mm},
+                         {"maximum_mm", of.worst_mm}};
     json["items"] = Json::array();
     for (const OperationItem& item : facts.items) {
         Json shown = Json::array();

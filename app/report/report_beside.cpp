@@ -1,5 +1,6 @@
 #include "app/report/report_beside.h"
 
+#include "app/report/operation_comparison.h"
 #include "app/report/operation_pdf.h"
 #include "app/report/operation_report.h"
 #include "planning_io/files/safe_write.h"
@@ -7,7 +8,8 @@
 namespace planlight {
 
 ReportBeside write_report_beside(const std::filesystem::path& recording, const std::function<void()>& go_on) {
-    const OperationFacts facts = facts_of_operation(recording, go_on);
+    OperationFacts facts = facts_of_operation(recording, go_on);
+    compare_moment(facts, recording, go_on);
     ReportBeside report{recording, recording, verdict_of(facts).sentence};
     report.page.replace_extension(".html");
     report.pdf.replace_extension(".pdf");

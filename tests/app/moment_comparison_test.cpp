@@ -13,6 +13,7 @@
 
 #include "app/live/review_desk.h"
 #include "app/recording/recording_head.h"
+#include "app/report/operation_comparison.h"
 #include "app/report/recording_review.h"
 #include "app/session.h"
 #include "app/windows/camera_picture.h"
@@ -85,6 +86,32 @@ protected:
             lit_at_s_ = seconds(Instant(event["at_ns"].get<std::int64_t>()) - *origin);
         }
     }
+    /// The page of an operation shows how far off the light is in both cameras' pictures, or says why it does not.
+    void expect_on_the_report(const StereoFrame& pictures) const {
+        OperationFacts facts;
+        facts.moment = OperationMoment{lit_at_s_, "aligned", pictures.left, pictures.right, {}};
+        compare_moment(facts, file_);  // no case stands where it was recorded
+        EXPECT_TRUE(facts.moment->compared[0].empty());
+        EXPECT_NE(facts.moment->compared_words.find("are not compared: "), std::string::npos);
+        compare_moment(facts, file_, the_case());
+        EXPECT_NE(facts.moment->compared_words.find("Light was found at "), std::string::npos)
+            << facts.moment->compared_words;
+        for (const RgbImage& shown : facts.moment->compared) {
+            EXPECT_EQ(shown.width, pictures.left.width);
+            const auto count = [&](auto is) { return std::ranges::count_if(shown.pixels, is); };
+            EXPECT_GT(count([](const Rgb& p) { return p[1] > p[0] + 60 && p[1] > p[2] + 40; }), 200)
+                << "circles of light that lies where it belongs";
+            EXPECT_EQ(count([](const Rgb& p) { return p[0] > p[1] + 100 && p[0] > p[2] + 100; }), 0)
+                << "none lies beyond 2 mm";
+        }
+        const fs::path page = folder_.path() / "report.html";
+        write_operation_report(facts, "{}", page);
+        EXPECT_NE(read_whole(page).find(kWhatCirclesSay), std::string::npos);
+        if (const char* folder = std::getenv("PLANLIGHT_PICTURES")) {  // to be looked at
+            write_png(facts.moment->compared[0], fs::path(folder) / "compared-left.png");
+            write_png(facts.moment->compared[1], fs::path(folder) / "compared-right.png");
+        }
+    }
     const Case& the_case() const { return test::example_case().prepared; }
     test::TemporaryFolder folder_;
     const fs::path file_ = folder_.path() / "session.plrec";
@@ -131,6 +158,7 @@ TEST_F(MomentOfSession, IsMeasuredAnewAsTheSessionItselfMeasuredIt) {
                   fs::path(folder) / "head.png");
         write_safely(fs::path(folder) / "index.html", review_page(line, {}, page));
     }
+    expect_on_the_report(pictures);
     const MomentComparison dark = compared(first_frame_s_);
     EXPECT_EQ(dark.why_not, "No patient had been found by then.");
     Case another = the_case();

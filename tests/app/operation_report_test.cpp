@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
+#include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
@@ -370,6 +371,29 @@ TEST_F(Operation, IsGoodOnlyWhereItWasMeasuredVerifiedAndWhole) {
     EXPECT_EQ(verdict_with([](OperationFacts& f) { f.skin_off_mm = 2.1, f.lit_s = 0; }), Kind::stop)
         << "what is worst is said, shown or not";
     EXPECT_EQ(verdict_with([](OperationFacts& f) { f.matches.push_back({0, "", "ask", {}, 0, 0}); }), Kind::look);
+}
+
+TEST_F(Operation, AccuracyIsToldInTheTermsOfAstmF2554WhereItWasMeasured) {
+    OperationFacts f;
+    EXPECT_EQ(in_terms_of_f2554(f), "");
+    f.items.push_back({"Line", {{0, 10}}, 10, 0.5, {0.1, 0.2, 0.3}, true});
+    f.items.push_back({"Hole", {{0, 10}}, 10, 0.5, {0.6}, true});
+    const Deviations of = deviations_of(f);
+    EXPECT_EQ(of.count, 4u);
+    EXPECT_NEAR(of.mean_mm, 0.3, 1e-12);
+    EXPECT_NEAR(of.deviation_mm, std::sqrt(0.14 / 3), 1e-12) << "of a sample: by n - 1";
+    EXPECT_NEAR(of.rms_mm, std::sqrt(0.125), 1e-12);
+    EXPECT_EQ(of.worst_mm, 0.6);
+    EXPECT_NE(in_terms_of_f2554(f).find("mean 0.30 mm, standard deviation 0.22 mm, RMS 0.35 mm, maximum 0.60 mm"),
+              std::string::npos)
+        << in_terms_of_f2554(f);
+    EXPECT_EQ(json::parse(operation_json(f))["f2554"]["count"], 4);
+    EXPECT_FALSE(json::parse(operation_json({})).contains("f2554"));
+    const fs::path page = folder_.path() / "page.html";
+    write_operation_report(f, operation_json(f), page);
+    std::ifstream in(page);
+    const std::string html{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_NE(html.find("ASTM F2554"), std::string::npos);
 }
 
 TEST_F(Operation, PageAndFiguresStandBesideTheRecordingForItsOwnerOnly) {

@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <numeric>
 #include <thread>
 
-#include "app/live/simulated_room.h"
+#include "app/live/simulated_fault.h"
 #include "app/prepare_case.h"
 #include "planning_io/plan/plan_file.h"
+#include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
-#include "tests/app/room_with.h"
 #include "tests/support/test_data.h"
 
 namespace planlight::test {
@@ -82,6 +83,13 @@ public:
         told_ = {};
         ++skin_checks_;
     }
+    void match_offered(const KeptMatch& match) noexcept override {
+        pass([&](SessionObserver& next) { next.match_offered(match); });
+    }
+    void resumed(const Session& session, const ResumeCheck& check) noexcept override {
+        pass([&](SessionObserver& next) { next.resumed(session, check); });
+        told_ = {};
+    }
     void refused(SessionCall call, const std::exception& why) noexcept override {
         pass([&](SessionObserver& next) { next.refused(call, why); });
     }
@@ -104,23 +112,111 @@ private:
     std::vector<double> told_ms_;  ///< of each update
 };
 
-/// Cameras that doubt themselves in every second dozen of frames.
-class Doubtful final : public StereoCamera {
+/// The simulated room with what can go wrong in it besides: each at a frame, not at a moment of the wall's clock.
+class PlayedRoom final : public Room {
 public:
-    Doubtful(StereoCamera& cameras, std::string doubt) : cameras_(cameras), doubt_(std::move(doubt)) {}
-    StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override {
-        return cameras_.grab(not_before, patience);
+    PlayedRoom(const ExampleCase& patient, const PlayedSession& how)
+        : rig_(patient.volume, points_of(patient.prepared.plan), settings(how)), how_(how) {}
+    std::string name() const override { return "the simulated room"; }
+    const RigCalibration& rig() const override { return rig_.calibration(); }
+    Projector& projector() override { return projector_; }
+    StereoCamera& cameras() override { return cameras_; }
+    const Clock& clock() const override { return rig_.clock(); }
+    bool simulated() const override { return true; }
+    Instant look_interval() const override { return 2s; }
+    void computing() override { rig_.wait(10ms); }
+    void let_patient_move(bool moves) override {
+        if (moves != moving_) rig_.set_motion({moves ? how_.speed_mm_s : 0, rig_.clock().now()});
+        moving_ = moves;
     }
-    StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) override {
-        ++frames_;
-        return cameras_.newest(not_before, patience);
+    void begin_fault() override {
+        if (how_.fault_after == 0) planlight::begin_fault(how_.fault, rig_);
     }
-    std::string doubt() const override { return frames_ / 12 % 2 == 1 ? doubt_ : ""; }
+
+    void plug_in() { unplugged_ = false; }
+    /// Three of the plan's points where the patient truly lies before anything moves, so far aside.
+    std::vector<PointPair> landmarks(double aside_mm, const Plan& plan) const {
+        const RigidTransform rig_from_ct = rig_.true_rig_from_ct({});
+        std::vector<PointPair> pairs;
+        for (const Eigen::Vector3d& p_in_ct : points_of(plan)) {
+            if (pairs.size() == 3) break;
+            pairs.push_back({"point " + std::to_string(pairs.size() + 1), p_in_ct,
+                             rig_from_ct * p_in_ct + Eigen::Vector3d(0, aside_mm, 0)});
+        }
+        return pairs;
+    }
 
 private:
-    StereoCamera& cameras_;
-    std::string doubt_;
-    int frames_ = 0;
+    class Cameras final : public StereoCamera {
+    public:
+        explicit Cameras(PlayedRoom& room) : room_(room) {}
+        StereoFrame grab(Instant not_before, std::chrono::milliseconds patience) override {
+            room_.scanned_one();
+            return room_.rig_.cameras().grab(not_before, patience);
+        }
+        StereoFrame newest(Instant not_before, std::chrono::milliseconds patience) override {
+            room_.followed_one();
+            return room_.rig_.cameras().newest(not_before, patience);
+        }
+        /// In every second dozen of frames.
+        std::string doubt() const override { return room_.followed_ / 12 % 2 == 1 ? room_.how_.doubt : ""; }
+
+    private:
+        PlayedRoom& room_;
+    };
+    class Light final : public Projector {
+    public:
+        explicit Light(PlayedRoom& room) : room_(room) {}
+        int width() const override { return room_.rig_.projector().width(); }
+        int height() const override { return room_.rig_.projector().height(); }
+        Instant show(const RgbImage& picture, Instant valid_until) override {
+            if (room_.unplugged_) throw DeviceError("Projector", "its cable is unplugged", "Plug it in.");
+            return room_.rig_.projector().show(picture, valid_until);
+        }
+        void go_dark() noexcept override { room_.rig_.projector().go_dark(); }
+
+    private:
+        PlayedRoom& room_;
+    };
+
+    static simulation::RoomSettings settings(const PlayedSession& how) {
+        simulation::RoomSettings room;
+        room.preset = how.preset;
+        room.seed = how.seed;
+        room.things = how.things;
+        return room;
+    }
+    /// A short movement now and then, so that most pictures of a scan are of a head at rest.
+    void scanned_one() {
+        constexpr int kEvery = 15;
+        if (!how_.moves_in_scan || ++scanned_ % kEvery != 0) return;
+        rig_.set_motion({30, rig_.clock().now()});
+        rig_.wait(100ms);
+        rig_.set_motion({0, rig_.clock().now()});
+    }
+    void followed_one() {
+        constexpr int kHandStays = 8, kFailures = 3;
+        if (!moving_ || ++followed_ < how_.fault_after || how_.fault_after == 0) return;
+        const int since = followed_ - how_.fault_after;
+        if (since == 0) planlight::begin_fault(how_.fault, rig_);
+        if (how_.fault == "hand-over-markers") {
+            std::vector<int> all(rig_.true_markers_in_ct().size());
+            std::iota(all.begin(), all.end(), 0);
+            if (since == 0) rig_.cover_markers(all);
+            if (since == kHandStays) rig_.cover_markers({});
+        }
+        if (how_.fault == "projector-away" && since == 0) unplugged_ = true;
+        if (how_.fault == "camera-away" && since < kFailures)
+            throw DeviceError("Left camera", "no frame came in 200 ms", "Look at its cable.");
+    }
+
+    simulation::SimulatedRig rig_;
+    const PlayedSession how_;
+    Cameras cameras_{*this};
+    Light projector_{*this};
+    bool moving_ = false;
+    std::atomic<bool> unplugged_{false};
+    int scanned_ = 0, followed_ = 0;
 };
 
 void press_when_free(LiveSession& session, OperatorAction action, ButtonState OperatorModel::*button,
@@ -155,6 +251,30 @@ void hide_and_show(LiveSession& session, const Counting& counting) {
     some_updates();
 }
 
+/// False: the scan was refused.
+bool scan(LiveSession& session, const PlayedSession& how) {
+    press_when_free(session, OperatorAction::scan, &OperatorModel::scan, "Scan");
+    if (how.dark_in_scan) {
+        wait_for(session, "some of the scan", [](const OperatorModel& m) { return m.status.share.value_or(0) > 0.2; });
+        session.post(OperatorAction::dark);
+        wait_for(session, "DARK", [](const OperatorModel& m) { return m.status.kind == StatusKind::dark; });
+        session.post(OperatorAction::scan);
+    }
+    return wait_for(session, "the end of the scan", [](const OperatorModel& m) {
+               return m.status.kind == StatusKind::refused ||
+                      (m.do_register.enabled && m.status.kind != StatusKind::scanning);
+           }).status.kind != StatusKind::refused;
+}
+
+void find(LiveSession& session, const PlayedSession& how, const ExampleCase& patient, const PlayedRoom& room) {
+    if (how.landmarks)
+        session.post_find_patient({{"nose", {0, 0, 0}, {0, 0, 900}}, {"chin", {0, 10, -60}, {0, 60, 900}}});
+    else if (how.look != PlayedSession::Look::not_needed)
+        session.post_find_patient(room.landmarks(6, patient.prepared.plan));  // 4 mm: ask; 8 mm: no
+    else
+        session.post(OperatorAction::do_register);
+}
+
 }  // namespace
 
 const ExampleCase& example_case() {
@@ -172,43 +292,38 @@ const ExampleCase& example_case() {
     return made;
 }
 
-PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, SessionObserver* observer) {
+PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, SessionObserver* observer,
+                          const std::optional<ResumeOffer>& offer) {
     Counting counting(observer, how.doubt);
-    simulation::RoomSettings room;
-    room.preset = simulation::Preset::paper;
-    room.seed = how.seed;
     CaseDrawing drawing(patient.prepared);
     drawing.settings.card = how.card;
     PlayedResult result;
     {
+        PlayedRoom* room = nullptr;  // once the session is ready
         LiveSession session(
-            [&](const RoomProgress&) -> std::unique_ptr<Room> {
-                auto simulated = std::make_unique<SimulatedRoom>(patient.volume, patient.prepared.plan, room,
-                                                                 how.speed_mm_s, how.fault);
-                if (how.doubt.empty()) return simulated;
-                return std::make_unique<RoomWith<Doubtful>>(std::move(simulated), how.doubt);
+            [&](const RoomProgress&) {
+                auto made = std::make_unique<PlayedRoom>(patient, how);
+                room = made.get();
+                return made;
             },
-            patient.prepared, drawing, {}, &counting);
-        press_when_free(session, OperatorAction::scan, &OperatorModel::scan, "Scan");
-        if (how.dark_in_scan) {
-            wait_for(session, "the scan", [](const OperatorModel& m) { return m.status.kind == StatusKind::scanning; });
-            std::this_thread::sleep_for(300ms);
-            session.post(OperatorAction::dark);
-            wait_for(session, "DARK", [](const OperatorModel& m) { return m.status.kind == StatusKind::dark; });
-            session.post(OperatorAction::scan);
+            patient.prepared, drawing, {}, &counting, offer);
+        if (!offer) {
+            if (!scan(session, how)) return result.headline = session.model().status.headline, result;
+            find(session, how, patient, *room);
+        } else {
+            wait_for(session, "the offer", [](const OperatorModel& m) { return m.confirm; });
+            session.post(OperatorAction::confirm);
+            wait_for(session, "the short scan",
+                     [](const OperatorModel& m) { return m.track.enabled || m.status.kind == StatusKind::refused; });
         }
-        wait_for(session, "the end of the scan",
-                 [](const OperatorModel& m) { return m.do_register.enabled && m.status.kind != StatusKind::scanning; });
-        if (how.landmarks)
-            session.post_find_patient({{"nose", {0, 0, 0}, {0, 0, 900}}, {"chin", {0, 10, -60}, {0, 60, 900}}});
-        else
-            session.post(OperatorAction::do_register);
         wait_for(session, "the match", [](const OperatorModel& m) {
             return m.track.enabled || m.confirm || m.status.kind == StatusKind::refused;
         });
+        if (how.look == PlayedSession::Look::refused) session.post(OperatorAction::dark);
         if (session.model().confirm) session.post(OperatorAction::confirm);
         result.headline = session.model().status.headline;
-        if (session.model().status.kind == StatusKind::refused) return result;
+        if (session.model().status.kind == StatusKind::refused || how.look == PlayedSession::Look::refused)
+            return result;
         press_when_free(session, OperatorAction::track, &OperatorModel::track, "Track");
         verify(session, counting, how.updates * 2 / 3);
         if (how.check_skin) {
@@ -217,8 +332,11 @@ PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, 
                      [&](const OperatorModel&) { return counting.skin_checks() > 0; });
         }
         if (how.hide_items) hide_and_show(session, counting);
-        session.post(OperatorAction::dark);
+        const bool away = how.fault == "projector-away";
+        if (away) session.look_before_light();
+        session.post(OperatorAction::dark, away ? AskedBy::lost_projector : AskedBy::person);
         wait_for(session, "DARK", [](const OperatorModel& m) { return !m.stop.enabled; });
+        room->plug_in();
         session.post(OperatorAction::track);
         verify(session, counting, how.updates);
         result.headline = session.model().status.headline;

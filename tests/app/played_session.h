@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -11,6 +12,7 @@
 #include "app/recording/session_recorder.h"
 #include "app/session.h"
 #include "planning_io/types/volume.h"
+#include "registration/simulation/simulated_rig.h"
 
 namespace planlight::test {
 
@@ -37,18 +39,26 @@ OperatorModel wait_for(LiveSession& session, const char* what, Holds holds) {
     }
 }
 
-/// How a session in the simulated room (the paper's) is played without a window.
+/// How a session in the simulated room is played without a window.
 struct PlayedSession {
+    simulation::Preset preset = simulation::Preset::paper;
     unsigned seed = 1;
-    std::string fault;  ///< of `simulated_faults`; empty: none
+    simulation::ThingsSettings things{};  ///< that lie before or round the head
+    /// Of `simulated_faults`; "hand-over-markers": for eight frames none is seen; "camera-away": it fails three times;
+    /// "projector-away": it fails until DARK, and before the plan is lit again all is looked at. Empty: none.
+    std::string fault;
+    int fault_after = 0;  ///< frames that the patient is followed in; 0: when the live session lets it begin
     double speed_mm_s = 20;
-    int updates = 60;           ///< while the plan is followed, about
-    bool dark_in_scan = false;  ///< DARK is pressed in the middle of the first scan
-    bool check_skin = false;
+    int updates = 60;               ///< while the plan is followed, about
+    bool dark_in_scan = false;      ///< DARK is pressed in the middle of the first scan
+    bool moves_in_scan = false;     ///< the patient moves in each scan
+    bool check_skin = false;        ///< in the middle
     bool hide_items = false;        ///< the first is hidden, the second lit alone, then the whole plan again
     std::vector<std::string> card;  ///< lit with the plan until it is verified
-    bool landmarks = false;         ///< clicked landmarks go into the match
-    std::string doubt;              ///< what the cameras say of themselves while the patient is followed, now and then
+    bool landmarks = false;         ///< clicked landmarks go into the match, and are wrong
+    /// Landmarks are clicked 6 mm aside, so that the match needs a person's look; the person says yes, or no.
+    enum class Look { not_needed, confirmed, refused } look = Look::not_needed;
+    std::string doubt;  ///< what the cameras say of themselves while the patient is followed, now and then
 };
 
 /// How it went.
@@ -60,8 +70,9 @@ struct PlayedResult {
 };
 
 /// Presses the buttons one after the other: scan, register, track, the light on both landmarks, DARK, track again.
-/// `observer` is told of it.
-PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, SessionObserver* observer);
+/// `observer` is told of it. With an `offer` it goes on with that match instead of scan and register.
+PlayedResult play_session(const PlayedSession& how, const ExampleCase& patient, SessionObserver* observer,
+                          const std::optional<ResumeOffer>& offer = {});
 
 /// The same into a recording.
 PlayedResult record_session(const PlayedSession& how, const ExampleCase& patient, RecordMode mode,

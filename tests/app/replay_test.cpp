@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <atomic>
-#include <fstream>
 #include <thread>
 
 #include "app/recording/recorded_inputs.h"
 #include "app/recording/replay_session.h"
 #include "planning_io/recording/packed_pictures.h"
 #include "planning_io/types/error.h"
-#include "tests/app/played_session.h"
+#include "tests/app/recorded_kinds.h"
 #include "tests/support/test_data.h"
 
 namespace planlight {
@@ -24,86 +23,7 @@ protected:
     void SetUp() override {
         if (!test::example_case().there) GTEST_SKIP() << "the package invesalius-examples is not installed";
     }
-    static std::vector<RecordingChunk> chunks_of(const fs::path& file) {
-        RecordingReader reader(file);
-        std::vector<RecordingChunk> chunks;
-        while (auto chunk = reader.next()) chunks.push_back(std::move(*chunk));
-        return chunks;
-    }
-    static void write(const std::vector<RecordingChunk>& chunks, const fs::path& file) {
-        std::ofstream out(file, std::ios::binary);
-        const auto put = [&](const std::string& bytes) {
-            out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        };
-        put(recording_header());
-        for (std::size_t i = 0; i < chunks.size(); ++i) put(chunk_bytes(chunks[i], i));
-    }
-    /// `must_hold`: events of the recording, by a part of each; what never happened is replayed by anything.
-    static test::PlayedResult expect_alike(const PlayedSession& how, const std::vector<std::string>& must_hold = {}) {
-        const test::TemporaryFolder folder;
-        const fs::path file = folder.path() / "session.plrec";
-        test::PlayedResult played = test::record_session(how, test::example_case(), RecordMode::all, file);
-        const ReplayResult replayed = replay_session(file, test::example_case().prepared);
-        EXPECT_FALSE(replayed.difference) << "frame " << replayed.difference->frame << ", update "
-                                          << replayed.difference->update << ": " << replayed.difference->what;
-        EXPECT_EQ(replayed.ended, "");
-        EXPECT_EQ(replayed.end, RecordingEnd::whole);
-        EXPECT_FALSE(replayed.other_program);
-        EXPECT_GE(replayed.scans, 1);
-        EXPECT_EQ(replayed.matches, 1);
-        const auto recorded = chunks_of(file);
-        for (const std::string& part : must_hold)
-            EXPECT_TRUE(std::ranges::any_of(recorded,
-                                            [&](const RecordingChunk& chunk) {
-                                                return chunk.type == chunk_types::kEvent &&
-                                                       chunk.payload.find(part) != std::string::npos;
-                                            }))
-                << "nothing of the recording holds " << part;
-        EXPECT_GE(replayed.updates, how.landmarks ? 0 : how.updates / 2);
-        return played;
-    }
 };
-
-TEST_F(Replay, OfASessionWithAMovingHeadIsAlikeToTheLastDigit) {
-    PlayedSession how;
-    how.check_skin = true;
-    how.updates = 30;
-    expect_alike(how);
-}
-
-TEST_F(Replay, OfAScanThatDarkEndedAndOfAFaultIsAlike) {
-    PlayedSession how;
-    how.seed = 3;
-    how.dark_in_scan = true;
-    how.fault = "late";
-    how.updates = 130;
-    expect_alike(how, {R"({"what":"asked","call":"go_dark")", R"({"what":"refused","call":"scan")",
-                       R"("fault":"late_picture")"});
-}
-
-TEST_F(Replay, OfASessionInWhichItemsWereHiddenIsAlike) {
-    PlayedSession how;
-    how.seed = 5;
-    how.hide_items = true;
-    how.card = {"E. M.", "RIGHT"};
-    how.updates = 90;
-    expect_alike(how, {R"("call":"hide_item")", R"("call":"light_item")", R"("call":"show_item")"});
-}
-
-TEST_F(Replay, OfAMatchThatItsLandmarksRefuseIsAlike) {
-    PlayedSession how;
-    how.seed = 4;
-    how.landmarks = true;
-    expect_alike(how, {R"({"what":"matched","verdict":"no")"});
-}
-
-TEST_F(Replay, WhatTheCamerasSayOfThemselvesReachesThePersonAndTheReplay) {
-    PlayedSession how;
-    how.seed = 6;
-    how.updates = 60;
-    how.doubt = "left camera: its pictures come 40 ms late";
-    EXPECT_GE(expect_alike(how).doubted, 10);
-}
 
 /// A disk that takes nothing until it is told to.
 class StillDisk final : public RecordingSink {
@@ -153,7 +73,7 @@ protected:
         how.dark_in_scan = true;  // a refusal that is none of an update
         const fs::path file = folder().path() / "sound.plrec";
         test::record_session(how, test::example_case(), RecordMode::all, file);
-        chunks_ = chunks_of(file);
+        chunks_ = test::chunks_of(file);
     }
     static test::TemporaryFolder& folder() {
         static test::TemporaryFolder made;
@@ -161,7 +81,7 @@ protected:
     }
     static ReplayResult replay(const std::vector<RecordingChunk>& chunks) {
         const fs::path file = folder().path() / "spoilt.plrec";
-        write(chunks, file);
+        test::write_recording(chunks, file);
         return replay_session(file, test::example_case().prepared);
     }
     /// The n-th event of an update.
@@ -236,7 +156,7 @@ TEST_F(SpoiltRecording, CutAnywhereItIsReplayedUpToThere) {
 
 TEST_F(SpoiltRecording, IsRefusedForAnotherCaseAndWithoutItsFrames) {
     const fs::path file = folder().path() / "other.plrec";
-    write(chunks_, file);
+    test::write_recording(chunks_, file);
     Case other = test::example_case().prepared;
     other.plan_hash = "another";
     EXPECT_THROW(replay_session(file, other), InputError);
@@ -244,7 +164,7 @@ TEST_F(SpoiltRecording, IsRefusedForAnotherCaseAndWithoutItsFrames) {
     const std::size_t at = chunks.front().payload.find("\"all\"");
     ASSERT_NE(at, std::string::npos);
     chunks.front().payload.replace(at, 5, "\"events\"");
-    write(chunks, file);
+    test::write_recording(chunks, file);
     EXPECT_THROW(replay_session(file, test::example_case().prepared), InputError);
 }
 

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <thread>
 #include <vector>
 
 #include "planning_io/recording/packed_pictures.h"
@@ -86,6 +87,38 @@ TEST(RecordedEvents, WhatHappensBeforeTheFirstFrameKeepsTheFirstFrames) {
     RecordingReader reader(file);
     while (const auto chunk = reader.next()) frames += chunk->type == chunk_types::kFrame;
     EXPECT_EQ(frames, 13) << "twelve after the press, and the next of the usual ones";
+}
+
+/// What is said of an hour's size holds of the file, whatever fills it: words of the gate that are long, and frames
+/// that do not pack.
+TEST(RecordedEvents, TheWholeRecordingKeepsWithinItsBudget) {
+    constexpr double kBytesPerS = 100e3, kAhead = 200e3;
+    constexpr int kSeconds = 60, kFramesPerS = 25;
+    FrameChoiceSettings small;
+    small.bytes_per_s = kBytesPerS, small.bytes_ahead = kAhead;
+    GrayImage noise(120, 80);
+    for (std::size_t i = 0; i < noise.pixels.size(); ++i)
+        noise.pixels[i] = static_cast<std::uint8_t>(i * 2654435761U >> 13U);
+    for (const std::size_t words : {10U, 3000U}) {
+        const test::TemporaryFolder folder;
+        const std::filesystem::path file = folder.path() / "session.plrec";
+        SessionRecorder recorder(std::make_unique<RecordingFile>(file), {}, {}, small);
+        LightGate::Ruling ruling;
+        ruling.details = {std::string(words, 'x')};
+        for (int i = 0; i < kSeconds * kFramesPerS; ++i) {
+            const Instant at = i * std::chrono::milliseconds(1000 / kFramesPerS);
+            recorder.frame_taken({noise, noise, at, milliseconds(5), static_cast<std::uint64_t>(i)});
+            recorder.picture_shown(RgbImage(64, 48, {0, 255, 0}), at, at);
+            // A minute passes in no time here: how well they pack must be known first. HEAD, the frame, the light.
+            while (i == 0 && recorder.state().written_chunks < 3) std::this_thread::sleep_for(milliseconds(1));
+            ruling.headline = "headline " + std::to_string(i / 10);
+            recorder.gate(GateCall::step, at, 0, &ruling);
+        }
+        EXPECT_EQ(recorder.finish(), "");
+        const auto bytes = static_cast<double>(std::filesystem::file_size(file));
+        EXPECT_LE(bytes, 1.05 * (kAhead + kBytesPerS * kSeconds)) << words << ": of each picture it is a guess";
+        EXPECT_GE(bytes, 0.5 * kBytesPerS * kSeconds) << words << ": there was room for frames";
+    }
 }
 
 }  // namespace

@@ -113,7 +113,7 @@ TEST_F(StartedSession, ThatIsKilledLeavesARecordingToGoOnWithAndNoReport) {
 }
 
 TEST_F(StartedSession, WithoutAReportHasNoneAndIsReplayedAndReviewedInAWindow) {
-    const auto program = start({"--no-report", "--end-after-s", "1", "--record", "all"});
+    const auto program = start({"--no-report", "--end-after-s", "1", "--record", "all", "--language", "ru"});
     EXPECT_EQ(program->wait(kLongest), 0) << program->said();
     EXPECT_FALSE(fs::exists(fs::path(recording()).replace_extension(".html")));
     EXPECT_EQ(program->said().find("The report of this session"), std::string::npos) << program->said();
