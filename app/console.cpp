@@ -11,6 +11,7 @@
 #include <cstring>
 #include <ctime>
 #include <exception>
+#include <iostream>
 #include <new>
 #include <system_error>
 #include <utility>
@@ -156,6 +157,12 @@ int explain_short_memory() {
 
 }  // namespace
 
+/// Whether all of standard output has arrived: a program that keeps what `--json` prints believes exit 0.
+static bool printed_whole() {
+    std::cout.flush();
+    return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good();
+}
+
 int run_and_explain(const std::function<int()>& command) {
     auto code = static_cast<int>(ExitCode::our_fault);
     try {
@@ -173,6 +180,10 @@ int run_and_explain(const std::function<int()>& command) {
             say(fmt::format("a fault of ours: {}. Please report it with the command that you gave.", fault.what()));
     } catch (const std::exception& fault) {
         say(fmt::format("a fault of ours: {}. Please report it with the command that you gave.", fault.what()));
+    }
+    if (!printed_whole()) {
+        say("what was printed could not be written to its end. Make room where it goes to, and ask again.");
+        if (code == 0) code = static_cast<int>(ExitCode::disk);
     }
     add_to_log(fmt::format("exit {}", code));
     return code;

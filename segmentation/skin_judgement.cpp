@@ -30,8 +30,8 @@ constexpr double kGap_cm2 = 15, kLight_cm2 = 15;
 constexpr double kBonelessEnd_cm2 = 8;  // an ear that the volume cuts off has 4
 constexpr double kOneSided_cm2 = 15, kBumps_cm2 = 10, kShelf_cm2 = 15, kWidth = 1.35, kThickest_mm = 15;
 
-// Draws with fat moved by 1, 2 and 3 mm (`measure_mr_draws --fat-shift`): it moves the skin by 0.45 of it (rms), and
-// from 1.5 mm on more than 1 % of the skin by over 2 mm.
+// `measure_mr_draws 1 4 0.8 --noise 0.02 --fat-shift MM`: fat moved by 1 and 2 mm moves the skin by 0.45 of it (rms),
+// and at 2 mm more than 1 % of the skin by over 2 mm.
 constexpr double kSkinOfFatShift = 0.45, kFatShift_mm = 1.5;
 constexpr double kNoisy_mm = 0.35;
 
@@ -234,12 +234,12 @@ void judge_fat_shift(const Volume& volume, SkinJudgement& r) {
 }
 
 void judge_noise(SkinJudgement& r) {
-    if (!(r.sigma_mm > kNoisy_mm) || r.edge_blur_mm > kBlurred_mm) return;
+    if (!(r.noise_sigma_mm > kNoisy_mm)) return;
     add(r.doubts,
         fmt::format(
             "The volume is noisy: where the edge of the skin lies is uncertain by {:.1f} mm, more where skin is "
             "thin, as in and behind the ears",
-            r.sigma_mm),
+            r.noise_sigma_mm),
         "Use a series with less noise if there is one, and look at the skin in the report.");
 }
 
@@ -289,7 +289,8 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     result.width = things.width;
     result.shelf_cm2 = things.shelf_cm2;
     result.bright_bone = layers.bright_bone;
-    result.sigma_mm = std::max(skin_edge_sigma_mm(volume, mask, skin), 0.25 * std::max(0.0, result.edge_blur_mm - 1.5));
+    result.noise_sigma_mm = skin_edge_sigma_mm(volume, mask, skin);
+    result.sigma_mm = std::max(result.noise_sigma_mm, 0.25 * std::max(0.0, result.edge_blur_mm - 1.5));
     judge_size(result);
     judge_layers(volume, layers.faint_share < kFaintLayers && layers.air_is_blank, layers.faint_share, result);
     judge_face(result);

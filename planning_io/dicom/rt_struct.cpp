@@ -56,7 +56,14 @@ std::vector<RtRoi> rois_of(vtkDICOMMetaData* meta, const fs::path& file) {
                         text(item.Get(DC::ROIDescription)),
                         text(item.Get(DC::ReferencedFrameOfReferenceUID)),
                         {},
+                        {},
                         {}});
+    }
+    const vtkDICOMSequence observations = meta->Get(DC::RTROIObservationsSequence);
+    for (std::size_t i = 0; i < observations.GetNumberOfItems(); ++i) {
+        const vtkDICOMItem& item = observations.GetItem(i);
+        if (const auto at = by_number.find(item.Get(DC::ReferencedROINumber).AsInt()); at != by_number.end())
+            rois[at->second].interpreted_type = text(item.Get(DC::RTROIInterpretedType));
     }
     const vtkDICOMSequence drawn = meta->Get(DC::ROIContourSequence);
     for (std::size_t i = 0; i < drawn.GetNumberOfItems(); ++i) {
@@ -100,7 +107,8 @@ void parse(Parcel& parcel, const fs::path& file) {
     parcel.put(frame);
     parcel.put(static_cast<std::uint64_t>(rois.size()));
     for (const RtRoi& roi : rois) {
-        for (const auto& said : {roi.name, roi.description, roi.frame_of_reference_uid}) parcel.put(said);
+        for (const auto& said : {roi.name, roi.description, roi.frame_of_reference_uid, roi.interpreted_type})
+            parcel.put(said);
         parcel.put(roi.colour);
         parcel.put(static_cast<std::uint64_t>(roi.contours.size()));
         for (const RtContour& contour : roi.contours) parcel.put(contour.type), parcel.put(contour.numbers);
@@ -113,6 +121,7 @@ std::vector<RtRoi> unpack(Parcel& parcel) {
         roi.name = parcel.get_text();
         roi.description = parcel.get_text();
         roi.frame_of_reference_uid = parcel.get_text();
+        roi.interpreted_type = parcel.get_text();
         roi.colour = parcel.get_list<double>();
         roi.contours.resize(parcel.get<std::uint64_t>());
         for (RtContour& contour : roi.contours)

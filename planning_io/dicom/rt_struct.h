@@ -15,7 +15,8 @@ struct RtContour {
 /// A region of interest of a structure set.
 struct RtRoi {
     std::string name, description, frame_of_reference_uid;
-    std::vector<double> colour;  ///< 0..255; empty when not given
+    std::string interpreted_type;  ///< "ORGAN", "EXTERNAL", "PTV" ... (RT ROI Interpreted Type); empty when not said
+    std::vector<double> colour;    ///< 0..255; empty when not given
     std::vector<RtContour> contours;
 };
 

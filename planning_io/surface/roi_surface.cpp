@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "planning_io/dicom/rt_struct.h"
 #include "planning_io/plan/contour_stack.h"
@@ -74,6 +75,20 @@ void draw(MaskStack& mask, const Loop& loop, int slice, const Vector3d& low, dou
                 mask.inside[(static_cast<std::size_t>(slice) * rows + j) * columns + i] ^= 1;
     }
 }
+
+/// What a radiotherapy system draws beside organs, by its type (DICOM PS3.3 C.8.8.8): every way in goes through it.
+const std::map<std::string, std::string> kNoRisk{{"EXTERNAL", "the outline of the patient"},
+                                                 {"PTV", "what is to be treated"},
+                                                 {"CTV", "what is to be treated"},
+                                                 {"GTV", "what is to be treated"},
+                                                 {"TREATED_VOLUME", "what is to be treated"},
+                                                 {"IRRAD_VOLUME", "what is irradiated"},
+                                                 {"BOLUS", "a bolus"},
+                                                 {"SUPPORT", "a support"},
+                                                 {"FIXATION", "a fixation"},
+                                                 {"REGISTRATION", "for registration only"},
+                                                 {"ISOCENTER", "an isocentre"},
+                                                 {"MARKER", "a marker"}};
 
 /// How finely the contours are drawn: to `kPixel_mm` and a voxel a slice, or as finely as the memory allows.
 enum class Grain { usual, fine };
@@ -162,6 +177,11 @@ std::vector<RiskStructure> read_roi_solids(const fs::path& file, const PlanImpor
     check_frame_of_reference(set.frame_of_reference_uid, settings, file, notes);
     std::vector<RiskStructure> solids;
     for (const RtRoi& roi : set.rois) {
+        if (const auto what = kNoRisk.find(roi.interpreted_type); what != kNoRisk.end()) {
+            notes.push_back(fmt::format("{}: ROI \"{}\" is {} ({}) and is left out of the risk structures",
+                                        file.filename().string(), roi.name, what->second, roi.interpreted_type));
+            continue;
+        }
         auto loops = loops_of(roi, file);
         if (heights_of_contours(loops) < kSolidHeights) {
             notes.push_back(
@@ -173,7 +193,8 @@ std::vector<RiskStructure> read_roi_solids(const fs::path& file, const PlanImpor
         solids.push_back({roi.name, surface_of_mask(mask_of(std::move(loops), roi.name, file, Grain::fine))});
     }
     if (solids.empty())
-        throw InputError(file, "holds no solid: no ROI has closed contours at three heights", kExportAgain);
+        throw InputError(file, "holds no solid that is a risk structure: no organ has closed contours at three heights",
+                         kExportAgain);
     return solids;
 }
 

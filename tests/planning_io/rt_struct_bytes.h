@@ -19,7 +19,9 @@ inline DicomBytes closed_contour(const std::vector<Eigen::Vector3d>& points) {
 }
 
 /// An RTSTRUCT in the frame of reference 1.2.3: a solid of these contours, and the ROI "Line" of the eleventh alone.
-inline std::string rt_struct_of(const std::string& solid, const std::vector<DicomBytes>& contours) {
+/// `type`: of the solid (RT ROI Interpreted Type).
+inline std::string rt_struct_of(const std::string& solid, const std::vector<DicomBytes>& contours,
+                                const std::string& type = "ORGAN") {
     const auto roi = [](const char* number, const std::string& name) {
         return DicomBytes().add(0x30060022, "IS", number).add(0x30060024, "UI", "1.2.3").add(0x30060026, "LO", name);
     };
@@ -30,6 +32,7 @@ inline std::string rt_struct_of(const std::string& solid, const std::vector<Dico
         .add_sequence(0x30060020, {roi("1", solid), roi("2", "Line")})
         .add_sequence(0x30060039, {DicomBytes().add_sequence(0x30060040, contours).add(0x30060084, "IS", "1"),
                                    DicomBytes().add_sequence(0x30060040, {contours[10]}).add(0x30060084, "IS", "2")})
+        .add_sequence(0x30060080, {DicomBytes().add(0x30060084, "IS", "1").add(0x300600A4, "CS", type)})
         .file("1.2.840.10008.5.1.4.1.1.481.3");
 }
 

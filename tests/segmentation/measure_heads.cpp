@@ -196,8 +196,8 @@ int main(int argc, char** argv) {
             "\n",
             name, row.verdict, right ? "" : " WRONG", known == expected.end() ? "-" : known->second, row.ml,
             row.mask.threshold_said, row.judged.ball_radius_mm, row.judged.layered_share, row.judged.nose_mm,
-            row.judged.edge_blur_mm, row.mask.unsure_share, row.judged.sigma_mm, row.off_percent, row.plain_off_percent,
-            row.seconds, row.why);
+            row.judged.edge_blur_mm, row.mask.unsure_share, row.judged.noise_sigma_mm, row.off_percent,
+            row.plain_off_percent, row.seconds, row.why);
         std::fflush(stdout);
     }
     fmt::print("{} heads, {} not as expected\n", heads.size(), wrong);

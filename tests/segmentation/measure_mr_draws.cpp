@@ -55,8 +55,9 @@ int main(int argc, char** argv) {
                               : !(score.off_percent <= 1) ? "warned"
                                                           : "right";
         (score.refused ? refused : score.taken_wrongly() ? wrong : !(score.off_percent <= 1) ? warned : right) += 1;
-        fmt::print("{}\t{}\t{:.2f} % off\tp95 {:.2f} mm\trms {:.2f}\tsigma {:.2f}\t{}\t{}\n", seed, verdict,
-                   score.off_percent, score.p95_mm, score.rms_mm, score.sigma_mm, draw.said, score.why);
+        fmt::print("{}\t{}\t{:.2f} % off\tp95 {:.2f} mm\trms {:.2f}\tsigma {:.2f}, by noise {:.2f}\t{}\t{}\n", seed,
+                   verdict, score.off_percent, score.p95_mm, score.rms_mm, score.sigma_mm, score.noise_sigma_mm,
+                   draw.said, score.why);
         std::fflush(stdout);
     }
     fmt::print("{} draws: {} right, {} warned, {} refused, {} wrong\n", count, right, warned, refused, wrong);

@@ -13,11 +13,11 @@ struct SkinScore {
     bool doubted = false;  ///< taken with a warning; that the volume ends within the head is none
     double off_percent =
         0;  ///< of the true skin further than 2 mm from ours; not a number when refused, or nothing was compared
-    double p95_mm = 0;    ///< of its distance
-    double rms_mm = 0;    ///< of it, where it is nearer than 2 mm
-    double sigma_mm = 0;  ///< as `SkinJudgement` says it
-    std::string why;      ///< the doubts' or the refusal's beginnings
-    TriangleMesh skin;    ///< ours, also of what was refused for its looks
+    double p95_mm = 0;                        ///< of its distance
+    double rms_mm = 0;                        ///< of it, where it is nearer than 2 mm
+    double sigma_mm = 0, noise_sigma_mm = 0;  ///< as `SkinJudgement` says them
+    std::string why;                          ///< the doubts' or the refusal's beginnings
+    TriangleMesh skin;                        ///< ours, also of what was refused for its looks
 
     /// Also where nothing could be compared.
     bool taken_wrongly() const { return !refused && !doubted && !(off_percent <= 1); }

@@ -145,7 +145,7 @@ TEST_F(RiskStructureFileTest, MoreThanAPersonCanMindAreRefused) {
 
 /// An RT Structure Set of a rod of `radius_mm` along z round (10, 20), contours every `step_mm` from -20 to 20 mm,
 /// leant by `lean` mm a mm, and of one line.
-std::string rod_rt_struct(double radius_mm, double step_mm, double lean) {
+std::string rod_rt_struct(double radius_mm, double step_mm, double lean, const std::string& type = "ORGAN") {
     std::vector<DicomBytes> contours;
     for (double z = -20; z <= 20; z += step_mm) {
         std::vector<Eigen::Vector3d> circle;
@@ -154,7 +154,18 @@ std::string rod_rt_struct(double radius_mm, double step_mm, double lean) {
                                 20 + radius_mm * std::sin(2 * M_PI * i / 90), z);
         contours.push_back(closed_contour(circle));
     }
-    return rt_struct_of("Nerve", contours);
+    return rt_struct_of("Nerve", contours, type);
+}
+
+// Every way into the head goes through the outline of the patient: it would hide the nerve beside it.
+TEST_F(RiskStructureFileTest, TheOutlineOfThePatientAndWhatIsToBeTreatedAreNoRiskStructures) {
+    PlanImportSettings same_ct;
+    same_ct.frame_of_reference_uid = "1.2.3";
+    EXPECT_EQ(read("set.dcm", rod_rt_struct(3, 1, 0, "AVOIDANCE"), same_ct).size(), 1U);
+    for (const std::string type : {"EXTERNAL", "PTV", "BOLUS"})
+        EXPECT_SAYS(refused("set.dcm", rod_rt_struct(3, 1, 0, type), same_ct),
+                    "holds no solid that is a risk structure");
+    EXPECT_SAYS(notes_.empty() ? "" : notes_[0], "is a bolus (BOLUS) and is left out of the risk structures");
 }
 
 // A nerve of a millimetre on slices of a millimetre would be lost in voxels of one.
