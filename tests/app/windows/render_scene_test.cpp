@@ -118,11 +118,11 @@ TEST(RenderScene, ARiskStructureIsSeenThroughTheSkinAndUnderThePlan) {
     scene.risk_structures = std::make_shared<std::vector<RiskStructure>>(
         1, test::risk_structure("Facial nerve", 0.5 * test::on_analytic_head({-55, -75, 55}), 0.3));
     const RgbImage seen = render_scene(scene, view, 640, 480);
-    const auto is_blue = [](const Rgb& c) { return c[2] > 100 && c[2] > c[0] + 30; };
+    const auto is_blue = [](const Rgb& c) { return c[2] > c[0] + 30 && c[2] > c[1] + 30; };
     EXPECT_EQ(centre_of(bare, is_blue)[2], 0);
     EXPECT_GT(centre_of(seen, is_blue)[2], 3000);
     EXPECT_GT(centre_of(bare, is_plan_green)[2], 100);
-    EXPECT_NEAR(centre_of(seen, is_plan_green)[2], centre_of(bare, is_plan_green)[2], 2);
+    EXPECT_GE(centre_of(seen, is_plan_green)[2], centre_of(bare, is_plan_green)[2]) << "nothing of it is tinted";
     EXPECT_GT(centre_of(render_scene(scene, standard_view('P'), 640, 480), is_blue)[2], 3000) << "from behind as well";
     // Its name stands in the legend, at the lower right.
     double changed = 0;
