@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
 
 #include "app/recording/recording_head.h"
 #include "app/recording/replay_session.h"
@@ -81,11 +82,27 @@ TEST_P(RecordedKinds, IsReplayedToTheLastDigit) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Twenty, RecordedKinds, ::testing::ValuesIn(test::recorded_kinds()), [](const auto& kind) {
+std::vector<RecordedKind> kinds(bool long_ones) {
+    std::vector<RecordedKind> those = test::recorded_kinds();
+    std::erase_if(those, [&](const RecordedKind& kind) { return kind.is_long != long_ones; });
+    return those;
+}
+
+std::string test_name_of(const ::testing::TestParamInfo<RecordedKind>& kind) {
     std::string name;
     for (const char letter : kind.param.name) name += std::isalnum(static_cast<unsigned char>(letter)) ? letter : '_';
     return name;
-});
+}
+
+INSTANTIATE_TEST_SUITE_P(Short, RecordedKinds, ::testing::ValuesIn(kinds(false)), test_name_of);
+INSTANTIATE_TEST_SUITE_P(Long, RecordedKinds, ::testing::ValuesIn(kinds(true)), test_name_of);
+
+TEST(RecordedKindsThere, AreTwentyOfOtherSeeds) {
+    std::set<unsigned> seeds;
+    for (const RecordedKind& kind : test::recorded_kinds()) seeds.insert(kind.how.seed);
+    EXPECT_EQ(test::recorded_kinds().size(), 20u);
+    EXPECT_EQ(seeds.size(), 20u);
+}
 
 class OneRecordedKind : public RecordedKinds {};
 

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <random>
 #include <thread>
 #include <vector>
 
@@ -97,8 +98,8 @@ TEST(RecordedEvents, TheWholeRecordingKeepsWithinItsBudget) {
     FrameChoiceSettings small;
     small.bytes_per_s = kBytesPerS, small.bytes_ahead = kAhead;
     GrayImage noise(120, 80);
-    for (std::size_t i = 0; i < noise.pixels.size(); ++i)
-        noise.pixels[i] = static_cast<std::uint8_t>(i * 2654435761U >> 13U);
+    std::mt19937 random(1);
+    for (std::uint8_t& pixel : noise.pixels) pixel = static_cast<std::uint8_t>(random() & 0xFFU);
     for (const std::size_t words : {10U, 3000U}) {
         const test::TemporaryFolder folder;
         const std::filesystem::path file = folder.path() / "session.plrec";
