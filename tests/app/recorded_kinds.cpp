@@ -1,10 +1,12 @@
 #include "tests/app/recorded_kinds.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "app/recording/recording_head.h"
 #include "app/recording/resume_offer.h"
@@ -17,6 +19,8 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kFaultAfter = 10;
+constexpr std::array<std::string_view, 4> kShort{"DARK in the scan", "wrong landmarks: not found",
+                                                 "a doubtful match, refused", "a hand over all markers, and away"};
 
 RecordedKind kind(std::string name, unsigned seed, int updates, std::vector<std::string> must_hold) {
     RecordedKind made;
@@ -69,9 +73,9 @@ void add_what_people_do(std::vector<RecordedKind>& kinds) {
     kinds.back().how.look = Look::refused;
     kinds.push_back(kind("the patient moves in each scan: refused", 17, 0,
                          {R"({"what":"refused","call":"scan","why":"the patient moved)"}));
-    kinds.back().how.moves_in_scan = kinds.back().is_long = true;
+    kinds.back().how.moves_in_scan = true;
     kinds.push_back(kind("a hand before the head", 8, 20, {R"({"what":"matched")"}));
-    kinds.back().how.things.hand = kinds.back().is_long = true;
+    kinds.back().how.things.hand = true;
     kinds.push_back(faulty("a hand over all markers, and away", 7, 40, "hand-over-markers",
                            {R"("rig_from_patient":null)", R"("lit":false)"}));
 }
@@ -84,14 +88,11 @@ void add_what_devices_do(std::vector<RecordedKind>& kinds) {
     kinds.push_back(faulty("the projector unplugged, and back", 10, 24, "projector-away",
                            {R"({"what":"refused","call":"update","why":"Projector: its cable)", R"({"what":"resumed")",
                             R"({"what":"pressed","action":"projector_lost")"}));
-    kinds.back().is_long = true;
     kinds.push_back(faulty("a picture that comes late", 3, 60, "late", {R"("fault":"late_picture")"}));
     kinds.push_back(faulty("the projector bumped", 14, 40, "projector", {R"("fault":"projector_moved")"}));
     kinds.push_back(faulty("a camera bumped", 15, 40, "left-camera", {R"("fault":"left_camera_moved")"}));
-    kinds.back().is_long = true;
     kinds.push_back(faulty("a marker slipped", 12, 40, "marker", {R"("fault":"marker_slipped")"}));
     kinds.push_back(faulty("a lid before the projector", 18, 40, "no-picture", {R"("fault":"no_picture")"}));
-    kinds.back().is_long = true;
 }
 
 /// The last bit of the last number of a matrix of 16 that is not of its last row.
@@ -129,9 +130,9 @@ std::optional<Tampered> tamper_pose(std::vector<RecordingChunk>& chunks) {
 const std::vector<RecordedKind>& recorded_kinds() {
     static const std::vector<RecordedKind> all = [] {
         std::vector<RecordedKind> kinds = without_faults();
-        for (RecordedKind& kind : kinds) kind.is_long = true;
         add_what_people_do(kinds);
         add_what_devices_do(kinds);
+        for (RecordedKind& kind : kinds) kind.is_long = std::ranges::find(kShort, kind.name) == kShort.end();
         return kinds;
     }();
     return all;

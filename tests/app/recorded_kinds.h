@@ -20,7 +20,7 @@ struct RecordedKind {
     /// What its events must hold, by a part of each: what never happened is replayed by anything.
     std::vector<std::string> must_hold;
     bool resumed = false;  ///< the match of a session before it in the same room is gone on with
-    /// Told by other tests as well, or costs more than the others: a long test.
+    /// Only in the long tests.
     bool is_long = false;
 };
 inline void PrintTo(const RecordedKind& kind, std::ostream* out) {
