@@ -28,12 +28,25 @@ std::string signs_in_words(std::vector<char32_t> codes) {
     return words;
 }
 
+/// The Latin letter that a Cyrillic or Greek one looks like in light; itself where there is none.
+char32_t looks_like(char32_t code) {
+    static const std::map<char32_t, char32_t> kAlike{
+        {U'А', U'A'}, {U'В', U'B'}, {U'Е', U'E'}, {U'Ё', U'E'}, {U'З', U'3'}, {U'І', U'I'}, {U'Ї', U'I'}, {U'Ј', U'J'},
+        {U'К', U'K'}, {U'М', U'M'}, {U'Н', U'H'}, {U'О', U'O'}, {U'Р', U'P'}, {U'С', U'C'}, {U'Ѕ', U'S'}, {U'Т', U'T'},
+        {U'У', U'Y'}, {U'Х', U'X'}, {U'а', U'a'}, {U'е', U'e'}, {U'і', U'i'}, {U'ј', U'j'}, {U'о', U'o'}, {U'р', U'p'},
+        {U'с', U'c'}, {U'ѕ', U's'}, {U'у', U'y'}, {U'х', U'x'}, {U'Α', U'A'}, {U'Β', U'B'}, {U'Ε', U'E'}, {U'Ζ', U'Z'},
+        {U'Η', U'H'}, {U'Ι', U'I'}, {U'Κ', U'K'}, {U'Μ', U'M'}, {U'Ν', U'N'}, {U'Ο', U'O'}, {U'Ρ', U'P'}, {U'Τ', U'T'},
+        {U'Υ', U'Y'}, {U'Χ', U'X'}, {U'ο', U'o'}, {U'ν', U'v'}};
+    const auto other = kAlike.find(code);
+    return other == kAlike.end() ? code : other->second;
+}
+
 /// What a reader sees of a name: two that differ in less look the same as light.
 std::string seen_of(const std::string& name) {
     std::string seen;
     for (const char32_t code : code_points(name)) {
         if (is_control(code) || has_no_ink(code) || (code == U' ' && (seen.empty() || seen.back() == ' '))) continue;
-        seen += utf8_of(code);
+        seen += utf8_of(looks_like(code));
     }
     while (!seen.empty() && seen.back() == ' ') seen.pop_back();
     return seen;
@@ -54,7 +67,12 @@ std::string cannot_be_drawn(const std::string& name, const std::vector<char32_t>
         name, signs_in_words(lacks), in_its_place(code));
 }
 
-std::string same_as_another(const std::string& name, const std::string& lit, const std::string& code) {
+/// `twice`: another has this very name.
+std::string same_as_another(const std::string& name, const std::string& lit, const std::string& code, bool twice) {
+    if (lit == name && !twice)
+        return fmt::format(
+            "{}: another item's name looks the same; {}. Give each item a name that cannot be taken for another.", name,
+            in_its_place(code));
     if (lit == name)
         return fmt::format("{}: another item has the same name; {}. Give each item a name of its own.", name,
                            in_its_place(code));
@@ -81,7 +99,8 @@ std::vector<LitName> lit_names(const std::vector<std::string>& names, double tex
         if (!lacks[i].empty())
             lit[i].warning = cannot_be_drawn(names[i], lacks[i], codes[i]);
         else if (!shorter[i].empty() && count[seen_of(shorter[i])] > 1)
-            lit[i].warning = same_as_another(names[i], shorter[i], codes[i]);
+            lit[i].warning =
+                same_as_another(names[i], shorter[i], codes[i], std::count(names.begin(), names.end(), names[i]) > 1);
         if (lit[i].warning.empty()) continue;
         lit[i].name = codes[i];
         lit[i].by_code = !codes[i].empty(), lit[i].none = codes[i].empty();

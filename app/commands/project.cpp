@@ -42,6 +42,12 @@ RigidTransform pose_to_draw(const ProjectOptions& options) {
     if (!pose.rig_from_patient)
         throw CheckFailedError(fmt::format("frame {} has no pose: {}", frame, pose.reason),
                                "Nothing is drawn without a pose; choose another frame.");
+    constexpr double kMost_mm = 2;  // beyond it a session's light goes out
+    if (pose.bound_95_mm > kMost_mm || pose.markers_left + pose.markers_right < 3)
+        throw CheckFailedError(fmt::format("the pose of frame {} is not known well enough: to {:.1f} mm, by {} markers "
+                                           "in the left picture and {} in the right",
+                                           frame, pose.bound_95_mm, pose.markers_left, pose.markers_right),
+                               "Choose another frame, or track the patient with more markers in sight.");
     return *pose.rig_from_patient;
 }
 

@@ -221,6 +221,20 @@ TEST(LitNames, NothingIsLitTwiceTheSame) {
     }
 }
 
+// "В2" with the Cyrillic letter: a reader of light cannot tell it from "B2".
+TEST(LitNames, NamesOfTwoScriptsThatLookAlikeAreLitByCodes) {
+    for (const std::string same : {"В2", "Β2"}) {
+        const auto names = lit_names({"B2", "C", same}, 5);
+        for (const std::size_t i : {0U, 2U}) {
+            EXPECT_TRUE(names[i].by_code) << same;
+            EXPECT_NE(names[i].warning.find("looks the same"), std::string::npos) << names[i].warning;
+        }
+        EXPECT_NE(names[0].name, names[2].name);
+        EXPECT_FALSE(names[1].by_code);
+    }
+    for (const auto& lit : lit_names({"Б2", "B2", "Ж2"}, 5)) EXPECT_FALSE(lit.by_code) << lit.name;
+}
+
 TEST(Codes, NoCodeCanBeTakenForTheNameOfAnotherItem) {
     using Names = std::vector<std::string>;
     const auto codes = [](const Names& names) { return codes_of(names, names); };
