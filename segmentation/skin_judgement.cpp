@@ -33,7 +33,6 @@ constexpr double kOneSided_cm2 = 15, kBumps_cm2 = 10, kShelf_cm2 = 15, kWidth = 
 // `measure_mr_draws 1 4 0.8 --noise 0.02 --fat-shift MM`: fat moved by 1 and 2 mm moves the skin by 0.45 of it (rms),
 // and at 2 mm more than 1 % of the skin by over 2 mm.
 constexpr double kSkinOfFatShift = 0.45, kFatShift_mm = 1.5;
-constexpr double kNoisy_mm = 0.35;
 
 const char* const kGiveHead =
     "Give the CT or MR series of the whole head as the scanner made it; for a phantom or a dry skull use `planlight "
@@ -233,16 +232,6 @@ void judge_fat_shift(const Volume& volume, SkinJudgement& r) {
         "report.");
 }
 
-void judge_noise(SkinJudgement& r) {
-    if (!(r.noise_sigma_mm > kNoisy_mm)) return;
-    add(r.doubts,
-        fmt::format(
-            "The volume is noisy: where the edge of the skin lies is uncertain by {:.1f} mm, more where skin is "
-            "thin, as in and behind the ears",
-            r.noise_sigma_mm),
-        "Use a series with less noise if there is one, and look at the skin in the report.");
-}
-
 void judge_cuts(SkinJudgement& r) {
     std::string sides;
     int count = 0;
@@ -296,7 +285,6 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     judge_face(result);
     judge_edges(mask, result);
     judge_things(result);
-    judge_noise(result);
     judge_fat_shift(volume, result);
     judge_steps(volume, result);
     judge_cuts(result);

@@ -81,14 +81,6 @@ TEST(JudgeSkin, SaysHowFarTheHeaderSaysThatFatLiesAside) {
     EXPECT_TRUE(doubts(judged(head).skin, "2.0 mm aside, along front and back (chemical shift)"));
 }
 
-/// An eighth of the step from air to skin: the edge by more than a third of a millimetre, at voxels of 3 mm.
-TEST(JudgeSkin, SaysThatAVolumeIsNoisy) {
-    const SkinJudgement skin =
-        judged(mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); }, {105, 125, 115}, 110)).skin;
-    EXPECT_TRUE(doubts(skin, "The volume is noisy")) << skin.sigma_mm;
-    EXPECT_TRUE(skin.refusals.empty());
-}
-
 TEST(JudgeSkin, RefusesABrainWithoutScalp) {
     const Judged brain = judged(mr_of([](const Vector3d& p) { return depth_in_head(p, false) > 13 ? 500.0 : 0.0; }));
     ASSERT_TRUE(brain.refused);
