@@ -19,15 +19,23 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kFaultAfter = 10;
-constexpr std::array<std::string_view, 4> kShort{"DARK in the scan", "wrong landmarks: not found",
-                                                 "a doubtful match, refused", "a hand over all markers, and away"};
+constexpr std::array<std::string_view, 10> kShort{"items hidden and lit alone, a card on the skin",
+                                                  "the match of a session before is gone on with",
+                                                  "DARK in the scan",
+                                                  "wrong landmarks: not found",
+                                                  "a doubtful match, confirmed",
+                                                  "a doubtful match, refused",
+                                                  "the patient moves in each scan: refused",
+                                                  "a hand over all markers, and away",
+                                                  "cameras that doubt themselves",
+                                                  "a camera lost, and back"};
 
 RecordedKind kind(std::string name, unsigned seed, int updates, std::vector<std::string> must_hold) {
     RecordedKind made;
     made.name = std::move(name);
     made.how.seed = seed;
     made.how.updates = updates;
-    made.how.speed_mm_s = 0;  // a moving head costs the simulator ten times as much: two of the twenty have one
+    made.how.speed_mm_s = 0;  // a moving head costs the simulator ten times as much: three of the twenty have one
     made.must_hold = std::move(must_hold);
     return made;
 }
@@ -74,7 +82,7 @@ void add_what_people_do(std::vector<RecordedKind>& kinds) {
     kinds.push_back(kind("the patient moves in each scan: refused", 17, 0,
                          {R"({"what":"refused","call":"scan","why":"the patient moved)"}));
     kinds.back().how.moves_in_scan = true;
-    kinds.push_back(kind("a hand before the head", 8, 20, {R"({"what":"matched")"}));
+    kinds.push_back(kind("a hand before the head: refused", 8, 0, {R"({"what":"refused")"}));
     kinds.back().how.things.hand = true;
     kinds.push_back(faulty("a hand over all markers, and away", 7, 40, "hand-over-markers",
                            {R"("rig_from_patient":null)", R"("lit":false)"}));
@@ -85,12 +93,11 @@ void add_what_devices_do(std::vector<RecordedKind>& kinds) {
     kinds.back().how.doubt = "left camera: its pictures come 40 ms late";
     kinds.push_back(faulty("a camera lost, and back", 9, 30, "camera-away",
                            {R"({"what":"refused","call":"update","why":"Left camera: no frame)"}));
-    kinds.push_back(faulty("the projector unplugged, and back", 10, 24, "projector-away",
-                           {R"({"what":"refused","call":"update","why":"Projector: its cable)", R"({"what":"resumed")",
-                            R"({"what":"pressed","action":"projector_lost")"}));
+    kinds.push_back(faulty("the right camera bumped", 10, 40, "right-camera", {R"("fault":"right_camera_moved")"}));
     kinds.push_back(faulty("a picture that comes late", 3, 60, "late", {R"("fault":"late_picture")"}));
+    kinds.back().how.speed_mm_s = 20;  // at rest a late picture falls where a punctual one does
     kinds.push_back(faulty("the projector bumped", 14, 40, "projector", {R"("fault":"projector_moved")"}));
-    kinds.push_back(faulty("a camera bumped", 15, 40, "left-camera", {R"("fault":"left_camera_moved")"}));
+    kinds.push_back(faulty("the left camera bumped", 15, 40, "left-camera", {R"("fault":"left_camera_moved")"}));
     kinds.push_back(faulty("a marker slipped", 12, 40, "marker", {R"("fault":"marker_slipped")"}));
     kinds.push_back(faulty("a lid before the projector", 18, 40, "no-picture", {R"("fault":"no_picture")"}));
 }
