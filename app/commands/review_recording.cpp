@@ -141,7 +141,8 @@ int run_recording_review(const RecordingReviewOptions& options) {
     if (options.clip_s.size() == 2 && options.clip_s[1] < options.clip_s[0])
         throw Error(ExitCode::usage, "the clip ends before it begins", "Give --clip FROM TO, in seconds.");
     const fs::path out = options.out.empty() ? review_folder_of(options.recording) : options.out;
-    const RecordingTimeLine line = time_line_of(options.recording);
+    RecordingTimeLine line = time_line_of(options.recording);
+    look_at_pictures(line, options.recording);
     const std::string figures = review_json(line);
     make_review_folder(out);
     write_safely(out / "index.html", review_page(line, {}));
@@ -169,6 +170,9 @@ int run_recording_review(const RecordingReviewOptions& options) {
     }
     if (options.json) std::cout << figures;
     if (!line.ended.empty()) warn(line.ended);
+    if (line.damaged_pictures)
+        throw DamagedFileError(options.recording, "holds pictures that are damaged; what happened is shown to its end",
+                               "Copy the file again from where it was written.");
     if (line.damaged)
         throw DamagedFileError(options.recording, "is shown up to where it is damaged",
                                "Copy the file again from where it was written.");

@@ -213,6 +213,16 @@ private:
 
 }  // namespace
 
+void look_at_pictures(RecordingTimeLine& line, const fs::path& recording) {
+    if (line.damaged) return;
+    RecordingReader reader(recording);
+    while (reader.next()) {
+    }
+    if (!may_be_damaged(reader.end())) return;
+    line.damaged_pictures = true;
+    line.ended = "Among its pictures: " + reader.sentence();
+}
+
 RecordingTimeLine time_line_of(const fs::path& recording) {
     RecordingTimeLine line;
     RecordingReader reader(recording);

@@ -33,7 +33,12 @@ struct RecordingTimeLine : TimeLine {
     std::vector<Places> places;  ///< one of each of `frames_s`
     std::string ended;           ///< how it ends, in words; empty: it is whole
     bool damaged = false;
+    bool damaged_pictures = false;  ///< what happened is whole, and its pictures are not (`look_at_pictures`)
 };
+
+/// Reads every byte of a recording, for `time_line_of` passes the pictures over: an hour in some seconds. Says in
+/// `ended` what is damaged among them. Nothing where the line itself is damaged.
+void look_at_pictures(RecordingTimeLine& line, const std::filesystem::path& recording);
 
 /// Reads a recording through, its pictures passed over: an hour in some seconds. Throws InputError, DamagedFileError.
 RecordingTimeLine time_line_of(const std::filesystem::path& recording);

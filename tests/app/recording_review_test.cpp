@@ -262,6 +262,28 @@ TEST_F(RecordingReview, ADeskSaysWhenARecordingCannotBeRead) {
     EXPECT_THROW(settled(none), InputError);
 }
 
+// The page passes over pictures; that they are whole is not said without a look.
+TEST_F(RecordingReview, OneBitThatWasChangedInAPictureIsFound) {
+    make();
+    finish(true);
+    RecordingTimeLine line = time_line_of(file_);
+    look_at_pictures(line, file_);
+    EXPECT_EQ(line.ended, "");
+    EXPECT_FALSE(line.damaged_pictures);
+    std::fstream bytes(file_, std::ios::in | std::ios::out | std::ios::binary);
+    const auto at = static_cast<std::streamoff>(line.places.at(15).frame) + 60;
+    bytes.seekg(at);
+    const char was = static_cast<char>(bytes.get());
+    bytes.seekp(at);
+    bytes.put(static_cast<char>(was ^ 1));
+    bytes.close();
+    line = time_line_of(file_);
+    EXPECT_EQ(line.frames_s.size(), 30U) << "what happened is shown to its end";
+    look_at_pictures(line, file_);
+    EXPECT_TRUE(line.damaged_pictures);
+    EXPECT_NE(line.ended.find("Among its pictures"), std::string::npos) << line.ended;
+}
+
 TEST_F(RecordingReview, ARecordingThatWasCutIsShownUpToThere) {
     make();
     finish(false);
