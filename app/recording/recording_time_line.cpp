@@ -220,7 +220,9 @@ void look_at_pictures(RecordingTimeLine& line, const fs::path& recording) {
     }
     if (!may_be_damaged(reader.end())) return;
     line.damaged_pictures = true;
-    line.ended = "Among its pictures: " + reader.sentence();
+    line.ended =
+        fmt::format("The recording is damaged among its pictures, at byte {}; what happened is shown to its end.",
+                    reader.bytes_read());
 }
 
 RecordingTimeLine time_line_of(const fs::path& recording) {

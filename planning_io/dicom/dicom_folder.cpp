@@ -9,10 +9,11 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <fstream>
 #include <set>
 
+#include "planning_io/dicom/fat_shift.h"
+#include "planning_io/dicom/header_values.h"
 #include "planning_io/dicom/inflated_dicom.h"
 #include "planning_io/files/header_text.h"
 #include "planning_io/files/sandboxed_process.h"
@@ -31,32 +32,6 @@ const std::set<std::string> kVolumeClasses = {
     "1.2.840.10008.5.1.4.1.1.2.2",  // CT, Enhanced CT, Legacy Converted Enhanced CT
     "1.2.840.10008.5.1.4.1.1.4",   "1.2.840.10008.5.1.4.1.1.4.1", "1.2.840.10008.5.1.4.1.1.4.4"};  // MR likewise
 
-/// Printable ASCII; what is not becomes "?", for a damaged file may say anything.
-std::string plain(std::string text) {
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\0')) text.pop_back();
-    for (char& c : text)
-        if (c < ' ' || c > '~') c = '?';
-    return text.substr(0, 200);
-}
-
-std::string text_at(vtkDICOMMetaData* meta, vtkDICOMTag tag, int frame = 0) {
-    return plain(meta->Get(0, frame, tag).AsString());
-}
-
-/// As many of the value's numbers as `count`; NaN where there are fewer.
-std::array<double, 6> numbers_at(vtkDICOMMetaData* meta, int frame, vtkDICOMTag tag, unsigned count) {
-    std::array<double, 6> list{};
-    list.fill(DicomSlice::kUnsaid);
-    const vtkDICOMValue& value = meta->Get(0, frame, tag);
-    if (!value.IsValid() || value.GetNumberOfValues() < count) return list;
-    for (unsigned i = 0; i < count; ++i) {
-        const bool is_text = value.GetVR() == vtkDICOMVR::DS || value.GetVR() == vtkDICOMVR::IS;
-        const auto numbers = is_text ? numbers_of(plain(value.GetString(i))) : std::vector<double>{value.GetDouble(i)};
-        list[i] = numbers.size() == 1 ? numbers[0] : DicomSlice::kUnsaid;  // what is no number is unsaid, not zero
-    }
-    return list;
-}
-
 /// How the file says that what made the face recognisable was taken away (DICOM PS3.3 C.7.6.1.1.10, PS3.16 CID 7050).
 std::string defaced(vtkDICOMMetaData* meta) {
     if (text_at(meta, vtkDICOMTag(0x0028, 0x0302)) == "NO") return "Recognizable Visual Features = NO";
@@ -70,44 +45,6 @@ std::string defaced(vtkDICOMMetaData* meta) {
     for (const char* word : {"deface", "refaced", "mask_face", "skull strip", "skull-strip", "skullstrip"})
         if (method.find(word) != std::string::npos) return std::string("\"") + word + "\" in its description";
     return "";
-}
-
-/// The first of these that is said as a number within the limits; else not a number.
-double first_number_at(vtkDICOMMetaData* meta, int frame, std::initializer_list<vtkDICOMTag> tags, double least,
-                       double most) {
-    for (const vtkDICOMTag& tag : tags)
-        if (const double number = numbers_at(meta, frame, tag, 1)[0]; number >= least && number <= most) return number;
-    return DicomSlice::kUnsaid;
-}
-
-bool fat_is_suppressed(vtkDICOMMetaData* meta, int frame) {
-    const std::string how = text_at(meta, vtkDICOMTag(0x0018, 0x9025), frame),  // Spectrally Selected Suppression
-        options = "\\" + text_at(meta, vtkDICOMTag(0x0018, 0x0022), frame) + "\\";
-    return how == "FAT" || how == "FAT_AND_WATER" || options.find("\\FS\\") != std::string::npos;
-}
-
-/// `Volume::fat_shift_in_ct`: fat answers 3.4 ppm lower than water; the pixel's bandwidth says how many Hz a pixel as
-/// it was measured is (DICOM PS3.3 C.8.3.1, of Enhanced MR C.8.13.5).
-Eigen::Vector3d fat_shift_of(vtkDICOMMetaData* meta, int frame, const DicomSlice& slice) {
-    constexpr double kFat_ppm = 3.4, kProton_MHz_per_T = 42.577, kMost_mm = 20,
-                     kLeast_Hz = 40;  // less is a bandwidth of all pixels in kHz, as some scanners wrote it
-    const std::string phase_along = text_at(meta, vtkDICOMTag(0x0018, 0x1312), frame);
-    const bool along_columns = phase_along == "ROW", along_rows = phase_along == "COL" || phase_along == "COLUMN";
-    if (along_columns == along_rows || fat_is_suppressed(meta, frame)) return Eigen::Vector3d::Zero();
-    double frequency_MHz =
-        first_number_at(meta, frame, {vtkDICOMTag(0x0018, 0x0084), vtkDICOMTag(0x0018, 0x9098)}, 1, 600);
-    if (std::isnan(frequency_MHz))
-        frequency_MHz = kProton_MHz_per_T * first_number_at(meta, frame, {vtkDICOMTag(0x0018, 0x0087)}, 0.01, 15);
-    const auto matrix = numbers_at(meta, frame, vtkDICOMTag(0x0018, 0x1310), 2);  // rows, columns; one of them is zero
-    double readings = std::max(matrix[0], matrix[1]);
-    if (!(readings > 0)) readings = first_number_at(meta, frame, {vtkDICOMTag(0x0018, 0x9058)}, 1, 65535);
-    const double pixels = meta->Get(0, along_columns ? DC::Rows : DC::Columns).AsDouble(),
-                 pixel_mm = (along_columns ? slice.row_spacing_mm : slice.column_spacing_mm) *
-                            (readings > 0 ? pixels / readings : 1.0),
-                 shift_mm = kFat_ppm * frequency_MHz * pixel_mm /
-                            first_number_at(meta, frame, {vtkDICOMTag(0x0018, 0x0095)}, kLeast_Hz, 1e5);
-    if (!(shift_mm > 0 && shift_mm < kMost_mm)) return Eigen::Vector3d::Zero();
-    return shift_mm * (along_columns ? slice.column_direction : slice.row_direction);
 }
 
 DicomSlice slice_of(vtkDICOMMetaData* meta, int frame, const std::string& name) {
