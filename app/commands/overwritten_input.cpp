@@ -66,7 +66,7 @@ std::string overwritten_input(const CLI::App& command) {
             std::error_code error;
             if (!fs::exists(other.path, error)) continue;
             if (same(path, other.path))
-                return fmt::format("{} names {}, which {} reads: it would be written over. Give it another name.",
+                return fmt::format("{} names {}, which is read ({}): it would be written over. Give it another name.",
                                    option, path.string(), other.option);
             if (is_own_file_of(path, other.path))
                 return fmt::format(

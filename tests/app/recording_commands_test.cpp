@@ -29,15 +29,15 @@ TEST(ReportCommand, NeverTakesTheRecordingsPlace) {
     const std::string bytes = whole(file);
     fs::create_symlink(file, folder.path() / "link.html");
     fs::copy_file(file, odd);
-    expect_refused(run_planlight("report a.plrec --out a.plrec", folder.path()), 3, "the recording itself");
-    expect_refused(run_planlight("report a.plrec --out link.html", folder.path()), 3, "the recording itself");
+    expect_refused(run_planlight("report a.plrec --out a.plrec", folder.path()), 2, "would be written over");
+    expect_refused(run_planlight("report a.plrec --out link.html", folder.path()), 2, "would be written over");
     expect_refused(run_planlight("report a.plrec --out b.plrec", folder.path()), 3, "name of a recording");
     expect_refused(run_planlight("report a.plrec --out page.json", folder.path()), 3, "figures");
     expect_refused(run_planlight("report odd.json", folder.path()), 3, "the recording itself");
-    expect_refused(run_planlight("report a.plrec --pdf a.plrec", folder.path()), 3, "the recording itself");
-    expect_refused(run_planlight("report a.plrec --pdf link.html", folder.path()), 3, "the recording itself");
+    expect_refused(run_planlight("report a.plrec --pdf a.plrec", folder.path()), 2, "would be written over");
+    expect_refused(run_planlight("report a.plrec --pdf link.html", folder.path()), 2, "would be written over");
     expect_refused(run_planlight("report a.plrec --pdf c.plrec", folder.path()), 3, "name of a recording");
-    expect_refused(run_planlight("report a.plrec --out p.html --pdf p.html", folder.path()), 3, "not the PDF");
+    expect_refused(run_planlight("report a.plrec --out p.html --pdf p.html", folder.path()), 2, "name the same file");
     expect_refused(run_planlight("report a.plrec --out p.html --pdf ./p.json", folder.path()), 3, "not the PDF");
     EXPECT_EQ(whole(file), bytes);
     EXPECT_EQ(whole(odd), bytes);
@@ -81,7 +81,7 @@ TEST(ReviewCommand, WritesOnlyIntoANewFolderOrOneOfItsOwn) {
     fs::create_directory(folder.path() / "empty");
     for (int time = 0; time < 2; ++time)
         EXPECT_EQ(run_planlight("review a.plrec --out empty", folder.path()).exit_code, 0) << "once more into its own";
-    expect_refused(run_planlight("review a.plrec --out a.plrec", folder.path()), 3, "is a file");
+    expect_refused(run_planlight("review a.plrec --out a.plrec", folder.path()), 2, "would be written over");
 }
 
 TEST(ReviewCommand, OfAMomentOfAnAnonymousRecordingSaysThatNoCaseWouldHelp) {
