@@ -155,13 +155,12 @@ int explain_short_memory() {
     return static_cast<int>(ExitCode::disk);
 }
 
-}  // namespace
-
 /// Whether all of standard output has arrived: a program that keeps what `--json` prints believes exit 0.
-static bool printed_whole() {
+bool printed_whole() {
     std::cout.flush();
     return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good();
 }
+}  // namespace
 
 int run_and_explain(const std::function<int()>& command) {
     auto code = static_cast<int>(ExitCode::our_fault);

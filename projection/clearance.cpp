@@ -10,6 +10,7 @@
 #include <map>
 #include <numeric>
 
+#include "planning_io/types/axes_along.h"
 #include "projection/check_items.h"
 #include "projection/skin_surface.h"
 #include "projection/triangle_tree.h"
@@ -46,14 +47,6 @@ struct Solid {
         return std::max(0.0, std::hypot(aside, z) - grown_mm);
     }
 };
-
-Eigen::Matrix3d axes_along(const Vector3d& z) {
-    Eigen::Matrix3d axes;
-    axes.col(2) = z;
-    axes.col(0) = z.unitOrthogonal();
-    axes.col(1) = z.cross(axes.col(0));
-    return axes;
-}
 
 /// From a to b, with so much all round.
 Solid way(const Vector3d& a, const Vector3d& b, double radius_mm) {

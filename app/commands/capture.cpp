@@ -9,6 +9,7 @@
 #include "app/commands/commands.h"
 #include "app/console.h"
 #include "app/doctor/exposure.h"
+#include "app/json_text.h"
 #include "app/live/room_cameras.h"
 #include "planning_io/case/capture_folder.h"
 #include "planning_io/case/room_file.h"
@@ -80,13 +81,12 @@ int run_capture(const CaptureOptions& options) {
     const PairCounts& pairs = cameras.pair().counts();
     const double took_s = seconds(capture.ended - capture.began);
     if (options.json)
-        std::cout << nlohmann::json{{"folder", options.out.string()},
-                                    {"pictures", capture.left.size()},
-                                    {"took_s", took_s},
-                                    {"apart_ms", 1e3 * seconds(pairs.apart)},
-                                    {"left", json_of(left)},
-                                    {"right", json_of(right)}}
-                         .dump(2)
+        std::cout << json_text(nlohmann::json{{"folder", options.out.string()},
+                                              {"pictures", capture.left.size()},
+                                              {"took_s", took_s},
+                                              {"apart_ms", 1e3 * seconds(pairs.apart)},
+                                              {"left", json_of(left)},
+                                              {"right", json_of(right)}})
                   << '\n';
     else
         fmt::print("{}: {} pictures a camera in {:.1f} s; the cameras' exposures were {:.2f} ms apart.\n",

@@ -5,6 +5,7 @@
 
 #include "app/commands/command_line.h"
 #include "app/commands/commands.h"
+#include "app/json_text.h"
 #include "planning_io/case/room_file.h"
 #include "planning_io/types/error.h"
 #include "projection/projector_window.h"
@@ -67,7 +68,7 @@ int run_devices(const DevicesOptions& options) {
     const std::vector<FoundCamera> cameras = list_genicam_cameras();
     const std::vector<Monitor> monitors = monitors_or_none();
     if (options.json) {
-        std::cout << json_of(cameras, monitors).dump(2) << '\n';
+        std::cout << json_text(json_of(cameras, monitors)) << '\n';
     } else {
         fmt::print("Cameras (GenICam):{}\n", cameras.empty() ? " none answers" : "");
         for (const FoundCamera& c : cameras)

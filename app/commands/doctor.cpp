@@ -8,6 +8,7 @@
 #include "app/commands/commands.h"
 #include "app/console.h"
 #include "app/doctor/examine_room.h"
+#include "app/json_text.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -47,7 +48,7 @@ int run_doctor(const DoctorOptions& options) {
     const std::vector<DoctorLine> lines = examine_room(room, settings);
     const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     if (options.json)
-        std::cout << json_of(lines, took_s).dump(2) << '\n';
+        std::cout << json_text(json_of(lines, took_s)) << '\n';
     else
         print_lines(lines);
     std::cout.flush();

@@ -9,6 +9,7 @@
 #include "app/console.h"
 #include "app/export/export_study.h"
 #include "app/export/match_that_stood.h"
+#include "app/json_text.h"
 #include "app/report/operation_comparison.h"
 #include "planning_io/case/case_folder.h"
 #include "planning_io/case/registration_file.h"
@@ -94,7 +95,7 @@ int run_export(const ExportOptions& options) {
         told["slicer"] = (options.slicer / "scene.mrml").string();
         if (!options.json) fmt::print("{}: drag it into 3D Slicer.\n", (options.slicer / "scene.mrml").string());
     }
-    if (options.json) std::cout << told.dump(2) << '\n';
+    if (options.json) std::cout << json_text(told) << '\n';
     return 0;
 }
 

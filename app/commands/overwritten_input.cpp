@@ -26,6 +26,12 @@ bool is_written(const CLI::App& command, const std::string& option) {
            (option == "--surface" && command.get_name() == "scan");
 }
 
+/// Not a number, nor a word of a few that it may be: "modern" of --preset is no folder of that name.
+bool may_be_path(const CLI::Option& option) {
+    const std::string type = option.get_type_name();
+    return type.starts_with("TEXT") && type.find('{') == std::string::npos;
+}
+
 /// One file or folder, whatever it is called.
 bool same(const fs::path& a, const fs::path& b) {
     std::error_code error;
@@ -53,7 +59,7 @@ bool is_own_file_of(const fs::path& file, const fs::path& folder) {
 std::string overwritten_input(const CLI::App& command) {
     std::vector<Named> written, read;
     for (const CLI::Option* option : command.get_options()) {
-        if (option->get_expected_max() == 0) continue;
+        if (option->get_expected_max() == 0 || !may_be_path(*option)) continue;
         const bool named = !option->get_lnames().empty();
         const std::string name = named ? "--" + option->get_lnames().front() : option->get_name();
         if (name == "--log-file") continue;

@@ -10,6 +10,7 @@
 #include "app/commands/commands.h"
 #include "app/commands/surgeon_option.h"
 #include "app/console.h"
+#include "app/json_text.h"
 #include "app/report/clearance_json.h"
 #include "app/session.h"
 #include "app/site_settings.h"
@@ -137,12 +138,11 @@ int run_project(const ProjectOptions& options) {
     for (const auto& sentence : sentences(light.partly_lit, drawing.drawing)) warn(sentence);
     if (const auto sentence = sentence_of_labels(light, drawing.drawing); !sentence.empty()) warn(sentence);
     if (options.json)
-        std::cout << nlohmann::json{{"case", the_case.code},
-                                    {"title", title_of(the_case)},
-                                    {"picture", options.out.string()},
-                                    {"lit_pixels", lit},
-                                    {"items", items}}
-                         .dump(2)
+        std::cout << json_text(nlohmann::json{{"case", the_case.code},
+                                              {"title", title_of(the_case)},
+                                              {"picture", options.out.string()},
+                                              {"lit_pixels", lit},
+                                              {"items", items}})
                   << '\n';
     else
         fmt::print("{}\n{} items in {} ({} lit pixels).\n", title_of(the_case), items.size(), options.out.string(),

@@ -10,6 +10,7 @@
 #include "app/commands/language_option.h"
 #include "app/commands/review_recording.h"
 #include "app/console.h"
+#include "app/json_text.h"
 #include "app/live/clickable_scan.h"
 #include "app/live/live_window.h"
 #include "app/report/clearance_json.h"
@@ -131,14 +132,14 @@ int run_review(const ReviewOptions& options) {
                          {"risk", clearances_json(item.clearances)},
                          {"warnings", item.warnings}});
     if (options.json)
-        std::cout << nlohmann::json{{"case", the_case.code},
-                                    {"title", title_of(the_case)},
-                                    {"created", the_case.created},
-                                    {"items", items},
-                                    {"risk_structures", risk_structures_json(the_case.plan)},
-                                    {"warnings", the_case.warnings},
-                                    {"match", found ? nlohmann::json(evidence_of(*found)) : nlohmann::json()}}
-                         .dump(2)
+        std::cout << json_text(
+                         nlohmann::json{{"case", the_case.code},
+                                        {"title", title_of(the_case)},
+                                        {"created", the_case.created},
+                                        {"items", items},
+                                        {"risk_structures", risk_structures_json(the_case.plan)},
+                                        {"warnings", the_case.warnings},
+                                        {"match", found ? nlohmann::json(evidence_of(*found)) : nlohmann::json()}})
                   << '\n';
     if (!options.picture.empty()) {
         write_png(render_scene(scene_of_fit(model, view), view_of_plan(drawing.drawing)), options.picture);

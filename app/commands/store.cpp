@@ -7,6 +7,7 @@
 #include "app/commands/archive_options.h"
 #include "app/commands/commands.h"
 #include "app/console.h"
+#include "app/json_text.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -51,9 +52,9 @@ int run_store(const StoreOptions& options) {
     }
     for (const std::string& what : said) warn(what);
     if (options.json)
-        std::cout
-            << nlohmann::ordered_json{{"archive", archive.name()}, {"stored", files.size()}, {"warnings", said}}.dump(2)
-            << '\n';
+        std::cout << json_text(nlohmann::ordered_json{
+                         {"archive", archive.name()}, {"stored", files.size()}, {"warnings", said}})
+                  << '\n';
     else
         fmt::print("{} took {} objects.\n", archive.name(), files.size());
     return 0;

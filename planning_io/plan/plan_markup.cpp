@@ -7,6 +7,7 @@
 
 #include "planning_io/files/header_text.h"
 #include "planning_io/plan/plan_settings.h"
+#include "planning_io/types/axes_along.h"
 
 namespace planlight {
 namespace {
@@ -207,15 +208,6 @@ Json control_point(int number, const std::string& label, const Vector3d& positio
                 {"positionStatus", "defined"}};
 }
 
-/// Columns: two axes across, then `z` as it stands.
-Eigen::Matrix3d orientation_with_z(const Vector3d& z) {
-    Eigen::Matrix3d axes;
-    axes.col(2) = z;
-    axes.col(0) = z.unitOrthogonal();
-    axes.col(1) = z.cross(axes.col(0));
-    return axes;
-}
-
 }  // namespace
 
 void append_markup(Plan& plan, const JsonValue& markup, bool units_required, const std::string& otherwise) {
@@ -256,7 +248,7 @@ Json markup_of(const Borehole& b) {
     Json point = control_point(1, b.name, b.position_in_ct, description_of(b));
     if (b.axis_in_ct) {
         point["description"] = point["description"].get<std::string>() + " axis=z";
-        point["orientation"] = to_json(orientation_with_z(*b.axis_in_ct));
+        point["orientation"] = to_json(axes_along(*b.axis_in_ct));
     }
     markup["controlPoints"] = Json::array({std::move(point)});
     return markup;

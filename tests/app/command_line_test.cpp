@@ -60,6 +60,9 @@ TEST_F(CommandLineTest, WhatIsReadIsNeverWrittenOver) {
         expect_refused(run(line), 2, "would be written over");
     expect_refused(run("register case --cloud cloud.ply --out r.json --certificate r.json"), 2, "name the same file");
     expect_refused(run("scan capture --rig rig.json --out s.ply --surface s.ply"), 2, "name the same file");
+    fs::create_directories(folder_ / "paper");
+    EXPECT_EQ(run("simulate volume.nii --preset paper --out paper").err.find("written over"), std::string::npos)
+        << "a preset is no folder";
     for (const char* name : {"rig.json", "cloud.ply", "frames/frames.json", "case/case.json"})
         EXPECT_EQ(whole(folder_ / name), "kept") << name;
 }

@@ -1,99 +1,19 @@
-// What a recording tells of an operation: figures that were put in by hand come out again.
+// The page of an operation and the figures beside it.
 #include "app/report/operation_report.h"
 
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <cmath>
-#include <fstream>
-#include <nlohmann/json.hpp>
 
-#include "app/recording/recording_head.h"
 #include "app/report/report_beside.h"
-#include "planning_io/recording/packed_pictures.h"
-#include "planning_io/types/error.h"
-#include "tests/support/test_data.h"
+#include "tests/app/recording_by_hand.h"
 
 namespace planlight {
 namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::json;
+using OperationReport = RecordingByHand;
 
-constexpr Instant kOrigin = std::chrono::seconds(1000), kStep = std::chrono::milliseconds(100);
-
-/// A recording by hand: two items, a match, updates a tenth of a second apart.
-class Operation : public ::testing::Test {
-protected:
-    Operation() {
-        RecordingHead head;
-        head.program = "1", head.case_code = "1a2b", head.case_title = "A <b> title";
-        head.began_utc = "2026-03-14T09:30:00Z", head.operator_name = "Ada";
-        add(chunk_types::kHead, text_of(head));
-        add(chunk_types::kRoom,
-            R"({"name": "Theatre 2", "simulated": false, "rig_hash": "r", "rig": {"made_on": "2026-03-01"}})");
-    }
-    void add(ChunkType type, const std::string& payload) {
-        chunks_.push_back({type, kOrigin + kStep * step_, payload});
-    }
-    void event(const json& event) { add(chunk_types::kEvent, event.dump()); }
-    void match(const std::string& verdict = "yes") {
-        event({{"what", "asked"}, {"call", "find_patient"}, {"utc", "2026-03-14T09:31:00Z"}});
-        event({{"what", "matched"},
-               {"verdict", verdict},
-               {"reasons", json::array()},
-               {"residual_rms_mm", 0.3},
-               {"points", 20000},
-               {"items", {"Line", "Hole"}},
-               {"predicted_mm", {0.5, nullptr}}});
-    }
-    /// A tenth of a second of light of both items (`line_mm` below 0: the line's light was not seen).
-    void lit(double line_mm, double hole_mm, const std::string& trust, bool hole_lit = true) {
-        ++step_;
-        event({{"what", "asked"}, {"call", "update"}});
-        event(
-            {{"what", "updated"},
-             {"at_ns", (kOrigin + kStep * step_).count()},
-             {"light", {{"lit", true}}},
-             {"check",
-              {{"items", {{true, 4, line_mm < 0 ? 0 : 4, std::max(0.0, line_mm), 0.1}, {hole_lit, 2, 2, hole_mm, 0.1}}},
-               {"seen", 6},
-               {"off_mm", hole_mm}}}});
-        event({{"what", "gate"}, {"call", "step"}, {"trust", trust}, {"headline", "x"}});
-    }
-    void dark(const std::string& reason) {
-        ++step_;
-        event({{"what", "asked"}, {"call", "update"}});
-        event({{"what", "updated"},
-               {"at_ns", (kOrigin + kStep * step_).count()},
-               {"light", {{"lit", false}, {"dark", reason}}}});
-    }
-    /// Light that no camera looked at.
-    void unchecked(const std::string& trust) {
-        ++step_;
-        event({{"what", "asked"}, {"call", "update"}});
-        event({{"what", "updated"}, {"at_ns", (kOrigin + kStep * step_).count()}, {"light", {{"lit", true}}}});
-        event({{"what", "gate"}, {"call", "step"}, {"trust", trust}, {"headline", "x"}});
-    }
-    void skin_check(const json& off_mm) {
-        event({{"what", "skin_checked"}, {"known", true}, {"why_not", ""}, {"off_mm", off_mm}});
-    }
-    OperationFacts facts(bool done = true, const std::string& last_word = "{}") {
-        if (done) add(chunk_types::kDone, last_word);
-        std::ofstream out(file(), std::ios::binary);
-        out << recording_header();
-        for (std::size_t i = 0; i < chunks_.size(); ++i) out << chunk_bytes(chunks_[i], i);
-        out.close();
-        return facts_of_operation(file());
-    }
-    fs::path file() const { return folder_.path() / "session.plrec"; }
-
-    std::vector<RecordingChunk> chunks_;
-    int step_ = 0;
-    test::TemporaryFolder folder_;
-};
-
-TEST_F(Operation, SaysHowNearWhatWasShownCameToRiskStructuresAsPlanned) {
+TEST_F(OperationReport, SaysHowNearWhatWasShownCameToRiskStructuresAsPlanned) {
     event({{"what", "asked"}, {"call", "find_patient"}, {"utc", "2026-03-14T09:31:00Z"}});
     event({{"what", "matched"},
            {"verdict", "yes"},
@@ -113,81 +33,12 @@ TEST_F(Operation, SaysHowNearWhatWasShownCameToRiskStructuresAsPlanned) {
     EXPECT_EQ(f.items[1].risk, (Clearances{{"Dura", 0, true}, {"Nerve", 7.25, false}}));
     const json figures = json::parse(operation_json(f));
     EXPECT_EQ(figures["items"][1]["risk"][1]["distance_mm"], 7.25);
-    write_operation_report(f, operation_json(f), folder_.path() / "report.html");
-    std::ifstream in(folder_.path() / "report.html");
-    const std::string page{std::istreambuf_iterator<char>(in), {}};
+    const std::string page = page_of(f);
     EXPECT_NE(page.find("next risk structure, as planned"), std::string::npos);
     EXPECT_NE(page.find("<span class=\"stop\">through Dura</span>"), std::string::npos);
 }
 
-TEST_F(Operation, TellsWhatWasShownWhenAndHowFarOff) {
-    match();
-    event({{"what", "gate"}, {"call", "verify"}, {"utc", "x"}});
-    for (int i = 0; i <= 20; ++i) lit(0.1 + 0.01 * i, 0.4, "aligned");
-    dark("the last pose is 83 ms old (at most 75 ms)");
-    dark("the last pose is 91.5 ms old (at most 75 ms)");
-    for (int i = 0; i < 9; ++i) dark("the patient is not tracked");
-    for (int i = 0; i < 10; ++i) lit(0.2, 0.4, "look", false);
-    const OperationFacts f = facts();
-    ASSERT_EQ(f.items.size(), 2u);
-    const OperationItem &line = f.items[0], &hole = f.items[1];
-    EXPECT_EQ(line.name, "Line");
-    ASSERT_EQ(line.shown.size(), 2u) << "1.1 s of darkness is a break";
-    EXPECT_NEAR(line.shown[0].first, 0.1, 1e-9);
-    EXPECT_NEAR(line.shown[0].second, 2.1, 1e-9);
-    EXPECT_NEAR(line.shown[1].second, 4.2, 1e-9);
-    EXPECT_EQ(hole.shown.size(), 1u) << "the second time its light did not reach the skin";
-    EXPECT_EQ(*line.predicted_mm, 0.5);
-    EXPECT_FALSE(hole.predicted_mm) << "null is not known, never 0";
-    EXPECT_EQ(line.measured_mm.size(), 31u);
-    EXPECT_NEAR(line.measured_mm[20], 0.3, 1e-12);
-    EXPECT_NEAR(f.lit_s, 3.0, 1e-9) << "20 steps of the first light, 10 of the second";
-    EXPECT_NEAR(f.aligned_s, 2.0, 1e-9);
-    EXPECT_NEAR(f.look_s, 1.0, 1e-9);
-    ASSERT_EQ(f.dark.size(), 2u) << "the same reason with other numbers is one reason";
-    EXPECT_EQ(f.dark.at("the last pose is … ms old (at most … ms)").first, 1);
-    EXPECT_NEAR(f.dark.at("the patient is not tracked").second, 0.9, 1e-9);
-    EXPECT_EQ(f.verified, 1);
-    EXPECT_EQ(f.ended, "");
-}
-
-/// A borehole at the far side: there is light, and never a ray of it for this one.
-TEST_F(Operation, WhatTheLightNeverReachedIsNotShownNotForAMomentEither) {
-    match();
-    event({{"what", "gate"}, {"call", "verify"}, {"utc", "x"}});
-    unchecked("look");
-    for (int i = 0; i < 50; ++i) lit(0.2, 0.0, "aligned", false);
-    const OperationFacts f = facts();
-    ASSERT_EQ(f.items.size(), 2u);
-    EXPECT_NEAR(f.items[0].shown_s, 5.0, 1e-9);
-    ASSERT_EQ(f.items[0].shown.size(), 1u);
-    EXPECT_NEAR(f.items[0].shown[0].first, 0.1, 1e-9) << "the light before the first look was that of the line";
-    EXPECT_TRUE(f.items[1].shown.empty());
-    const auto reasons = verdict_of(f).reasons;
-    EXPECT_NE(std::find(reasons.begin(), reasons.end(), "Not shown: Hole."), reasons.end());
-}
-
-TEST_F(Operation, TellsWhatAPersonHidAndShowedAgain) {
-    const auto ask = [&](const char* call, int which) {
-        event({{"what", "asked"}, {"call", call}, {"which", which}, {"utc", "2026-03-14T09:33:00Z"}});
-    };
-    match();
-    ask("hide_item", 1);
-    ask("light_item", 0);
-    ask("light_item", 1);  // alone bright, so lit again
-    ask("hide_item", 0);
-    ask("show_item", 0);
-    ask("hide_item", 0);
-    ask("show_item", -1);
-    std::vector<std::string> said;
-    for (const OperationEvent& one : facts().said) said.push_back(one.what);
-    EXPECT_EQ(said,
-              (std::vector<std::string>{"\"Hole\" was hidden: it was not lit.", "\"Hole\" was shown again.",
-                                        "\"Line\" was hidden: it was not lit.", "\"Line\" was shown again.",
-                                        "\"Line\" was hidden: it was not lit.", "The whole plan was shown again."}));
-}
-
-TEST_F(Operation, AReportThatNobodyWaitsForEndsAtOnceAndLeavesNothing) {
+TEST_F(OperationReport, AReportThatNobodyWaitsForEndsAtOnceAndLeavesNothing) {
     match();
     for (int i = 0; i < 50; ++i) lit(0.2, 0.3, "aligned");
     facts();
@@ -202,125 +53,7 @@ TEST_F(Operation, AReportThatNobodyWaitsForEndsAtOnceAndLeavesNothing) {
     EXPECT_TRUE(fs::exists(fs::path(file()).replace_extension(".html")));
 }
 
-TEST_F(Operation, WhatNoCameraLookedAtIsNeitherShownNorNotShown) {
-    match();
-    for (int i = 0; i < 50; ++i) unchecked("look");
-    const OperationFacts f = facts();
-    EXPECT_NEAR(f.lit_s, 4.9, 1e-9);
-    EXPECT_TRUE(f.items[0].shown.empty());
-    EXPECT_TRUE(json::parse(operation_json(f))["items"][0]["shown"].is_null());
-    bool told = false;
-    for (const std::string& reason : verdict_of(f).reasons) {
-        told |= reason.starts_with("Whether the light reached it is not known");
-        EXPECT_FALSE(reason.starts_with("Not shown")) << reason;
-    }
-    EXPECT_TRUE(told);
-}
-
-TEST_F(Operation, WhoseSkinSlidIsNotGood) {
-    match();
-    skin_check(0.4), skin_check(1.9), skin_check(0.3);
-    event({{"what", "skin_checked"}, {"known", false}, {"why_not", "it moved"}, {"off_mm", 7.0}});
-    const OperationFacts f = facts();
-    EXPECT_EQ(f.skin_off_mm, 1.9) << "the worst that is known";
-    EXPECT_EQ(json::parse(operation_json(f))["skin_off_mm"], 1.9);
-}
-
-TEST_F(Operation, AFigureThatIsNotKnownIsLeftOutNeverZero) {
-    match();
-    lit(0.5, 0.5, "aligned");
-    const std::size_t at = chunks_.size() - 2;
-    json unknown = json::parse(chunks_[at].payload);
-    unknown["check"]["off_mm"] = nullptr;
-    unknown["check"]["items"][0][3] = nullptr;
-    chunks_[at].payload = unknown.dump();
-    skin_check(nullptr);
-    const OperationFacts f = facts();
-    EXPECT_TRUE(f.light_off_mm.empty());
-    EXPECT_TRUE(f.items[0].measured_mm.empty());
-    EXPECT_EQ(f.items[1].measured_mm, std::vector<double>{0.5});
-    EXPECT_FALSE(f.skin_off_mm);
-}
-
-TEST_F(Operation, LightOnALandmarkIsNoLightOfThePlan) {
-    match();
-    lit(0.1, 0.1, "aligned");
-    for (int i = 0; i < 10; ++i) lit(0.1, 0.1, "aligned");
-    event({{"what", "asked"}, {"call", "light_landmark"}, {"which", 0}});
-    for (int i = 0; i < 100; ++i) lit(0.1, 0.1, "look");
-    event({{"what", "asked"}, {"call", "light_landmark"}, {"which", -1}});
-    for (int i = 0; i < 10; ++i) lit(0.1, 0.1, "aligned");
-    const OperationFacts f = facts();
-    EXPECT_NEAR(f.lit_s, 1.9, 1e-9) << "10 steps before the landmark, 9 after it";
-    EXPECT_NEAR(f.aligned_s, 1.9, 1e-9);
-    EXPECT_NEAR(f.look_s, 0, 1e-9);
-    EXPECT_NEAR(f.items[0].shown_s, 1.9, 1e-9);
-}
-
-TEST_F(Operation, TwoItemsOfOneNameAreTwo) {
-    match();
-    json twice = json::parse(chunks_.back().payload);
-    twice["items"] = {"Hole", "Hole"};
-    twice["predicted_mm"] = {0.5, 0.7};
-    chunks_.back().payload = twice.dump();
-    lit(0.1, 3.0, "aligned");
-    const OperationFacts f = facts();
-    ASSERT_EQ(f.items.size(), 2u);
-    EXPECT_EQ(f.items[0].measured_mm, std::vector<double>{0.1});
-    EXPECT_EQ(f.items[1].measured_mm, std::vector<double>{3.0});
-    EXPECT_EQ(*f.items[1].predicted_mm, 0.7);
-}
-
-TEST_F(Operation, AMatchThatWasNotUsedLeavesWhatWasPredictedOfTheOneBefore) {
-    match("yes");
-    lit(0.1, 0.1, "aligned");
-    match("no");
-    match("ask");
-    EXPECT_EQ(facts().items[0].predicted_mm, 0.5);
-}
-
-TEST_F(Operation, ADoubtfulMatchPredictsFromItsConfirmationOn) {
-    match("ask");
-    EXPECT_FALSE(facts(false).items[0].predicted_mm);
-    event({{"what", "asked"}, {"call", "confirm"}, {"utc", "x"}});
-    EXPECT_EQ(facts(false).items[0].predicted_mm, 0.5);
-}
-
-TEST_F(Operation, AProjectorThatWasLostIsNobodysPress) {
-    event({{"what", "pressed"}, {"action", "projector_lost"}, {"utc", "x"}});
-    const OperationFacts f = facts();
-    ASSERT_EQ(f.said.size(), 1u);
-    EXPECT_EQ(f.said[0].what, "The projector was lost, and the session made dark.");
-}
-
-TEST_F(Operation, WhoSaidThatTheLightIsRightIsTold) {
-    const auto press = [&] { event({{"what", "pressed"}, {"action", "confirm"}, {"utc", "x"}}); };
-    const auto verify = [&] { event({{"what", "gate"}, {"call", "verify"}, {"utc", "x"}}); };
-    match("ask");
-    press();
-    event({{"what", "asked"}, {"call", "confirm"}, {"utc", "x"}});
-    step_ += 100;
-    verify();
-    press();  // noted by another thread, at once after it
-    step_ += 100;
-    verify();
-    step_ += 100;
-    press();  // of something else
-    const OperationFacts f = facts();
-    ASSERT_EQ(f.said.size(), 3u);
-    EXPECT_EQ(f.said[0].what, "By a press the match was said to fit.");
-    EXPECT_EQ(f.said[1].what, "By a press the light on landmarks was said to be right.");
-    EXPECT_EQ(f.said[2].what, "By the program itself, without a press, the light on landmarks was said to be right.");
-    EXPECT_EQ(f.verified, 2);
-    EXPECT_EQ(f.verified_by_program, 1);
-}
-
-TEST_F(Operation, ItsLastWordCountsWhatTheDiskDidNotTake) {
-    add(chunk_types::kLost, R"({"chunks": 2, "bytes": 10})");
-    EXPECT_EQ(facts(true, R"({"dropped_chunks": 5, "dropped_bytes": 20})").lost_chunks, 5u);
-}
-
-TEST_F(Operation, OfMoreItemsThanThePageHasRoomForTheWorstAreNamedAndTheGravestWords) {
+TEST_F(OperationReport, OfMoreItemsThanThePageHasRoomForTheWorstAreNamedAndTheGravestWords) {
     OperationFacts f;
     f.updates = 100, f.lit_s = 10, f.aligned_s = 9.5, f.verified = 1;
     for (int i = 0; i < 30; ++i)
@@ -334,10 +67,7 @@ TEST_F(Operation, OfMoreItemsThanThePageHasRoomForTheWorstAreNamedAndTheGravestW
                            true});
     for (int i = 0; i < 20; ++i) f.said.push_back({1.0 * i, "", "DARK was pressed.", false});
     f.said.push_back({21, "", "The light was stopped: it lies 3 mm beside.", true});
-    const fs::path page = folder_.path() / "many.html";
-    write_operation_report(f, operation_json(f), page);
-    std::ifstream in(page);
-    const std::string html{std::istreambuf_iterator<char>(in), {}};
+    const std::string html = page_of(f);
     for (const char* name : {"Item 29", "Item 27", "Item 9"})
         EXPECT_NE(html.find(std::string("<td class=\"name\">") + name + "</td>"), std::string::npos) << name;
     EXPECT_EQ(html.find("<td class=\"name\">Item 10</td>"), std::string::npos);
@@ -345,35 +75,7 @@ TEST_F(Operation, OfMoreItemsThanThePageHasRoomForTheWorstAreNamedAndTheGravestW
     EXPECT_NE(html.find("The light was stopped"), std::string::npos);
 }
 
-TEST_F(Operation, IsGoodOnlyWhereItWasMeasuredVerifiedAndWhole) {
-    using Kind = OperationVerdict::Kind;
-    const auto verdict_with = [](const std::function<void(OperationFacts&)>& spoil) {
-        OperationFacts f;
-        f.updates = 100, f.lit_s = 10, f.aligned_s = 9.5, f.verified = 1;
-        f.items.push_back({"Line", {{0, 10}}, 10, 0.5, std::vector<double>(50, 0.2), true});
-        spoil(f);
-        return verdict_of(f).kind;
-    };
-    EXPECT_EQ(verdict_with([](OperationFacts&) {}), Kind::good);
-    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.verified = 0; }), Kind::look);
-    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.verified_by_program = 1; }), Kind::look) << "nobody looked";
-    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.stops = 1; }), Kind::look);
-    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.aligned_s = 5; }), Kind::look);
-    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.ended = "It was cut."; }), Kind::look);
-    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.lost_chunks = 1; }), Kind::look);
-    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.items[0].measured_mm.clear(); }), Kind::look);
-    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.items[0].measured_mm.assign(50, 1.5); }), Kind::look);
-    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.items[0].measured_mm.assign(50, 2.5); }), Kind::stop);
-    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.lit_s = 0; }), Kind::look);
-    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.skin_off_mm = 0.9; }), Kind::good);
-    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.skin_off_mm = 1.9; }), Kind::look);
-    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.skin_off_mm = 2.1; }), Kind::stop);
-    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.skin_off_mm = 2.1, f.lit_s = 0; }), Kind::stop)
-        << "what is worst is said, shown or not";
-    EXPECT_EQ(verdict_with([](OperationFacts& f) { f.matches.push_back({0, "", "ask", {}, 0, 0}); }), Kind::look);
-}
-
-TEST_F(Operation, AccuracyIsToldInTheTermsOfAstmF2554WhereItWasMeasured) {
+TEST_F(OperationReport, AccuracyIsToldInTheTermsOfAstmF2554WhereItWasMeasured) {
     OperationFacts f;
     EXPECT_EQ(in_terms_of_f2554(f), "");
     f.items.push_back({"Line", {{0, 10}}, 10, 0.5, {0.1, 0.2, 0.3}, true});
@@ -389,22 +91,16 @@ TEST_F(Operation, AccuracyIsToldInTheTermsOfAstmF2554WhereItWasMeasured) {
         << in_terms_of_f2554(f);
     EXPECT_EQ(json::parse(operation_json(f))["f2554"]["count"], 4);
     EXPECT_FALSE(json::parse(operation_json({})).contains("f2554"));
-    const fs::path page = folder_.path() / "page.html";
-    write_operation_report(f, operation_json(f), page);
-    std::ifstream in(page);
-    const std::string html{std::istreambuf_iterator<char>(in), {}};
+    const std::string html = page_of(f);
     EXPECT_NE(html.find("ASTM F2554"), std::string::npos);
 }
 
-TEST_F(Operation, PageAndFiguresStandBesideTheRecordingForItsOwnerOnly) {
+TEST_F(OperationReport, PageAndFiguresStandBesideTheRecordingForItsOwnerOnly) {
     match();
     lit(0.1, 0.2, "aligned");
     lit(0.1, 0.2, "aligned");
     const OperationFacts f = facts();
-    const fs::path page = folder_.path() / "session.html";
-    write_operation_report(f, operation_json(f), page);
-    std::ifstream in(page);
-    const std::string html{std::istreambuf_iterator<char>(in), {}};
+    const std::string html = page_of(f, "session.html");
     EXPECT_NE(html.find("A &lt;b&gt; title"), std::string::npos) << "a title is text, whatever stands in it";
     EXPECT_NE(html.find(f.recording_hash), std::string::npos);
     for (const char* name : {"session.html", "session.json"}) {
@@ -414,21 +110,6 @@ TEST_F(Operation, PageAndFiguresStandBesideTheRecordingForItsOwnerOnly) {
     }
     std::ifstream figures(folder_.path() / "session.json");
     EXPECT_EQ(json::parse(figures)["items"][1]["measured_mm"]["p95"], 0.2);
-}
-
-TEST_F(Operation, OfARecordingThatWasCutIsToldUpToThereAndSaysSo) {
-    match();
-    lit(0.1, 0.2, "aligned");
-    lit(0.1, 0.2, "aligned");
-    const OperationFacts f = facts(false);
-    EXPECT_EQ(f.updates, 2);
-    EXPECT_NE(f.ended.find("without a closing word"), std::string::npos) << f.ended;
-    EXPECT_FALSE(f.damaged);
-}
-
-TEST_F(Operation, EventsThatCannotBeUnderstoodAreRefused) {
-    event({{"what", "updated"}, {"at_ns", "soon"}});
-    EXPECT_THROW(facts(), DamagedFileError);
 }
 
 }  // namespace
