@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -11,12 +12,14 @@
 #include "app/commands/device_check.h"
 #include "app/console.h"
 #include "app/json_text.h"
+#include "app/without_numbers.h"
 #include "planning_io/case/frames_folder.h"
 #include "planning_io/case/poses_file.h"
 #include "planning_io/case/registration_file.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/files/header_text.h"
 #include "planning_io/types/error.h"
+#include "registration/devices/repeated_picture.h"
 #include "registration/tracking/camera_lag.h"
 #include "registration/tracking/exchanged_cameras.h"
 #include "registration/tracking/track_patient.h"
@@ -140,6 +143,46 @@ void judge_moments(const CameraLag& cameras, std::vector<TrackedPose>& poses) {
                      counted(static_cast<long long>(odd.size()), "frame"), odd.front()));
 }
 
+/// Frames without a pose for one reason.
+struct WithoutPose {
+    std::string reason;  ///< of the first of them, with its numbers
+    std::size_t first = 0, frames = 0;
+};
+
+/// A reason whose numbers alone differ is one; in the order in which they come.
+std::vector<WithoutPose> without_pose(const std::vector<TrackedPose>& poses) {
+    std::vector<WithoutPose> found;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+        if (poses[i].rig_from_patient) continue;
+        const auto same = std::find_if(found.begin(), found.end(), [&](const WithoutPose& w) {
+            return without_numbers(w.reason) == without_numbers(poses[i].reason);
+        });
+        if (same == found.end())
+            found.push_back({poses[i].reason, i, 1});
+        else
+            ++same->frames;
+    }
+    return found;
+}
+
+/// Says whether a camera's pictures came again under new times: poses by them are of an earlier moment.
+std::array<std::size_t, 2> warn_of_repeats(const std::vector<StereoFrame>& frames) {
+    std::array<std::size_t, 2> repeats{};
+    RepeatedPicture left, right;
+    for (const StereoFrame& frame : frames) {
+        repeats[0] += left.is(frame.left) ? 1 : 0;
+        repeats[1] += right.is(frame.right) ? 1 : 0;
+    }
+    for (const std::size_t side : {0, 1})
+        if (repeats[side] > 0)
+            warn(
+                fmt::format("{} of the {} camera's pictures are the one before, bit for bit: no camera sends one "
+                            "twice. If it hung, "
+                            "their poses are those of an earlier moment. Look at its driver and its recording.",
+                            repeats[side], side == 0 ? "left" : "right"));
+    return repeats;
+}
+
 int run_track(const TrackOptions& options) {
     const RigCalibration rig = read_rig(options.rig);
     const auto frames = read_frames(options.frames);
@@ -161,16 +204,27 @@ int run_track(const TrackOptions& options) {
     const auto found =
         std::count_if(poses.begin(), poses.end(), [](const auto& p) { return p.rig_from_patient.has_value(); });
     if (found == 0) refuse_lost(tracker, frames.front());
+    const std::array<std::size_t, 2> repeats = warn_of_repeats(frames);
+    const std::vector<WithoutPose> lost = without_pose(poses);
     write_poses(poses, options.out, reference.origin);
     double worst_px = 0;
     for (const auto& pose : poses) worst_px = std::max(worst_px, pose.residual_px);
     if (options.json) {
+        nlohmann::json reasons = nlohmann::json::array();
+        for (const WithoutPose& w : lost)
+            reasons.push_back({{"reason", w.reason}, {"first", w.first}, {"frames", w.frames}});
         const nlohmann::json result = {
-            {"frames", frames.size()}, {"poses", found}, {"markers", markers}, {"worst_residual_px", worst_px}};
+            {"frames", frames.size()}, {"poses", found},
+            {"markers", markers},      {"worst_residual_px", worst_px},
+            {"without_pose", reasons}, {"repeated_pictures", {{"left", repeats[0]}, {"right", repeats[1]}}}};
         std::cout << json_text(result) << '\n';
     } else {
         fmt::print("{} of {} frames have a pose ({} markers, worst residual {:.3f} px).\n", found, frames.size(),
                    markers, worst_px);
+        for (const WithoutPose& w : lost)
+            fmt::print(
+                "{} without a pose: {}{}.\n", counted(static_cast<long long>(w.frames), "frame"), w.reason,
+                w.frames > 1 ? fmt::format(" (the first: number {})", w.first) : fmt::format(" (number {})", w.first));
     }
     return 0;
 }

@@ -31,6 +31,7 @@ CameraFigures figures_of(Camera& camera, const std::string& side, const RoomCame
     figures.asked_hz = room.frames_hz;
     figures.received = now.received - before.received;
     figures.incomplete = now.incomplete - before.incomplete;
+    figures.repeated = now.repeated - before.repeated;
     figures.rate_hz = static_cast<double>(figures.received) / watched_s;
     figures.notes = camera.notes();
     return figures;

@@ -70,6 +70,14 @@ DoctorLine judge_loss(const CameraFigures& camera) {
                 "wire.");
 }
 
+/// Whether it sends pictures again under new times, as no camera does and some pipelines do.
+DoctorLine judge_repeats(const CameraFigures& camera) {
+    return line(camera.side + ", repeats", camera.repeated == 0 ? Health::good : Health::look,
+                fmt::format("{} of {} pictures were the one before, sent again", camera.repeated,
+                            camera.received + camera.repeated),
+                "They are left out. Take out of its pipeline what repeats pictures (`videorate`).");
+}
+
 DoctorLine judge_clock(const CameraFigures& camera) {
     constexpr double kUsual = 200e-6, kMost = 500e-6, kSure_ms = 2, kUnsure_ms = 10;
     const std::string subject = camera.side + ", clock";
@@ -103,7 +111,7 @@ std::vector<DoctorLine> judge_camera(const CameraFigures& camera, const std::str
                                      const CameraModel* calibrated) {
     std::vector<DoctorLine> lines;
     if (calibrated) lines.push_back(judge_identity(camera, calibrated_serial, *calibrated));
-    for (const auto& judge : {judge_rate, judge_loss, judge_clock}) lines.push_back(judge(camera));
+    for (const auto& judge : {judge_rate, judge_loss, judge_repeats, judge_clock}) lines.push_back(judge(camera));
     for (const std::string& note : camera.notes)
         lines.push_back(
             line(camera.side + ", settings", Health::look, note,

@@ -37,7 +37,7 @@ struct CameraFigures {
     int width = 0, height = 0;
     std::optional<double> asked_hz;  ///< of room.json
     double rate_hz = 0;              ///< whole frames
-    std::size_t received = 0, incomplete = 0;
+    std::size_t received = 0, incomplete = 0, repeated = 0;
     bool own_clock = false;  ///< it stamps its frames
     double clock_drift = 0;  ///< seconds a second against this machine's; positive: it runs slow
     double clock_sigma_ms = 0;

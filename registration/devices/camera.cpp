@@ -1,9 +1,16 @@
 #include "registration/devices/camera.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <utility>
 
 namespace planlight {
+
+CameraFault sends_one_picture(std::int64_t for_ms) {
+    return {fmt::format("for {} ms it has sent one picture again and again, under new times", for_ms),
+            "Take out of its pipeline what repeats pictures (`videorate`), or switch it off and on again."};
+}
 
 void FrameBell::ring() {
     {
@@ -31,6 +38,11 @@ void FrameQueue::count_incomplete() {
     const std::lock_guard lock(mutex_);
     ++counts_.incomplete;
     note_whole(false);
+}
+
+void FrameQueue::count_repeated() {
+    const std::lock_guard lock(mutex_);
+    ++counts_.repeated;
 }
 
 void FrameQueue::note_whole(bool whole) {

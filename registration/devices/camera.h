@@ -27,9 +27,13 @@ struct CameraFault {
     std::string problem, remedy;
 };
 
+/// Of a camera that sent nothing but one picture, over and over, for so long.
+CameraFault sends_one_picture(std::int64_t for_ms);
+
 /// Counts since the camera was opened.
 struct CameraCounts {
     std::size_t received = 0, incomplete = 0, dropped = 0;  ///< dropped: nobody took them before newer ones came
+    std::size_t repeated = 0;  ///< the picture before, sent again under a new time: no frames
     std::size_t clock_jumps = 0, lost_connections = 0;
     std::size_t lately = 0, lately_incomplete = 0;  ///< of the last 25 frames, whole or not
     bool own_clock = false;                         ///< frames have the camera's own times
@@ -55,6 +59,7 @@ public:
     explicit FrameQueue(FrameBell& bell) : bell_(bell) {}
     void push(CameraFrame frame);
     void count_incomplete();
+    void count_repeated();
     void count_jump();
     /// Of the camera's own clock: drift, uncertainty, and how much later than usual the last frames came (0: in time).
     void note_clock(double drift, Instant sigma, Instant behind);

@@ -247,6 +247,8 @@ void GenicamCamera::start() {
     last_by_device_ = Instant(-1);
     heard_at_ = looked_at_ = clock_.now();
     incomplete_before_ = frames_.counts().incomplete;
+    repeated_before_ = frames_.counts().repeated;
+    repeated_.forget();
 }
 
 /// One frame, or none within a moment. False when the camera is lost.
@@ -268,23 +270,29 @@ bool GenicamCamera::receive() {
     const Instant by_device(static_cast<Instant::rep>(arv_buffer_get_timestamp(buffer)));
     if (by_device == last_by_device_) return there;  // the same exposure twice
     last_by_device_ = by_device;
-    heard_at_ = arrived;
-    incomplete_before_ = frames_.counts().incomplete;
-    if (!clock_is_known(by_device, arrived)) return there;
     std::size_t size = 0;
     const auto* data = static_cast<const std::uint8_t*>(arv_buffer_get_data(buffer, &size));
-    CameraFrame frame;
-    frame.exposure = exposure_;
-    frame.at = device_clock_.on_session_clock(by_device) - transfer_ - exposure_ / 2;
-    frame.at_sigma = device_clock_.uncertainty();
     auto picture = mono_picture({data, size}, arv_buffer_get_image_width(buffer), arv_buffer_get_image_height(buffer),
                                 arv_buffer_get_image_pixel_format(buffer));
     if (!picture) {
         frames_.fail({fmt::format("it sends pictures of format {:#x}, which are not grey ones",
                                   arv_buffer_get_image_pixel_format(buffer)),
                       "Set \"pixel_format\" to Mono8, Mono10, Mono12 or Mono16."});
+        heard_at_ = arrived;
         return true;
     }
+    if (repeated_.is(*picture)) {
+        frames_.count_repeated();
+        return there;
+    }
+    heard_at_ = arrived;
+    incomplete_before_ = frames_.counts().incomplete;
+    repeated_before_ = frames_.counts().repeated;
+    if (!clock_is_known(by_device, arrived)) return true;
+    CameraFrame frame;
+    frame.exposure = exposure_;
+    frame.at = device_clock_.on_session_clock(by_device) - transfer_ - exposure_ / 2;
+    frame.at_sigma = device_clock_.uncertainty();
     frame.picture = std::move(*picture);
     frames_.push(std::move(frame));
     return true;
@@ -368,6 +376,8 @@ void GenicamCamera::tell_silence() {
         frames_.fail(
             {fmt::format("no whole frame came from it for {} ms, and {} with packets lost", allowed_ms, incomplete),
              "Look at the network: its receive buffer (net.core.rmem_max), jumbo frames, other traffic."});
+    else if (frames_.counts().repeated > repeated_before_ && !device_->lost)
+        frames_.fail(sends_one_picture(allowed_ms));
     else if (device_->lost)
         frames_.fail({"the connection to it was lost",
                       "End other programs that use it, look at its cable. It is looked for every second."});

@@ -10,6 +10,7 @@
 
 #include "registration/devices/camera.h"
 #include "registration/devices/device_clock.h"
+#include "registration/devices/repeated_picture.h"
 
 namespace planlight {
 
@@ -92,7 +93,8 @@ private:
     double gain_ = 0;
     bool learning_ = false;  ///< its clock, after a fault: its frames have no time yet
     bool ran_wrong_ = false;
-    std::size_t incomplete_before_ = 0;  ///< when the last whole frame came
+    RepeatedPicture repeated_;
+    std::size_t incomplete_before_ = 0, repeated_before_ = 0;  ///< when the last new frame came
     std::jthread thread_;
 };
 

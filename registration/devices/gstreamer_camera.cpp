@@ -104,13 +104,13 @@ bool GstreamerCamera::receive() {
         const Instant allowed = frames_.counts().received == 0 ? kStart : settings_.silence_allowed;
         return !ended && now - heard_at_ < allowed;
     }
-    heard_at_ = now;
     GstBuffer* buffer = gst_sample_get_buffer(sample.get());
     GstVideoInfo info;
     GstVideoFrame video;
     if (!gst_video_info_from_caps(&info, gst_sample_get_caps(sample.get())) ||
         !gst_video_frame_map(&video, &info, buffer, GST_MAP_READ)) {
         frames_.count_incomplete();
+        heard_at_ = now;
         return true;
     }
     CameraFrame frame;
@@ -140,16 +140,21 @@ bool GstreamerCamera::receive() {
         return false;
     }
     problem_ = {};
+    if (repeated_.is(frame.picture)) {
+        frames_.count_repeated();
+        if (now - heard_at_ < settings_.silence_allowed) return true;
+        problem_ = sends_one_picture(std::chrono::duration_cast<std::chrono::milliseconds>(now - heard_at_).count());
+        return false;
+    }
+    heard_at_ = now;
+    frames_.recovered();
     frames_.push(std::move(frame));
     return true;
 }
 
 void GstreamerCamera::run(const std::stop_token& stop) {
     while (!stop.stop_requested()) {
-        if (pipeline_ && receive()) {
-            frames_.recovered();
-            continue;
-        }
+        if (pipeline_ && receive()) continue;
         const std::string error = pipeline_ ? pipeline_->error() : "";
         if (!problem_.problem.empty())
             frames_.fail(problem_);

@@ -5,6 +5,7 @@
 #include <thread>
 
 #include "registration/devices/camera.h"
+#include "registration/devices/repeated_picture.h"
 
 namespace planlight {
 
@@ -50,6 +51,7 @@ private:
     Instant heard_at_{}, offset_{};  ///< session's clock less the pipeline's
     int width_ = 0, height_ = 0;     ///< of the first frame, and never changed
     CameraFault problem_;            ///< of the last frame, which was refused; empty: it was not
+    RepeatedPicture repeated_;
     std::jthread thread_;
 };
 

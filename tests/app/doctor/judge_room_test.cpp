@@ -97,6 +97,13 @@ TEST(Doctor, LostPacketsAreLookedAtAndManyStop) {
     EXPECT_EQ(about("loss", judged(camera)).health, Health::stop) << "nothing at all came";
 }
 
+TEST(Doctor, PicturesThatAreSentAgainAreLookedAt) {
+    CameraFigures camera = good_camera();
+    EXPECT_EQ(about("repeats", judged(camera)).health, Health::good);
+    camera.repeated = 1;
+    EXPECT_EQ(about("repeats", judged(camera)).health, Health::look);
+}
+
 TEST(Doctor, AClockThatNobodyCanFollowStops) {
     CameraFigures camera = good_camera();
     camera.clock_drift = -800e-6;

@@ -132,6 +132,34 @@ TEST(GenicamCamera, ASilentCameraIsAFaultAndComesBackByItself) {
     EXPECT_EQ(opened.frames().counts().lost_connections, 1u);
 }
 
+TEST(GenicamCamera, ACameraThatSendsOnePictureUnderNewTimesIsAFault) {
+    const OneAtATime turn;
+    ServedCamera camera(small_camera());
+    FrameBell bell;
+    const SteadyClock clock;
+    std::atomic<bool> hangs = false;
+    const std::jthread source([&](const std::stop_token& stop) {
+        GrayImage picture(64, 48, 7);
+        while (!stop.stop_requested()) {
+            if (!hangs) ++picture.at(20, 16);
+            camera.offer(picture, clock.now() - milliseconds(8));
+            std::this_thread::sleep_for(milliseconds(20));
+        }
+    });
+    GenicamSettings settings;
+    settings.device = "T-17";
+    GenicamCamera opened(settings, bell, clock);
+    ASSERT_TRUE(within(milliseconds(10000), [&] { return !opened.frames().take_all().empty(); }));
+    hangs = true;
+    ASSERT_TRUE(within(milliseconds(5000), [&] { return opened.frames().fault().has_value(); }));
+    EXPECT_NE(opened.frames().fault()->problem.find("one picture again and again"), std::string::npos)
+        << opened.frames().fault()->problem;
+    EXPECT_TRUE(opened.frames().take_all().empty());
+    hangs = false;
+    EXPECT_TRUE(
+        within(milliseconds(20000), [&] { return !opened.frames().fault() && !opened.frames().take_all().empty(); }));
+}
+
 /// By `wanted` ms of exposure as they are told, or by what the camera had when it was opened.
 void change_exposure_of_a_camera(std::optional<double> wanted_ms) {
     const OneAtATime turn;

@@ -37,6 +37,36 @@ TEST(GstreamerCamera, PicturesComeGreyWithTheirTimes) {
     for (std::size_t i = 1; i < frames.size(); ++i) EXPECT_GT(frames[i].at, frames[i - 1].at);
 }
 
+TEST(GstreamerCamera, APictureThatIsSentAgainIsNoFrame) {
+    FrameBell bell;
+    const SteadyClock clock;
+    GstreamerSettings settings;
+    settings.pipeline =
+        "videotestsrc is-live=true pattern=snow ! video/x-raw,framerate=10/1,width=64,height=48 ! "
+        "videorate ! video/x-raw,framerate=50/1";
+    GstreamerCamera camera(settings, bell, clock);
+    const Instant until = clock.now() + milliseconds(20000);
+    while (camera.frames().counts().repeated < 20 && clock.now() < until) std::this_thread::sleep_for(milliseconds(5));
+    const CameraCounts counts = camera.frames().counts();
+    EXPECT_GE(counts.repeated, 20u);
+    EXPECT_LT(counts.received, counts.repeated) << "four of five are the one before";
+    EXPECT_FALSE(camera.frames().fault()) << "new ones come in between";
+}
+
+TEST(GstreamerCamera, APictureThatIsSentAgainAndAgainIsAFault) {
+    FrameBell bell;
+    const SteadyClock clock;
+    GstreamerSettings settings;
+    settings.pipeline = "videotestsrc is-live=true pattern=checkers-8";
+    GstreamerCamera camera(settings, bell, clock);
+    const Instant until = clock.now() + milliseconds(20000);
+    while (!camera.frames().fault() && clock.now() < until) std::this_thread::sleep_for(milliseconds(5));
+    ASSERT_TRUE(camera.frames().fault());
+    EXPECT_NE(camera.frames().fault()->problem.find("one picture again and again"), std::string::npos)
+        << camera.frames().fault()->problem;
+    EXPECT_EQ(camera.frames().counts().received, 1u);
+}
+
 TEST(GstreamerCamera, APipelineThatIsNoneOrEndsIsSaid) {
     FrameBell bell;
     const SteadyClock clock;
