@@ -160,6 +160,18 @@ bool printed_whole() {
     std::cout.flush();
     return std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout.good();
 }
+
+/// Writes its last line and closes the log. Whoever keeps logs learns that this one lacks something.
+void end_log(int code) {
+    std::FILE* log = std::exchange(console().log, nullptr);
+    if (!log) return;
+    fmt::print(log, "{} exit {}\n", today(), code);
+    const bool whole = std::fflush(log) == 0 && std::ferror(log) == 0;
+    if (std::fclose(log) != 0 || !whole)
+        say(fmt::format("the log {} could not be written to its end. Make room on its disk.",
+                        console().settings.log_file.string()));
+}
+
 }  // namespace
 
 int run_and_explain(const std::function<int()>& command) {
@@ -184,7 +196,7 @@ int run_and_explain(const std::function<int()>& command) {
         say("what was printed could not be written to its end. Make room where it goes to, and ask again.");
         if (code == 0) code = static_cast<int>(ExitCode::disk);
     }
-    add_to_log(fmt::format("exit {}", code));
+    end_log(code);
     return code;
 }
 

@@ -139,7 +139,7 @@ private:
         stood_ = word == word_ ? stood_ + 1 : 0;
         word_ = word;
         if (screenshots_.empty() || stood_ != kSettled) return;
-        write_png(window_->screenshot(), screenshots_ / fmt::format("guide-{:02}.png", ++pictures_));
+        write_png(window_->screenshot(), screenshots_ / fmt::format("guide-{:02}.png", ++pictures_), ReadableBy::owner);
     }
 
     const GuidedCalibration& calibration_;

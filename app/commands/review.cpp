@@ -142,7 +142,8 @@ int run_review(const ReviewOptions& options) {
                                         {"match", found ? nlohmann::json(evidence_of(*found)) : nlohmann::json()}})
                   << '\n';
     if (!options.picture.empty()) {
-        write_png(render_scene(scene_of_fit(model, view), view_of_plan(drawing.drawing)), options.picture);
+        write_png(render_scene(scene_of_fit(model, view), view_of_plan(drawing.drawing)), options.picture,
+                  ReadableBy::owner);
         if (!options.json) fmt::print("{}\n", options.picture.string());
         return 0;
     }

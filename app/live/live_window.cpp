@@ -96,7 +96,7 @@ public:
         frames_ = kind == kind_ ? frames_ + 1 : 0;
         kind_ = kind;
         if (frames_ != kSettledFrames) return;
-        write_png(window.screenshot(), folder_ / fmt::format("operator-{:02d}.png", ++number_));
+        write_png(window.screenshot(), folder_ / fmt::format("operator-{:02d}.png", ++number_), ReadableBy::owner);
         if (const auto light = session.light().picture)
             write_png(*light, folder_ / fmt::format("light-{:02d}.png", number_));
     }

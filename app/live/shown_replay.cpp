@@ -28,7 +28,7 @@ public:
         looks_ = kind == kind_ ? looks_ + 1 : 0;
         kind_ = kind;
         if (!folder_.empty() && looks_ == kSettled)
-            write_png(window.screenshot(), folder_ / fmt::format("replay-{:02d}.png", ++number_));
+            write_png(window.screenshot(), folder_ / fmt::format("replay-{:02d}.png", ++number_), ReadableBy::owner);
     }
 
 private:

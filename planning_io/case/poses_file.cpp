@@ -1,7 +1,10 @@
 #include "planning_io/case/poses_file.h"
 
+#include <fmt/format.h>
+
 #include "planning_io/case/recording_json.h"
 #include "planning_io/case/rig_json.h"
+#include "planning_io/files/content_hash.h"
 
 namespace planlight {
 
@@ -15,6 +18,23 @@ Json json_of(const PosesOrigin& origin) {
             {"capture_hash", origin.capture_hash},
             {"left_camera", json_of(origin.rig.left_camera)},
             {"right_camera", json_of(origin.rig.right_camera)}};
+}
+
+/// Of poses and origin: notes may be added, and spaces between the words do not matter.
+std::string checksum_of(const Json& file) {
+    return content_hash(Json{{"origin", file.at("origin")}, {"poses", file.at("poses")}}.dump());
+}
+
+/// What says that `track` measured it must be as `track` wrote it. Throws DamagedFileError.
+void check_checksum(const Json& json, const JsonValue& root, const fs::path& file) {
+    if (!root.find("origin")) return;  // another program's: nobody vouches for it, and `project` says so
+    root.at("poses");
+    const auto checksum = root.find("checksum");
+    if (checksum && checksum->text() == checksum_of(json)) return;
+    throw DamagedFileError(file,
+                           fmt::format("was changed after `planlight track` wrote it (its checksum {})",
+                                       checksum ? "differs" : "is missing"),
+                           "Track the frames again, or copy the file again.");
 }
 
 }  // namespace
@@ -35,13 +55,15 @@ void write_poses(const std::vector<TrackedPose>& poses, const fs::path& file,
     Json json{{"format", "planlight poses"}, {"version", kVersion}};
     if (origin) json["origin"] = json_of(*origin);
     json["poses"] = std::move(list);
+    if (origin) json["checksum"] = checksum_of(json);
     write_safely(file, dump(json));
 }
 
 std::vector<TrackedPose> read_poses(const fs::path& file) {
     const Json json = parse_file(file, "planlight poses");
     const JsonValue root(json, file);
-    root.has_only({"format", "version", "origin", "poses"});
+    root.has_only({"format", "version", "origin", "poses", "checksum"});
+    check_checksum(json, root, file);
     const JsonValue list = root.at("poses");
     std::vector<TrackedPose> poses(list.size());
     for (std::size_t i = 0; i < poses.size(); ++i) {

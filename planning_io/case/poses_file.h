@@ -20,7 +20,8 @@ struct PosesOrigin {
 void write_poses(const std::vector<TrackedPose>& poses, const std::filesystem::path& file,
                  const std::optional<PosesOrigin>& origin = {});
 
-/// In the file's order; a frame without a pose is there with its reason. Throws InputError or DamagedFileError.
+/// In the file's order; a frame without a pose is there with its reason. Throws InputError or DamagedFileError, which
+/// also refuses a file with an origin that was changed since it was written.
 std::vector<TrackedPose> read_poses(const std::filesystem::path& file);
 
 /// What the file says of its origin; empty when it says nothing.

@@ -22,11 +22,14 @@ std::vector<unsigned char> encoded(const cv::Mat& picture, const fs::path& file)
     return bytes;
 }
 
-void write_encoded(const cv::Mat& picture, const fs::path& file) {
+void write_encoded(const cv::Mat& picture, const fs::path& file, ReadableBy readable_by = ReadableBy::umask) {
     const std::vector<unsigned char> bytes = encoded(picture, file);
-    write_safely(file, [&](std::ostream& out) {
-        out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
-    });
+    write_safely(
+        file,
+        [&](std::ostream& out) {
+            out.write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+        },
+        readable_by);
 }
 
 cv::Mat bgr_of(const RgbImage& picture) {
@@ -76,8 +79,8 @@ void write_png(const GrayImage& picture, const fs::path& file) {
                   file);
 }
 
-void write_png(const RgbImage& picture, const fs::path& file) {
-    write_encoded(bgr_of(picture), file);
+void write_png(const RgbImage& picture, const fs::path& file, ReadableBy readable_by) {
+    write_encoded(bgr_of(picture), file, readable_by);
 }
 
 std::string png_bytes(const RgbImage& picture) {

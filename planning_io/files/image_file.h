@@ -4,13 +4,14 @@
 #include <string>
 #include <vector>
 
+#include "planning_io/files/safe_write.h"
 #include "planning_io/types/image.h"
 
 namespace planlight {
 
 /// PNG, written whole or not at all.
 void write_png(const GrayImage& picture, const std::filesystem::path& file);
-void write_png(const RgbImage& picture, const std::filesystem::path& file);
+void write_png(const RgbImage& picture, const std::filesystem::path& file, ReadableBy readable_by = ReadableBy::umask);
 
 /// The bytes of the same PNG.
 std::string png_bytes(const RgbImage& picture);

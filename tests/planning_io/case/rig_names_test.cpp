@@ -143,5 +143,32 @@ TEST(RigNames, PosesSayTheirRigAndTheirScan) {
     EXPECT_FALSE(read_poses_origin(file));
 }
 
+TEST(RigNames, PosesChangedByHandAreRefusedWhereTheySayWhoMeasuredThem) {
+    const test::TemporaryFolder folder;
+    const auto file = folder.path() / "poses.json";
+    std::vector<TrackedPose> poses(1);
+    poses[0].rig_from_patient = RigidTransform(Eigen::Translation3d(12.625, 0, 0));
+    poses[0].bound_95_mm = 0.5;
+    write_poses(poses, file, PosesOrigin{name_of(test::example_rig()), "capture", test::example_rig()});
+    const std::string whole = read_whole(file);
+    const auto with = [&](const std::string& from, const std::string& to) {
+        std::string text = whole;
+        const std::size_t at = text.find(from);
+        EXPECT_NE(at, std::string::npos) << from;
+        write_safely(file, text.replace(at, from.size(), to));
+    };
+    with("12.625", "12.125");
+    EXPECT_THROW(read_poses(file), DamagedFileError);
+    with("\"capture\"", "\"another\"");
+    EXPECT_THROW(read_poses(file), DamagedFileError);
+    with("\"checksum\"", "\"x_checksum\"");
+    EXPECT_THROW(read_poses(file), DamagedFileError) << "taken out";
+    with("{", "{\n\n \"notes\": \"of the second day\",");
+    EXPECT_EQ(read_poses(file)[0].bound_95_mm, 0.5) << "a note and other spaces change nothing";
+    write_poses(poses, file);
+    write_safely(file, read_whole(file).replace(read_whole(file).find("12.625"), 6, "12.125"));
+    EXPECT_EQ(read_poses(file).size(), 1u) << "another program's poses are nobody's to vouch for";
+}
+
 }  // namespace
 }  // namespace planlight
