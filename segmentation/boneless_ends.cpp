@@ -22,8 +22,8 @@ constexpr double kLowest = -0.25, kBehindFace = -0.5, kAboveFace = 0.2;  // of t
 
 class Ends {
 public:
-    Ends(const Volume& volume, const SkinMask& mask)
-        : volume_(volume), mask_(mask), voxel_from_ct_(volume.ct_from_voxel.inverse()) {}
+    Ends(const Volume& volume, const SkinMask& mask, double bone)
+        : volume_(volume), mask_(mask), bone_(bone), voxel_from_ct_(volume.ct_from_voxel.inverse()) {}
 
     /// At a side of the volume, not where values were blanked within it.
     bool is_at_side(const Vector3d& p_in_ct) const {
@@ -52,7 +52,7 @@ private:
         for (double d = 0; d <= longest_mm; d += kStep_mm) {
             const Vector3d at = voxel_from_ct_ * (from_in_ct + d * way);
             const auto hu = value_at(volume_, at);
-            if (!hu || *hu > kBone_hu) return true;
+            if (!hu || *hu > bone_) return true;
             const Eigen::Vector3i voxel = at.array().round().cast<int>();
             if (!mask_.body[volume_.index(voxel.x(), voxel.y(), voxel.z())]) return false;
         }
@@ -61,16 +61,17 @@ private:
 
     const Volume& volume_;
     const SkinMask& mask_;
+    double bone_;  ///< a value that only bone has
     Eigen::Affine3d voxel_from_ct_;
 };
 
 }  // namespace
 
 std::vector<std::uint8_t> boneless_ends(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin,
-                                        const HeadBall& ball) {
+                                        const HeadBall& ball, const CtGreys& greys) {
     if (!volume.is_hu || skin.flags.empty()) return {};
     std::vector<std::uint8_t> boneless(skin.flags.size(), 0);
-    const Ends ends(volume, mask);
+    const Ends ends(volume, mask, greys.of(kBone_hu));
     const double r = ball.radius_mm;
     tbb::parallel_for(std::size_t{0}, boneless.size(), [&](std::size_t v) {
         if (skin.flags[v] != kCutPlane) return;

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "segmentation/segment_skin.h"
+#include "segmentation/ct_greys.h"
 #include "segmentation/skin_shape.h"
 
 namespace planlight {
@@ -12,6 +12,6 @@ namespace planlight {
 /// (not the face) no bone lies within 25 mm under the end, nor does bone lie round it in the end's plane, as it does
 /// round a brain. A cushion or wet hair that reaches the volume's end. Empty where values are not HU.
 std::vector<std::uint8_t> boneless_ends(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin,
-                                        const HeadBall& ball);
+                                        const HeadBall& ball, const CtGreys& greys = {});
 
 }  // namespace planlight

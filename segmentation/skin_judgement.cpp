@@ -131,9 +131,9 @@ void judge_edges(const SkinMask& mask, SkinJudgement& r) {
             kLook);
     if (r.light_cm2 > kLight_cm2)
         add(r.doubts,
-            fmt::format("Over {:.0f} square cm (most at {}) what lies just under the surface is lighter than skin and "
+            fmt::format("Over {:.0f} square cm ({}) what lies just under the surface is lighter than skin and "
                         "fat: hair, a strap, a cloth or a cover lies on the skin there",
-                        r.light_cm2, r.light_at),
+                        r.light_cm2, r.light_at.empty() ? "all over the head" : "most at " + r.light_at),
             kLook);
     if (r.strand_mm > kStrand_mm)
         add(r.doubts,
@@ -232,6 +232,16 @@ void judge_fat_shift(const Volume& volume, SkinJudgement& r) {
         "report.");
 }
 
+void judge_greys(const CtGreys& greys, SkinJudgement& r) {
+    if (greys.usual) return;
+    add(r.doubts,
+        fmt::format(
+            "The greys of this CT are not quite HU, as a cone-beam CT's are: soft tissue lies at {:.0f} and not "
+            "near 35. Bone was looked for at {:.0f} and above",
+            greys.soft, greys.of(300)),
+        kLook);
+}
+
 void judge_cuts(SkinJudgement& r) {
     std::string sides;
     int count = 0;
@@ -261,8 +271,9 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     const HeadBall ball = largest_ball(volume, mask, skin);
     result.ball_radius_mm = ball.radius_mm;
     result.ball_centre_in_ct = ball.centre_in_ct;
-    result.cut_sides = cut_sides_of(skin, ball, boneless_ends(volume, mask, skin, ball));
-    const SkinLayers layers = layers_under(volume, mask, skin, result.ball_centre_in_ct);
+    const CtGreys greys = ct_greys(volume, mask);
+    result.cut_sides = cut_sides_of(skin, ball, boneless_ends(volume, mask, skin, ball, greys));
+    const SkinLayers layers = layers_under(volume, mask, skin, result.ball_centre_in_ct, greys);
     result.layered_share = layers.layered_share;
     result.scalp_mm = layers.scalp_mm;
     result.edge_blur_mm = layers.edge_blur_mm;
@@ -285,6 +296,7 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     judge_face(result);
     judge_edges(mask, result);
     judge_things(result);
+    judge_greys(greys, result);
     judge_fat_shift(volume, result);
     judge_steps(volume, result);
     judge_cuts(result);

@@ -18,7 +18,7 @@ constexpr double kStep_mm = 0.5;
 constexpr int kOut = 16, kIn = 100;  // samples before and under the skin: 8 and 50 mm
 constexpr std::size_t kMostSamples = 12000;
 constexpr int kFewSamples = 50;
-constexpr double kBone_hu = 300, kAir_hu = -500;
+constexpr double kBone_hu = 300, kSoftFrom_hu = -200, kSoftTo_hu = 150, kAir_hu = -500;
 constexpr double kBoneFrom_mm = 2, kBoneTo_mm = 16;  // under the skin
 constexpr double kBrainFrom_mm = 22, kBrainTo_mm = 45;
 constexpr double kDark = 0.55;   // of the brain: bone with what thick voxels add to it
@@ -113,11 +113,12 @@ bool stands_off(const Sample& s, double air, double matter) {
 }
 
 /// The bone's depth under the vault's skin in HU; not a number where there is none, or no soft tissue under it.
-double bone_in_hu(const Sample& s) {
+double bone_in_hu(const Sample& s, const CtGreys& greys) {
+    const double bone = greys.of(kBone_hu), most = greys.of(kSoftTo_hu), least = greys.of(kSoftFrom_hu);
     for (double d = 0; d <= 25; d += kStep_mm)
-        if (s.at(d) > kBone_hu) {
+        if (s.at(d) > bone) {
             for (double under = d; under <= d + 25; under += kStep_mm)
-                if (s.at(under) < 150 && s.at(under) > -200) return d;
+                if (s.at(under) < most && s.at(under) > least) return d;
             return NAN;
         }
     return NAN;
@@ -202,8 +203,8 @@ double boneless_share(const std::vector<Sample>& samples, HasBone&& has_bone) {
 /// Where all that lies just under the surface is lighter than skin and fat; deeper where the edge is less sharp, or
 /// slices are thick.
 std::vector<Vector3d> light_patches(const std::vector<Sample>& samples, const Volume& volume, const TriangleMesh& skin,
-                                    double edge_blur_mm) {
-    std::vector<Vector3d> light, others;
+                                    double edge_blur_mm, double light) {
+    std::vector<Vector3d> lighter, others;
     const Eigen::Matrix3d voxel_from_ct = volume.ct_from_voxel.linear().inverse();
     for (const Sample& s : samples) {
         const Vector3d& out = skin.normals_in_ct[s.vertex];
@@ -211,15 +212,15 @@ std::vector<Vector3d> light_patches(const std::vector<Sample>& samples, const Vo
         const double at_mm = std::max({kLightAt_mm, kLightAt_blurs * step_mm, kLightAt_blurs * edge_blur_mm});
         double most = -INFINITY;  // thin skin over fat is denser further out
         for (double d = at_mm / 2; d <= at_mm; d += kStep_mm / 2) most = std::max(most, s.at(d));
-        if (std::isfinite(most)) (most < kLight_hu ? light : others).push_back(s.at_in_ct);
+        if (std::isfinite(most)) (most < light ? lighter : others).push_back(s.at_in_ct);
     }
-    return patches_of(light, others, kLightPatch_mm, kPatchLight);
+    return patches_of(lighter, others, kLightPatch_mm, kPatchLight);
 }
 
 }  // namespace
 
 SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin,
-                        const Vector3d& centre_in_ct) {
+                        const Vector3d& centre_in_ct, const CtGreys& greys) {
     const Volume leveled = mask.levels.empty() ? Volume() : skin_values(volume, mask);
     const Volume& values = mask.levels.empty() ? volume : leveled;
     const std::vector<Sample> samples = samples_of(values, skin, centre_in_ct);
@@ -239,7 +240,7 @@ SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const Triang
         if (!s.vault) continue;
         ++vault;
         if (volume.is_hu) {
-            const double depth = bone_in_hu(s);
+            const double depth = bone_in_hu(s, greys);
             layered += std::isfinite(depth);
             if (std::isfinite(depth)) depths.push_back(depth);
             continue;
@@ -261,10 +262,10 @@ SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const Triang
     for (const auto& t : skin.triangles) area_cm2 += area_in_ct(skin, t).norm() / 100;
     if (!layers.bright_bone && layers.layered_share > kLayeredAllOver)
         layers.boneless_cm2 = area_cm2 * boneless_share(samples, [&](const Sample& s) {
-                                  return volume.is_hu ? bone_in_hu(s) <= kBoneTo_mm : bone_of(s, brain).dark;
+                                  return volume.is_hu ? bone_in_hu(s, greys) <= kBoneTo_mm : bone_of(s, brain).dark;
                               });
     if (volume.is_hu && !samples.empty()) {
-        layers.light_in_ct = light_patches(samples, volume, skin, layers.edge_blur_mm);
+        layers.light_in_ct = light_patches(samples, volume, skin, layers.edge_blur_mm, greys.of(kLight_hu));
         layers.light_cm2 =
             area_cm2 * static_cast<double>(layers.light_in_ct.size()) / static_cast<double>(samples.size());
     }

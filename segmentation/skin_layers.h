@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "segmentation/segment_skin.h"
+#include "segmentation/ct_greys.h"
 
 namespace planlight {
 
@@ -29,8 +29,8 @@ struct SkinLayers {
 
 /// `centre_in_ct` is the middle of the skull: the vault is what lies above it, or where the volume ends there, the
 /// skull's sides and back. Figures that cannot be taken are not a
-/// number.
+/// number. `greys`: where bone and fat lie in a CT.
 SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin,
-                        const Eigen::Vector3d& centre_in_ct);
+                        const Eigen::Vector3d& centre_in_ct, const CtGreys& greys = {});
 
 }  // namespace planlight

@@ -51,6 +51,12 @@ double sum_of(const Histogram& h, std::size_t from, std::size_t to) {
     return sum;
 }
 
+/// In the bin of that value and its two neighbours.
+double count_near(const Histogram& h, double value) {
+    const std::size_t b = h.bin(value);
+    return sum_of(h, b > 0 ? b - 1 : 0, std::min(b + 1, h.counts.size() - 1));
+}
+
 std::size_t otsu(const Histogram& h) {
     double total = 0, moment = 0;
     for (std::size_t b = 0; b < h.counts.size(); ++b) {
@@ -90,9 +96,20 @@ double skin_threshold(const Volume& volume, bool phantom) {
         const std::size_t air_end = h.bin(-705), soft_start = h.bin(phantom ? -395 : -95),
                           soft_end = h.bin(phantom ? 3095 : 145);
         if (sum_of(h, 0, air_end) < 0.005 * count) refuse("no air");
-        if (const double soft = sum_of(h, soft_start, soft_end); phantom ? soft <= 0 : soft < 0.005 * count)
-            refuse(phantom ? "nothing in the air" : "no soft tissue");
-        return std::clamp((peak(h, 0, air_end) + peak(h, soft_start, soft_end)) / 2, -500.0, -150.0);
+        double soft = peak(h, soft_start, soft_end), found = sum_of(h, soft_start, soft_end), least = -500;
+        if (!phantom) {
+            // A cone-beam CT's greys are HU only roughly: where soft tissue lies elsewhere, by far most of the body
+            // does.
+            const Histogram wide = histogram_of(volume.values, -1100, 700, 180);
+            const double elsewhere = peak(wide, wide.bin(-445), wide.bin(415));
+            if (count_near(wide, elsewhere) > 3 * count_near(wide, soft)) {
+                soft = elsewhere;
+                found = sum_of(wide, wide.bin(-445), wide.bin(415));
+                least = -650;
+            }
+        }
+        if (phantom ? found <= 0 : found < 0.005 * count) refuse(phantom ? "nothing in the air" : "no soft tissue");
+        return std::clamp((peak(h, 0, air_end) + soft) / 2, least, -150.0);
     }
     float low = INFINITY, high = -INFINITY;
     for (const float v : volume.values)

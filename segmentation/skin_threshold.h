@@ -6,7 +6,8 @@ namespace planlight {
 
 /// Where air ends and the body begins, in the volume's own unit.
 ///
-/// HU: the middle between the air peak and the soft-tissue peak, kept within [-500, -150]. Otherwise: the middle
+/// HU: the middle between the air peak and the soft-tissue peak, kept within [-500, -150] (cone-beam greys,
+/// whose soft tissue lies elsewhere: [-650, -150]). Otherwise: the middle
 /// between the peaks on both sides of Otsu's threshold (Otsu 1979). Of a phantom in HU any matter counts for soft
 /// tissue. Throws InputError when there are no two peaks.
 double skin_threshold(const Volume& volume, bool phantom = false);

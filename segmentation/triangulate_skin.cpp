@@ -12,6 +12,7 @@
 
 #include "planning_io/types/error.h"
 #include "segmentation/blanked_edges.h"
+#include "segmentation/ct_greys.h"
 #include "segmentation/decimate_skin.h"
 #include "segmentation/fill_tunnels.h"
 #include "segmentation/mr_skin_edge.h"
@@ -200,7 +201,9 @@ TriangleMesh triangulate_skin(const Volume& given, const SkinMask& mask, const S
     report(0.5);
     TriangleMesh result = decimate_skin(mesh, settings.max_edge_mm, settings.max_decimation_error_mm);
     report(0.9);
-    result.thickness_mm = skin_thickness(volume, result, settings.thickness);
+    ThicknessSettings thickness = settings.thickness;
+    thickness.bone_hu = ct_greys(volume, mask).of(thickness.bone_hu);
+    result.thickness_mm = skin_thickness(volume, result, thickness);
     report(1);
     return result;
 }

@@ -6,10 +6,12 @@
 #include <functional>
 #include <limits>
 
+#include "planning_io/volume/volume_checks.h"
+
 namespace planlight {
 namespace {
 
-constexpr float kAir_hu = -1000, kLeast_hu = -1024, kNoAirAbove_hu = -500;
+constexpr float kAir_hu = -1000, kLeast_hu = -1024;
 constexpr double kLeastCornerShare = 0.005;  ///< of a slice
 
 /// Marks of the pixels that hold what `wanted` says and are joined to the edge of the picture through others like them.
@@ -62,12 +64,12 @@ float least_of(const Volume& volume, const std::vector<char>& padding) {
 
 /// Slope 1, intercept 0 and nothing below zero in a CT: stored values without their unit, not HU; nor is a CT without
 /// air.
-bool values_are_hu(const Volume& volume, float least, const std::vector<SliceValues>& slices,
-                   const std::string& rescale_type) {
+bool values_are_hu(const Volume& volume, const std::vector<char>& padding, float least,
+                   const std::vector<SliceValues>& slices, const std::string& rescale_type) {
     if (volume.modality != "CT" || (!rescale_type.empty() && rescale_type != "HU")) return false;
     const bool offset =
         std::any_of(slices.begin(), slices.end(), [](const SliceValues& s) { return s.intercept != 0; });
-    return (offset || least < 0) && least <= kNoAirAbove_hu;
+    return (offset || least < 0) && has_air_in_hu(volume, padding);
 }
 
 /// Exactly 0 HU, joined to the edge and more than a few pixels: no scanner measures water to the last digit outside of
@@ -98,7 +100,7 @@ void rescale(Volume& volume, const std::vector<SliceValues>& slices, const std::
         for (std::size_t i = k * slab; i < (k + 1) * slab; ++i)
             volume.values[i] = static_cast<float>(volume.values[i] * slices[k].slope + slices[k].intercept);
     const float least = least_of(volume, padding);
-    volume.is_hu = values_are_hu(volume, least, slices, rescale_type);
+    volume.is_hu = values_are_hu(volume, padding, least, slices, rescale_type);
     const auto padded = std::count(padding.begin(), padding.end(), 1);
     for (std::size_t i = 0; i < padding.size(); ++i)
         if (padding[i]) volume.values[i] = volume.is_hu ? kAir_hu : least;

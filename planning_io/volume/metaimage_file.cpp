@@ -130,7 +130,7 @@ Volume parse_metaimage(const fs::path& file) {
     volume.source = "MetaImage file " + file.filename().string();
     if (const std::string modality = header.get("modality", ""); modality == "MET_MOD_CT" || modality == "MET_MOD_MR") {
         volume.modality = modality.substr(8);
-        volume.is_hu = volume.modality == "CT" && *std::min_element(volume.values.begin(), volume.values.end()) <= -500;
+        volume.is_hu = volume.modality == "CT" && has_air_in_hu(volume);
     }
     return volume;
 }

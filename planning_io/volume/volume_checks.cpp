@@ -16,7 +16,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMostMagnitude_mm = 1e4, kShortest_mm = 10, kLongest_mm = 3000;
-constexpr float kNoAirAbove_hu = -500;
+constexpr float kAirBelow_hu = -705;  // where a CT's air is looked for: segmentation/skin_threshold.cpp
+constexpr double kLeastAirShare = 0.001;
 constexpr const char* kExportAgain = "Export the volume again from the scanner or the archive.";
 
 /// Every voxel, or every few of a large volume.
@@ -114,13 +115,24 @@ void make_right_handed(Volume& volume) {
     volume.ct_from_voxel.linear().col(2) *= -1;
 }
 
+bool has_air_in_hu(const Volume& volume, const std::vector<char>& left_out) {
+    std::size_t air = 0, asked = 0;
+    for (std::size_t i = 0; i < volume.values.size(); ++i) {
+        if (!left_out.empty() && left_out[i]) continue;
+        ++asked;
+        air += volume.values[i] <= kAirBelow_hu;
+    }
+    return static_cast<double>(air) >= kLeastAirShare * static_cast<double>(asked) && air > 0;
+}
+
 void tell_modality_by_values(Volume& volume) {
     const float least = *std::min_element(volume.values.begin(), volume.values.end());
-    volume.is_hu = least <= kNoAirAbove_hu;
+    volume.is_hu = has_air_in_hu(volume);
     volume.modality = volume.is_hu ? "CT" : "MR";
-    volume.notes.push_back(
-        fmt::format("the file does not say whether it is CT or MR: taken for {}, because its least value is {:.0f}",
-                    volume.modality, least));
+    volume.notes.push_back(fmt::format(
+        "the file does not say whether it is CT or MR: taken for {} (its least value is {:.0f}, and the air of a "
+        "CT in HU near -1000)",
+        volume.modality, least));
 }
 
 void check_for_skin(const Volume& volume, const fs::path& file) {

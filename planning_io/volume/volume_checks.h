@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
 #include "planning_io/types/volume.h"
 
@@ -16,7 +17,11 @@ void check_grid(const Volume& volume, const std::filesystem::path& file, double 
 /// Reverses the slices of a left-handed grid; every voxel keeps its place in ct.
 void make_right_handed(Volume& volume);
 
-/// For files that do not say it: a volume with air below -500 is a CT in HU, another one an MR. Noted in
+/// Whether air is as dark as in HU: one voxel of a thousand at -705 or below. `left_out`: marks voxels (1) that are not
+/// asked; may be empty.
+bool has_air_in_hu(const Volume& volume, const std::vector<char>& left_out = {});
+
+/// For files that do not say it: a volume whose air is that of HU is a CT in HU, another one an MR. Noted in
 /// `volume.notes`.
 void tell_modality_by_values(Volume& volume);
 

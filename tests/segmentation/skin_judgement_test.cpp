@@ -237,6 +237,44 @@ TEST(JudgeSkin, SaysWhereHairOrAClothLiesOnTheHeadInACt) {
     for (const SkinDoubt& d : bare.skin.doubts) ADD_FAILURE() << d.finding;
 }
 
+/// Cone-beam greys: brain of 210 or -280 "HU". A dry skull's bone, brighter or darker, is never taken for soft tissue.
+TEST(JudgeSkin, OfShiftedGreysAHeadIsAHeadAndADrySkullIsNone) {
+    const auto stretched = [](Volume ct, float by) {
+        for (float& v : ct.values) v = -1000 + by * (v + 1000);
+        return ct;
+    };
+    const auto refused = [](const Volume& ct) {
+        try {
+            return judged(ct).refused;
+        } catch (const InputError&) {  // "no soft tissue"
+            return true;
+        }
+    };
+    const Volume head = ct_of([](const Vector3d&, double) { return -1000; }, {105, 125, 115});
+    const Volume skull = [&] {
+        Volume ct = mr_of(
+            [](const Vector3d& p) {
+                const double depth = depth_in_head(p);
+                return depth < 6 || depth > 13 ? 0.0 : 1500.0;
+            },
+            {105, 125, 115});
+        ct.modality = "CT";
+        ct.is_hu = true;
+        for (float& value : ct.values) value -= 1000;
+        return ct;
+    }();
+    for (const float by : {0.7F, 1.2F, 1.35F}) {
+        const Judged of_head = judged(stretched(head, by));
+        EXPECT_FALSE(of_head.refused) << by;
+        EXPECT_GT(of_head.skin.layered_share, 0.8) << by;
+        EXPECT_TRUE(doubts(of_head.skin, "are not quite HU")) << by;
+        EXPECT_EQ(of_head.skin.light_cm2, 0) << by;
+        EXPECT_TRUE(refused(stretched(skull, by))) << by;
+    }
+    EXPECT_FALSE(doubts(judged(head).skin, "are not quite HU"));
+    EXPECT_TRUE(refused(skull));
+}
+
 TEST(JudgeSkin, AFaceIsThereWhenTheHeadLooksAside) {
     for (const Vector3d& about : {Vector3d(0, 0, -1), Vector3d(0, 0, 1)})
         for (const bool nose : {true, false}) {

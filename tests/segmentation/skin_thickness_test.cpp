@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
+#include "planning_io/types/statistics.h"
 #include "segmentation/build_skin_lut.h"
 #include "segmentation/segment_skin.h"
 #include "segmentation/skin_thickness.h"
@@ -83,6 +86,31 @@ TEST(SkinThickness, IsUnknownWhereNoBoneIsWithinReach) {
     EXPECT_EQ(wrong, 0U);
     EXPECT_GT(known, skin.vertices_in_ct.size() / 20);
     EXPECT_LT(known, skin.vertices_in_ct.size() / 2);
+}
+
+/// A cone-beam CT's greys are HU only roughly: bone is where it is, whatever its grey.
+TEST(SkinThickness, OfShiftedOrStretchedGreysIsTheSame) {
+    Volume volume = ball_with_bone(45);
+    std::mt19937 random(4);
+    std::normal_distribution<float> noise(0, 20);
+    for (float& v : volume.values) v += noise(random);
+    const auto median_of = [](const Volume& of) {
+        const SkinMask mask = segment_skin(of);
+        std::vector<double> known;
+        for (const float t : triangulate_skin(of, mask).thickness_mm)
+            if (!std::isnan(t)) known.push_back(t);
+        return known.size() < 1000 ? NAN : median(std::move(known));
+    };
+    const double truth = median_of(volume);
+    EXPECT_NEAR(truth, 25, 1.5);
+    for (const auto& [stretch, shift] : {std::pair(1.2F, 0.F), std::pair(0.7F, 0.F), std::pair(1.F, 200.F)}) {
+        Volume grey = volume;
+        for (float& v : grey.values) {
+            const float body = (v + 1000) / 1040;  // what is no air moves whole, air stays
+            v = -1000 + stretch * (v + 1000) + shift * std::clamp(body, 0.F, 1.F);
+        }
+        EXPECT_NEAR(median_of(grey), truth, 0.25) << stretch << ", " << shift;
+    }
 }
 
 TEST(SkinThickness, IsEmptyWithoutHounsfieldUnits) {
