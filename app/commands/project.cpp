@@ -131,8 +131,8 @@ int run_project(const ProjectOptions& options) {
     if (!registration.skin.known())
         warn(
             "the registration does not say where the scan found the skin: drawn on the CT's own. Where the light falls "
-            "at a "
-            "slant it lies aside by as much as the skin has moved. Register a scan with this version.");
+            "at a slant it lies aside by as much as the skin has moved. Scan from nearer, so that more points lie on "
+            "skin, and register that scan.");
     for (const PartlyLitRing& ring : light.partly_lit)
         if (ring.item >= 0) items[static_cast<std::size_t>(ring.item)]["lit_share_of_circle"] = ring.lit_share;
     for (const auto& sentence : sentences(light.partly_lit, drawing.drawing)) warn(sentence);

@@ -86,6 +86,9 @@ void judge_fine_match(const RegistrationSettings& settings, const FineMatch& fin
                       Judgement& judgement) {
     judge_free_space(settings, result, judgement);
     judge_mirror_and_scale(settings, result, judgement);
+    judgement.ask_if(!result.skin.known(),
+                     "too few points of the scan lie on skin to tell where the skin lies now: light that meets it at a "
+                     "slant may fall aside");
     judgement.ask_if(
         std::abs(fine.skin_offset_mm) > settings.max_skin_offset_mm,
         fmt::format("the whole skin lies {:.1f} mm {} that of the CT: swollen, or not the threshold of the skin",

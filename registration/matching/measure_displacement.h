@@ -9,7 +9,8 @@ namespace planlight {
 
 /// How the skin's displacement is read from the residuals.
 struct DisplacementSettings {
-    double apart_mm = 4;           ///< the scan is gathered into places of this size
+    double apart_mm = 4;           ///< the scan is gathered into places of this size,
+    double most_apart_mm = 14;     ///< or of up to this one where its points are too few for them
     double alike_over_mm = 25;     ///< beyond the scan's rim the displacement goes back to the offset over this length
     double most_mm = 5;            ///< scan points farther from the CT's skin than this are not skin
     double facing_cosine = 0.5;    ///< nor are those that face another way than the skin by more (60 degrees)

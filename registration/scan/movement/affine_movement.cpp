@@ -11,7 +11,9 @@
 namespace planlight::affine_movement {
 namespace {
 
-constexpr int kReach_px = 4;   // a pixel is used where all is lit so far around it
+constexpr int kReach_px = 4;  // a pixel is used where all is lit so far around it
+// Slopes of means of 3 x 3 pixels are asked at kReach_px - 1 beside it, so this far it keeps from the picture's rim.
+constexpr int kRim_px = kReach_px + 1;
 constexpr int kSpoilt_px = 6;  // and nothing is saturated so far
 constexpr int kSaturated = 250;
 constexpr int kPatchesAcross = 8;
@@ -111,8 +113,8 @@ void Surface::choose(const std::vector<std::uint8_t>& spoilt, const Moment& firs
         return light_at(i) > kLeastLight_grey && white.pixels[i] > black.pixels[i] + noise_grey;
     };
     std::vector<std::pair<int, int>> places;
-    for (int y = kReach_px; y + kReach_px < white.height; ++y)
-        for (int x = kReach_px; x + kReach_px < white.width; ++x)
+    for (int y = kRim_px; y + kRim_px < white.height; ++y)
+        for (int x = kRim_px; x + kRim_px < white.width; ++x)
             if (!spoilt[white.index(x, y)] && lit(white.index(x, y)) && lit(white.index(x - kReach_px, y)) &&
                 lit(white.index(x + kReach_px, y)) && lit(white.index(x, y - kReach_px)) &&
                 lit(white.index(x, y + kReach_px)))

@@ -49,6 +49,24 @@ TEST(MeasureDisplacement, ClothBesideTheSkinIsNotSkin) {
     for (const auto& place : found.places) EXPECT_LT(std::abs(place.mm), 2) << place.p_in_ct.transpose();
 }
 
+/// A sheet round the head takes nearly all of a scan's points: what is left on the skin lies 3 to 4 mm apart.
+TEST(MeasureDisplacement, OfAThinScanIsFoundInLargerPlaces) {
+    for (const int points : {6000, 2600, 1500}) {
+        const PointCloud cloud = spoiled(
+            displaced(head_view(View::front, 190, points, 7), [](auto&, auto&) { return -0.37; }), 0.1, 0.02, 8);
+        const SkinDisplacement found = measure_displacement(cloud, head_lut(), RigidTransform::Identity());
+        ASSERT_TRUE(found.known()) << points;
+        EXPECT_NEAR(found.offset_mm, -0.37, 0.05) << points;
+        EXPECT_GT(found.apart_mm, 4) << points;
+        const SkinDisplacementField field(found);
+        double squares = 0;
+        for (const Vector3d& p : cloud.points_in_rig) squares += std::pow(field.at(p).mm + 0.37, 2);
+        EXPECT_LT(std::sqrt(squares / points), 0.08) << points;
+    }
+    const PointCloud dense = head_view(View::front, 190, 40000, 7);
+    EXPECT_EQ(measure_displacement(dense, head_lut(), RigidTransform::Identity()).apart_mm, 4);
+}
+
 TEST(MeasureDisplacement, TooFewPlacesTellNothing) {
     EXPECT_FALSE(
         measure_displacement(head_view(View::front, 20, 2000, 1), head_lut(), RigidTransform::Identity()).known());
