@@ -11,6 +11,7 @@
 #include "planning_io/dicom/rt_struct.h"
 #include "planning_io/plan/contour_stack.h"
 #include "planning_io/plan/plan_rtstruct.h"
+#include "planning_io/surface/contour_solid.h"
 #include "planning_io/surface/mask_surface.h"
 #include "planning_io/types/error.h"
 
@@ -22,7 +23,6 @@ using Eigen::Vector3d;
 using Loop = std::vector<Vector3d>;
 
 constexpr double kPixel_mm = 1;
-constexpr double kFinePixel_mm = 0.25, kMostFineVoxels = 4e6;
 constexpr double kMostAcross_mm = 1000;
 constexpr double kOneHeight_mm = 0.1;
 constexpr int kMostEmpty = 20;
@@ -45,23 +45,11 @@ std::vector<Loop> loops_of(const RtRoi& roi, const fs::path& file) {
     return loops;
 }
 
-/// Axes with z across the contours, and the loops in them.
-Eigen::Matrix3d axes_of(const std::vector<Loop>& loops) {
-    Vector3d area = Vector3d::Zero();
-    for (std::size_t i = 0; i < loops[0].size(); ++i)
-        area += (loops[0][i] - loops[0][0]).cross(loops[0][(i + 1) % loops[0].size()] - loops[0][0]);
-    Eigen::Matrix3d axes;
-    axes.col(2) = area.normalized();
-    axes.col(0) = axes.col(2).unitOrthogonal();
-    axes.col(1) = axes.col(2).cross(axes.col(0));
-    return axes;
-}
-
 /// Turns the pixels of one slice over wherever a straight way to the left crosses the loop (even-odd rule).
-void draw(MaskStack& mask, const Loop& loop, int slice, const Vector3d& low, double pixel_mm) {
+void draw(MaskStack& mask, const Loop& loop, int slice, const Vector3d& low) {
     const auto columns = static_cast<std::size_t>(mask.size[0]), rows = static_cast<std::size_t>(mask.size[1]);
     for (std::size_t j = 0; j < rows; ++j) {
-        const double y = low.y() + pixel_mm * static_cast<double>(j);
+        const double y = low.y() + kPixel_mm * static_cast<double>(j);
         std::vector<double> crossings;
         for (std::size_t i = 0; i < loop.size(); ++i) {
             const Vector3d &a = loop[i], &b = loop[(i + 1) % loop.size()];
@@ -70,8 +58,8 @@ void draw(MaskStack& mask, const Loop& loop, int slice, const Vector3d& low, dou
         }
         std::sort(crossings.begin(), crossings.end());
         for (std::size_t c = 0; c + 1 < crossings.size(); c += 2)
-            for (auto i = static_cast<std::size_t>(std::max(0.0, std::ceil((crossings[c] - low.x()) / pixel_mm)));
-                 i < columns && low.x() + pixel_mm * static_cast<double>(i) < crossings[c + 1]; ++i)
+            for (auto i = static_cast<std::size_t>(std::max(0.0, std::ceil((crossings[c] - low.x()) / kPixel_mm)));
+                 i < columns && low.x() + kPixel_mm * static_cast<double>(i) < crossings[c + 1]; ++i)
                 mask.inside[(static_cast<std::size_t>(slice) * rows + j) * columns + i] ^= 1;
     }
 }
@@ -90,14 +78,11 @@ const std::map<std::string, std::string> kNoRisk{{"EXTERNAL", "the outline of th
                                                  {"ISOCENTER", "an isocentre"},
                                                  {"MARKER", "a marker"}};
 
-/// How finely the contours are drawn: to `kPixel_mm` and a voxel a slice, or as finely as the memory allows.
-enum class Grain { usual, fine };
-
-MaskStack mask_of(std::vector<Loop> loops, const std::string& name, const fs::path& file, Grain grain) {
+MaskStack mask_of(std::vector<Loop> loops, const std::string& name, const fs::path& file) {
     const auto refuse = [&](const std::string& problem) {
         throw InputError(file, "ROI \"" + name + "\" " + problem, kExportAgain);
     };
-    const Eigen::Matrix3d axes = axes_of(loops);
+    const Eigen::Matrix3d axes = axes_of_contours(loops);
     Vector3d low = Vector3d::Constant(INFINITY), high = -low;
     std::vector<double> heights;
     for (Loop& loop : loops) {
@@ -123,18 +108,11 @@ MaskStack mask_of(std::vector<Loop> loops, const std::string& name, const fs::pa
     step = whole / std::round(whole / step);  // the smallest gap is rounded; over all of them that would add up
     const double slices = std::round(whole / step) + 1;
     if (!(slices < kMostEmpty * static_cast<double>(loops.size()))) refuse("has contours that are not evenly spaced");
-    double pixel_mm = kPixel_mm;
-    int layers = 1;  // of voxels, in a slice
-    if (grain == Grain::fine) {
-        const double box_mm3 = (high.x() - low.x()) * (high.y() - low.y()) * slices * step;
-        pixel_mm = std::clamp(std::cbrt(box_mm3 / kMostFineVoxels), kFinePixel_mm, kPixel_mm);
-        layers = std::max(1, static_cast<int>(std::lround(step / pixel_mm)));
-    }
-    const Vector3d first(low.x(), low.y(), sorted.front() - step / 2 + step / layers / 2);
+    const Vector3d first(low.x(), low.y(), sorted.front());
     MaskStack mask;
-    mask.size = {static_cast<int>((high.x() - low.x()) / pixel_mm) + 2,
-                 static_cast<int>((high.y() - low.y()) / pixel_mm) + 2, layers * static_cast<int>(slices)};
-    mask.ct_from_voxel.linear() = axes * Vector3d(pixel_mm, pixel_mm, step / layers).asDiagonal();
+    mask.size = {static_cast<int>((high.x() - low.x()) / kPixel_mm) + 2,
+                 static_cast<int>((high.y() - low.y()) / kPixel_mm) + 2, static_cast<int>(slices)};
+    mask.ct_from_voxel.linear() = axes * Vector3d(kPixel_mm, kPixel_mm, step).asDiagonal();
     mask.ct_from_voxel.translation() = axes * first;
     mask.inside.assign(static_cast<std::size_t>(mask.size[0]) * static_cast<std::size_t>(mask.size[1]) *
                            static_cast<std::size_t>(mask.size[2]),
@@ -142,8 +120,7 @@ MaskStack mask_of(std::vector<Loop> loops, const std::string& name, const fs::pa
     for (std::size_t i = 0; i < loops.size(); ++i) {
         const double slice = (heights[i] - sorted.front()) / step;
         if (std::abs(slice - std::round(slice)) > 0.1) refuse("has contours that are not evenly spaced");
-        for (int layer = 0; layer < layers; ++layer)
-            draw(mask, loops[i], layers * static_cast<int>(std::lround(slice)) + layer, first, pixel_mm);
+        draw(mask, loops[i], static_cast<int>(std::lround(slice)), first);
     }
     return mask;
 }
@@ -168,7 +145,7 @@ TriangleMesh read_roi_surface(const fs::path& file, const std::string& roi, cons
                          roi.empty() ? fmt::format("holds {} solids: {}", names.size(), fmt::join(names, ", "))
                                      : fmt::format("holds no solid \"{}\"; there is: {}", roi, fmt::join(names, ", ")),
                          "Choose one by its name (--segment NAME).");
-    return surface_of_mask(mask_of(loops_of(*chosen, file), chosen->name, file, Grain::usual));
+    return surface_of_mask(mask_of(loops_of(*chosen, file), chosen->name, file));
 }
 
 std::vector<RiskStructure> read_roi_solids(const fs::path& file, const PlanImportSettings& settings,
@@ -190,7 +167,7 @@ std::vector<RiskStructure> read_roi_solids(const fs::path& file, const PlanImpor
                             file.filename().string(), roi.name, kSolidHeights));
             continue;
         }
-        solids.push_back({roi.name, surface_of_mask(mask_of(std::move(loops), roi.name, file, Grain::fine))});
+        solids.push_back({roi.name, contour_solid(std::move(loops), roi.name, file, notes)});
     }
     if (solids.empty())
         throw InputError(file, "holds no solid that is a risk structure: no organ has closed contours at three heights",

@@ -16,11 +16,9 @@ namespace planlight {
 TriangleMesh read_roi_surface(const std::filesystem::path& file, const std::string& roi,
                               const PlanImportSettings& settings, std::vector<std::string>& notes);
 
-/// Every solid of the set, named as its ROI, as `read_roi_surface` makes them but for the voxels: 0.25 mm, larger ones
-/// (to 1 mm) where these would be millions, and each contour half a slice thick to both sides. A nerve of a millimetre
-/// stays as wide as it was drawn. `notes`: ROIs that are no solids, and
-/// those whose type says that they are no organ (the patient's outline, what is to be treated, a bolus ...), which are
-/// left out. Throws InputError where none is.
+/// Every solid of the set, named as its ROI, as `contour_solid` makes them. `notes`: ROIs that are no solids, and those
+/// whose type says that they are no organ (the patient's outline, what is to be treated, a bolus ...), which are left
+/// out, and gaps between contours. Throws InputError where none is.
 std::vector<RiskStructure> read_roi_solids(const std::filesystem::path& file, const PlanImportSettings& settings,
                                            std::vector<std::string>& notes);
 
