@@ -29,9 +29,9 @@ using Clearances = std::vector<Clearance>;
 /// Smallest distance of solids, exact but for rounding (to 1e-6 mm): of a trajectory the straight way from entry to
 /// target with half the instrument's diameter all round (its end is a half ball about the target); of a hole the
 /// cylinder of its diameter and depth with a flat bottom, from its position along its axis (the skin's inward
-/// perpendicular where it has none, or nothing without a `skin`); of a line its points joined straight; of a cut plane
-/// its rectangle. Structures are the triangles of their surfaces, and all within any of their
-/// pieces; what lies in a cavity lies within.
+/// perpendicular over 8 mm round where it has none, or nothing without a `skin`); of a line its points joined straight;
+/// of a cut plane its rectangle. Structures are the triangles of their surfaces, and all within any of their pieces;
+/// what lies in a cavity lies within.
 std::vector<Clearances> clearances_of(const Plan& plan, const SkinSurface* skin);
 
 /// So near is a warning, mm.

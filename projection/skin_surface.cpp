@@ -102,6 +102,19 @@ SkinSurface::Point SkinSurface::nearest(const Vector3d& p_in_ct) const {
     return parts_->point(to_eigen(found.first), parts_->index(found.second));
 }
 
+Vector3d SkinSurface::mean_normal(const Point& at, double radius_mm) const {
+    constexpr double kFacing = 0.5;  // not the other side of an ear
+    const TriangleMesh& mesh = parts_->mesh;
+    Vector3d sum = Vector3d::Zero();
+    for (const auto& t : mesh.triangles) {
+        const Vector3d &a = parts_->vertex(t[0]), &b = parts_->vertex(t[1]), &c = parts_->vertex(t[2]);
+        if (((a + b + c) / 3 - at.p_in_ct).squaredNorm() > radius_mm * radius_mm) continue;
+        const Vector3d area = (b - a).cross(c - a);
+        if (area.dot(at.normal_in_ct) > kFacing * area.norm()) sum += area;
+    }
+    return sum.norm() > 0 ? Vector3d(sum.normalized()) : at.normal_in_ct;
+}
+
 bool SkinSurface::inside(const Vector3d& p_in_ct) const {
     int votes = 0;  // three skew rays, so that one that grazes an edge is outvoted
     for (const Vector3d& direction :

@@ -27,6 +27,9 @@ public:
     /// The first hit of a ray in ct. Empty when it misses.
     std::optional<Point> first_hit(const Ray& ray_in_ct) const;
     Point nearest(const Eigen::Vector3d& p_in_ct) const;
+    /// The skin's outward direction as a hand would take it: of all triangles within `radius_mm` of the point that face
+    /// as the skin does there, by their areas. Unit, ct. That of a single place is a voxel's, with its noise.
+    Eigen::Vector3d mean_normal(const Point& at, double radius_mm) const;
     /// True when the point is under the skin.
     bool inside(const Eigen::Vector3d& p_in_ct) const;
 

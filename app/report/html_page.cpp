@@ -130,7 +130,10 @@ std::string html_page(const std::string& title, const std::string& body, const R
         if (!value.empty()) about += fmt::format("<div><span>{}</span>{}</div>", xml_escaped(name), xml_escaped(value));
     };
     for (const auto& [name, value] : facts) add(name, value);
-    add("Operator", operator_name());
+    // Whoever prints a page of somebody's session is not who operated.
+    const bool named =
+        std::any_of(facts.begin(), facts.end(), [](const auto& fact) { return fact.first == "Operator"; });
+    if (!named) add("Operator", operator_name());
     add("Printed", now());
     return fmt::format(
         "<!doctype html><html lang=\"en\"><head><meta charset=\"utf-8\"><title>{}</title><style>{}</style></head>"

@@ -17,8 +17,8 @@ struct ReportPicture {
     RgbImage picture;
 };
 
-/// What stands under the heading of a page: name and value ("Case", "1f3c"; "Rig", ...). The operator (the user who is
-/// logged in), the date and the program's version are added by `html_page`.
+/// What stands under the heading of a page: name and value ("Case", "1f3c"; "Rig", ...). The operator (where none is
+/// given the user who is logged in), the date and the program's version are added by `html_page`.
 using ReportFacts = std::vector<std::pair<std::string, std::string>>;
 
 /// The name of the user who is logged in, as the system has it.

@@ -21,10 +21,18 @@ double degrees(double radians) {
     return radians * 180 / std::numbers::pi;
 }
 
-/// The skin's outward direction where the item is drawn; empty where the table does not reach.
+/// The skin's outward direction where the item is drawn, over 8 mm round (a single place's is a voxel's, with its
+/// noise); empty where the table does not reach.
 std::optional<Vector3d> outwards_at(const SkinLut& lut, const Vector3d& p_in_ct) {
+    constexpr float kRound_mm = 8, kFacing = 0.5F;  // not the other side of an ear
     const SkinPoint* skin = lut.nearest_skin(p_in_ct);
-    return skin ? std::optional(Vector3d(skin->normal_in_ct.cast<double>())) : std::nullopt;
+    if (!skin) return std::nullopt;
+    Vector3d sum = Vector3d::Zero();
+    for (const SkinPoint& s : lut.skin)
+        if ((s.position_in_ct - skin->position_in_ct).squaredNorm() < kRound_mm * kRound_mm &&
+            s.normal_in_ct.dot(skin->normal_in_ct) > kFacing)
+            sum += s.normal_in_ct.cast<double>();
+    return sum.normalized();
 }
 
 std::optional<double> tilt_of(const SkinLut& lut, const Vector3d& at, const Vector3d& inwards) {

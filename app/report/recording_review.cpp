@@ -83,7 +83,8 @@ std::string review_page(const RecordingTimeLine& line, const std::vector<std::pa
     if (line.events.size() > kMostEvents)
         body += fmt::format("<p>And {} more, in review.json.</p>", line.events.size() - kMostEvents);
     return html_page("Session: " + line.head.case_title, body,
-                     {{"Began", line.head.began_utc},
+                     {{"Operator", line.head.operator_name.empty() ? "left out" : line.head.operator_name},
+                      {"Began", line.head.began_utc},
                       {"Lasted", duration_text(line.lasted_s)},
                       {"Frames kept", std::to_string(line.frames_s.size())}});
 }

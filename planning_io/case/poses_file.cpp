@@ -32,8 +32,8 @@ void check_checksum(const Json& json, const JsonValue& root, const fs::path& fil
     const auto checksum = root.find("checksum");
     if (checksum && checksum->text() == checksum_of(json)) return;
     throw DamagedFileError(file,
-                           fmt::format("was changed after `planlight track` wrote it (its checksum {})",
-                                       checksum ? "differs" : "is missing"),
+                           checksum ? "was changed after `planlight track` wrote it (its checksum differs)"
+                                    : "has no checksum: it was changed, or an earlier version of Planlight wrote it",
                            "Track the frames again, or copy the file again.");
 }
 

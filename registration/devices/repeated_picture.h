@@ -12,8 +12,8 @@ namespace planlight {
 /// again under a new time, and light would follow a head that has moved since.
 class RepeatedPicture {
 public:
-    /// Whether `picture` is the one before it, bit for bit in every eighth row. A picture of one grey alone (a covered
-    /// lens, a sensor at its end) is never told to be one: it may be new.
+    /// Whether `picture` is the one before it, bit for bit. A picture of one grey but for a pixel of a thousand (a
+    /// covered lens with hot pixels, a sensor at its end) is never told to be one: it may be new.
     bool is(const GrayImage& picture);
     void forget() { last_.reset(); }
 

@@ -18,8 +18,8 @@ TEST(RepeatedPicture, IsTheOneBeforeAndNoOther) {
     EXPECT_TRUE(repeated.is(ramp()));
     EXPECT_TRUE(repeated.is(ramp())) << "however often";
     GrayImage other = ramp();
-    ++other.at(60, 24);
-    EXPECT_FALSE(repeated.is(other)) << "one grey step of one pixel, the last of its row";
+    ++other.at(60, 39);
+    EXPECT_FALSE(repeated.is(other)) << "one grey step of one pixel, the last of all";
     EXPECT_FALSE(repeated.is(ramp())) << "the one before was another";
     repeated.forget();
     EXPECT_FALSE(repeated.is(ramp()));
@@ -30,6 +30,10 @@ TEST(RepeatedPicture, OfAnotherSizeOrOfOneGreyIsNone) {
     repeated.is(GrayImage(64, 8, 0));
     EXPECT_FALSE(repeated.is(GrayImage(64, 8, 0))) << "a covered lens";
     EXPECT_FALSE(repeated.is(GrayImage(64, 8, 255)));
+    GrayImage hot(200, 100, 2);
+    hot.at(17, 50) = 90, hot.at(150, 3) = 60;
+    repeated.is(hot);
+    EXPECT_FALSE(repeated.is(hot)) << "a covered lens, and two hot pixels";
     EXPECT_FALSE(repeated.is(GrayImage()));
     EXPECT_FALSE(repeated.is(GrayImage()));
     GrayImage wide(16, 8, 0), narrow(8, 16, 0);
