@@ -52,6 +52,8 @@ struct ItemLight {
     double sigma_mm = 0;                                    ///< one standard deviation of it
     bool one_direction_only = false;                        ///< a straight line tells nothing along itself
     bool known() const { return seen > 0; }
+    /// Enough of it was seen to stand for all of it: one stretch of four that lies right says nothing of the others.
+    bool told() const { return seen > 0 && 2 * seen >= segments; }
 };
 
 /// What the cameras see of the light. All lengths are along the skin, mm.

@@ -343,7 +343,7 @@ void LiveSession::show_measured(const Session::Update& update, OperatorModel& m)
         if (!plan_lit) m.rows[i].light_off_mm.reset();
         if (!plan_lit || !update.light || i >= update.light->items.size()) continue;
         const ItemLight& item = update.light->items[i];
-        m.rows[i].light_off_mm = item.known() ? std::optional(item.off_mm) : std::nullopt;
+        m.rows[i].light_off_mm = item.told() ? std::optional(item.off_mm) : std::nullopt;
     }
 }
 
@@ -360,7 +360,7 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
             angle_between(*update.pose.rig_from_patient, RigidTransform::Identity()) * 180 / std::numbers::pi;
     }
     if (!update.overlay.lit) figures.delay_to_light_ms.reset();
-    figures.overlay_error_mm = ruling.off_mm;
+    if (landmark_ < 0) figures.overlay_error_mm = ruling.off_mm;  // else it is not the plan's
     view_.found(update.frame.at, found_markers(session.tracker().seen_left()),
                 found_markers(session.tracker().seen_right()));
     const Status status = status_of(session, update, ruling, !drawing_.settings.card.empty() && landmark_ < 0);

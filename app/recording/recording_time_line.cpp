@@ -115,6 +115,7 @@ private:
 
     /// What is lit by a person's wish counts from the next update on; darkness at once.
     void take_call(const std::string& call, const Json& event) {
+        if (call == "light_landmark") landmark_ = event.value("which", -1);
         if (call == "light_landmark" || call == "light_item" || call == "hide_item" || call == "show_item")
             return asked_.asked.push_back({call, event.value("which", -1)});
         if (call == "confirm") return;
@@ -150,7 +151,8 @@ private:
             all.push_back({at_s_, at_s_, trust, -1, -1});
         }
         all.back().to_s = at_s_;
-        if (measured_) all.back().off_mm = std::max(all.back().off_mm, number_after(text, "\"off_mm\":").value_or(-1));
+        if (measured_ && landmark_ < 0)  // a landmark's light is none of the plan
+            all.back().off_mm = std::max(all.back().off_mm, number_after(text, "\"off_mm\":").value_or(-1));
         if (lit_) all.back().predicted_mm = std::max(all.back().predicted_mm, predicted_mm_);
     }
 
@@ -204,6 +206,7 @@ private:
     std::optional<double> match_mm_;
     double at_s_ = 0, predicted_mm_ = -1;
     bool lit_ = false, measured_ = false;
+    int landmark_ = -1;        ///< that is lit in place of the plan; -1: none
     std::string reason_;       ///< of the last ruling, without its numbers
     std::uint64_t match_ = 0;  ///< where the last one stands
     std::vector<std::pair<double, RecordingTimeLine::Places>> frames_;

@@ -240,7 +240,8 @@ private:
             OperationItem& item = facts_.items[now_[i]];
             item.looked_at = true;
             reached_[i] = items[i].at(0).get<bool>();
-            if (items[i].at(2).get<int>() == 0) continue;
+            const int segments = items[i].at(1).get<int>(), seen = items[i].at(2).get<int>();
+            if (seen == 0 || 2 * seen < segments) continue;  // what little is seen does not stand for all of it
             if (const auto off_mm = number(items[i].at(3))) item.measured_mm.push_back(*off_mm);
         }
         looked_ = true;

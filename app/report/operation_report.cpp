@@ -77,7 +77,7 @@ std::string items_html(const OperationFacts& facts) {
                 (with_risk ? fmt::format("<td class=\"risk\">{}</td>", risk_html(item.risk)) : "") +
                 figure(shown_text(item, facts)) + figure(duration_text(item.shown_s)) + figure(mm(item.predicted_mm)) +
                 (d.count > 0 ? figure(marked(d.median)) + figure(marked(d.p95)) + figure(marked(d.worst))
-                             : std::string("<td colspan=\"3\">not seen by the cameras</td>")) +
+                             : std::string("<td colspan=\"3\">too little was seen of it</td>")) +
                 fmt::format("<td>{}</td></tr>", d.count);
     }
     if (facts.items.size() > kMost)

@@ -111,8 +111,10 @@ inline constexpr const char* kWhatCirclesSay =
     "beyond; "
     "grey: none was found there. ";
 inline constexpr const char* kWhatIsMeasured =
-    "Predicted: within this in 95 of 100 cases, by the last match. Measured: where both cameras saw the light, against "
-    "where it belongs on the skin as the scan found it, mm. What cameras, CT and markers share is not seen by either: "
+    "Predicted: within this in 95 of 100 cases, by the last match. Measured: where the cameras saw half of an item's "
+    "light or "
+    "more, against where it belongs on the skin as the scan found it, mm. What cameras, CT and markers share is not "
+    "seen by either: "
     "skin that slid over the bone, markers that moved all together.";
 
 /// How far off the light of all items was, each time that it was seen, in the terms of ASTM F2554.

@@ -8,6 +8,7 @@
 
 #include "planning_io/files/xml_text.h"
 #include "projection/check_items.h"
+#include "projection/skin_surface.h"
 
 namespace planlight {
 
@@ -21,22 +22,23 @@ double degrees(double radians) {
     return radians * 180 / std::numbers::pi;
 }
 
-/// The skin's outward direction where the item is drawn, over 8 mm round (a single place's is a voxel's, with its
+/// The table, and the surface that it was made from, where there is one.
+struct Skin {
+    const SkinLut& lut;
+    const SkinSurface* surface;
+};
+
+/// The skin's outward direction where the item is drawn, over 8 mm round (that of a single place is a voxel's, with its
 /// noise); empty where the table does not reach.
-std::optional<Vector3d> outwards_at(const SkinLut& lut, const Vector3d& p_in_ct) {
-    constexpr float kRound_mm = 8, kFacing = 0.5F;  // not the other side of an ear
-    const SkinPoint* skin = lut.nearest_skin(p_in_ct);
-    if (!skin) return std::nullopt;
-    Vector3d sum = Vector3d::Zero();
-    for (const SkinPoint& s : lut.skin)
-        if ((s.position_in_ct - skin->position_in_ct).squaredNorm() < kRound_mm * kRound_mm &&
-            s.normal_in_ct.dot(skin->normal_in_ct) > kFacing)
-            sum += s.normal_in_ct.cast<double>();
-    return sum.normalized();
+std::optional<Vector3d> outwards_at(const Skin& skin, const Vector3d& p_in_ct) {
+    constexpr double kRound_mm = 8;
+    if (skin.surface) return skin.surface->mean_normal(skin.surface->nearest(p_in_ct), kRound_mm);
+    const SkinPoint* point = skin.lut.nearest_skin(p_in_ct);
+    return point ? std::optional(Vector3d(point->normal_in_ct.cast<double>())) : std::nullopt;
 }
 
-std::optional<double> tilt_of(const SkinLut& lut, const Vector3d& at, const Vector3d& inwards) {
-    const auto outwards = outwards_at(lut, at);
+std::optional<double> tilt_of(const Skin& skin, const Vector3d& at, const Vector3d& inwards) {
+    const auto outwards = outwards_at(skin, at);
     if (!outwards || inwards.norm() < 1e-9) return std::nullopt;
     return std::acos(std::clamp(-inwards.normalized().dot(outwards->normalized()), -1.0, 1.0));
 }
@@ -65,34 +67,34 @@ double length_along_skin_mm(const PlanDrawing& drawing, std::size_t item, Stroke
     return sum;
 }
 
-void tell(PlanFact& fact, const OsteotomyLine& line, const DrawnItem&, const SkinLut&) {
+void tell(PlanFact& fact, const OsteotomyLine& line, const DrawnItem&, const Skin&) {
     fact.kind = line.closed ? "closed line" : "open line";
 }
 
-void tell(PlanFact& fact, const Borehole& hole, const DrawnItem& item, const SkinLut& lut) {
+void tell(PlanFact& fact, const Borehole& hole, const DrawnItem& item, const Skin& skin) {
     fact.kind = "borehole";
     if (hole.depth_mm > 0) fact.depth_mm = hole.depth_mm;
     if (hole.diameter_mm > 0) fact.diameter_mm = hole.diameter_mm;
     if (!hole.axis_in_ct) {
         fact.tilt = 0;  // along the skin's own perpendicular
     } else {
-        fact.tilt = tilt_of(lut, item.anchor_in_ct, *hole.axis_in_ct);
+        fact.tilt = tilt_of(skin, item.anchor_in_ct, *hole.axis_in_ct);
         fact.inwards_in_ct = hole.axis_in_ct->normalized();
     }
 }
 
-void tell(PlanFact& fact, const Trajectory& t, const DrawnItem& item, const SkinLut& lut) {
+void tell(PlanFact& fact, const Trajectory& t, const DrawnItem& item, const Skin& skin) {
     fact.kind = "trajectory";
     fact.depth_mm = t.length_mm();
     if (t.diameter_mm > 0) fact.diameter_mm = t.diameter_mm;
     if (!(t.length_mm() > 1e-6)) return;
     fact.inwards_in_ct = (t.target_in_ct - t.entry_in_ct) / t.length_mm();
-    fact.tilt = tilt_of(lut, item.anchor_in_ct, *fact.inwards_in_ct);
+    fact.tilt = tilt_of(skin, item.anchor_in_ct, *fact.inwards_in_ct);
 }
 
-void tell(PlanFact& fact, const CutPlane& plane, const DrawnItem& item, const SkinLut& lut) {
+void tell(PlanFact& fact, const CutPlane& plane, const DrawnItem& item, const Skin& skin) {
     fact.kind = "cut plane";
-    const auto outwards = outwards_at(lut, item.anchor_in_ct);
+    const auto outwards = outwards_at(skin, item.anchor_in_ct);
     if (outwards) fact.tilt = std::asin(std::clamp(std::abs(plane.normal_in_ct.dot(*outwards)), 0.0, 1.0));
 }
 
@@ -167,7 +169,7 @@ std::string side_in_words(double left_of_middle_mm) {
 }
 
 std::vector<PlanFact> plan_facts(const Plan& plan, const PlanDrawing& drawing, const SkinLut& lut,
-                                 const std::optional<MidPlane>& mid_plane) {
+                                 const std::optional<MidPlane>& mid_plane, const SkinSurface* surface) {
     std::vector<PlanFact> facts;
     const auto add = [&](const auto& items, StrokeKind kind, bool has_length) {
         for (const auto& item : items) {
@@ -176,7 +178,7 @@ std::vector<PlanFact> plan_facts(const Plan& plan, const PlanDrawing& drawing, c
             PlanFact fact;
             fact.name = item.name;
             if (drawing.items[number].lit_by_code) fact.lit = drawing.items[number].lit_name;
-            tell(fact, item, drawing.items[number], lut);
+            tell(fact, item, drawing.items[number], Skin{lut, surface});
             if (const double mm = length_along_skin_mm(drawing, number, kind); has_length && mm > 0)
                 fact.length_mm = mm;
             tell_of_skin(fact, drawing.items[number], lut);

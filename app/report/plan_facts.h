@@ -11,6 +11,8 @@
 
 namespace planlight {
 
+class SkinSurface;
+
 /// How much a distance to the skin matters.
 enum class Gravity { none, look, stop };
 
@@ -36,8 +38,9 @@ struct PlanFact {
 };
 
 /// One for each item of the drawing, in its order (`draw_plan`). `mid_plane`: of the head, where it was found.
+/// `surface`: the skin that the table was made from; tilts are against it.
 std::vector<PlanFact> plan_facts(const Plan& plan, const PlanDrawing& drawing, const SkinLut& lut,
-                                 const std::optional<MidPlane>& mid_plane = {});
+                                 const std::optional<MidPlane>& mid_plane = {}, const SkinSurface* surface = nullptr);
 
 /// "38 mm right"; "in the middle" within 2 mm of it.
 std::string side_in_words(double left_of_middle_mm);

@@ -286,7 +286,8 @@ std::string signatures_html() {
 PreparationReport preparation_report(const Preparation& done, const PlanDrawing& drawing, const RemovedPieces& removed,
                                      const PreparationPictures& pictures) {
     const Case& c = done.prepared;
-    const std::vector<PlanFact> facts = plan_facts(c.plan, drawing, c.lut, find_mid_plane(SkinSurface(c.skin)));
+    const SkinSurface skin(c.skin);
+    const std::vector<PlanFact> facts = plan_facts(c.plan, drawing, c.lut, find_mid_plane(skin), &skin);
     const std::vector<std::string> warnings = gathered(c.warnings, drawing);
     const std::string first =
         fmt::format(
