@@ -112,6 +112,13 @@ bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
             "The cameras have not measured the light for a second or more: look at it on landmarks before you use it."};
         return true;
     }
+    if (last_->expected < settings_.least_seen && last_->seen == last_->expected) {
+        ruling.headline = "LOOK: too little of the light can be measured.";
+        ruling.details = {fmt::format(
+            "The cameras can see {} of its stretches only, and see them; {} are needed: look at it yourself.",
+            last_->expected, settings_.least_seen)};
+        return true;
+    }
     ruling.found_wrong = true;
     if (last_->seen < settings_.least_seen || last_->seen_share() < settings_.least_seen_share) {
         ruling.headline = "LOOK: the cameras do not see the light.";

@@ -55,6 +55,11 @@ ExportedOperation operation_of(const ExportOptions& options, const Case& the_cas
         operation.match = std::move(stood.match.registration);
         operation.made = stood.match.made_utc;
         operation.facts = facts_of_operation(options.recording);
+        if (operation.facts->damaged)
+            throw DamagedFileError(options.recording,
+                                   "is damaged: the archive's report would lack what stands behind the damage",
+                                   "Copy the recording again from where it was made, or export the match alone "
+                                   "(--registration).");
         compare_moment(*operation.facts, options.recording, the_case);
         file = options.recording;
     } else {

@@ -126,6 +126,7 @@ void set_head(vtkDICOMMetaData* meta, const RtStructIdentity& identity, const st
     set(DC::SeriesNumber, vtkDICOMVR::IS, "1");
     // Known to the hospital only: there, and empty, as the standard asks (type 2).
     set(DC::AccessionNumber, vtkDICOMVR::SH, "");
+    set(DC::PositionReferenceIndicator, vtkDICOMVR::LO, "");
     set(DC::ReferringPhysicianName, vtkDICOMVR::PN, "");
     set(DC::OperatorsName, vtkDICOMVR::PN, "");
     set(DC::PatientName, vtkDICOMVR::PN, "");

@@ -64,8 +64,10 @@ void decide_by_state(DriftCheck& check, const RigState& state) {
 }
 
 /// `placed`: the points were enough to place the projector by them. Moved cameras are told first: then they may not be.
-void decide(DriftCheck& check, bool placed, const DriftLimits& limits) {
+/// `state`: what all devices together tell of a surface too small to place the projector by it alone (a face).
+void decide(DriftCheck& check, bool placed, const RigState& state, const DriftLimits& limits) {
     using Verdict = DriftCheck::Verdict;
+    constexpr double kLittle_mm = 1;
     if (check.points < limits.min_points) {
         check.reason = fmt::format(
             "only {} points are seen by both cameras under the light; {} over a good part of the picture are needed",
@@ -78,6 +80,12 @@ void decide(DriftCheck& check, bool placed, const DriftLimits& limits) {
             check.epipolar_px, limits.epipolar_px);
         constexpr double kBump_px = 8;
         check.remedy = check.epipolar_px > kBump_px ? kAnotherRig : "Calibrate the rig again.";
+    } else if (!placed && state.verdict == RigState::Verdict::as_calibrated && state.hidden_light_mm < kLittle_mm) {
+        check.verdict = Verdict::good;
+        check.reason = fmt::format(
+            "the rig is as it was calibrated, as far as a surface of this size tells: light could be {:.1f} mm off "
+            "without a sign of it (95 %)",
+            std::ceil(10 * state.hidden_light_mm) / 10);
     } else if (!placed) {
         check.reason = "what both cameras see under the light lies too close together to place the projector by it";
         check.remedy = kNotInView;
@@ -176,7 +184,7 @@ DriftCheck check_drift(const ScanResult& scan, const RigCalibration& rig, const 
     else if (moved && check.points >= limits.min_points)
         decide_by_state(check, scan.rig);
     else
-        decide(check, scan.resection.has_value(), limits);
+        decide(check, scan.resection.has_value(), scan.rig, limits);
     return check;
 }
 

@@ -39,6 +39,14 @@ LightGate::Ruling after(LightGate& gate, Instant& now, int updates, const std::o
     return ruling;
 }
 
+/// All that the cameras can see they see, and it is too little: that is not light that is not seen.
+TEST(LightGate, OfTooFewStretchesItSaysThatTheyAreTooFew) {
+    LightGate gate;
+    Instant now{};
+    EXPECT_EQ(after(gate, now, 3, seen_at(0.1, 2, 2)).headline, "LOOK: too little of the light can be measured.");
+    EXPECT_EQ(after(gate, now, 3, seen_at(0.1, 1, 2)).headline, "LOOK: the cameras do not see the light.");
+}
+
 TEST(LightGate, IsNeverGreenBeforeAPersonHasLooked) {
     LightGate gate;
     Instant now{};

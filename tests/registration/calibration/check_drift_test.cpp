@@ -133,6 +133,21 @@ TEST(CheckDrift, AFlippedSignOfADistortionIsNoticed) {
     EXPECT_LT(good.bent.projector_px, 0.03);
 }
 
+/// A patient's head alone: too small to place the projector by it, and still the three devices agree or do not.
+TEST(CheckDrift, OfASmallSurfaceAllDevicesTogetherTell) {
+    ScanResult scan = scan_from_capture(scanned().shot, scanned().rig);
+    scan.resection.reset();
+    ASSERT_EQ(scan.rig.verdict, RigState::Verdict::as_calibrated) << scan.rig.sentence;
+    const DriftCheck check = check_drift(scan, scanned().rig);
+    EXPECT_EQ(check.verdict, Verdict::good) << check.reason;
+    EXPECT_NE(check.reason.find("without a sign of it"), std::string::npos) << check.reason;
+    scan.rig.hidden_light_mm = 1.5;
+    EXPECT_EQ(check_drift(scan, scanned().rig).verdict, Verdict::cannot_tell) << "too much may be hidden";
+    scan.rig.hidden_light_mm = 0.3;
+    scan.rig.verdict = RigState::Verdict::unknown;
+    EXPECT_EQ(check_drift(scan, scanned().rig).verdict, Verdict::cannot_tell);
+}
+
 TEST(CheckDrift, NothingInViewCannotTell) {
     ScanCapture dark = scanned().shot;
     for (auto* frames : {&dark.left, &dark.right})
