@@ -74,11 +74,12 @@ Contour contour_of(const std::vector<Vector3d>& loop, const Eigen::Matrix3d& axe
     return contour;
 }
 
-/// The usual gap between slices; says which gaps are so wide that nothing is drawn in them.
+/// The usual gap between slices; says which gaps are so wide that nothing is drawn in them. 0 where there is none.
 double usual_gap(const std::vector<Contour>& contours, const std::string& name, std::vector<std::string>& notes) {
     std::vector<double> gaps;
     for (std::size_t i = 1; i < contours.size(); ++i)
         if (const double gap = contours[i].height - contours[i - 1].height; gap > kOneHeight_mm) gaps.push_back(gap);
+    if (gaps.empty()) return 0;
     const double usual = median(gaps), widest = *std::max_element(gaps.begin(), gaps.end());
     if (widest > kBridged * usual)
         notes.push_back(
@@ -253,11 +254,13 @@ MaskStack mask_of(const std::vector<Contour>& part, const Eigen::Matrix3d& axes)
 }  // namespace
 
 Eigen::Matrix3d axes_of_contours(const std::vector<std::vector<Vector3d>>& loops) {
-    Vector3d area = Vector3d::Zero();
-    const std::vector<Vector3d>& first = loops[0];
-    for (std::size_t i = 0; i < first.size(); ++i)
-        area += (first[i] - first[0]).cross(first[(i + 1) % first.size()] - first[0]);
-    return axes_along(area.normalized());
+    for (const auto& loop : loops) {
+        Vector3d area = Vector3d::Zero();
+        for (std::size_t i = 0; i < loop.size(); ++i)
+            area += (loop[i] - loop[0]).cross(loop[(i + 1) % loop.size()] - loop[0]);
+        if (area.norm() > 1e-6) return axes_along(area.normalized());
+    }
+    return Eigen::Matrix3d::Identity();
 }
 
 TriangleMesh contour_solid(std::vector<std::vector<Vector3d>> loops, const std::string& name,
@@ -276,7 +279,9 @@ TriangleMesh contour_solid(std::vector<std::vector<Vector3d>> loops, const std::
     const double across = std::max((high - low).maxCoeff(), contours.back().height - contours.front().height);
     if (!(across < kMostAcross_mm))
         throw InputError(file, fmt::format("ROI \"{}\" is {:.0f} mm across", name, across), kExportAgain);
-    connect(contours, usual_gap(contours, name, notes));
+    const double usual = usual_gap(contours, name, notes);
+    if (!(usual > 0)) throw InputError(file, "ROI \"" + name + "\" has all its contours at one height", kExportAgain);
+    connect(contours, usual);
     std::stable_sort(contours.begin(), contours.end(),
                      [](const Contour& a, const Contour& b) { return a.part < b.part; });
     TriangleMesh solid;

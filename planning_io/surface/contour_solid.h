@@ -11,7 +11,7 @@ namespace planlight {
 /// The surface of a solid that an observer outlined slice by slice, for distances to it: nothing that was outlined may
 /// be lost, and where the outlines leave a choice the solid is the larger one.
 ///
-/// - `loops`: closed, parallel contours, ct, mm, in any order; the first must have an area.
+/// - `loops`: closed, parallel contours, ct, mm, in any order.
 /// - A contour fills half the way to the next one over and under it that overlaps it, up to three times the usual gap
 ///   between slices; beyond that, and at its ends, half a usual gap. Uneven slices and one that was left out leave no
 ///   hole.
@@ -24,7 +24,7 @@ namespace planlight {
 TriangleMesh contour_solid(std::vector<std::vector<Eigen::Vector3d>> loops, const std::string& name,
                            const std::filesystem::path& file, std::vector<std::string>& notes);
 
-/// Axes (columns) with z across the plane of the first loop.
+/// Axes (columns) with z across the plane of the first loop that has an area.
 Eigen::Matrix3d axes_of_contours(const std::vector<std::vector<Eigen::Vector3d>>& loops);
 
 }  // namespace planlight

@@ -135,8 +135,12 @@ TEST(ContourSolid, ContoursThatStandTwiceOrCrossAreOneAndOnesWithinAreHoles) {
     }
 }
 
-TEST(ContourSolid, ContoursThatAreNotParallelAreRefused) {
+TEST(ContourSolid, ContoursThatAreNotParallelOrAllAtOneHeightAreRefused) {
     Loops loops{circle({0, 0, 0}, 3), circle({0, 0, 1}, 3), circle({0, 0, 2}, 3)};
+    Loops flat(3, circle({0, 0, 0}, 3));
+    EXPECT_THROW(solid_of(flat), InputError) << "all at one height";
+    Loops begun{{{0, 0, 0}, {1, 1, 0}, {2, 2, 0}}, loops[0], loops[1], loops[2]};
+    EXPECT_TRUE(is_within(solid_of(begun), {0, 0, 1})) << "the first has no area";
     loops[2][5].z() += 1;
     EXPECT_THROW(solid_of(loops), InputError);
 }

@@ -93,6 +93,21 @@ TEST(MarkersInScan, OfTheFastSetAreMeasuredAtItsEnds) {
     EXPECT_NEAR(moved.moved_mm, 0.4 * (9 - 0.5) / 11, 0.08) << "white and black are at 0.5, the fringes about 9 of 11";
 }
 
+/// A step stays; the finest stripes shift a slanted marker in their own picture alone.
+TEST(MarkersInScan, AStepIsAMovementAndOneOddMomentIsNone) {
+    const RigCalibration rig = paper_rig();
+    const auto moved_by = [&](const std::function<double(double)>& way_mm) {
+        return movement_of_markers(
+                   capture_of(rig,
+                              [&](double share) { return RigidTransform(Eigen::Translation3d(way_mm(share), 0, 0)); }),
+                   rig)
+            .moved_mm;
+    };
+    EXPECT_NEAR(moved_by([](double share) { return share > 0.55 ? 0.3 : 0.0; }), 0.3, 0.06);
+    EXPECT_NEAR(moved_by([](double share) { return share > 0.85 ? 0.3 : 0.0; }), 0.3, 0.06) << "the last moment counts";
+    EXPECT_LT(moved_by([](double share) { return share > 0.5 && share < 0.68 ? 0.3 : 0.0; }), 0.1);
+}
+
 TEST(MarkersInScan, ATurnIsAMovement) {
     const RigCalibration rig = paper_rig();
     const ScanMovement movement = movement_of_markers(capture_of(rig,
