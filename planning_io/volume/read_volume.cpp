@@ -7,6 +7,7 @@
 #include "planning_io/files/header_text.h"
 #include "planning_io/files/sandboxed_process.h"
 #include "planning_io/types/error.h"
+#include "planning_io/volume/fill_corners.h"
 #include "planning_io/volume/invesalius_project.h"
 #include "planning_io/volume/metaimage_file.h"
 #include "planning_io/volume/mgh_file.h"
@@ -25,6 +26,7 @@ namespace {
 Volume checked(Volume volume, const fs::path& path) {
     if (volume.modality.empty()) tell_modality_by_values(volume);
     make_right_handed(volume);
+    fill_corners(volume);
     check_for_skin(volume, path);
     return volume;
 }
