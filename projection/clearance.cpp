@@ -89,7 +89,7 @@ std::vector<Solid> solids_of(const CutPlane& plane, const SkinSurface*) {
     axes.col(0) = plane.first_axis_in_ct.normalized();
     axes.col(2) = (plane.normal_in_ct - plane.normal_in_ct.dot(axes.col(0)) * axes.col(0)).normalized();
     axes.col(1) = axes.col(2).cross(axes.col(0));
-    if (!axes.allFinite()) return {};
+    if (!axes.allFinite() || !(axes.determinant() > 0.5)) return {};  // no plane
     return {{plane.origin_in_ct, axes, {plane.width_mm / 2, plane.height_mm / 2, 0}, false, 0}};
 }
 

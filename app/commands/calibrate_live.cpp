@@ -10,6 +10,7 @@
 #include "app/commands/calibrate_options.h"
 #include "app/commands/language_option.h"
 #include "app/console.h"
+#include "app/json_text.h"
 #include "app/live/guide_screen.h"
 #include "app/live/guided_calibration.h"
 #include "app/live/room_cameras.h"
@@ -259,11 +260,10 @@ int finish(const CalibrateOptions& options, const GuidedCalibration& guided, con
         write_safely(path(stem) += "-calibration.json", calibration_json(report));
     }
     if (options.json)
-        std::cout << Json{{"event", "result"},
-                          {"rig", written.string()},
-                          {"refused_poses", guided.refused_poses()},
-                          {"calibration", Json::parse(calibration_json(report))}}
-                         .dump()
+        std::cout << json_line(Json{{"event", "result"},
+                                    {"rig", written.string()},
+                                    {"refused_poses", guided.refused_poses()},
+                                    {"calibration", Json::parse(calibration_json(report))}})
                   << '\n';
     else if (written.empty())
         fmt::print("Discarded; {} is as it was.\n", options.out.string());
@@ -296,7 +296,7 @@ int run_calibrate_live(const CalibrateOptions& options) {
     GuidedCalibration guided(projector.projector(), cameras.pair(), clock, board, settings,
                              [&](const GuideEvent& event) {
                                  if (options.json)
-                                     std::cout << json_of(event).dump() << std::endl;
+                                     std::cout << json_line(json_of(event)) << std::endl;
                                  else
                                      print(event);
                              });

@@ -6,6 +6,7 @@
 #include "app/commands/archive_options.h"
 #include "app/commands/commands.h"
 #include "app/console.h"
+#include "app/json_text.h"
 #include "planning_io/case/case_names.h"
 #include "planning_io/types/error.h"
 
@@ -38,7 +39,7 @@ void print_found(const std::vector<FoundSeries>& found, bool json) {
     if (json) {
         nlohmann::ordered_json all = nlohmann::ordered_json::array();
         for (const FoundSeries& series : found) all.push_back(json_of(series));
-        std::cout << all.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+        std::cout << json_text(all) << '\n';
         return;
     }
     for (const FoundSeries& series : found) fmt::print("{}\n", line_of(series));
@@ -85,7 +86,7 @@ int run_fetch(const FetchOptions& options) {
         auto told = json_of(series);
         told["folder"] = options.out.string();
         told["files"] = images;
-        std::cout << told.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
+        std::cout << json_text(told) << '\n';
     } else {
         fmt::print("{}\n{} images in {}, as `planlight prepare` reads them. They name the patient.\n", line_of(series),
                    images, options.out.string());

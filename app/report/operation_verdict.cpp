@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/evaluation/distribution.h"
+#include "app/json_text.h"
 #include "app/recording/recording_head.h"
 #include "app/report/clearance_json.h"
 #include "app/report/operation_report.h"
@@ -256,7 +257,7 @@ std::string operation_json(const OperationFacts& facts) {
     json["recording"] = {{"file", facts.file},   {"record", word_of(head.mode)}, {"chunks", facts.chunks},
                          {"bytes", facts.bytes}, {"frames", facts.kept_frames},  {"lost_chunks", facts.lost_chunks},
                          {"ended", facts.ended}};
-    return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_text(json) + "\n";
 }
 
 }  // namespace planlight

@@ -1,4 +1,5 @@
 #include "app/report/recording_review.h"
+#include "app/json_text.h"
 
 #include <fmt/format.h>
 
@@ -101,7 +102,7 @@ std::string review_json(const RecordingTimeLine& line) {
         json["stretches"].push_back(
             {s.from_s, s.to_s, kTrusts[static_cast<std::size_t>(s.trust)], known(s.off_mm), known(s.predicted_mm)});
     for (const auto& event : line.events) json["events"].push_back({event.at_s, event.what});
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+    return json_line(json) + "\n";
 }
 
 }  // namespace planlight

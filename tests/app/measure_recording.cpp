@@ -41,7 +41,7 @@ struct Sizes {
 };
 
 struct Sums {
-    int sessions = 0, alike = 0, whole = 0, found = 0, updates = 0, scans = 0, pictures = 0, compared = 0;
+    int sessions = 0, alike = 0, whole = 0, found = 0, lacking = 0, updates = 0, scans = 0, pictures = 0, compared = 0;
 };
 
 /// One number of the recording is another by its last bit: where the replay finds it, in words.
@@ -79,6 +79,7 @@ void record_and_replay(const test::RecordedKind& kind, Sums& sums, Sizes& sizes,
     const auto done = steady_clock::now();
     const std::string missing = test::missing_of(test::chunks_of(file), kind.must_hold);
     ++sums.sessions;
+    sums.lacking += !missing.empty();
     sums.alike += !replayed.difference;
     sums.whole += !replayed.difference && replayed.ended.empty() && replayed.end == RecordingEnd::whole;
     sums.updates += replayed.updates, sums.scans += replayed.scans + replayed.resumptions;
@@ -126,5 +127,5 @@ int main(int argc, char** argv) {
         "The recorder kept the session's thread for {:.2f} ms an update (median), {:.2f} ms (95 %), {:.2f} ms "
         "(worst) of {}.\n",
         told.median, told.p95, told.worst, told.count);
-    return sums.whole == sums.sessions && sums.found == sums.sessions ? 0 : 1;
+    return sums.whole == sums.sessions && sums.found == sums.sessions && sums.lacking == 0 ? 0 : 1;
 }
