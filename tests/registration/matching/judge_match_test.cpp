@@ -5,12 +5,13 @@
 namespace planlight {
 namespace {
 
-Verdict verdict_of(double shape_rms_mm, double weakest_sigma_mm) {
+Verdict verdict_of(double shape_rms_mm, double weakest_sigma_mm, bool skin_found = true) {
     FineMatch fine;
     fine.fit.shape_rms_mm = shape_rms_mm;
     fine.weakest.sigma_mm = weakest_sigma_mm;
     RegistrationResult result;
     result.mirror_ratio = 2;
+    if (skin_found) result.skin.places.resize(1);
     Judgement judgement(result);
     judge_fine_match({}, fine, result, judgement);
     return result.verdict;
@@ -23,6 +24,11 @@ TEST(JudgeMatch, AnotherShapeAtAPlaceThatCouldSlideIsAskedAbout) {
     EXPECT_EQ(verdict_of(0.57, 0.3), Verdict::yes) << "well determined";
     EXPECT_EQ(verdict_of(0.3, 0.87), Verdict::yes) << "the skin as it is in the CT";
     EXPECT_EQ(verdict_of(0.1, 1.3), Verdict::ask) << "could slide too far whatever its shape";
+}
+
+TEST(JudgeMatch, WhereTheSkinWasFoundNowhereLightMayFallAside) {
+    EXPECT_EQ(verdict_of(0.1, 0.1), Verdict::yes);
+    EXPECT_EQ(verdict_of(0.1, 0.1, false), Verdict::ask);
 }
 
 }  // namespace
