@@ -139,7 +139,9 @@ TEST(GenicamCamera, ACameraThatSendsOnePictureUnderNewTimesIsAFault) {
     const SteadyClock clock;
     std::atomic<bool> hangs = false;
     const std::jthread source([&](const std::stop_token& stop) {
-        GrayImage picture(64, 48, 7);
+        GrayImage picture(64, 48);
+        for (int y = 0; y < 48; ++y)
+            for (int x = 0; x < 64; ++x) picture.at(x, y) = static_cast<std::uint8_t>(3 * x + y);
         while (!stop.stop_requested()) {
             if (!hangs) ++picture.at(20, 16);
             camera.offer(picture, clock.now() - milliseconds(8));
