@@ -29,6 +29,26 @@ TEST(SkinSurface, HitsTheNearSideOfABallFirst) {
     EXPECT_FALSE(skin.first_hit({{10, 20, 300}, {0, 0, 1}}));
 }
 
+/// Normals of single vertices that are 10 degrees and more wrong, as steep edges between long voxels leave them, do not
+/// turn the perpendicular.
+TEST(SkinSurface, ItsPerpendicularIsThatOfWhatLiesRound) {
+    TriangleMesh mesh = test::ball_mesh(kRadius_mm, 5);
+    std::mt19937 random(5);
+    std::normal_distribution<double> wrong(0, 0.2);
+    mesh.normals_in_ct.resize(mesh.vertices_in_ct.size());
+    for (std::size_t v = 0; v < mesh.vertices_in_ct.size(); ++v)
+        mesh.normals_in_ct[v] =
+            (mesh.vertices_in_ct[v].normalized() + Vector3d(wrong(random), wrong(random), wrong(random))).normalized();
+    const SkinSurface skin(mesh);
+    double single = 0;
+    for (const Vector3d& way : {Vector3d(1, 2, 3), Vector3d(-3, 1, 0.5), Vector3d(0.2, -1, -2)}) {
+        const auto at = skin.nearest(kRadius_mm * way.normalized());
+        single = std::max(single, std::acos(at.normal_in_ct.dot(way.normalized())));
+        EXPECT_LT(std::acos(std::min(1.0, skin.mean_normal(at, 8).dot(way.normalized()))), 0.02) << way.transpose();
+    }
+    EXPECT_GT(single, 0.1) << "the mesh's own are as wrong as they were made";
+}
+
 TEST(SkinSurface, TellsInsideFromOutside) {
     const SkinSurface skin(test::ball_mesh(kRadius_mm, 4));
     std::mt19937 random(3);
