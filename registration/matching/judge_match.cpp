@@ -93,6 +93,11 @@ void judge_fine_match(const RegistrationSettings& settings, const FineMatch& fin
         std::abs(fine.skin_offset_mm) > settings.max_skin_offset_mm,
         fmt::format("the whole skin lies {:.1f} mm {} that of the CT: swollen, or not the threshold of the skin",
                     std::abs(fine.skin_offset_mm), fine.skin_offset_mm > 0 ? "outside" : "inside"));
+    judgement.ask_if(
+        result.skin_movement_mm > settings.max_skin_movement_mm,
+        fmt::format("the skin has moved by {:.1f} mm (rms) since the CT, and a part of that can look like a head that "
+                    "lies otherwise: look at the light where skin lies close on bone",
+                    result.skin_movement_mm));
     const bool weak = fine.weakest.sigma_mm > settings.max_weakest_sigma_mm;
     judgement.ask_if(weak, fmt::format("the patient could {} by {:.1f} mm unnoticed: scan {} as well",
                                        fine.weakest.in_words, fine.weakest.sigma_mm, fine.weakest.advice));

@@ -46,9 +46,12 @@ struct RegistrationSettings {
     int min_agreeing_bases = 2;
     double max_weakest_sigma_mm = 1.25;  ///< of the movement 80 mm from the scan's centre; above: ask
     double max_skin_offset_mm = 1.5;     ///< of the whole skin; above: ask
-    bool mirror_test = true;             ///< match the mirrored scan too
-    double min_mirror_ratio = 1.15;      ///< of the mirrored scan's cost; below: ask
-    double mirror_fits_better = 0.87;    ///< below: no
+    /// Of the skin over the bone, rms: a broad swelling of one side is taken for a head that lies otherwise, in part.
+    /// Above: ask.
+    double max_skin_movement_mm = 0.5;
+    bool mirror_test = true;           ///< match the mirrored scan too
+    double min_mirror_ratio = 1.15;    ///< of the mirrored scan's cost; below: ask
+    double mirror_fits_better = 0.87;  ///< below: no
     /// Where the scan was lit or seen from (a device that all points were seen by), rig frame: then the way back from
     /// every point must be free in the CT too.
     std::optional<Eigen::Vector3d> viewpoint_in_rig;

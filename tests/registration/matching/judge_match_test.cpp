@@ -5,12 +5,13 @@
 namespace planlight {
 namespace {
 
-Verdict verdict_of(double shape_rms_mm, double weakest_sigma_mm, bool skin_found = true) {
+Verdict verdict_of(double shape_rms_mm, double weakest_sigma_mm, bool skin_found = true, double movement_mm = 0) {
     FineMatch fine;
     fine.fit.shape_rms_mm = shape_rms_mm;
     fine.weakest.sigma_mm = weakest_sigma_mm;
     RegistrationResult result;
     result.mirror_ratio = 2;
+    result.skin_movement_mm = movement_mm;
     if (skin_found) result.skin.places.resize(1);
     Judgement judgement(result);
     judge_fine_match({}, fine, result, judgement);
@@ -29,6 +30,12 @@ TEST(JudgeMatch, AnotherShapeAtAPlaceThatCouldSlideIsAskedAbout) {
 TEST(JudgeMatch, WhereTheSkinWasFoundNowhereLightMayFallAside) {
     EXPECT_EQ(verdict_of(0.1, 0.1), Verdict::yes);
     EXPECT_EQ(verdict_of(0.1, 0.1, false), Verdict::ask);
+}
+
+// Broad swellings of one side, 2.5 to 5 mm high, were taken for pose in part: up to 2.2 mm off, 0.62 to 0.77 mm found.
+TEST(JudgeMatch, SkinThatMovedMuchIsAskedAbout) {
+    EXPECT_EQ(verdict_of(0.1, 0.1, true, 0.3), Verdict::yes);
+    EXPECT_EQ(verdict_of(0.1, 0.1, true, 0.62), Verdict::ask);
 }
 
 }  // namespace

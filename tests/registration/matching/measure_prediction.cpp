@@ -1,11 +1,15 @@
 // How true is the predicted error? Scans of skin that moved since the CT, by models that the prediction does not know,
 // are registered from any pose; the true error at targets inside the head is compared with the 95 % bound.
-// measure_prediction [CASES [FIRST_SEED]]   (default 2000 cases, seed 1); about 0.5 s a case.
+// measure_prediction [CASES [FIRST_SEED [MOVEMENT]]]   (default 2000 cases, seed 1, all ways in turn); about 0.5 s a
+// case. With PLANLIGHT_LOG=FILE a line for each case: what the verdict could be judged by, and the error.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
+#include <fstream>
 #include <map>
 #include <numeric>
 #include <random>
@@ -31,6 +35,14 @@ struct Case {
     std::string movement;
     Verdict verdict = Verdict::no;
     std::vector<Target> targets;  ///< empty when there is no pose
+    RegistrationResult found;
+    double moved_mm = 0, noise_mm = 0, strays = 0;
+
+    double worst_error_mm() const {
+        double worst = 0;
+        for (const Target& t : targets) worst = std::max(worst, t.error_mm);
+        return worst;
+    }
 };
 
 std::vector<double> ranks(const std::vector<double>& values) {
@@ -86,14 +98,14 @@ PointCloud some_scan(unsigned seed, std::mt19937& random, const SkinLut*& lut) {
     return scan_of_ct(head->volume, head->volume.ct_from_voxel * Vector3d(0.5 * size) + 900 * from, w, 8000, seed);
 }
 
-Case run(unsigned seed) {
+Case run(unsigned seed, const std::string& movement) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> size(0, 2), noise(0.05, 1), strays(0, 0.4);
     const SkinLut* lut = nullptr;
     const PointCloud still = some_scan(seed, random, lut);
     Case result;
     const auto& movements = skin_movements();
-    result.movement = movements[seed % movements.size()].name;
+    result.movement = movement.empty() ? movements[seed % movements.size()].name : movement;
     const double rms_mm = size(random), noise_mm = noise(random), stray_share = strays(random);
     const PointCloud in_ct =
         spoiled(with_moved_skin(still, result.movement, rms_mm, seed + 7), noise_mm, stray_share, seed);
@@ -101,6 +113,8 @@ Case run(unsigned seed) {
     const PointCloud cloud = moved(in_ct, rig_from_ct);
     const RegistrationResult found = register_patient(cloud, *lut);
     result.verdict = found.verdict;
+    result.found = found;
+    result.moved_mm = rms_mm, result.noise_mm = noise_mm, result.strays = stray_share;
     if (found.verdict == Verdict::no) return result;
     const RigidTransform ct_from_rig = found.patient_from_ct.inverse();
     Vector3d middle = Vector3d::Zero(), outwards = Vector3d::Zero();
@@ -140,6 +154,17 @@ void print_row(const std::string& name, const std::array<unsigned, 3>& verdicts,
         at(0.5, error), at(0.95, error), at(1, error), at(0.5, bound), at(0.95, bound), at(1, ratio));
 }
 
+void log_case(std::ostream& log, unsigned seed, const Case& done) {
+    const RegistrationResult& r = done.found;
+    double bound_mm = 0;
+    for (const Target& t : done.targets) bound_mm = std::max(bound_mm, t.bound_mm);
+    log << fmt::format("{},{},{},{:.2f},{:.2f},{:.2f},{:.3f},{:.3f},{:.3f},{:.3f},{:.3f},{:.2f},{:.2f},\"{}\"\n", seed,
+                       done.movement, static_cast<int>(done.verdict), done.moved_mm, done.noise_mm, done.strays,
+                       r.skin_movement_mm, r.skin_offset_mm, r.residual_rms_mm, r.weakest_sigma_mm, r.inlier_fraction,
+                       done.worst_error_mm(), bound_mm, fmt::join(r.reasons, "; "))
+        << std::flush;
+}
+
 }  // namespace
 }  // namespace planlight::test
 
@@ -147,12 +172,20 @@ int main(int argc, char** argv) {
     using namespace planlight::test;
     const unsigned cases = argc > 1 ? static_cast<unsigned>(std::atoi(argv[1])) : 2000;
     const unsigned first = argc > 2 ? static_cast<unsigned>(std::atoi(argv[2])) : 1;
+    const std::string movement = argc > 3 ? argv[3] : "";
+    std::ofstream log;
+    if (const char* file = std::getenv("PLANLIGHT_LOG")) {
+        log.open(file);
+        log << "seed,movement,verdict,moved_mm,noise_mm,strays,skin_movement_mm,skin_offset_mm,residual_rms_mm,"
+               "weakest_sigma_mm,inlier_fraction,worst_error_mm,bound_mm,reasons\n";
+    }
     std::map<std::string, std::vector<Target>> by_movement;
     std::map<std::string, std::array<unsigned, 3>> verdicts;  // yes, ask, no
     std::vector<Target> others;
     std::array<double, 2> worst_mm{};  // yes, ask
     for (unsigned i = 0; i < cases; ++i) {
-        const auto done = run(first + i);
+        const auto done = run(first + i, movement);
+        if (log) log_case(log, first + i, done);
         auto& into = by_movement[done.movement];
         into.insert(into.end(), done.targets.begin(), done.targets.end());
         for (const Target& target : done.targets) {
@@ -168,15 +201,17 @@ int main(int argc, char** argv) {
         "| skin moved by | yes / ask / no | targets | within the 95 % bound | rank correlation (if the covariances "
         "were exactly right) | true error mm: median "
         "/ 95 % / worst | bound mm: median / 95 % | worst error / bound |\n|---|---|---|---|---|---|---|---|\n");
-    for (const auto& movement : skin_movements()) {
-        const auto& targets = by_movement[movement.name];
+    for (const auto& way : skin_movements()) {
+        const auto& targets = by_movement[way.name];
         if (targets.empty()) continue;
-        if (!movement.tuned_on) {
+        if (!way.tuned_on) {
             others.insert(others.end(), targets.begin(), targets.end());
-            for (std::size_t i = 0; i < 3; ++i) of_others[i] += verdicts[movement.name][i];
+            for (std::size_t i = 0; i < 3; ++i) of_others[i] += verdicts[way.name][i];
         }
-        print_row(movement.name + (movement.tuned_on ? " (tuned on)" : ""), verdicts[movement.name], targets);
+        print_row(way.name + (way.tuned_on ? " (tuned on)" : ""), verdicts[way.name], targets);
     }
+    if (const auto& targets = by_movement[kSwollenSide]; !targets.empty())
+        print_row(kSwollenSide, verdicts[kSwollenSide], targets);
     if (!others.empty()) print_row("**all not tuned on**", of_others, others);
     fmt::print("\nWorst error at a target: {:.2f} mm where the verdict is yes, {:.2f} mm where it is ask.\n",
                worst_mm[0], worst_mm[1]);

@@ -47,6 +47,17 @@ std::vector<double> swellings(const PointCloud& cloud, std::mt19937& random) {
     return moved;
 }
 
+/// One side swells broadly, as after an injury: highest somewhere on one side of the cloud, half as high 35 to 60 mm
+/// from there.
+std::vector<double> swollen_side(const PointCloud& cloud, std::mt19937& random) {
+    const Vector3d highest = cloud.points_in_rig[random() % cloud.size()];
+    std::uniform_real_distribution<double> half_width_mm(35, 60);
+    const double per_mm2 = std::log(2.) / std::pow(half_width_mm(random), 2);
+    std::vector<double> moved;
+    for (const auto& p : cloud.points_in_rig) moved.push_back(std::exp(-per_mm2 * (p - highest).squaredNorm()));
+    return moved;
+}
+
 /// Soft skin hangs to where it is drawn: against the normals that face away, more where a slow field says it is thick.
 std::vector<double> sagged(const PointCloud& cloud, std::mt19937& random) {
     const Vector3d down = normal_vector(random).normalized();
@@ -94,6 +105,7 @@ std::vector<double> opened_jaw(const PointCloud& cloud) {
 
 std::vector<double> along_normals(const PointCloud& cloud, const std::string& movement, std::mt19937& random) {
     if (movement == "swellings") return swellings(cloud, random);
+    if (movement == kSwollenSide) return swollen_side(cloud, random);
     if (movement == "soft parts pulled") return pulled(cloud, random);
     if (movement == "pressed flat") return pressed(cloud, random);
     if (movement == "sag") return sagged(cloud, random);

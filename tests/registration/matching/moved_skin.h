@@ -14,6 +14,8 @@ struct SkinMovement {
     bool tuned_on;
 };
 const std::vector<SkinMovement>& skin_movements();
+/// A way that is not among those: the pose takes up a good part of it.
+inline const std::string kSwollenSide = "one side swollen";
 
 /// The cloud (in ct, with normals) as `movement` leaves it; `rms_mm` is its size over the cloud, along the normals (the
 /// swellings and the jaw: their largest is about twice that).
