@@ -11,6 +11,7 @@
 #include <cstring>
 #include <ctime>
 #include <exception>
+#include <filesystem>
 #include <iostream>
 #include <new>
 #include <system_error>
@@ -184,6 +185,11 @@ int run_and_explain(const std::function<int()>& command) {
         code = static_cast<int>(error.exit_code);
     } catch (const std::bad_alloc&) {
         code = explain_short_memory();
+    } catch (const std::filesystem::filesystem_error& fault) {
+        const bool no_room = fault.code() == std::errc::no_space_on_device;
+        say(fmt::format("{}: {}. Check its name, its permissions and the disk it is on.", fault.path1().string(),
+                        fault.code().message()));
+        code = static_cast<int>(no_room ? ExitCode::disk : ExitCode::input_refused);
     } catch (const std::system_error& fault) {  // a thread that finds no room
         if (fault.code() == std::errc::resource_unavailable_try_again || fault.code() == std::errc::not_enough_memory)
             code = explain_short_memory();

@@ -144,6 +144,16 @@ private:
     bool report_ = false, anonymous_ = false;
 };
 
+/// The light does not wait for a disk; who records must know before it starts.
+void warn_of_full_disk(const Path& folder, double free_gb) {
+    constexpr double kEnough_gb = 1;  // an hour
+    if (free_gb >= kEnough_gb) return;
+    warn(fmt::format(
+        "Only {:.0f} MB are free in {}: the recording ends where the disk is full, and the match may not be kept "
+        "there; the light goes on. Make room on the disk, or name another folder with --recordings.",
+        1e3 * free_gb, folder.string()));
+}
+
 /// The recording of this session, said where and how much; none with `--record none`.
 Recorded recorder_of(const SessionOptions& options, const Case& the_case, const DrawingSettings& drawing) {
     const RecordMode mode = record_mode_of(options.record);
@@ -159,6 +169,7 @@ Recorded recorder_of(const SessionOptions& options, const Case& the_case, const 
     const RecordingHead head = recording_head(the_case, options.case_folder, mode, drawing);
     std::error_code ignored;
     const double free_gb = static_cast<double>(std::filesystem::space(file.parent_path(), ignored).available) / 1e9;
+    warn_of_full_disk(file.parent_path(), free_gb);
     if (options.anonymous) {
         fmt::print(
             stderr,

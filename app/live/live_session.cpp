@@ -53,6 +53,11 @@ LiveSession::~LiveSession() {
     thread_.join();
 }
 
+std::string LiveSession::not_kept() const {
+    const std::lock_guard lock(mutex_);
+    return not_kept_;
+}
+
 /// Under the lock: why the press does nothing now; empty: it is taken.
 std::string LiveSession::refused_press(OperatorAction action) const {
     if (const std::string why = why_not(state_, action, scan_there_);

@@ -70,6 +70,8 @@ public:
 
     /// True once the patient is followed and light is on the skin.
     bool projecting() const;
+    /// Why the last match could not be kept, in a sentence; empty where it was, or where none is kept.
+    std::string not_kept() const;
     /// Throws what ended the thread, if anything did.
     void rethrow_fault() const;
     /// The last sign of life of the thread, on the wall's monotonic clock.
@@ -109,8 +111,7 @@ private:
     void light_items(const Press& press, Session& session);
     void show_lit_items(const Session& session, OperatorModel& m) const;
     std::vector<PointPair> newest_landmarks() const;
-    std::string keep(const RegistrationResult& found, const PointCloud& cloud,
-                     const std::vector<PointPair>& landmarks) const;
+    std::string keep(const RegistrationResult& found, const PointCloud& cloud, const std::vector<PointPair>& landmarks);
     void follow(Session& session, Room& room);
     void show_update(const Session& session, const Room& room, const Session::Update& update,
                      const LightGate::Ruling& ruling);
@@ -153,6 +154,7 @@ private:
     std::deque<Press> presses_;
     std::vector<PointPair> landmarks_;  ///< of the last `post_find_patient`
     OperatorModel model_;
+    std::string not_kept_;
     Light light_;
     UpdateLatency latency_;
     std::string latency_words_;  ///< as they were said last

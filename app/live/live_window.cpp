@@ -174,6 +174,8 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         if (projector) tell_of_projector(*projector, session, watch, model);
         if (const std::string trouble = options.trouble ? options.trouble() : ""; !trouble.empty())
             model.status.details.push_back(trouble);
+        if (const std::string not_kept = session.not_kept(); !not_kept.empty())
+            model.status.details.push_back(not_kept);
         const auto frame_began = std::chrono::steady_clock::now();
         const OperatorAction action = window.frame(model);
         const double rest_s = rest_after(std::chrono::steady_clock::now() - frame_began);
@@ -209,7 +211,7 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
     return 0;
 }
 
-/// How late the light was and what the window cost, for whoever asked, and for the log.
+/// What the disk did not take; how late the light was and what the window cost, for whoever asked, and for the log.
 int told_at_the_end(int code, const LiveSession& session, const WindowMeter& meter, const LiveOptions& options) {
     const UpdateLatency latency = session.latency();
     if (options.json) {
@@ -220,6 +222,7 @@ int told_at_the_end(int code, const LiveSession& session, const WindowMeter& met
     } else if (latency.lit > 0) {
         fmt::print("{}.\n", latency.sentence());
     }
+    if (const std::string not_kept = session.not_kept(); !not_kept.empty()) warn(not_kept);
     for (const std::string& sentence : {latency.sentence(), meter.sentence()})
         if (!sentence.empty()) log_line(sentence);
     return code;

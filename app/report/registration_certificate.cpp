@@ -87,10 +87,19 @@ fs::path keep_match(const RegistrationResult& found, const PointCloud* cloud, co
         const fs::path wanted = folder / fmt::format("{:04d}", number);
         if (fs::create_directory(wanted)) kept = wanted;  // false: it is there already
     }
-    if (cloud)
-        write_cloud(*cloud, kept / "cloud.ply", {}, found.rig ? comments_of(*found.rig) : std::vector<std::string>{});
-    if (!landmarks.empty()) write_point_pairs(landmarks, kept / "landmarks.csv");
-    write_registration(found, kept / "registration.json");
+    try {
+        write_folder_safely(kept, false, [&](const fs::path& filled) {
+            if (cloud)
+                write_cloud(*cloud, filled / "cloud.ply", {},
+                            found.rig ? comments_of(*found.rig) : std::vector<std::string>{});
+            if (!landmarks.empty()) write_point_pairs(landmarks, filled / "landmarks.csv");
+            write_registration(found, filled / "registration.json");
+        });
+    } catch (...) {
+        std::error_code ignored;
+        fs::remove(kept, ignored);  // empty: half a match is none
+        throw;
+    }
     return kept;
 }
 

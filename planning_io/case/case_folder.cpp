@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "planning_io/case/skin_lut_file.h"
+#include "planning_io/files/check_exists.h"
 #include "planning_io/files/content_hash.h"
 #include "planning_io/files/json_value.h"
 #include "planning_io/files/safe_write.h"
@@ -89,6 +90,7 @@ std::map<std::string, std::string> read_checksums(const fs::path& file) {
 class CheckedFolder {
 public:
     explicit CheckedFolder(const fs::path& folder) : folder_(folder) {
+        check_exists(folder, "Name a folder that `planlight prepare` made.");
         if (!fs::is_directory(folder))
             throw InputError(folder, "is not a case folder", "Name a folder that `planlight prepare` made.");
         for (const char* name : {kManifest, kSkinMesh, kLutFile, kPlanFile, kChecksums})

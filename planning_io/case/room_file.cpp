@@ -1,6 +1,7 @@
 #include "planning_io/case/room_file.h"
 
 #include "planning_io/case/recording_json.h"
+#include "planning_io/files/check_exists.h"
 #include "planning_io/files/json_value.h"
 #include "planning_io/files/safe_write.h"
 
@@ -80,10 +81,7 @@ Json json_of(const RoomCamera& camera) {
 }  // namespace
 
 RoomFile read_room(const std::filesystem::path& file) {
-    if (std::error_code ignored; !std::filesystem::exists(file, ignored))
-        throw InputError(
-            file, "does not exist",
-            "Check its name; `planlight devices --out room.json` writes a first one where cameras answer.");
+    check_exists(file, "Check its name; `planlight devices --out room.json` writes a first one where cameras answer.");
     const Json json = parse_file(file, kFormat);
     const JsonValue root(json, file);
     root.has_only({"format", "version", "name", "rig", "projector", "cameras", "markers"});

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "planning_io/dicom/dicom_folder.h"
+#include "planning_io/files/check_exists.h"
 #include "planning_io/files/sandboxed_process.h"
 #include "planning_io/types/error.h"
 
@@ -73,8 +74,7 @@ void parse(Parcel& parcel, const fs::path& path, const std::string& wanted) {
 }  // namespace
 
 DicomStudy read_dicom_study(const fs::path& path, const std::string& series) {
-    std::error_code fault;
-    if (!fs::exists(path, fault)) throw InputError(path, "does not exist", "Name the folder of the planning series.");
+    check_exists(path, "Name the folder of the planning series.");
     ChildLimits limits{"DICOM folder"};
     limits.processor_s = 120;
     Parcel parcel = parse_in_child(path, limits, [&](Parcel& to) { parse(to, path, series); });

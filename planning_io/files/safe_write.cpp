@@ -11,6 +11,7 @@
 #include <fstream>
 #include <random>
 
+#include "planning_io/files/check_exists.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -161,9 +162,9 @@ void write_folder_safely(const fs::path& folder, bool replace, const std::functi
 }
 
 std::string read_whole(const fs::path& file) {
+    check_exists(file);
     std::error_code ignored;
     const auto status = fs::status(file, ignored);
-    if (!fs::exists(status)) throw InputError(file, "does not exist", "Check the name of the file.");
     if (fs::is_directory(status)) throw InputError(file, "is a folder, not a file", "Name the file itself.");
     if (!fs::is_regular_file(status))
         throw InputError(file, "is a pipe or a device, not a file", "Copy its content to a file.");

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "planning_io/files/check_exists.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_fcsv.h"
 #include "planning_io/plan/plan_file.h"
@@ -153,6 +154,7 @@ void append(PlanImport& to, PlanImport more) {
 }
 
 PlanImport import_plan(const fs::path& file_or_folder, const PlanImportSettings& settings) {
+    check_exists(file_or_folder, "Check the name of the file or folder.");
     if (!fs::is_directory(file_or_folder)) {
         PlanImport read = read_one(file_or_folder, settings);
         check_plan_limits(read.plan, file_or_folder);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "planning_io/files/check_exists.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -24,9 +25,8 @@ T number_at(const char* bytes) {
 }  // namespace
 
 RecordingReader::RecordingReader(const std::filesystem::path& file) : file_(file), in_(file) {
+    check_exists(file, "Name a recording: a file that ends in .plrec.");
     std::error_code fault;
-    if (!std::filesystem::exists(file, fault))
-        throw InputError(file, "does not exist", "Name a recording: a file that ends in .plrec.");
     if (!std::filesystem::is_regular_file(file, fault))
         throw InputError(file, "is no file", "Name a recording: a file that ends in .plrec.");
     bytes_ = std::filesystem::file_size(file, fault);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "planning_io/files/check_exists.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/plan/plan_limits.h"
 #include "planning_io/surface/dicom_seg.h"
@@ -96,7 +97,7 @@ RiskStructure read_shape_structure(const fs::path& file, const PlanImportSetting
 
 std::vector<RiskStructure> read_risk_structures(const fs::path& file, const PlanImportSettings& settings,
                                                 std::vector<std::string>& notes, const RiskLimits& limits) {
-    if (!fs::exists(file)) throw InputError(file, "does not exist", "Check the name of the file.");
+    check_exists(file);
     if (!fs::is_regular_file(file))
         throw InputError(file, "is no file", "Give each risk structure's file by itself: --risk FILE --risk FILE.");
     std::vector<RiskStructure> structures;

@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "planning_io/dicom/rt_struct.h"
+#include "planning_io/files/check_exists.h"
 #include "planning_io/surface/dicom_seg.h"
 #include "planning_io/surface/roi_surface.h"
 #include "planning_io/surface/shape_file.h"
@@ -224,7 +225,7 @@ void judge_surface(SurfaceFile& surface, const fs::path& file) {
 
 SurfaceFile read_surface(const fs::path& file, const SurfaceSettings& settings) {
     SurfaceFile surface;
-    if (!fs::exists(file)) throw InputError(file, "does not exist", "Check the name of the file.");
+    check_exists(file);
     if (!fs::is_regular_file(file)) throw InputError(file, "is no file", "Name the surface's file itself.");
     if (is_dicom_file(file)) {
         if (settings.said.space == Space::ras)

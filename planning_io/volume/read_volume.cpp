@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "planning_io/dicom/dicom_series.h"
+#include "planning_io/files/check_exists.h"
 #include "planning_io/files/content_hash.h"
 #include "planning_io/files/header_text.h"
 #include "planning_io/files/sandboxed_process.h"
@@ -49,7 +50,7 @@ Volume parse_volume(const fs::path& path, const std::string& series, SliceGaps g
 
 Volume read_volume(const fs::path& path, const std::string& series, SliceGaps gaps) {
     std::error_code error;
-    if (!fs::exists(path, error)) throw InputError(path, "does not exist", "Check the name of the file or folder.");
+    check_exists(path, "Check the name of the file or folder.");
     if (!fs::is_regular_file(path, error) && !fs::is_directory(path, error))
         throw InputError(path, "is neither a file nor a folder", "Name a file or folder.");
     try {

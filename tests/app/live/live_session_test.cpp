@@ -82,7 +82,7 @@ protected:
                 progress("The room of a test.", 0.25);
                 return std::make_unique<test::RoomWith<HeldCameras>>(made_room(), std::ref(held), std::ref(waits));
             },
-            test::example_case().prepared, drawing(), std::filesystem::path{}, &counts);
+            test::example_case().prepared, drawing(), "/proc/planlight/matches", &counts);  // no disk keeps one there
     }
     void TearDown() override { held = false; }  // its thread is waited for
     virtual std::unique_ptr<Room> made_room() {
@@ -199,8 +199,10 @@ TEST_F(LiveSessionTest, RegisterThatDarkOvertookCanBePressedAgain) {
     EXPECT_EQ(dark.status.kind, StatusKind::dark);
     EXPECT_TRUE(dark.do_register.enabled) << "the scan is kept, and nobody looks for the patient";
     EXPECT_TRUE(dark.landmarks);
+    EXPECT_EQ(session->not_kept(), "");
     EXPECT_EQ(session->post(OperatorAction::do_register), "");
     wait_for(*session, "the match", [](const OperatorModel& m) { return m.track.enabled || m.confirm; });
+    EXPECT_NE(session->not_kept().find("This match could not be kept"), std::string::npos) << "and goes on";
 }
 
 TEST_F(LiveSessionTest, LightIsConfirmedOncePerPressAndDarkLeadsBackToTheMatch) {
