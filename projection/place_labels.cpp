@@ -19,7 +19,8 @@ constexpr double kClear_mm = 2.6;            // between a text's outline and any
 constexpr double kApartFromLabels_mm = 4.8;  // more than between a text's own lines: two labels are not one
 constexpr double kLeaderClear_mm = 1;        // between a leader and anything drawn
 constexpr double kLeaderFrom_mm = 3;         // a text farther from its item has a leader
-constexpr double kOffItem_mm = 0.8;          // between what is drawn at the anchor and the leader
+constexpr double kOffItem_mm = 0.8;          // a text is so much farther from what is drawn at the anchor
+constexpr double kLeaderOff_mm = 2;          // between that and the leader: CHECK can still tell the item's light
 
 struct Candidate {
     TextFrame frame;
@@ -159,7 +160,7 @@ std::optional<std::vector<Point>> Search::leader(const Point& anchor, const Text
         const bool in_text = std::abs(from_text.dot(frame.right_in_ct)) < block_.width_mm / 2 + kBefore_mm &&
                              std::abs(from_text.dot(frame.up_in_ct)) < block_.height_mm / 2 + kBefore_mm;
         if (in_text) break;
-        if ((p.p_in_ct - anchor.p_in_ct).norm() < wish_.keep_off_mm + kOffItem_mm) continue;
+        if ((p.p_in_ct - anchor.p_in_ct).norm() < wish_.keep_off_mm + kLeaderOff_mm) continue;
         const double own_mm = (p.p_in_ct - anchor.p_in_ct).norm() - wish_.keep_off_mm;
         const double clear_mm = std::min(kLeaderClear_mm, 0.7 * own_mm);  // its own item is near where it begins
         if (occupied_.within(p.p_in_ct, clear_mm, wish_.but_of) || !lit(p)) return std::nullopt;

@@ -7,6 +7,7 @@
 
 #include "projection/place_all_labels.h"
 #include "projection/render_drawing.h"
+#include "projection/stroke_places.h"
 #include "tests/projection/shapes.h"
 #include "tests/support/analytic_head.h"
 
@@ -65,6 +66,33 @@ TEST(ExampleDrawing, AForeheadPlanIsLitByAFrontalProjectorWithinTheFrameBudget) 
     RecordProperty("picture_ms", std::to_string(best_ms));
     EXPECT_GT(counts.lit, 0.95 * static_cast<double>(counts.points));
     EXPECT_LT(cpu_ms, 20);  // slack for a shared machine; the printed figure is the one to look at
+}
+
+/// Stretches of each item's light that the cameras can tell apart from other light.
+std::vector<int> told_stretches(const PlanDrawing& drawing) {
+    std::vector<int> told(drawing.items.size(), 0);
+    for (const StrokeSegment& segment : segments_of(drawing, {})) ++told[static_cast<std::size_t>(segment.item)];
+    return told;
+}
+
+// A hole at the corner of a cut has two lines beside its ring already: a leader that begins at the ring leaves nothing.
+TEST(ExampleDrawing, ALeaderTakesNoLightAwayFromTheItemThatItNames) {
+    const SkinSurface head(test::analytic_head_mesh(1.5));
+    int leaders = 0;
+    for (const double aside : {-0.5, 0.1, 0.6}) {
+        DrawingSettings settings;
+        settings.light = LightView{test::projector_looking_at({0, 0, 30}, {aside, -1, 0.15}, 750, {0, 0, 1}),
+                                   RigidTransform::Identity()};
+        PlanDrawing drawing = draw_plan(forehead_plan(), head, settings);
+        const std::vector<int> with = told_stretches(drawing);
+        for (Label& label : drawing.labels) {
+            leaders += !label.leader.points_in_ct.empty();
+            label.leader.points_in_ct.clear();
+        }
+        EXPECT_EQ(with, told_stretches(drawing));
+        for (std::size_t i = 0; i < with.size(); ++i) EXPECT_GT(with[i], 0) << drawing.items[i].name;
+    }
+    EXPECT_GT(leaders, 0) << "this test tells nothing";
 }
 
 }  // namespace
