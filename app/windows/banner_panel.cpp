@@ -76,19 +76,33 @@ std::vector<std::pair<std::string, const char*>> figures_of(const Figures& f) {
     return said;
 }
 
-/// Rows of a figure and its words, which break where they have to. Returns the width that was used; 0: there is nothing
-/// to show.
-float draw_figures(const Pen& pen, const Box& box, const Figures& figures, const Look& look, bool narrow) {
+/// Rows of a figure and its words, which break where they have to.
+struct FigureColumns {
+    const ImFont* font;
+    float gap, values = 0, words = 0;
+    FigureColumns(const Pen& pen, const std::vector<std::pair<std::string, const char*>>& rows, float width,
+                  bool narrow)
+        : font(narrow ? pen.fonts.small : pen.fonts.body), gap(12 * pen.scale) {
+        for (const auto& [value, sentence] : rows) {
+            values = std::max(values, text_width(pen.fonts.number, value));
+            words = std::max(words, text_width(font, pen.say(sentence)));
+        }
+        words = std::min(words, width - values - gap);
+    }
+};
+
+/// 0: there is nothing to show.
+float figures_width_of(const Pen& pen, const Box& box, const Figures& figures, bool narrow) {
     const auto rows = figures_of(figures);
     if (rows.empty()) return 0;
-    const ImFont* const font = narrow ? pen.fonts.small : pen.fonts.body;
-    const float gap = 12 * pen.scale, step = box.height / 4;
-    float values = 0, words = 0;
-    for (const auto& [value, sentence] : rows) {
-        values = std::max(values, text_width(pen.fonts.number, value));
-        words = std::max(words, text_width(font, pen.say(sentence)));
-    }
-    words = std::min(words, box.width - values - gap);
+    const FigureColumns columns(pen, rows, box.width, narrow);
+    return columns.values + columns.gap + columns.words;
+}
+
+void draw_figures(const Pen& pen, const Box& box, const Figures& figures, const Look& look, bool narrow) {
+    const auto rows = figures_of(figures);
+    const auto [font, gap, values, words] = FigureColumns(pen, rows, box.width, narrow);
+    const float step = box.height / 4;
     const float top = box.y + (box.height - step * static_cast<float>(rows.size())) / 2;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const float y = top + step * (static_cast<float>(i) + 0.5F), x = box.right() - words;
@@ -101,7 +115,6 @@ float draw_figures(const Pen& pen, const Box& box, const Figures& figures, const
         const auto lines = static_cast<float>(broken(font, sentence, words + 1, 9).size());
         pen.paragraph(font, sentence, {x, y - lines * line_height(font) / 2, words + 1, step + 1}, look.text);
     }
-    return values + gap + words;
 }
 
 void draw_bar(const Pen& pen, const Box& banner, double share, const Look& look) {
@@ -114,21 +127,36 @@ void draw_bar(const Pen& pen, const Box& banner, double share, const Look& look)
                             height / 2);
 }
 
-/// In the middle of the box where there is room to spare, else from its top.
-void draw_sentences(const Pen& pen, Box rest, const Status& status, const Look& look) {
-    const float bottom = rest.bottom() + 9 * pen.scale;
+/// How high the sentences are in so wide a place, the details in that font.
+float height_of(const Pen& pen, const Status& status, float width, const ImFont* details) {
+    constexpr std::size_t kAnyLines = 99;
     const auto lines = [&](const ImFont* font, const std::string& t) {
-        return line_height(font) * static_cast<float>(broken(font, t, rest.width, 9).size());
+        return line_height(font) * static_cast<float>(broken(font, pen.say(t), width, kAnyLines).size());
     };
-    const std::string headline = pen.say(status.headline);
-    float all = lines(pen.fonts.strong, headline);
-    for (const std::string& detail : status.details) all += lines(pen.fonts.body, pen.say(detail));
+    float all = lines(pen.fonts.strong, status.headline);
+    for (const std::string& detail : status.details) all += lines(details, detail);
+    return all;
+}
+
+float below_sentences(const Pen& pen) {
+    return 9 * pen.scale;  // they may reach so far below their place
+}
+
+bool has_room(const Pen& pen, const Box& rest, const Status& status, const ImFont* details) {
+    return height_of(pen, status, rest.width, details) <= rest.height + below_sentences(pen);
+}
+
+/// In the middle of the box where there is room to spare, else from its top; in smaller letters before anything is cut.
+void draw_sentences(const Pen& pen, Box rest, const Status& status, const Look& look) {
+    const float bottom = rest.bottom() + below_sentences(pen);
+    const ImFont* const font = has_room(pen, rest, status, pen.fonts.body) ? pen.fonts.body : pen.fonts.small;
+    const float all = height_of(pen, status, rest.width, font);
     if (all < rest.height) rest.y += (rest.height - all) / 2;
     rest.height = bottom - rest.y;
-    rest.y += pen.paragraph(pen.fonts.strong, headline, rest, look.strong);
+    rest.y += pen.paragraph(pen.fonts.strong, pen.say(status.headline), rest, look.strong);
     for (const std::string& detail : status.details) {
         rest.height = bottom - rest.y;
-        rest.y += pen.paragraph(pen.fonts.body, pen.say(detail), rest, look.text);
+        rest.y += pen.paragraph(font, pen.say(detail), rest, look.text);
     }
 }
 
@@ -174,13 +202,21 @@ void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model, con
         narrow
             ? Box{box.right() - pad - figures_width, box.y + word_height, figures_width, box.height - word_height - pad}
             : Box{box.right() - 1.6F * pad - figures_width, box.y + 0.6F * pad, figures_width, box.height - 1.2F * pad};
-    const float used = draw_figures(pen, figures, model.figures, look, narrow);
     if (model.status.share) draw_bar(pen, box, *model.status.share, look);
 
     const float text_x = narrow ? box.x + 1.2F * pad : word_x + word + 2 * pad;
-    const float right = box.right() - (narrow ? 1.0F : 1.6F) * pad - (used > 0 ? used + pad : 0);
-    Box rest{text_x, box.y + (narrow ? word_height : pad), right - text_x,
-             box.height - (narrow ? word_height + pad : 2 * pad)};
+    const auto sentences_beside = [&](float used) {
+        const float right = box.right() - (narrow ? 1.0F : 1.6F) * pad - (used > 0 ? used + pad : 0);
+        return Box{text_x, box.y + (narrow ? word_height : pad), right - text_x,
+                   box.height - (narrow ? word_height + pad : 2 * pad)};
+    };
+    // What to do comes before the figures: they give way where the sentences have no room beside them.
+    Box rest = sentences_beside(figures_width_of(pen, figures, model.figures, narrow));
+    const bool give_way = notice.empty() && !has_room(pen, rest, model.status, pen.fonts.small);
+    if (give_way)
+        rest = sentences_beside(0);
+    else
+        draw_figures(pen, figures, model.figures, look, narrow);
     if (!notice.empty()) rest = draw_notice(pen, rest, notice);
     draw_sentences(pen, rest, model.status, look);
 }

@@ -13,14 +13,17 @@
 namespace planlight {
 namespace {
 
-std::string words_of(const Pen& pen, const PlanRow& row) {
+std::string words_of(const Pen& pen, const PlanRow& row, const OperatorModel& model) {
+    const std::initializer_list<double> limits{model.warn_above_mm, model.stop_above_mm};
     if (row.hidden) return row.name + ". " + pen.say("Hidden: it is not lit.");
-    std::string words = pen.say(row.name + ". " +
-                                (row.predicted_error_mm ? "By the match it lies within " +
-                                                              number_text(row.predicted_error_mm, "mm") + " (95 %)."
-                                                        : "How far off it may be is not known yet."));
+    std::string words =
+        pen.say(row.name + ". " +
+                (row.predicted_error_mm
+                     ? "By the match it lies within " + error_text(row.predicted_error_mm, "mm", limits) + " (95 %)."
+                     : "How far off it may be is not known yet."));
     if (row.light_off_mm)
-        words += " " + pen.say("Its light was seen " + number_text(row.light_off_mm, "mm") + " beside its place.");
+        words +=
+            " " + pen.say("Its light was seen " + error_text(row.light_off_mm, "mm", limits) + " beside its place.");
     for (const Clearance& risk : row.risk)
         words += " " + pen.say(risk.through
                                    ? "It is planned through " + risk.structure + "."
@@ -51,15 +54,15 @@ bool EvidencePage::item_button(const Pen& pen, const Box& at, const Box& seen, c
 
 float EvidencePage::draw_items(const Pen& pen, Box box, const Box& seen, const OperatorModel& model, Pressed& pressed) {
     const float from = box.y, swatch = 30 * pen.scale, size = 8 * pen.scale, gap = 8 * pen.scale;
-    const float button_height = std::max(72.0F, 76 * pen.scale), button_width = 220 * pen.scale;
+    const float button_high = button_height(pen.scale), button_width = 220 * pen.scale;
     const ButtonState state{model.may_light_item, model.may_light_item ? "" : "no match"};
     box.y += pen.paragraph(pen.fonts.title, pen.say("The plan"), box, pen.theme->text) + gap;
     for (std::size_t i = 0; i < model.rows.size(); ++i) {
         const PlanRow& row = model.rows[i];
         const bool alone = model.item_of_moment == i, marked = marked_ == i;
         const std::string number = std::to_string(i + 1);
-        const Box only{box.right() - button_width, box.y, button_width, button_height};
-        const Box hide{only.x - gap - button_width, box.y, button_width, button_height};
+        const Box only{box.right() - button_width, box.y, button_width, button_high};
+        const Box hide{only.x - gap - button_width, box.y, button_width, button_high};
         if (item_button(pen, only, seen, alone ? "Whole plan" : "Only this", state, {alone, false, {}},
                         "item-" + number))
             pressed.item = i;
@@ -73,9 +76,9 @@ float EvidencePage::draw_items(const Pen& pen, Box box, const Box& seen, const O
                               3 * pen.scale, 0, 2 * pen.scale);
         else
             pen.swatch({box.x, middle - size, 2 * size, 2 * size}, row.colour);
-        const float used = pen.paragraph(pen.fonts.body, words_of(pen, row), words,
+        const float used = pen.paragraph(pen.fonts.body, words_of(pen, row, model), words,
                                          row.hidden ? pen.theme->quiet : colour_for(pen, row, model));
-        const float height = std::max(used, button_height);
+        const float height = std::max(used, button_high);
         if (marked) {
             marked_at_ = {box.x, box.y, box.width, height};
             pen.list->AddRect({box.x - gap, box.y - gap / 2}, {hide.x - gap / 2, box.y + height + gap / 2},
@@ -121,7 +124,7 @@ EvidencePage::Pressed EvidencePage::draw(const Pen& pen, const Box& place, const
     marked_ = marked;
     places_.clear();
     pen.panel(place);
-    const float pad = 22 * pen.scale, height = std::max(72.0F, 76 * pen.scale);
+    const float pad = 22 * pen.scale, height = button_height(pen.scale);
     const Box close{place.right() - pad - 260 * pen.scale, place.bottom() - pad / 2 - height, 260 * pen.scale, height};
     places_["close"] = close;
     const Box words{place.x + pad, place.y + pad, place.width - 2 * pad, close.y - place.y - 1.5F * pad};

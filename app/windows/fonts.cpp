@@ -10,6 +10,7 @@
 #include <map>
 #include <set>
 
+#include "app/windows/layout.h"
 #include "planning_io/types/error.h"
 #include "projection/font_files.h"
 
@@ -99,7 +100,10 @@ struct Loading {
 FontSet load(ImFontAtlas& atlas, const FontFiles& files, float scale, const Loading& l) {
     atlas.Clear();
     atlas.TexDesiredWidth = 4096;
-    const auto size = [&](float pixels, float least) { return std::max(std::round(pixels * scale), least); };
+    // The least sizes are those of a window that is not shrunk.
+    const auto size = [&](float pixels, float least) {
+        return std::max(std::round(pixels * scale), std::round(least * std::min(1.0F, scale / kLeastScale)));
+    };
     const auto text = [&](const std::filesystem::path& file, float pixels) {
         return add(atlas, file, files.symbols, pixels, l.text.data(), l.more);
     };

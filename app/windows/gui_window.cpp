@@ -19,7 +19,7 @@
 namespace planlight {
 namespace {
 
-constexpr int kLeastLong = 1280, kLeastShort = 720;  // sides of a window, upright or on end
+constexpr int kLeastLong = 800, kLeastShort = 600;  // sides of a window, upright or on end
 constexpr int kFramesAfterInput = 3;  ///< until Dear ImGui has settled: what is under the mouse is known a frame later
 
 Monitor monitor_for(const WindowSettings& settings) {

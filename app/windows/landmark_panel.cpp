@@ -162,9 +162,9 @@ std::optional<LandmarkButton> LandmarkPanel::draw_buttons(const Pen& pen, const 
 
 std::optional<LandmarkButton> LandmarkPanel::draw(const Pen& pen, const Box& box, const LandmarkViews& views,
                                                   const std::string& use_label) {
-    const float edge = 12 * pen.scale, button_height = std::max(72.0F, 76 * pen.scale);
+    const float edge = 12 * pen.scale, high = button_height(pen.scale);
     const float top = 18 * pen.scale + line_height(pen.fonts.body) + 1.2F * line_height(pen.fonts.small);
-    const float pane_height = box.height - top - button_height - 2 * edge, pane_width = (box.width - 3 * edge) / 2;
+    const float pane_height = box.height - top - high - 2 * edge, pane_width = (box.width - 3 * edge) / 2;
     boxes_[0] = {box.x + edge, box.y + top, pane_width, pane_height};
     boxes_[1] = {boxes_[0].right() + edge, box.y + top, pane_width, pane_height};
     take_clicks(views);
@@ -175,8 +175,8 @@ std::optional<LandmarkButton> LandmarkPanel::draw(const Pen& pen, const Box& box
              on_pictures().text);
     pen.line(pen.fonts.small, pen.say("Scan"), boxes_[1].x + edge, boxes_[1].y + 16 * pen.scale, pane_width - edge,
              on_pictures().text);
-    const auto pressed = draw_buttons(
-        pen, {box.x + edge, box.bottom() - edge - button_height, box.width - 2 * edge, button_height}, use_label);
+    const auto pressed =
+        draw_buttons(pen, {box.x + edge, box.bottom() - edge - high, box.width - 2 * edge, high}, use_label);
     if (pressed == LandmarkButton::undo) clicks_.undo();
     if (pressed == LandmarkButton::turn) {
         quarter_turns_ = (quarter_turns_ + 1) % 4;

@@ -4,13 +4,16 @@
 #include <cmath>
 
 namespace planlight {
-namespace {
 
-float button_height(float scale) {
-    return std::max(72.0F, 76 * scale);
+float button_height(float scale, float wanted) {
+    constexpr float kLeast = 72;
+    return std::max(kLeast * std::min(1.0F, scale / kLeastScale), wanted * scale);
 }
 
-}  // namespace
+float shrinking(int width, int height) {
+    const auto [shorter, longer] = std::minmax(width, height);
+    return std::min({1.0F, static_cast<float>(longer) / 1280, static_cast<float>(shorter) / 720});
+}
 
 Box fit_row(const Box& scene, float scale) {
     const float from = scene.x + 0.5F * scene.width + 44 * scale;
@@ -80,8 +83,15 @@ WindowLayout on_end(float w, float h) {
 }  // namespace
 
 WindowLayout layout_of(int width, int height) {
-    const auto w = static_cast<float>(width), h = static_cast<float>(height);
-    return height > width ? on_end(w, h) : lying(w, h);
+    const float shrunk = shrinking(width, height);
+    const float w = static_cast<float>(width) / shrunk, h = static_cast<float>(height) / shrunk;
+    WindowLayout place = height > width ? on_end(w, h) : lying(w, h);
+    place.scale *= shrunk;
+    place.gap *= shrunk;
+    for (Box* box : {&place.title, &place.steps, &place.dark, &place.scene, &place.left_camera, &place.right_camera,
+                     &place.table, &place.buttons, &place.banner})
+        *box = {box->x * shrunk, box->y * shrunk, box->width * shrunk, box->height * shrunk};
+    return place;
 }
 
 std::array<int, 4> whole_pixels(const Box& box) {

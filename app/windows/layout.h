@@ -21,6 +21,13 @@ struct WindowLayout {
     Box title, steps, dark, scene, left_camera, right_camera, table, buttons, banner;
 };
 
+/// The scale at 1280 x 720, and at 720 x 1280: below it all is shrunk.
+inline constexpr float kLeastScale = 2.0F / 3;
+
+/// Of a button, and of the lowest part of any: 72 pixels at least (20 mm on a 24 inch screen), less only where the
+/// whole window is smaller than 1280 x 720.
+float button_height(float scale, float wanted = 76);
+
 /// Right half of the upper edge of the 3-D view, so that the letters at the middle of its edges stay free: Before,
 /// After, Error.
 Box fit_row(const Box& scene, float scale);
@@ -28,8 +35,10 @@ Box fit_row(const Box& scene, float scale);
 /// The lowest button in the lower left corner of the 3-D view; the others stand above it.
 Box corner_button(const Box& scene, float scale);
 
-/// For a window of that size, at least 1280 x 720, or 720 x 1280 on end. Buttons are never lower than 72 pixels (20 mm
-/// on a 24 inch screen).
+/// By how much all is smaller than at 1280 x 720, or 720 x 1280 on end: 1 from there on.
+float shrinking(int width, int height);
+
+/// For a window of that size, upright or on end. One smaller than 1280 x 720 looks as one of that size would, shrunk.
 WindowLayout layout_of(int width, int height);
 
 }  // namespace planlight

@@ -14,10 +14,6 @@
 namespace planlight {
 namespace {
 
-float button_height(const Pen& pen) {
-    return std::max(72.0F, 76 * pen.scale);
-}
-
 /// Not all of the plan is bright.
 bool part_of_plan(const OperatorModel& model) {
     return model.item_of_moment ||
@@ -137,7 +133,7 @@ OperatorAction MiddleView::draw_landmarks(const Pen& pen, const Box& place, cons
 void MiddleView::draw_scene(const Pen& pen, const Box& place, const OperatorModel& model) {
     pen.panel(place);
     const SceneModel shown = scene_of_fit(model, fit_view);
-    const float strip = button_height(pen) + 24 * pen.scale;  // of buttons, which a finger must meet at once
+    const float strip = button_height(pen.scale) + 24 * pen.scale;  // of buttons, which a finger must meet at once
     const float above = strip + (views_.open() ? ViewButtons::height(pen.scale) : 0);
     const int rows = (model.landmarks ? 1 : 0) + (model.confirm ? 1 : 0) + (model.check_skin ? 1 : 0) +
                      (part_of_plan(model) ? 1 : 0);
@@ -177,7 +173,7 @@ void MiddleView::draw_title(const Pen& pen, const Box& place, const OperatorMode
     const float indent = 18 * pen.scale;
     pen.paragraph(
         pen.fonts.small, title,
-        {place.x + indent, place.y + 14 * pen.scale, 0.44F * place.width - indent, 4.2F * line_height(pen.fonts.small)},
+        {place.x + indent, place.y + 14 * pen.scale, 0.44F * place.width - indent, 6.2F * line_height(pen.fonts.small)},
         on_pictures().text);
 }
 

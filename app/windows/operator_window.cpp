@@ -155,7 +155,7 @@ struct OperatorWindow::Parts {
     /// Over the middle, so that the banner and DARK stay free.
     OperatorAction draw_question(const Pen& pen) {
         const Box& scene = place.scene;
-        const float s = pen.scale, height = std::max(72.0F, 84 * s), pad = 24 * s;
+        const float s = pen.scale, height = button_height(s, 84), pad = 24 * s;
         const Box card{scene.x + 0.08F * scene.width, scene.y + 0.2F * scene.height, 0.84F * scene.width,
                        height + 5 * line_height(pen.fonts.title) + 2 * pad};
         pen.panel(card, pen.theme->notice.fill, pen.theme->notice.edge, 3);

@@ -152,7 +152,7 @@ ReviewLayout review_layout(float w, float h) {
     const float s = place.scale, gap = 16 * s, inside = w - 2 * gap;
     place.title = {gap, gap, inside, 60 * s};
     const std::size_t rows = on_end ? 2 : 1, across = place.buttons.size() / rows;
-    const float high = std::max(72.0F, 84 * s), between = 12 * s;
+    const float high = button_height(s, 84), between = 12 * s;
     const float wide = (inside - static_cast<float>(across - 1) * between) / static_cast<float>(across);
     for (std::size_t i = 0; i < place.buttons.size(); ++i)
         place.buttons[i] = {gap + static_cast<float>(i % across) * (wide + between),

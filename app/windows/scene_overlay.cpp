@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -131,6 +132,8 @@ bool has_letters(const std::string& name) {
 struct SceneOverlay::Parts {
     Boxes boxes;
     std::array<Text, 4> letters;  ///< left, right, top, bottom
+    /// Of all that stands in the lower right corner, pixels from the lower left one.
+    double legends_left = std::numeric_limits<double>::infinity(), legends_top = 0;
     Text title;
     const Words* words = nullptr;
     std::array<Text, 4> values;
@@ -146,6 +149,7 @@ struct SceneOverlay::Parts {
 
     std::string say(const std::string& english) const { return words ? words->say(english) : english; }
 
+    /// After the legends: the lower letter stands above those that reach below the middle.
     void letters_at_edges(const SceneView& view, int width, int height, double scale, const LetterInsets& insets) {
         const ViewAxes axes = axes_of(view);
         const int size = static_cast<int>(32 * scale);
@@ -153,7 +157,14 @@ struct SceneOverlay::Parts {
         letters[0].place(direction_letters(-axes.right_in_ct), insets.left + gap, 0.5 * height, size);
         letters[1].place(direction_letters(axes.right_in_ct), width - insets.right - gap, 0.5 * height, size);
         letters[2].place(direction_letters(axes.up_in_ct), 0.5 * width, height - gap, size);
-        letters[3].place(direction_letters(-axes.up_in_ct), 0.5 * width, gap, size);
+        const bool in_the_way = legends_left < 0.5 * width + 0.8 * size;
+        letters[3].place(direction_letters(-axes.up_in_ct), 0.5 * width, in_the_way ? legends_top + 0.7 * size : gap,
+                         size);
+    }
+
+    void note_legend(double left, double top) {
+        legends_left = std::min(legends_left, left);
+        legends_top = std::max(legends_top, top);
     }
 
     /// Three fields: up to the first limit, up to the second, above.
@@ -183,8 +194,10 @@ struct SceneOverlay::Parts {
         if (!shown) return;
         const std::string caption =
             say(errors ? "The light may be off by so much, mm (95 %)" : "The scan lies so far from the skin, mm");
-        const double w = std::max(360 * scale, 0.56 * letters_px(scale) * signs_of(caption) + 24 * scale),
+        const double w = std::min(std::max(360 * scale, 0.56 * letters_px(scale) * signs_of(caption) + 24 * scale),
+                                  width - 32 * scale),
                      x = width - w - 16 * scale, y = 16 * scale, bar = w - 48 * scale;
+        note_legend(x - 8 * scale, 72 * scale + 0.7 * letters_px(scale));
         if (errors) {
             legend_of_errors(scene, caption, x, y, w, scale);
             return;
@@ -225,6 +238,7 @@ struct SceneOverlay::Parts {
         const double x = width - 16 * scale - std::min(letter * longest, width - 32 * scale);
         double y = (title.actor->GetVisibility() ? 124 : 32) * scale + line * static_cast<double>(lines);
         risk_title.place(caption, x, y, px);
+        note_legend(x, y + 0.7 * px);
         for (std::size_t i = 0; i < lines; ++i) {
             y -= line;
             if (!(i + 1 == kMostStructures && count > kMostStructures))
@@ -259,9 +273,10 @@ void SceneOverlay::update(const SceneModel& scene, const SceneView& view, int wi
         letter.actor->SetVisibility(!scene.of_scan);
         letter.set_ink(scene.on_paper);
     }
-    parts_->letters_at_edges(view, width, height, scale, insets);
+    parts_->legends_left = std::numeric_limits<double>::infinity(), parts_->legends_top = 0;
     parts_->legend(scene, width, scale);
     parts_->legend_of_risks(scene, width, scale);
+    parts_->letters_at_edges(view, width, height, scale, insets);
     parts_->boxes.done();
 }
 

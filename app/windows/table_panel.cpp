@@ -76,7 +76,7 @@ void draw_heading(const Pen& pen, const Columns& c, float top) {
 /// An error value; beyond its limits it has a shape beside it, not only a colour.
 void draw_error(const Pen& pen, const OperatorModel& model, const std::optional<double>& value, const Column& column,
                 float y) {
-    const std::string text = number_text(value, "");
+    const std::string text = error_text(value, "", {model.warn_above_mm, model.stop_above_mm});
     const bool known = value && std::isfinite(*value);
     const bool stop = known && std::abs(*value) > model.stop_above_mm,
                warn = known && std::abs(*value) > model.warn_above_mm;

@@ -27,10 +27,6 @@ constexpr Preset kPresets[] = {
     {"Surgeon", "view-surgeon", KeyMeaning::view_surgeon},
 };
 
-float button_height(float scale) {
-    return std::max(72.0F, 76 * scale);
-}
-
 bool far_from(const SceneView& a, const SceneView& b) {
     constexpr double kSeen = 0.01;  // radians
     const ViewAxes from = axes_of(a), to = axes_of(b);

@@ -165,6 +165,26 @@ TEST(RenderScene, AnEmptySceneIsDarkButHasItsLetters) {
     EXPECT_LT(letters_seen[2], 5000);
 }
 
+/// White pixels near the middle of the picture's width, from so many pixels above its lower edge to so many.
+int white_near_middle(const RgbImage& picture, int from, int to) {
+    int count = 0;
+    for (int y = picture.height - to; y < picture.height - from; ++y)
+        for (int x = picture.width / 2 - 16; x <= picture.width / 2 + 16; ++x) {
+            const Rgb& c = picture.pixels[static_cast<std::size_t>(y * picture.width + x)];
+            count += c[0] > 200 && c[1] > 200 && c[2] > 200;
+        }
+    return count;
+}
+
+TEST(RenderScene, TheLowerLetterStandsAboveALegendThatIsInItsWay) {
+    SceneModel scene;
+    EXPECT_GT(white_near_middle(render_scene(scene, {}, 640, 480), 0, 60), 50);
+    EXPECT_EQ(white_near_middle(render_scene(scene, {}, 640, 480), 72, 140), 0);
+    scene.skin_error_mm = std::make_shared<std::vector<float>>();
+    EXPECT_GT(white_near_middle(render_scene(scene, {}, 640, 480), 72, 140), 50) << "above 62 pixels of legend";
+    EXPECT_EQ(white_near_middle(render_scene(scene, {}, 1920, 1080), 90, 300), 0) << "beside it there is room";
+}
+
 /// How many pixels of the picture have about that colour's hue: its largest channel stands out in the same way.
 std::size_t pixels_like(const RgbImage& picture, const Rgb& colour) {
     std::size_t count = 0;

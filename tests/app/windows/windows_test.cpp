@@ -89,40 +89,49 @@ TEST(NumberText, HasOneDecimalItsUnitAndNoBlank) {
     EXPECT_EQ(number_text(-std::numeric_limits<double>::infinity(), "mm"), "–");
 }
 
+TEST(NumberText, AnErrorOverALimitDoesNotReadAsTheLimit) {
+    EXPECT_EQ(error_text(1.0, "", {1, 2}), "1.0");
+    EXPECT_EQ(error_text(1.001, "mm", {1, 2}), "1.1 mm");
+    EXPECT_EQ(error_text(1.2, "", {1, 2}), "1.2");
+    EXPECT_EQ(error_text(-2.03, "", {1, 2}), "-2.1");
+    EXPECT_EQ(error_text(std::nullopt, "", {1, 2}), "–");
+}
+
 bool overlap(const Box& a, const Box& b) {
     return a.x < b.right() && b.x < a.right() && a.y < b.bottom() && b.y < a.bottom();
 }
 
 void expect_in_place(int width, int height) {
     const WindowLayout p = layout_of(width, height);
+    const float least = 71.9F * shrinking(width, height);
     const std::vector<Box> all{p.title,        p.steps, p.dark,    p.scene, p.left_camera,
                                p.right_camera, p.table, p.buttons, p.banner};
     for (std::size_t i = 0; i < all.size(); ++i) {
         EXPECT_GE(all[i].x, 0);
         EXPECT_GE(all[i].y, 0);
-        EXPECT_LE(all[i].right(), width);
-        EXPECT_LE(all[i].bottom(), height);
-        EXPECT_GE(all[i].width, 72) << i << " at " << width << "x" << height;
-        EXPECT_GE(all[i].height, 72) << i << " at " << width << "x" << height;
+        EXPECT_LE(all[i].right(), static_cast<float>(width) + 0.01F);
+        EXPECT_LE(all[i].bottom(), static_cast<float>(height) + 0.01F);
+        EXPECT_GE(all[i].width, least) << i << " at " << width << "x" << height;
+        EXPECT_GE(all[i].height, least) << i << " at " << width << "x" << height;
         for (std::size_t j = 0; j < i; ++j)
             EXPECT_FALSE(overlap(all[i], all[j])) << i << " and " << j << " at " << width << "x" << height;
     }
-    EXPECT_GE((p.buttons.width - 3 * p.gap) / 4, 72);
+    EXPECT_GE((p.buttons.width - 3 * p.gap) / 4, least);
     // Over the 3-D view: four buttons in its corner end below those at its top, and beside those of the views.
     const Box corner = corner_button(p.scene, p.scale), fit = fit_row(p.scene, p.scale);
-    EXPECT_GE((fit.width - 24 * p.scale) / 4, 72) << width << "x" << height;
+    EXPECT_GE((fit.width - 24 * p.scale) / 4, least) << width << "x" << height;
     EXPECT_LT(corner.right(), fit.x) << width << "x" << height;
     EXPECT_GT(corner.bottom() - 4 * corner.height - 36 * p.scale, fit.bottom()) << width << "x" << height;
 }
 
 TEST(Layout, NothingOverlapsOrLeavesTheWindowAtAnySize) {
-    for (int width = 1280; width <= 3840; width += 64)
-        for (int height = 720; height <= std::min(2160, width); height += 48) expect_in_place(width, height);
+    for (int width = 800; width <= 3840; width += 32)
+        for (int height = 600; height <= std::min(2160, width); height += 48) expect_in_place(width, height);
 }
 
 TEST(Layout, NorOnAScreenThatStandsOnEnd) {
-    for (int height = 1280; height <= 3840; height += 64)
-        for (int width = 720; width <= std::min(2160, height - 1); width += 48) expect_in_place(width, height);
+    for (int height = 800; height <= 3840; height += 32)
+        for (int width = 600; width <= std::min(2160, height - 1); width += 48) expect_in_place(width, height);
 }
 
 TEST(CameraPicture, IsShrunkToTheMeanOfItsPixels) {
