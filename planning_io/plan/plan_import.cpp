@@ -1,6 +1,7 @@
 #include "planning_io/plan/plan_import.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -48,6 +49,39 @@ int schema_minor(const JsonValue& root) {
     return schema[at + before.size()] - '0';
 }
 
+/// How far a smooth line through the points (Catmull & Rom 1974), as 3D Slicer shows a curve unless it is told not to,
+/// runs beside the straight one, mm.
+double smooth_beside_straight_mm(const OsteotomyLine& line) {
+    const auto n = static_cast<std::ptrdiff_t>(line.points_in_ct.size());
+    const auto at = [&](std::ptrdiff_t i) {
+        return line.points_in_ct[static_cast<std::size_t>(line.closed ? (i + n) % n
+                                                                      : std::clamp<std::ptrdiff_t>(i, 0, n - 1))];
+    };
+    double most_mm = 0;
+    for (std::ptrdiff_t i = 0; n > 2 && i < (line.closed ? n : n - 1); ++i) {
+        const Eigen::Vector3d a = at(i - 1), b = at(i), c = at(i + 1), d = at(i + 2), way = c - b;
+        for (double t = 0.1; t < 0.95; t += 0.1) {
+            const Eigen::Vector3d smooth = 0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t * t +
+                                                  (3 * b - a - 3 * c + d) * t * t * t),
+                                  straight = b + std::clamp((smooth - b).dot(way) / way.squaredNorm(), 0., 1.) * way;
+            most_mm = std::max(most_mm, (smooth - straight).norm());
+        }
+    }
+    return most_mm;
+}
+
+/// The file does not say whether the curve was shown smooth. Empty where that makes no difference.
+std::string note_on_curve(const OsteotomyLine& line) {
+    constexpr double kSeen_mm = 0.5;
+    const double aside_mm = smooth_beside_straight_mm(line);
+    if (aside_mm <= kSeen_mm) return {};
+    return fmt::format(
+        "\"{}\" runs straight between its {} points. A smooth curve through them, as 3D Slicer shows one unless its "
+        "curve type is linear, lies up to {:.1f} mm beside that: if that is meant, resample the curve there and save "
+        "it again.",
+        line.name, line.points_in_ct.size(), aside_mm);
+}
+
 PlanImport read_markups(const std::string& content, const fs::path& file, const PlanImportSettings& settings) {
     PlanImport read;
     const Json json = parse_json(content, file);
@@ -57,6 +91,9 @@ PlanImport read_markups(const std::string& content, const fs::path& file, const 
     for (std::size_t i = 0; i < markups.size(); ++i) {
         append_markup(read.plan, markups[i], minor >= 3, plan_name_of(file));
         settled_space(space_named(markups[i].at("coordinateSystem").text()), settings.space, file, "");
+        if (!markups[i].at("type").text().ends_with("Curve")) continue;
+        if (std::string note = note_on_curve(read.plan.osteotomy_lines.back()); !note.empty())
+            read.notes.push_back(std::move(note));
     }
     return read;
 }
@@ -153,14 +190,62 @@ void append(PlanImport& to, PlanImport more) {
     move(to.notes, more.notes);
 }
 
+namespace {
+
+/// Names stand in rows, on the skin and in tables: line breaks and other signs that are not written become a space.
+void put_on_one_line(std::string& name) {
+    std::string line;
+    for (const char c : name) {
+        const auto code = static_cast<unsigned char>(c);
+        if (code >= 0x20 && code != 0x7F)
+            line += c;
+        else if (!line.empty() && line.back() != ' ')
+            line += ' ';
+    }
+    while (line.ends_with(' ')) line.pop_back();
+    name = std::move(line);
+}
+
+void put_names_on_one_line(Plan& plan) {
+    for (auto& item : plan.trajectories) put_on_one_line(item.name);
+    for (auto& item : plan.boreholes) put_on_one_line(item.name);
+    for (auto& item : plan.osteotomy_lines) put_on_one_line(item.name);
+    for (auto& item : plan.cut_planes) put_on_one_line(item.name);
+    for (auto& item : plan.risk_structures) put_on_one_line(item.name);
+}
+
+PlanImport looked_over(PlanImport read, const fs::path& file_or_folder) {
+    put_names_on_one_line(read.plan);
+    check_plan_limits(read.plan, file_or_folder);
+    check_extent(read.plan, file_or_folder);
+    return read;
+}
+
+/// What else lies in a folder of a plan: a part of it may be among that. Empty where there is nothing.
+std::string left_out_of(const fs::path& folder) {
+    constexpr std::size_t kNamed = 4;
+    std::vector<std::string> left_out;
+    for (const auto& entry : fs::directory_iterator(folder)) {
+        const std::string name = entry.path().filename().string();
+        if (name.starts_with('.') || is_plan_name(entry.path())) continue;
+        std::error_code ignored;
+        left_out.push_back(entry.is_directory(ignored) ? name + "/" : name);
+    }
+    if (left_out.empty()) return {};
+    std::sort(left_out.begin(), left_out.end());
+    const std::size_t named = std::min(left_out.size(), kNamed);
+    const std::vector<std::string> first(left_out.begin(), left_out.begin() + static_cast<std::ptrdiff_t>(named));
+    return fmt::format(
+        "Not read from {}: {}{}. Give a file of the plan that is among these by itself, or save it as .mrk.json.",
+        folder.string(), fmt::join(first, ", "),
+        left_out.size() > named ? fmt::format(" and {} more", left_out.size() - named) : "");
+}
+
+}  // namespace
+
 PlanImport import_plan(const fs::path& file_or_folder, const PlanImportSettings& settings) {
     check_exists(file_or_folder, "Check the name of the file or folder.");
-    if (!fs::is_directory(file_or_folder)) {
-        PlanImport read = read_one(file_or_folder, settings);
-        check_plan_limits(read.plan, file_or_folder);
-        check_extent(read.plan, file_or_folder);
-        return read;
-    }
+    if (!fs::is_directory(file_or_folder)) return looked_over(read_one(file_or_folder, settings), file_or_folder);
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(file_or_folder))
         if (is_plan_name(entry.path())) files.push_back(entry.path());
@@ -170,9 +255,8 @@ PlanImport import_plan(const fs::path& file_or_folder, const PlanImportSettings&
                          "Save the plan's markups from 3D Slicer (.mrk.json) into this folder.");
     PlanImport all;
     for (const auto& file : files) append(all, read_one(file, settings));
-    check_plan_limits(all.plan, file_or_folder);
-    check_extent(all.plan, file_or_folder);
-    return all;
+    if (std::string left_out = left_out_of(file_or_folder); !left_out.empty()) all.notes.push_back(std::move(left_out));
+    return looked_over(std::move(all), file_or_folder);
 }
 
 }  // namespace planlight

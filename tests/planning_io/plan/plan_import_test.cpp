@@ -247,9 +247,46 @@ TEST_F(PlanImportTest, AFolderIsOnePlanOfAllItsFiles) {
     write("a.fcsv", fcsv("4.10", "0", "id_0,10,20,30,0,0,0,1,1,1,0,P1,,\n"));
     write("b.csv", "# SPACE=LPS\nname,ex,ey,ez,tx,ty,tz\nA,1,2,3,4,5,6\n");
     write("notes.txt", "not a plan");
-    const Plan plan = import_plan(folder_.path()).plan;
-    EXPECT_EQ(plan.boreholes.size(), 1U);
-    EXPECT_EQ(plan.trajectories.size(), 1U);
+    write("old.acsv", "point|1|2|3|1|1");
+    std::filesystem::create_directory(folder_.path() / "more");
+    const PlanImport read = import_plan(folder_.path());
+    EXPECT_EQ(read.plan.boreholes.size(), 1U);
+    EXPECT_EQ(read.plan.trajectories.size(), 1U);
+    ASSERT_EQ(read.notes.size(), 1U);
+    EXPECT_NE(read.notes[0].find("more/, notes.txt, old.acsv"), std::string::npos) << read.notes[0];
+}
+
+TEST_F(PlanImportTest, ACurveOfFewPointsIsSaidToRunStraight) {
+    const auto notes = [&](const char* type, const std::vector<Vector3d>& points) {
+        std::string listed;
+        for (const Vector3d& p : points)
+            listed += fmt::format(R"({}{{"position": [{}, {}, {}]}})", listed.empty() ? "" : ", ", p.x(), p.y(), p.z());
+        return import_plan(
+                   write("cut.mrk.json", R"({"@schema": "markups-schema-v1.0.3.json#", "markups": [{"type": ")" +
+                                             std::string(type) +
+                                             R"(", "name": "Flap", "coordinateSystem": "LPS", "coordinateUnits": "mm",)"
+                                             R"( "controlPoints": [)" +
+                                             listed + "]}]}"))
+            .notes;
+    };
+    const std::vector<Vector3d> square{{0, 0, 0}, {40, 0, 0}, {40, 40, 0}, {0, 40, 0}};
+    const auto said = notes("ClosedCurve", square);
+    ASSERT_EQ(said.size(), 1U);  // in the middle of a side the smooth one passes at (9 * 80 - 0) / 16 = 45 mm
+    EXPECT_NE(said[0].find("\"Flap\" runs straight between its 4 points"), std::string::npos) << said[0];
+    EXPECT_NE(said[0].find("up to 5.0 mm"), std::string::npos) << said[0];
+    EXPECT_TRUE(notes("Angle", {square.begin(), square.begin() + 3}).empty()) << "straight by what it is";
+    std::vector<Vector3d> round;
+    for (int i = 0; i < 24; ++i) round.emplace_back(20 * std::cos(i * 0.2618), 20 * std::sin(i * 0.2618), 0);
+    EXPECT_TRUE(notes("ClosedCurve", round).empty()) << "0.17 mm beside its chords";
+}
+
+TEST_F(PlanImportTest, ANameIsOneLine) {
+    const fs::path file = write(
+        "way.mrk.json",
+        R"({"@schema": "markups-schema-v1.0.3.json#", "markups": [{"type": "Line", "name": "Left\n\tway  in\r\n",)"
+        R"( "coordinateSystem": "LPS", "coordinateUnits": "mm", "controlPoints":)"
+        R"( [{"position": [0, 0, 0]}, {"position": [0, 0, 50]}]}]})");
+    EXPECT_EQ(import_plan(file).plan.trajectories.at(0).name, "Left way  in");
 }
 
 }  // namespace
