@@ -49,21 +49,29 @@ int schema_minor(const JsonValue& root) {
     return schema[at + before.size()] - '0';
 }
 
-/// How far a smooth line through the points (Catmull & Rom 1974), as 3D Slicer shows a curve unless it is told not to,
-/// runs beside the straight one, mm.
+/// How far the cubic spline through the points runs beside the straight lines, mm. 3D Slicer shows a curve so unless it
+/// is told not to: even parameters, twice continuously differentiable (vtkCardinalSpline in a vtkParametricSpline), at
+/// open ends without a slope.
 double smooth_beside_straight_mm(const OsteotomyLine& line) {
-    const auto n = static_cast<std::ptrdiff_t>(line.points_in_ct.size());
-    const auto at = [&](std::ptrdiff_t i) {
-        return line.points_in_ct[static_cast<std::size_t>(line.closed ? (i + n) % n
-                                                                      : std::clamp<std::ptrdiff_t>(i, 0, n - 1))];
-    };
+    constexpr int kRounds = 40;  // each halves what is missing, and more
+    const auto n = line.points_in_ct.size();
+    if (n < 3) return 0;
+    const auto& points = line.points_in_ct;
+    std::vector<Eigen::Vector3d> slopes(n, Eigen::Vector3d::Zero());
+    for (int round = 0; round < kRounds; ++round)
+        for (std::size_t i = line.closed ? 0 : 1; i < (line.closed ? n : n - 1); ++i) {
+            const std::size_t before = (i + n - 1) % n, after = (i + 1) % n;
+            slopes[i] = (3 * (points[after] - points[before]) - slopes[before] - slopes[after]) / 4;
+        }
     double most_mm = 0;
-    for (std::ptrdiff_t i = 0; n > 2 && i < (line.closed ? n : n - 1); ++i) {
-        const Eigen::Vector3d a = at(i - 1), b = at(i), c = at(i + 1), d = at(i + 2), way = c - b;
+    for (std::size_t i = 0; i < (line.closed ? n : n - 1); ++i) {
+        const Eigen::Vector3d &from = points[i], &to = points[(i + 1) % n], way = to - from;
         for (double t = 0.1; t < 0.95; t += 0.1) {
-            const Eigen::Vector3d smooth = 0.5 * (2 * b + (c - a) * t + (2 * a - 5 * b + 4 * c - d) * t * t +
-                                                  (3 * b - a - 3 * c + d) * t * t * t),
-                                  straight = b + std::clamp((smooth - b).dot(way) / way.squaredNorm(), 0., 1.) * way;
+            const double to_go = 1 - t;
+            const Eigen::Vector3d smooth = from * to_go * to_go * (1 + 2 * t) + to * t * t * (3 - 2 * t) +
+                                           slopes[i] * t * to_go * to_go - slopes[(i + 1) % n] * t * t * to_go;
+            const Eigen::Vector3d straight =
+                from + std::clamp((smooth - from).dot(way) / way.squaredNorm(), 0., 1.) * way;
             most_mm = std::max(most_mm, (smooth - straight).norm());
         }
     }

@@ -271,9 +271,9 @@ TEST_F(PlanImportTest, ACurveOfFewPointsIsSaidToRunStraight) {
     };
     const std::vector<Vector3d> square{{0, 0, 0}, {40, 0, 0}, {40, 40, 0}, {0, 40, 0}};
     const auto said = notes("ClosedCurve", square);
-    ASSERT_EQ(said.size(), 1U);  // in the middle of a side the smooth one passes at (9 * 80 - 0) / 16 = 45 mm
+    ASSERT_EQ(said.size(), 1U);  // VTK 9.1's vtkParametricSpline, closed, passes the middle of a side at 47.500 mm
     EXPECT_NE(said[0].find("\"Flap\" runs straight between its 4 points"), std::string::npos) << said[0];
-    EXPECT_NE(said[0].find("up to 5.0 mm"), std::string::npos) << said[0];
+    EXPECT_NE(said[0].find("up to 7.5 mm"), std::string::npos) << said[0];
     EXPECT_TRUE(notes("Angle", {square.begin(), square.begin() + 3}).empty()) << "straight by what it is";
     std::vector<Vector3d> round;
     for (int i = 0; i < 24; ++i) round.emplace_back(20 * std::cos(i * 0.2618), 20 * std::sin(i * 0.2618), 0);
