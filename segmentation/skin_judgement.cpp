@@ -8,8 +8,10 @@
 
 #include "planning_io/types/error.h"
 #include "segmentation/boneless_ends.h"
+#include "segmentation/head_proportions.h"
 #include "segmentation/skin_layers.h"
 #include "segmentation/skin_shape.h"
+#include "segmentation/slice_steps.h"
 #include "segmentation/things_on_skin.h"
 
 namespace planlight {
@@ -59,6 +61,30 @@ void judge_size(SkinJudgement& r) {
                         "holds one of 60 to 85 mm)",
                         r.ball_radius_mm),
             kGiveHead);
+}
+
+void judge_proportions(const TriangleMesh& skin, const HeadBall& ball, SkinJudgement& r) {
+    constexpr double kNarrow = 0.62, kBroad = 1.03, kLow = 0.65, kHigh = 1.2;
+    const auto found = head_proportions(skin, ball);
+    if (!found) return;
+    r.breadth_of_length = found->breadth_of_length;
+    r.height_of_width = found->height_of_width.value_or(0);
+    const std::string remedy =
+        "Compare the voxel size in the file with what the scanner was set to; convert the series again from DICOM.";
+    if (found->breadth_of_length < kNarrow || found->breadth_of_length > kBroad)
+        add(r.doubts,
+            fmt::format(
+                "The head is {:.0f} mm broad and {:.0f} mm long, which few heads are: the size of the voxels in "
+                "the file may be wrong",
+                found->breadth_mm, found->length_mm),
+            remedy);
+    else if (found->height_of_width && (*found->height_of_width < kLow || *found->height_of_width > kHigh))
+        add(r.doubts,
+            fmt::format("The crown is {} for a head {:.0f} mm broad and {:.0f} mm long ({:.2f}; heads have 0.8 to 1): "
+                        "the distance of the slices in the file may be wrong",
+                        *found->height_of_width < kLow ? "low" : "high", found->breadth_mm, found->length_mm,
+                        *found->height_of_width),
+            remedy);
 }
 
 void judge_layers(const Volume& volume, bool air_is_blank, double faint_share, SkinJudgement& r) {
@@ -221,6 +247,21 @@ std::string way_in_words(const Eigen::Vector3d& along_in_ct) {
     return kWays[axis];
 }
 
+void judge_movement(const Volume& volume, const SkinMask& mask, SkinJudgement& r) {
+    const auto step = largest_slice_step(volume, mask);
+    if (!step) return;
+    r.slice_jump_mm = step->jump_mm;
+    Eigen::Index across = 0;
+    step->normal_in_ct.cwiseAbs().maxCoeff(&across);
+    add(r.doubts,
+        fmt::format("Between two slices across {}, at {:.0f} mm, the whole outline jumps: what follows is shifted by "
+                    "{:.1f} mm and turned by {:.1f} degrees. The patient seems to have moved while the series was "
+                    "taken, and the skin of one side of that place does not fit the other",
+                    way_in_words(step->normal_in_ct), step->place_in_ct[across], step->shift_mm,
+                    std::abs(step->turn) * 180 / std::numbers::pi),
+        "Give a series in which the patient lay still; look at the skin in the report.");
+}
+
 void judge_fat_shift(const Volume& volume, SkinJudgement& r) {
     r.fat_shift_mm = volume.fat_shift_in_ct.norm();
     if (!(r.fat_shift_mm > 0)) return;
@@ -305,6 +346,7 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     result.noise_sigma_mm = skin_edge_sigma_mm(volume, mask, skin);
     result.sigma_mm = std::max(result.noise_sigma_mm, 0.25 * std::max(0.0, result.edge_blur_mm - 1.5));
     judge_size(result);
+    judge_proportions(skin, ball, result);
     judge_layers(volume, layers.faint_share < kFaintLayers && layers.air_is_blank, layers.faint_share, result);
     judge_face(result);
     judge_edges(mask, result);
@@ -313,6 +355,7 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     judge_noise(result);
     judge_fat_shift(volume, result);
     judge_steps(volume, result);
+    judge_movement(volume, mask, result);
     judge_cuts(result);
     return result;
 }

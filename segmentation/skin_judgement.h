@@ -36,11 +36,13 @@ struct SkinJudgement {
     double bumps_cm2 = NAN;
     double width = NAN;
     double shelf_cm2 = NAN;
-    double strand_mm = 0;       ///< of an MR: how long a thin thing is that hangs on the head
-    bool unsure = false;        ///< much of the outline moves with the threshold: other thresholds are to be seen
-    double sigma_mm = 0;        ///< `skin_edge_sigma_mm`, or more where the edge is blurred, with what fat may shift it
-    double noise_sigma_mm = 0;  ///< `skin_edge_sigma_mm` alone
-    double fat_shift_mm = 0;    ///< length of `Volume::fat_shift_in_ct`; 0: not said, or suppressed
+    double strand_mm = 0;  ///< of an MR: how long a thin thing is that hangs on the head
+    bool unsure = false;   ///< much of the outline moves with the threshold: other thresholds are to be seen
+    double sigma_mm = 0;   ///< `skin_edge_sigma_mm`, or more where the edge is blurred, with what fat may shift it
+    double breadth_of_length = 0, height_of_width = 0;  ///< `head_proportions`; 0: not measured
+    double slice_jump_mm = 0;       ///< of the outline between two slices, where the patient moved; else 0
+    double noise_sigma_mm = 0;      ///< `skin_edge_sigma_mm` alone
+    double fat_shift_mm = 0;        ///< length of `Volume::fat_shift_in_ct`; 0: not said, or suppressed
     std::string fat_shift_along;    ///< in words
     bool bright_bone = false;       ///< bone shines like a CT's in a volume that is not in HU
     std::vector<SkinDoubt> doubts;  ///< accepted with these
