@@ -26,7 +26,9 @@ struct Run {
     hb_script_t script;
 };
 
-std::vector<FriBidiLevel> levels_of(const std::u32string& text) {
+/// Of each sign: even is read from the left, odd from the right (Unicode annex 9, with figures kept whole).
+std::vector<FriBidiLevel> levels_of(const std::u32string& unmarked) {
+    const std::u32string text = mark_figures(unmarked);
     const auto n = static_cast<FriBidiStrIndex>(text.size());
     const auto* codes = reinterpret_cast<const FriBidiChar*>(text.data());
     std::vector<FriBidiCharType> types(text.size());
@@ -37,7 +39,10 @@ std::vector<FriBidiLevel> levels_of(const std::u32string& text) {
     FriBidiParType whole = FRIBIDI_PAR_ON;
     if (fribidi_get_par_embedding_levels_ex(types.data(), brackets.data(), n, &whole, levels.data()) == 0)
         std::fill(levels.begin(), levels.end(), FriBidiLevel{0});
-    return levels;
+    std::vector<FriBidiLevel> of_signs;
+    for (std::size_t i = 0; i < text.size(); ++i)  // without the marks
+        if (of_signs.size() < unmarked.size() && text[i] == unmarked[of_signs.size()]) of_signs.push_back(levels[i]);
+    return of_signs;
 }
 
 /// Scripts, those of signs that all share (digits, blanks) taken from their neighbours.

@@ -6,6 +6,14 @@
 #include <cmath>
 
 namespace planlight {
+namespace {
+
+/// As it is said of what is over a limit: with one decimal never as the limit itself.
+double over(double off_mm, double limit_mm) {
+    return std::max(off_mm, limit_mm + 0.1);
+}
+
+}  // namespace
 
 void LightGate::verify(Instant at) {
     verified_ = true;
@@ -128,7 +136,8 @@ bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
         return true;
     }
     if (last_->off_mm > settings_.warn_mm) {
-        ruling.headline = fmt::format("LOOK: the light lies up to {:.1f} mm beside the plan.", last_->off_mm);
+        ruling.headline = fmt::format("LOOK: the light lies up to {:.1f} mm beside the plan.",
+                                      over(last_->off_mm, settings_.warn_mm));
         ruling.details = {"Wait until the patient lies still; if it stays so, scan again."};
         return true;
     }
@@ -141,7 +150,9 @@ bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
             return true;
         }
         if (item.off_mm > settings_.warn_mm) {
-            ruling.headline = fmt::format("LOOK: \"{}\" lies {:.1f} mm beside its place.", item.name, item.off_mm);
+            ruling.off_mm = std::max(item.off_mm, ruling.off_mm.value_or(0));
+            ruling.headline = fmt::format("LOOK: \"{}\" lies {:.1f} mm beside its place.", item.name,
+                                          over(item.off_mm, settings_.warn_mm));
             ruling.details = {"Look at it on the skin; if it stays so, scan again."};
             return true;
         }
@@ -166,12 +177,15 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
     if (stopped_) {
         ruling.stop = true;
         if (skin_off_mm_ > settings_.stop_mm) {
-            ruling.headline = fmt::format("Dark: the skin lies {:.1f} mm off where the markers put it.", skin_off_mm_);
+            ruling.off_mm = std::max(skin_off_mm_, ruling.off_mm.value_or(0));
+            ruling.headline = fmt::format("Dark: the skin lies {:.1f} mm off where the markers put it.",
+                                          over(skin_off_mm_, settings_.stop_mm));
             ruling.details = {
                 "The markers have moved on the patient, or the patient under them: fix them, and scan again."};
             return ruling;
         }
-        ruling.headline = fmt::format("Dark: the light lay {:.1f} mm beside the plan.", ruling.off_mm.value_or(0));
+        ruling.headline = fmt::format("Dark: the light lay {:.1f} mm beside the plan.",
+                                      over(ruling.off_mm.value_or(0), settings_.stop_mm));
         ruling.details = {"The cameras measured it twice.", "Scan again; if it comes back, run `planlight check`."};
         return ruling;
     }
@@ -186,7 +200,9 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
     }
     if (skin_off_mm_ > settings_.warn_mm) {
         ruling.found_wrong = true;
-        ruling.headline = fmt::format("LOOK: the skin lies {:.1f} mm off where the markers put it.", skin_off_mm_);
+        ruling.off_mm = std::max(skin_off_mm_, ruling.off_mm.value_or(0));
+        ruling.headline = fmt::format("LOOK: the skin lies {:.1f} mm off where the markers put it.",
+                                      over(skin_off_mm_, settings_.warn_mm));
         ruling.details = {"Check the skin again; if it stays so, scan and match anew."};
         return ruling;
     }

@@ -44,9 +44,10 @@ public:
         std::string headline;  ///< empty where it is dark for a reason of the caller's
         std::vector<std::string> details;
         bool ask_to_verify = false;
-        bool found_wrong = false;                ///< the headline says what was measured wrong, or known to be
-        bool stop = false;                       ///< the light must go out now, and stays out until `restart`
-        std::optional<double> off_mm, sigma_mm;  ///< of the light, as last measured
+        bool found_wrong = false;  ///< the headline says what was measured wrong, or known to be
+        bool stop = false;         ///< the light must go out now, and stays out until `restart`
+        /// Of the light beside the plan, as last measured; at least what the headline says of an item or of the skin.
+        std::optional<double> off_mm, sigma_mm;
     };
 
     /// One update: whether light is on the skin, what CHECK saw of it, if it looked, and what is known to be wrong.

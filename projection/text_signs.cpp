@@ -2,6 +2,8 @@
 
 #include <hb.h>
 
+#include <string_view>
+
 #include "projection/stroke_font.h"
 
 namespace planlight {
@@ -14,7 +16,41 @@ bool is_mark(char32_t code) {
            category == HB_UNICODE_GENERAL_CATEGORY_ENCLOSING_MARK;
 }
 
+bool is_digit(char32_t code) {
+    return code >= U'0' && code <= U'9';
+}
+
+/// What may stand right before a figure and belongs to it.
+bool is_sign_of_figure(char32_t code) {
+    return std::u32string_view(U"+-−±<>≤≥≈~øØ⌀°").find(code) != std::u32string_view::npos;
+}
+
+/// A digit with which a figure begins: not within "B3", "12.5" or "2026-11-22".
+bool begins_figure(const std::u32string& text, std::size_t at) {
+    if (!is_digit(text[at])) return false;
+    if (at == 0) return true;
+    const char32_t before = text[at - 1];
+    const bool letter = (before >= U'A' && before <= U'Z') || (before >= U'a' && before <= U'z');
+    const bool within =
+        at > 1 && is_digit(text[at - 2]) && std::u32string_view(U".,:/-").find(before) != std::u32string_view::npos;
+    return !letter && !within && !is_digit(before);
+}
+
 }  // namespace
+
+std::u32string mark_figures(const std::u32string& text) {
+    constexpr char32_t kFromTheLeft = 0x200E;
+    std::u32string marked;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (begins_figure(text, i)) {
+            std::size_t at = marked.size();
+            while (at > 0 && is_sign_of_figure(marked[at - 1])) --at;
+            marked.insert(at, 1, kFromTheLeft);
+        }
+        marked += text[i];
+    }
+    return marked;
+}
 
 bool has_no_ink(char32_t code) {
     return code == 0x00AD || code == 0x034F || code == 0x061C || (code >= 0x200B && code <= 0x200F) ||

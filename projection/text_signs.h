@@ -13,6 +13,10 @@ bool is_control(char32_t code);
 /// Orders another direction of reading than the letters' own: "B", U+202E, "12" would be lit as "B21".
 bool orders_direction(char32_t code);
 
+/// With U+200E, which has no ink, before each figure: after a Hebrew or Arabic name "12.5 mm" would else change places
+/// with the name, or with its own unit.
+std::u32string mark_figures(const std::u32string& text);
+
 /// A damaged byte, or a sign that means something else in every font.
 bool is_no_letter(char32_t code);
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "app/report/pdf_letters.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -15,6 +16,7 @@ namespace {
 
 constexpr const char* kFonts = "/usr/share/fonts/truetype/dejavu/";
 constexpr float kLeft = 48, kRight = 547, kTop = 800, kBottom = 56;
+constexpr float kCapital = 0.729F;  // of the font's size: how high its capital letters are
 constexpr float kBody = 9, kSmall = 7.5F, kHeading = 12, kTitle = 17, kLeading = 1.35F;
 
 void fail(HPDF_STATUS error, HPDF_STATUS detail, void*) {
@@ -108,14 +110,51 @@ struct PdfPages::Parts {
 
     float width(HPDF_Font of, float size, const std::string& words) {
         HPDF_Page_SetFontAndSize(page, of, size);
-        return HPDF_Page_TextWidth(page, words.c_str());
+        float all = 0;
+        for (const PdfLetters& part : letters_of(words))
+            all += part.outline ? size * kCapital * static_cast<float>(part.outline->width)
+                                : HPDF_Page_TextWidth(page, part.text.c_str());
+        return all;
     }
     void line_of(HPDF_Font of, float size, Ink ink, float x, const std::string& words) {
         HPDF_Page_SetRGBFill(page, ink.r, ink.g, ink.b);
         HPDF_Page_SetFontAndSize(page, of, size);
-        HPDF_Page_BeginText(page);
-        HPDF_Page_TextOut(page, x, y, words.c_str());
-        HPDF_Page_EndText(page);
+        for (const PdfLetters& part : letters_of(words)) {
+            if (part.outline) {
+                fill(*part.outline, x, size * kCapital, of == bold ? ink : Ink{-1, 0, 0});
+                x += size * kCapital * static_cast<float>(part.outline->width);
+                continue;
+            }
+            HPDF_Page_BeginText(page);
+            HPDF_Page_TextOut(page, x, y, part.text.c_str());
+            HPDF_Page_EndText(page);
+            x += HPDF_Page_TextWidth(page, part.text.c_str());
+        }
+    }
+    /// Filled on the line; with an edge of that ink where it is bold (no ink: red below 0).
+    void fill(const TextOutline& letters, float x, float capital, Ink edge) {
+        if (letters.signs.empty()) return;
+        if (edge.r >= 0) {
+            HPDF_Page_SetRGBStroke(page, edge.r, edge.g, edge.b);
+            HPDF_Page_SetLineWidth(page, 0.06F * capital);
+        }
+        for (const Sign& sign : letters.signs)
+            for (const auto& outline : sign.outlines) {
+                bool begun = false;
+                for (const Eigen::Vector2d& p : outline) {
+                    const float at_x = x + capital * static_cast<float>(p.x());
+                    const float at_y = y + capital * static_cast<float>(p.y());
+                    if (std::exchange(begun, true))
+                        HPDF_Page_LineTo(page, at_x, at_y);
+                    else
+                        HPDF_Page_MoveTo(page, at_x, at_y);
+                }
+                if (begun) HPDF_Page_ClosePath(page);
+            }
+        if (edge.r < 0)
+            HPDF_Page_Fill(page);
+        else
+            HPDF_Page_FillStroke(page);
     }
     /// Words into lines of that width; a word that is longer is broken.
     std::vector<std::string> broken(HPDF_Font of, float size, const std::string& words, float room) {

@@ -63,12 +63,15 @@ void draw_shape(const Pen& pen, StatusKind kind, ImVec2 middle, float radius, co
 }
 
 /// Value and the words that make a sentence of it; only what is known.
-std::vector<std::pair<std::string, const char*>> figures_of(const Figures& f) {
+std::vector<std::pair<std::string, const char*>> figures_of(const OperatorModel& model) {
+    const Figures& f = model.figures;
+    // As the sentences beside it say it: never under a tenth, over a limit never as the limit.
+    const auto light = f.overlay_error_mm ? std::optional(std::max(0.1, *f.overlay_error_mm)) : std::nullopt;
     std::vector<std::pair<std::string, const char*>> said;
     const auto add = [&](const std::optional<double>& value, const std::string& text, const char* words) {
         if (value && std::isfinite(*value)) said.emplace_back(text, words);
     };
-    add(f.overlay_error_mm, number_text(f.overlay_error_mm, "mm"), "is the light beside the plan");
+    add(light, error_text(light, "mm", {model.warn_above_mm, model.stop_above_mm}), "is the light beside the plan");
     add(f.updates_per_s, number_text(f.updates_per_s, "/ s"), "pictures reach the skin");
     add(f.head_moved_mm, number_text(f.head_moved_mm, "mm") + " · " + number_text(f.head_turned_deg, "°"),
         "has the head moved since the scan");
@@ -92,15 +95,15 @@ struct FigureColumns {
 };
 
 /// 0: there is nothing to show.
-float figures_width_of(const Pen& pen, const Box& box, const Figures& figures, bool narrow) {
-    const auto rows = figures_of(figures);
+float figures_width_of(const Pen& pen, const Box& box, const OperatorModel& model, bool narrow) {
+    const auto rows = figures_of(model);
     if (rows.empty()) return 0;
     const FigureColumns columns(pen, rows, box.width, narrow);
     return columns.values + columns.gap + columns.words;
 }
 
-void draw_figures(const Pen& pen, const Box& box, const Figures& figures, const Look& look, bool narrow) {
-    const auto rows = figures_of(figures);
+void draw_figures(const Pen& pen, const Box& box, const OperatorModel& model, const Look& look, bool narrow) {
+    const auto rows = figures_of(model);
     const auto [font, gap, values, words] = FigureColumns(pen, rows, box.width, narrow);
     const float step = box.height / 4;
     const float top = box.y + (box.height - step * static_cast<float>(rows.size())) / 2;
@@ -160,19 +163,30 @@ void draw_sentences(const Pen& pen, Box rest, const Status& status, const Look& 
     }
 }
 
-/// Over the sentences, in as many lines as it takes; returns the place that is left.
-Box draw_notice(const Pen& pen, Box rest, const std::string& notice) {
-    const float pad = 18 * pen.scale;
-    const std::string words = pen.say(notice);
-    const auto lines = static_cast<float>(broken(pen.fonts.strong, words, rest.width - pad / 2, 3).size());
-    const float height = lines * line_height(pen.fonts.strong);
+float notice_height(const Pen& pen, const Box& rest, const std::string& notice) {
+    constexpr std::size_t kMostLines = 3;
+    const float width = rest.width - 9 * pen.scale;
+    return static_cast<float>(broken(pen.fonts.strong, pen.say(notice), width, kMostLines).size()) *
+           line_height(pen.fonts.strong);
+}
+
+/// The place that a notice leaves to the sentences; all of it without one.
+Box below_notice(const Pen& pen, Box rest, const std::string& notice) {
+    if (notice.empty()) return rest;
+    const float used = notice_height(pen, rest, notice) + 9 * pen.scale;
+    rest.y += used;
+    rest.height -= used;
+    return rest;
+}
+
+/// Over the sentences, in as many lines as it takes; nothing without a notice.
+void draw_notice(const Pen& pen, const Box& rest, const std::string& notice) {
+    if (notice.empty()) return;
+    const float pad = 18 * pen.scale, height = notice_height(pen, rest, notice);
     pen.panel({rest.x - pad / 2, rest.y - pad / 2, rest.width + pad / 2, height + pad / 2}, pen.theme->notice.fill,
               pen.theme->notice.edge, 2);
-    pen.paragraph(pen.fonts.strong, words, {rest.x, rest.y - pad / 4, rest.width - pad / 2, height + 2},
+    pen.paragraph(pen.fonts.strong, pen.say(notice), {rest.x, rest.y - pad / 4, rest.width - pad / 2, height + 2},
                   pen.theme->notice.text);
-    rest.y += height + pad / 2;
-    rest.height -= height + pad / 2;
-    return rest;
 }
 
 }  // namespace
@@ -211,14 +225,13 @@ void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model, con
                    box.height - (narrow ? word_height + pad : 2 * pad)};
     };
     // What to do comes before the figures: they give way where the sentences have no room beside them.
-    Box rest = sentences_beside(figures_width_of(pen, figures, model.figures, narrow));
-    const bool give_way = notice.empty() && !has_room(pen, rest, model.status, pen.fonts.small);
-    if (give_way)
+    Box rest = sentences_beside(figures_width_of(pen, figures, model, narrow));
+    if (!has_room(pen, below_notice(pen, rest, notice), model.status, pen.fonts.small))
         rest = sentences_beside(0);
     else
-        draw_figures(pen, figures, model.figures, look, narrow);
-    if (!notice.empty()) rest = draw_notice(pen, rest, notice);
-    draw_sentences(pen, rest, model.status, look);
+        draw_figures(pen, figures, model, look, narrow);
+    draw_notice(pen, rest, notice);
+    draw_sentences(pen, below_notice(pen, rest, notice), model.status, look);
 }
 
 }  // namespace planlight

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "app/windows/visual_order.h"
+
 namespace planlight {
 namespace {
 
@@ -67,7 +69,8 @@ void note_lacking(const ImFont* font, const std::string& text, std::set<unsigned
 
 }  // namespace
 
-float text_width(const ImFont* font, const std::string& text) {
+float text_width(const ImFont* font, const std::string& line) {
+    const std::string text = visual_order(line);
     return font->CalcTextSizeA(font->FontSize, 1e9F, 0, text.c_str(), text.c_str() + text.size()).x;
 }
 
@@ -129,10 +132,11 @@ void Pen::panel(const Box& box, ImU32 fill, ImU32 edge, float edge_width) const 
 
 void Pen::line(const ImFont* font, const std::string& text, float x, float middle_y, float width, ImU32 colour,
                Side side) const {
-    const std::string shown = width > 0 ? shortened(font, text, width) : text;
-    if (cut && shown != text) cut->push_back(text);
+    const std::string whole = width > 0 ? shortened(font, text, width) : text;
+    if (cut && whole != text) cut->push_back(text);
+    const std::string shown = visual_order(whole);
     if (lacking) note_lacking(font, shown, *lacking);
-    const float spare = (width > 0 ? width : 0) - text_width(font, shown);
+    const float spare = (width > 0 ? width : 0) - text_width(font, whole);
     if (side == Side::right) x += spare;
     if (side == Side::centre) x += spare / 2;
     list->AddText(font, font->FontSize, ImVec2(std::round(x), std::round(middle_y - font->FontSize / 2)), colour,

@@ -106,6 +106,21 @@ TEST(Lettering, ArabicIsJoinedAndRunsFromTheRight) {
     EXPECT_GT(figures.width, twelve.width + 0.5);
 }
 
+// "12 mm" after a Hebrew name was lit as "mm 12", and "12.5 אב, mm" where the line begins in English.
+TEST(Lettering, AFigureKeepsItsUnitAndItsPlaceBesideANameFromTheRight) {
+    const TextOutline figure = lettering().outline("12 mm"), behind = lettering().outline("אב 12 mm");
+    ASSERT_EQ(figure.signs.size(), 4u);
+    ASSERT_EQ(behind.signs.size(), 6u);
+    for (std::size_t i = 0; i < 4; ++i)  // at the left, for the line is read from the right
+        EXPECT_NEAR(behind.signs[i].outlines[0][0].x(), figure.signs[i].outlines[0][0].x(), 1e-9);
+    const TextOutline after = lettering().outline("B אב, 12 mm");
+    ASSERT_EQ(after.signs.size(), 8u);
+    for (std::size_t i = 0; i < 4; ++i)
+        EXPECT_EQ(after.signs[4 + i].outlines.size(), figure.signs[i].outlines.size()) << "12 mm stands at the end";
+    EXPECT_NEAR(after.signs[7].outlines[0][0].x() - after.signs[4].outlines[0][0].x(),
+                figure.signs[3].outlines[0][0].x() - figure.signs[0].outlines[0][0].x(), 1e-9);
+}
+
 TEST(Lettering, WhatNoFontHasIsToldAndNothingIsDrawn) {
     for (const char* name : {"B\U0010FFFD", "\uE123 links", "bad \xFF byte"}) {
         const TextOutline text = lettering().outline(name);

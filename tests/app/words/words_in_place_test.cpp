@@ -3,6 +3,8 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <regex>
 #include <tuple>
 
 #include "app/live/session_states.h"
@@ -12,7 +14,9 @@
 #include "app/windows/panels.h"
 #include "app/windows/review_panels.h"
 #include "app/words/words.h"
+#include "projection/light_cause.h"
 #include "tests/app/windows/fake_model.h"
+#include "tests/app/words/source_texts.h"
 
 namespace planlight {
 namespace {
@@ -232,6 +236,53 @@ TEST_P(WordsInPlace, ARowThatIsSoughtIsSeenAndTheTableEndsWithTheLast) {
     }
     EXPECT_EQ(first, last);
     EXPECT_EQ(draw_table(drawn_.pen, box, model, {last, 3, true}, false), 3);
+}
+
+/// What the banner says while there is light, as small windows are used as well.
+class BannerInPlace : public WordsInPlace {
+protected:
+    void expect_room(const Status& status) {
+        OperatorModel model = test::fake_model();
+        model.status = status;
+        for (const char* notice : {"", "DARK was pressed: the light is out."}) {
+            draw_banner(drawn_.pen, drawn_.place.banner, model, notice);
+            expect_whole(status.headline + (*notice ? ", with a notice" : ""));
+        }
+    }
+};
+INSTANTIATE_TEST_SUITE_P(Windows, BannerInPlace,
+                         testing::Combine(testing::Values("en", "de", "ru"),
+                                          testing::Values(std::pair{800, 600}, std::pair{1024, 768},
+                                                          std::pair{1280, 720}, std::pair{1366, 768},
+                                                          std::pair{1920, 1080}, std::pair{3840, 2160},
+                                                          std::pair{1080, 1920}, std::pair{720, 1280})));
+
+TEST_P(BannerInPlace, EveryRulingOfTheGateHasRoom) {
+    std::vector<Status> said;
+    for (const std::string& literal :
+         test::literals_in(std::filesystem::path(PLANLIGHT_SOURCE_FOLDER) / "projection/light_gate.cpp")) {
+        if (!test::is_sentence(literal)) continue;
+        const std::string text = std::regex_replace(literal, std::regex("\\{[^{}]*\\}"), "12.3");
+        if (text.starts_with("LOOK") || text.starts_with("Dark") || text == "The plan is on the skin.")
+            said.push_back({StatusKind::check, text, {}});
+        else if (!said.empty())
+            said.back().details.push_back(text);
+    }
+    ASSERT_GE(said.size(), 10U);
+    for (const Status& status : said) expect_room(status);
+}
+
+TEST_P(BannerInPlace, EveryCauseOfWrongLightHasRoom) {
+    for (int fault = 0; fault <= static_cast<int>(LightFault::light_off); ++fault)
+        for (const bool ahead : {false, true}) {
+            LightCause cause;
+            cause.fault = static_cast<LightFault>(fault);
+            cause.size = 12.3, cause.low = 12, cause.high = 112, cause.marker = 9, cause.drawn_ahead = ahead;
+            expect_room({StatusKind::check, "LOOK: " + cause.headline(), {cause.sentence(), cause.remedy()}});
+            expect_room({StatusKind::dark,
+                         "Dark: the patient is not tracked: only 3 of 6 markers seen; 4 are needed.",
+                         {cause.sentence(), cause.remedy()}});
+        }
 }
 
 }  // namespace
