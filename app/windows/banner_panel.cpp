@@ -62,6 +62,10 @@ void draw_shape(const Pen& pen, StatusKind kind, ImVec2 middle, float radius, co
     }
 }
 
+float below_sentences(const Pen& pen) {
+    return 9 * pen.scale;  // they may reach so far below their place
+}
+
 /// Value and the words that make a sentence of it; only what is known.
 std::vector<std::pair<std::string, const char*>> figures_of(const OperatorModel& model) {
     const Figures& f = model.figures;
@@ -102,21 +106,31 @@ float figures_width_of(const Pen& pen, const Box& box, const OperatorModel& mode
     return columns.values + columns.gap + columns.words;
 }
 
+/// Each row as high as its words, what is to spare shared evenly; the last ones are left out where there is no room.
 void draw_figures(const Pen& pen, const Box& box, const OperatorModel& model, const Look& look, bool narrow) {
-    const auto rows = figures_of(model);
+    auto rows = figures_of(model);
     const auto [font, gap, values, words] = FigureColumns(pen, rows, box.width, narrow);
-    const float step = box.height / 4;
-    const float top = box.y + (box.height - step * static_cast<float>(rows.size())) / 2;
+    constexpr std::size_t kAnyLines = 9;
+    std::vector<float> lines;
+    float used = 0;
+    for (const auto& row : rows) {
+        lines.push_back(static_cast<float>(broken(font, pen.say(row.second), words + 1, kAnyLines).size()));
+        used += std::max(lines.back() * line_height(font), line_height(pen.fonts.number));
+    }
+    const float pad = below_sentences(pen);
+    while (rows.size() > 1 && used > box.height + pad) {
+        used -= std::max(lines[rows.size() - 1] * line_height(font), line_height(pen.fonts.number));
+        rows.pop_back();
+    }
+    const float spare = std::clamp((box.height - used) / 4, 0.0F, 0.6F * line_height(pen.fonts.number));
+    float top = box.y + (box.height - used - spare * static_cast<float>(rows.size())) / 2;
     for (std::size_t i = 0; i < rows.size(); ++i) {
-        const float y = top + step * (static_cast<float>(i) + 0.5F), x = box.right() - words;
+        const float height = lines[i] * line_height(font);
+        const float step = spare + std::max(height, line_height(pen.fonts.number));
+        const float y = top + step / 2, x = box.right() - words;
         pen.line(pen.fonts.number, rows[i].first, x - gap - values, y, values + 1, look.strong, Pen::Side::right);
-        const std::string sentence = pen.say(rows[i].second);
-        if (!narrow) {
-            pen.line(font, sentence, x, y, words + 1, look.text);
-            continue;
-        }
-        const auto lines = static_cast<float>(broken(font, sentence, words + 1, 9).size());
-        pen.paragraph(font, sentence, {x, y - lines * line_height(font) / 2, words + 1, step + 1}, look.text);
+        pen.paragraph(font, pen.say(rows[i].second), {x, y - height / 2, words + 1, height + 1}, look.text);
+        top += step;
     }
 }
 
@@ -139,10 +153,6 @@ float height_of(const Pen& pen, const Status& status, float width, const ImFont*
     float all = lines(pen.fonts.strong, status.headline);
     for (const std::string& detail : status.details) all += lines(details, detail);
     return all;
-}
-
-float below_sentences(const Pen& pen) {
-    return 9 * pen.scale;  // they may reach so far below their place
 }
 
 bool has_room(const Pen& pen, const Box& rest, const Status& status, const ImFont* details) {

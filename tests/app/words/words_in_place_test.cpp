@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <regex>
 #include <tuple>
 
@@ -40,17 +42,26 @@ public:
         pen.words = words_.get();
         pen.cut = &cut;
         pen.lacking = &lacking;
-        ImGui::NewFrame();
-        ImGui::Begin("all");
-        pen.list = ImGui::GetWindowDrawList();
     }
     ~DrawnWords() {
-        ImGui::End();
-        ImGui::EndFrame();
+        ImGui::SetCurrentContext(context_);
+        end();
         ImGui::DestroyContext(context_);
     }
     DrawnWords(const DrawnWords&) = delete;
     DrawnWords& operator=(const DrawnWords&) = delete;
+
+    /// An empty list to draw into, in which nothing was cut yet.
+    void begin() {
+        ImGui::SetCurrentContext(context_);
+        end();
+        ImGui::NewFrame();
+        ImGui::Begin("all");
+        drawing_ = true;
+        pen.list = ImGui::GetWindowDrawList();
+        cut.clear();
+        lacking.clear();
+    }
 
     void way_buttons(const OperatorModel& model) {
         const float width = (place.buttons.width - 3 * place.gap) / 4;
@@ -67,7 +78,14 @@ public:
     }
 
 private:
+    void end() {
+        if (!drawing_) return;
+        ImGui::End();
+        ImGui::EndFrame();
+        drawing_ = false;
+    }
     ImGuiContext* const context_ = ImGui::CreateContext();
+    bool drawing_ = false;
     std::shared_ptr<const Words> words_;
 
 public:
@@ -77,9 +95,21 @@ public:
     Pen pen{};
 };
 
-class WordsInPlace : public testing::TestWithParam<std::tuple<const char*, std::pair<int, int>>> {
+using LanguageAndSize = std::tuple<std::string, std::pair<int, int>>;
+
+/// The window in that language and size; its fonts are made once for all tests.
+DrawnWords& drawn_words(const LanguageAndSize& wanted) {
+    static std::map<LanguageAndSize, std::unique_ptr<DrawnWords>> made;
+    auto& drawn = made[wanted];
+    const auto& [language, size] = wanted;
+    if (!drawn) drawn = std::make_unique<DrawnWords>(language, size.first, size.second);
+    drawn->begin();
+    return *drawn;
+}
+
+class WordsInPlace : public testing::TestWithParam<LanguageAndSize> {
 protected:
-    DrawnWords drawn_{std::get<0>(GetParam()), std::get<1>(GetParam()).first, std::get<1>(GetParam()).second};
+    DrawnWords& drawn_ = drawn_words(GetParam());
     void expect_whole(const std::string& where) {
         for (const std::string& text : drawn_.cut) ADD_FAILURE() << where << ": no room for \"" << text << "\"";
         drawn_.cut.clear();
