@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 
 constexpr int kBlock_px = 8;
 constexpr double kCell_mm = 4;  // vertices within a cell become one (Rossignac & Borrel 1993)
-constexpr float kFar = std::numeric_limits<float>::infinity();
+constexpr float kFar = 0;       // of one over the depth
 constexpr double kTolerance_mm = 4;
 
 }  // namespace
@@ -46,7 +46,7 @@ DepthPicture::DepthPicture(const TriangleMesh& mesh) {
 void DepthPicture::draw(const CameraModel& projector_from_ct) {
     width_ = (projector_from_ct.width + kBlock_px - 1) / kBlock_px;
     height_ = (projector_from_ct.height + kBlock_px - 1) / kBlock_px;
-    depth_mm_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), kFar);
+    inverse_depth_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), kFar);
     for (std::size_t i = 0; i < vertices_in_ct_.size(); ++i) {
         const auto pixel = project(projector_from_ct, vertices_in_ct_[i]);
         if (!pixel) {
@@ -57,50 +57,52 @@ void DepthPicture::draw(const CameraModel& projector_from_ct) {
         seen_[i] << (pixel->x() + 0.5) / kBlock_px - 0.5, (pixel->y() + 0.5) / kBlock_px - 0.5, 1 / depth;
     }
     for (const auto& t : triangles_) {
-        const std::array<Vector3d, 3> corners{seen_[static_cast<std::size_t>(t[0])],
-                                              seen_[static_cast<std::size_t>(t[1])],
-                                              seen_[static_cast<std::size_t>(t[2])]};
-        if (corners[0].z() > 0 && corners[1].z() > 0 && corners[2].z() > 0) draw_triangle(corners);
+        const Vector3d &p = seen_[static_cast<std::size_t>(t[0])], &q = seen_[static_cast<std::size_t>(t[1])],
+                       &r = seen_[static_cast<std::size_t>(t[2])];
+        if (p.z() > 0 && q.z() > 0 && r.z() > 0) draw_triangle(p, q, r);
     }
 }
 
-void DepthPicture::draw_triangle(const std::array<Vector3d, 3>& p) {
-    const double area = (p[1].x() - p[0].x()) * (p[2].y() - p[0].y()) - (p[1].y() - p[0].y()) * (p[2].x() - p[0].x());
+/// One over the depth is linear in the picture, and so are the shares of the corners q and r.
+void DepthPicture::draw_triangle(const Vector3d& p, const Vector3d& q, const Vector3d& r) {
+    const int x0 = static_cast<int>(std::ceil(std::max(0.0, std::min({p.x(), q.x(), r.x()})))),
+              x1 = static_cast<int>(std::floor(std::min(width_ - 1.0, std::max({p.x(), q.x(), r.x()}))));
+    const int y0 = static_cast<int>(std::ceil(std::max(0.0, std::min({p.y(), q.y(), r.y()})))),
+              y1 = static_cast<int>(std::floor(std::min(height_ - 1.0, std::max({p.y(), q.y(), r.y()}))));
+    if (x0 > x1 || y0 > y1) return;
+    const Vector3d to_q = q - p, to_r = r - p;
+    const double area = to_q.x() * to_r.y() - to_q.y() * to_r.x();
     if (std::abs(area) < 1e-12) return;
-    const auto [low_x, high_x] = std::minmax({p[0].x(), p[1].x(), p[2].x()});
-    const auto [low_y, high_y] = std::minmax({p[0].y(), p[1].y(), p[2].y()});
-    const int x0 = static_cast<int>(std::ceil(std::max(0.0, low_x))),
-              x1 = static_cast<int>(std::floor(std::min(width_ - 1.0, high_x)));
-    const int y0 = static_cast<int>(std::ceil(std::max(0.0, low_y))),
-              y1 = static_cast<int>(std::floor(std::min(height_ - 1.0, high_y)));
-    for (int y = y0; y <= y1; ++y)
+    const double q_by_x = to_r.y() / area, q_by_y = -to_r.x() / area, r_by_x = -to_q.y() / area,
+                 r_by_y = to_q.x() / area;
+    constexpr double kRim = 1e-9;
+    for (int y = y0; y <= y1; ++y) {
+        float* row = inverse_depth_.data() + static_cast<std::ptrdiff_t>(y) * width_;
+        const double q_of_row = (y - p.y()) * q_by_y, r_of_row = (y - p.y()) * r_by_y;
         for (int x = x0; x <= x1; ++x) {
-            const double b = ((x - p[0].x()) * (p[2].y() - p[0].y()) - (y - p[0].y()) * (p[2].x() - p[0].x())) / area;
-            const double c = ((p[1].x() - p[0].x()) * (y - p[0].y()) - (p[1].y() - p[0].y()) * (x - p[0].x())) / area;
-            if (b < -1e-9 || c < -1e-9 || b + c > 1 + 1e-9) continue;
-            const double inverse_depth = (1 - b - c) * p[0].z() + b * p[1].z() + c * p[2].z();
-            float& depth =
-                depth_mm_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
-            depth = std::min(depth, static_cast<float>(1 / inverse_depth));
+            const double of_q = q_of_row + (x - p.x()) * q_by_x, of_r = r_of_row + (x - p.x()) * r_by_x;
+            if (of_q < -kRim || of_r < -kRim || of_q + of_r > 1 + kRim) continue;
+            row[x] = std::max(row[x], static_cast<float>(p.z() + of_q * to_q.z() + of_r * to_r.z()));
         }
+    }
 }
 
 DepthPicture::Answer DepthPicture::ask(const Eigen::Vector2d& pixel, double depth_mm) const {
     const int column = static_cast<int>(std::floor((pixel.x() + 0.5) / kBlock_px));
     const int row = static_cast<int>(std::floor((pixel.y() + 0.5) / kBlock_px));
-    float nearest = kFar, farthest = 0;
+    float nearest = kFar, farthest = std::numeric_limits<float>::infinity();  // one over the depth
     for (int y = row - 1; y <= row + 1; ++y)
         for (int x = column - 1; x <= column + 1; ++x) {
             if (x < 0 || y < 0 || x >= width_ || y >= height_) continue;
-            const float depth =
-                depth_mm_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x)];
-            nearest = std::min(nearest, depth);
-            farthest = std::max(farthest, depth);
+            const float there = inverse_depth_[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
+                                               static_cast<std::size_t>(x)];
+            nearest = std::max(nearest, there);
+            farthest = std::min(farthest, there);
         }
     const bool at_border = column < 1 || row < 1 || column >= width_ - 1 || row >= height_ - 1;
     if (at_border) return Answer::near_an_edge;
-    if (nearest > depth_mm - kTolerance_mm) return Answer::lit;
-    if (farthest < depth_mm - 2 * kTolerance_mm) return Answer::hidden;
+    if (nearest * (depth_mm - kTolerance_mm) < 1) return Answer::lit;
+    if (farthest * (depth_mm - 2 * kTolerance_mm) > 1) return Answer::hidden;
     return Answer::near_an_edge;
 }
 

@@ -25,12 +25,12 @@ public:
     std::size_t triangle_count() const { return triangles_.size(); }
 
 private:
-    void draw_triangle(const std::array<Eigen::Vector3d, 3>& corners);
+    void draw_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& r);
 
     std::vector<Eigen::Vector3d> vertices_in_ct_;
     std::vector<std::array<std::int32_t, 3>> triangles_;
     int width_ = 0, height_ = 0;
-    std::vector<float> depth_mm_;
+    std::vector<float> inverse_depth_;   ///< per block, of the nearest skin, 1/mm; 0 where there is none
     std::vector<Eigen::Vector3d> seen_;  ///< per vertex: block column, row, 1 / depth (0: not seen)
 };
 

@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <mutex>
 
 #include "planning_io/types/error.h"
@@ -242,7 +241,7 @@ RenderCounts DrawingRenderer::render_into(RgbImage& picture, const PlanDrawing& 
     picture.width = width();
     picture.height = height();
     picture.pixels.resize(static_cast<std::size_t>(width()) * static_cast<std::size_t>(height()));
-    std::memset(picture.pixels.data(), 0, picture.pixels.size() * sizeof(Rgb));
+    picture.fill({0, 0, 0});
     parts.projector_from_ct = parts.projector;
     parts.projector_from_ct.device_from_rig = parts.projector.device_from_rig * rig_from_ct;
     parts.light_in_ct = parts.projector_from_ct.centre_in_rig();
