@@ -96,7 +96,6 @@ void LightSchedule::show(const RgbImage& picture, Instant now, Instant valid_unt
     order.picture = std::make_shared<RgbImage>(picture);
     order.uniform =
         std::all_of(picture.pixels.begin(), picture.pixels.end(), [&](const Rgb& p) { return p == picture.pixels[0]; });
-    if (!settings_.over_exposure()) order.map = std::make_shared<LightMap>(width_, height_, &picture, settings_.panel);
     push(std::move(order), now);
 }
 
@@ -126,7 +125,11 @@ std::shared_ptr<const LightMap> LightSchedule::during(Instant opened, Instant cl
 }
 
 std::shared_ptr<const LightMap> LightSchedule::at(Instant at) {
-    if (const Order* order = order_at(at)) return order->map;
+    if (const Order* order = order_at(at)) {
+        if (!order->map)
+            order->map = std::make_shared<LightMap>(width_, height_, order->picture.get(), settings_.panel);
+        return order->map;
+    }
     if (!black_) black_ = std::make_shared<LightMap>(width_, height_, nullptr, settings_.panel);
     return black_;
 }

@@ -70,12 +70,18 @@ void measure(const simulation::SimulatedRig& truth, simulation::SimulatedRig& ri
 
 struct Frames {
     std::vector<double> measured_mm, true_mm, difference_mm, cost_ms, seen_share;
+    std::vector<double> track_ms, draw_ms, check_ms;  // of each update, by the wall
 };
 
 double processor_ms() {
     timespec now{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
     return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+std::string text_of(const std::vector<double>& values) {
+    const Distribution d = distribution_of(values);
+    return fmt::format("{:.2f} / {:.2f} / {:.2f}", d.median, d.p95, d.worst);
 }
 
 /// Updates of one session at one speed. The frame shows the newest picture that was lit by its mid-exposure.
@@ -85,6 +91,9 @@ void follow(Session& session, const SkinSurface& skin, simulation::SimulatedRig&
     LightChecker timed(session.drawing(), skin, session.rig());
     for (int i = 0; i < updates; ++i) {
         const Session::Update update = session.update();
+        frames.track_ms.push_back(1e3 * update.times.track_s);
+        frames.draw_ms.push_back(1e3 * update.times.draw_s);
+        if (update.light) frames.check_ms.push_back(1e3 * update.times.check_s);
         const ShownPicture* lit = nullptr;
         for (const ShownPicture& picture : shown)
             if (picture.lit_from <= update.frame.at) lit = &picture;
@@ -137,15 +146,16 @@ int measure_sessions(const Volume& volume, const Case& the_case, const CaseDrawi
         "%)\n");
     for (std::size_t k = 0; k < all.size(); ++k) {
         const Frames& f = all[k];
-        const auto text = [](const std::vector<double>& v) {
-            const Distribution d = distribution_of(v);
-            return fmt::format("{:.2f} / {:.2f} / {:.2f}", d.median, d.p95, d.worst);
-        };
         const Distribution cost = distribution_of(f.cost_ms);
         fmt::print("{:.0f} | {} | {} | {} | {} | {:.0f} % | {:.1f} / {:.1f}\n", kSpeeds_mm_s[k], f.true_mm.size(),
-                   text(f.measured_mm), text(f.true_mm), text(f.difference_mm), 100 * median(f.seen_share), cost.median,
-                   cost.p95);
+                   text_of(f.measured_mm), text_of(f.true_mm), text_of(f.difference_mm), 100 * median(f.seen_share),
+                   cost.median, cost.p95);
     }
+    fmt::print(
+        "head, mm/s | updates | tracking, ms by the wall (median / 95 % / worst) | drawing | CHECK where it looks\n");
+    for (std::size_t k = 0; k < all.size(); ++k)
+        fmt::print("{:.0f} | {} | {} | {} | {}\n", kSpeeds_mm_s[k], all[k].track_ms.size(), text_of(all[k].track_ms),
+                   text_of(all[k].draw_ms), text_of(all[k].check_ms));
     return 0;
 }
 
