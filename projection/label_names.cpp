@@ -11,6 +11,7 @@
 #include "projection/lay_out_label.h"
 #include "projection/stroke_font.h"
 #include "projection/text_signs.h"
+#include "projection/visual_order.h"
 
 namespace planlight {
 namespace {
@@ -44,7 +45,7 @@ char32_t looks_like(char32_t code) {
 /// What a reader sees of a name: two that differ in less look the same as light.
 std::string seen_of(const std::string& name) {
     std::string seen;
-    for (const char32_t code : code_points(name)) {
+    for (const char32_t code : code_points(visual_order(name))) {
         if (is_control(code) || has_no_ink(code) || (code == U' ' && (seen.empty() || seen.back() == ' '))) continue;
         seen += utf8_of(looks_like(code));
     }

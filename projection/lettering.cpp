@@ -1,6 +1,5 @@
 #include "projection/lettering.h"
 
-#include <fribidi/fribidi.h>
 #include <hb.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include "projection/font_face.h"
 #include "projection/stroke_font.h"
 #include "projection/text_signs.h"
+#include "projection/visual_order.h"
 
 namespace planlight {
 namespace {
@@ -22,28 +22,9 @@ using Eigen::Vector2d;
 struct Run {
     std::size_t begin, end;
     int font;
-    FriBidiLevel level;
+    std::int8_t level;  ///< even: read from the left, odd: from the right
     hb_script_t script;
 };
-
-/// Of each sign: even is read from the left, odd from the right (Unicode annex 9, with figures kept whole).
-std::vector<FriBidiLevel> levels_of(const std::u32string& unmarked) {
-    const std::u32string text = mark_figures(unmarked);
-    const auto n = static_cast<FriBidiStrIndex>(text.size());
-    const auto* codes = reinterpret_cast<const FriBidiChar*>(text.data());
-    std::vector<FriBidiCharType> types(text.size());
-    std::vector<FriBidiBracketType> brackets(text.size());
-    std::vector<FriBidiLevel> levels(text.size(), 0);
-    fribidi_get_bidi_types(codes, n, types.data());
-    fribidi_get_bracket_types(codes, n, types.data(), brackets.data());
-    FriBidiParType whole = FRIBIDI_PAR_ON;
-    if (fribidi_get_par_embedding_levels_ex(types.data(), brackets.data(), n, &whole, levels.data()) == 0)
-        std::fill(levels.begin(), levels.end(), FriBidiLevel{0});
-    std::vector<FriBidiLevel> of_signs;
-    for (std::size_t i = 0; i < text.size(); ++i)  // without the marks
-        if (of_signs.size() < unmarked.size() && text[i] == unmarked[of_signs.size()]) of_signs.push_back(levels[i]);
-    return of_signs;
-}
 
 /// Scripts, those of signs that all share (digits, blanks) taken from their neighbours.
 std::vector<hb_script_t> scripts_of(const std::u32string& text) {
@@ -69,9 +50,9 @@ constexpr double kLargerPoint = 1.6;
 
 /// From left to right as they are read (Unicode annex 9, rule L2).
 void put_in_order(std::vector<Run>& runs) {
-    FriBidiLevel highest = 0;
+    std::int8_t highest = 0;
     for (const Run& run : runs) highest = std::max(highest, run.level);
-    for (FriBidiLevel level = highest; level > 0; --level)
+    for (std::int8_t level = highest; level > 0; --level)
         for (std::size_t i = 0; i < runs.size(); ++i) {
             std::size_t end = i;
             while (end < runs.size() && runs[end].level >= level) ++end;
@@ -127,7 +108,7 @@ struct Lettering::Parts {
 };
 
 bool Lettering::Parts::take_runs(const std::u32string& text, std::vector<Run>& runs, TextOutline& out) {
-    const auto levels = levels_of(text);
+    const auto levels = reading_levels(text);
     const auto scripts = scripts_of(text);
     const auto begins = clusters_of(text);
     for (std::size_t c = 0; c + 1 < begins.size(); ++c) {

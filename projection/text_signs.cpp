@@ -2,6 +2,7 @@
 
 #include <hb.h>
 
+#include <optional>
 #include <string_view>
 
 #include "projection/stroke_font.h"
@@ -16,24 +17,42 @@ bool is_mark(char32_t code) {
            category == HB_UNICODE_GENERAL_CATEGORY_ENCLOSING_MARK;
 }
 
+bool is_one_of(std::u32string_view signs, char32_t code) {
+    return signs.find(code) != std::u32string_view::npos;
+}
+
+/// Of Western, Arabic and Persian figures.
 bool is_digit(char32_t code) {
-    return code >= U'0' && code <= U'9';
+    return (code >= U'0' && code <= U'9') || (code >= 0x660 && code <= 0x669) || (code >= 0x6F0 && code <= 0x6F9);
 }
 
-/// What may stand right before a figure and belongs to it.
-bool is_sign_of_figure(char32_t code) {
-    return std::u32string_view(U"+-−±<>≤≥≈~øØ⌀°").find(code) != std::u32string_view::npos;
+bool is_blank(char32_t code) {
+    return is_one_of(U" \t\u00A0\u2009\u202F", code);
 }
 
-/// A digit with which a figure begins: not within "B3", "12.5" or "2026-11-22".
-bool begins_figure(const std::u32string& text, std::size_t at) {
-    if (!is_digit(text[at])) return false;
-    if (at == 0) return true;
-    const char32_t before = text[at - 1];
-    const bool letter = (before >= U'A' && before <= U'Z') || (before >= U'a' && before <= U'z');
-    const bool within =
-        at > 1 && is_digit(text[at - 2]) && std::u32string_view(U".,:/-").find(before) != std::u32string_view::npos;
-    return !letter && !within && !is_digit(before);
+constexpr std::u32string_view kOpens = U"([{<\"'«“„‘";
+constexpr std::u32string_view kDiameters = U"±≤≥≈~øØ⌀";  // before a figure, with or without a blank
+constexpr std::u32string_view kSigns = U"+-−±<>≤≥≈~øØ⌀°";
+constexpr std::u32string_view kUnits = U"%‰°′″";      // letters of a unit know their direction themselves
+constexpr std::u32string_view kWithin = U".,:/-–−×";  // between two digits of a figure
+
+/// Where the figure begins of which text[at] is the first digit, its sign included; empty where the digit belongs to a
+/// word: "B3", "אב-12".
+std::optional<std::size_t> figure_from(const std::u32string& text, std::size_t at) {
+    std::size_t from = at;
+    while (from > 0 && is_one_of(kSigns, text[from - 1])) --from;
+    if (from > 1 && is_blank(text[from - 1]) && is_one_of(kDiameters, text[from - 2])) from -= 2;
+    if (from > 0 && !is_blank(text[from - 1]) && !is_one_of(kOpens, text[from - 1])) return std::nullopt;
+    return from;
+}
+
+/// Past its last digit, and past a unit that is no letter.
+std::size_t figure_to(const std::u32string& text, std::size_t at) {
+    const auto digit = [&](std::size_t i) { return i < text.size() && is_digit(text[i]); };
+    while (digit(at) || (at < text.size() && is_one_of(kWithin, text[at]) && digit(at + 1))) ++at;
+    if (at < text.size() && is_one_of(kUnits, text[at])) return at + 1;
+    if (at + 1 < text.size() && is_blank(text[at]) && is_one_of(kUnits, text[at + 1])) return at + 2;
+    return at;
 }
 
 }  // namespace
@@ -41,15 +60,19 @@ bool begins_figure(const std::u32string& text, std::size_t at) {
 std::u32string mark_figures(const std::u32string& text) {
     constexpr char32_t kFromTheLeft = 0x200E;
     std::u32string marked;
+    std::size_t done = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
-        if (begins_figure(text, i)) {
-            std::size_t at = marked.size();
-            while (at > 0 && is_sign_of_figure(marked[at - 1])) --at;
-            marked.insert(at, 1, kFromTheLeft);
+        if (!is_digit(text[i])) continue;
+        const auto from = figure_from(text, i);
+        const std::size_t to = figure_to(text, i);
+        if (from) {
+            marked.append(text, done, *from - done).push_back(kFromTheLeft);
+            marked.append(text, *from, to - *from).push_back(kFromTheLeft);
+            done = to;
         }
-        marked += text[i];
+        i = to - 1;
     }
-    return marked;
+    return marked.append(text, done);
 }
 
 bool has_no_ink(char32_t code) {
@@ -63,7 +86,8 @@ bool is_control(char32_t code) {
 }
 
 bool orders_direction(char32_t code) {
-    return (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);
+    return code == 0x061C || code == 0x200E || code == 0x200F || (code >= 0x202A && code <= 0x202E) ||
+           (code >= 0x2066 && code <= 0x2069);
 }
 
 bool is_no_letter(char32_t code) {

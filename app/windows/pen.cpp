@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "app/windows/visual_order.h"
+#include "projection/visual_order.h"
 
 namespace planlight {
 namespace {

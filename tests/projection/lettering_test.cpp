@@ -111,8 +111,15 @@ TEST(Lettering, AFigureKeepsItsUnitAndItsPlaceBesideANameFromTheRight) {
     const TextOutline figure = lettering().outline("12 mm"), behind = lettering().outline("אב 12 mm");
     ASSERT_EQ(figure.signs.size(), 4u);
     ASSERT_EQ(behind.signs.size(), 6u);
-    for (std::size_t i = 0; i < 4; ++i)  // at the left, for the line is read from the right
-        EXPECT_NEAR(behind.signs[i].outlines[0][0].x(), figure.signs[i].outlines[0][0].x(), 1e-9);
+    const double before = behind.signs[2].outlines[0][0].x() - figure.signs[0].outlines[0][0].x();
+    EXPECT_GT(before, 0.5) << "at the right of the name, as in the window";
+    for (std::size_t i = 0; i < 4; ++i)
+        EXPECT_NEAR(behind.signs[2 + i].outlines[0][0].x() - figure.signs[i].outlines[0][0].x(), before, 1e-9);
+    // A hyphen within a name is no minus of the figure after it: read from the right, alef, bet, hyphen, one, two.
+    const TextOutline joined = lettering().outline("אב-12"), twelve = lettering().outline("12");
+    ASSERT_EQ(joined.signs.size(), 5u);
+    for (std::size_t i = 0; i < 2; ++i)
+        EXPECT_EQ(joined.signs[i].outlines[0].size(), twelve.signs[i].outlines[0].size()) << "12 stands at the left";
     const TextOutline after = lettering().outline("B אב, 12 mm");
     ASSERT_EQ(after.signs.size(), 8u);
     for (std::size_t i = 0; i < 4; ++i)
@@ -248,6 +255,15 @@ TEST(LitNames, NamesOfTwoScriptsThatLookAlikeAreLitByCodes) {
         EXPECT_FALSE(names[1].by_code);
     }
     for (const auto& lit : lit_names({"Б2", "B2", "Ж2"}, 5)) EXPECT_FALSE(lit.by_code) << lit.name;
+}
+
+// Alef and a figure joined to it stand the same in light, whichever was written first.
+TEST(LitNames, NamesThatStandTheSameFromTheRightAreLitByCodes) {
+    const auto names = lit_names({"א1", "C", "1א"}, 5);
+    EXPECT_TRUE(names[0].by_code);
+    EXPECT_TRUE(names[2].by_code);
+    EXPECT_FALSE(names[1].by_code);
+    for (const auto& lit : lit_names({"א1", "א2"}, 5)) EXPECT_FALSE(lit.by_code) << lit.name;
 }
 
 TEST(Codes, NoCodeCanBeTakenForTheNameOfAnotherItem) {
