@@ -5,19 +5,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "projection/error_figure.h"
+
 namespace planlight {
-namespace {
-
-/// As it is said of what is over a limit: with one decimal never as the limit itself.
-double over(double off_mm, double limit_mm) {
-    return std::max(off_mm, limit_mm + 0.1);
-}
-
-}  // namespace
-
 void LightGate::verify(Instant at) {
     verified_ = true;
     lit_at_ = at;
+}
+
+std::string LightGate::said(double off_mm) const {
+    return error_figure(off_mm, {settings_.warn_mm, settings_.stop_mm});
 }
 
 void LightGate::forget() {
@@ -78,7 +75,9 @@ void LightGate::take(Instant at, const LightCheck& check) {
     const bool far = check.seen >= settings_.least_seen && check.most_mm > settings_.stop_mm;
     bad_ = far ? bad_ + 1 : 0;
     good_ = measured && check.off_mm <= settings_.warn_mm ? good_ + 1 : 0;
-    if (bad_ >= settings_.dark_after) stopped_ = true;
+    if (bad_ < settings_.dark_after) return;
+    stopped_ = true;
+    stopped_at_mm_ = check.off_mm;
 }
 
 LightGate::Ruling LightGate::step(Instant at, bool lit, const std::optional<LightCheck>& check,
@@ -136,8 +135,7 @@ bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
         return true;
     }
     if (last_->off_mm > settings_.warn_mm) {
-        ruling.headline = fmt::format("LOOK: the light lies up to {:.1f} mm beside the plan.",
-                                      over(last_->off_mm, settings_.warn_mm));
+        ruling.headline = fmt::format("LOOK: the light lies up to {} mm beside the plan.", said(last_->off_mm));
         ruling.details = {"Wait until the patient lies still; if it stays so, scan again."};
         return true;
     }
@@ -150,9 +148,8 @@ bool LightGate::rule_on_measurement(Instant at, Ruling& ruling) const {
             return true;
         }
         if (item.off_mm > settings_.warn_mm) {
-            ruling.off_mm = std::max(item.off_mm, ruling.off_mm.value_or(0));
-            ruling.headline = fmt::format("LOOK: \"{}\" lies {:.1f} mm beside its place.", item.name,
-                                          over(item.off_mm, settings_.warn_mm));
+            ruling.of_other = true;
+            ruling.headline = fmt::format("LOOK: \"{}\" lies {} mm beside its place.", item.name, said(item.off_mm));
             ruling.details = {"Look at it on the skin; if it stays so, scan again."};
             return true;
         }
@@ -177,15 +174,14 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
     if (stopped_) {
         ruling.stop = true;
         if (skin_off_mm_ > settings_.stop_mm) {
-            ruling.off_mm = std::max(skin_off_mm_, ruling.off_mm.value_or(0));
-            ruling.headline = fmt::format("Dark: the skin lies {:.1f} mm off where the markers put it.",
-                                          over(skin_off_mm_, settings_.stop_mm));
+            ruling.of_other = true;
+            ruling.headline =
+                fmt::format("Dark: the skin lies {} mm off where the markers put it.", said(skin_off_mm_));
             ruling.details = {
                 "The markers have moved on the patient, or the patient under them: fix them, and scan again."};
             return ruling;
         }
-        ruling.headline = fmt::format("Dark: the light lay {:.1f} mm beside the plan.",
-                                      over(ruling.off_mm.value_or(0), settings_.stop_mm));
+        ruling.headline = fmt::format("Dark: the light lay {} mm beside the plan.", said(stopped_at_mm_));
         ruling.details = {"The cameras measured it twice.", "Scan again; if it comes back, run `planlight check`."};
         return ruling;
     }
@@ -200,9 +196,8 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
     }
     if (skin_off_mm_ > settings_.warn_mm) {
         ruling.found_wrong = true;
-        ruling.off_mm = std::max(skin_off_mm_, ruling.off_mm.value_or(0));
-        ruling.headline = fmt::format("LOOK: the skin lies {:.1f} mm off where the markers put it.",
-                                      over(skin_off_mm_, settings_.warn_mm));
+        ruling.of_other = true;
+        ruling.headline = fmt::format("LOOK: the skin lies {} mm off where the markers put it.", said(skin_off_mm_));
         ruling.details = {"Check the skin again; if it stays so, scan and match anew."};
         return ruling;
     }
@@ -213,8 +208,9 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
     }
     if (!verified_) {
         ruling.headline = "LOOK at the light on two landmarks.";
-        ruling.details = {fmt::format("The cameras measure it within {:.1f} mm of the plan.", last_->off_mm),
-                          "Press \"Show landmarks\": they are lit one after the other for you to look at."};
+        ruling.details = {
+            fmt::format("The cameras measure it within {} mm of the plan.", said(std::max(0.1, last_->off_mm))),
+            "Press \"Show landmarks\": they are lit one after the other for you to look at."};
         return ruling;
     }
     if (good_ < settings_.green_after) {
@@ -223,8 +219,8 @@ LightGate::Ruling LightGate::rule(Instant at, const std::vector<LightCause>& cau
     }
     ruling.trust = LightTrust::aligned;
     ruling.headline = "The plan is on the skin.";
-    ruling.details = {fmt::format("Measured by the cameras: 95 % of the light within {:.1f} mm of the plan.",
-                                  std::max(0.1, last_->off_mm))};
+    ruling.details = {fmt::format("Measured by the cameras: 95 % of the light within {} mm of the plan.",
+                                  said(std::max(0.1, last_->off_mm)))};
     return ruling;
 }
 

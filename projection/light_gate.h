@@ -46,8 +46,8 @@ public:
         bool ask_to_verify = false;
         bool found_wrong = false;  ///< the headline says what was measured wrong, or known to be
         bool stop = false;         ///< the light must go out now, and stays out until `restart`
-        /// Of the light beside the plan, as last measured; at least what the headline says of an item or of the skin.
-        std::optional<double> off_mm, sigma_mm;
+        bool of_other = false;     ///< the figure in the headline is an item's or the skin's, not that of all light
+        std::optional<double> off_mm, sigma_mm;  ///< of the light beside the plan, as last measured
     };
 
     /// One update: whether light is on the skin, what CHECK saw of it, if it looked, and what is known to be wrong.
@@ -81,14 +81,16 @@ private:
     Ruling rule(Instant at, const std::vector<LightCause>& causes) const;
     bool rule_on_measurement(Instant at, Ruling& ruling) const;
     void forget();
+    std::string said(double off_mm) const;  ///< as every figure of an error here
     bool within_fresh(Instant then, Instant at) const { return then != Instant::min() && at - then <= settings_.fresh; }
 
     LightGateSettings settings_;
     bool verified_ = false, stopped_ = false, lit_ = false;
     int good_ = 0, bad_ = 0;
-    double brighter_ = 0;     ///< the lines than the skin beside them, mean of the last checks; 0: not known
-    bool faint_ = false;      ///< by that
-    double skin_off_mm_ = 0;  ///< by the last check of the skin; 0: none
+    double brighter_ = 0;       ///< the lines than the skin beside them, mean of the last checks; 0: not known
+    bool faint_ = false;        ///< by that
+    double stopped_at_mm_ = 0;  ///< of the light that was last stopped
+    double skin_off_mm_ = 0;    ///< by the last check of the skin; 0: none
     std::optional<LightCheck> last_;
     std::vector<Item> items_;
     Instant measured_at_{}, lit_at_{}, told_whole_at_ = Instant::min(), lit_since_{};

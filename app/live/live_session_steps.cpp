@@ -364,7 +364,8 @@ void LiveSession::show_update(const Session& session, const Room& room, const Se
             angle_between(*update.pose.rig_from_patient, RigidTransform::Identity()) * 180 / std::numbers::pi;
     }
     if (!update.overlay.lit) figures.delay_to_light_ms.reset();
-    if (landmark_ < 0) figures.overlay_error_mm = ruling.off_mm;  // else it is not the plan's
+    // Not that of a landmark, nor beside the figure of something else.
+    if (landmark_ < 0 && !ruling.of_other) figures.overlay_error_mm = ruling.off_mm;
     view_.found(update.frame.at, found_markers(session.tracker().seen_left()),
                 found_markers(session.tracker().seen_right()));
     const Status status = status_of(session, update, ruling, !drawing_.settings.card.empty() && landmark_ < 0);

@@ -155,7 +155,7 @@ void ReplayView::gate(GateCall call, Instant, double, const LightGate::Ruling* r
                                                                        : StatusKind::check;
         change([&](OperatorModel& m) {
             m.status = {kind, lit ? ruling->headline : "Dark: " + dark_reason_ + ".", ruling->details, {}};
-            m.figures.overlay_error_mm = ruling->off_mm;
+            m.figures.overlay_error_mm = ruling->of_other ? std::nullopt : ruling->off_mm;
             m.figures.delay_to_light_ms = lit ? std::optional(delay_ms_) : std::nullopt;
         });
     } catch (const std::exception&) {  // no memory: the next ruling is shown
