@@ -11,6 +11,8 @@ struct MiddlePlane {
     double yaw = 0, roll = 0, aside_mm = 0;
 
     Eigen::Vector3d left_in_ct() const { return Eigen::Vector3d(1, yaw, roll).normalized(); }
+    /// By over 15 degrees from the patient's own left and right.
+    bool looks_aside() const { return !(yaw > -0.27 && yaw < 0.27); }
     /// How far to the left of the plane, mm.
     double left_of(const Eigen::Vector3d& p_in_ct) const { return left_in_ct().dot(p_in_ct - centre_in_ct) - aside_mm; }
     Eigen::Vector3d mirrored(const Eigen::Vector3d& p_in_ct) const {

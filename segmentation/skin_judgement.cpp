@@ -63,7 +63,20 @@ void judge_size(SkinJudgement& r) {
             kGiveHead);
 }
 
-void judge_proportions(const TriangleMesh& skin, const HeadBall& ball, SkinJudgement& r) {
+/// What a nose of so large a head stands out by at least.
+double nose_due_mm(const SkinJudgement& r) {
+    return kNose_mm * std::min(1.0, r.ball_radius_mm / 72);
+}
+
+/// A head that looks aside by a quarter of a turn is broader along the patient's left and right than it is long.
+bool looks_ahead(const HeadProportions& found, const MiddlePlane& plane, const SkinJudgement& r) {
+    constexpr double kAside = 0.26;  // 15 degrees
+    const bool nose_ahead = std::isnan(r.nose_mm) || r.nose_mm >= nose_due_mm(r);
+    const bool mirrored = !(r.one_sided_cm2 > kOneSided_cm2);  // left and right are alike
+    return nose_ahead && mirrored && std::abs(found.turn) < kAside && !plane.looks_aside();
+}
+
+void judge_proportions(const TriangleMesh& skin, const HeadBall& ball, const MiddlePlane& plane, SkinJudgement& r) {
     constexpr double kNarrow = 0.62, kBroad = 1.03, kLow = 0.65, kHigh = 1.2;
     const auto found = head_proportions(skin, ball);
     if (!found) return;
@@ -71,17 +84,19 @@ void judge_proportions(const TriangleMesh& skin, const HeadBall& ball, SkinJudge
     r.height_of_width = found->height_of_width.value_or(0);
     const std::string remedy =
         "Compare the voxel size in the file with what the scanner was set to; convert the series again from DICOM.";
-    if (found->breadth_of_length < kNarrow || found->breadth_of_length > kBroad)
+    const bool ahead = looks_ahead(*found, plane, r);
+    const double narrow =
+        ahead ? found->breadth_of_length : std::min(found->breadth_of_length, 1 / found->breadth_of_length);
+    if (narrow < kNarrow || (ahead && found->breadth_of_length > kBroad))
         add(r.doubts,
-            fmt::format(
-                "The head is {:.0f} mm broad and {:.0f} mm long, which few heads are: the size of the voxels in "
-                "the file may be wrong",
-                found->breadth_mm, found->length_mm),
+            fmt::format("The head is {:.0f} mm broad and {:.0f} mm long, which few heads are: it is misshapen, or the "
+                        "size of the voxels in the file may be wrong",
+                        found->breadth_mm, found->length_mm),
             remedy);
     else if (found->height_of_width && (*found->height_of_width < kLow || *found->height_of_width > kHigh))
         add(r.doubts,
-            fmt::format("The crown is {} for a head {:.0f} mm broad and {:.0f} mm long ({:.2f}; heads have 0.8 to 1): "
-                        "the distance of the slices in the file may be wrong",
+            fmt::format("The crown is {} for a head {:.0f} mm broad and {:.0f} mm long ({:.2f}; heads have 0.8 to "
+                        "1.1): the distance of the slices in the file may be wrong",
                         *found->height_of_width < kLow ? "low" : "high", found->breadth_mm, found->length_mm,
                         *found->height_of_width),
             remedy);
@@ -137,7 +152,7 @@ void judge_layers(const Volume& volume, bool air_is_blank, double faint_share, S
 }
 
 void judge_face(SkinJudgement& r) {
-    if (!(r.nose_mm < kNose_mm * std::min(1.0, r.ball_radius_mm / 72))) return;
+    if (!(r.nose_mm < nose_due_mm(r))) return;
     add(r.doubts,
         fmt::format("The face is not there: nothing stands out before the cheeks by more than {:.0f} mm where a nose "
                     "should (noses have 25 to 50 mm); it was taken away, covered or cut off",
@@ -247,8 +262,8 @@ std::string way_in_words(const Eigen::Vector3d& along_in_ct) {
     return kWays[axis];
 }
 
-void judge_movement(const Volume& volume, const SkinMask& mask, SkinJudgement& r) {
-    const auto step = largest_slice_step(volume, mask);
+void judge_movement(const Volume& volume, const SkinMask& mask, const HeadBall& ball, SkinJudgement& r) {
+    const auto step = largest_slice_step(volume, mask, ball);
     if (!step) return;
     r.slice_jump_mm = step->jump_mm;
     Eigen::Index across = 0;
@@ -327,7 +342,8 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     result.ball_centre_in_ct = ball.centre_in_ct;
     const CtGreys greys = ct_greys(volume, mask);
     result.cut_sides = cut_sides_of(skin, ball, boneless_ends(volume, mask, skin, ball, greys));
-    const SkinLayers layers = layers_under(volume, mask, skin, result.ball_centre_in_ct, greys);
+    const ThingsOnSkin things = things_on_skin(volume, mask, skin, ball);
+    const SkinLayers layers = layers_under(volume, mask, skin, result.ball_centre_in_ct, things.plane, greys);
     result.layered_share = layers.layered_share;
     result.scalp_mm = layers.scalp_mm;
     result.edge_blur_mm = layers.edge_blur_mm;
@@ -336,7 +352,6 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     result.light_cm2 = layers.light_cm2;
     result.light_at = where_on_head(layers.light_in_ct, ball);
     if (!mask.levels.empty()) result.strand_mm = strand_length_mm(volume, mask, skin);
-    const ThingsOnSkin things = things_on_skin(volume, mask, skin, ball);
     result.nose_mm = nose_length_mm(skin, ball, things.plane);
     result.one_sided_cm2 = things.one_sided_cm2;
     result.bumps_cm2 = things.bumps_cm2;
@@ -346,7 +361,7 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     result.noise_sigma_mm = skin_edge_sigma_mm(volume, mask, skin);
     result.sigma_mm = std::max(result.noise_sigma_mm, 0.25 * std::max(0.0, result.edge_blur_mm - 1.5));
     judge_size(result);
-    judge_proportions(skin, ball, result);
+    judge_proportions(skin, ball, things.plane, result);
     judge_layers(volume, layers.faint_share < kFaintLayers && layers.air_is_blank, layers.faint_share, result);
     judge_face(result);
     judge_edges(mask, result);
@@ -355,7 +370,7 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     judge_noise(result);
     judge_fat_shift(volume, result);
     judge_steps(volume, result);
-    judge_movement(volume, mask, result);
+    judge_movement(volume, mask, ball, result);
     judge_cuts(result);
     return result;
 }

@@ -53,7 +53,16 @@ double median_between(const Sample& s, double from_mm, double to_mm) {
     return values.empty() ? NAN : median(std::move(values));
 }
 
-std::vector<Sample> samples_of(const Volume& values, const TriangleMesh& skin, const Vector3d& centre) {
+/// To the patient's back, or to that of a head which looks aside.
+Vector3d back_of(const MiddlePlane& plane) {
+    const Vector3d left = plane.left_in_ct();
+    return Vector3d(-left.y(), left.x(), 0).normalized();
+}
+
+std::vector<Sample> samples_of(const Volume& values, const TriangleMesh& skin, const Vector3d& centre,
+                               const MiddlePlane& plane) {
+    const Vector3d left = plane.looks_aside() ? plane.left_in_ct() : Vector3d::UnitX(),
+                   back = plane.looks_aside() ? back_of(plane) : Vector3d::UnitY();
     std::vector<std::size_t> vertices;
     for (std::size_t v = 0; v < skin.vertices_in_ct.size(); ++v)
         if (skin.flags.empty() || skin.flags[v] == kSkin) vertices.push_back(v);
@@ -66,13 +75,13 @@ std::vector<Sample> samples_of(const Volume& values, const TriangleMesh& skin, c
         const Vector3d& p = skin.vertices_in_ct[s.vertex];
         const Vector3d away = (p - centre).normalized();
         // Above the skull's middle, not the face, and where the surface looks outwards (not behind an ear).
-        s.beside = std::abs(away.x()) > 0.75;
+        s.beside = std::abs(away.dot(left)) > 0.75;
         s.at_in_ct = p;
-        s.upper =
-            (away.z() > 0.2 || (away.z() > -0.15 && away.y() > 0.5)) && skin.normals_in_ct[s.vertex].dot(away) > 0.7;
+        s.upper = (away.z() > 0.2 || (away.z() > -0.15 && away.dot(back) > 0.5)) &&
+                  skin.normals_in_ct[s.vertex].dot(away) > 0.7;
         const bool outwards = skin.normals_in_ct[s.vertex].dot(away) > 0.7;
         s.vault = away.z() > 0.2 && outwards;
-        s.round_vault = away.z() > -0.35 && away.y() > -0.5 && outwards;
+        s.round_vault = away.z() > -0.35 && away.dot(back) > -0.5 && outwards;
         const Vector3d inwards = voxel_from_ct.linear() * (-kStep_mm * skin.normals_in_ct[s.vertex]),
                        at = voxel_from_ct * p;
         for (int i = -kOut; i <= kIn; ++i)
@@ -220,10 +229,10 @@ std::vector<Vector3d> light_patches(const std::vector<Sample>& samples, const Vo
 }  // namespace
 
 SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin,
-                        const Vector3d& centre_in_ct, const CtGreys& greys) {
+                        const Vector3d& centre_in_ct, const MiddlePlane& plane, const CtGreys& greys) {
     const Volume leveled = mask.levels.empty() ? Volume() : skin_values(volume, mask);
     const Volume& values = mask.levels.empty() ? volume : leveled;
-    const std::vector<Sample> samples = samples_of(values, skin, centre_in_ct);
+    const std::vector<Sample> samples = samples_of(values, skin, centre_in_ct, plane);
     SkinLayers layers;
     std::vector<double> brains, blurs, depths, levels;
     for (const Sample& s : samples) {

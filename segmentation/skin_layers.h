@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "segmentation/ct_greys.h"
+#include "segmentation/middle_plane.h"
 
 namespace planlight {
 
@@ -29,8 +30,8 @@ struct SkinLayers {
 
 /// `centre_in_ct` is the middle of the skull: the vault is what lies above it, or where the volume ends there, the
 /// skull's sides and back. Figures that cannot be taken are not a
-/// number. `greys`: where bone and fat lie in a CT.
+/// number. `plane`: between left and right. `greys`: where bone and fat lie in a CT.
 SkinLayers layers_under(const Volume& volume, const SkinMask& mask, const TriangleMesh& skin,
-                        const Eigen::Vector3d& centre_in_ct, const CtGreys& greys = {});
+                        const Eigen::Vector3d& centre_in_ct, const MiddlePlane& plane = {}, const CtGreys& greys = {});
 
 }  // namespace planlight

@@ -23,7 +23,6 @@ constexpr double kLeastCut_cm2 = 1;
 constexpr double kUsualSkull_mm = 75;  // radius of an adult's: thick hair makes the ball larger, not the head longer
 constexpr double kCell_mm = 4, kSteep = 0.4;  // of the nose's search
 constexpr double kSureNose_mm = 25;  // of an adult's: what is less is sought askew, where less is no nose (a cut's rim)
-constexpr double kLooksAside = 0.27;  // tangent of 15 degrees
 
 bool is_cut(const TriangleMesh& skin, const std::array<std::int32_t, 3>& t) {
     return std::all_of(t.begin(), t.end(),
@@ -184,7 +183,7 @@ double nose_length_mm(const TriangleMesh& skin, const HeadBall& ball, const Midd
     const Front straight(skin, ball, Eigen::Matrix3d::Identity(), true);
     if (std::isnan(straight.middle_x()) || straight.lowest_mm() > -0.75 * r) return NAN;
     double best = longest_ridge_mm(straight, r);
-    if (std::abs(plane.yaw) < kLooksAside || best > kSureNose_mm * r / 72) return best;
+    if (!plane.looks_aside() || best > kSureNose_mm * r / 72) return best;
     const Front aside(skin, ball, upright_from_ct(plane), false);
     if (!std::isnan(aside.middle_x()))
         if (const double ridge_mm = longest_ridge_mm(aside, r); ridge_mm > kSureNose_mm * r / 72) return ridge_mm;

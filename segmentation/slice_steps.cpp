@@ -16,19 +16,24 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kSectors = 36;
+constexpr double kStep_mm = 1;     // within a slice: finer pixels tell a sector's area no better
+constexpr double kUpper_mm = 150;  // of the head: below lie neck and shoulders, whose outline is another
 using Radii = Eigen::Matrix<double, kSectors, 1>;
 using Columns = Eigen::Matrix<double, kSectors, 3>;
 
 /// The slices across one axis of the volume.
 class Slices {
 public:
-    Slices(const Volume& volume, const SkinMask& mask, int axis)
+    Slices(const Volume& volume, const SkinMask& mask, double least_z_mm, int axis)
         : volume_(volume),
           mask_(mask),
+          least_z_mm_(least_z_mm),
           across_(axis),
           u_((axis + 1) % 3),
           v_((axis + 2) % 3),
-          spacing_mm_(volume.spacing_mm()) {
+          spacing_mm_(volume.spacing_mm()),
+          step_u_(std::max(1, static_cast<int>(std::lround(kStep_mm / spacing_mm_[u_])))),
+          step_v_(std::max(1, static_cast<int>(std::lround(kStep_mm / spacing_mm_[v_])))) {
         find_middle();
         set_sectors();
         for (int k = 0; k < volume.size[static_cast<std::size_t>(axis)]; ++k) radii_.push_back(radii_of(k));
@@ -59,7 +64,15 @@ private:
         at[static_cast<std::size_t>(across_)] = slice;
         at[static_cast<std::size_t>(u_)] = i;
         at[static_cast<std::size_t>(v_)] = j;
-        return mask_.body[volume_.index(at[0], at[1], at[2])] != 0;
+        if (mask_.body[volume_.index(at[0], at[1], at[2])] == 0) return false;
+        const auto& m = volume_.ct_from_voxel.matrix();
+        return m(2, 0) * at[0] + m(2, 1) * at[1] + m(2, 2) * at[2] + m(2, 3) >= least_z_mm_;
+    }
+    /// Every place of a slice that is looked at, a millimetre apart.
+    template <class Visit>
+    void each_place(const Visit& visit) const {
+        for (int j = 0; j < size(v_); j += step_v_)
+            for (int i = 0; i < size(u_); i += step_u_) visit(i, j);
     }
     int size(int axis) const { return volume_.size[static_cast<std::size_t>(axis)]; }
     void find_middle() {
@@ -67,19 +80,18 @@ private:
         Vector2d sum = Vector2d::Zero();
         areas_.assign(static_cast<std::size_t>(size(across_)), 0);
         for (int k = 0; k < size(across_); ++k)
-            for (int j = 0; j < size(v_); ++j)
-                for (int i = 0; i < size(u_); ++i)
-                    if (body(k, i, j)) sum += Vector2d(i, j), ++n, ++areas_[static_cast<std::size_t>(k)];
+            each_place([&](int i, int j) {
+                if (body(k, i, j)) sum += Vector2d(i, j), ++n, ++areas_[static_cast<std::size_t>(k)];
+            });
         middle_mm_ = (sum / std::max(n, 1.)).cwiseProduct(Vector2d(spacing_mm_[u_], spacing_mm_[v_]));
     }
     /// Which sector each place of a slice lies in.
     void set_sectors() {
-        for (int j = 0; j < size(v_); ++j)
-            for (int i = 0; i < size(u_); ++i) {
-                const Vector2d p = Vector2d(i * spacing_mm_[u_], j * spacing_mm_[v_]) - middle_mm_;
-                const double turn = std::atan2(p.y(), p.x()) / (2 * std::numbers::pi) + 0.5;
-                sectors_.push_back(std::min(kSectors - 1, static_cast<int>(turn * kSectors)));
-            }
+        each_place([&](int i, int j) {
+            const Vector2d p = Vector2d(i * spacing_mm_[u_], j * spacing_mm_[v_]) - middle_mm_;
+            const double turn = std::atan2(p.y(), p.x()) / (2 * std::numbers::pi) + 0.5;
+            sectors_.push_back(std::min(kSectors - 1, static_cast<int>(turn * kSectors)));
+        });
     }
     std::optional<Radii> radii_of(int slice) const {
         constexpr double kLeastShare = 0.3, kLeastRadius_mm = 25;
@@ -87,20 +99,24 @@ private:
             return std::nullopt;
         Radii voxels = Radii::Zero();
         std::size_t at = 0;
-        for (int j = 0; j < size(v_); ++j)
-            for (int i = 0; i < size(u_); ++i, ++at)
-                if (body(slice, i, j)) ++voxels[sectors_[at]];
-        const Radii radii = (voxels * (spacing_mm_[u_] * spacing_mm_[v_] * kSectors / std::numbers::pi)).cwiseSqrt();
+        each_place([&](int i, int j) {
+            if (body(slice, i, j)) ++voxels[sectors_[at]];
+            ++at;
+        });
+        const double place_mm2 = step_u_ * spacing_mm_[u_] * step_v_ * spacing_mm_[v_];
+        const Radii radii = (voxels * (place_mm2 * kSectors / std::numbers::pi)).cwiseSqrt();
         if (radii.minCoeff() < kLeastRadius_mm) return std::nullopt;
         return radii;
     }
 
     const Volume& volume_;
     const SkinMask& mask_;
+    double least_z_mm_;
     int across_, u_, v_;
     Vector3d spacing_mm_;
+    int step_u_, step_v_;  ///< voxels
     Vector2d middle_mm_ = Vector2d::Zero();
-    std::vector<double> areas_;  ///< of each slice, voxels
+    std::vector<double> areas_;  ///< of each slice, places
     std::vector<int> sectors_;
     std::vector<std::optional<Radii>> radii_;
 };
@@ -159,12 +175,12 @@ std::optional<Jump> jump_after(const Slices& slices, int k) {
 
 }  // namespace
 
-std::optional<SliceStep> largest_slice_step(const Volume& volume, const SkinMask& mask) {
+std::optional<SliceStep> largest_slice_step(const Volume& volume, const SkinMask& mask, const HeadBall& ball) {
     constexpr double kLeast_mm = 0.6, kUsual = 6, kExplained = 2.5;
     constexpr std::size_t kLeastSlices = 12;
     std::optional<SliceStep> largest;
     for (int axis = 0; axis < 3; ++axis) {
-        const Slices slices(volume, mask, axis);
+        const Slices slices(volume, mask, ball.centre_in_ct.z() + ball.radius_mm - kUpper_mm, axis);
         std::vector<Jump> jumps;
         std::vector<double> sizes;
         for (int k = 0; k + 1 < slices.count(); ++k)

@@ -5,6 +5,7 @@
 
 #include "planning_io/types/volume.h"
 #include "segmentation/segment_skin.h"
+#include "segmentation/skin_shape.h"
 
 namespace planlight {
 
@@ -21,7 +22,8 @@ struct SliceStep {
 
 /// The largest step between neighbouring slices of the volume, across each of its three axes; empty where no step
 /// stands out. What jumps is the whole outline, as a shift and a turn of it explain: an ear or a nose that begins moves
-/// a part of it. A movement along the slices' normal does not show, nor does one that the volume was turned after.
-std::optional<SliceStep> largest_slice_step(const Volume& volume, const SkinMask& mask);
+/// a part of it. Asked of the upper 150 mm (`ball`: the largest in the head), without the two slices at either end of
+/// it. A movement along the slices' normal does not show, nor does one that the volume was turned after.
+std::optional<SliceStep> largest_slice_step(const Volume& volume, const SkinMask& mask, const HeadBall& ball);
 
 }  // namespace planlight

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "planning_io/volume/read_volume.h"
 #include "segmentation/skin_judgement.h"
@@ -31,6 +33,23 @@ TEST(HeadProportions, VoxelsOfAnotherSizeThanTheFileSaysAreDoubted) {
     EXPECT_TRUE(doubted(2, 1.5));
 }
 
+// A planning CT for a side: the head turned on the table. It is as good a head as the same one that looks ahead.
+TEST(HeadProportions, AHeadThatLooksAsideHasNoDoubtsOfItsOwn) {
+    if (!example_patient()) GTEST_SKIP() << "the package invesalius-examples is not installed";
+    const Volume volume = read_volume(*example_patient());
+    const auto doubts_turned_by = [&](double degrees) {
+        Volume turned = volume;
+        turned.ct_from_voxel = Eigen::AngleAxisd(degrees * M_PI / 180, Eigen::Vector3d::UnitZ()) * volume.ct_from_voxel;
+        const SkinMask mask = segment_skin(turned);
+        std::vector<std::string> found;
+        for (const SkinDoubt& doubt : judge_skin(turned, mask, triangulate_skin(turned, mask)).doubts)
+            found.push_back(doubt.finding);
+        return found;
+    };
+    const auto ahead = doubts_turned_by(0);
+    for (const double degrees : {30., -60., 75., 90.}) EXPECT_EQ(doubts_turned_by(degrees), ahead) << degrees;
+}
+
 TEST(HeadProportions, OfAnEllipsoidAreItsOwn) {
     TriangleMesh mesh;
     const Eigen::Vector3d half(70, 95, 90);
@@ -44,6 +63,7 @@ TEST(HeadProportions, OfAnEllipsoidAreItsOwn) {
     const auto found = head_proportions(mesh, {70, Eigen::Vector3d::Zero()});
     ASSERT_TRUE(found);
     EXPECT_NEAR(found->breadth_of_length, 70. / 95, 0.01);
+    EXPECT_NEAR(found->turn, 0, 0.01);
     ASSERT_TRUE(found->height_of_width);
     EXPECT_NEAR(*found->height_of_width, 90 / std::sqrt(70. * 95), 0.08);
     mesh.flags.back() = kCutPlane;  // the crown

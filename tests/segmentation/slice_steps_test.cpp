@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "planning_io/volume/read_volume.h"
 #include "segmentation/skin_judgement.h"
+#include "segmentation/skin_shape.h"
 #include "tests/support/test_data.h"
 
 namespace planlight::test {
@@ -26,6 +28,33 @@ Volume moved_from(const Volume& still, int first, int along_i, int along_j) {
     return moved;
 }
 
+/// From `first` on every slice is turned by so much about its middle.
+Volume turned_from(const Volume& still, int first, double radians) {
+    Volume turned = still;
+    const Eigen::Vector3d spacing = still.spacing_mm();
+    const Eigen::Vector2d mm(spacing.x(), spacing.y());
+    const Eigen::Vector2d middle = 0.5 * mm.cwiseProduct(Eigen::Vector2d(still.size[0] - 1, still.size[1] - 1));
+    const Eigen::Rotation2Dd back(-radians);
+    for (int k = first; k < still.size[2]; ++k)
+        for (int j = 0; j < still.size[1]; ++j)
+            for (int i = 0; i < still.size[0]; ++i) {
+                const Eigen::Vector2d from =
+                    (middle + back * (mm.cwiseProduct(Eigen::Vector2d(i, j)) - middle)).cwiseQuotient(mm);
+                const int x = std::clamp(static_cast<int>(std::floor(from.x())), 0, still.size[0] - 2),
+                          y = std::clamp(static_cast<int>(std::floor(from.y())), 0, still.size[1] - 2);
+                const double u = std::clamp(from.x() - x, 0.0, 1.0), v = std::clamp(from.y() - y, 0.0, 1.0);
+                turned.values[turned.index(i, j, k)] =
+                    static_cast<float>((1 - v) * ((1 - u) * still.at(x, y, k) + u * still.at(x + 1, y, k)) +
+                                       v * ((1 - u) * still.at(x, y + 1, k) + u * still.at(x + 1, y + 1, k)));
+            }
+    return turned;
+}
+
+std::optional<SliceStep> step_in(const Volume& volume) {
+    const SkinMask mask = segment_skin(volume);
+    return largest_slice_step(volume, mask, largest_ball(volume, mask, triangulate_skin(volume, mask)));
+}
+
 class SliceSteps : public testing::Test {
 protected:
     void SetUp() override {
@@ -36,7 +65,7 @@ protected:
 };
 
 TEST_F(SliceSteps, AHeadThatLayStillHasNone) {
-    EXPECT_FALSE(largest_slice_step(still, segment_skin(still)));
+    EXPECT_FALSE(step_in(still));
 }
 
 TEST_F(SliceSteps, APatientWhoMovedIsSaidWithThePlaceAndTheSize) {
@@ -44,7 +73,7 @@ TEST_F(SliceSteps, APatientWhoMovedIsSaidWithThePlaceAndTheSize) {
     const Eigen::Vector3d shift = still.ct_from_voxel.linear() * Eigen::Vector3d(2, -1, 0);
     const Volume moved = moved_from(still, first, 2, -1);
     const SkinMask mask = segment_skin(moved);
-    const auto step = largest_slice_step(moved, mask);
+    const auto step = step_in(moved);
     ASSERT_TRUE(step);
     EXPECT_LT((step->shift_in_ct - shift).norm(), 0.3) << step->shift_in_ct.transpose();
     EXPECT_LT(std::abs(step->turn), 0.01);
@@ -60,7 +89,41 @@ TEST_F(SliceSteps, APatientWhoMovedIsSaidWithThePlaceAndTheSize) {
 
 TEST_F(SliceSteps, AMillimetreIsNoticed) {
     const Volume moved = moved_from(still, 40, 1, 0);
-    EXPECT_TRUE(largest_slice_step(moved, segment_skin(moved)));
+    EXPECT_TRUE(step_in(moved));
+}
+
+TEST_F(SliceSteps, ATurnIsSaidWithItsSizeAndItsSide) {
+    const double turn = 3 * M_PI / 180;
+    for (const double by : {turn, -turn}) {
+        const auto step = step_in(turned_from(still, still.size[2] / 2, by));
+        ASSERT_TRUE(step) << by;
+        EXPECT_NEAR(step->turn, by, 0.01);
+    }
+}
+
+// A chest is so large that slices of the head would be a small part of it, and its middle lies elsewhere.
+TEST_F(SliceSteps, ShouldersBelowTheHeadDoNotHideThatItMoved) {
+    Volume moved = moved_from(still, 2 * still.size[2] / 3, 4, 0);
+    const Eigen::Vector3d spacing = still.spacing_mm();
+    const int chest = static_cast<int>(100 / spacing.z());  // slices below the head
+    Volume whole = moved;
+    whole.size[2] += chest;
+    whole.ct_from_voxel.translation() -= chest * still.ct_from_voxel.linear().col(2);
+    whole.values.assign(static_cast<std::size_t>(whole.size[0]) * static_cast<std::size_t>(whole.size[1]) *
+                            static_cast<std::size_t>(whole.size[2]),
+                        *std::min_element(still.values.begin(), still.values.end()));
+    for (int k = 0; k < whole.size[2]; ++k)
+        for (int j = 0; j < whole.size[1]; ++j)
+            for (int i = 0; i < whole.size[0]; ++i) {
+                const double x = (2.0 * i / whole.size[0] - 1) / 0.95, y = (2.0 * j / whole.size[1] - 1) / 0.9;
+                if (k < chest)
+                    whole.values[whole.index(i, j, k)] = x * x + y * y < 1 ? 40.0F : -1000.0F;
+                else
+                    whole.values[whole.index(i, j, k)] = moved.at(i, j, k - chest);
+            }
+    const auto step = step_in(whole);
+    ASSERT_TRUE(step);
+    EXPECT_NEAR(step->shift_mm, 4 * spacing.x(), 0.5);
 }
 
 }  // namespace
