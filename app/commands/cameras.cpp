@@ -65,6 +65,7 @@ void print_camera(const WatchedCamera& camera) {
         100 * camera.clipped.too_dark,
         camera.markers.size() == 1 ? "1 marker" : fmt::format("{} markers", camera.markers.size()));
     for (const std::string& note : camera.notes) fmt::print("  {}.\n", note);
+    if (camera.fault) fmt::print("  {}. {}\n", camera.fault->problem, camera.fault->remedy);
 }
 
 void print(const WatchedRoom& watched) {
@@ -77,12 +78,11 @@ void print(const WatchedRoom& watched) {
     std::fflush(stdout);
 }
 
-/// Of a camera that sends nothing there are no figures.
+/// Of a camera that sent nothing there are no figures; of one that failed later there are, and its fault.
 void check_seen(const WatchedCamera& camera) {
+    if (camera.picture) return;
     if (camera.fault) throw DeviceError(camera.name, camera.fault->problem, camera.fault->remedy);
-    if (!camera.picture)
-        throw DeviceError(camera.name, "no frame came",
-                          "Look at its cable and its power, and whether its trigger runs.");
+    throw DeviceError(camera.name, "no frame came", "Look at its cable and its power, and whether its trigger runs.");
 }
 
 int say_once(const CamerasOptions& options, CameraWatch& watch, TestLight* light, const Clock& clock) {
