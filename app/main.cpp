@@ -16,10 +16,10 @@ using namespace planlight;
 
 /// In the order of the help.
 constexpr Run (*kCommands[])(CLI::App&) = {
-    add_demo,    add_prepare, add_plan,     add_patterns, add_board,   add_capture,   add_calibrate,
-    add_check,   add_scan,    add_register, add_track,    add_project, add_projector, add_projector_window,
-    add_devices, add_doctor,  add_session,  add_review,   add_replay,  add_report,    add_forget,
-    add_export,  add_store,   add_fetch,    add_simulate, add_merge,
+    add_demo,    add_prepare, add_plan,     add_patterns, add_board,    add_capture,   add_calibrate,
+    add_check,   add_scan,    add_register, add_track,    add_project,  add_projector, add_projector_window,
+    add_devices, add_cameras, add_doctor,   add_session,  add_review,   add_replay,    add_report,
+    add_forget,  add_export,  add_store,    add_fetch,    add_simulate, add_merge,
 };
 
 constexpr const char* kExitCodes =

@@ -286,7 +286,7 @@ int run_calibrate_live(const CalibrateOptions& options) {
     const SteadyClock clock;
     RoomCameras cameras(room, clock);
     for (const std::string& note : cameras.notes()) warn(note + ".");
-    CommandProjector projector(room.monitor, room.projector_file);
+    CommandProjector projector(room, &cameras);
     GuidedSettings settings;
     settings.captures = options.keep_captures;
     settings.serials = {cameras.left().serial(), cameras.right().serial(), options.serial_projector};

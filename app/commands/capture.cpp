@@ -62,7 +62,7 @@ int run_capture(const CaptureOptions& options) {
     const SteadyClock clock;
     RoomCameras cameras(room, clock);
     for (const std::string& note : cameras.notes()) warn(note + ".");
-    CommandProjector projector(room.monitor, room.projector_file);
+    CommandProjector projector(room, &cameras);
     const StripeSettings stripes =
         stripes_of(options.set, projector.projector().width(), projector.projector().height());
     ProgressBar bar;

@@ -82,14 +82,16 @@ ScanCapture recorded_capture(const CheckOptions& options, const RigCalibration& 
 
 /// Taken now, by the room's own devices, which must be those of the rig file.
 ScanCapture live_capture(const RoomFile& room, const RigCalibration& rig) {
-    CommandProjector projector(room.monitor, room.projector_file);
-    RealRoom real(room, rig, projector.projector());
-    for (const std::string& note : real.notes()) warn(note + ".");
+    const SteadyClock clock;
+    RoomCameras cameras(room, clock);
+    CommandProjector projector(room, &cameras);
+    check_devices(cameras, projector.projector(), rig);
+    for (const std::string& note : cameras.notes()) warn(note + ".");
     StripeSettings stripes;
     stripes.width = projector.projector().width();
     stripes.height = projector.projector().height();
     ProgressBar bar;
-    return capture_scan(projector.projector(), real.cameras(), real.clock(), stripes,
+    return capture_scan(projector.projector(), cameras.pair(), clock, stripes,
                         [&](int done, int of) { bar.show("capture", static_cast<double>(done) / of); });
 }
 

@@ -20,6 +20,7 @@ Run add_plan(CLI::App& app);
 Run add_patterns(CLI::App& app);
 Run add_board(CLI::App& app);
 Run add_calibrate(CLI::App& app);
+Run add_cameras(CLI::App& app);
 Run add_capture(CLI::App& app);
 Run add_check(CLI::App& app);
 Run add_scan(CLI::App& app);

@@ -20,8 +20,8 @@ struct Named {
 
 /// `--surface` is written by `scan` and read by `prepare`.
 bool is_written(const CLI::App& command, const std::string& option) {
-    static constexpr std::array kWritten{"--out",     "--raw", "--certificate", "--slicer",
-                                         "--picture", "--pdf", "--dicom"};
+    static constexpr std::array kWritten{"--out",        "--raw",     "--certificate", "--slicer",
+                                         "--screenshot", "--picture", "--pdf",         "--dicom"};
     return std::find(kWritten.begin(), kWritten.end(), option) != kWritten.end() ||
            (option == "--surface" && command.get_name() == "scan");
 }

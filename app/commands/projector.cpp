@@ -82,7 +82,7 @@ void measure_room(const ProjectorOptions& options, ProjectorReport& report) {
     const SteadyClock clock;
     RoomCameras cameras(room, clock);
     for (const std::string& note : cameras.notes()) warn(note + ".");
-    CommandProjector projector(room.monitor, room.projector_file);
+    CommandProjector projector(room, &cameras);
     report.source = room.name.empty() ? options.room.string() : room.name;
     report.monitor = room.monitor;
     report.width = projector.projector().width();

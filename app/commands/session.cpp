@@ -290,9 +290,10 @@ int run_in_room(SessionOptions options, const Case& the_case, const SiteSettings
     Listeners listeners(options, the_case, site, drawing.settings);
     LiveOptions live = live_options(options, site, listeners);
     live.resume = std::move(resume);
+    if (room.recorded) live.projector_monitor = options.projector_monitor;  // not the site's: it may have none
     const int code = run_live(
         window,
-        [&](Projector& projector, const RoomProgress& progress) {
+        [&](Projector* projector, const RoomProgress& progress) {
             return std::make_unique<RealRoom>(room, rig, projector, progress);
         },
         the_case, drawing, live);

@@ -79,19 +79,12 @@ public:
                 examine_machine(settings_.case_folder.empty() ? std::filesystem::path(".") : settings_.case_folder)));
         });
         attempt("the rig file", "rig, file", [&] { rig_ = read_rig(room_.rig); });
-        attempt("the monitor", "projector, monitor", [&] { look_at_monitor(); });
+        if (!room_.monitor.empty()) attempt("the monitor", "projector, monitor", [&] { look_at_monitor(); });
         attempt("the cameras", "cameras, opening", [&] { open_cameras(); });
         attempt("the projector", "projector, window", [&] { open_projector(); });
         if (monitor_) add(judge_monitor(*monitor_, rig_ ? rig_->projector : CameraModel{}));
         if (watched_ && watched_->pairs.problem.empty() && projector_) {
-            attempt("the projector's delay", "projector, delay", [&] {
-                DelayFigures delay = flash(projector_->projector(), cameras_->pair(), clock_);
-                // (Of what was taken while flashing, frames may have been left out.)
-                delay.frame_interval_ms = 1e3 / std::max(watched_->left.rate_hz, watched_->right.rate_hz);
-                if (monitor_ && monitor_->measured.light_delay)
-                    delay.told_ms = 1e3 * seconds(*monitor_->measured.light_delay);
-                add(judge_delay(delay));
-            });
+            if (!cameras_->recorded()) attempt("the projector's delay", "projector, delay", [&] { measure_delay(); });
             attempt("a scan", "rig, scan", [&] { scan(); });
         }
         if (watched_) judge_cameras();
@@ -134,6 +127,10 @@ private:
         left_before_ = cameras_->pair().left().frames().counts();
         right_before_ = cameras_->pair().right().frames().counts();
         watched_ = watch_cameras(cameras_->pair(), room_, clock_, settings_.watch);
+        if (cameras_->recorded())
+            lines_.push_back({"cameras, recorded", Health::look,
+                              "a recording is played: nothing here is said of devices",
+                              "Name the room's own cameras in room.json before a patient comes."});
     }
 
     /// Last, for their clocks are known the better the longer they run.
@@ -151,15 +148,25 @@ private:
         add(judge_pairs(watched_->pairs));
     }
 
+    void measure_delay() {
+        DelayFigures delay = flash(projector_->projector(), cameras_->pair(), clock_);
+        // (Of what was taken while flashing, frames may have been left out.)
+        delay.frame_interval_ms = 1e3 / std::max(watched_->left.rate_hz, watched_->right.rate_hz);
+        if (monitor_ && monitor_->measured.light_delay) delay.told_ms = 1e3 * seconds(*monitor_->measured.light_delay);
+        add(judge_delay(delay));
+    }
+
     void open_projector() {
-        if (!monitor_ || !monitor_->found) return;
+        if (room_.monitor.empty() ? !cameras_ : !monitor_ || !monitor_->found) return;
         try {
-            projector_ = std::make_unique<CommandProjector>(room_.monitor, room_.projector_file);
+            projector_ = std::make_unique<CommandProjector>(room_, cameras_.get());
+            if (!monitor_) return;
             Projector& projector = projector_->projector();
             projector.show(RgbImage(projector.width(), projector.height()), clock_.now() + std::chrono::seconds(1));
             monitor_->covered = true;
         } catch (const Error& error) {
             projector_.reset();
+            if (!monitor_) throw;
             monitor_->problem = error.what();
             monitor_->remedy = error.remedy;
         }

@@ -262,12 +262,15 @@ int run_live(SessionWindow& screen, const MakeRoomWith& make_room, const Case& t
              const LiveOptions& options) {
     OperatorWindow& window = screen.window();
     if (screen.closed()) return 0;
-    check_monitor(options.projector_monitor, options.projector);
-    ProjectorKeeper projector(options.projector_monitor, keeper_settings(options));
-    LiveSession session([&](const RoomProgress& progress) { return make_room(projector, progress); }, the_case, drawing,
-                        options.keep_matches_in, options.observer, options.resume);
+    std::unique_ptr<ProjectorKeeper> projector;
+    if (!options.projector_monitor.empty()) {
+        check_monitor(options.projector_monitor, options.projector);
+        projector = std::make_unique<ProjectorKeeper>(options.projector_monitor, keeper_settings(options));
+    }
+    LiveSession session([&](const RoomProgress& progress) { return make_room(projector.get(), progress); }, the_case,
+                        drawing, options.keep_matches_in, options.observer, options.resume);
     WindowMeter meter;
-    const int code = run_windows(window, session, &projector, options,
+    const int code = run_windows(window, session, projector.get(), options,
                                  Autoplay(false, options.resume && options.resume->at_once), meter);
     return told_at_the_end(code, session, meter, options);
 }

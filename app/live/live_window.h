@@ -79,14 +79,16 @@ private:
 };
 
 /// Makes the room of a session; a real one lights the projector that it is given, a simulated one has its own.
-using MakeRoomWith = std::function<std::unique_ptr<Room>(Projector& projector, const RoomProgress& progress)>;
+/// `projector`: null where the session has no monitor for it.
+using MakeRoomWith = std::function<std::unique_ptr<Room>(Projector* projector, const RoomProgress& progress)>;
 
 /// Both windows on a live session in the simulated room, until the operator window is closed. Gives the exit code.
 /// Throws DeviceError when a monitor is missing or a window does not land where it should.
 int run_live_simulated(SessionWindow& screen, MakeRoom make_room, const Case& the_case, const CaseDrawing& drawing,
                        const LiveOptions& options);
 
-/// The same in a real room, whose light is that of the projector's monitor.
+/// The same in a real room, whose light is that of the projector's monitor; without a name of one there is no light but
+/// what the room has itself (recorded).
 int run_live(SessionWindow& screen, const MakeRoomWith& make_room, const Case& the_case, const CaseDrawing& drawing,
              const LiveOptions& options);
 

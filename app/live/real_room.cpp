@@ -29,13 +29,23 @@ void check_serials(const std::string& left, const std::string& right, const Devi
 
 }  // namespace
 
-RealRoom::RealRoom(const RoomFile& room, const RigCalibration& rig, Projector& projector, const RoomProgress& progress)
-    : room_(room), rig_(rig), projector_(projector), cameras_(room, clock_, progress) {
+void check_devices(const RoomCameras& cameras, const Projector& projector, const RigCalibration& rig) {
     check_size("the projector", projector.width(), projector.height(), rig.projector);
-    const Camera &left = cameras_.left(), &right = cameras_.right();
+    const Camera &left = cameras.left(), &right = cameras.right();
     check_size(left.name(), left.width(), left.height(), rig.left_camera);
     check_size(right.name(), right.width(), right.height(), rig.right_camera);
-    check_serials(left.serial(), right.serial(), rig.serials);
+    // A recording need not say which cameras it was.
+    if (!cameras.recorded() || !left.serial().empty()) check_serials(left.serial(), right.serial(), rig.serials);
+}
+
+RealRoom::RealRoom(const RoomFile& room, const RigCalibration& rig, Projector* projector, const RoomProgress& progress)
+    : room_(room),
+      rig_(rig),
+      projector_(projector),
+      cameras_(room, clock_, progress),
+      recorded_projector_(cameras_.recorded_projector(clock_, projector)) {
+    if (!projector_ && !recorded_projector_) throw no_projector();
+    check_devices(cameras_, this->projector(), rig);
 }
 
 }  // namespace planlight

@@ -46,19 +46,53 @@ std::unique_ptr<Camera> opened(const RoomCamera& camera, const std::string& name
 
 RoomCameras::RoomCameras(const RoomFile& room, const Clock& clock,
                          const std::function<void(const std::string&, std::optional<double>)>& progress) {
-    const auto tell = [&](const std::string& doing, std::optional<double> share) {
+    const Progress tell = [&](const std::string& doing, std::optional<double> share) {
         if (progress) progress(doing, share);
     };
+    if (room.recorded) {
+        tell("The recording is being read.", std::nullopt);
+        open_recorded(*room.recorded, clock);
+    } else {
+        open_real(room, clock, tell);
+    }
+}
+
+void RoomCameras::open_real(const RoomFile& room, const Clock& clock, const Progress& tell) {
     tell("The cameras are being opened.", std::nullopt);
     auto left = opened(room.left, "Left camera", bell_, clock),
          right = opened(room.right, "Right camera", bell_, clock);
     left_ = left.get();
     right_ = right.get();
-    PairSettings pairs;
-    pairs.together = room.together;
-    pairs.most_apart = from_seconds(room.max_apart_ms / 1e3);
     learn_clocks(clock, [&](double share) { tell("The clocks of the cameras are being learnt.", share); });
-    pair_ = std::make_unique<PairedCameras>(std::move(left), std::move(right), bell_, clock, pairs);
+    pair_ = std::make_unique<PairedCameras>(std::move(left), std::move(right), bell_, clock, pair_settings(room));
+}
+
+void RoomCameras::open_recorded(const RoomRecording& recording, const Clock& clock) {
+    RecordedRoom room = read_recorded_room(recording);
+    recorded_ = true;
+    if (room.has_scan()) {
+        light_ = std::make_shared<RecordedLight>();
+        light_width_ = room.projector_width;
+        light_height_ = room.projector_height;
+        which_ = std::move(room.which);
+    }
+    auto play = std::make_shared<RecordedPlay>(
+        std::move(room.frames), recording.fastest ? RecordedPace::fastest : RecordedPace::own, clock.now(), light_);
+    const std::string from = (recording.frames.empty() ? recording.capture : recording.frames).string();
+    const auto camera = [&](const char* name, const std::string& serial, std::vector<GrayImage> pictures) {
+        return std::make_unique<RecordedCamera>(RecordedSettings{name, serial, from}, std::move(pictures), play, bell_,
+                                                clock);
+    };
+    auto left = camera("Left camera", room.serials.left_camera, std::move(room.left)),
+         right = camera("Right camera", room.serials.right_camera, std::move(room.right));
+    left_ = left.get();
+    right_ = right.get();
+    pair_ = std::make_unique<PairedCameras>(std::move(left), std::move(right), bell_, clock);
+}
+
+std::unique_ptr<Projector> RoomCameras::recorded_projector(const Clock& clock, Projector* behind) const {
+    if (!light_) return nullptr;
+    return std::make_unique<RecordedProjector>(light_width_, light_height_, which_, light_, clock, behind);
 }
 
 /// A frame's time is as good as the quickest frame so far: the first ones may have come late.
@@ -91,14 +125,31 @@ std::vector<std::string> RoomCameras::notes() const {
     return notes;
 }
 
-CommandProjector::CommandProjector(const std::string& monitor, const std::filesystem::path& projector_file)
-    : keeper_(monitor, settings_of(projector_file)), beats_([this](const std::stop_token& stop) {
-          const SteadyClock clock;
-          while (!stop.stop_requested()) {
-              keeper_.window_lives();
-              keeper_.session_lives(clock.now());
-              std::this_thread::sleep_for(std::chrono::milliseconds(20));
-          }
-      }) {}
+PairSettings pair_settings(const RoomFile& room) {
+    PairSettings pairs;
+    pairs.together = room.together;
+    pairs.most_apart = from_seconds(room.max_apart_ms / 1e3);
+    return pairs;
+}
+
+DeviceError no_projector() {
+    return DeviceError("Projector", "the recorded room has neither a monitor nor a scan that was recorded",
+                       "Name \"capture\" beside \"frames\" in room.json, or the projector's monitor.");
+}
+
+CommandProjector::CommandProjector(const RoomFile& room, const RoomCameras* cameras) {
+    if (!room.monitor.empty())
+        keeper_ = std::make_unique<ProjectorKeeper>(room.monitor, settings_of(room.projector_file));
+    if (cameras) recorded_ = cameras->recorded_projector(clock_, keeper_.get());
+    if (!keeper_ && !recorded_) throw no_projector();
+    if (!keeper_) return;
+    beats_ = std::jthread([this](const std::stop_token& stop) {
+        while (!stop.stop_requested()) {
+            keeper_->window_lives();
+            keeper_->session_lives(clock_.now());
+            std::this_thread::sleep_for(std::chrono::milliseconds(20));
+        }
+    });
+}
 
 }  // namespace planlight

@@ -1,5 +1,7 @@
 #include "planning_io/case/room_file.h"
 
+#include <functional>
+
 #include "planning_io/case/recording_json.h"
 #include "planning_io/files/check_exists.h"
 #include "planning_io/files/json_value.h"
@@ -78,6 +80,54 @@ Json json_of(const RoomCamera& camera) {
     return json;
 }
 
+using Beside = std::function<std::filesystem::path(const JsonValue&)>;
+
+RoomRecording recording_of(const JsonValue& value, const Beside& beside) {
+    value.has_only({"frames", "capture", "pace"});
+    RoomRecording recording;
+    if (const auto frames = value.find("frames")) recording.frames = beside(*frames);
+    if (const auto capture = value.find("capture")) recording.capture = beside(*capture);
+    if (recording.frames.empty() && recording.capture.empty())
+        value.refuse("names no recording",
+                     "Give \"frames\", a frames folder, or \"capture\", a capture folder, or both.");
+    if (const auto pace = value.find("pace")) {
+        if (pace->text() != "own" && pace->text() != "fastest")
+            pace->refuse("is neither \"own\" nor \"fastest\"", "Write \"own\" for the pace of the recording.");
+        recording.fastest = pace->text() == "fastest";
+    }
+    return recording;
+}
+
+Json json_of(const RoomRecording& recording) {
+    Json json;
+    if (!recording.frames.empty()) json["frames"] = recording.frames.string();
+    if (!recording.capture.empty()) json["capture"] = recording.capture.string();
+    json["pace"] = recording.fastest ? "fastest" : "own";
+    return json;
+}
+
+void read_cameras(const JsonValue& cameras, const Beside& beside, RoomFile& room) {
+    cameras.has_only({"left", "right", "recorded", "together", "max_apart_ms"});
+    if (const auto together = cameras.find("together")) room.together = together->flag();
+    room.max_apart_ms = number_in(cameras, "max_apart_ms", 0.01, 1000).value_or(room.max_apart_ms);
+    if (const auto recorded = cameras.find("recorded")) {
+        if (cameras.find("left") || cameras.find("right"))
+            recorded->refuse("stands beside cameras", "Delete \"left\" and \"right\", or \"recorded\".");
+        room.recorded = recording_of(*recorded, beside);
+        return;
+    }
+    room.left = camera_of(cameras.at("left"));
+    room.right = camera_of(cameras.at("right"));
+    if (room.left.device == room.right.device && room.left.pipeline == room.right.pipeline)
+        cameras.at("right").refuse("is the left camera as well", "Name two cameras.");
+}
+
+void read_projector(const JsonValue& projector, const Beside& beside, RoomFile& room) {
+    projector.has_only({"monitor", "file"});
+    room.monitor = projector.at("monitor").text();
+    if (const auto measured = projector.find("file")) room.projector_file = beside(*measured);
+}
+
 }  // namespace
 
 RoomFile read_room(const std::filesystem::path& file) {
@@ -92,18 +142,8 @@ RoomFile read_room(const std::filesystem::path& file) {
     };
     if (const auto name = root.find("name")) room.name = name->text();
     room.rig = beside(root.at("rig"));
-    const JsonValue projector = root.at("projector");
-    projector.has_only({"monitor", "file"});
-    room.monitor = projector.at("monitor").text();
-    if (const auto measured = projector.find("file")) room.projector_file = beside(*measured);
-    const JsonValue cameras = root.at("cameras");
-    cameras.has_only({"left", "right", "together", "max_apart_ms"});
-    if (const auto together = cameras.find("together")) room.together = together->flag();
-    room.left = camera_of(cameras.at("left"));
-    room.right = camera_of(cameras.at("right"));
-    if (room.left.device == room.right.device && room.left.pipeline == room.right.pipeline)
-        cameras.at("right").refuse("is the left camera as well", "Name two cameras.");
-    room.max_apart_ms = number_in(cameras, "max_apart_ms", 0.01, 1000).value_or(room.max_apart_ms);
+    read_cameras(root.at("cameras"), beside, room);
+    if (!room.recorded || root.find("projector")) read_projector(root.at("projector"), beside, room);
     if (const auto markers = root.find("markers")) {
         markers->has_only({"disc_mm", "sticker_mm"});
         room.disc_mm = markers->at("disc_mm").number(2, 50);
@@ -118,10 +158,14 @@ void write_room(const RoomFile& room, const std::filesystem::path& file) {
     json["version"] = kVersion;
     json["name"] = room.name;
     json["rig"] = room.rig.string();
-    json["projector"]["monitor"] = room.monitor;
+    if (!room.monitor.empty()) json["projector"]["monitor"] = room.monitor;
     if (!room.projector_file.empty()) json["projector"]["file"] = room.projector_file.string();
-    json["cameras"]["left"] = json_of(room.left);
-    json["cameras"]["right"] = json_of(room.right);
+    if (room.recorded) {
+        json["cameras"]["recorded"] = json_of(*room.recorded);
+    } else {
+        json["cameras"]["left"] = json_of(room.left);
+        json["cameras"]["right"] = json_of(room.right);
+    }
     json["cameras"]["together"] = room.together;
     json["cameras"]["max_apart_ms"] = room.max_apart_ms;
     json["markers"]["disc_mm"] = room.disc_mm;

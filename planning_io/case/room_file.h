@@ -20,13 +20,21 @@ struct RoomCamera {
     std::optional<std::array<int, 4>> region;  ///< x, y, width, height
 };
 
+/// Instead of cameras: what such cameras recorded.
+struct RoomRecording {
+    std::filesystem::path frames;   ///< frames folder: what the cameras see; empty: the dark picture of `capture`
+    std::filesystem::path capture;  ///< capture folder: what they see of its light; empty: no scan was recorded
+    bool fastest = false;           ///< the next frame as soon as the one before was taken, not at its own pace
+};
+
 /// A room of real devices (room.json): which cameras and which projector, and the files of their calibration.
 struct RoomFile {
     std::string name;
-    std::filesystem::path rig;             ///< rig.json
-    std::filesystem::path projector_file;  ///< projector.json of `planlight projector`; empty: not measured
-    std::string monitor;                   ///< of the projector: its name
-    RoomCamera left, right;
+    std::filesystem::path rig;              ///< rig.json
+    std::filesystem::path projector_file;   ///< projector.json of `planlight projector`; empty: not measured
+    std::string monitor;                    ///< of the projector: its name; empty in a recorded room that has none
+    RoomCamera left, right;                 ///< empty where `recorded`
+    std::optional<RoomRecording> recorded;  ///< empty: cameras are real
     bool together = false;    ///< one camera triggers the other, or one line both: their exposures coincide by wire
     double max_apart_ms = 2;  ///< of two exposures that are one, where they are not triggered together
     double disc_mm = 8, sticker_mm = 16;  ///< of the markers, diameters

@@ -88,6 +88,11 @@ std::vector<CameraFrame> FrameQueue::take_all() {
     return taken;
 }
 
+bool FrameQueue::waiting() const {
+    const std::lock_guard lock(mutex_);
+    return !frames_.empty();
+}
+
 std::optional<CameraFault> FrameQueue::fault() const {
     const std::lock_guard lock(mutex_);
     return fault_;

@@ -68,6 +68,7 @@ public:
     void recovered();
 
     std::vector<CameraFrame> take_all();
+    bool waiting() const;  ///< a frame that nobody has taken yet
     std::optional<CameraFault> fault() const;
     CameraCounts counts() const;
 

@@ -21,6 +21,13 @@ void append(std::deque<CameraFrame>& to, std::vector<CameraFrame> frames) {
 
 }  // namespace
 
+Instant allowed_apart(const PairSettings& settings, Instant exposure, Instant interval) {
+    constexpr Instant kMostTogether = std::chrono::milliseconds(10);
+    if (settings.together && interval > Instant{}) return std::min(kMostTogether, interval / 3);
+    return std::max(settings.least_apart,
+                    std::min(settings.most_apart, from_seconds(settings.apart_of_exposure * seconds(exposure))));
+}
+
 PairedCameras::PairedCameras(std::unique_ptr<Camera> left, std::unique_ptr<Camera> right, FrameBell& bell,
                              const Clock& clock, const PairSettings& settings)
     : left_(std::move(left)), right_(std::move(right)), bell_(bell), clock_(clock), settings_(settings) {}
@@ -47,21 +54,14 @@ void PairedCameras::collect() {
     append(rights_, std::move(right));
 }
 
-Instant PairedCameras::allowed_apart(const CameraFrame& left, const CameraFrame& right) const {
-    constexpr Instant kMostTogether = std::chrono::milliseconds(10);
-    if (settings_.together && interval_ > Instant{}) return std::min(kMostTogether, interval_ / 3);
-    const Instant shorter = std::min(left.exposure, right.exposure);
-    return std::max(settings_.least_apart,
-                    std::min(settings_.most_apart, from_seconds(settings_.apart_of_exposure * seconds(shorter))));
-}
-
 /// The earliest pair that begins at or after a moment; frames that can no longer have a partner are left behind.
 std::optional<StereoFrame> PairedCameras::next_pair(Instant not_before) {
     while (!lefts_.empty() && begin_of(lefts_.front()) < not_before) lefts_.pop_front();
     while (!rights_.empty() && begin_of(rights_.front()) < not_before) rights_.pop_front();
     while (!lefts_.empty() && !rights_.empty()) {
         CameraFrame &left = lefts_.front(), &right = rights_.front();
-        const Instant allowed = counts_.allowed = allowed_apart(left, right);
+        const Instant allowed = counts_.allowed =
+            allowed_apart(settings_, std::min(left.exposure, right.exposure), interval_);
         counts_.apart = right.at - left.at;
         const Instant apart_now = std::max(counts_.apart, -counts_.apart);
         nearest_ = nearest_ ? std::min(*nearest_, apart_now) : apart_now;

@@ -19,6 +19,10 @@ struct PairSettings {
     bool together = false;
 };
 
+/// How far the mid-exposures of two frames may be apart to be one, either way. `exposure`: the shorter one; `interval`:
+/// between two frames of the left camera, 0: not known.
+Instant allowed_apart(const PairSettings& settings, Instant exposure, Instant interval);
+
 /// What became of the frames of two cameras.
 struct PairCounts {
     std::size_t pairs = 0, left_alone = 0, right_alone = 0;
@@ -50,7 +54,6 @@ public:
 private:
     StereoFrame wait_for_pair(Instant not_before, std::chrono::milliseconds patience, bool newest);
     void collect();
-    Instant allowed_apart(const CameraFrame& left, const CameraFrame& right) const;
     std::optional<StereoFrame> next_pair(Instant not_before);
     [[noreturn]] void refuse(std::chrono::milliseconds patience) const;
 

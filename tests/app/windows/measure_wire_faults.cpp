@@ -62,7 +62,7 @@ public:
         keeper.process.light_delay = 70ms;  // the lamp's 25, and what software OpenGL takes to paint
         projector_ = std::make_unique<ProjectorKeeper>("DUMMY1", keeper);
         session_ = std::make_unique<LiveSession>(
-            [this](const RoomProgress&) { return std::make_unique<RealRoom>(room_, calibration_, *projector_); },
+            [this](const RoomProgress&) { return std::make_unique<RealRoom>(room_, calibration_, projector_.get()); },
             the_case_, drawing_, std::filesystem::path{});
         beats_ = std::jthread([this](const std::stop_token& stop) {
             while (!stop.stop_requested()) beat();

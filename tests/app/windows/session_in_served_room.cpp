@@ -200,7 +200,7 @@ int run(const std::string& program, unsigned seeds) {
                 std::this_thread::sleep_for(20ms);
             }
         });
-        RealRoom real(room, calibration, projector);
+        RealRoom real(room, calibration, &projector);
         SessionSettings settings;
         settings.patience = 2000ms;
         Session session(the_case, drawing, real.rig(), real.projector(), real.cameras(), real.clock(), settings);

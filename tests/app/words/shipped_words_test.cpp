@@ -79,6 +79,9 @@ TEST_P(ShippedWords, SayEveryStateAndEveryReasonOfTheTable) {
 /// Sources whose sentences come into the window.
 constexpr const char* kSaying[] = {
     "app/windows/banner_panel.cpp",
+    "app/windows/camera_page.cpp",
+    "app/windows/camera_page_figures.cpp",
+    "app/windows/camera_page_panels.cpp",
     "app/windows/camera_panel.cpp",
     "app/windows/evidence_page.cpp",
     "app/windows/guide_panels.cpp",
@@ -91,6 +94,7 @@ constexpr const char* kSaying[] = {
     "app/windows/review_window.cpp",
     "app/windows/scene_overlay.cpp",
     "app/windows/table_panel.cpp",
+    "app/live/camera_screen.cpp",
     "app/live/guide_screen.cpp",
     "app/live/guided_calibration.cpp",
     "app/live/live_session.cpp",
@@ -137,6 +141,8 @@ constexpr const char* kSaying[] = {
     "registration/devices/paired_cameras.cpp",
     "registration/devices/genicam_camera.cpp",
     "registration/devices/gstreamer_camera.cpp",
+    "registration/devices/recorded_camera.cpp",
+    "registration/devices/recorded_projector.cpp",
 };
 
 /// What these sources say is shown in the window, but for the texts that stand here with the reason.

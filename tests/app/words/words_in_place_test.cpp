@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "app/live/session_states.h"
+#include "app/windows/camera_page_panels.h"
 #include "app/windows/fonts.h"
 #include "app/windows/layout.h"
 #include "app/windows/operator_keys.h"
@@ -205,6 +206,42 @@ TEST_P(WordsInPlace, TheWindowOfAReviewHasRoomForItsWords) {
         for (const bool enabled : {true, false})
             button(drawn_.pen, place.buttons[0], label, {enabled, "it is being read"}, {false, false, key});
     expect_whole("the buttons of a review");
+}
+
+TEST_P(WordsInPlace, ThePageOfTheCamerasHasRoom) {
+    const auto [width, height] = std::get<1>(GetParam());
+    const CameraPageLayout place =
+        camera_page_layout(static_cast<float>(width), static_cast<float>(height), drawn_.place.scale);
+    CameraPageModel model;
+    model.title = "Aim, focus and expose the cameras";
+    for (CameraPageModel::Camera* camera : {&model.left, &model.right}) {
+        camera->title = camera == &model.left ? "Left camera" : "Right camera";
+        camera->sharpness = 123.45, camera->best_sharpness = 150;
+        camera->too_bright_percent = camera->too_dark_percent = 100;
+        camera->exposure_ms = 133.33, camera->frames_hz = 149.9, camera->asked_hz = 150, camera->lost = 12345;
+    }
+    const auto expect_room = [&](const std::string& where) {
+        draw_camera_page(drawn_.pen, place, model, {nullptr, nullptr});
+        expect_whole(where);
+    };
+    expect_room("before anything is known");
+    model.allowed_ms = 1;
+    for (const double apart : {0.02, -15.25}) {
+        model.apart_ms = apart;
+        for (const TestPicture shown : kTestPictures) {
+            model.shown = shown;
+            expect_room(text_of(shown));
+        }
+    }
+    model.left.notes = {"its gamma stays at 1.0", "its automatic gain cannot be switched off"};
+    model.right.trouble = "no whole frame came from it for 500 ms, and 12 with packets lost";
+    model.right.trouble_remedy =
+        "Look at the network: its receive buffer (net.core.rmem_max), jumbo frames, other traffic.";
+    model.no_light = "no projector";
+    expect_room("with troubles");
+    for (const Box* box : {&place.dark, &place.buttons[4]}) EXPECT_GE(box->height, 71.9F) << "for a gloved finger";
+    EXPECT_GE(place.picture[0].height, (height > width ? 0.2F : 0.35F) * static_cast<float>(height))
+        << "pictures are what it is for";
 }
 
 TEST_P(WordsInPlace, HeaderAndTableHaveRoom) {

@@ -99,5 +99,39 @@ TEST(RoomFile, WhatIsMissingMisspeltOrImpossibleIsRefusedByName) {
               std::string::npos);
 }
 
+TEST(RoomFile, OfARecordingNamesFoldersInPlaceOfCamerasAndNeedsNoProjector) {
+    const test::TemporaryFolder folder;
+    const auto file = folder.path() / "room.json";
+    const auto read = [&](const std::string& rest) {
+        write_safely(file, R"({"format": "planlight room", "version": 1, "rig": "rig.json", )" + rest + "}");
+        return read_room(file);
+    };
+    const RoomFile room = read(R"("cameras": {"recorded": {"frames": "frames", "capture": "/there/capture"}})");
+    ASSERT_TRUE(room.recorded);
+    EXPECT_EQ(room.recorded->frames, folder.path() / "frames");
+    EXPECT_EQ(room.recorded->capture, "/there/capture");
+    EXPECT_FALSE(room.recorded->fastest);
+    EXPECT_EQ(room.monitor, "");
+    write_room(room, file);
+    EXPECT_EQ(read_room(file).recorded->frames, room.recorded->frames);
+    const RoomFile lit =
+        read(R"("projector": {"monitor": "HDMI-2"}, "cameras": {"recorded": {"frames": "frames", "pace": "fastest"}})");
+    EXPECT_EQ(lit.monitor, "HDMI-2");
+    EXPECT_TRUE(lit.recorded->fastest);
+    for (const auto& [rest, about] :
+         {std::pair{R"("cameras": {"recorded": {}})", "names no recording"},
+          std::pair{R"("cameras": {"recorded": {"frames": "f", "pace": "slow"}})", "pace"},
+          std::pair{R"("cameras": {"recorded": {"frames": "f"}, "left": {"device": "1"}})", "beside cameras"},
+          std::pair{R"("cameras": {"recorded": {"folder": "f"}})", "folder"},
+          std::pair{R"("cameras": {"left": {"device": "1"}, "right": {"device": "2"}})", "projector"}}) {
+        try {
+            read(rest);
+            ADD_FAILURE() << rest;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(about), std::string::npos) << error.what();
+        }
+    }
+}
+
 }  // namespace
 }  // namespace planlight

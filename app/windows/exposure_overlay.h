@@ -1,0 +1,11 @@
+#pragma once
+
+#include "planning_io/types/image.h"
+
+namespace planlight {
+
+/// A camera's picture as it was exposed, not brightened, with every `by` x `by` pixels as one: red stripes (zebra)
+/// where one of them is too bright to be measured, blue where all are too dark.
+RgbImage exposure_overlay(const GrayImage& picture, int by);
+
+}  // namespace planlight
