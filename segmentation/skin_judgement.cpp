@@ -9,6 +9,7 @@
 #include "planning_io/types/error.h"
 #include "segmentation/boneless_ends.h"
 #include "segmentation/head_proportions.h"
+#include "segmentation/series_doubts.h"
 #include "segmentation/skin_layers.h"
 #include "segmentation/skin_shape.h"
 #include "segmentation/slice_steps.h"
@@ -254,14 +255,6 @@ void judge_steps(const Volume& volume, SkinJudgement& r) {
         "Use a series of thinner slices if there is one.");
 }
 
-/// Which way of the patient a line runs, nearest.
-std::string way_in_words(const Eigen::Vector3d& along_in_ct) {
-    Eigen::Index axis = 0;
-    along_in_ct.cwiseAbs().maxCoeff(&axis);
-    constexpr const char* kWays[] = {"left and right", "front and back", "head and feet"};
-    return kWays[axis];
-}
-
 void judge_movement(const Volume& volume, const SkinMask& mask, const HeadBall& ball, SkinJudgement& r) {
     const auto step = largest_slice_step(volume, mask, ball);
     if (!step) return;
@@ -371,6 +364,7 @@ SkinJudgement judge_skin(const Volume& volume, const SkinMask& mask, const Trian
     judge_fat_shift(volume, result);
     judge_steps(volume, result);
     judge_movement(volume, mask, ball, result);
+    doubt_series(volume, mask, result);
     judge_cuts(result);
     return result;
 }

@@ -24,6 +24,7 @@ namespace {
 bool is_as_due(const SkinScore& score, Fate fate) {
     if (fate == Fate::refused) return score.refused;
     if (fate == Fate::said) return score.refused || score.doubted;
+    if (fate == Fate::quiet) return !score.refused && !score.doubted && score.off_percent <= 1;
     if (fate == Fate::not_bad) return !score.taken_wrongly();
     return !score.refused && score.off_percent <= 1;
 }
@@ -75,9 +76,10 @@ int main(int argc, char** argv) {
         if (as_ct ? strange.only_mr : strange.only_ct) continue;
         const StrangeHead head = strange.make();
         for (std::uint32_t seed = first; seed < (as_ct ? first + 1 : first + count); ++seed) {
-            const MrDraw draw = as_ct ? MrDraw{strange.sharp ? head.ct : blurred(head.ct), "CT"}
-                                      : mr_like(head.ct, head.body, seed,
-                                                {.least_mm = 1.1, .coil = strange.coil, .contrast = strange.contrast});
+            MrDraw draw = as_ct ? MrDraw{strange.sharp ? head.ct : blurred(head.ct), "CT"}
+                                : mr_like(head.ct, head.body, seed,
+                                          {.least_mm = 1.1, .coil = strange.coil, .contrast = strange.contrast});
+            if (strange.spoil) strange.spoil(draw.volume);
             const SkinScore score = score_of(draw.volume, head.skin);
             const bool right = is_as_due(score, strange.fate);
             ++all;

@@ -304,6 +304,21 @@ TEST(JudgeSkin, SaysThatSomethingLiesOnItAllOver) {
     EXPECT_TRUE(head.refused || doubts(head.skin, "all over")) << head.skin.scalp_mm;
 }
 
+/// A window that begins at 150 makes air (noise of 12) and bone (40) one value. Air that a program blanked is one value
+/// as well, but bone is not: nothing was cut off the head.
+TEST(JudgeSkin, SaysThatTheDarkEndOfTheGreysWasCutOff) {
+    const Volume whole = mr_of([](const Vector3d& p) { return layered(depth_in_head(p)); });
+    Volume cut = whole, blanked = whole;
+    for (float& value : cut.values) value = std::max(value - 150, 0.0F);
+    for (int k = 0; k < whole.size[2]; ++k)
+        for (int j = 0; j < whole.size[1]; ++j)
+            for (int i = 0; i < whole.size[0]; ++i)
+                if (depth_in_head(whole.ct_from_voxel * Vector3d(i, j, k)) < -3)
+                    blanked.values[blanked.index(i, j, k)] = 0;
+    EXPECT_TRUE(doubts(judged(cut).skin, "dark end of the greys"));
+    EXPECT_FALSE(doubts(judged(blanked).skin, "dark end of the greys"));
+}
+
 TEST(JudgeSkin, TheSkullsMiddleIsSoughtInWhatTheVolumeShows) {
     // On a turned grid the corners of the skin's box lie beyond the volume's sides.
     const SkinJudgement skin = judged(head_with(phones, 45)).skin;

@@ -8,6 +8,7 @@
 
 #include "segmentation/head_survey.h"
 #include "segmentation/skin_shape.h"
+#include "tests/segmentation/spoil_volume.h"
 
 namespace planlight::test {
 namespace {
@@ -116,6 +117,13 @@ public:
     void in_contrast(const std::string& name, Fate fate, const MrContrast& contrast) {
         StrangeCase strange{name, fate, [of = of_] { return of->scaled(1); }};
         strange.contrast = contrast;
+        strange.only_mr = true;
+        all.push_back(std::move(strange));
+    }
+    /// The head as it is, of which the volume is spoilt after the scan.
+    void spoilt(const std::string& name, Fate fate, std::function<void(Volume&)> spoil) {
+        StrangeCase strange{name, fate, [of = of_] { return of->scaled(1); }};
+        strange.spoil = std::move(spoil);
         strange.only_mr = true;
         all.push_back(std::move(strange));
     }
@@ -250,6 +258,53 @@ bool in_rod(const Vector3d& p, const Vector3d& from, const Vector3d& to, double 
     return (p - from - along * (to - from)).norm() < radius_mm;
 }
 
+/// Coils of 7 T, greys that were cut, and a patient who moved within the series.
+void add_spoilt_volumes(Cases& of) {
+    for (const MrContrast& contrast : {MrContrast{"T1", 1.0F, 0.45F, 0.06F}, MrContrast{"T2", 0.7F, 0.4F, 0.04F}}) {
+        of.in_contrast(std::string("coil shading of 10 : 1, ") + contrast.name, Fate::not_bad, contrast);
+        of.all.back().coil = 10;
+    }
+    of.spoilt("8 bits, nothing cut", Fate::quiet, [](Volume& mr) { window_to_8_bits(mr, 0); });
+    for (const int percent : {8, 16, 24})
+        of.spoilt("8 bits, dark end cut at " + std::to_string(percent) + " %", Fate::not_bad,
+                  [percent](Volume& mr) { window_to_8_bits(mr, percent / 100.0); });
+    of.spoilt("moved by 9 mm", Fate::said, [](Volume& mr) { blend_with_moved(mr, {3, 7, -4.7}, 0); });
+    of.spoilt("moved by 6 mm", Fate::said, [](Volume& mr) { blend_with_moved(mr, {0, 6, 0}, 0); });
+    of.spoilt("moved by 4 mm and 5 degrees", Fate::said, [](Volume& mr) { blend_with_moved(mr, {0, 2, 3.5}, 5); });
+    of.spoilt("moved by 9 mm for a third of the lines", Fate::said, [](Volume& mr) {
+        blend_with_moved(mr, {0, 2, 8.8}, 0, 0.33);
+    });
+}
+
+/// What lies on a head all round and equally thick.
+void add_even_covers(Cases& of) {
+    const double r = of.radius_mm();
+    of.with("strap of 3 mm all round", Fate::said,
+            [r](const Vector3d& p, double out) { return out < 3 && std::abs(p.z() - 0.5 * r) < 20; });
+    of.with("wet bandage of 4 mm all over", Fate::said,
+            [r](const Vector3d& p, double out) { return out < 4 && p.z() > 0.2 * r; });
+    of.with("swimming cap of 2.6 mm", Fate::said,
+            [r](const Vector3d& p, double out) { return out < 2.6 && p.z() > 0.1 * r - 0.2 * p.y(); });
+    of.with("cap of 6 mm with gel", Fate::said,
+            [r](const Vector3d& p, double out) { return out < 6 && p.z() > 0.1 * r - 0.2 * p.y(); });
+    of.with("wet cover of jaw and neck, 10 mm", Fate::said,
+            [r](const Vector3d& p, double out) { return out < 10 && p.z() < -0.55 * r; });
+    of.with("rings of gel at both ears", Fate::said, [](const Vector3d& p, double out) {
+        const double from_ear = std::hypot(p.y(), p.z() + 30);
+        return from_ear > 22 && from_ear < 42 && out < 14 && std::abs(p.x()) > 40;
+    });
+    of.with(
+        "bun as bright as scalp", Fate::said,
+        [r](const Vector3d& p, double) { return (p - Vector3d(0, 1.25 * r, 0.6 * r)).norm() < 32; }, kFat_hu);
+    of.made("void of a brace that takes nose and lip", Fate::said,
+            [r](const Vector3d& p, double out, double, float& hu) {
+                const bool gone = (p - Vector3d(0, -1.35 * r, -0.75 * r)).norm() < 38;
+                if (gone) hu = kAir_hu;
+                return out <= 0 && !gone;
+            });
+    of.all.back().only_mr = true;
+}
+
 /// What lies about a head on a CT's table.
 void add_what_lies_on_a_table(Cases& of) {
     const double r = of.radius_mm();
@@ -342,6 +397,8 @@ std::vector<StrangeCase> strange_heads_of(const Volume& ct, const SkinMask& body
     add_no_heads(of);
     add_heads_askew(of);
     add_rare_contrasts(of);
+    add_spoilt_volumes(of);
+    add_even_covers(of);
     add_what_a_ct_shows(of);
     add_what_lies_on_a_table(of);
     return std::move(of.all);

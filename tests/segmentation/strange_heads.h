@@ -16,6 +16,7 @@ namespace planlight::test {
 enum class Fate {
     right,    ///< taken, with the skin where it is
     said,     ///< taken with a doubt, or refused
+    quiet,    ///< right, and without a word
     not_bad,  ///< taken rightly, or with a doubt, or refused: all but a wrong skin without a word
     refused,
 };
@@ -34,12 +35,14 @@ struct StrangeCase {
     double coil = 0;                                    ///< brightest to darkest place along the head; 0: as drawn
     std::optional<MrContrast> contrast = std::nullopt;  ///< else the seed's
     bool only_mr = false, only_ct = false;
-    bool sharp = false;  ///< a CT that shows what was drawn as it was drawn
+    bool sharp = false;                       ///< a CT that shows what was drawn as it was drawn
+    std::function<void(Volume&)> spoil = {};  ///< what becomes of the volume afterwards; or empty
 };
 
 /// Of a head in HU with its body and skin (which must outlive the cases): children, hair with gel, electrodes,
 /// cushions, bandages, blankets, head phones, masks, coils on one side, a flap of bone that is out, a mouth full of
-/// metal, heads that lie askew, rare contrasts, metal in a CT, and what is no head.
+/// metal, heads that lie askew, rare contrasts, metal in a CT, even covers, volumes that were spoilt (cut greys, a
+/// patient who moved), and what is no head.
 std::vector<StrangeCase> strange_heads_of(const Volume& ct, const SkinMask& body, const TriangleMesh& skin);
 
 }  // namespace planlight::test

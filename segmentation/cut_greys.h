@@ -1,0 +1,20 @@
+#pragma once
+
+#include "planning_io/types/volume.h"
+#include "segmentation/segment_skin.h"
+
+namespace planlight {
+
+/// How much of a volume shows exactly its least value. A scanner's air is never one value, and bone in an MR is not
+/// quite black: where both are, the dark end of the greys was cut off (a window for pictures), and with it dim skin.
+struct CutGreys {
+    double air_share = 0;   ///< of the air within 24 mm of the body
+    double body_share = 0;  ///< of what lies deeper than 4 mm in the body
+    double top_share = 0;   ///< of the same, at the greatest value
+    bool dark_end() const;  ///< both are too many
+};
+
+/// Of a volume that is not in HU; else, and where there is no air, nothing is cut.
+CutGreys cut_greys(const Volume& volume, const SkinMask& mask);
+
+}  // namespace planlight
