@@ -70,12 +70,48 @@ TEST(CheckExists, TellsWhatIsMissingFromWhatMayNotBeEntered) {
     EXPECT_NE(said->find((folder.path() / "closed").string() + " may not be entered"), std::string::npos) << *said;
 }
 
+TEST(CheckExists, NamesTheClosedFolderThatALinkLeadsInto) {
+    const test::TemporaryFolder folder;
+    fs::permissions(folder.path(), fs::perms::all);
+    fs::create_directories(folder.path() / "closed" / "in");
+    fs::create_directories(folder.path() / "open");
+    std::ofstream(folder.path() / "closed" / "in" / "p") << "x";
+    fs::create_symlink("../closed/in", folder.path() / "open" / "link");
+    fs::create_symlink(folder.path() / "open" / "link" / "p", folder.path() / "open" / "p");
+    fs::permissions(folder.path() / "closed", fs::perms::none);
+    const bool the_way_there_is_open = nobody_enters(folder.path());
+    const auto folders = refusal_to_nobody(folder.path() / "open" / "link" / "p"),
+               files = refusal_to_nobody(folder.path() / "open" / "p");
+    fs::permissions(folder.path() / "closed", fs::perms::all);
+    if (!folders || !the_way_there_is_open) GTEST_SKIP() << "nobody may enter the folder for temporary files";
+    for (const std::string& said : {*folders, *files})
+        EXPECT_NE(said.find("the folder " + (folder.path() / "closed").string() + " may not be entered"),
+                  std::string::npos)
+            << said;
+}
+
 TEST(CheckExists, NamesWhereALinkLeads) {
     const test::TemporaryFolder folder;
     fs::create_symlink("gone.nii", folder.path() / "link.nii");
     EXPECT_NE(refusal(folder.path() / "link.nii").find("is a link to gone.nii, which does not exist"),
               std::string::npos);
+    fs::create_symlink("link.nii", folder.path() / "first.nii");
+    const std::string second = (folder.path() / "link.nii").string();
+    EXPECT_NE(
+        refusal(folder.path() / "first.nii").find("leads over the link " + second + " to gone.nii, which does not"),
+        std::string::npos)
+        << refusal(folder.path() / "first.nii") << ": the first link's own target is there";
+    fs::create_directory_symlink(".", folder.path() / "here");
+    EXPECT_NE(refusal(folder.path() / "here" / "gone.nii").find("here/gone.nii: does not exist. Name another."),
+              std::string::npos)
+        << refusal(folder.path() / "here" / "gone.nii") << ": the link is no reason";
+    fs::create_symlink("round.nii", folder.path() / "round.nii");
+    EXPECT_NE(refusal(folder.path() / "round.nii").find("cannot be reached"), std::string::npos);
     EXPECT_NE(refusal(folder.path() / std::string(300, 'n')).find("cannot be reached"), std::string::npos);
+}
+
+TEST(CheckExists, SaysThatANameIsEmpty) {
+    EXPECT_EQ(refusal(""), "the name of a file or folder is empty. Name another.");
 }
 
 }  // namespace
