@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -19,6 +20,7 @@
 
 #include "app/end_signals.h"
 #include "planning_io/files/memory_need.h"
+#include "planning_io/files/one_line.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -117,8 +119,9 @@ std::function<void(const std::string&, double)> ProgressBar::callback() {
 
 void ProgressBar::note(const std::string& line) {
     end_step();
-    add_to_log(line);
-    if (!console().settings.quiet) fmt::print(stderr, "{}\n", line);
+    const std::string printed = on_one_line(line);
+    add_to_log(printed);
+    if (!console().settings.quiet) fmt::print(stderr, "{}\n", printed);
 }
 
 void ProgressBar::warn(const std::string& text) {
@@ -128,8 +131,9 @@ void ProgressBar::warn(const std::string& text) {
 
 void warn(const std::string& text) {
     if (console().open_bar) fmt::print(stderr, "\n");
-    add_to_log("warning: " + text);
-    fmt::print(stderr, "warning: {}\n", text);
+    const std::string printed = on_one_line(text);
+    add_to_log("warning: " + printed);
+    fmt::print(stderr, "warning: {}\n", printed);
 }
 
 std::string today() {
@@ -143,9 +147,17 @@ std::string today() {
 
 namespace {
 
+/// Names of files stand in it as somebody else gave them.
 void say(const std::string& line) {
-    add_to_log(line);
-    fmt::print(stderr, "planlight: {}\n", line);
+    const std::string printed = on_one_line(line);
+    add_to_log(printed);
+    fmt::print(stderr, "planlight: {}\n", printed);
+}
+
+/// The disk would not take or give it; another name is no help.
+bool is_disk_fault(const std::error_code& code) {
+    constexpr std::array kOfDisks{EDQUOT, EFBIG, EIO, ENOSPC, EROFS};
+    return std::any_of(kOfDisks.begin(), kOfDisks.end(), [&](int one) { return code.value() == one; });
 }
 
 int explain_short_memory() {
@@ -186,10 +198,9 @@ int run_and_explain(const std::function<int()>& command) {
     } catch (const std::bad_alloc&) {
         code = explain_short_memory();
     } catch (const std::filesystem::filesystem_error& fault) {
-        const bool no_room = fault.code() == std::errc::no_space_on_device;
         say(fmt::format("{}: {}. Check its name, its permissions and the disk it is on.", fault.path1().string(),
                         fault.code().message()));
-        code = static_cast<int>(no_room ? ExitCode::disk : ExitCode::input_refused);
+        code = static_cast<int>(is_disk_fault(fault.code()) ? ExitCode::disk : ExitCode::input_refused);
     } catch (const std::system_error& fault) {  // a thread that finds no room
         if (fault.code() == std::errc::resource_unavailable_try_again || fault.code() == std::errc::not_enough_memory)
             code = explain_short_memory();

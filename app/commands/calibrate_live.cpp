@@ -19,6 +19,7 @@
 #include "planning_io/case/rig_file.h"
 #include "planning_io/case/room_file.h"
 #include "planning_io/files/image_file.h"
+#include "planning_io/files/make_folder.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "registration/calibration/rig_on_poses.h"
@@ -90,7 +91,7 @@ public:
         settings.theme = site.theme == "bright" ? ThemeKind::bright : ThemeKind::dark;
         if (!options.operator_monitor.empty()) settings.monitor = options.operator_monitor;
         window_ = std::make_unique<GuideWindow>(settings);
-        if (!screenshots_.empty()) std::filesystem::create_directories(screenshots_);
+        if (!screenshots_.empty()) make_folder(screenshots_);
     }
 
     bool has_window() const { return window_ != nullptr; }

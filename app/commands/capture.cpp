@@ -13,6 +13,7 @@
 #include "app/live/room_cameras.h"
 #include "planning_io/case/capture_folder.h"
 #include "planning_io/case/room_file.h"
+#include "planning_io/files/make_folder.h"
 #include "planning_io/types/error.h"
 #include "registration/scan/scan_surface.h"
 
@@ -71,7 +72,7 @@ int run_capture(const CaptureOptions& options) {
                      [&](int done, int of) { bar.show("capture", static_cast<double>(done) / of); });
     CaptureFolder folder = capture_folder_from(capture);
     folder.serials = {cameras.left().serial(), cameras.right().serial(), ""};
-    if (options.out.has_parent_path()) std::filesystem::create_directories(options.out.parent_path());
+    if (options.out.has_parent_path()) make_folder(options.out.parent_path());
     write_capture(folder, options.out);
     // White and black come first.
     const Exposure left = exposure_of(capture.left[0], capture.left[1]),

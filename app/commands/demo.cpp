@@ -12,6 +12,7 @@
 #include "app/evaluation/run_rooms.h"
 #include "app/live/live_window.h"
 #include "app/live/simulated_room.h"
+#include "planning_io/files/make_folder.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
 #include "planning_io/volume/read_volume.h"
@@ -50,7 +51,7 @@ int run_demo(const DemoOptions& options) {
                                                                     volume.frame_of_reference_uid))
                                 .plan;
     const Preparation prepared = prepare_case(volume, plan, {}, {}, iso_date_now(), {bar.callback(), {}});
-    std::filesystem::create_directories(options.out);
+    make_folder(options.out);
     write_case(prepared.prepared, options.out / "case", true);
     const CaseDrawing drawing(prepared.prepared);
 

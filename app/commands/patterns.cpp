@@ -10,6 +10,7 @@
 #include "app/console.h"
 #include "app/json_text.h"
 #include "planning_io/files/image_file.h"
+#include "planning_io/files/make_folder.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "registration/scan/pattern/stripe_patterns.h"
@@ -77,7 +78,7 @@ int run_patterns(const PatternsOptions& options) {
         result["order_periods_px"] = stripes.order_periods_px;
         result["order_steps"] = stripes.order_steps;
     }
-    if (options.out.has_parent_path()) std::filesystem::create_directories(options.out.parent_path());
+    if (options.out.has_parent_path()) make_folder(options.out.parent_path());
     ProgressBar bar;
     write_folder_safely(options.out, false, [&](const Path& into) {
         for (std::size_t i = 0; i < sequence.size(); ++i) {

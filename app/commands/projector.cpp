@@ -15,6 +15,7 @@
 #include "app/live/show_light.h"
 #include "app/report/projector_report.h"
 #include "planning_io/case/room_file.h"
+#include "planning_io/files/make_folder.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
@@ -49,7 +50,7 @@ void measure_simulated(const ProjectorOptions& options, ProjectorReport& report)
     settings.light.whole_exposure = true;
     set_simulated_light(options.light, settings);
     report.source = fmt::format("simulated room ({}, seed {}), a white card", options.simulate, options.seed);
-    if (!options.keep.empty()) std::filesystem::create_directories(options.keep);
+    if (!options.keep.empty()) make_folder(options.keep);
     ProgressBar bar;
     for (const std::string part : kLightParts) {
         if (!wanted(options, part)) continue;
@@ -87,7 +88,7 @@ void measure_room(const ProjectorOptions& options, ProjectorReport& report) {
     report.monitor = room.monitor;
     report.width = projector.projector().width();
     report.height = projector.projector().height();
-    if (!options.keep.empty()) std::filesystem::create_directories(options.keep);
+    if (!options.keep.empty()) make_folder(options.keep);
     ProgressBar bar;
     for (const std::string part : kLightParts) {
         if (!wanted(options, part)) continue;

@@ -6,6 +6,7 @@
 #include "app/commands/language_option.h"
 #include "app/commands/surgeon_option.h"
 #include "app/console.h"
+#include "app/disk_room.h"
 #include "app/end_signals.h"
 #include "app/igtl/session_link.h"
 #include "app/live/live_window.h"
@@ -144,14 +145,13 @@ private:
     bool report_ = false, anonymous_ = false;
 };
 
-/// The light does not wait for a disk; who records must know before it starts.
-void warn_of_full_disk(const Path& folder, double free_gb) {
-    constexpr double kEnough_gb = 1;  // an hour
-    if (free_gb >= kEnough_gb) return;
-    warn(fmt::format(
-        "Only {:.0f} MB are free in {}: the recording ends where the disk is full, and the match may not be kept "
-        "there; the light goes on. Make room on the disk, or name another folder with --recordings.",
-        1e3 * free_gb, folder.string()));
+/// The light does not wait for a disk; whoever records or keeps matches must know before it starts.
+void warn_of_full_disks(const SessionOptions& options) {
+    const bool records = record_mode_of(options.record) != RecordMode::none;
+    for (const std::string& warning :
+         warnings_of_full_disks(records ? std::optional(disk_room_of(recordings_folder(options))) : std::nullopt,
+                                disk_room_of(matches_folder(options))))
+        warn(warning);
 }
 
 /// The recording of this session, said where and how much; none with `--record none`.
@@ -167,9 +167,7 @@ Recorded recorder_of(const SessionOptions& options, const Case& the_case, const 
     const Path file = new_recording_name(recordings_folder(options));
     auto sink = std::make_unique<RecordingFile>(file);
     const RecordingHead head = recording_head(the_case, options.case_folder, mode, drawing);
-    std::error_code ignored;
-    const double free_gb = static_cast<double>(std::filesystem::space(file.parent_path(), ignored).available) / 1e9;
-    warn_of_full_disk(file.parent_path(), free_gb);
+    const double free_gb = disk_room_of(file.parent_path()).free_gb;
     if (options.anonymous) {
         fmt::print(
             stderr,
@@ -214,6 +212,7 @@ struct Listeners {
     Listeners(const SessionOptions& options, const Case& the_case, const SiteSettings& site,
               const DrawingSettings& drawing)
         : link(link_of(options, the_case, site)), recorded(recorder_of(options, the_case, drawing)) {
+        warn_of_full_disks(options);
         all.add(recorded.get());
         all.add(link.get());
     }

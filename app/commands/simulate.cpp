@@ -13,6 +13,7 @@
 #include "app/json_text.h"
 #include "planning_io/case/frames_folder.h"
 #include "planning_io/case/rig_file.h"
+#include "planning_io/files/make_folder.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/types/error.h"
@@ -69,7 +70,7 @@ int run_simulate(const SimulateOptions& options) {
     room.light.whole_exposure = !options.serve.empty();  // as real cameras see it
     simulation::SimulatedRig rig(volume, points_of(plan), room);
     if (!options.serve.empty()) return run_simulate_served(options, rig);
-    std::filesystem::create_directories(options.out);
+    make_folder(options.out);
     write_rig(rig.calibration(), options.out / "rig.json");
     ProgressBar bar;
     StripeSettings stripes;

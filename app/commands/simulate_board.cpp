@@ -7,6 +7,7 @@
 #include "app/commands/simulate_options.h"
 #include "app/console.h"
 #include "app/json_text.h"
+#include "planning_io/files/make_folder.h"
 #include "planning_io/files/safe_write.h"
 #include "registration/calibration/draw_board.h"
 #include "registration/simulation/board_room.h"
@@ -44,7 +45,7 @@ int run_simulate_board(const SimulateOptions& options) {
         const ScanCapture capture = capture_scan(
             room.projector(), room.cameras(), room.clock(), stripes,
             [&](int done, int of) { bar.show("poses", (pose + static_cast<double>(done) / of) / room.poses()); });
-        std::filesystem::create_directories(options.out / "captures");
+        make_folder(options.out / "captures");
         write_capture(capture_folder_from(capture), options.out / "captures" / fmt::format("pose-{:02}", pose));
     }
     write_safely(options.out / "truth.json", room.truth_json() + "\n");

@@ -6,6 +6,7 @@
 #include "app/console.h"
 #include "planning_io/case/rig_file.h"
 #include "planning_io/case/room_file.h"
+#include "planning_io/files/make_folder.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "projection/monitor_picture.h"
@@ -65,7 +66,7 @@ void serve(const SimulateOptions& options, const simulation::ServeSettings& sett
         devices, [&] { return monitor.look(); }, settings);
     room.left().lose_packets(options.lose_packets);
     room.hold_right_back(options.right_behind);
-    std::filesystem::create_directories(options.out);
+    make_folder(options.out);
     write_files();
     write_room_file(options, settings);
     fmt::print("{}: room.json, {}. Two cameras answer on {} and {}; the projector is {}. Ctrl-C ends it.\n",

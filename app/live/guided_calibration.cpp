@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "app/commands/capture_conversion.h"
+#include "planning_io/files/make_folder.h"
 #include "planning_io/types/error.h"
 #include "registration/calibration/judge_pictures.h"
 
@@ -321,7 +322,7 @@ void GuidedCalibration::keep_pictures(const ScanCapture& capture) const {
     if (settings_.captures.empty()) return;
     CaptureFolder folder = capture_folder_from(capture);
     folder.serials = settings_.serials;
-    std::filesystem::create_directories(settings_.captures);
+    make_folder(settings_.captures);
     write_capture(folder, settings_.captures / fmt::format("pose-{:02}", poses_.size() + 1));
 }
 

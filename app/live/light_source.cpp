@@ -7,6 +7,7 @@
 
 #include "planning_io/case/light_file.h"
 #include "planning_io/files/image_file.h"
+#include "planning_io/files/make_folder.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 
@@ -56,8 +57,8 @@ LightRecording record_part(const std::string& part, LightBench bench, const Reco
     if (folder.empty()) return record();
     LightRecording recording;
     write_folder_safely(folder, false, [&](const fs::path& into) {
-        fs::create_directories(into / "left");
-        fs::create_directories(into / "right");
+        make_folder(into / "left");
+        make_folder(into / "right");
         LightFile light;
         bench.keep = [&](const StereoFrame& frame) {
             const std::string name = fmt::format("{:06}.png", light.frames.size());

@@ -53,7 +53,7 @@ LiveSession::~LiveSession() {
     thread_.join();
 }
 
-std::string LiveSession::not_kept() const {
+NotKept LiveSession::not_kept() const {
     const std::lock_guard lock(mutex_);
     return not_kept_;
 }

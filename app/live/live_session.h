@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "app/live/live_view.h"
+#include "app/live/not_kept.h"
 #include "app/live/observed_gate.h"
 #include "app/live/room.h"
 #include "app/live/session_states.h"
@@ -70,8 +71,8 @@ public:
 
     /// True once the patient is followed and light is on the skin.
     bool projecting() const;
-    /// Why the last match could not be kept, in a sentence; empty where it was, or where none is kept.
-    std::string not_kept() const;
+    /// Why the last match could not be kept; empty where it was, or where none is kept.
+    NotKept not_kept() const;
     /// Throws what ended the thread, if anything did.
     void rethrow_fault() const;
     /// The last sign of life of the thread, on the wall's monotonic clock.
@@ -154,7 +155,7 @@ private:
     std::deque<Press> presses_;
     std::vector<PointPair> landmarks_;  ///< of the last `post_find_patient`
     OperatorModel model_;
-    std::string not_kept_;
+    NotKept not_kept_;
     Light light_;
     UpdateLatency latency_;
     std::string latency_words_;  ///< as they were said last

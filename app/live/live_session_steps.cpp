@@ -91,15 +91,17 @@ void LiveSession::find_patient(Session& session, const std::vector<PointPair>& l
 /// Keeps the match and its scan; what became of it, in a sentence. A full disk does not end a session.
 std::string LiveSession::keep(const RegistrationResult& found, const PointCloud& cloud,
                               const std::vector<PointPair>& landmarks) {
-    std::string kept = "This match is not kept.", why_not;
+    std::string kept = "This match is not kept.";
+    NotKept not_kept;
     try {
         if (!keep_matches_in_.empty())
             kept = "Kept in " + keep_match(found, &cloud, landmarks, keep_matches_in_).string() + ".";
     } catch (const std::exception& fault) {
-        kept = why_not = std::string("This match could not be kept: ") + fault.what() + ".";
+        kept = std::string("This match could not be kept: ") + fault.what() + ".";
+        not_kept = {short_words_of_not_kept(fault), kept};
     }
     const std::lock_guard lock(mutex_);
-    not_kept_ = why_not;
+    not_kept_ = not_kept;
     return kept;
 }
 

@@ -18,6 +18,7 @@
 #include "app/live/window_meter.h"
 #include "app/windows/operator_window.h"
 #include "planning_io/files/image_file.h"
+#include "planning_io/files/make_folder.h"
 #include "planning_io/types/error.h"
 #include "projection/projector_window.h"
 
@@ -87,7 +88,7 @@ private:
 class Screenshots {
 public:
     explicit Screenshots(std::filesystem::path folder) : folder_(std::move(folder)) {
-        if (!folder_.empty()) std::filesystem::create_directories(folder_);
+        if (!folder_.empty()) make_folder(folder_);
     }
     void take(OperatorWindow& window, const OperatorModel& model, const LiveSession& session) {
         if (folder_.empty()) return;
@@ -174,7 +175,7 @@ int run_windows(OperatorWindow& window, LiveSession& session, ProjectorKeeper* p
         if (projector) tell_of_projector(*projector, session, watch, model);
         if (const std::string trouble = options.trouble ? options.trouble() : ""; !trouble.empty())
             model.status.details.push_back(trouble);
-        if (const std::string not_kept = session.not_kept(); !not_kept.empty())
+        if (const std::string not_kept = session.not_kept().in_the_banner; !not_kept.empty())
             model.status.details.push_back(not_kept);
         const auto frame_began = std::chrono::steady_clock::now();
         const OperatorAction action = window.frame(model);
@@ -222,7 +223,7 @@ int told_at_the_end(int code, const LiveSession& session, const WindowMeter& met
     } else if (latency.lit > 0) {
         fmt::print("{}.\n", latency.sentence());
     }
-    if (const std::string not_kept = session.not_kept(); !not_kept.empty()) warn(not_kept);
+    if (const std::string not_kept = session.not_kept().with_its_folder; !not_kept.empty()) warn(not_kept);
     for (const std::string& sentence : {latency.sentence(), meter.sentence()})
         if (!sentence.empty()) log_line(sentence);
     return code;

@@ -9,6 +9,7 @@
 #include "app/console.h"
 #include "app/live/light_source.h"
 #include "planning_io/case/light_file.h"
+#include "planning_io/files/make_folder.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/types/error.h"
 #include "planning_io/types/steady_clock.h"
@@ -62,7 +63,7 @@ int show_light(const ProjectorOptions& options) {
     Pace pace(window, clock, options.frames_hz);
     fmt::print(stderr, "Nobody may lie under the projector. Let the cameras run until it is dark; Ctrl-C ends it.\n");
     ProgressBar bar;
-    std::filesystem::create_directories(options.keep);
+    make_folder(options.keep);
     for (const std::string part : kLightParts) {
         if (options.part != "all" && options.part != part) continue;
         RecordSettings record;

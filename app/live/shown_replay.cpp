@@ -7,6 +7,7 @@
 #include "app/live/replay_view.h"
 #include "app/windows/operator_window.h"
 #include "planning_io/files/image_file.h"
+#include "planning_io/files/make_folder.h"
 
 namespace planlight {
 namespace {
@@ -20,7 +21,7 @@ struct WindowClosed {};
 class Pictures {
 public:
     explicit Pictures(std::filesystem::path folder) : folder_(std::move(folder)) {
-        if (!folder_.empty()) std::filesystem::create_directories(folder_);
+        if (!folder_.empty()) make_folder(folder_);
     }
     void take(OperatorWindow& window, const OperatorModel& model) {
         constexpr int kSettled = 6;

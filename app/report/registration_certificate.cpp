@@ -9,6 +9,8 @@
 #include "app/windows/scene_view.h"
 #include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/registration_file.h"
+#include "planning_io/files/disk_refusal.h"
+#include "planning_io/files/make_folder.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/point_pairs_file.h"
 #include "planning_io/surface/mesh_file.h"
@@ -81,11 +83,15 @@ void write_certificate_html(const Case& the_case, const CaseDrawing& drawing, co
 
 fs::path keep_match(const RegistrationResult& found, const PointCloud* cloud, const std::vector<PointPair>& landmarks,
                     const fs::path& folder) {
-    fs::create_directories(folder);
+    make_folder(folder);
     fs::path kept;
     for (int number = 1; kept.empty(); ++number) {
         const fs::path wanted = folder / fmt::format("{:04d}", number);
-        if (fs::create_directory(wanted)) kept = wanted;  // false: it is there already
+        std::error_code fault;
+        if (fs::create_directory(wanted, fault)) kept = wanted;  // false: it is there already
+        if (fault)
+            throw DiskRefusal(wanted, "cannot be made: " + fault.message(),
+                              "Check the free space and the permissions of the folder that it lies in.", fault);
     }
     try {
         write_folder_safely(kept, false, [&](const fs::path& filled) {

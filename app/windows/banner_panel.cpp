@@ -209,8 +209,8 @@ const char* status_word(StatusKind kind) {
 void draw_banner(const Pen& pen, const Box& box, const OperatorModel& model, const std::string& notice) {
     const Look& look = look_of(pen, model.status.kind);
     const float s = pen.scale, pad = 18 * s;
-    // On a screen that stands on end the word has a row of its own.
-    const bool narrow = box.width < 1300 * s;
+    // On a screen that stands on end the word has a row of its own, however wide that screen is.
+    const bool narrow = box.width < kLeastLyingBanner * s;
     const float word_height = narrow ? 132 * s : box.height;
     pen.panel(box, look.fill, look.edge, 3);
     const float radius = narrow ? 50 * s : 0.30F * box.height, middle_y = box.y + word_height / 2;

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "app/windows/operator_model.h"
+#include "app/windows/panels.h"
 
 namespace planlight {
 namespace {
@@ -98,7 +99,11 @@ void draw_guide_tilts(const Pen& pen, const Box& box, const GuideModel& model) {
     pen.panel(box);
     draw_title(pen, box, "Tilt: which edge came nearer");
     const float s = pen.scale, top = 44 * s, word = line_height(pen.fonts.small);
-    const float radius = std::min(box.width / 2 - 90 * s, (box.height - top - 2 * word - 24 * s) / 2);
+    const char* words[4] = {"left", "right", "upper", "lower"};
+    const auto edge_text = [&](std::size_t i) { return pen.say(fmt::format("{} {}", words[i], model.by_edge[i])); };
+    const float beside = std::max({90 * s, text_width(pen.fonts.small, edge_text(0)) + 14 * s,
+                                   text_width(pen.fonts.small, edge_text(1)) + 14 * s});
+    const float radius = std::min(box.width / 2 - beside, (box.height - top - 2 * word - 24 * s) / 2);
     const ImVec2 middle(box.x + box.width / 2, box.y + top + word + radius);
     // A face that is turned to the right has its left edge nearer: the dot goes to the edge that came nearer.
     const auto at = [&](const Eigen::Vector2d& tilt) {
@@ -116,13 +121,12 @@ void draw_guide_tilts(const Pen& pen, const Box& box, const GuideModel& model) {
     }
     pen.list->AddCircle(middle, radius, pen.theme->edge, 48, 2);
     pen.list->AddCircleFilled(middle, radius * static_cast<float>(model.useful_tilt / kRim), pen.theme->panel, 48);
-    const char* words[4] = {"left", "right", "upper", "lower"};
     const ImVec2 places[4] = {{box.x + 6 * s, middle.y},
                               {middle.x + radius + 6 * s, middle.y},
                               {box.x + 6 * s, middle.y - radius - word / 2 - 2 * s},
                               {box.x + 6 * s, middle.y + radius + word / 2 + 2 * s}};
     for (std::size_t i = 0; i < 4; ++i) {
-        const std::string text = pen.say(fmt::format("{} {}", words[i], model.by_edge[i]));
+        const std::string text = edge_text(i);
         const float width = i == 0   ? middle.x - radius - box.x - 12 * s
                             : i == 1 ? box.right() - places[i].x - 6 * s
                                      : box.width - 12 * s;
@@ -157,12 +161,14 @@ void draw_guide_banner(const Pen& pen, const Box& box, const GuideModel& model) 
     const float s = pen.scale, pad = 26 * s;
     pen.panel(box, look.fill, look.edge, 3);
     const std::string word = pen.say(model.word);
-    const float word_width = std::min(0.42F * box.width, text_width(pen.fonts.word, word));
-    const float word_room = std::max(word_width, 0.36F * box.width);
-    pen.line(pen.fonts.word, word, box.x + pad, box.y + box.height / 2, 0, look.text);
-    const float x = box.x + pad + std::max(word_room, text_width(pen.fonts.word, word)) + pad;
+    // On a screen that stands on end the word has a row of its own.
+    const bool narrow = box.width < kLeastLyingBanner * s;
+    const float word_row = narrow ? 132 * s : box.height;
+    pen.line(pen.fonts.word, word, box.x + pad, box.y + word_row / 2, 0, look.text);
+    const float x =
+        narrow ? box.x + pad : box.x + 2 * pad + std::max(0.36F * box.width, text_width(pen.fonts.word, word));
     const float width = box.right() - pad - x;
-    float y = box.y + 0.16F * box.height;
+    float y = box.y + (narrow ? word_row : 0.16F * box.height);
     if (!model.what.empty())
         y += pen.paragraph(pen.fonts.title, pen.say(model.what), {x, y, width, 0.5F * box.height}, pen.theme->text);
     if (!model.why.empty())
@@ -203,6 +209,35 @@ void draw_guide_progress(const Pen& pen, const Box& box, const GuideModel& model
     for (const std::string& one : model.wanted) wanted += (wanted.empty() ? ": " : "; ") + pen.say(one);
     pen.paragraph(pen.fonts.body, pen.say("Still wanted") + wanted + ".",
                   {x, y, width, std::max(0.0F, box.bottom() - y - 8 * s)}, pen.theme->amber);
+}
+
+namespace {
+
+GuideAction draw_buttons(const Pen& pen, const Box& box, const GuideModel& model) {
+    const float gap = 16 * pen.scale, width = (box.width - gap) / 2;
+    const ButtonState free{!model.result.empty(), "when it is finished"};
+    GuideAction wanted = GuideAction::none;
+    if (button(pen, {box.x, box.y, width, box.height}, "Keep", free)) wanted = GuideAction::keep;
+    if (button(pen, {box.x + width + gap, box.y, width, box.height}, "Discard", free)) wanted = GuideAction::discard;
+    return wanted;
+}
+
+}  // namespace
+
+GuideAction draw_guide(const Pen& pen, const GuideLayout& place, const GuideModel& model,
+                       const std::array<ImTextureID, 2>& textures) {
+    const float s = pen.scale, x = 24 * s, width = place.banner.width - 16 * s;
+    pen.line(pen.fonts.title, pen.say(model.title), x, 30 * s, width, pen.theme->text);
+    pen.line(pen.fonts.small, model.subtitle, x, 58 * s, width, pen.theme->quiet);
+    draw_guide_camera(pen, place.left, model.left, textures[0]);
+    draw_guide_camera(pen, place.right, model.right, textures[1]);
+    draw_guide_cells(pen, place.projector, "In the projector's light", model.projector);
+    draw_guide_progress(pen, place.progress, model);
+    draw_guide_tilts(pen, place.tilts, model);
+    draw_guide_depths(pen, place.depths, model);
+    const GuideAction wanted = draw_buttons(pen, place.buttons, model);
+    draw_guide_banner(pen, place.banner, model);
+    return wanted;
 }
 
 }  // namespace planlight

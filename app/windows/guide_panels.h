@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+
+#include "app/windows/guide_layout.h"
 #include "app/windows/guide_model.h"
 #include "app/windows/pen.h"
 
@@ -17,5 +20,10 @@ void draw_guide_depths(const Pen& pen, const Box& box, const GuideModel& model);
 void draw_guide_banner(const Pen& pen, const Box& box, const GuideModel& model);
 /// Poses, predicted error, what is still wanted; then the result.
 void draw_guide_progress(const Pen& pen, const Box& box, const GuideModel& model);
+
+/// All of the window; `textures`: of the left and the right camera's picture, null where there is none. What was
+/// pressed with the mouse.
+GuideAction draw_guide(const Pen& pen, const GuideLayout& place, const GuideModel& model,
+                       const std::array<ImTextureID, 2>& textures);
 
 }  // namespace planlight

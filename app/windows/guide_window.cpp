@@ -3,13 +3,11 @@
 #include <GLFW/glfw3.h>
 #include <imgui.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "app/windows/camera_texture.h"
 #include "app/windows/gui_window.h"
 #include "app/windows/guide_panels.h"
-#include "app/windows/panels.h"
 
 namespace planlight {
 namespace {
@@ -18,15 +16,6 @@ GuideAction action_of(int key) {
     if (key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER) return GuideAction::keep;
     if (key == GLFW_KEY_DELETE) return GuideAction::discard;
     return key == GLFW_KEY_ESCAPE ? GuideAction::quit : GuideAction::none;
-}
-
-GuideAction draw_buttons(const Pen& pen, const Box& box, const GuideModel& model) {
-    const float gap = 16 * pen.scale, width = (box.width - gap) / 2;
-    const ButtonState free{!model.result.empty(), "when it is finished"};
-    GuideAction wanted = GuideAction::none;
-    if (button(pen, {box.x, box.y, width, box.height}, "Keep", free)) wanted = GuideAction::keep;
-    if (button(pen, {box.x + width + gap, box.y, width, box.height}, "Discard", free)) wanted = GuideAction::discard;
-    return wanted;
 }
 
 }  // namespace
@@ -46,27 +35,11 @@ struct GuideWindow::Parts {
     Parts& operator=(const Parts&) = delete;
 
     GuideAction draw(const Pen& pen, const GuideModel& model, float w, float h) {
-        const float s = pen.scale, gap = 16 * s, title = 64 * s, banner = std::max(152.0F, 196 * s);
-        pen.line(pen.fonts.title, pen.say(model.title), gap + 8 * s, gap + 14 * s, 0.6F * w, pen.theme->text);
-        pen.line(pen.fonts.small, model.subtitle, gap + 8 * s, gap + 42 * s, 0.9F * w, pen.theme->quiet);
-        const float top = gap + title, bottom = h - gap - banner - gap, column = std::max(420.0F, 0.28F * w);
-        const float cameras = w - 3 * gap - column, camera_width = (cameras - gap) / 2;
-        const float below = (model.result.empty() ? 240 : 430) * s;  // the result has more words
-        const float camera_height = std::min(bottom - top - below, 0.8F * camera_width);
-        const int pixels = static_cast<int>(camera_width);
-        draw_guide_camera(pen, {gap, top, camera_width, camera_height}, model.left,
-                          texture_id(left.take(model.left.picture, pixels)));
-        draw_guide_camera(pen, {2 * gap + camera_width, top, camera_width, camera_height}, model.right,
-                          texture_id(right.take(model.right.picture, pixels)));
-        const float low = top + camera_height + gap, small = std::min((bottom - low) * 1.5F, 0.4F * cameras);
-        draw_guide_cells(pen, {gap, low, small, bottom - low}, "In the projector's light", model.projector);
-        draw_guide_progress(pen, {2 * gap + small, low, cameras - small - gap, bottom - low}, model);
-        const float x = w - gap - column, depth = 110 * s, buttons = std::max(76.0F, 84 * s);
-        draw_guide_tilts(pen, {x, top, column, bottom - top - depth - buttons - 2 * gap}, model);
-        draw_guide_depths(pen, {x, bottom - depth - buttons - gap, column, depth}, model);
-        const GuideAction wanted = draw_buttons(pen, {x, bottom - buttons, column, buttons}, model);
-        draw_guide_banner(pen, {gap, h - gap - banner, w - 2 * gap, banner}, model);
-        return wanted;
+        const GuideLayout place = guide_layout(static_cast<int>(w), static_cast<int>(h), !model.result.empty());
+        const int pixels = static_cast<int>(place.left.width);
+        return draw_guide(
+            pen, place, model,
+            {texture_id(left.take(model.left.picture, pixels)), texture_id(right.take(model.right.picture, pixels))});
     }
 };
 

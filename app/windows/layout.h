@@ -24,6 +24,10 @@ struct WindowLayout {
 /// The scale at 1280 x 720, and at 720 x 1280: below it all is shrunk.
 inline constexpr float kLeastScale = 2.0F / 3;
 
+/// No banner of a window that is wider than high is narrower than this, times the scale: one that is belongs to a
+/// window on end.
+inline constexpr float kLeastLyingBanner = 1860;
+
 /// Of a button, and of the lowest part of any: 72 pixels at least (20 mm on a 24 inch screen), less only where the
 /// whole window is smaller than 1280 x 720.
 float button_height(float scale, float wanted = 76);

@@ -11,6 +11,7 @@
 #include "planning_io/case/missing_pictures.h"
 #include "planning_io/case/recording_json.h"
 #include "planning_io/files/image_file.h"
+#include "planning_io/files/make_folder.h"
 
 namespace planlight {
 namespace {
@@ -144,8 +145,8 @@ void write_capture(const CaptureFolder& capture, const fs::path& folder) {
                          "Capture the sequence again.");
     for (const std::string& name : capture.names) check_name(name, folder);
     write_folder_safely(folder, false, [&](const fs::path& into) {
-        fs::create_directories(into / "left");
-        if (right) fs::create_directories(into / "right");
+        make_folder(into / "left");
+        if (right) make_folder(into / "right");
         for (std::size_t i = 0; i < capture.names.size(); ++i) {
             write_png(capture.left[i], into / "left" / (capture.names[i] + ".png"));
             if (right) write_png(capture.right[i], into / "right" / (capture.names[i] + ".png"));

@@ -4,6 +4,7 @@
 
 #include "planning_io/case/recording_json.h"
 #include "planning_io/files/image_file.h"
+#include "planning_io/files/make_folder.h"
 
 namespace planlight {
 
@@ -12,8 +13,8 @@ using namespace recording;
 
 void write_frames(const std::vector<StereoFrame>& frames, const fs::path& folder) {
     write_folder_safely(folder, false, [&](const fs::path& into) {
-        fs::create_directories(into / "left");
-        fs::create_directories(into / "right");
+        make_folder(into / "left");
+        make_folder(into / "right");
         Json list = Json::array();
         for (std::size_t i = 0; i < frames.size(); ++i) {
             const std::string name = fmt::format("{:06}.png", i);

@@ -80,10 +80,12 @@ void check_exists(const fs::path& path, const std::string& remedy) {
     std::error_code ignored;
     const bool itself = end.link.filename() == path.filename() && fs::is_symlink(path, ignored) &&
                         fs::read_symlink(path, ignored) == end.leads_to;
-    throw InputError(path,
-                     (itself ? "is a link to " : "leads over the link " + end.link.string() + " to ") +
-                         end.leads_to.string() + ", which does not exist",
-                     "Name the file itself.");
+    if (itself)
+        throw InputError(path, "is a link to " + end.leads_to.string() + ", which does not exist",
+                         "Name the file itself.");
+    throw InputError(
+        path, "leads over the link " + end.link.string() + " to " + end.leads_to.string() + ", which does not exist",
+        "Name the file itself.");
 }
 
 }  // namespace planlight

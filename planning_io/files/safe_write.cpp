@@ -12,6 +12,7 @@
 #include <random>
 
 #include "planning_io/files/check_exists.h"
+#include "planning_io/files/disk_refusal.h"
 #include "planning_io/types/error.h"
 
 namespace planlight {
@@ -23,10 +24,12 @@ constexpr const char* kDiskRemedy = "Check the free space and the permissions of
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& doing) {
     const int code = errno;
-    if (code == ENOENT && !fs::exists(file.has_parent_path() ? file.parent_path() : fs::path(".")))
+    std::error_code ignored;
+    if (code == ENOENT && !fs::exists(file.has_parent_path() ? file.parent_path() : fs::path("."), ignored))
         throw DiskError(file, doing + ": its folder does not exist",
                         "Make the folder " + file.parent_path().string() + " first.");
-    throw DiskError(file, doing + (code ? std::string(": ") + std::strerror(code) : std::string()), kDiskRemedy);
+    throw DiskRefusal(file, doing + (code ? std::string(": ") + std::strerror(code) : std::string()), kDiskRemedy,
+                      std::error_code(code, std::generic_category()));
 }
 
 /// A new empty file (or folder) beside `file`, with those of the permissions `mode` that the user's umask gives.
@@ -94,8 +97,13 @@ struct RemoveFolder {
 fs::path meant_folder(const fs::path& folder) {
     fs::path target = folder;
     if (!target.has_filename()) target = target.parent_path();
-    if (fs::exists(target)) return fs::canonical(target);
-    if (fs::is_symlink(target))
+    std::error_code fault, ignored;
+    if (fs::exists(target, fault)) return fs::canonical(target);
+    if (fault) {
+        errno = fault.value();
+        refuse(folder, "cannot be written");
+    }
+    if (fs::is_symlink(target, ignored))
         throw InputError(target, "is a link to a folder that is not there", "Make that folder, or name another.");
     return target;
 }

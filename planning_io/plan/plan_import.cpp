@@ -7,6 +7,7 @@
 #include <cctype>
 
 #include "planning_io/files/check_exists.h"
+#include "planning_io/files/one_line.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/plan_fcsv.h"
 #include "planning_io/plan/plan_file.h"
@@ -175,8 +176,8 @@ void check_extent(const Plan& plan, const fs::path& file) {
 std::string plan_name_of(const fs::path& file) {
     std::string name = file.filename().string();
     for (const char* ending : {".mrk.json", ".json"})
-        if (ends(file, ending)) return name.substr(0, name.size() - std::string(ending).size());
-    return file.stem().string();
+        if (ends(file, ending)) return on_one_line(name.substr(0, name.size() - std::string(ending).size()));
+    return on_one_line(file.stem().string());
 }
 
 void append(PlanImport& to, PlanImport more) {
@@ -200,26 +201,13 @@ void append(PlanImport& to, PlanImport more) {
 
 namespace {
 
-/// Names stand in rows, on the skin and in tables: line breaks and other signs that are not written become a space.
-void put_on_one_line(std::string& name) {
-    std::string line;
-    for (const char c : name) {
-        const auto code = static_cast<unsigned char>(c);
-        if (code >= 0x20 && code != 0x7F)
-            line += c;
-        else if (!line.empty() && line.back() != ' ')
-            line += ' ';
-    }
-    while (line.ends_with(' ')) line.pop_back();
-    name = std::move(line);
-}
-
+/// Names stand in rows, on the skin and in tables.
 void put_names_on_one_line(Plan& plan) {
-    for (auto& item : plan.trajectories) put_on_one_line(item.name);
-    for (auto& item : plan.boreholes) put_on_one_line(item.name);
-    for (auto& item : plan.osteotomy_lines) put_on_one_line(item.name);
-    for (auto& item : plan.cut_planes) put_on_one_line(item.name);
-    for (auto& item : plan.risk_structures) put_on_one_line(item.name);
+    for (auto& item : plan.trajectories) item.name = on_one_line(item.name);
+    for (auto& item : plan.boreholes) item.name = on_one_line(item.name);
+    for (auto& item : plan.osteotomy_lines) item.name = on_one_line(item.name);
+    for (auto& item : plan.cut_planes) item.name = on_one_line(item.name);
+    for (auto& item : plan.risk_structures) item.name = on_one_line(item.name);
 }
 
 PlanImport looked_over(PlanImport read, const fs::path& file_or_folder) {
@@ -237,7 +225,7 @@ std::string left_out_of(const fs::path& folder) {
         const std::string name = entry.path().filename().string();
         if (name.starts_with('.') || is_plan_name(entry.path())) continue;
         std::error_code ignored;
-        left_out.push_back(entry.is_directory(ignored) ? name + "/" : name);
+        left_out.push_back(on_one_line(name) + (entry.is_directory(ignored) ? "/" : ""));
     }
     if (left_out.empty()) return {};
     std::sort(left_out.begin(), left_out.end());
@@ -245,7 +233,7 @@ std::string left_out_of(const fs::path& folder) {
     const std::vector<std::string> first(left_out.begin(), left_out.begin() + static_cast<std::ptrdiff_t>(named));
     return fmt::format(
         "Not read from {}: {}{}. Give a file of the plan that is among these by itself, or save it as .mrk.json.",
-        folder.string(), fmt::join(first, ", "),
+        on_one_line(folder.string()), fmt::join(first, ", "),
         left_out.size() > named ? fmt::format(" and {} more", left_out.size() - named) : "");
 }
 

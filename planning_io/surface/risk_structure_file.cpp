@@ -6,6 +6,7 @@
 #include <cctype>
 
 #include "planning_io/files/check_exists.h"
+#include "planning_io/files/one_line.h"
 #include "planning_io/plan/plan_file.h"
 #include "planning_io/plan/plan_limits.h"
 #include "planning_io/surface/dicom_seg.h"
@@ -110,6 +111,7 @@ std::vector<RiskStructure> read_risk_structures(const fs::path& file, const Plan
         structures.push_back(read_shape_structure(file, settings, limits, notes));
     }
     for (auto& structure : structures) {
+        structure.name = on_one_line(structure.name);
         check_name(structure.name, file);
         check_size(structure, file, limits);
         structure.surface.normals_in_ct.clear();  // nobody looks at them

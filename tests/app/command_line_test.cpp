@@ -116,6 +116,11 @@ TEST_F(CommandLineTest, TheLogFileKeepsCommandStepsRefusalAndExitCode) {
     expect_refused(run("board --log-file nowhere/log.txt"), 7, "nowhere/log.txt");
 }
 
+TEST_F(CommandLineTest, AFolderThatCannotBeMadeIsAMatterOfTheDiskHoweverDeep) {
+    for (const char* folder : {"/proc/planlight", "/proc/none/x", "/proc/none/x/y"})
+        expect_refused(run(std::string("patterns --width 64 --height 64 --out ") + folder), 7, "/proc/");
+}
+
 TEST_F(CommandLineTest, SettingsOfTheSiteAreReadAndSaid) {
     write_settings(R"({"format": "planlight config", "version": 1, "units": "cm", "surgeon_side": "head",
                        "monitors": {"operator": "DP-1"}, "notes": "theatre 2"})");

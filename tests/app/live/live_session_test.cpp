@@ -199,10 +199,16 @@ TEST_F(LiveSessionTest, RegisterThatDarkOvertookCanBePressedAgain) {
     EXPECT_EQ(dark.status.kind, StatusKind::dark);
     EXPECT_TRUE(dark.do_register.enabled) << "the scan is kept, and nobody looks for the patient";
     EXPECT_TRUE(dark.landmarks);
-    EXPECT_EQ(session->not_kept(), "");
+    EXPECT_EQ(session->not_kept().in_the_banner, "");
     EXPECT_EQ(session->post(OperatorAction::do_register), "");
-    wait_for(*session, "the match", [](const OperatorModel& m) { return m.track.enabled || m.confirm; });
-    EXPECT_NE(session->not_kept().find("This match could not be kept"), std::string::npos) << "and goes on";
+    const OperatorModel found =
+        wait_for(*session, "the match", [](const OperatorModel& m) { return m.track.enabled || m.confirm; });
+    const NotKept not_kept = session->not_kept();
+    EXPECT_EQ(not_kept.in_the_banner, "This match could not be kept: its folder cannot be written to.");
+    EXPECT_EQ(not_kept.with_its_folder.find("This match could not be kept: /proc/planlight/matches: cannot be made: "),
+              0U)
+        << not_kept.with_its_folder;
+    EXPECT_EQ(std::count(found.evidence.begin(), found.evidence.end(), not_kept.with_its_folder), 1) << "and goes on";
 }
 
 TEST_F(LiveSessionTest, LightIsConfirmedOncePerPressAndDarkLeadsBackToTheMatch) {

@@ -103,6 +103,7 @@ constexpr const char* kSaying[] = {
     "app/live/resume_steps.cpp",
     "app/live/session_states.cpp",
     "app/live/live_window.cpp",
+    "app/live/not_kept.cpp",
     "app/live/projector_watch.cpp",
     "app/live/replay_view.cpp",
     "app/live/review_desk.cpp",

@@ -3,20 +3,24 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <regex>
 #include <tuple>
 
+#include "app/live/not_kept.h"
 #include "app/live/session_states.h"
 #include "app/windows/camera_page_panels.h"
 #include "app/windows/fonts.h"
+#include "app/windows/guide_panels.h"
 #include "app/windows/layout.h"
 #include "app/windows/operator_keys.h"
 #include "app/windows/panels.h"
 #include "app/windows/review_panels.h"
 #include "app/words/words.h"
+#include "planning_io/files/disk_refusal.h"
 #include "projection/light_cause.h"
 #include "tests/app/windows/fake_model.h"
 #include "tests/app/words/source_texts.h"
@@ -35,6 +39,7 @@ public:
         FontLetters letters{words_->letters(), {}};
         for (int kind = 0; kind <= static_cast<int>(StatusKind::waiting); ++kind)
             letters.word += words_->say(status_word(static_cast<StatusKind>(kind)));
+        for (const std::string& word : guide_words()) letters.word += words_->say(word);
         pen.fonts = load_fonts(*ImGui::GetIO().Fonts, find_fonts(), place.scale, letters);
         unsigned char* pixels = nullptr;
         int w = 0, h = 0;
@@ -96,6 +101,10 @@ public:
     Pen pen{};
 };
 
+/// From the least that a window may have, upright and on end, to the largest monitors.
+constexpr std::pair<int, int> kSizes[] = {{800, 600},   {1024, 768}, {1280, 720},  {1366, 768}, {1920, 1080},
+                                          {3840, 2160}, {600, 800},  {1080, 1920}, {720, 1280}};
+
 using LanguageAndSize = std::tuple<std::string, std::pair<int, int>>;
 
 /// The window in that language and size; its fonts are made once for all tests.
@@ -118,10 +127,7 @@ protected:
     }
 };
 INSTANTIATE_TEST_SUITE_P(Windows, WordsInPlace,
-                         testing::Combine(testing::Values("en", "de", "ru"),
-                                          testing::Values(std::pair{1280, 720}, std::pair{1920, 1080},
-                                                          std::pair{3840, 2160}, std::pair{1080, 1920},
-                                                          std::pair{720, 1280})));
+                         testing::Combine(testing::Values("en", "de", "ru"), testing::ValuesIn(kSizes)));
 
 TEST_P(WordsInPlace, EveryButtonHasRoomForItsWordAndItsReason) {
     const OperatorModel blank;
@@ -244,6 +250,60 @@ TEST_P(WordsInPlace, ThePageOfTheCamerasHasRoom) {
         << "pictures are what it is for";
 }
 
+TEST_P(WordsInPlace, TheWindowOfAGuidedCalibrationHasRoomForItsWords) {
+    GuideModel model;
+    model.title = "Guided calibration";
+    model.left.title = "Left";
+    model.right.title = "Right";
+    model.by_edge = {12, 0, 3, 10};
+    model.distances_mm = {700, 750};
+    model.poses = 12, model.least_poses = 10, model.most_poses = 40;
+    model.predicted_mm = 0.345, model.good_enough_mm = 0.3;
+    model.wanted = {"six more poses", "a tilt with the lower edge nearer"};
+    const auto [width, height] = std::get<1>(GetParam());
+    const auto draw = [&](const std::string& where) {
+        draw_guide(drawn_.pen, guide_layout(width, height, !model.result.empty()), model, {nullptr, nullptr});
+        expect_whole(where);
+    };
+    for (const std::string& word : guide_words()) {
+        model.word = word;
+        for (const auto& [why, what] :
+             {std::pair{"The light came later than this projector is said to be, so that pictures were mixed up.",
+                        "Leave the board there: it is captured again, more slowly. `planlight projector` measures the "
+                        "delay."},
+              std::pair{"The board is too dark for the right camera (paper 12 of 255, print 12 darker).",
+                        "Bring it into the projector's light, or lengthen the exposure."},
+              std::pair{"Only the right camera sees the board.",
+                        "Bring it to where the left camera sees it too, and turn its face less aside."},
+              std::pair{"Enter keeps it, Delete discards it.", "Keep the new rig, or go on with the former one?"}}) {
+            model.why = why;
+            model.what = what;
+            draw(word + ": " + why);
+        }
+    }
+    model.result = {"The reprojection error is 0.12 pixels."};
+    draw("the result");
+}
+
+// A person sees in them whether the board is in the picture.
+TEST(GuideLayout, ACamerasPictureIsAThirdOfTheWindowsShorterSideAtLeast) {
+    for (const auto& [width, height] : kSizes)
+        for (const bool with_result : {false, true}) {
+            const GuideLayout place = guide_layout(width, height, with_result);
+            SCOPED_TRACE(std::to_string(width) + " x " + std::to_string(height));
+            const float least = static_cast<float>(std::min(width, height)) / 3;
+            EXPECT_GE(place.left.width, least);
+            EXPECT_GE(place.left.height, 0.7F * least);
+            for (const Box* box : {&place.left, &place.right, &place.projector, &place.progress, &place.tilts,
+                                   &place.depths, &place.buttons, &place.banner}) {
+                EXPECT_GT(box->width, 0);
+                EXPECT_GT(box->height, 0);
+                EXPECT_LE(box->right(), static_cast<float>(width));
+                EXPECT_LE(box->bottom(), static_cast<float>(height));
+            }
+        }
+}
+
 TEST_P(WordsInPlace, HeaderAndTableHaveRoom) {
     OperatorModel model = test::fake_model();
     model.case_title = model.case_plan = model.case_subtitle = "E. M.";
@@ -318,13 +378,10 @@ protected:
     }
 };
 INSTANTIATE_TEST_SUITE_P(Windows, BannerInPlace,
-                         testing::Combine(testing::Values("en", "de", "ru"),
-                                          testing::Values(std::pair{800, 600}, std::pair{1024, 768},
-                                                          std::pair{1280, 720}, std::pair{1366, 768},
-                                                          std::pair{1920, 1080}, std::pair{3840, 2160},
-                                                          std::pair{1080, 1920}, std::pair{720, 1280})));
+                         testing::Combine(testing::Values("en", "de", "ru"), testing::ValuesIn(kSizes)));
 
-TEST_P(BannerInPlace, EveryRulingOfTheGateHasRoom) {
+/// All that the gate says, with figures of two digits.
+std::vector<Status> rulings_of_the_gate() {
     std::vector<Status> said;
     for (const std::string& literal :
          test::literals_in(std::filesystem::path(PLANLIGHT_SOURCE_FOLDER) / "projection/light_gate.cpp")) {
@@ -335,8 +392,22 @@ TEST_P(BannerInPlace, EveryRulingOfTheGateHasRoom) {
         else if (!said.empty())
             said.back().details.push_back(text);
     }
+    return said;
+}
+
+TEST_P(BannerInPlace, EveryRulingOfTheGateHasRoom) {
+    const std::vector<Status> said = rulings_of_the_gate();
     ASSERT_GE(said.size(), 10U);
     for (const Status& status : said) expect_room(status);
+}
+
+TEST_P(BannerInPlace, AMatchThatIsNotKeptHasRoomBesideEveryRulingOfTheGate) {
+    for (const int why : {ENOSPC, EACCES, EROFS, EIO})
+        for (Status status : rulings_of_the_gate()) {
+            status.details.push_back(short_words_of_not_kept(
+                DiskRefusal("/cases/1", "cannot be written", "Look.", {why, std::generic_category()})));
+            expect_room(status);
+        }
 }
 
 TEST_P(BannerInPlace, EveryCauseOfWrongLightHasRoom) {

@@ -289,5 +289,18 @@ TEST_F(PlanImportTest, ANameIsOneLine) {
     EXPECT_EQ(import_plan(file).plan.trajectories.at(0).name, "Left way  in");
 }
 
+TEST_F(PlanImportTest, NoNameAndNoNoteGivesOrdersToATerminal) {
+    const std::string line = R"({"@schema": "markups-schema-v1.0.3.json#", "markups": [{"type": "Line",)"
+                             R"( "name": "ves\u2028sel\u202e\u008512", "coordinateSystem": "LPS",)"
+                             R"( "coordinateUnits": "mm", "controlPoints":)"
+                             R"( [{"position": [0, 0, 0]}, {"position": [0, 0, 50]}]}]})";
+    write("way.mrk.json", line);
+    write("evil\n\x1B[31mred", "?");
+    const PlanImport read = import_plan(folder_.path());
+    EXPECT_EQ(read.plan.trajectories.at(0).name, "ves sel 12");
+    ASSERT_EQ(read.notes.size(), 1U);
+    EXPECT_SAYS(read.notes[0], ": evil [31mred. Give a file");
+}
+
 }  // namespace
 }  // namespace planlight

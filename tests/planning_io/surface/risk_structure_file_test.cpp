@@ -99,6 +99,15 @@ TEST_F(RiskStructureFileTest, EveryFormatGivesTheSameClosedSurfaceNamedAsItsFile
     }
 }
 
+TEST_F(RiskStructureFileTest, ItsNameIsOneLineWithoutOrdersOfDirection) {
+    const auto structures = read(
+        "ves\nsel\xE2\x80\xAE"
+        "12.stl",
+        stl(20));
+    ASSERT_EQ(structures.size(), 1U);
+    EXPECT_EQ(structures[0].name, "ves sel12");
+}
+
 TEST_F(RiskStructureFileTest, ItsSpaceIsSaidByTheFileOrByThePersonAndNeverGuessed) {
     EXPECT_SAYS(refused("n.obj", obj(20, "")), "does not say its coordinate system");
     PlanImportSettings ras;

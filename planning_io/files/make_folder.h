@@ -1,0 +1,10 @@
+#pragma once
+
+#include <filesystem>
+
+namespace planlight {
+
+/// Makes the folder and those that it lies in, where they are not there yet. Throws DiskRefusal.
+void make_folder(const std::filesystem::path& folder);
+
+}  // namespace planlight
