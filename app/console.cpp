@@ -53,6 +53,17 @@ void add_to_log(const std::string& line) {
     std::fflush(console().log);
 }
 
+/// Names from outside stand in it: no sign of theirs may steer the terminal. The lines of a table of ours stay lines.
+std::string fit_to_print(const std::string& text) {
+    std::string fit;
+    for (std::size_t at = 0; at <= text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        fit += (at > 0 ? "\n" : "") + on_one_line(text.substr(at, end - at));
+        at = end + 1;
+    }
+    return fit;
+}
+
 }  // namespace
 
 void set_up_console(const ConsoleSettings& settings, bool result_wanted) {
@@ -119,7 +130,7 @@ std::function<void(const std::string&, double)> ProgressBar::callback() {
 
 void ProgressBar::note(const std::string& line) {
     end_step();
-    const std::string printed = on_one_line(line);
+    const std::string printed = fit_to_print(line);
     add_to_log(printed);
     if (!console().settings.quiet) fmt::print(stderr, "{}\n", printed);
 }
@@ -131,7 +142,7 @@ void ProgressBar::warn(const std::string& text) {
 
 void warn(const std::string& text) {
     if (console().open_bar) fmt::print(stderr, "\n");
-    const std::string printed = on_one_line(text);
+    const std::string printed = fit_to_print(text);
     add_to_log("warning: " + printed);
     fmt::print(stderr, "warning: {}\n", printed);
 }
@@ -149,7 +160,7 @@ namespace {
 
 /// Names of files stand in it as somebody else gave them.
 void say(const std::string& line) {
-    const std::string printed = on_one_line(line);
+    const std::string printed = fit_to_print(line);
     add_to_log(printed);
     fmt::print(stderr, "planlight: {}\n", printed);
 }

@@ -3,8 +3,10 @@
 
 #include <cerrno>
 #include <filesystem>
+#include <string>
 
 #include "app/console.h"
+#include "planning_io/types/error.h"
 
 namespace planlight {
 namespace {
@@ -22,6 +24,18 @@ TEST(ExitCodes, ADiskThatDoesNotTakeOrGiveIsADiskWhateverItSays) {
 
 TEST(ExitCodes, ANameThatCannotBeReadIsRefused) {
     for (const int fault : {ENOENT, EACCES, ENOTDIR, ELOOP}) EXPECT_EQ(exit_code_of(fault), 3) << fault;
+}
+
+// A list of series stays a list; a file's name with an escape in it must not colour the terminal, or clear it.
+TEST(Console, ATableStaysATableAndNoNameSteersTheTerminal) {
+    testing::internal::CaptureStderr();
+    run_and_explain([]() -> int {
+        throw InputError("evil\x1b[2J.nrrd", "holds two series:\n  1  CT\n  2  MR \u202E", "Choose one with --series.");
+    });
+    const std::string said = testing::internal::GetCapturedStderr();
+    EXPECT_NE(said.find("holds two series:\n  1  CT\n  2  MR"), std::string::npos) << said;
+    EXPECT_EQ(said.find('\x1b'), std::string::npos) << said;
+    EXPECT_EQ(said.find("\u202E"), std::string::npos) << said;
 }
 
 }  // namespace
