@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <utility>
 
 #include "planning_io/types/error.h"
 #include "segmentation/blanked_edges.h"
@@ -25,9 +24,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kProfileRounds = 2;     // of means along the skin, for each smoothing that the mask needed
-constexpr int kNormalRounds = 8;      // of means of the normals, where there is noise
-constexpr int kNoisyMoveRounds = 16;  // of means of the moves, there
+constexpr int kProfileRounds = 2;  // of means along the skin, for each smoothing that the mask needed
 
 /// The crossing of the field, all pieces; vertices in field voxels.
 TriangleMesh contour(SkinField& field) {
@@ -159,36 +156,15 @@ void mend_normals(TriangleMesh& mesh) {
             mesh.normals_in_ct[v] = by_area[v];
 }
 
-/// The skin's normals as the triangles have them, each made the mean of its own and its neighbours', round by round.
-std::vector<Vector3d> averaged_normals(const TriangleMesh& mesh, int rounds) {
-    std::vector<Vector3d> normals = area_normals(mesh);
-    for (int round = 0; round < rounds; ++round) {
-        std::vector<Vector3d> sum = normals;
-        for (const auto& t : mesh.triangles)
-            for (std::size_t c = 0; c < 3; ++c)
-                sum[static_cast<std::size_t>(t[c])] += normals[static_cast<std::size_t>(t[(c + 1) % 3])];
-        for (Vector3d& n : sum) n.normalize();
-        normals = std::move(sum);
-    }
-    for (std::size_t v = 0; v < normals.size(); ++v)
-        if (mesh.flags[v] != kSkin || !(normals[v].dot(mesh.normals_in_ct[v]) > 0)) normals[v] = mesh.normals_in_ct[v];
-    return normals;
-}
-
 /// Where noise was smoothed away the profiles are taken as the scanner made them, and averaged along the skin: smoothed
-/// across it, a thin edge would lie outside by half a millimetre and more. The surface is rough there, and its own
-/// normals lean: profiles go along averaged ones.
+/// across it, a thin edge would lie outside by half a millimetre and more.
 void find_edges(TriangleMesh& mesh, const Volume& given, const Volume& smoothed, const SkinMask& mask) {
     EdgeSettings settings;
     settings.profile_rounds = kProfileRounds * mask.smoothings;
-    if (mask.smoothings == 0) {
+    if (mask.smoothings == 0)
         move_to_edges(mesh, smoothed, mask.threshold, settings);
-        return;
-    }
-    settings.smoothing_rounds = kNoisyMoveRounds;
-    const std::vector<Vector3d> own = std::exchange(mesh.normals_in_ct, averaged_normals(mesh, kNormalRounds));
-    move_to_edges(mesh, leveled_values(given, mask), mask.threshold, settings);
-    mesh.normals_in_ct = own;
+    else
+        move_to_edges(mesh, leveled_values(given, mask), mask.threshold, settings);
 }
 
 }  // namespace
