@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 
+#include "planning_io/types/reading_direction.h"
 #include "projection/font_face.h"
 #include "projection/stroke_font.h"
 #include "projection/text_signs.h"

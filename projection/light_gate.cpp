@@ -8,6 +8,7 @@
 #include "projection/error_figure.h"
 
 namespace planlight {
+
 void LightGate::verify(Instant at) {
     verified_ = true;
     lit_at_ = at;

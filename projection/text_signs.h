@@ -10,10 +10,6 @@ bool has_no_ink(char32_t code);
 
 bool is_control(char32_t code);
 
-/// Orders a direction of reading other than the letters' own: "B", U+202E, "12" would be lit as "B21", and "5 mm 9 mm"
-/// with U+200F as "9 mm 5 mm".
-bool orders_direction(char32_t code);
-
 /// With U+200E, which has no ink, before and behind each figure with its sign and unit: beside a Hebrew or Arabic name
 /// "12.5 mm" would else change places with the name, or with its own unit. A digit that belongs to a word is left to
 /// it.

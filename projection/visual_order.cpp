@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "planning_io/types/reading_direction.h"
 #include "projection/stroke_font.h"
 #include "projection/text_signs.h"
 
@@ -49,7 +50,7 @@ std::string visual_order(const std::string& line) {
     if (fribidi_log2vis(codes_of(text), n, &whole, visual.data(), nullptr, nullptr, nullptr) == 0) return line;
     std::string shown;
     for (std::size_t i = 0; i < text.size(); ++i)
-        if (!orders_direction(visual[i]) && visual[i] != 0xFEFF) shown += utf8_of(static_cast<char32_t>(visual[i]));
+        if (!has_no_ink(visual[i])) shown += utf8_of(static_cast<char32_t>(visual[i]));
     return shown;
 }
 

@@ -12,8 +12,8 @@ namespace planlight {
 /// text has no signs that order a direction (`orders_direction`).
 std::vector<std::int8_t> reading_levels(const std::u32string& text);
 
-/// A line of UTF-8 as a window draws it, sign by sign from the left: Arabic letters have their joined forms, signs that
-/// order a direction are left out.
+/// A line of UTF-8 as a window draws it, sign by sign from the left: Arabic letters have their joined forms, signs
+/// without ink (joiners, orders of a direction) are left out.
 std::string visual_order(const std::string& line);
 
 }  // namespace planlight

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 
+#include "planning_io/types/reading_direction.h"
+
 namespace planlight {
 namespace {
 
@@ -29,11 +31,6 @@ bool ends_a_line(unsigned code) {
     return code < 0x20 || (code >= 0x7F && code <= 0x9F) || code == 0x2028 || code == 0x2029;
 }
 
-bool orders_a_direction(unsigned code) {
-    return (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069) || code == 0x200E ||
-           code == 0x200F || code == 0x061C;
-}
-
 }  // namespace
 
 std::string on_one_line(std::string_view name) {
@@ -42,7 +39,7 @@ std::string on_one_line(std::string_view name) {
         const auto [code, bytes] = first_sign(name);
         if (ends_a_line(code)) {
             if (!line.empty() && line.back() != ' ') line += ' ';
-        } else if (!orders_a_direction(code)) {
+        } else if (!orders_direction(code)) {
             line += name.substr(0, bytes);
         }
         name.remove_prefix(bytes);

@@ -54,6 +54,14 @@ TEST(VisualOrder, NoSignOrdersAnotherDirection) {
     EXPECT_EQ(visual_order("\u2067T1\u2069 T2"), "T1 T2");
 }
 
+// A window would show a joiner as a question mark. Between two Persian letters it keeps them apart: noon and meem in
+// their forms at the end and at the beginning.
+TEST(VisualOrder, SignsWithoutInkShapeTheirNeighboursAndAreLeftOut) {
+    EXPECT_EQ(visual_order("ن\u200Cم"), "ﻡﻥ");
+    EXPECT_EQ(visual_order("نم"), "ﻢﻧ");
+    EXPECT_EQ(visual_order("♥\uFE0F 3"), "♥ 3");
+}
+
 TEST(VisualOrder, ALevelForEachSign) {
     EXPECT_EQ(reading_levels(U"B אב 12"), (std::vector<std::int8_t>{0, 0, 1, 1, 0, 0, 0}));
     EXPECT_TRUE(reading_levels(U"").empty());
