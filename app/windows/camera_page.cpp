@@ -81,8 +81,7 @@ struct CameraPage::Parts {
                         pressed = action;
                 },
                 [this](double x, double y) {
-                    const Box& dark = place.dark;
-                    if (x >= dark.x && x < dark.right() && y >= dark.y && y < dark.bottom()) dark_pressed = true;
+                    if (place.dark.contains(x, y)) dark_pressed = true;
                 }};
     }
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "app/windows/camera_page_panels.h"
+#include "app/windows/exposure_overlay.h"
 
 namespace planlight {
 namespace {
@@ -44,7 +45,6 @@ void draw_figure(const Pen& pen, const Box& box, const std::string& name, const 
 
 void draw_grid(const Pen& pen, const Box& box, const CameraPageModel::Camera& camera) {
     constexpr double kSomeBright_percent = 1, kRateOff = 0.05;
-    constexpr Rgb kBright{235, 40, 40}, kDark{0, 20, 96};
     const float row = line_height(pen.fonts.small) + line_height(pen.fonts.body) + 4 * pen.scale,
                 column = box.width / 3, width = column - 12 * pen.scale;
     const auto cell = [&](int x, int y) {
@@ -53,8 +53,8 @@ void draw_grid(const Pen& pen, const Box& box, const CameraPageModel::Camera& ca
     const ImU32 plain = pen.theme->text;
     const bool slow = camera.asked_hz && std::abs(camera.frames_hz - *camera.asked_hz) > kRateOff * *camera.asked_hz;
     draw_figure(pen, cell(0, 0), "Too bright", fmt::format("{:.1f} %", camera.too_bright_percent),
-                camera.too_bright_percent > kSomeBright_percent ? pen.theme->amber : plain, &kBright);
-    draw_figure(pen, cell(1, 0), "Too dark", fmt::format("{:.1f} %", camera.too_dark_percent), plain, &kDark);
+                camera.too_bright_percent > kSomeBright_percent ? pen.theme->amber : plain, &kTooBright_colour);
+    draw_figure(pen, cell(1, 0), "Too dark", fmt::format("{:.1f} %", camera.too_dark_percent), plain, &kTooDark_colour);
     draw_figure(pen, cell(2, 0), "Exposure", fmt::format("{:.2f} ms", camera.exposure_ms), plain);
     draw_figure(
         pen, cell(0, 1), "Frames a second",

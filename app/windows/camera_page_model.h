@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -37,6 +38,7 @@ struct CameraPageModel {
 
     std::optional<double> apart_ms;  ///< right less left; empty: not known
     double allowed_ms = 0;
+    bool together() const { return apart_ms && std::abs(*apart_ms) <= allowed_ms; }
 
     TestPicture shown = TestPicture::dark;            ///< by the projector
     std::string no_light;                             ///< why none of its buttons does anything; empty: they do

@@ -134,7 +134,7 @@ void draw_aimed_camera(const Pen& pen, const Box& box, const CameraPageModel::Ca
 void draw_page_room(const Pen& pen, const Box& box, const CameraPageModel& model) {
     pen.panel(box);
     const float s = pen.scale, x = box.x + 16 * s, width = box.width - 32 * s, half = box.height / 2;
-    const bool together = model.apart_ms && std::abs(*model.apart_ms) <= model.allowed_ms;
+    const bool together = model.together();
     const std::string pairs =
         !model.apart_ms ? pen.say("Whether both cameras expose together is not known yet.")
         : together      ? pen.say(fmt::format("Both cameras expose together: {:.2f} ms apart ({:.2f} allowed).",
@@ -175,8 +175,7 @@ CameraPageAction draw_camera_page(const Pen& pen, const CameraPageLayout& place,
     draw_camera_figures(pen, place.figures[1], model.right);
     draw_page_room(pen, place.room, model);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const bool hovered = mouse.x >= place.dark.x && mouse.x < place.dark.right() && mouse.y >= place.dark.y &&
-                         mouse.y < place.dark.bottom();
+    const bool hovered = place.dark.contains(mouse.x, mouse.y);
     draw_dark_button(pen, place.dark, hovered, hovered && ImGui::GetIO().MouseDown[0], key_text(KeyMeaning::dark));
     CameraPageAction wanted = CameraPageAction::none;
     for (std::size_t i = 0; i < place.buttons.size(); ++i) {

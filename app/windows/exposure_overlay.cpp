@@ -34,8 +34,12 @@ RgbImage exposure_overlay(const GrayImage& picture, int by) {
             const Cell cell = cell_of(picture, x, y, by);
             const auto grey = static_cast<std::uint8_t>(cell.mean);
             Rgb& pixel = shown.at(x, y) = {grey, grey, grey};
-            if (cell.greatest >= kTooBright_grey && (x + y) / kStripe % 2 == 0) pixel = {235, 40, 40};
-            if (cell.greatest < kTooDark_grey) pixel = {grey, static_cast<std::uint8_t>(grey + 20), 96};
+            if (cell.greatest >= kTooBright_grey && (x + y) / kStripe % 2 == 0) pixel = kTooBright_colour;
+            if (cell.greatest < kTooDark_grey) {
+                const auto green =
+                    static_cast<std::uint8_t>(grey + kTooDark_colour[1]);  // what is seen there shows through
+                pixel = {grey, green, kTooDark_colour[2]};
+            }
         }
     return shown;
 }

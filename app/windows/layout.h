@@ -9,6 +9,9 @@ struct Box {
     float x = 0, y = 0, width = 0, height = 0;
     float right() const { return x + width; }
     float bottom() const { return y + height; }
+    bool contains(double at_x, double at_y) const {
+        return at_x >= x && at_x < right() && at_y >= y && at_y < bottom();
+    }
 };
 
 /// x, y, width, height of the box, rounded.

@@ -22,10 +22,6 @@ using std::chrono::steady_clock;
 
 constexpr auto kNoticeStands = std::chrono::seconds(4);
 
-bool inside(const Box& box, double x, double y) {
-    return x >= box.x && x < box.right() && y >= box.y && y < box.bottom();
-}
-
 /// The four buttons of a session's way.
 struct WayButton {
     OperatorAction action;
@@ -76,7 +72,7 @@ struct OperatorWindow::Parts {
                         key = meaning;
                 },
                 [this](double x, double y) {
-                    if (inside(place.dark, x, y)) dark_pressed = true;
+                    if (place.dark.contains(x, y)) dark_pressed = true;
                 }};
     }
 
@@ -114,7 +110,7 @@ struct OperatorWindow::Parts {
         }
         controls[OperatorAction::dark] = place.dark;
         const ImVec2 mouse = ImGui::GetIO().MousePos;
-        const bool hovered = inside(place.dark, mouse.x, mouse.y);
+        const bool hovered = place.dark.contains(mouse.x, mouse.y);
         draw_dark_button(pen, place.dark, hovered, hovered && ImGui::GetIO().MouseDown[0], key_text(KeyMeaning::dark));
         return wanted;
     }
@@ -122,7 +118,7 @@ struct OperatorWindow::Parts {
     /// A press on the table opens the page with all of it.
     void draw_plan_table(const Pen& pen, const OperatorModel& model) {
         const ImVec2 mouse = ImGui::GetIO().MousePos;
-        if (inside(place.table, mouse.x, mouse.y)) rows_scrolled -= ImGui::GetIO().MouseWheel;
+        if (place.table.contains(mouse.x, mouse.y)) rows_scrolled -= ImGui::GetIO().MouseWheel;
         rows_scrolled = std::max(rows_scrolled, 0.0F);
         places["evidence"] = place.table;
         ImGui::SetCursorScreenPos({place.table.x, place.table.y});

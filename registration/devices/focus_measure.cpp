@@ -6,11 +6,12 @@
 #include <cstdlib>
 #include <vector>
 
+#include "registration/devices/clipped_pixels.h"
+
 namespace planlight {
 namespace {
 
 constexpr int kReach = 3;  // pixels, of the Gaussian to either side
-constexpr int kSaturated = 254;
 
 struct Kernels {
     std::array<float, 2 * kReach + 1> smooth{}, slope{};  ///< Gaussian of one pixel, and its derivative
@@ -50,7 +51,7 @@ void filter_row(const GrayImage& picture, const std::array<int, 4>& region, int 
         for (std::size_t i = 0; i < k.smooth.size(); ++i) {
             row.smooth[x] += k.smooth[i] * from[i];
             row.slope[x] += k.slope[i] * from[i];
-            row.saturated[x] |= from[i] >= kSaturated;
+            row.saturated[x] |= from[i] >= kTooBright_grey;
         }
     }
 }
