@@ -13,8 +13,8 @@ struct DiskRoom {
     double free_gb = 0;
 };
 
-/// Of the folder's disk; of that of the nearest folder above it where it is not there yet. A disk that does not say
-/// counts as empty.
+/// Of the folder's disk; of that of the nearest folder above it where it is not there yet. Infinite where the disk does
+/// not say.
 DiskRoom disk_room_of(const std::filesystem::path& folder);
 
 /// What must be known before a session begins, a sentence for each folder without room, with the option that names

@@ -9,7 +9,6 @@
 #include "app/windows/scene_view.h"
 #include "planning_io/case/cloud_rig.h"
 #include "planning_io/case/registration_file.h"
-#include "planning_io/files/disk_refusal.h"
 #include "planning_io/files/make_folder.h"
 #include "planning_io/files/safe_write.h"
 #include "planning_io/plan/point_pairs_file.h"
@@ -87,11 +86,7 @@ fs::path keep_match(const RegistrationResult& found, const PointCloud* cloud, co
     fs::path kept;
     for (int number = 1; kept.empty(); ++number) {
         const fs::path wanted = folder / fmt::format("{:04d}", number);
-        std::error_code fault;
-        if (fs::create_directory(wanted, fault)) kept = wanted;  // false: it is there already
-        if (fault)
-            throw DiskRefusal(wanted, "cannot be made: " + fault.message(),
-                              "Check the free space and the permissions of the folder that it lies in.", fault);
+        if (make_new_folder(wanted)) kept = wanted;
     }
     try {
         write_folder_safely(kept, false, [&](const fs::path& filled) {
