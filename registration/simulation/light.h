@@ -77,9 +77,9 @@ private:
         Instant on{}, off{};
         std::shared_ptr<const RgbImage> picture;  ///< null: dark
         bool uniform = false;                     ///< one colour all over
-        mutable std::shared_ptr<const LightMap>
-            map;  ///< of all colours at once; made when a camera asks for it: a projector costs the program no time
-        mutable std::array<std::shared_ptr<const LightMap>, 3> colours;  ///< one a colour; made when asked for
+        // Made when a camera asks for them: a projector costs the program no time.
+        mutable std::shared_ptr<const LightMap> map;                     ///< of all colours at once
+        mutable std::array<std::shared_ptr<const LightMap>, 3> colours;  ///< one a colour
     };
     void push(Order order, Instant now);
     Instant light_of(Instant now);
