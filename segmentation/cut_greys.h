@@ -10,7 +10,6 @@ namespace planlight {
 struct CutGreys {
     double air_share = 0;   ///< of the air within 24 mm of the body
     double body_share = 0;  ///< of what lies deeper than 4 mm in the body
-    double top_share = 0;   ///< of the same, at the greatest value
     bool dark_end() const;  ///< both are too many
 };
 

@@ -10,6 +10,8 @@ namespace {
 
 void doubt_greys(const Volume& volume, const SkinMask& mask, SkinJudgement& r) {
     const CutGreys cut = cut_greys(volume, mask);
+    r.cut_air_share = cut.air_share;
+    r.cut_body_share = cut.body_share;
     if (!cut.dark_end()) return;
     r.doubts.push_back(
         {fmt::format("Of the air round the head {:.0f} % and of its inside {:.0f} % show exactly the least value: the "
@@ -21,7 +23,9 @@ void doubt_greys(const Volume& volume, const SkinMask& mask, SkinJudgement& r) {
 
 void doubt_movement(const Volume& volume, SkinJudgement& r) {
     const auto echo = strongest_echo(volume);
-    if (!echo || !echo->is_movement()) return;
+    if (!echo) return;
+    r.echo = echo->strength;
+    if (!echo->is_movement()) return;
     r.doubts.push_back(
         {fmt::format("The series shows the head twice, {:.0f} mm apart along {}: the patient seems to have moved while "
                      "it was taken, and the surface is the outermost of both outlines",

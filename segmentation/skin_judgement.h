@@ -40,12 +40,14 @@ struct SkinJudgement {
     bool unsure = false;   ///< much of the outline moves with the threshold: other thresholds are to be seen
     double sigma_mm = 0;   ///< `skin_edge_sigma_mm`, or more where the edge is blurred, with what fat may shift it
     double breadth_of_length = 0, height_of_width = 0;  ///< `head_proportions`; 0: not measured
-    double slice_jump_mm = 0;       ///< of the outline between two slices, where the patient moved; else 0
-    double noise_sigma_mm = 0;      ///< `skin_edge_sigma_mm` alone
-    double fat_shift_mm = 0;        ///< length of `Volume::fat_shift_in_ct`; 0: not said, or suppressed
-    std::string fat_shift_along;    ///< in words
-    bool bright_bone = false;       ///< bone shines like a CT's in a volume that is not in HU
-    std::vector<SkinDoubt> doubts;  ///< accepted with these
+    double slice_jump_mm = 0;  ///< of the outline between two slices, where the patient moved; else 0
+    double echo = 0;           ///< `SeriesEcho::strength`, of an MR; 0: not asked
+    double cut_air_share = 0, cut_body_share = 0;  ///< `CutGreys`; 0: nothing is cut
+    double noise_sigma_mm = 0;                     ///< `skin_edge_sigma_mm` alone
+    double fat_shift_mm = 0;                       ///< length of `Volume::fat_shift_in_ct`; 0: not said, or suppressed
+    std::string fat_shift_along;                   ///< in words
+    bool bright_bone = false;                      ///< bone shines like a CT's in a volume that is not in HU
+    std::vector<SkinDoubt> doubts;                 ///< accepted with these
     std::vector<SkinDoubt> refusals;
 };
 

@@ -93,9 +93,29 @@ std::vector<Point> points_of(const TriangleMesh& skin, const HeadBall& ball) {
     return points;
 }
 
-/// The plane whose mirror images lie best on the surface: from x = 0 of ct in steps that are halved, and where a head
-/// may look aside, from planes that are turned; one of these must mirror clearly better.
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// From that plane to the nearest of least `misfit`, in steps that are halved; gives its misfit.
+template <class Misfit>
+double descend(const Misfit& misfit, MiddlePlane& plane) {
+    double least = misfit(plane);
+    for (double step = 8; step >= 0.5; step /= 2)  // degrees and mm
+        for (bool again = true; again;) {
+            again = false;
+            for (const double by : {-step, step})
+                for (int k = 0; k < 3; ++k) {
+                    MiddlePlane next = plane;
+                    (k == 0 ? next.yaw : k == 1 ? next.roll : next.aside_mm) += k < 2 ? by * kDegree : by;
+                    if (const double off = misfit(next); off < least) least = off, plane = next, again = true;
+                }
+        }
+    return least;
+}
+
+/// The plane whose mirror images lie best on the surface: sought from x = 0 of ct, and where a head may look aside,
+/// from planes that are turned; one of these must mirror clearly better.
 MiddlePlane middle_plane(const Distances& distances, const std::vector<Point>& points, const HeadBall& ball) {
+    constexpr double kClearly = 0.7;
     const auto misfit = [&](const MiddlePlane& plane) {
         double sum = 0, weight = 0, all = 0;
         for (const Point& p : points) {
@@ -107,24 +127,12 @@ MiddlePlane middle_plane(const Distances& distances, const std::vector<Point>& p
         }
         return weight > kLeastMirrored * all ? sum / weight : INFINITY;  // not the plane that mirrors next to nothing
     };
-    constexpr double kDegree = std::numbers::pi / 180, kClearly = 0.7;
     MiddlePlane best{ball.centre_in_ct};
-    double least = INFINITY;
-    for (const double turned : {0.0, -35.0, 35.0, -60.0, 60.0}) {
+    double least = descend(misfit, best);
+    for (const double turned : {-35.0, 35.0, -60.0, 60.0}) {
         MiddlePlane plane{ball.centre_in_ct};
         plane.yaw = std::tan(turned * kDegree);
-        double off = misfit(plane);
-        for (double step = 8; step >= 0.5; step /= 2)  // degrees and mm
-            for (bool again = true; again;) {
-                again = false;
-                for (const double by : {-step, step})
-                    for (int k = 0; k < 3; ++k) {
-                        MiddlePlane next = plane;
-                        (k == 0 ? next.yaw : k == 1 ? next.roll : next.aside_mm) += k < 2 ? by * kDegree : by;
-                        if (const double now = misfit(next); now < off) off = now, plane = next, again = true;
-                    }
-            }
-        if (turned == 0 || off < kClearly * least) best = plane, least = off;
+        if (const double off = descend(misfit, plane); off < kClearly * least) best = plane, least = off;
     }
     return best;
 }

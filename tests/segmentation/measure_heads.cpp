@@ -183,7 +183,8 @@ int main(int argc, char** argv) {
         return wrong == 0 ? 0 : 6;
     }
     fmt::print(
-        "head\tverdict\texpected\tml\tthreshold\tball mm\tlayered\tnose mm\tblur mm\tunsure\tsigma mm\toff > 2 mm "
+        "head\tverdict\texpected\tml\tthreshold\tball mm\tlayered\tnose mm\tblur mm\tunsure\tsigma mm\techo\toff > 2 "
+        "mm "
         "%\tplain off %\ts\twhy\n");
     for (const auto& head : heads) {
         const std::string name = head.filename().string();
@@ -192,11 +193,12 @@ int main(int argc, char** argv) {
         const bool right = known == expected.end() || is_right(row.verdict, known->second, false);
         wrong += !right;
         fmt::print(
-            "{}\t{}{}\t{}\t{:.0f}\t{:.4g}\t{:.0f}\t{:.2f}\t{:.0f}\t{:.1f}\t{:.3f}\t{:.2f}\t{:.2f}\t{:.2f}\t{:.1f}\t{}"
+            "{}\t{}{}\t{}\t{:.0f}\t{:.4g}\t{:.0f}\t{:.2f}\t{:.0f}\t{:.1f}\t{:.3f}\t{:.2f}\t{:.2f}\t{:.2f}\t{:.2f}\t{:."
+            "1f}\t{}"
             "\n",
             name, row.verdict, right ? "" : " WRONG", known == expected.end() ? "-" : known->second, row.ml,
             row.mask.threshold_said, row.judged.ball_radius_mm, row.judged.layered_share, row.judged.nose_mm,
-            row.judged.edge_blur_mm, row.mask.unsure_share, row.judged.noise_sigma_mm, row.off_percent,
+            row.judged.edge_blur_mm, row.mask.unsure_share, row.judged.noise_sigma_mm, row.judged.echo, row.off_percent,
             row.plain_off_percent, row.seconds, row.why);
         std::fflush(stdout);
     }

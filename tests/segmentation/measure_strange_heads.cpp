@@ -46,7 +46,8 @@ Volume blurred(Volume ct) {
 
 std::string word_for(const SkinScore& score) {
     if (score.refused) return "refused";
-    return fmt::format("{}, {:.2f} % off", score.doubted ? "warned" : "taken", score.off_percent);
+    const std::string echo = score.echo > 0 ? fmt::format(", echo {:.2f}", score.echo) : "";
+    return fmt::format("{}, {:.2f} % off{}", score.doubted ? "warned" : "taken", score.off_percent, echo);
 }
 
 }  // namespace

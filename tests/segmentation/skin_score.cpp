@@ -52,6 +52,7 @@ SkinScore score_of(const Volume& volume, const TriangleMesh& truth) {
         if (mm.empty()) return score;
         score.p95_mm = mm[mm.size() * 95 / 100];
         score.sigma_mm = judged.sigma_mm;
+        score.echo = judged.echo;
         score.noise_sigma_mm = judged.noise_sigma_mm;
         const auto near = std::upper_bound(mm.begin(), mm.end(), kOff_mm);
         score.rms_mm =

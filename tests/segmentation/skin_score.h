@@ -16,6 +16,7 @@ struct SkinScore {
     double p95_mm = 0;                        ///< of its distance
     double rms_mm = 0;                        ///< of it, where it is nearer than 2 mm
     double sigma_mm = 0, noise_sigma_mm = 0;  ///< as `SkinJudgement` says them
+    double echo = 0;                          ///< the same; of an MR
     std::string why;                          ///< the doubts' or the refusal's beginnings
     TriangleMesh skin;                        ///< ours, also of what was refused for its looks
 

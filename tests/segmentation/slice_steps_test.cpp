@@ -9,6 +9,7 @@
 #include "planning_io/volume/read_volume.h"
 #include "segmentation/skin_judgement.h"
 #include "segmentation/skin_shape.h"
+#include "segmentation/volume_sample.h"
 #include "tests/support/test_data.h"
 
 namespace planlight::test {
@@ -31,22 +32,17 @@ Volume moved_from(const Volume& still, int first, int along_i, int along_j) {
 /// From `first` on every slice is turned by so much about its middle.
 Volume turned_from(const Volume& still, int first, double radians) {
     Volume turned = still;
-    const Eigen::Vector3d spacing = still.spacing_mm();
-    const Eigen::Vector2d mm(spacing.x(), spacing.y());
-    const Eigen::Vector2d middle = 0.5 * mm.cwiseProduct(Eigen::Vector2d(still.size[0] - 1, still.size[1] - 1));
-    const Eigen::Rotation2Dd back(-radians);
+    const Eigen::Vector3d mm = still.spacing_mm();
+    const Eigen::Vector3d middle(0.5 * (still.size[0] - 1), 0.5 * (still.size[1] - 1), 0);
+    const Eigen::Affine3d back = Eigen::Translation3d(middle) * mm.cwiseInverse().asDiagonal() *
+                                 Eigen::AngleAxisd(-radians, Eigen::Vector3d::UnitZ()) * mm.asDiagonal() *
+                                 Eigen::Translation3d(-middle);
+    const float air = *std::min_element(still.values.begin(), still.values.end());
     for (int k = first; k < still.size[2]; ++k)
         for (int j = 0; j < still.size[1]; ++j)
-            for (int i = 0; i < still.size[0]; ++i) {
-                const Eigen::Vector2d from =
-                    (middle + back * (mm.cwiseProduct(Eigen::Vector2d(i, j)) - middle)).cwiseQuotient(mm);
-                const int x = std::clamp(static_cast<int>(std::floor(from.x())), 0, still.size[0] - 2),
-                          y = std::clamp(static_cast<int>(std::floor(from.y())), 0, still.size[1] - 2);
-                const double u = std::clamp(from.x() - x, 0.0, 1.0), v = std::clamp(from.y() - y, 0.0, 1.0);
-                turned.values[turned.index(i, j, k)] =
-                    static_cast<float>((1 - v) * ((1 - u) * still.at(x, y, k) + u * still.at(x + 1, y, k)) +
-                                       v * ((1 - u) * still.at(x, y + 1, k) + u * still.at(x + 1, y + 1, k)));
-            }
+            for (int i = 0; i < still.size[0]; ++i)
+                turned.values[turned.index(i, j, k)] = static_cast<float>(
+                    value_at(still, back * Eigen::Vector3d(i, j, k)).value_or(static_cast<double>(air)));
     return turned;
 }
 
