@@ -2,33 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/registration/devices/scripted_camera.h"
+
 namespace planlight {
 namespace {
 
 using std::chrono::milliseconds;
-
-class ScriptedCamera final : public Camera {
-public:
-    ScriptedCamera(std::string name, FrameBell& bell) : name_(std::move(name)), frames_(bell) {}
-    const std::string& name() const override { return name_; }
-    const std::string& serial() const override { return name_; }
-    int width() const override { return 160; }
-    int height() const override { return 120; }
-    std::vector<std::string> notes() const override { return {"it cannot switch off its gamma"}; }
-    FrameQueue& frames() override { return frames_; }
-    void expose(double at_ms, const GrayImage& picture) {
-        frames_.push({picture, from_seconds(at_ms / 1e3), milliseconds(10), {}});
-    }
-
-private:
-    std::string name_;
-    FrameQueue frames_;
-};
-
-struct SetClock final : Clock {
-    Instant t{};
-    Instant now() const override { return t; }
-};
+using test::ScriptedCamera;
+using test::SetClock;
 
 /// Bars of `width` pixels, 60 and 180.
 GrayImage bars(int width) {
@@ -42,12 +23,13 @@ GrayImage bars(int width) {
 struct CameraWatchTest : ::testing::Test {
     FrameBell bell;
     SetClock clock;
-    ScriptedCamera left{"Left camera", bell}, right{"Right camera", bell};
+    ScriptedCamera left{"Left camera", bell, 160, 120}, right{"Right camera", bell, 160, 120};
     PairSettings pairs;
     CameraWatch watch{left, right, clock, pairs};
 };
 
 TEST_F(CameraWatchTest, BeforeTheFirstPictureNothingIsClaimed) {
+    left.says({"it cannot switch off its gamma"});
     watch.look();
     const WatchedRoom room = watch.state();
     EXPECT_FALSE(room.left.picture);

@@ -3,16 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "planning_io/types/error.h"
+#include "tests/registration/devices/scripted_camera.h"
 
 namespace planlight {
 namespace {
 
 using std::chrono::milliseconds;
-
-struct SetClock final : Clock {
-    Instant t = milliseconds(5000);
-    Instant now() const override { return t; }
-};
+using test::SetClock;
 
 /// Remembers what it was told.
 struct ToldProjector final : Projector {
@@ -40,7 +37,7 @@ Monitor monitor() {
 }
 
 TEST(TestLight, APictureExpiresASecondAfterItWasLastKept) {
-    SetClock clock;
+    SetClock clock(milliseconds(5000));
     ToldProjector projector;
     TestLight light(projector, monitor(), clock);
     EXPECT_EQ(projector.shows, 0) << "nothing is lit by itself";
@@ -56,7 +53,7 @@ TEST(TestLight, APictureExpiresASecondAfterItWasLastKept) {
 }
 
 TEST(TestLight, DarkIsDarkAtOnceAndStaysSo) {
-    SetClock clock;
+    SetClock clock(milliseconds(5000));
     ToldProjector projector;
     TestLight light(projector, monitor(), clock);
     light.show(TestPicture::star);
@@ -69,7 +66,7 @@ TEST(TestLight, DarkIsDarkAtOnceAndStaysSo) {
 }
 
 TEST(TestLight, ALostProjectorIsDarkSaidAndNotLitAgainByItself) {
-    SetClock clock;
+    SetClock clock(milliseconds(5000));
     ToldProjector projector;
     TestLight light(projector, monitor(), clock);
     light.show(TestPicture::steps);
@@ -89,7 +86,7 @@ TEST(TestLight, ALostProjectorIsDarkSaidAndNotLitAgainByItself) {
 }
 
 TEST(TestLight, IsDarkAtItsEnd) {
-    SetClock clock;
+    SetClock clock(milliseconds(5000));
     ToldProjector projector;
     {
         TestLight light(projector, monitor(), clock);

@@ -5,29 +5,13 @@
 #include <functional>
 
 #include "planning_io/types/error.h"
+#include "tests/registration/devices/scripted_camera.h"
 
 namespace planlight {
 namespace {
 
 using std::chrono::milliseconds;
-
-/// A camera whose frames the test says.
-class ScriptedCamera final : public Camera {
-public:
-    ScriptedCamera(std::string name, FrameBell& bell) : name_(std::move(name)), frames_(bell) {}
-    const std::string& name() const override { return name_; }
-    const std::string& serial() const override { return name_; }
-    int width() const override { return 2; }
-    int height() const override { return 2; }
-    FrameQueue& frames() override { return frames_; }
-    void expose(double at_ms, std::uint8_t grey, double exposure_ms = 10) {
-        frames_.push({GrayImage(2, 2, grey), from_seconds(at_ms / 1e3), from_seconds(exposure_ms / 1e3), {}});
-    }
-
-private:
-    std::string name_;
-    FrameQueue frames_;
-};
+using test::ScriptedCamera;
 
 /// Every look at the clock takes a millisecond; at one of them something may happen.
 struct RunningClock final : Clock {

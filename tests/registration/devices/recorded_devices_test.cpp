@@ -4,17 +4,13 @@
 #include "registration/devices/paired_cameras.h"
 #include "registration/devices/recorded_camera.h"
 #include "registration/devices/recorded_projector.h"
+#include "tests/registration/devices/scripted_camera.h"
 
 namespace planlight {
 namespace {
 
 using std::chrono::milliseconds;
-
-/// Time that passes when the test says so.
-struct SetClock final : Clock {
-    Instant t{};
-    Instant now() const override { return t; }
-};
+using test::SetClock;
 
 /// Frames every 40 ms with 10 ms of exposure, each a picture of its own; between the second and the third one was lost.
 std::vector<RecordedFrame> four_frames() {
